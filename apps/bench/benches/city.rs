@@ -22,7 +22,7 @@ fn town(side: usize) -> City {
         let (block, house) = (number / 12, number % 12);
         let corner = 100.0 * DVec2::new((block % side) as f64, (block / side) as f64);
         let middle = corner + DVec2::new(18.0 + 22.0 * (house % 4) as f64, 22.0 + 27.0 * (house / 4) as f64);
-        // Sizes and turns that repeat after 97 houses.
+        // Sizes and orientations repeat after 97 houses.
         let odd = (number * 31 % 97) as f64 / 97.0;
         let turn = DVec2::from_angle(0.3 * odd - 0.15);
         let outline = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]

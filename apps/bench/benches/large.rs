@@ -1,7 +1,7 @@
 //! Flying over generated grounds of 4k x 4k and 16k x 16k nodes: processor time per frame and memory.
-//! Two flights: a steady one, whose frames show a little more ground than the one before, and jumps, each of which shows a
-//! place not seen before. Each ground lives in a process of its own, so that its memory is its own; they draw the frames in
-//! turn, so that a busy machine disturbs all of them alike.
+//! Two flights: a steady one, whose frames show a little more ground than the one before, and jumps, each of which shows
+//! ground that was not in the picture before. Each ground is drawn by a process of its own, so that its memory can be measured
+//! alone; the processes draw in turn, so that a busy machine disturbs all of them alike.
 //!
 //! `cargo bench -p belvedere-bench --bench large -- [NODES..]`, 4097 and 16385 if left out.
 #![allow(missing_docs, clippy::print_stdout)]
@@ -33,7 +33,7 @@ fn height(x: f64, y: f64) -> f32 {
 struct Flight {
     name: &'static str,
     frames: usize,
-    /// Degrees of the circle from frame to frame.
+    /// Angle along the circle between two frames, degrees.
     step_deg: f64,
 }
 
@@ -63,8 +63,8 @@ fn ground(nodes: usize) -> Scene {
     scene_of(ground.expect("well formed"))
 }
 
-/// Draws the view at each angle that is asked for, and answers with milliseconds of processor time, triangles drawn, and
-/// MiB of memory: now and at most.
+/// Reads angles in degrees from standard input, one a line, and draws the view at each. Prints processor time in milliseconds,
+/// triangles drawn, and resident memory in MiB, current and peak.
 fn answer(nodes: usize) {
     let scene = ground(nodes);
     let (renderer, light, progress) = (CpuRenderer::default(), Light::default(), Progress::silent());
@@ -97,7 +97,7 @@ impl Ground {
         Self { nodes, process, answers }
     }
 
-    /// See [`answer`].
+    /// Draws the view at an angle, degrees; returns the four numbers of [`answer`].
     fn draw(&mut self, angle_deg: f64) -> [f64; 4] {
         let ask = self.process.stdin.as_mut().expect("a pipe");
         writeln!(ask, "{angle_deg}").expect("it listens");
@@ -118,7 +118,7 @@ fn report(flight: Flight, grounds: &mut [Ground]) {
     let column = |k: usize, f: usize| figures[k].iter().map(|v| v[f]).collect::<Vec<f64>>();
     for (k, ground) in grounds.iter().enumerate() {
         let (ms, last) = (column(k, 0), figures[k][flight.frames - 1]);
-        // Of frames drawn one after the other, not of medians.
+        // Ratios of frames drawn one after the other, not of medians.
         let ratios: Vec<f64> = ms.iter().zip(column(0, 0)).map(|(a, b)| a / b).collect();
         println!(
             "  {0} x {0}: {1:.1} ms cpu per frame (95 %: {2:.1}, worst {3:.1}), {4:.2} of the first ground, \
@@ -144,7 +144,7 @@ fn main() {
     }
     let sizes = if sizes.is_empty() { vec![4097, 16_385] } else { sizes };
     let mut grounds: Vec<Ground> = sizes.into_iter().map(Ground::new).collect();
-    // The first frame derives what is kept.
+    // The first frame fills the caches.
     for ground in &mut grounds {
         let [ms, ..] = ground.draw(0.0);
         println!("{0} x {0}: first frame {ms:.0} ms", ground.nodes);

@@ -1,8 +1,8 @@
 //! How evenly path previews move, how much of the path they show, and how much sky is in their lower half: two canyons, two towns and a
 //! vessel that are generated, and a town, a hiking route and a vessel of the data collection (`BELVEDERE_DATA`). A line of a table per path.
 //!
-//! Of every position two frames: one there, one a step farther, so long that a preview's length takes a thousand of them (40 seconds of
-//! film). What every 16th pixel of the first shows has moved by so many pixels in the second; what leaves the picture does not count.
+//! Two frames are compared at every position: one there, and one a thousandth of the preview's length farther (1000 steps take 40 seconds
+//! of film). The shift of the points seen by every 16th pixel is measured in pixels; points that leave the picture do not count.
 //!
 //! `cargo bench -p belvedere-bench --bench previews -- [NAME..] [--positions 60]`
 #![allow(missing_docs, clippy::print_stdout, clippy::print_stderr)]
@@ -19,9 +19,9 @@ use belvedere::{OpenOptions, Session};
 use std::path::{Path, PathBuf};
 
 const IMAGE: [u32; 2] = [320, 180];
-/// Every so many pixels in both directions.
+/// Spacing of the measured pixels in both directions, pixels.
 const EVERY: u32 = 4;
-/// Steps that take the length of a preview.
+/// Steps to the length of a preview.
 const STEPS: f64 = 1000.0;
 /// Samples of the path ahead.
 const SAMPLES: f64 = 100.0;
@@ -188,7 +188,7 @@ fn drawn(scene: &Scene, view: &View) -> Result<Frame> {
     Ok(CpuRenderer::default().render(&job)?)
 }
 
-/// How far what pixels show moves from one view to the next, pixels.
+/// Distances in pixels between the images, in two successive views, of the points that every 16th pixel sees.
 fn motions(frame: &Frame, now: &View, next: &View) -> Vec<f64> {
     let [w, h] = IMAGE;
     let mut moved = Vec::new();
@@ -210,7 +210,7 @@ fn motions(frame: &Frame, now: &View, next: &View) -> Vec<f64> {
     moved
 }
 
-/// The number that a share of all does not exceed; 0 of none.
+/// Quantile: the value that `share` of all values do not exceed; 0 without values.
 fn share_of(all: &[f64], share: f64) -> f64 {
     let mut sorted = all.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -19,7 +19,7 @@ fn main() -> Result<()> {
         match arg.as_str() {
             "--frames" => frames = args.next().context("--frames needs a number")?.parse()?,
             "--alone" => alone = true,
-            // Cargo's own.
+            // Cargo passes it to every benchmark.
             "--bench" => {}
             _ => names.push(arg),
         }
@@ -53,7 +53,7 @@ fn measure(name: &str, frames: usize) -> Result<()> {
             let frame = renderer.render(&job)?;
             let ms = clock.cpu_ms().unwrap_or_else(|| clock.wall_ms());
             drawn[k] = frame.stats.triangles_drawn;
-            // The first of each makes what later ones share.
+            // The first frame of each view fills the caches.
             if round > 0 {
                 times[k].push(ms);
             }

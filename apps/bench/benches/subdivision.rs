@@ -1,4 +1,4 @@
-//! Subdivision while drawing against Cui's way, splitting all triangles beforehand: the same scene, view and tolerance, frames in turn.
+//! Subdivision while drawing against the method of Cui et al. 2010, which splits all triangles beforehand: same scene, view and tolerance.
 //! Processor time; one line of JSON per scene.
 //!
 //! `cargo bench -p belvedere-bench --bench subdivision -- [NAME..] [--frames 7]`
@@ -13,7 +13,7 @@ use belvedere_bench::sizes::{counts, sized, sized_views};
 
 const IMAGE: [u32; 2] = [1280, 720];
 const TOLERANCE_PX: f64 = 0.5;
-/// What is split already is drawn as it is.
+/// Tolerance at which meshes that are split already are not split again, pixels.
 const AS_IT_IS_PX: f64 = 1e9;
 
 fn main() -> Result<()> {
@@ -38,7 +38,7 @@ fn measure(name: &str, frames: usize) -> Result<()> {
     let clock = Stopwatch::start();
     let (for_view, shortest) = split(&scene, &|a, b| (TOLERANCE_PX..AS_IT_IS_PX).contains(&view.edge_error_px(a, b)))?;
     let split_ms = clock.cpu_ms().unwrap_or_else(|| clock.wall_ms());
-    // For every view alike: edges as short as any of this one must be.
+    // For any view: splits all edges longer than 1.5 times the shortest half that this view needs.
     let (for_any, _) = split(&scene, &|a, b| a.distance(b) > 1.5 * shortest)?;
     let cases = [(&scene, TOLERANCE_PX), (&for_view, AS_IT_IS_PX), (&for_any, AS_IT_IS_PX)];
     let (light, progress) = (Light::default(), Progress::silent());
@@ -71,7 +71,7 @@ fn measure(name: &str, frames: usize) -> Result<()> {
     Ok(())
 }
 
-/// The scene with the edges of its meshes halved while they are too long, and the shortest half, scene units.
+/// The scene with the edges of its meshes halved while they are too long, and the length of the shortest half, scene units.
 fn split(scene: &Scene, is_long: &dyn Fn(DVec3, DVec3) -> bool) -> Result<(Scene, f64)> {
     let mut out = scene.clone();
     let mut shortest = f64::INFINITY;

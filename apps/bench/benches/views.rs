@@ -1,5 +1,5 @@
 //! Multi-perspective views of generated towns at three levels of abstraction, 1600 x 1200: straight and bent, one section and six, one
-//! preset and two blended, dither and layers. Frames of a row are drawn in turn; one line of JSON per row.
+//! preset and two blended, dither and layers. The frames of a row are drawn alternately. The output is one line of JSON per row.
 //!
 //! `cargo bench -p belvedere-bench --bench views -- [--frames 7] [--size 1600]`
 #![allow(missing_docs, clippy::print_stdout)]
@@ -61,7 +61,7 @@ fn main() -> Result<()> {
 
 /// A town.
 ///
-/// * `representations`: names, and the level of abstraction that each shows.
+/// * `representations`: names, and the level of abstraction of each.
 fn session(size: f64, representations: &[(&str, u32)], presets: &str) -> Result<Session> {
     let names: String = representations.iter().map(|(name, loa)| format!("{name} = [\"level{loa}\"]\n")).collect();
     let mut levels: Vec<u32> = representations.iter().map(|(_, loa)| *loa).collect();
@@ -84,7 +84,7 @@ fn session(size: f64, representations: &[(&str, u32)], presets: &str) -> Result<
 /// A scene in a view at some quality.
 type Case<'a> = (&'a Scene, &'a View, &'a RenderOptions);
 
-/// Frames in turn; the ratio of the second to the first.
+/// Draws the frames of both cases alternately and prints the ratio of the second to the first.
 fn row(name: &str, frames: usize, cases: &[Case<'_>; 2]) -> Result<()> {
     let renderers = [CpuRenderer::default(), CpuRenderer::default()];
     let (light, progress) = (Default::default(), Progress::silent());

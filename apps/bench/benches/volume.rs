@@ -18,7 +18,7 @@ fn main() -> Result<()> {
             "--step" => request.step = next()?.parse()?,
             "--ppm" => picture = Some(next()?),
             "--shaded" => request.shaded = true,
-            // Cargo's own.
+            // Cargo passes it to every benchmark.
             "--bench" => {}
             other => anyhow::bail!("{other} is not understood"),
         }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-/// Running threads are counted at the system's ticks: shorter times may come out as none at all.
+/// Least processor time reported, milliseconds: the system counts running threads at its ticks, and shorter times may read as 0.
 const LEAST_MS: f64 = 1e-3;
 
 /// Measures one piece of work.
@@ -28,7 +28,7 @@ impl Stopwatch {
     }
 }
 
-/// What [`Stopwatch::cpu_ms`] is on this machine.
+/// Name of the clock that [`Stopwatch::cpu_ms`] reads on this machine.
 pub(crate) fn name() -> &'static str {
     if cpu_ms().is_some() { "processor time of all threads" } else { "wall time" }
 }
@@ -49,7 +49,7 @@ pub fn status_mib(key: &str) -> f64 {
     line.and_then(|l| l.trim().trim_end_matches(" kB").parse::<f64>().ok()).unwrap_or(0.0) / 1024.0
 }
 
-/// Processes that wanted to run over the last minute.
+/// Load average of the system over the last minute; `None` where the system does not tell.
 pub(crate) fn load() -> Option<f64> {
     std::fs::read_to_string("/proc/loadavg").ok()?.split(' ').next()?.parse().ok()
 }

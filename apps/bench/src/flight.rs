@@ -1,4 +1,4 @@
-//! What a frame of a flight over disoccluded terrain costs: solved for every frame, and solved in the background.
+//! Cost of a frame of a flight over disoccluded terrain: solved for every frame, and solved in the background.
 
 use crate::clock::{Stopwatch, median, quantile};
 use crate::scene::ground;
@@ -15,11 +15,11 @@ use belvedere::scene::{
 use serde::Serialize;
 use std::sync::Arc;
 
-/// Pictures per second, and how far the walker comes from one to the next, metres.
+/// Pictures per second, and distance between the eyes of two successive pictures, metres.
 const RATE: f64 = 25.0;
 const STEP_M: f64 = 3.0;
 
-/// How the ground of the pictures is made, and what that costs.
+/// Cost of the ground of a flight's pictures by one method.
 #[derive(Debug, Clone, Serialize)]
 pub struct FlightCost {
     /// `solved and judged for every picture`, or `solved in the background`.
@@ -28,11 +28,11 @@ pub struct FlightCost {
     pub pictures: usize,
     /// Reference points in the picture, on average.
     pub points: f64,
-    /// Wall time until the ground of a picture is there, milliseconds: median and 95 %.
+    /// Wall time until the ground of a picture is solved, milliseconds: median and 95 % quantile.
     pub ground_ms: [f64; 2],
-    /// The same with the drawing.
+    /// Wall time until the picture is drawn, solving included, milliseconds: median and 95 % quantile.
     pub picture_ms: [f64; 2],
-    /// Pictures that the ground lags behind, at most.
+    /// Largest number of pictures that the ground lags behind.
     pub lag: u64,
     /// Largest share of the points of a picture that its ground hides.
     pub hidden: f64,
@@ -65,7 +65,7 @@ struct Ground {
     hidden: f64,
 }
 
-/// The first picture warms up.
+/// Times the pictures of one method; the first picture warms up and does not count.
 fn time(
     method: &'static str,
     scene: &Scene,

@@ -24,7 +24,7 @@ pub struct FrameCost {
     pub cpu_ms: f64,
     /// Median wall time, milliseconds.
     pub wall_ms: f64,
-    /// To the straight frame of one sample and every triangle, drawn in the same round.
+    /// Median ratio of processor time to the straight frame of one sample and every triangle that was drawn in the same round.
     pub ratio: f64,
 }
 
@@ -42,7 +42,7 @@ pub struct ProjectionCost {
 /// How processor time grows, `time ~ size^exponent`, least squares in logarithms.
 #[derive(Debug, Clone, Serialize)]
 pub struct Growth {
-    /// What grows.
+    /// The quantity that grows.
     pub of: &'static str,
     /// Sizes.
     pub sizes: Vec<f64>,
@@ -115,7 +115,7 @@ pub(crate) fn grow_pixels(request: &BenchRequest, scene: &Scene, progress: &Prog
     Ok(Growth::new("pixels", sizes.map(|[w, h]| f64::from(w) * f64::from(h)).to_vec(), &costs))
 }
 
-/// Turns that a chain is measured with.
+/// Numbers of turns of the measured chains.
 const TURNS: [usize; 5] = [1, 7, 100, 127, 300];
 
 pub(crate) fn grow_turns(request: &BenchRequest, scene: &Scene, lod_px: f64, progress: &Progress) -> Result<Growth> {

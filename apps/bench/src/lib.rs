@@ -1,4 +1,4 @@
-//! `bench`: what bends, anti-aliasing and level of detail cost on this machine.
+//! `bench`: cost of bends, anti-aliasing and level of detail on this machine.
 //!
 //! Cases are drawn in turn, forth and back, so that a busy machine disturbs all of them alike; ratios are medians of ratios of
 //! frames of one round. Processor time of all threads counts where the system tells it (Linux), wall time elsewhere.
@@ -56,7 +56,7 @@ pub struct BenchReport {
     pub threads: usize,
     /// What is measured as `cpu_ms`.
     pub clock: &'static str,
-    /// Processes that wanted to run over the last minute, before and after; `None` where the system does not tell.
+    /// Load average of the system over the last minute, before and after; `None` where the system does not tell.
     pub load: [Option<f64>; 2],
     /// Nodes along a side of the ground.
     pub nodes: usize,

@@ -7,7 +7,7 @@ use belvedere::core::presets::PresetDocument;
 use belvedere::core::{CurvedRays, DVec2, DVec3, Pinhole, Projection, SplineBend, Stage, View};
 use belvedere::scene::{Heightfield, Layer, LayerKind, Palette, Relief, Scene, TerrainLayer};
 
-/// A view and what bends it.
+/// Name of what bends a view, and the view.
 pub type NamedView = (&'static str, View);
 
 /// Ridges on 10 km of ground, `nodes` x `nodes` nodes.

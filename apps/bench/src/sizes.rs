@@ -77,7 +77,7 @@ fn mesh_of((positions, triangles): Surface) -> Result<Scene> {
     Ok(Scene { layers: vec![Layer { id: "mesh".into(), must_see: false, kind }], ..Scene::default() })
 }
 
-/// A number of 0..1 that belongs to another.
+/// A pseudo-random number in 0..1, the same for the same `i` (integer hash).
 fn scattered(i: usize) -> f64 {
     let mut x = (i as u64).wrapping_add(0x9e37_79b9_7f4a_7c15).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     x ^= x >> 29;

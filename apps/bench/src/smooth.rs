@@ -1,4 +1,4 @@
-//! What the smooth pass costs our way, by cosine transforms, and the paper's way, by a sparse factor.
+//! Cost of the smooth pass by cosine transforms (ours) and by a sparse factor (the paper's method).
 
 use crate::clock::{Stopwatch, median};
 use anyhow::Result;
@@ -23,11 +23,11 @@ pub struct SmoothCost {
     pub rows: usize,
     /// Solution by cosine transforms, which prepare no factor: wall time, milliseconds.
     pub cosine_ms: f64,
-    /// The paper's way; `None` in a program that was built without the feature `sparse`.
+    /// Cost of the paper's method; `None` in a program that was built without the feature `sparse`.
     pub sparse: Option<SparseCost>,
 }
 
-/// The paper's way: the normal equations, factorised once.
+/// The paper's method: the normal equations, factorised once.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct SparseCost {
     /// Building and factorising, wall time, milliseconds.
@@ -42,7 +42,7 @@ pub struct SparseCost {
     pub largest_m: f64,
 }
 
-/// Both ways without and with elevation rows, on the solver's grid of ground of `nodes` x `nodes` nodes.
+/// Costs of both methods without and with elevation rows, on the solver's grid for ground of `nodes` x `nodes` nodes.
 pub(crate) fn smooth(nodes: usize, rounds: usize) -> Result<Vec<SmoothCost>> {
     let grid = Hierarchy::new(nodes, nodes, TerrainSettings::default().solver_nodes);
     let count = (ROWS_PER_NODE * grid.nodes() as f64) as usize;

@@ -19,7 +19,7 @@ const HEIGHT: f64 = 0.45;
 /// How far aside the second viewpoint is, and the depths of the planes of the turn, voxels: all of the volume lies in the transition.
 const ASIDE: f64 = 120.0;
 const PLANES: [f64; 3] = [180.0, 370.0, 560.0];
-/// Every so many-th pixel along both axes is followed to measure the length of rays, by so many depths.
+/// Spacing along both axes of the pixels whose rays are measured, and the number of steps in depth along each ray.
 const EVERY: u32 = 8;
 const DEPTHS: usize = 400;
 
@@ -53,7 +53,7 @@ pub struct VolumeCost {
     pub length: f64,
     /// Processor time for a covered pixel and a voxel edge of its ray, nanoseconds; median.
     pub ns_per_length: f64,
-    /// That to the straight frame's of the same round.
+    /// Median of the ratios of that time to the straight frame's of the same round.
     pub ratio: f64,
 }
 

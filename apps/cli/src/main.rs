@@ -41,7 +41,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// A fault of our own, in one line.
+/// Reports a panic in one line on standard error.
 fn broken(panic: &(dyn std::any::Any + Send)) -> ExitCode {
     let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
     let what = text.unwrap_or("no message").lines().next().unwrap_or_default();

@@ -5,32 +5,32 @@ use belvedere::scene_file::HighlightMark;
 /// Most worker threads: far above what helps, far below what a system refuses to start.
 const MAX_THREADS: usize = 1024;
 
-/// Eye and target of a picture of the camera; `None` = chosen.
+/// Eye and target of a picture of the camera; `None`: they are chosen automatically.
 pub(crate) type Outside = Option<[[f64; 3]; 2]>;
 
-/// A number of threads.
+/// Parses a number of threads, 0..=1024.
 pub(crate) fn parse_threads(text: &str) -> Result<usize, String> {
     text.parse().ok().filter(|n| *n <= MAX_THREADS).ok_or_else(|| format!("give a whole number in 0..={MAX_THREADS}"))
 }
 
-/// A time.
+/// Parses a time in seconds, > 0.
 pub(crate) fn parse_seconds(text: &str) -> Result<f64, String> {
     let seconds = text.trim().parse().ok().filter(|s: &f64| *s > 0.0 && *s <= 1e9);
     seconds.ok_or_else(|| "give seconds greater than 0, such as 20".into())
 }
 
-/// An error in pixels.
+/// Parses a permitted error in pixels, 0..=64.
 pub(crate) fn parse_lod(text: &str) -> Result<f64, String> {
     let px = text.parse().ok().filter(|px| (0.0..=64.0).contains(px));
     px.ok_or_else(|| "give an error in pixels in 0..=64; 0 draws every cell".into())
 }
 
-/// A way to show what no bend shows, as it was written.
+/// Checks the name of a fallback for a target that no bend shows; returns the text unchanged.
 pub(crate) fn parse_fallback(text: &str) -> Result<String, String> {
     text.parse::<belvedere::scene_file::Fallback>().map(|_| text.to_owned())
 }
 
-/// A way to show what the bend did.
+/// Parses the name of a mark that shows the displacement.
 pub(crate) fn parse_highlight(text: &str) -> Result<HighlightMark, String> {
     match text.trim() {
         "shift" => Ok(HighlightMark::Shift),
@@ -41,7 +41,7 @@ pub(crate) fn parse_highlight(text: &str) -> Result<HighlightMark, String> {
     }
 }
 
-/// Width and height of `1280x720`.
+/// Parses width and height in pixels, such as `1280x720`.
 pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X']).map(|(w, h)| [w.trim().parse(), h.trim().parse()]);
     match sides {
@@ -50,7 +50,7 @@ pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// `phi`, `phi=25:80` or `phi=25:80:0.5`; zeros stand for what is not given.
+/// Parses `phi`, `phi=25:80` or `phi=25:80:0.5`, degrees; values that are not given are 0.
 pub(crate) fn parse_sweep(text: &str) -> Result<[f64; 3], String> {
     let wrong = || "give phi, or phi=FIRST:LAST[:STEP] in degrees, such as phi=25:80".to_owned();
     if text == "phi" {
@@ -66,19 +66,19 @@ pub(crate) fn parse_sweep(text: &str) -> Result<[f64; 3], String> {
     }
 }
 
-/// Three numbers of `1.5,42.5,2400`.
+/// Parses three numbers, such as `1.5,42.5,2400`.
 pub(crate) fn parse_eye(text: &str) -> Result<[f64; 3], String> {
     let numbers: Vec<f64> =
         text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
     numbers.try_into().map_err(|_| "give X,Y,Z".into())
 }
 
-/// A length in scene units.
+/// Parses a length in scene units, > 0.
 pub(crate) fn parse_spacing(text: &str) -> Result<f64, String> {
     text.trim().parse().ok().filter(|v: &f64| *v > 0.0 && v.is_finite()).ok_or("give a length greater than 0".into())
 }
 
-/// `auto`, or six numbers.
+/// Parses `auto`, or the six numbers of eye and target.
 pub(crate) fn parse_outside(text: &str) -> Result<Outside, String> {
     if text.trim() == "auto" {
         return Ok(None);
@@ -90,14 +90,14 @@ pub(crate) fn parse_outside(text: &str) -> Result<Outside, String> {
     }
 }
 
-/// Two numbers of `1.5,42.5`.
+/// Parses two numbers, such as `1.5,42.5`.
 pub(crate) fn parse_place(text: &str) -> Result<[f64; 2], String> {
     let numbers: Vec<f64> =
         text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
     numbers.try_into().map_err(|_| "give X,Y".into())
 }
 
-/// Bytes of `512MiB`, `2GB`, `100000`.
+/// Parses a size in bytes, at least 1 MiB, such as `512MiB`, `2GB` or `100000`.
 pub(crate) fn parse_bytes(text: &str) -> Result<u64, String> {
     let split = text.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len());
     let (number, unit) = text.split_at(split);

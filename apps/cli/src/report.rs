@@ -1,4 +1,4 @@
-//! What the user sees: one line per failure, warnings, progress, results.
+//! Output for the user: one line per failure, warnings, progress, results.
 
 use crate::common_args::Common;
 use belvedere::scene::Progress;
@@ -10,12 +10,12 @@ use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
-/// Off a terminal, time between two lines.
+/// Time between two progress lines where standard error is not a terminal.
 const BETWEEN_LINES: Duration = Duration::from_secs(10);
 /// Work shorter than this shows no progress bar.
 const QUIET_FOR: Duration = Duration::from_millis(500);
 
-/// `belvedere: text` on standard error; a closed pipe is nobody's fault.
+/// Prints `belvedere: text` on standard error; ignores a closed pipe.
 pub(crate) fn complain(text: &str) {
     let _ = writeln!(std::io::stderr(), "belvedere: {}", escaped(text));
 }
@@ -38,7 +38,7 @@ pub(crate) fn one_line(error: &anyhow::Error) -> String {
     text.split('\n').map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ")
 }
 
-/// An error of the library in the words of the command line: with the options that lift it.
+/// An error of the library as a message for the command line, which names the options that lift it.
 fn in_options(error: &BelvedereError) -> String {
     match error {
         BelvedereError::FieldOfView { .. } => format!("--fov: {error}"),
@@ -56,7 +56,7 @@ fn in_options(error: &BelvedereError) -> String {
     }
 }
 
-/// The end of a sentence: which options lift an error.
+/// End of the message: the options that lift an error; `None` if no option does.
 fn option_for(error: &BelvedereError) -> Option<&'static str> {
     Some(match error {
         BelvedereError::Path { root_missing: true, .. } => " with --allow-root DIR",
@@ -108,7 +108,7 @@ pub(crate) struct Context {
 impl Context {
     /// Installs Ctrl-C (once: stop cleanly; twice: stop at once) and the progress bar.
     ///
-    /// * `many_pictures`: a limit of time is one for each of them, not for the whole command.
+    /// * `many_pictures`: the time limit applies to each picture, not to the whole command.
     pub(crate) fn new(common: Common, many_pictures: bool) -> Self {
         let bar: Arc<Mutex<Option<indicatif::ProgressBar>>> = Arc::default();
         let progress = match (common.quiet, std::io::stderr().is_terminal()) {
@@ -131,7 +131,7 @@ impl Context {
         Self { common, progress, bar }
     }
 
-    /// Takes the progress bar away.
+    /// Removes the progress bar.
     pub(crate) fn finish(&self) {
         if let Ok(mut slot) = self.bar.lock()
             && let Some(bar) = slot.take()
@@ -161,7 +161,7 @@ impl Context {
         }
     }
 
-    /// Prints warnings.
+    /// Prints each warning on standard error.
     pub(crate) fn warn(&self, warnings: &[String]) {
         self.finish();
         if !self.common.quiet {
@@ -171,7 +171,7 @@ impl Context {
         }
     }
 
-    /// The result of a verb that makes a text: into `out`, or on standard output.
+    /// Writes the text of a verb into `out`, or prints it on standard output.
     pub(crate) fn deliver(
         &self,
         verb: &str,
@@ -217,7 +217,7 @@ pub(crate) fn escaped(text: &str) -> std::borrow::Cow<'_, str> {
     out.into()
 }
 
-/// Text on standard output; a reader that has gone away ends the output, not the program.
+/// Prints a text on standard output; a closed pipe is not an error.
 pub(crate) fn print(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
     match out.write_all(escaped(text).as_bytes()).and_then(|()| out.flush()) {
@@ -247,7 +247,7 @@ fn with_bar(slot: Arc<Mutex<Option<indicatif::ProgressBar>>>) -> Progress {
     })
 }
 
-/// Off a terminal: a line from time to time.
+/// Progress for standard error that is not a terminal: a line from time to time.
 fn with_lines() -> Progress {
     let said = Mutex::new(Instant::now());
     Progress::new(move |stage, done| {

@@ -55,7 +55,7 @@ fn ready(out: Option<&PathBuf>, inputs: &[&Path], context: &Context) -> anyhow::
     out.map_or(Ok(()), |path| Ok(output::check(path, &inputs, context.common.overwrite)?))
 }
 
-/// Refuses the endings of other formats: what would be written is PNG.
+/// Refuses file names with the ending of another format: the file that is written is PNG.
 fn png_named(path: &Path) -> anyhow::Result<()> {
     let others = ["jpg", "jpeg", "tif", "tiff", "webp", "gif", "bmp", "svg", "pdf", "json", "toml"];
     let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
@@ -73,7 +73,7 @@ fn answer(verb: &str, session: &Session, out: Option<&PathBuf>, text: &str, cont
     Ok(Goal::Reached)
 }
 
-/// What all pictures and frames have in common.
+/// Options common to all pictures and frames.
 fn request(args: &DrawArgs, context: &Context) -> PictureOptions {
     let mut request = PictureOptions { straight: args.straight, compare: args.compare, ..PictureOptions::default() };
     request.renderer = args.renderer.into();
@@ -120,7 +120,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         ready(Some(path), &[&args.scene], context)?;
     }
     let palette = args.palette.as_deref().map(PaletteDoc::of);
-    // A straight picture needs no solved ground.
+    // A straight picture does not need the ground solved.
     let unsolved = request.straight;
     let (area_style, sea) = (args.area_style.map(Into::into), args.no_sea.then_some(false));
     let options =
@@ -214,7 +214,7 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
     };
     let request =
         AnimateRequest { animation, picture, out: args.out, resume: args.resume, overwrite: context.common.overwrite };
-    // Every frame is solved by itself.
+    // The ground is solved for every frame, not on opening.
     let options = OpenOptions { unsolved: true, ..context.options(Needs::Everything, args.draw.size) };
     let session = Session::open(&args.scene, &options)?;
     let made = animate::animate(&session, &request, &context.progress)?;
@@ -242,7 +242,7 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
     Ok(if missing.is_some() { Goal::Missed } else { Goal::Reached })
 }
 
-/// What one thing of models needs to be seen.
+/// Finds what one target in models needs to be visible, and writes the files that were asked for.
 fn reveal_one(request: &TargetRequest, files: &RevealFiles, context: &Context) -> anyhow::Result<Goal> {
     let answer = reveal_target(request, &context.options(Needs::Everything, None))?;
     let written = answer.write(files, context.common.overwrite)?;
@@ -447,7 +447,7 @@ fn displace(args: &ProjectArgs, context: &Context) -> anyhow::Result<Goal> {
 fn rays(args: &RaysArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[&args.scene, &args.pixels], context)?;
     let source = scene_file::read(&args.scene)?;
-    // Where nothing says how far rays go, the layers do.
+    // Without a far limit from the arguments or the scene, the layers' extent limits the rays, so they are loaded.
     let needs = if args.far.or(source.document.camera.far).is_some() { Needs::View } else { Needs::Everything };
     let session = Session::from_document(source, &context.options(needs, None))?;
     let pixels = points::read_points::<2>(&args.pixels)?;

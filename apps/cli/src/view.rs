@@ -12,7 +12,7 @@ const PROGRAM: &str = "belvedere-view";
 
 /// Starts the application and ends with its status.
 pub(crate) fn view(args: &ViewArgs, context: &Context) -> anyhow::Result<Goal> {
-    // What cannot be read is said here rather than in a window.
+    // Files that do not exist are reported on standard error rather than in a window.
     for file in &args.files {
         anyhow::ensure!(
             belvedere::io::split_table(file).0.exists(),
@@ -33,7 +33,7 @@ pub(crate) fn view(args: &ViewArgs, context: &Context) -> anyhow::Result<Goal> {
     if status.success() {
         return Ok(Goal::Reached);
     }
-    // It has said why itself.
+    // The application has printed its reason.
     exit(status.code().unwrap_or(2))
 }
 

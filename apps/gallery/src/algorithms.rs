@@ -76,7 +76,7 @@ fn chart(title: &str, x: &str, y: &str, legend: SeriesLabelPosition, curves: Vec
     Chart { title: title.into(), x: x.into(), y: y.into(), legend, curves }
 }
 
-/// The middle column's rays in the plane of the camera's heading.
+/// Curved rays of the picture's middle column, in the plane of the camera's heading.
 fn curved_rays(session: &Session) -> Result<Chart> {
     let (section, view) = (Section::of(session), session.view());
     let turn = view.curved_rays().context("the scene bends no rays")?.spec()[0];
@@ -140,7 +140,7 @@ fn terrain(options: &OpenOptions) -> Result<[Chart; 3]> {
     let program = area.solve(&area.in_mode(SolverMode::Qp), &area.view)?.stage;
     let worst = profiles.first().context("nothing that must be seen is in view")?;
     let greedy = vec![Curve::new("after the greedy pass", worst.ground(Some(&naive)), DARK, Style::Line)];
-    // The line that the ground touches most often.
+    // The profile whose line of sight the ground touches most often.
     let touches = profiles.iter().rev().map(|p| (touches(p, &program), p)).max_by_key(|(touches, _)| touches.len());
     let (active, tightest) = touches.unwrap_or((Vec::new(), worst));
     let active = vec![Curve::new("active rows: the ground touches the line", active, RED, Style::Dots)];
@@ -157,7 +157,7 @@ fn terrain(options: &OpenOptions) -> Result<[Chart; 3]> {
 fn touches(profile: &Profile<'_>, stage: &TerrainDisocclusion) -> Vec<(f64, f64)> {
     let (ground, sight) = (profile.ground(Some(stage)), profile.line_of_sight(Some(stage)));
     let ((_, eye), (far, point)) = (sight[0], sight[1]);
-    // Near the point the ground is the point's own slope.
+    // Near the reference point the ground is left out: there it is the point's own slope.
     let clearance =
         |p: (f64, f64)| if p.0 < 0.95 * far { eye + (point - eye) * p.0 / far - p.1 } else { f64::INFINITY };
     let least = |w: &[(f64, f64)]| clearance(w[1]) < 4.0 && clearance(w[1]) <= clearance(w[0]).min(clearance(w[2]));

@@ -23,7 +23,7 @@ pub(crate) enum Style {
 
 /// Values of one kind.
 pub(crate) struct Curve {
-    /// In the legend; empty = not there.
+    /// Text in the legend; empty: the curve has no entry.
     name: String,
     points: Vec<(f64, f64)>,
     color: RGBColor,

@@ -1,4 +1,4 @@
-//! `figures compare`: one hidden target, shown by every means there is.
+//! `figures compare`: one hidden target shown by every technique of the system.
 
 use crate::easel::{Easel, bent, pixels_of, straight};
 use crate::html::{self, escape};
@@ -15,26 +15,26 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 const SCENE: &str = include_str!("../../../scenes/church_hidden.toml");
-/// What the scene says about how to show its target.
+/// Line of the scene file that names the fallback for the target.
 const FALLBACK: &str = "fallback = [\"towers:cutaway\"]";
 const TARGET: &str = "church";
 const TILE: [u32; 2] = [640, 480];
-/// The bend: depths of its planes and height of the second viewpoint over the eye, metres.
+/// The turn: depths of its planes and height of the second viewpoint over the eye, metres.
 const PLANES: [f64; 3] = [520.0, 620.0, 690.0];
 const RISE: f64 = 560.0;
-/// Frames of which the fastest counts.
+/// Frames drawn of each technique; the fastest counts.
 const FRAMES: usize = 3;
-/// Points along an edge of a house, and the shortest edge that is looked at, pixels.
+/// Steps along the projected edge of a house, and the shortest edge that is measured, pixels.
 const POINTS: u32 = 8;
 const SHORTEST_PX: f64 = 6.0;
 
-/// Figures of one means.
+/// Measured values of one technique.
 #[derive(Debug, Clone, Serialize)]
 struct Row {
     means: String,
-    /// Share of the target's pixels in this picture without anything before it, 0..=1.
+    /// Share of the target's pixels, as drawn without occluders, that show it in this picture, 0..=1.
     visible: f64,
-    /// Largest distance of the image of a straight edge of a house from the straight line between its ends, as a share of that.
+    /// Largest distance of the image of a straight edge of a house from the chord between its ends, as a share of the chord's length.
     bent_edges: f64,
     /// Share of the pixels whose colour is not that of the straight picture.
     changed: f64,
@@ -89,10 +89,10 @@ pub fn figures(folder: &Path, options: &OpenOptions, overwrite: bool) -> Result<
     Ok(paths.into())
 }
 
-/// Goes with the picture.
+/// Comment in the metadata of the picture.
 const NOTE: &str = "a hidden target by several means; not to scale, not for navigation";
 
-/// The means, what each draws, and what it gives up.
+/// Name of each technique, its session, and a sentence on its drawbacks.
 fn sessions(easel: &Easel<'_>) -> Result<Vec<(&'static str, Session, &'static str)>> {
     anyhow::ensure!(SCENE.contains(FALLBACK), "the scene of the church does not say {FALLBACK}");
     let fallback = |kind: &str| easel.open(&SCENE.replace(FALLBACK, &format!("fallback = [\"{kind}\"]")), TILE);
@@ -118,7 +118,7 @@ fn sessions(easel: &Easel<'_>) -> Result<Vec<(&'static str, Session, &'static st
     ])
 }
 
-/// The target with nothing before it, in the same view.
+/// The session with the boxes removed, in the same view.
 fn alone(session: &Session) -> Session {
     let mut scene = session.scene().clone();
     for layer in &mut scene.layers {
@@ -144,7 +144,8 @@ pub(crate) fn bent_edges_of(shape: &BoxShape, view: &View) -> f64 {
     edges.filter_map(|(a, b)| bow(corners[a], corners[b], view)).fold(0.0, f64::max)
 }
 
-/// How far the image of a straight edge is from straight, as a share of its length; `None` for one that is short or not all in the picture.
+/// Largest distance of the image of a straight edge from its chord, as a share of the chord's length; `None` for a short edge, or one not
+/// wholly in the picture.
 fn bow(a: DVec3, b: DVec3, view: &View) -> Option<f64> {
     let image = |k: u32| {
         let place = a.lerp(b, f64::from(k) / f64::from(POINTS));

@@ -16,7 +16,7 @@ pub struct DemoScene {
     pub text: &'static str,
     /// What a picture pair shows, in one sentence.
     sentence: &'static str,
-    /// Whether its rays are bent, so that pictures of the camera tell something.
+    /// Whether its rays are bent, so that pictures of the camera are drawn too.
     bends_rays: bool,
 }
 
@@ -88,7 +88,7 @@ pub fn demo(folder: &Path, options: &OpenOptions, request: &PictureOptions, over
         output::write_text(&scene_of(name), text, overwrite)?;
         let session = Session::open(&scene_of(name), options)?;
         let picture = session.render(&request)?;
-        // Lines of sight alone: the page needs no second opinion.
+        // Measured by lines of sight alone, without a second frame.
         let measures =
             construct::measure(session.scene(), session.view(), None, &MeasureOptions::default(), &options.progress)?;
         written.extend(picture.write(&picture_of(name), overwrite)?);

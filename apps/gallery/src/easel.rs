@@ -1,4 +1,4 @@
-//! What every figure needs: scenes opened, bent, and drawn as panels.
+//! Tools for figures: scenes opened, bent, and drawn as panels.
 
 use crate::sheet::Panel;
 use anyhow::{Context, Result};
@@ -14,7 +14,7 @@ use belvedere::scene::{
 use belvedere::{CameraPicture, OpenOptions, PictureOptions, Session, fallback};
 use std::path::Path;
 
-/// Points of a ray that is followed.
+/// Points of a sampled ray.
 const RAY_POINTS: usize = 320;
 
 pub(crate) struct Easel<'a> {
@@ -51,15 +51,15 @@ impl<'a> Easel<'a> {
     }
 }
 
-/// A picture, and what it shows of a layer.
+/// A picture, and the visible share of a layer.
 pub(crate) struct Shown {
-    /// Of the pixels that the layer fills where it is drawn alone, the share that show it.
+    /// Share of the pixels of the layer, drawn alone, that show it in this picture.
     pub(crate) share: f64,
     pub(crate) frame: Frame,
 }
 
 impl Easel<'_> {
-    /// The picture of a session, and how much it shows of a layer; of a molecule, of what must be seen of it.
+    /// The picture of a session, and the visible share of a layer; of a molecule, that of its required part.
     pub(crate) fn shown(&self, session: &Session, layer: &str) -> Result<Shown> {
         let (scene, view) = (session.scene(), session.view());
         let at = scene.layers.iter().position(|l| l.id == layer);
@@ -78,7 +78,7 @@ impl Easel<'_> {
     }
 }
 
-/// From straight above and without perspective, `size` scene units of ground around a place.
+/// The session from straight above in parallel projection; the picture shows `size` scene units of ground, top to bottom, around a point.
 pub(crate) fn above(session: &Session, middle: DVec3, size: f64) -> Result<Session> {
     let lens = Projection::Orthographic { height: size };
     let eye = middle + 2.0 * size.max(500.0) * DVec3::Z;
@@ -86,7 +86,7 @@ pub(crate) fn above(session: &Session, middle: DVec3, size: f64) -> Result<Sessi
     Ok(session.clone().with_view(View::straight(camera)))
 }
 
-/// The session with its rays bent by turns instead of what bent them.
+/// The session with rays bent by these turns, in place of its own stages.
 pub(crate) fn bent(session: &Session, model: Model, turns: &[TurnSpec]) -> Result<Session> {
     let pinhole = session.view().pinhole().clone();
     let rays = CurvedRays::new(&pinhole, model, turns)?;
@@ -152,7 +152,7 @@ pub(crate) fn with_points(session: &Session, points: &[(&str, DVec3)], color: Co
     Session::from_parts(scene, session.view().clone()).with_light(*session.light())
 }
 
-/// Points of the ray of a pixel up to what it meets, or to `far`; the last one is where it ends.
+/// Points of the ray of a pixel, up to the first hit or to depth `far`.
 pub(crate) fn ray_points(view: &View, tracer: &Tracer<'_>, pixel: DVec2, far: f64) -> Vec<DVec3> {
     let depth = tracer.first_hit(pixel).map_or(far, |hit| hit.depth.min(far));
     view.ray(pixel).samples(1e-4 * depth, depth, RAY_POINTS).map_while(Result::ok).map(|p| p.point).collect()

@@ -1,4 +1,4 @@
-//! Figures of one paper: sheets of panels, a page that shows them, and a record of what stands under the panels.
+//! Figures of one paper: sheets of panels, a page that shows them, and a record of the captions.
 
 use crate::easel::Easel;
 use crate::html::{self, escape};
@@ -15,9 +15,9 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Figure {
     pub(crate) panels: Vec<Panel>,
     pub(crate) columns: usize,
-    /// How much of what matters each panel shows, in the unit of its note; empty where that is not the point.
+    /// Measured visibility of each panel, in the unit of its note; empty where the figure does not measure it.
     pub(crate) seen: Vec<f64>,
-    /// What the figure shows, measured; by name.
+    /// Measured values of the figure by name.
     pub(crate) facts: Facts,
     /// A table under the picture.
     pub(crate) table: Option<Table>,
@@ -49,26 +49,26 @@ pub(crate) struct Entry {
     /// The file is `SET_NAME.png`.
     pub(crate) name: &'static str,
     pub(crate) title: &'static str,
-    /// What is seen, for the page.
+    /// Description for the page.
     pub(crate) says: &'static str,
     pub(crate) draw: fn(&Easel<'_>) -> Result<Figure>,
 }
 
 /// The figures of a paper.
 pub(crate) struct FigureSet<'a> {
-    /// Files begin with it.
+    /// Beginning of all file names.
     pub(crate) name: &'static str,
     pub(crate) title: &'static str,
     /// HTML under the title.
     pub(crate) intro: &'static str,
-    /// Goes with every picture.
+    /// Comment in the metadata of every picture.
     pub(crate) comment: &'static str,
     /// In the order of the page.
     pub(crate) entries: &'a [Entry],
 }
 
 impl FigureSet<'_> {
-    /// Draws the figures into `folder`, which is made if need be: `SET_NAME.png`, `SET.json` with what stands under the panels, and
+    /// Draws the figures into `folder`, which is made if need be: `SET_NAME.png`, `SET.json` with the captions, and
     /// `SET.html`. Returns the files.
     ///
     /// # Errors
@@ -118,7 +118,7 @@ impl FigureSet<'_> {
     }
 }
 
-/// A figure, as kept beside its picture.
+/// A figure in the record `SET.json`.
 #[derive(Debug, Clone, Serialize)]
 struct FigureRecord {
     name: &'static str,
@@ -126,7 +126,7 @@ struct FigureRecord {
     says: &'static str,
     picture: String,
     panels: Vec<PanelRecord>,
-    /// How much of what matters each panel shows, in the unit of its note.
+    /// Measured visibility of each panel, in the unit of its note.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     seen: Vec<f64>,
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
@@ -135,7 +135,7 @@ struct FigureRecord {
     table: Option<Table>,
 }
 
-/// What stands under a panel.
+/// Caption of a panel.
 #[derive(Debug, Clone, Serialize)]
 struct PanelRecord {
     title: String,

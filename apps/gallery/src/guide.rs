@@ -39,10 +39,10 @@ const SET: FigureSet<'_> = FigureSet {
     ],
 };
 
-/// Draws the pictures of the guide into `folder`, which is made if need be. Returns the files.
+/// Draws the pictures of the guide into `folder`, which is created if necessary. Returns the files.
 ///
 /// # Errors
-/// A file that exists if `overwrite` is false; those of drawing a scene.
+/// A file that exists if `overwrite` is false; the errors of drawing a scene.
 pub fn figures(folder: &Path, options: &OpenOptions, overwrite: bool) -> Result<Vec<PathBuf>> {
     SET.draw(folder, options, overwrite)
 }

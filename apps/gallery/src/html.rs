@@ -1,4 +1,4 @@
-//! What every page of ours shares.
+//! Style and frame common to all generated pages.
 
 /// Style of pages: light and dark, readable lines, pictures as wide as the page.
 const STYLE: &str = ":root{color-scheme:light dark}body{font:17px/1.5 system-ui,sans-serif;max-width:84rem;margin:0 auto;\

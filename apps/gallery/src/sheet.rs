@@ -1,4 +1,4 @@
-//! Pictures of one size in rows, a caption of two lines under each.
+//! Pictures of one size in rows, each with a caption of two lines below it.
 
 use anyhow::Result;
 use belvedere::core::DVec2;
@@ -7,7 +7,7 @@ use belvedere::io::png::{self, Channels};
 use belvedere::scene::{Color, Frame};
 use std::path::Path;
 
-/// Between pictures, pixels.
+/// Distance between pictures, pixels.
 const GAP: usize = 10;
 /// Height of a caption, pixels.
 const CAPTION: usize = 48;
@@ -25,14 +25,14 @@ pub(crate) struct Panel {
     pub(crate) frame: Frame,
 }
 
-/// Writes a picture as PNG; `comment` goes into the file.
+/// Writes a picture as PNG with `comment` stored in the file.
 pub(crate) fn write(path: &Path, (width, height, pixels): Pixels, comment: &str, overwrite: bool) -> Result<()> {
     let program = format!("belvedere {}", belvedere::VERSION);
     let text = [("Software", program.as_str()), ("Comment", comment)];
     Ok(png::write(path, overwrite, width, height, Channels::Rgb, pixels.as_flattened(), &text)?)
 }
 
-/// Lays out panels, `columns` to a row.
+/// Arranges panels in rows of `columns`.
 pub(crate) fn sheet(panels: &[Panel], columns: usize) -> Pixels {
     let Some(first) = panels.first() else { return (0, 0, Vec::new()) };
     let (w, h) = (first.frame.width, first.frame.height);

@@ -20,12 +20,12 @@ impl Application {
         Self { runner: eframe::WebRunner::new() }
     }
 
-    /// Gives it a file; before it starts.
+    /// Writes a file into the memory file system; to be called before the start.
     pub fn put(&self, path: &str, bytes: Vec<u8>) -> Result<(), JsValue> {
         fs::write(path, bytes).map_err(|e| e.to_string().into())
     }
 
-    /// Puts it on the page.
+    /// Starts the application on a canvas of the page.
     ///
     /// * `open`: names of the files to open; empty = the first built-in scene.
     pub async fn start(&self, canvas: HtmlCanvasElement, open: Vec<String>) -> Result<(), JsValue> {
@@ -34,25 +34,25 @@ impl Application {
         self.runner.start(canvas, eframe::WebOptions::default(), make).await
     }
 
-    /// Shows what its workers have made; to be called often where there are some.
+    /// Requests a frame if the workers have made something new; to be called often where there are workers.
     pub fn attend(&self) {
         if let Some(viewer) = self.runner.app_mut::<Viewer>() {
             viewer.wake().pass_on();
         }
     }
 
-    /// What it has drawn and how long that took, as JSON; for whoever measures.
+    /// Numbers of pictures and their times as JSON, for measurements.
     pub fn times(&self) -> Option<String> {
         self.runner.app_mut::<Viewer>().map(|viewer| viewer.times().to_string())
     }
 
-    /// The scene as it is, as the text of a scene file.
+    /// The current scene as the text of a scene file.
     pub fn scene(&self) -> Option<String> {
         let viewer = self.runner.app_mut::<Viewer>()?;
         belvedere::output::document_toml(viewer.document()).ok()
     }
 
-    /// What went wrong so badly that it stands still.
+    /// Message of the panic that stopped the application.
     pub fn failure(&self) -> Option<String> {
         self.runner.panic_summary().map(|summary| summary.message())
     }

@@ -1,6 +1,6 @@
 //! Scenes that need no files.
 
-/// Names and texts of the scenes that are always there.
+/// Names and texts of the built-in scenes.
 pub const BUILTIN: [(&str, &str); 9] = [
     ("Massif, a bent panorama", include_str!("../../../scenes/massif.toml")),
     ("Massif, the ground makes way", include_str!("../../../scenes/massif_terrain.toml")),

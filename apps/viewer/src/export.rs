@@ -1,4 +1,4 @@
-//! Export: a picture of any size, an animation, a report; beside the window, with progress, to be cancelled.
+//! Export of a picture of any size, an animation or a report: in the background, with progress and cancellation.
 
 use crate::files::Choosing;
 use crate::model::Model;
@@ -15,13 +15,13 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex, mpsc};
 
-/// Whether films can be made: they take a folder of frames, and a program that joins them.
+/// Whether films can be made: they need a folder of frames and an encoder program.
 const FILMS: bool = cfg!(not(target_family = "wasm"));
 
-/// What a film does.
+/// Motion of a film.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum Film {
-    /// What the scene says.
+    /// The animation of the scene file.
     #[default]
     Scene,
     /// The viewing angle rises.
@@ -30,12 +30,12 @@ enum Film {
     Turntable,
 }
 
-/// The panel, and the work that is done for it.
+/// The panel and its running export.
 #[derive(Default)]
 pub(crate) struct Exporter {
     film: Film,
     job: Option<Job>,
-    /// A window for choosing files is open elsewhere.
+    /// What the user chooses an output for, and the open question.
     chosen: Option<(Want, Choosing)>,
 }
 
@@ -46,14 +46,14 @@ enum Want {
     Report,
 }
 
-/// Work beside the window.
+/// An export that runs in the background.
 struct Job {
     name: &'static str,
     progress: Progress,
     at: Arc<Mutex<(String, f64)>>,
-    /// What was read there last.
+    /// Stage and share that were read last.
     last: (String, f64),
-    /// What was written.
+    /// Files that were written, or the error.
     done: mpsc::Receiver<Result<Vec<PathBuf>, BelvedereError>>,
 }
 
@@ -105,10 +105,10 @@ impl Exporter {
         self.chosen = Some((want, crate::files::choose_output(folder, name, model.system_dialogs)));
     }
 
-    /// Progress.
+    /// Shows progress and the cancel button.
     fn follow(&mut self, ui: &mut Ui) {
         let Some(job) = &mut self.job else { return };
-        // The page of a browser may not wait for a lock.
+        // The main thread of a browser must not block on a lock.
         if let Ok(at) = job.at.try_lock() {
             job.last = at.clone();
         }
@@ -121,7 +121,7 @@ impl Exporter {
         ui.ctx().request_repaint_after_secs(0.1);
     }
 
-    /// Takes what was chosen and what came of it, whatever panel is shown.
+    /// Takes the chosen file and the result of the running export, whatever panel is shown.
     pub(crate) fn poll(&mut self, ctx: &Context, model: &mut Model) {
         if let Some((want, choosing)) = &mut self.chosen
             && let Some(answer) = choosing.answer(ctx)

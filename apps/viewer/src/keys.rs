@@ -35,7 +35,7 @@ pub(crate) const KEYS: [(&str, &str); 14] = [
     ("F1", "this help"),
 ];
 
-/// Steps of the arrow keys, share of the distance to the target; of a turn, radians; of a zoom.
+/// Steps of the arrow keys as a share of the distance to the target; angle of a turn, radians; factor of a zoom.
 const STEP: f64 = 0.06;
 const TURN: f64 = 0.06;
 const ZOOM: f64 = 1.15;

@@ -1,4 +1,4 @@
-//! The program `belvedere-view`: the application in a window of its own. `belvedere view` starts it.
+//! The program `belvedere-view`: the application in its own window. `belvedere view` starts it.
 
 #[cfg(not(target_family = "wasm"))]
 mod native {
@@ -28,7 +28,7 @@ mod native {
             state: Opening::usual_state(),
             system_dialogs: true,
         };
-        // Windows belong to the main thread; whatever reads documents there has threads of its own.
+        // Windows require the main thread. Documents are read on other threads.
         let failure = match std::panic::catch_unwind(|| belvedere_viewer::run(&opening)) {
             Ok(Ok(())) => return ExitCode::SUCCESS,
             Ok(Err(e)) => e.to_string(),
@@ -38,7 +38,7 @@ mod native {
         ExitCode::from(2)
     }
 
-    /// A fault of our own, in one line.
+    /// An internal error as one line.
     fn fault(panic: &(dyn std::any::Any + Send)) -> String {
         let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
         let what = text.unwrap_or("no message").lines().next().unwrap_or_default();
@@ -51,6 +51,6 @@ fn main() -> std::process::ExitCode {
     native::main()
 }
 
-/// In a browser the library is the program.
+/// In a browser the program is the library.
 #[cfg(target_family = "wasm")]
 fn main() {}

@@ -1,4 +1,4 @@
-//! The menu bar: files, steps, places.
+//! The menu bar: files, undo steps, bookmarks.
 
 use crate::builtin::BUILTIN;
 use crate::keys::{Command, KEYS};
@@ -8,18 +8,18 @@ use eframe::egui::{Context, Grid, MenuBar, Ui, Window};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// What the menu wants.
+/// A choice in the menu.
 pub(crate) enum Choice {
     Command(Command),
     Builtin(usize),
     Recent(PathBuf),
     GoTo(usize),
-    /// Takes a bookmark away.
+    /// Removes a bookmark.
     Forget(usize),
     Quit,
 }
 
-/// A camera to come back to.
+/// A camera kept under a name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Bookmark {
     pub(crate) name: String,

@@ -1,4 +1,4 @@
-//! Everything that panels look at and change: the document, what is shown of it, how it is looked at.
+//! State of the application without its window: the document, the last pictures, and how they are viewed.
 
 use crate::notices::Notices;
 use belvedere::core::{DVec2, DVec3, Navigation};
@@ -14,12 +14,12 @@ use std::sync::Arc;
 /// How two pictures are compared.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Compare {
-    /// One is shown.
+    /// One picture is shown.
     #[default]
     Off,
     /// Straight on the left of a bar, bent on the right.
     Split,
-    /// In turn.
+    /// The two pictures alternate.
     Flicker,
 }
 
@@ -31,11 +31,11 @@ pub(crate) enum Tool {
     Map,
     /// Turns about the middle.
     Orbit,
-    /// Picks what has to stay in sight.
+    /// Picks what is to be kept in sight.
     Track,
 }
 
-/// How the scene is looked at; no part of the document.
+/// How the scene is viewed; not part of the document.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub(crate) struct Look {
@@ -60,24 +60,24 @@ impl Default for Look {
     }
 }
 
-/// Longest that a moving picture may take before it is made coarser, milliseconds; shortest before it is made finer.
+/// Time of a moving picture above which it is drawn coarser, and below which it is drawn finer, milliseconds.
 const PACE_MS: [f64; 2] = [32.0, 16.0];
-/// Least share of the pixels' width of a moving picture.
+/// Least width of a moving picture as a share of the full width in pixels.
 const COARSEST: f64 = 0.35;
-/// Pictures whose times are remembered.
+/// Number of kept times.
 const LATENCIES: usize = 600;
-/// How long nothing moves before the picture is drawn in full, seconds; longer where that cannot be broken off.
+/// Time without motion after which the picture is drawn in full, seconds; longer in a browser, where drawing cannot be interrupted.
 const REST_AFTER: f64 = if cfg!(target_family = "wasm") { 0.09 } else { 0.06 };
 /// Time in which a straight picture becomes a bent one, seconds.
 const EASE: f64 = 0.6;
 
-/// A picture that is wanted.
+/// A picture to be ordered.
 #[derive(Debug, Clone)]
 struct Wanted {
     document: Arc<Document>,
     image: [u32; 2],
     sides: Sides,
-    /// Share of the bend.
+    /// Share of the bend, 0..=1.
     bend: f64,
     overhead: bool,
 }
@@ -101,14 +101,14 @@ pub(crate) struct Model {
     pub(crate) pictures: u64,
     /// The last camera from above.
     pub(crate) overhead: Option<(Frame, belvedere::core::View)>,
-    /// What the last picture that was judged shows.
+    /// Measured visibility of the last picture that was judged.
     pub(crate) judged: Option<Box<Judged>>,
-    /// Why the document as it is cannot be drawn.
+    /// Why the current document cannot be drawn.
     pub(crate) violated: Option<String>,
     ordered: Option<Wanted>,
-    /// Pace of the last order that is not answered yet.
+    /// Pace of the last order that is still unanswered.
     waiting: Option<Pace>,
-    /// Documents of moving pictures that are not there yet, and when they were ordered.
+    /// Documents of moving pictures that are still to arrive, and when they were ordered.
     awaited: Vec<(Arc<Document>, Clock)>,
     /// Times from input to picture of the last moving pictures, milliseconds.
     pub(crate) latencies: Vec<f64>,
@@ -117,20 +117,20 @@ pub(crate) struct Model {
     changed: Clock,
     rested: bool,
     changed_at: f64,
-    /// How far the picture is on its way from straight to bent, 0..=1, and when it was last moved on.
+    /// Share of the transition from straight to bent, 0..=1, and the time of its last step, seconds.
     way: f64,
     moved_on_at: f64,
-    /// Share of the pixels' width that moving pictures have.
+    /// Width of moving pictures as a share of the full width in pixels.
     pub(crate) coarseness: f64,
     gesture: u64,
     /// Whether files are chosen in windows of the system.
     pub(crate) system_dialogs: bool,
-    /// How far the opening of files is, in words; while nothing was shown yet, nothing is drawn.
+    /// Progress of opening files, in words; nothing is drawn before the first picture.
     pub(crate) opening: Option<String>,
 }
 
 impl Model {
-    /// * `wake`: called from another thread when there is something new.
+    /// * `wake`: called from another thread when an answer has arrived.
     pub(crate) fn new(editor: Editor, wake: impl Fn() + Send + Sync + 'static) -> Self {
         Self {
             editor,
@@ -186,7 +186,7 @@ impl Model {
         self.ordered = None;
     }
 
-    /// The camera in the hand; `None` before the first picture.
+    /// The current camera; `None` before the first picture.
     pub(crate) fn camera(&self) -> Option<Navigation> {
         let shown = self.shown.as_ref()?;
         let (written, resolved) = (&self.document().camera, &shown.session.resolved()?.camera);
@@ -198,7 +198,7 @@ impl Model {
         self.ordered.as_ref().map(|ordered| ordered.image)
     }
 
-    /// Moves the camera in the course of the gesture; what cannot be is not, and it stays above the ground.
+    /// Moves the camera within the gesture, never below the ground; a move that fails is ignored.
     pub(crate) fn move_camera<E>(&mut self, change: impl FnOnce(&Navigation) -> Result<Navigation, E>) {
         if self.document().constructor.as_ref().is_some_and(|doc| doc.kind == ConstructorKind::PathPreview) {
             self.notices.note(
@@ -215,7 +215,7 @@ impl Model {
         }
     }
 
-    /// World point that the picture shows at a pixel of itself.
+    /// World point that the picture shows at a position, given as shares of its width and height.
     pub(crate) fn world_at(&self, share: DVec2) -> Option<DVec3> {
         let shown = self.shown.as_ref().filter(|_| !self.is_easing())?;
         let frame = if self.look.bent { shown.bent.as_ref() } else { shown.straight.as_ref() }?;
@@ -233,19 +233,19 @@ impl Model {
         view.ray(share * DVec2::new(w, h)).at(depth).ok().map(|seen| seen.point)
     }
 
-    /// The object that the picture shows at a share of it, where it shows that layer: what a constructor calls its target.
+    /// The object of a layer that the picture shows at a position (shares of width and height): a target for constructors.
     pub(crate) fn object_at(&self, share: DVec2, layer: &str) -> Option<String> {
         let session = &self.shown.as_ref()?.session;
         let [w, h] = session.view().pinhole().image.map(f64::from);
         object_at(session, layer, share * DVec2::new(w, h), self.world_at(share))
     }
 
-    /// How long a picture at rest has been worked at, seconds; `None` if there is none in the making.
+    /// Time for which the picture at rest has been in work, seconds; `None` if none is in work.
     pub(crate) fn works_since(&self) -> Option<f64> {
         (self.waiting == Some(Pace::Resting)).then(|| self.changed.elapsed().as_secs_f64())
     }
 
-    /// Id of the layer that the picture shows at a share of it.
+    /// Id of the layer that the picture shows at a position, given as shares of its width and height.
     pub(crate) fn layer_at(&self, share: DVec2) -> Option<String> {
         let shown = self.shown.as_ref()?;
         let frame = if self.look.bent { shown.bent.as_ref() } else { shown.straight.as_ref() }?;
@@ -259,12 +259,12 @@ impl Model {
         self.look.compare != Compare::Off || self.look.inset
     }
 
-    /// Whether the picture is on its way between straight and bent.
+    /// Whether the picture is in transition between straight and bent.
     pub(crate) fn is_easing(&self) -> bool {
         !self.compares() && self.way != f64::from(u8::from(self.look.bent))
     }
 
-    /// Goes on from straight to bent, or back; compared pictures are there at once.
+    /// Advances the transition between straight and bent; compared pictures skip it.
     fn ease(&mut self, now: f64) {
         let end = f64::from(u8::from(self.look.bent));
         let step = (now - self.moved_on_at).min(0.1) / EASE;
@@ -272,7 +272,7 @@ impl Model {
         self.way = if self.compares() { end } else { self.way + (end - self.way).clamp(-step, step) };
     }
 
-    /// Which pictures are wanted, and how far the bent one is bent.
+    /// Which pictures to order, and the share of the bend, eased.
     fn sides(&self) -> (Sides, f64) {
         match self.way {
             _ if self.compares() => (Sides::Both, 1.0),
@@ -281,11 +281,11 @@ impl Model {
         }
     }
 
-    /// Orders what is not there yet.
+    /// Orders a picture if the document, the size or the view changed.
     ///
     /// * `image`: size of the picture on the screen, pixels. `now`: time of the window, seconds.
     ///
-    /// Returns the time after which it wants to be asked again.
+    /// Returns the time after which to call it again, seconds.
     pub(crate) fn order(&mut self, image: [u32; 2], now: f64) -> Option<f64> {
         if self.shown.is_none() && self.opening.is_some() {
             return None;
@@ -310,7 +310,7 @@ impl Model {
             return Some(0.0);
         }
         if self.rested {
-            // Whoever waits is told for how long.
+            // A waiting user sees the elapsed time.
             return self.works_since().map(|_| 0.5);
         }
         let due = self.changed_at + REST_AFTER;
@@ -322,7 +322,7 @@ impl Model {
         None
     }
 
-    /// Whether what is known of what must be seen is known of the picture in full of the document as it is.
+    /// Whether the measured visibility belongs to the picture in full of the current document.
     pub(crate) fn is_judged(&self) -> bool {
         let is_it = |judged: &Judged| judged.pace == Pace::Resting && Arc::ptr_eq(&judged.document, self.document());
         self.judged.as_deref().is_some_and(is_it)
@@ -335,7 +335,7 @@ impl Model {
         self.painter.order(Order { document, place, image, pace, sides, bend, overhead });
     }
 
-    /// Takes what the painter has made.
+    /// Takes the painter's answers.
     pub(crate) fn take_answers(&mut self) {
         while let Some(answer) = self.painter.answer() {
             self.take(answer);
@@ -373,7 +373,7 @@ impl Model {
         }
     }
 
-    /// Notes how long a moving picture took from the input on; those before it were overtaken.
+    /// Notes the time from input to a moving picture, and drops the documents ordered before it, which were overtaken.
     fn arrived(&mut self, document: &Arc<Document>) {
         let Some(at) = self.awaited.iter().position(|(awaited, _)| Arc::ptr_eq(awaited, document)) else { return };
         let (_, since) = self.awaited.drain(..=at).next_back().unwrap_or_else(|| (document.clone(), Clock::now()));
@@ -387,7 +387,7 @@ impl Model {
         sorted.get(sorted.len() / 2).copied()
     }
 
-    /// Whether the picture is that of the document, in full.
+    /// Whether the picture shows the current document, in full.
     pub(crate) fn rests(&self) -> bool {
         let is_it = |shown: &Shown| shown.pace == Pace::Resting && Arc::ptr_eq(&shown.document, self.document());
         self.rested && self.waiting.is_none() && self.shown.as_deref().is_some_and(is_it)
@@ -440,7 +440,7 @@ presets = "progressive"
         shown.bent.as_ref().or(shown.straight.as_ref()).expect("a frame").depth.clone()
     }
 
-    /// Pixels that show something in one picture only.
+    /// Number of pixels that are finite in one of the pictures only.
     fn apart(a: &[f32], b: &[f32]) -> usize {
         a.iter().zip(b).filter(|(a, b)| a.is_finite() != b.is_finite()).count()
     }

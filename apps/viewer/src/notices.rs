@@ -1,4 +1,4 @@
-//! What the application has to say: readable, dismissed by the reader or by time.
+//! Messages to the user: dismissed by the user or after a time.
 
 use eframe::egui;
 
@@ -25,7 +25,7 @@ impl Kind {
 struct Notice {
     text: String,
     kind: Kind,
-    /// Time of the window at which it goes; `None` = when it is dismissed.
+    /// Time of the window at which it disappears, seconds; `None`: it stays until it is dismissed.
     until: Option<f64>,
 }
 
@@ -35,25 +35,25 @@ pub(crate) struct Notices {
     shown: Vec<Notice>,
 }
 
-/// How long good news stay, seconds.
+/// Time for which messages other than errors are shown, seconds.
 const STAYS: f64 = 6.0;
 /// Messages that are shown at once.
 const MOST: usize = 5;
 
 impl Notices {
-    /// Something went wrong; it stays until it is dismissed.
+    /// Adds an error, which stays until it is dismissed.
     pub(crate) fn error(&mut self, text: impl Into<String>) {
         self.add(Notice { text: text.into(), kind: Kind::Problem, until: None });
     }
 
-    /// Something happened; it goes by itself.
+    /// Adds the message of a finished action, which disappears by itself.
     ///
     /// * `now`: time of the window, seconds.
     pub(crate) fn say(&mut self, text: impl Into<String>, now: f64) {
         self.add(Notice { text: text.into(), kind: Kind::Done, until: Some(now + STAYS) });
     }
 
-    /// Something to know; it goes by itself.
+    /// Adds a hint, which disappears by itself.
     ///
     /// * `now`: time of the window, seconds.
     pub(crate) fn note(&mut self, text: impl Into<String>, now: f64) {

@@ -1,4 +1,4 @@
-//! The picture: shown, compared, walked about in, asked.
+//! The picture on the screen: shown, compared, navigated, picked.
 
 use crate::model::{Compare, Model, Tool};
 use crate::pointer::{Hand, share};
@@ -14,7 +14,7 @@ use eframe::egui::{
 const MOST_PIXELS: f32 = 2.4e6;
 /// Time of one picture of a flicker, seconds.
 const FLICKER: f64 = 0.7;
-/// Work that takes longer is said, seconds.
+/// Time after which running work is announced, seconds.
 const PATIENT: f64 = 0.8;
 const INK: Color32 = Color32::from_rgb(28, 34, 44);
 const PAPER: Color32 = Color32::from_rgba_premultiplied(225, 225, 222, 225);
@@ -25,12 +25,12 @@ pub(crate) struct PictureView {
     textures: [Option<TextureHandle>; 2],
     of: u64,
     hand: Hand,
-    /// What was clicked: where it is, and on which layer.
+    /// The clicked point and the id of its layer.
     pub(crate) picked: Option<(DVec3, String)>,
 }
 
 impl PictureView {
-    /// Shows the picture in what is left of the window, and lets it be moved.
+    /// Shows the picture in the rest of the window, and handles pointer and keyboard in it.
     pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model) {
         let room = ui.available_rect_before_wrap();
         let [w, h] = model.document().camera.image.map(|n| n as f32);
@@ -62,7 +62,7 @@ impl PictureView {
         }
     }
 
-    /// Orders the picture in pixels of the screen.
+    /// Orders the picture at the resolution of the screen, within the limit of pixels.
     fn order(&self, ctx: &Context, rect: Rect, model: &mut Model) {
         let size = rect.size() * ctx.pixels_per_point();
         let size = size * (MOST_PIXELS / (size.x * size.y)).sqrt().min(1.0);
@@ -113,7 +113,7 @@ impl PictureView {
                 ctx.request_repaint_after_secs(0.1);
             }
             Compare::Off => {
-                // On the way between them there is one picture, and that is a bent one.
+                // During the transition there is one picture, the bent one.
                 let has = |side: fn(&Shown) -> &Option<Frame>| {
                     model.shown.as_deref().is_some_and(|shown| side(shown).is_some())
                 };
@@ -134,7 +134,7 @@ impl PictureView {
         self.marks(painter, rect, model);
     }
 
-    /// What the picture has to say about itself.
+    /// Labels over the picture: state, messages, the picked point.
     fn marks(&self, painter: &Painter, rect: Rect, model: &Model) {
         let Some(shown) = &model.shown else {
             let words = model.violated.as_deref().or(model.opening.as_deref()).unwrap_or("opening the scene");
@@ -175,7 +175,7 @@ impl PictureView {
                 if moving { 100.0 * model.coarseness } else { 100.0 },
                 model.latency().unwrap_or_default(),
             );
-            // Over the mark that the picture itself bears.
+            // Placed above the mark that is part of the picture.
             label(painter, rect.right_bottom() + vec2(-8.0, -44.0), Align2::RIGHT_BOTTOM, &words);
         }
         if let Some((point, name)) = &self.picked
@@ -188,7 +188,7 @@ impl PictureView {
         }
     }
 
-    /// True coordinates under the pointer.
+    /// Shows the true coordinates under the pointer.
     fn tell(&self, painter: &Painter, rect: Rect, at: DVec2, model: &Model) {
         let (Some(point), Some(shown)) = (model.world_at(at), &model.shown) else { return };
         let layer = model.layer_at(at).unwrap_or_default();
@@ -229,7 +229,7 @@ impl PictureView {
     }
 }
 
-/// Where the picture shows a world point.
+/// Position in the window at which the picture shows a world point.
 fn image_of(point: DVec3, rect: Rect, model: &Model) -> Option<Pos2> {
     let shown = model.shown.as_ref()?;
     let view = if model.look.bent { shown.session.view().clone() } else { shown.session.view().straightened() };
@@ -247,7 +247,7 @@ pub(crate) fn coordinates(point: DVec3, unit: Unit) -> String {
     }
 }
 
-/// Words on a light ground.
+/// A label: text on a light background.
 fn label(painter: &Painter, at: Pos2, align: Align2, words: &str) {
     let galley = painter.layout_no_wrap(words.to_owned(), FontId::proportional(13.0), INK);
     let rect = align.anchor_size(at, galley.size() + vec2(12.0, 6.0));

@@ -22,20 +22,20 @@ pub(crate) struct Hand {
 struct Held {
     /// The camera when the drag began.
     camera: Navigation,
-    /// Where it began, share of the picture, and what is there.
+    /// Start of the drag, as shares of the picture's width and height, and the world point there.
     from: DVec2,
     point: DVec3,
     turns: bool,
 }
 
-/// Where a position of the window lies in the picture, as a share of it.
+/// A position in the window as shares of the picture's width and height.
 pub(crate) fn share(rect: Rect, at: eframe::egui::Pos2) -> DVec2 {
     let offset = at - rect.min;
     DVec2::new(f64::from(offset.x / rect.width()), f64::from(offset.y / rect.height()))
 }
 
 impl Hand {
-    /// Moves the camera as the pointer says.
+    /// Moves the camera by drags and the wheel.
     pub(crate) fn steer(&mut self, ui: &Ui, response: &Response, rect: Rect, model: &mut Model) {
         self.drag(response, rect, model);
         self.wheel(ui, response, rect, model);

@@ -1,4 +1,4 @@
-//! How long pictures take, for whoever measures: written as JSON to the file that `BELVEDERE_VIEW_TIMES` names, when the window closes.
+//! Times of pictures for measurements: written as JSON to the file that `BELVEDERE_VIEW_TIMES` names when the window closes.
 
 use crate::model::Model;
 use belvedere::scene::Instant;
@@ -17,14 +17,14 @@ impl Default for Times {
 }
 
 impl Times {
-    /// Notes the first picture.
+    /// Notes the time of the first picture.
     pub(crate) fn note(&mut self, model: &Model) {
         if model.shown.is_some() && self.first_ms.is_none() {
             self.first_ms = Some(self.started.elapsed().as_secs_f64() * 1e3);
         }
     }
 
-    /// What was noted.
+    /// The noted times as JSON.
     pub(crate) fn report(&self, model: &Model) -> serde_json::Value {
         serde_json::json!({
             "pictures": model.pictures,
@@ -36,11 +36,11 @@ impl Times {
         })
     }
 
-    /// Writes what was noted, if anybody asks.
+    /// Writes the report if `BELVEDERE_VIEW_TIMES` is set.
     pub(crate) fn tell(&self, model: &Model) {
         let Some(path) = std::env::var_os("BELVEDERE_VIEW_TIMES") else { return };
         let times = self.report(model).to_string();
-        // A measurement that cannot be written is missed by who asked for it.
+        // An error is ignored: whoever measures notices the missing file.
         let _ = belvedere::output::write_text(std::path::Path::new(&path), &times, true);
     }
 }

@@ -1,4 +1,4 @@
-//! The application as a whole: what is opened, saved, remembered; panels around the picture.
+//! The application as a whole: opening, saving, kept state; panels around the picture.
 
 use crate::builtin::BUILTIN;
 use crate::files;
@@ -25,18 +25,18 @@ use std::sync::{Arc, Mutex};
 /// What to open at the start.
 #[derive(Debug, Clone, Default)]
 pub struct Opening {
-    /// A scene, or data; empty = the first built-in scene.
+    /// A scene, or data files; empty: the first built-in scene.
     pub files: Vec<PathBuf>,
     /// Folders beside that of a scene from which its files may come.
     pub allowed: Vec<PathBuf>,
-    /// Where the application remembers what it was doing; `None` = nowhere.
+    /// Folder of the state that is kept between runs; `None`: nothing is kept.
     pub state: Option<PathBuf>,
-    /// Whether files are chosen in windows of the system, where it has such; else in windows of the application.
+    /// Whether files are chosen in windows of the system, if it has any; else in windows of the application.
     pub system_dialogs: bool,
 }
 
 impl Opening {
-    /// The usual place of what is remembered.
+    /// The usual folder of the kept state.
     #[cfg(not(target_family = "wasm"))]
     pub fn usual_state() -> Option<PathBuf> {
         files::state_folder()
@@ -45,25 +45,25 @@ impl Opening {
 
 /// Recent files that are remembered.
 const RECENT: usize = 12;
-/// How long after a change it is written down for the case of a crash, seconds.
+/// Time between a change and its entry in the recovery file, seconds.
 const WRITE_AFTER: f64 = 0.4;
 
-/// What is remembered between runs.
+/// State that is kept between runs.
 #[derive(Debug, Default, Serialize, Deserialize)]
 #[serde(default)]
 struct Remembered {
     recent: Vec<PathBuf>,
-    /// Of each scene file.
+    /// Bookmarks of each scene file.
     bookmarks: BTreeMap<PathBuf, Vec<Bookmark>>,
 }
 
-/// A file that is being opened beside the window, and how far that is.
+/// A file that is being opened in the background, and the progress in words.
 struct Pending {
     opened: Receiver<Result<Opened, String>>,
     at: Arc<Mutex<String>>,
 }
 
-/// What is written down beside the document for the case of a crash.
+/// State of the window that the recovery file holds beside the document.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 struct Extra {
@@ -83,7 +83,7 @@ pub struct Viewer {
     allowed: Vec<PathBuf>,
     state: Option<PathBuf>,
     recovery: Option<Recovery>,
-    /// What was written down last, and since when it is something else.
+    /// Last content of the recovery file, and the time since which the state differs from it.
     written: Option<(Arc<scene_file::Document>, Extra)>,
     dirty_since: Option<f64>,
     pending: Option<Pending>,
@@ -96,7 +96,7 @@ pub struct Viewer {
 }
 
 impl Viewer {
-    /// Opens what there is to open; what an instance left that did not end comes first.
+    /// Opens the given files. After an instance that did not end properly its scene is restored, or kept in a file if others are opened.
     pub fn new(ctx: &Context, opening: &Opening) -> Self {
         let wake = Wake::new(ctx);
         let mut notes = Vec::new();
@@ -168,24 +168,24 @@ impl Viewer {
         self.pending.is_none() && self.model.rests()
     }
 
-    /// Whether the shares on the screen are those of the document as it is.
+    /// Whether the shares on the screen are measured for the current document.
     pub fn is_judged(&self) -> bool {
         self.model.is_judged()
     }
 
-    /// What its workers call.
+    /// Wakes the window; called by its workers.
     #[cfg(target_family = "wasm")]
     pub(crate) fn wake(&self) -> &Wake {
         &self.wake
     }
 
-    /// What was drawn and how long it took.
+    /// Numbers of pictures and their times as JSON.
     #[cfg(target_family = "wasm")]
     pub(crate) fn times(&self) -> serde_json::Value {
         self.times.report(&self.model)
     }
 
-    /// Opens files beside the window.
+    /// Opens files in the background.
     fn open(&mut self, paths: Vec<PathBuf>) {
         if let [path] = paths.as_slice() {
             self.remember(path);
@@ -197,7 +197,7 @@ impl Viewer {
         let current = self.model.shown.is_some().then(|| self.model.document().clone());
         let told = at.clone();
         let progress = Progress::new(move |stage, share| {
-            // The page of a browser may not wait for a lock.
+            // The main thread of a browser must not block on a lock.
             if let Ok(mut at) = told.try_lock() {
                 *at = format!("opening: {stage}, {:.0} %", 100.0 * share);
             }
@@ -228,7 +228,7 @@ impl Viewer {
         self.write_remembered();
     }
 
-    /// Bookmarks of scenes that have a file outlive the window.
+    /// Keeps the bookmarks of a scene that has a file.
     fn remember_bookmarks(&mut self) {
         let scene = self.model.editor.place.scene.as_ref().and_then(|path| fs::canonicalize(path).ok());
         if let Some(scene) = scene {
@@ -240,7 +240,7 @@ impl Viewer {
     fn write_remembered(&self) {
         if let Some(folder) = &self.state {
             let text = serde_json::to_string(&self.remembered).unwrap_or_default();
-            // What cannot be remembered is not; nothing depends on it.
+            // Errors are ignored: nothing depends on this state.
             let _ = std::fs::create_dir_all(folder);
             let _ = belvedere::output::write_text(&folder.join("remembered.json"), &text, true);
         }
@@ -254,7 +254,7 @@ impl Viewer {
         self.model.replace(editor);
     }
 
-    /// Takes what was chosen or opened elsewhere.
+    /// Takes the files that were chosen, dropped or opened in the background.
     fn arrivals(&mut self, ctx: &Context) {
         if let Some(pending) = &self.pending {
             if let Ok(at) = pending.at.try_lock() {
@@ -317,7 +317,7 @@ impl Viewer {
         match self.model.editor.save(path) {
             Ok(()) => {
                 self.remember(path);
-                // What is written down for the case of a crash says that it is saved.
+                // The recovery file is written anew, since it says whether the scene is saved.
                 self.written = None;
                 let outside = self.model.editor.outside();
                 let mut said = format!("Saved: {}", path.display());
@@ -395,14 +395,14 @@ impl Viewer {
         }
     }
 
-    /// The camera from above in a window of its own.
+    /// Shows the camera from above in a window of its own.
     fn overhead(&mut self, ctx: &Context) {
         if !self.model.look.overhead {
             return;
         }
         let mut open = true;
         let mut edit = None;
-        // Beside the panel, which it would hide.
+        // In the lower right corner, where the window does not hide the side panel.
         let corner = ctx.content_rect().right_bottom() - egui::vec2(490.0, 360.0);
         Window::new("Camera from above").open(&mut open).default_pos(corner).default_width(460.0).show(ctx, |ui| {
             let Some((frame, view)) = &self.model.overhead else {
@@ -442,14 +442,14 @@ impl Viewer {
         });
     }
 
-    /// Writes down what is being done, a moment after it was.
+    /// Writes the recovery file some time after the last change.
     fn write_down(&mut self, ctx: &Context) {
         let Some(recovery) = &self.recovery else { return };
         let now = ctx.input(|input| input.time);
         let extra = Extra { look: self.model.look.clone(), tab: self.panels.tab, bookmarks: self.bookmarks.clone() };
         let is_written =
             |(written, beside): &(_, Extra)| Arc::ptr_eq(written, self.model.document()) && *beside == extra;
-        // What is still being opened takes the place of what is there.
+        // A document that is being opened replaces the current one, so this is not written.
         if self.written.as_ref().is_some_and(is_written) || (self.pending.is_some() && self.model.shown.is_none()) {
             self.dirty_since = None;
             return;

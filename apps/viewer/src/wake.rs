@@ -1,10 +1,10 @@
-//! The window is told from elsewhere that there is something new.
+//! Wakes the window from other threads.
 
 use eframe::egui::Context;
 #[cfg(target_family = "wasm")]
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// On a web page with threads: whether there is something new.
+/// On a web page with threads: whether a frame was requested.
 #[cfg(target_family = "wasm")]
 static NEWS: AtomicBool = AtomicBool::new(false);
 
@@ -17,16 +17,16 @@ impl Wake {
         Self(ctx.clone())
     }
 
-    /// From any thread.
+    /// Requests a frame; callable from any thread.
     pub(crate) fn call(&self) {
-        // Workers of a page have no part in its window: the page asks them.
+        // Web workers cannot reach the window: the page polls this flag.
         #[cfg(all(target_family = "wasm", target_feature = "atomics"))]
         NEWS.store(true, Ordering::Release);
         #[cfg(not(all(target_family = "wasm", target_feature = "atomics")))]
         self.0.request_repaint();
     }
 
-    /// From the page, often.
+    /// Requests a frame if a worker has asked for one; the page calls this often.
     #[cfg(target_family = "wasm")]
     pub(crate) fn pass_on(&self) {
         if NEWS.swap(false, Ordering::AcqRel) {

@@ -10,7 +10,7 @@ pub struct WindowError {
     reason: String,
 }
 
-/// Opens the window and comes back when it is closed.
+/// Opens the window and returns when it is closed.
 ///
 /// # Errors
 /// [`WindowError`] where there is no display, or no OpenGL on it.

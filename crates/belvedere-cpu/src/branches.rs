@@ -1,4 +1,4 @@
-//! Pictures of rays that part: every branch's own picture, put together along the seams.
+//! Pictures of rays that part: each branch is drawn on its own, and the pictures are joined along the seams.
 
 use crate::color::{Rgb, encode, linear};
 use belvedere_core::DVec2;
@@ -9,7 +9,7 @@ use rayon::prelude::*;
 /// Pixels over which colours blend across a seam.
 const SEAM_PX: f64 = 2.0;
 
-/// Draws a job by `draw`, branch by branch where rays part.
+/// Draws a job by `draw`, once per branch where rays part.
 pub(crate) fn draw(
     job: &RenderJob<'_>,
     draw: impl Fn(&RenderJob<'_>) -> Result<Frame, RenderError>,

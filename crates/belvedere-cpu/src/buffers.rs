@@ -1,9 +1,9 @@
-//! The pixels of a frame in the making.
+//! Pixel buffers of a frame that is being drawn.
 
 use crate::color::Packed;
 use belvedere_scene::{Frame, RenderJob};
 
-/// The pixels of a frame in the making.
+/// Pixel buffers of a frame that is being drawn.
 pub(crate) struct Buffers {
     /// Whether lines, points or stylisation may be drawn over the surfaces.
     pub(crate) open: bool,
@@ -17,7 +17,7 @@ pub(crate) struct Buffers {
 }
 
 impl Buffers {
-    /// Buffers of the size of the picture in the memory of older ones; every pixel is yet to be written.
+    /// Buffers of the size of the picture in the memory of older ones; all pixels must be written.
     pub(crate) fn reuse(job: &RenderJob<'_>, open: bool, mut color: Vec<Packed>, old: Frame) -> Self {
         let n = job.view.pinhole().image.map(|s| s as usize).iter().product();
         let Frame { color: mut out, mut depth, mut id, .. } = old;

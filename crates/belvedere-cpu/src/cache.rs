@@ -1,9 +1,9 @@
-//! What a renderer remembers from frame to frame: values that are costly to compute and depend on the ground, not on the view.
+//! Cache between frames: values that are costly to compute and depend on the ground, not on the view.
 
 use belvedere_scene::Heightfield;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-/// Values by the ground that they were computed from and a key that holds all else that they depend on; the [`MOST`] used last.
+/// Values by the ground that they were computed from and a key of all other inputs; keeps the [`MOST`] used last.
 #[derive(Debug)]
 pub(crate) struct GroundCache<K, V>(Mutex<Vec<Entry<K, V>>>);
 
@@ -12,7 +12,7 @@ const MOST: usize = 6;
 
 #[derive(Debug)]
 struct Entry<K, V> {
-    /// Held weakly: a ground that is gone frees its heights, and no other can come to lie at its address meanwhile.
+    /// A weak reference: a dropped ground frees its heights, but its address is not used again while the entry lives.
     ground: Weak<Heightfield>,
     key: K,
     value: V,
@@ -31,7 +31,7 @@ impl<K, V> Default for GroundCache<K, V> {
 }
 
 impl<K: PartialEq, V: Clone> GroundCache<K, V> {
-    /// The value for `ground` and `key`; computed by `make`, which must depend on nothing else, if there is none.
+    /// The value for `ground` and `key`, computed by `make` if it is not cached; `make` must depend on nothing else.
     pub(crate) fn get(&self, ground: &Arc<Heightfield>, key: K, make: impl FnOnce() -> V) -> V {
         if let Some(found) = self.find(ground, &key) {
             return found;
@@ -57,7 +57,7 @@ impl<K: PartialEq, V: Clone> GroundCache<K, V> {
         Some(entries.remove(found).value)
     }
 
-    /// Remembers a value instead of the one for the same ground and key, if there is one.
+    /// Stores a value; replaces that of the same ground and key.
     pub(crate) fn put(&self, ground: &Arc<Heightfield>, key: K, value: V) {
         let mut entries = lock(&self.0);
         entries.retain(|e| e.ground.strong_count() > 0 && !e.is_for(ground, &key));
@@ -68,7 +68,7 @@ impl<K: PartialEq, V: Clone> GroundCache<K, V> {
     }
 }
 
-/// The value behind a lock. A frame that panicked leaves nothing half-written here: entries are whole.
+/// Locks a mutex, poisoned or not: entries are written whole, so a panic leaves none half-written.
 pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

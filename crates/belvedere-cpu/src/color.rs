@@ -1,4 +1,4 @@
-//! Linear light and its storage.
+//! Linear light, and its storage as sRGB or 16-bit square roots.
 
 use std::sync::LazyLock;
 
@@ -25,11 +25,11 @@ static ENCODED: LazyLock<Encoding> = LazyLock::new(|| {
     })
 });
 
-/// First place in [`ENCODED`] of every value, and of three beyond the last one, which no place has.
+/// First index in [`ENCODED`] of every value 0..=255; the entries after these are its length.
 static FIRST: LazyLock<[i32; 260]> =
     LazyLock::new(|| std::array::from_fn(|v| ENCODED.partition_point(|e| usize::from(*e) < v) as i32));
 
-/// Stores square roots of linear light, 16 bits each, as sRGB; tables at hand.
+/// Encodes square roots of linear light as sRGB by tables.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Encoder {
     encoded: &'static Encoding,
@@ -75,7 +75,7 @@ impl Encoder {
     }
 }
 
-/// Place in [`Encoding`].
+/// Index in [`Encoding`].
 #[inline(always)]
 fn place(root: f32) -> i32 {
     i32::from(sixteen_bits(root) >> 4)

@@ -32,8 +32,9 @@ const SAME_SURFACE: f64 = 0.02;
 
 /// Draws scenes by following curved rays: slow, without subdivision, as exact as the colours allow.
 ///
-/// [`belvedere_scene::RenderOptions::tolerance_px`] concerns the lines alone. Depth, id and world position are those of the pixel centres; coverage samples are
-/// traced where a pixel's neighbours lie on another surface, elsewhere the pixel has the colour of its centre.
+/// [`belvedere_scene::RenderOptions::tolerance_px`] concerns the lines alone. Depth, id and world position are those of the pixel
+/// centres. Coverage samples are traced where a pixel's neighbours are on another surface; elsewhere the pixel has the colour of its
+/// centre.
 ///
 /// ```
 /// use belvedere_core::{DVec3, Pinhole, Projection, View};
@@ -154,7 +155,7 @@ impl Picture<'_> {
 
     fn row(&self, seen: &[Option<RayHit>], y: usize, offsets: &[[i32; 2]]) -> Vec<Pixel> {
         let width = self.screen.width as usize;
-        // Samples of a row of pixels lie in as many rows of their own; only edges need them.
+        // Each sample of a pixel has an image row of its own, shared by the whole row of pixels; only edges trace them.
         let place = |oy: i32| y as f64 + f64::from(oy) / f64::from(SUB);
         let rows: Vec<OnceCell<RowRays<'_, '_>>> = offsets.iter().map(|_| OnceCell::new()).collect();
         let trace =
@@ -162,7 +163,7 @@ impl Picture<'_> {
         (y * width..(y + 1) * width).map(|i| self.pixel(seen, i, offsets, &trace)).collect()
     }
 
-    /// * `trace`: first hit of the ray of a sample number at an `x` in pixels.
+    /// * `trace`: first hit of the ray of sample `s` at image column `x`, pixels.
     fn pixel(
         &self,
         seen: &[Option<RayHit>],

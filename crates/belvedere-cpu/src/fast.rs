@@ -1,12 +1,12 @@
-//! Which stages this renderer has a faster form for than what [`belvedere_core::map::StageMap`] says of any map: the one place where it
-//! names techniques. Everything else asks a stage what it does.
+//! Stages that this renderer computes faster than through [`belvedere_core::map::StageMap`]: the only file of the renderer that names
+//! techniques; all others ask a stage for its properties.
 
 use belvedere_core::{CurvedRays, EarthCurvature, SplineBend, Stage, TerrainDisocclusion};
 
 /// A stage as the renderer computes it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Fast<'a> {
-    /// One addition, of the squared distance from the eye.
+    /// One addition that depends on the squared distance from the eye.
     Earth(&'a EarthCurvature),
     /// One addition, read from a grid; the ground is moved instead of bending rays.
     Ground(&'a TerrainDisocclusion),
@@ -14,7 +14,7 @@ pub(crate) enum Fast<'a> {
     Spline(&'a SplineBend),
     /// Closed forms of records and of the pieces of rays.
     Rays(&'a CurvedRays),
-    /// The stage's own answers.
+    /// No faster form: the stage's own methods are called.
     None,
 }
 

@@ -1,4 +1,4 @@
-//! What renderers have in common: checked options, and what is drawn over the surfaces.
+//! Steps common to all renderers: checks of the options, and marks over the surfaces.
 
 use crate::buffers::Buffers;
 use crate::color::{self, Packed};
@@ -10,7 +10,7 @@ use crate::stylise::{self, Relief};
 use belvedere_scene::{Frame, LayerKind, RenderError, RenderJob};
 use rayon::prelude::*;
 
-/// Runs `render` with checked options on the threads asked for.
+/// Checks the options and runs `render` on the given number of threads.
 pub(crate) fn checked(
     job: &RenderJob<'_>,
     render: impl Fn(&RenderJob<'_>) -> Result<Frame, RenderError> + Sync,
@@ -25,7 +25,7 @@ pub(crate) fn checked(
     }
     match rayon::ThreadPoolBuilder::new().num_threads(options.threads).build() {
         Ok(pool) => pool.install(|| render(job)),
-        // No threads to be had: the caller's serve as well.
+        // No thread can be started: the caller's threads are used.
         Err(_) => render(job),
     }
 }
@@ -34,19 +34,19 @@ pub(crate) fn checked(
 pub(crate) fn buffers(job: &RenderJob<'_>) -> Buffers {
     let stylised = stylise::is_on(job);
     let buffers = Buffers::reuse(job, true, Vec::new(), Frame::default());
-    // Where only centres are known, edges between faces are found by their places.
+    // Where only centres are known, edges between faces are found from world points.
     let n = buffers.out.len();
     let world = (job.options.aux.world || stylised).then(|| vec![[f64::NAN; 3]; n]);
     Buffers { world, ..buffers }
 }
 
-/// Buffers in the memory of older ones; every pixel is yet to be written.
+/// Buffers in the memory of older ones; all pixels must be written.
 pub(crate) fn buffers_in(job: &RenderJob<'_>, color: Vec<Packed>, old: Frame) -> Buffers {
     Buffers::reuse(job, Marks::are_in(job) || stylise::is_on(job), color, old)
 }
 
-/// Stylisation, lines and points over the surfaces, and the stored colours.
-/// * `relief`: of the samples, if known.
+/// Draws stylisation, lines and points over the surfaces, and encodes the colours.
+/// * `relief`: depths and faces of all samples, if they are known.
 pub(crate) fn finish(
     job: &RenderJob<'_>,
     marks: &Marks,
@@ -60,7 +60,7 @@ pub(crate) fn finish(
     draw_marks(marks, screen, buffers);
 }
 
-/// Lines and points over the surfaces, and the stored colours.
+/// Draws lines and points over the surfaces, and encodes the colours.
 pub(crate) fn draw_marks(marks: &Marks, screen: &Screen, buffers: &mut Buffers) {
     let chunk = BAND * screen.width as usize;
     let Buffers { depth, color, id, out, .. } = buffers;
@@ -76,7 +76,7 @@ pub(crate) fn draw_marks(marks: &Marks, screen: &Screen, buffers: &mut Buffers) 
     marks.write_names(out, screen.width as usize);
 }
 
-/// Image of a node of the ground; four times that where cells are subdivided.
+/// Bytes of the image of a node of the ground; four times that of a vertex, for subdivided cells.
 const NODE_BYTES: u64 = 4 * 12;
 
 /// Bytes that a picture takes: the frame, the bands in work, the projected vertices and the lit ground.
@@ -92,10 +92,10 @@ fn check_memory(job: &RenderJob<'_>) -> Result<(), RenderError> {
         + if stylise::is_on(job) { 64 + Relief::bytes(u64::from(samples)) } else { 0 };
     let threads = if job.options.threads == 0 { rayon::current_num_threads() } else { job.options.threads } as u64;
     let bands = threads * (BAND as u64) * u64::from(width) * (u64::from(samples) + 1) * 8;
-    // What lies beside the picture, where planes cross, may be drawn by several records.
+    // Where planes cross, ground beside the picture may be drawn by several records.
     let passes = job.view.records().min(2) as u64;
     let drawn = |nodes: u64| {
-        // With less detail far away the picture bounds the nodes: a few per pixel, near the eye more.
+        // With level of detail the picture bounds the number of nodes: a few per pixel, more near the eye.
         let nodes = if job.options.lod_px > 0.0 { nodes.min(8 * pixels + (1 << 20)) } else { nodes };
         nodes * NODE_BYTES * passes
     };

@@ -1,6 +1,6 @@
-//! Styling sections composed of whole layers: every representation drawn alone wherever it has a weight, and the pictures put together by
-//! the weights: the published way, and that of pictures with edges or without surfaces in common; thresholds ([`crate::sections`]) need no memory
-//! per representation, but their depths are those of single samples.
+//! Compositing of styling sections by whole layers: every representation is drawn alone, and the pictures are mixed by the weights. This is
+//! the published method, and that for pictures with edges or without common surfaces; thresholds ([`crate::sections`]) need no memory
+//! per representation, but give depths of single samples.
 //!
 //! Source: Pasewaldt et al. 2011, section 4.4; dividing by the sum of the weights, where layers see different places, is ours.
 
@@ -17,13 +17,13 @@ use belvedere_core::sections::MOST_REPRESENTATIONS;
 use belvedere_scene::{Compositing, Frame, FrameStats, Overlay, RenderError, RenderJob, RenderOptions};
 use rayon::prelude::*;
 
-/// Weights below this count for nothing.
+/// Sums of weights below this count as 0.
 const LEAST: f64 = 1e-9;
 
-/// Draws a job by `draw`, representation by representation where there are several and that is asked for, or is as quick and as good: where
-/// no two show one surface, and where edges are drawn, which end where a representation does, not where single samples of others begin.
+/// Draws a job by `draw`, representation by representation if that is asked for, if no two representations show the same surface, or if
+/// edges are drawn: edges then end where a representation ends, not where samples of others begin.
 ///
-/// Lines, points and names lie over the whole picture, but in the published way.
+/// Marks are drawn over the whole picture, except in the published method, which draws them with each representation.
 pub(crate) fn draw(
     job: &RenderJob<'_>,
     draw: impl Fn(&RenderJob<'_>) -> Result<Frame, RenderError>,
@@ -52,7 +52,7 @@ pub(crate) fn draw(
     Ok(if published { frame } else { with_marks(job, frame) })
 }
 
-/// A picture with the lines, points and names of its job over it.
+/// The picture with the lines, points and names of its job drawn over it.
 fn with_marks(job: &RenderJob<'_>, mut frame: Frame) -> Frame {
     if !Marks::are_in(job) {
         return frame;
@@ -79,7 +79,7 @@ fn composite(layers: &[Frame], sections: &Sections<'_>, keep_world: bool) -> Fra
         (0..layers.len()).for_each(|number| weights[number] = weight(number, i));
         let weights = &weights[..layers.len()];
         let sum: f64 = weights.iter().sum();
-        // The greatest weight tells depth and identity, of equal ones the nearest.
+        // Depth and id are those of the greatest weight, of equal weights those of the nearest.
         let first = |a: &usize, b: &usize| {
             weights[*a].total_cmp(&weights[*b]).then(layers[*b].depth[i].total_cmp(&layers[*a].depth[i]))
         };

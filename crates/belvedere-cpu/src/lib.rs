@@ -4,12 +4,12 @@
 //!
 //! 1. `geometry`: surfaces are cut into blocks. Blocks that the image does not show are left out, by the bounds of their
 //!    *displaced* boxes; distant ground takes less detail where the error stays below a fraction of a pixel.
-//! 2. Every vertex that is left is displaced and projected once. Edges that the bend would visibly curve are split; triangles that
+//! 2. The vertices of the remaining blocks are displaced and projected once. Edges that the bend would visibly curve are split; triangles that
 //!    leave the domain are clipped.
 //! 3. `raster`: bands of image rows are drawn independently, the nearest primitive at every sample. No order of drawing and no
 //!    number of threads changes a byte.
 //! 4. `shade`: samples become colours. The light on the ground is fixed to the map and remembered (`cache`) from frame to frame.
-//! 5. `volume`: what rays gather in voxels, as far as the surfaces, is laid over them.
+//! 5. `volume`: light that rays gather in voxels, up to the surfaces, is laid over them.
 //! 6. `marks`: lines, outlines, points and names, by lines of sight through the surfaces themselves (`trace`).
 //!
 //! Where styling sections show layers in part, samples choose by thresholds (`sections`), and exposures of a band are averaged.

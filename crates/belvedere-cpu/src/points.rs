@@ -1,4 +1,4 @@
-//! Rows of points, coordinate by coordinate.
+//! Rows of points, stored coordinate by coordinate.
 
 use belvedere_core::DVec3;
 

@@ -1,4 +1,4 @@
-//! The rasteriser.
+//! The rasteriser: draws a frame from blocks of surfaces to marks.
 
 use crate::branches;
 use crate::buffers::Buffers;
@@ -28,8 +28,8 @@ use std::sync::{Arc, Mutex};
 
 /// Draws scenes on the processor.
 ///
-/// It remembers what it computed for a ground (light, averages, levels of detail) and the memory of its last frames: keep one
-/// renderer for all frames of a film. Pictures do not depend on what it drew before.
+/// It caches data of the ground (light, averages, levels of detail) and the memory of its last frames: keep one
+/// renderer for all frames of a film. Pictures do not depend on earlier ones.
 ///
 /// ```
 /// use belvedere_core::{DVec3, Pinhole, Projection, View};
@@ -49,7 +49,7 @@ use std::sync::{Arc, Mutex};
 pub struct CpuRenderer {
     detail: GroundCache<(), Arc<Tree>>,
     light: LightCache,
-    /// Buffers that no frame uses now; nothing in them but capacity survives.
+    /// Buffers for reuse; only their capacity is kept.
     scratch: Mutex<Vec<Scratch>>,
 }
 
@@ -73,7 +73,7 @@ impl Renderer for CpuRenderer {
     }
 }
 
-/// Memory of frames, kept for the next one.
+/// Buffers of a frame, kept for the next one.
 #[derive(Debug, Default)]
 struct Scratch {
     blocks: Blocks,
@@ -81,7 +81,7 @@ struct Scratch {
     bands: Mutex<Vec<Band>>,
 }
 
-/// Frames drawn at the same time whose memory is kept.
+/// Largest number of frames whose buffers are kept.
 const SPARE_FRAMES: usize = 2;
 
 impl CpuRenderer {
@@ -144,7 +144,7 @@ impl CpuRenderer {
     }
 }
 
-/// What there is to rasterise.
+/// Inputs for rasterising the bands of a frame.
 struct Surfaces<'a> {
     job: &'a RenderJob<'a>,
     screen: &'a Screen,

@@ -113,7 +113,7 @@ impl Screen {
     #[inline]
     pub(crate) fn is_drawable(&self, v: DVec3) -> bool {
         let reach = GUARD_PX / self.scale * if self.ortho { 1.0 } else { v.z };
-        // No short cuts: rows of points are tested together.
+        // Without short-circuits, so that rows of points are tested together.
         (v.z >= self.near) & (v.z <= self.far) & (v.x.abs() <= reach) & (v.y.abs() <= reach)
     }
 
@@ -124,8 +124,8 @@ impl Screen {
         [v.z - self.near, far, reach - v.x, reach + v.x, reach - v.y, reach + v.y]
     }
 
-    /// Bit set of the image borders (and near, far) that the point lies beyond, by more than `margin_px`.
-    /// Points that share a bit enclose nothing visible.
+    /// Bit set of the image borders (and near, far) beyond which the point lies by more than `margin_px`.
+    /// A polygon whose points share a bit is not visible.
     pub(crate) fn outcode(&self, v: DVec3, margin_px: f64) -> u8 {
         let z = if self.ortho { 1.0 } else { v.z };
         let (w, h) = ((self.center.x + margin_px) / self.scale * z, (self.center.y + margin_px) / self.scale * z);

@@ -1,8 +1,8 @@
 //! Styling sections on the image: which representation a sample shows.
 //!
-//! Every sample has a threshold. At each place of the deformation curve the representations own intervals of all thresholds, as long as
-//! their weights, so exactly one of them is shown by a sample: no layers, one depth buffer. Pixels have different thresholds (an 8 x 8
-//! ordered dither), its samples again others, and their mean tends to the weighted composite.
+//! Every sample has a threshold. At each position along the deformation curve the representations own disjoint intervals of thresholds, as
+//! long as their weights, so a sample shows exactly one of them: no layers, one depth buffer. Thresholds differ between pixels (an 8 x 8
+//! ordered dither) and between the samples of a pixel, and the mean of the samples tends to the weighted composite.
 //!
 //! Layers that are one surface in different colours need no thresholds: the surface is drawn once, and its colours are mixed by weight.
 
@@ -12,29 +12,29 @@ use belvedere_core::sections::{MOST_REPRESENTATIONS, StylingSections};
 use belvedere_core::{Aabb, DVec3, SpaceMap, Strip, View};
 use belvedere_scene::{Compositing, RenderJob, Scene};
 
-/// Which layers are shown where.
+/// Visibility of the layers along the deformation curve.
 #[derive(Debug, Clone)]
 pub(crate) struct Sections<'a> {
-    /// `None` = one representation everywhere.
+    /// `None`: one representation everywhere.
     bend: Option<&'a SplineBend>,
     strip: Option<&'a Strip>,
     styling: StylingSections,
     table: Table,
     /// For each layer the representations that show it, as bits.
     shown_by: Vec<u32>,
-    /// For each layer those that draw its surface: nothing where an earlier layer is the same surface, which is drawn for both.
+    /// For each layer the representations that draw its surface, as bits: none where an earlier layer is the same surface and is drawn for both.
     drawn_by: Vec<u32>,
-    /// For each layer all layers of its surface if it is the first of several, else nothing.
+    /// For the first of several layers that are one surface: all of these layers; for other layers empty.
     one_surface: Vec<Vec<usize>>,
-    /// The only representation that is drawn.
+    /// Number of the only representation that is drawn, if just one is.
     only: Option<usize>,
 }
 
-/// How much of something is shown.
+/// Visible share of a layer or a part of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Shown {
     Nothing,
-    /// Sample by sample.
+    /// Decided sample by sample.
     Partly,
     Everything,
 }
@@ -67,17 +67,17 @@ impl<'a> Sections<'a> {
         Some(Self { bend, strip, styling, table, shown_by, drawn_by, one_surface, only })
     }
 
-    /// Whether any layer is drawn together with others that are the same surface.
+    /// Whether any layer is drawn together with others of the same surface.
     pub(crate) fn has_one_surface(&self) -> bool {
         self.one_surface.iter().any(|layers| !layers.is_empty())
     }
 
-    /// The layers whose colours are mixed on the surface of a layer, itself the first; nothing where it is shown in its own alone.
+    /// Layers whose colours are mixed on the surface of a layer, starting with itself; empty where only its own colour is shown.
     pub(crate) fn mixed_on(&self, layer: usize) -> &[usize] {
         &self.one_surface[layer]
     }
 
-    /// Shares, 0..=1, of the colours of [`Self::mixed_on`] at a place; they sum to 1.
+    /// Shares, 0..=1, of the colours of [`Self::mixed_on`] at a point; they sum to 1.
     pub(crate) fn mixture(&self, layer: usize, p: DVec3) -> impl Iterator<Item = f64> {
         let intervals = self.table.intervals(&self.styling, self.parameter(p));
         let of = move |bits: u32| intervals.length_of(bits);
@@ -88,22 +88,22 @@ impl<'a> Sections<'a> {
         })
     }
 
-    /// How many representations the sections name.
+    /// Number of representations that the sections name.
     pub(crate) fn representations(&self) -> usize {
         self.styling.representations().len()
     }
 
-    /// Weight of a representation at a place along the curve.
+    /// Weight of a representation at a position along the curve.
     pub(crate) fn weight(&self, number: usize, parameter: f64) -> f64 {
         self.table.intervals(&self.styling, parameter).length(number)
     }
 
-    /// How much of a layer the image shows at most.
+    /// Visible share of a layer at most, anywhere along the curve.
     pub(crate) fn of_layer(&self, layer: usize) -> Shown {
         self.of_range(layer, [f64::NEG_INFINITY, f64::INFINITY])
     }
 
-    /// How much of a part of a layer is shown, by its bounds before any displacement.
+    /// Visible share of a part of a layer, by its undisplaced bounds.
     pub(crate) fn of_part(&self, layer: usize, bounds: &Aabb) -> Shown {
         let Some(bend) = self.bend else { return self.of_layer(layer) };
         let unrolled = match self.strip {
@@ -113,7 +113,7 @@ impl<'a> Sections<'a> {
         let Some(unrolled) = unrolled else { return self.of_layer(layer) };
         let places = unrolled.corners().map(|p| bend.section_parameter(p));
         let range = places.into_iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], t| [lo.min(t), hi.max(t)]);
-        // What bounds hold by rounding alone is tested.
+        // Widened for rounding: parts at the border are tested sample by sample.
         self.of_range(layer, [range[0] - 1e-9, range[1] + 1e-9])
     }
 
@@ -133,23 +133,23 @@ impl<'a> Sections<'a> {
         }
     }
 
-    /// Place along the curve, as a share of its length.
+    /// Position along the curve as a share of its length.
     pub(crate) fn parameter(&self, p: DVec3) -> f64 {
         self.bend.map_or(0.0, |bend| bend.section_parameter(self.strip.map_or(p, |strip| unrolled(strip, p))))
     }
 
-    /// Whether a sample with a threshold shows the layer at a place along the curve.
+    /// Whether a sample with a threshold shows the layer at a position along the curve.
     pub(crate) fn shows(&self, layer: usize, parameter: f64, threshold: f64) -> bool {
         self.is_drawn_by(layer, self.intervals(parameter).holding(threshold))
     }
 
-    /// Whether a representation, by its number, draws the surface of a layer; one that does not exist draws none.
+    /// Whether a representation draws the surface of a layer; a number out of range draws none.
     #[inline]
     fn is_drawn_by(&self, layer: usize, number: usize) -> bool {
         self.drawn_by[layer].checked_shr(number as u32).is_some_and(|bits| bits & 1 == 1)
     }
 
-    /// The intervals of thresholds at a place along the curve.
+    /// Intervals of thresholds at a position along the curve.
     fn intervals(&self, parameter: f64) -> Intervals {
         match self.only {
             None => self.table.intervals(&self.styling, parameter),
@@ -158,7 +158,7 @@ impl<'a> Sections<'a> {
         }
     }
 
-    /// Share, 0..=1, of the representations that show `layer` among those that show `on`, at a place.
+    /// Weight of the representations that show both `layer` and `on`, as a share, 0..=1, of those that show `on`, at a point.
     pub(crate) fn share(&self, layer: usize, on: usize, p: DVec3) -> f64 {
         let (held, all) = (self.shown_by[layer] & self.shown_by[on], self.shown_by[on]);
         if held == all || held == 0 {
@@ -169,19 +169,19 @@ impl<'a> Sections<'a> {
         if of > 0.0 { (intervals.length_of(held) / of).clamp(0.0, 1.0) } else { 0.0 }
     }
 
-    /// Whether a layer throws shadows on a place of another: on what is shown together with it.
+    /// Whether a layer casts shadows on another at a point: it does if both are shown together there.
     pub(crate) fn throws(&self, layer: usize, onto: usize, p: DVec3) -> bool {
         let (thrown, seen) = (self.shown_by[layer], self.shown_by[onto]);
         thrown & seen != 0 && (thrown & seen == seen || self.prevails(layer, p))
     }
 
-    /// Whether a layer has at least half of the weight at a place: where lines and points of it are drawn.
+    /// Whether a layer is shown at threshold 0.5 at a point, where its lines and points are then drawn.
     pub(crate) fn prevails(&self, layer: usize, p: DVec3) -> bool {
         self.shows(layer, self.parameter(p), 0.5)
     }
 }
 
-/// For each layer all layers of its surface if it is the first of several, each in representations of its own.
+/// For the first of several layers that are one surface, each in representations of its own: all of these layers; for others empty.
 fn one_surface(scene: &Scene, shown_by: &[u32]) -> Vec<Vec<usize>> {
     let mut all: Vec<Vec<usize>> = vec![Vec::new(); shown_by.len()];
     for i in 0..shown_by.len() {
@@ -198,8 +198,8 @@ fn one_surface(scene: &Scene, shown_by: &[u32]) -> Vec<Vec<usize>> {
     all
 }
 
-/// Where a strip carries a point; one beside it as from the nearest place of the route, so that corners of triangles on the border have a
-/// place along the curve.
+/// Position to which a strip carries a point. A point beside the strip is carried with the nearest point of the route, so that corners of
+/// triangles across the border have a position along the curve.
 fn unrolled(strip: &Strip, p: DVec3) -> DVec3 {
     strip.apply(p).unwrap_or_else(|_| {
         let g = strip.route().nearest(p.truncate());
@@ -209,16 +209,16 @@ fn unrolled(strip: &Strip, p: DVec3) -> DVec3 {
     })
 }
 
-/// The intervals of thresholds of the representations at a place.
+/// Intervals of thresholds of the representations at one position along the curve.
 pub(crate) struct Intervals {
     ends: [f64; MOST_REPRESENTATIONS],
     count: usize,
-    /// Number of the first one.
+    /// Number of the first representation.
     first: usize,
 }
 
 impl Intervals {
-    /// One representation holds all thresholds.
+    /// A single representation that holds all thresholds.
     fn of_one(number: usize) -> Self {
         Self { ends: [1.0; MOST_REPRESENTATIONS], count: 1, first: number }
     }
@@ -235,13 +235,13 @@ impl Intervals {
         (self.ends[number] - from).max(0.0)
     }
 
-    /// The same of several, as bits.
+    /// Total length of the intervals of several representations, given as bits.
     fn length_of(&self, numbers: u32) -> f64 {
         (0..self.count).filter(|number| numbers >> number & 1 == 1).map(|number| self.length(number)).sum()
     }
 }
 
-/// What samples show of a layer.
+/// Shows a layer sample by sample.
 pub(crate) struct LayerShow<'a> {
     pub(crate) sections: &'a Sections<'a>,
     pub(crate) exposure: &'a Exposure,
@@ -262,15 +262,15 @@ impl ThinShow for LayerShow<'_> {
     }
 }
 
-/// The ends of the intervals of all representations at many places: linear between them, but at the knees.
+/// Ends of the intervals of all representations at many positions along the curve, linear between them except at knees.
 #[derive(Debug, Clone)]
 struct Table {
     from: f64,
     per_step: f64,
     representations: usize,
-    /// Place by place.
+    /// Ends of the intervals, position after position.
     ends: Vec<f64>,
-    /// Whether a knee lies between a place and the next.
+    /// Whether a knee lies between a position and the next.
     has_knee: Vec<bool>,
 }
 
@@ -280,7 +280,7 @@ impl Table {
     fn new(styling: &StylingSections) -> Self {
         let knees = styling.knees();
         let (from, to) = (knees.first().copied().unwrap_or(0.0), knees.last().copied().unwrap_or(0.0));
-        // Rounding must not put a knee beside its step.
+        // Slack, so that rounding does not put a knee into the wrong step.
         let slack = 1e-9 + 1e-3 * (to - from);
         let (from, to) = (from - slack, to + slack);
         let per_step = (to - from) / Self::STEPS as f64;
@@ -312,34 +312,34 @@ impl Table {
     }
 }
 
-/// The thresholds of the samples of a pixel.
+/// Thresholds of the samples of a pixel.
 #[derive(Debug, Clone)]
 pub(crate) struct Exposure {
-    /// Added to the dither, for each sample, the centre first.
+    /// Offset added to the dither for each sample, the centre first.
     phases: Vec<f64>,
-    /// Samples apart from the centre in different places.
+    /// Number of distinct sample positions apart from the centre.
     places: usize,
     dithered: bool,
 }
 
 impl Exposure {
-    /// Every sample apart from the centre, or the centre where there are no others, `count` times with other thresholds.
-    /// * `samples`: of a pixel, the centre among them.
+    /// Repeats every sample apart from the centre (or the centre, if there are no others) `count` times with other thresholds.
+    /// * `samples`: number of samples of a pixel, the centre included.
     pub(crate) fn new(count: usize, samples: usize) -> Self {
         let others = if count > 1 || samples > 1 { count.max(1) * (samples.max(2) - 1) } else { 0 };
-        // In the middles of equal parts of 0..1, which are no wider than those of the dither.
+        // Middles of equal parts of 0..1, which are no wider than the steps of the dither.
         let part = |i: usize| i as f64 / others as f64 + 0.5 / others.max(64) as f64;
         let phases = std::iter::once(0.5 + 0.5 / 64.0).chain((0..others).map(part)).collect();
         Self { phases, places: samples.max(2) - 1, dithered: true }
     }
 
-    /// How many samples apart from the centre lie in different places.
+    /// Number of distinct sample positions apart from the centre.
     pub(crate) fn places(&self) -> usize {
         self.places
     }
 
-    /// Places of all samples.
-    /// * `offsets`: of those of one exposure.
+    /// Offsets of all samples of all exposures.
+    /// * `offsets`: offsets of the samples of one exposure.
     pub(crate) fn offsets(&self, offsets: &[[i32; 2]]) -> Vec<[i32; 2]> {
         let own = offsets.len();
         (0..self.phases.len())
@@ -347,7 +347,7 @@ impl Exposure {
             .collect()
     }
 
-    /// The same threshold everywhere: what has the greater part of the weight.
+    /// The threshold 0.5 everywhere: the representation with the greater weight is shown.
     pub(crate) fn even() -> Self {
         Self { phases: vec![0.5], places: 1, dithered: false }
     }
@@ -359,11 +359,11 @@ impl Exposure {
     }
 }
 
-/// Ordered dither of 8 x 8 pixels: each 64th once.
+/// Ordered dither of 8 x 8 pixels: each multiple of 1/64 once.
 #[inline]
 fn dither(x: i32, y: i32) -> f64 {
     let (a, b) = ((x ^ y) as u32, y as u32);
-    // Bits of both in turn, the lowest of the pixel's place weighing most.
+    // Interleaves the bits of both coordinates; the lowest bits weigh most.
     let bits = (0..3).fold(0, |sum, k| sum << 2 | (a >> k & 1) << 1 | b >> k & 1);
     f64::from(bits) / 64.0
 }

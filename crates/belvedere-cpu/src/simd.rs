@@ -1,7 +1,7 @@
 //! Loops compiled for the vector instructions of the machine.
 //!
-//! The program is built for the oldest processors; a kernel is compiled for newer ones as well, and the best version is
-//! picked while it runs. Only instructions differ: no operation is contracted or reordered, so all versions give the same
+//! The program is built for the oldest processors; a kernel is compiled for newer ones as well, and the best version is chosen at
+//! run time. Only instructions differ: no operation is contracted or reordered, so all versions give the same
 //! bits.
 
 use pulp::{Arch, Simd, WithSimd};
@@ -14,7 +14,7 @@ pub(crate) const LANES: usize = 32;
 pub(crate) type Lanes = [f32; LANES];
 pub(crate) type IntLanes = [i32; LANES];
 
-/// Work worth compiling more than once. [`Kernel::run`] and all that is hot in it must be `#[inline(always)]`.
+/// A computation that is compiled for several processors. [`Kernel::run`] and its hot callees must be `#[inline(always)]`.
 pub(crate) trait Kernel {
     type Output;
     fn run(self) -> Self::Output;
@@ -31,7 +31,7 @@ impl<K: Kernel> WithSimd for With<K> {
     }
 }
 
-/// Runs the version for this machine.
+/// Runs the version for this processor.
 #[inline]
 pub(crate) fn run<K: Kernel>(kernel: K) -> K::Output {
     ARCH.dispatch(With(kernel))
@@ -40,8 +40,8 @@ pub(crate) fn run<K: Kernel>(kernel: K) -> K::Output {
 /// Adding it leaves the rounded integer in the low bits of the mantissa.
 const ROUND: f32 = 12_582_912.0;
 
-/// The nearest whole number of a value between -2^22 and 2^22, any number of one beyond. Unlike `as`, which has to think of
-/// all values, it takes one addition.
+/// The nearest integer of a value between -2^22 and 2^22, arbitrary beyond. It takes one addition, unlike `as`, which handles all
+/// values.
 #[inline(always)]
 pub(crate) fn nearest(v: f32) -> i32 {
     ((v + ROUND).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)

@@ -1,4 +1,4 @@
-//! Stylisation of a drawn picture from its depths and places, before lines and names: dark edges, and shade behind what stands out.
+//! Stylisation of a drawn picture from its depths and points, before lines and names: dark edges and depth unsharp masking.
 //!
 //! Source: edges in reciprocal depth, which is affine on planes, are ours; depth unsharp masking after Luft, Colditz and Deussen 2006.
 
@@ -8,40 +8,40 @@ use belvedere_scene::{LayerKind, RenderJob, Stylisation};
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// Share of the reciprocal depth by which it bends at an edge: from nothing to all of it.
+/// Relative second difference of the reciprocal depth at which an edge begins to show, and at which it is full.
 const DEPTH_EDGE: [f32; 2] = [0.02, 0.06];
-/// The same of `1 - n n'` between faces.
+/// The same for `1 - n n'` between faces.
 const NORMAL_EDGE: [f32; 2] = [0.15, 0.4];
-/// Light that an edge takes away.
+/// Share of light that an edge removes.
 const INK: f32 = 0.7;
 /// Standard deviation of the average of depths, as a share of the picture's diagonal.
 const SIGMA: f32 = 0.01;
-/// Light that unsharp masking takes away at most.
+/// Largest share of light that unsharp masking removes.
 const DARKEST: f32 = 0.35;
 
-/// Whether a picture needs its surfaces open and their places known.
+/// Whether the job asks for stylisation.
 pub(crate) fn is_on(job: &RenderJob<'_>) -> bool {
     job.options.stylisation != Stylisation::default()
 }
 
-/// What edges of a picture are found from: depths and faces of the samples of every pixel, so that edges are as smooth as outlines.
+/// Input of the edges: depths and faces of the samples of every pixel, so that edges are as smooth as outlines.
 #[derive(Debug, Default)]
 pub(crate) struct Relief {
-    /// Samples per pixel in different places.
+    /// Number of sample positions per pixel.
     places: usize,
-    /// Those of a pixel one after the other, row by row: nearness as the rasteriser has it, 1 / depth, of parallel projections -depth.
+    /// Nearness of the samples of each pixel in turn, row by row: 1 / depth, in parallel projection -depth.
     near: Vec<f32>,
     face: Vec<Face>,
 }
 
-/// What a sample is of, and the unit normal of its face in 127ths where edges between faces are drawn, else 0.
+/// Whether a sample shows a solid, and the unit normal of its face in 127ths where edges between faces are drawn, else 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Face {
     normal: [i8; 3],
     solid: bool,
 }
 
-/// The sky.
+/// Nearness of the sky.
 pub(crate) const SKY_NEAR: f32 = f32::NAN;
 
 impl Face {
@@ -71,27 +71,27 @@ pub(crate) struct ReliefRows<'r> {
 }
 
 impl Relief {
-    /// Room for a picture whose edges are to be drawn; none where there are none.
-    /// * `places`: samples per pixel in different places.
+    /// Buffers for a picture whose edges are to be drawn; `None` if none are.
+    /// * `places`: number of sample positions per pixel.
     pub(crate) fn room(job: &RenderJob<'_>, places: usize) -> Option<Self> {
         let n = job.view.pinhole().image.map(|s| s as usize).iter().product::<usize>() * places;
         let wanted = job.options.stylisation.edges > 0.0;
         wanted.then(|| Self { places, near: vec![SKY_NEAR; n], face: vec![Face::default(); n] })
     }
 
-    /// Bytes of a pixel.
+    /// Bytes per pixel.
     pub(crate) fn bytes(places: u64) -> u64 {
         places * (size_of::<f32>() + size_of::<Face>()) as u64
     }
 
-    /// Bands of so many pixels.
+    /// Bands of `pixels` pixels each.
     pub(crate) fn bands(&mut self, pixels: usize) -> Vec<Option<ReliefRows<'_>>> {
         let (places, n) = (self.places, pixels * self.places);
         let rows = self.near.chunks_mut(n).zip(self.face.chunks_mut(n));
         rows.map(|(near, face)| Some(ReliefRows { places, near, face })).collect()
     }
 
-    /// From what the centres of pixels see; faces by the true places of neighbours.
+    /// From the samples at the pixel centres; normals of faces from the world points of neighbours.
     fn of_centres(buffers: &Buffers, width: usize, ortho: bool, kinds: &[Kind]) -> Self {
         let nearness = nearness(&buffers.depth, ortho);
         let world = buffers.world.as_deref().unwrap_or_default();
@@ -103,7 +103,7 @@ impl Relief {
             }
             let (x, y) = (i % width, i / width);
             let place = |i: usize| DVec3::from_array(world[i]);
-            // Of both neighbours the one whose depth differs less lies on the same face.
+            // Of the two neighbours, the one whose depth differs less lies on the same face.
             let step = |before: Option<usize>, after: Option<usize>| {
                 let off = |j: Option<usize>| {
                     j.filter(|j| solid(*j)).map_or(f32::INFINITY, |j| (nearness[j] - nearness[i]).abs())
@@ -129,8 +129,8 @@ impl Relief {
     }
 }
 
-/// Draws edges and shades into the open colours of surfaces.
-/// * `relief`: of all samples, if known.
+/// Draws edges and unsharp masking into the linear colours of surfaces.
+/// * `relief`: depths and faces of all samples, if they are known.
 pub(crate) fn apply(job: &RenderJob<'_>, width: usize, relief: Option<Relief>, buffers: &mut Buffers) {
     let Stylisation { edges, unsharp } = job.options.stylisation;
     let ortho = job.view.pinhole().is_orthographic();
@@ -161,14 +161,14 @@ pub(crate) fn apply(job: &RenderJob<'_>, width: usize, relief: Option<Relief>, b
     }
 }
 
-/// How edges of a layer are found.
+/// How edges of a layer are detected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// By depth and by faces.
+    /// By depth and by the normals of faces.
     Solid,
-    /// By depth: faces of ground are too small, atoms are round.
+    /// By depth alone: faces of ground are too small, and atoms are round.
     Depth,
-    /// Not at all: clouds have no edges.
+    /// Volumes have no edges.
     Cloud,
 }
 
@@ -186,12 +186,12 @@ fn kind_of(kinds: &[Kind], id: u32) -> Option<Kind> {
     kinds.get((id as usize).wrapping_sub(1)).copied()
 }
 
-/// What edges are found from.
+/// Data from which edges are detected.
 struct Seen {
     width: usize,
     height: usize,
     places: usize,
-    /// Reciprocal depth, of parallel projections depth turned round: affine on planes; 0 in the sky. As in [`Relief`].
+    /// Reciprocal depth, in parallel projection the reversed depth: affine on planes; 0 in the sky. As in [`Relief`].
     nearness: Vec<f32>,
     face: Vec<Face>,
     cloud: Vec<bool>,
@@ -211,7 +211,7 @@ impl Seen {
         Self { width, height, places, nearness, face, cloud }
     }
 
-    /// How much of an edge lies on a pixel, 0..=1: the mean over its samples.
+    /// Strength of the edge on a pixel, 0..=1: the mean over its samples.
     fn edge(&self, x: usize, y: usize) -> f32 {
         if self.cloud[y * self.width + x] {
             return 0.0;
@@ -219,7 +219,7 @@ impl Seen {
         (0..self.places).map(|place| self.edge_at(x, y, place)).sum::<f32>() / self.places as f32
     }
 
-    /// The same of the samples in one place of their pixels: on the nearer side alone, so that edges are a pixel wide.
+    /// Strength of the edge at one sample position: on the nearer side alone, so that edges are a pixel wide.
     fn edge_at(&self, x: usize, y: usize, place: usize) -> f32 {
         let (step, row) = (self.places, self.width * self.places);
         let i = y * row + x * step + place;
@@ -241,7 +241,7 @@ impl Seen {
     }
 }
 
-/// Least and largest depth of what is no sky; `None` if all is.
+/// Least and largest depth without the sky; `None` if all is sky.
 fn depth_range(depth: &[f32]) -> Option<[f32; 2]> {
     let finite = depth.par_iter().copied().filter(|d| d.is_finite());
     let [lo, hi] = finite
@@ -265,15 +265,15 @@ fn near_of(d: f32, ortho: bool, range: Option<[f32; 2]>) -> f32 {
     }
 }
 
-/// How much nearer the surroundings of each pixel are than itself, as a share of the range of depths, negative; 0 in the sky.
+/// Mean depth of the surroundings minus the depth of each pixel, as a share of the range of depths; 0 in the sky.
 ///
-/// Depths count by their logarithm, so that a doubling is the same everywhere; of parallel projections as they are.
+/// The logarithm of the depth is used, so that a doubling counts the same everywhere; in parallel projection the depth itself.
 fn behind(depth: &[f32], width: usize, ortho: bool) -> Vec<f32> {
     let Some([lo, hi]) = depth_range(depth) else { return vec![0.0; depth.len()] };
     let scale = |d: f32| if ortho { d } else { d.max(f32::MIN_POSITIVE).ln() };
     let (from, size) = (scale(lo), (scale(hi) - scale(lo)).max(1e-6));
     let height = depth.len() / width;
-    // Against the sky, as far as what is farthest, there are no halos.
+    // The sky counts as far as the farthest surface, so that there are no halos against it.
     let share = |d: f32| if d.is_finite() { (scale(d) - from) / size } else { 1.0 };
     let shares: Vec<f32> = depth.par_iter().map(|d| share(*d)).collect();
     let [half_width, half_height] = [width.div_ceil(2), height.div_ceil(2)];
@@ -292,7 +292,7 @@ fn behind(depth: &[f32], width: usize, ortho: bool) -> Vec<f32> {
     let weights = gaussian(sigma);
     let mean = blurred(&blurred(&halves, half_width, &weights), half_height, &weights);
     let at = |x: usize, y: usize| {
-        // Centre of the pixel among those of half the size.
+        // Position of the pixel's centre in the picture of half the size.
         let place = |p: usize, n: usize| {
             let g = (0.5 * (p as f32 + 0.5) - 0.5).clamp(0.0, (n - 1) as f32);
             let i = (g as usize).min(n.saturating_sub(2));
@@ -306,7 +306,7 @@ fn behind(depth: &[f32], width: usize, ortho: bool) -> Vec<f32> {
     (0..depth.len()).into_par_iter().map(off).collect()
 }
 
-/// Half of a Gaussian, its sum over both halves 1.
+/// One half of a Gaussian; the sum over both halves is 1.
 fn gaussian(sigma: f32) -> Vec<f32> {
     let reach = (3.0 * sigma).ceil().max(1.0) as usize;
     let weights: Vec<f32> = (0..=reach).map(|i| (-0.5 * (i as f32 / sigma.max(1e-3)).powi(2)).exp()).collect();
@@ -314,7 +314,7 @@ fn gaussian(sigma: f32) -> Vec<f32> {
     weights.into_iter().map(|w| w / sum).collect()
 }
 
-/// Weighted sums along rows of `width`, the rim repeated, turned: what were rows are columns.
+/// Weighted sums along rows of `width`, with the rim repeated; the result is transposed.
 fn blurred(of: &[f32], width: usize, weights: &[f32]) -> Vec<f32> {
     let (height, reach) = (of.len() / width, weights.len() - 1);
     let mut lines = vec![0.0; of.len()];
@@ -360,7 +360,7 @@ mod tests {
 
     #[test]
     fn grazing_ground_has_no_edges_and_a_wall_has_one_a_pixel_wide() {
-        // Level ground up to the horizon: depth goes to infinity with the row.
+        // Level ground up to the horizon: depth grows to infinity with the row.
         let ground = |y: usize| 100.0 / (y as f32 + 0.5);
         let all = |seen: &Seen| (0..W * H).map(|i| seen.edge(i % W, i / W)).collect::<Vec<_>>();
         assert!(all(&seen(picture(|_, y| ground(y)), false)).iter().all(|e| *e == 0.0));

@@ -14,9 +14,9 @@ pub fn workspace_root() -> PathBuf {
     here.ancestors().nth(2).expect("a crate lies two folders below the root").to_path_buf()
 }
 
-/// Path of a file of the real-data collection, or `None` (said loudly) if the collection is not there.
+/// Path of a file of the real-data collection, or `None` (with a printed message) if the collection does not exist.
 ///
-/// It is looked for in `$BELVEDERE_DATA`, else in `../shared/data` beside the workspace.
+/// The collection is expected in `$BELVEDERE_DATA`, otherwise in `../shared/data` next to the workspace.
 ///
 /// # Panics
 /// If the file is missing and `BELVEDERE_REQUIRE_DATA=1`, as in continuous integration.

@@ -1,4 +1,4 @@
-//! Random curved ray cameras, as broad as the conditions of validity let them be.
+//! Random curved ray cameras, as varied as the conditions of validity allow.
 
 use crate::Random;
 use belvedere_core::map::curved_rays::{CurvedRays, Model, Pencil, Sharpness, TurnSpec};
@@ -6,10 +6,10 @@ use belvedere_core::map::split_rays::{Fork, Seam, SplitRays, SplitSpec};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, Stage, View};
 use glam::DQuat;
 
-/// All models of rays.
+/// All ray models.
 pub const MODELS: [Model; 5] = [Model::Modified, Model::Original, Model::C0, Model::C2, Model::Circular];
 
-/// A pinhole and valid turns behind it; lengths are about a hundred scene units each.
+/// A pinhole and valid turns behind it. Lengths are about a hundred scene units each.
 #[derive(Debug, Clone)]
 pub struct RandomRays {
     /// Where rays start.
@@ -20,18 +20,18 @@ pub struct RandomRays {
     pub turns: Vec<TurnSpec>,
 }
 
-/// Where a chain has got to: the viewpoint of its last part, the axis of that part, and half the width of the picture per distance.
+/// The end of a chain: the viewpoint of its last part, the axis of that part, and half the width of the picture per unit of distance.
 #[derive(Debug, Clone, Copy)]
 struct End {
     viewpoint: DVec3,
     axis: DVec3,
-    /// Distance from the viewpoint at which the last turn ends, about.
+    /// Approximate distance from the viewpoint at which the last turn ends.
     from: f64,
     half_width: f64,
 }
 
 impl RandomRays {
-    /// A camera of `turns` turns, or `None` if the dice give none in some dozens of throws a turn.
+    /// A camera of `turns` turns, or `None` if a few dozen random attempts per turn give no valid one.
     ///
     /// Bends of up to 100 degrees in any plane, wedges of up to 150, common lines in any direction or none, viewpoints beside the axis, all
     /// sharpnesses.
@@ -57,7 +57,7 @@ impl RandomRays {
     /// The camera as a view.
     ///
     /// # Panics
-    /// If the turns have been changed into invalid ones.
+    /// If the turns have been replaced by invalid ones.
     pub fn view(&self) -> View {
         let rays = CurvedRays::new(&self.pinhole, self.model, &self.turns).unwrap_or_else(|e| panic!("{e}"));
         View::new(self.pinhole.clone(), vec![Stage::CurvedRays(rays)]).expect("one stage is in order")
@@ -66,7 +66,7 @@ impl RandomRays {
     /// Adds a valid turn behind `end`.
     fn turn(&mut self, random: &mut Random, end: &End) -> Option<End> {
         for attempt in 0..60 {
-            // The longer it takes, the gentler.
+            // The more attempts it takes, the gentler the turn becomes.
             let gentle = 1.0 - f64::from(attempt) / 70.0;
             let (turn, next) = random_turn(random, end, gentle);
             self.turns.push(turn);
@@ -111,7 +111,7 @@ fn random_turn(random: &mut Random, end: &End, gentle: f64) -> (TurnSpec, End) {
         let (t0, t2) = (bend - t0 * end.axis, bend + t2 * ahead);
         return (TurnSpec { viewpoint, t0, t1: bend, t2, pencil: Pencil::Parallel { normal }, m }, next);
     }
-    // The common line: across the turn, aslant to it, or anyhow.
+    // The common line: across the turn, oblique to it, or in any direction.
     let dir = match random.below(4) {
         0 => random.direction(),
         1 => (axle + 0.5 * random.direction()).normalize(),
@@ -125,13 +125,13 @@ fn random_turn(random: &mut Random, end: &End, gentle: f64) -> (TurnSpec, End) {
         if wide { random.range(90.0, 150.0f64) } else { narrow * gentle * random.range(2.0, 150.0f64) }.to_radians();
     let share = if wide { random.range(0.2, 0.6) } else { random.range(0.15, 0.85) };
     let turned = |by: f64| line + DQuat::from_axis_angle(dir, by) * (bend - line);
-    // The way round the line that leads on.
+    // The direction around the line that leads onwards.
     let on = if (turned(1e-3) - bend).dot(across) > 0.0 { 1.0 } else { -1.0 };
     let (t0, t2) = (turned(-on * open * share), turned(on * open * (1.0 - share)));
     (TurnSpec { viewpoint, t0, t1: bend, t2, pencil: Pencil::Line { point: line, dir }, m }, next)
 }
 
-/// Rays that part at a seam, both sides with a turn or two of their own; `None` if the dice give none.
+/// Rays that branch at a seam, each side with one or two turns of its own; `None` if the random attempts give no valid ones.
 pub fn random_split(random: &mut Random, model: Model, image: [u32; 2]) -> Option<(View, SplitSpec)> {
     let common = random.below(2);
     let base = RandomRays::new(random, model, common, image)?;

@@ -7,7 +7,7 @@ use belvedere_scene::{
 };
 use rayon::prelude::*;
 
-/// Ridged ground of `n` x `n` nodes 50 m apart, 400 m of relief.
+/// Ridged ground of `n` x `n` nodes, 50 m apart, with 400 m of relief.
 pub fn mountains(n: usize, seed: u64) -> Heightfield {
     let phase = (seed as f64) * 0.37;
     let height = |x: f64, y: f64| {
@@ -41,14 +41,14 @@ pub fn terrain_layer(heightfield: Heightfield) -> Layer {
     Layer { id: "ground".into(), must_see: false, kind }
 }
 
-/// A line that must be seen.
+/// A line that must be visible.
 pub fn line_layer(id: &str, points: Vec<DVec3>) -> Layer {
     let features = vec![LineFeature { name: id.into(), points }];
     let kind = LayerKind::Line(LineLayer::new(features, Color::rgb(200, 30, 30)));
     Layer { id: id.into(), must_see: true, kind }
 }
 
-/// A point that must be seen.
+/// A point that must be visible.
 pub fn point_layer(id: &str, position: DVec3) -> Layer {
     let kind = LayerKind::Point(PointLayer {
         features: vec![PointFeature { name: id.into(), position }],
@@ -68,7 +68,7 @@ pub fn trail(hf: &Heightfield) -> Vec<DVec3> {
     (0..=200).map(|i| at(f64::from(i) / 200.0)).map(|xy| xy.extend(hf.surface_at(xy).unwrap())).collect()
 }
 
-/// [`mountains`] with a [`trail`] that must be seen.
+/// [`mountains`] with a [`trail`] that must be visible.
 pub fn scene(n: usize, seed: u64) -> Scene {
     let hf = mountains(n, seed);
     let points = trail(&hf);
@@ -91,7 +91,7 @@ pub fn camera(scene: &Scene, height: f64, image: [u32; 2]) -> Pinhole {
     .unwrap()
 }
 
-/// A view whose rays are curved: the earth, much smaller than it is.
+/// A view with curved rays: those of the curvature of an earth much smaller than the real one.
 pub fn on_a_small_planet(pinhole: Pinhole, radius: f64) -> View {
     let earth = EarthCurvature { eye: pinhole.eye, radius, refraction: 0.0 };
     View::new(pinhole, vec![Stage::EarthCurvature(earth)]).unwrap()
@@ -120,9 +120,9 @@ pub fn march(view: &View, hf: &Heightfield, pixel: DVec2, from: f64, to: f64, st
     None
 }
 
-/// Draws by marching every pixel's ray: slow, and shares nothing with the code under test.
+/// Draws by marching along the ray of every pixel. This is slow and shares nothing with the code under test.
 pub struct Marcher {
-    /// Every depth is multiplied by this: a planted fault.
+    /// Factor on every depth: a planted fault.
     pub fault: f64,
 }
 

@@ -6,7 +6,7 @@ use belvedere::scene::{BoxLayer, BoxShape, Color, Heightfield, LayerKind, Scene}
 use belvedere::{BelvedereError, PictureOptions, Session};
 use std::path::Path;
 
-/// What a view shows where it has the image of a point: the layer, if any.
+/// Id of the layer that a view shows at the image of a point, if any.
 fn layer_at(session: &Session, point: DVec3) -> Result<Option<String>, BelvedereError> {
     let Ok(image) = session.view().project(point) else { return Ok(None) };
     let seen = session.pick(&[image.pixel.to_array()])?;

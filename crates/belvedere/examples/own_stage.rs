@@ -1,6 +1,6 @@
 //! A displacement of one's own as a stage of a view: drawn, picked and measured like those of scene files.
 //!
-//! [`SpaceMap`] is all that has to be written; [`StageMap`] answers what drawing asks beyond it, and takes better answers where a map has them.
+//! Only [`SpaceMap`] has to be implemented; [`StageMap`] has defaults for all that drawing needs further, which a map may override.
 
 use belvedere::core::map::StageMap;
 use belvedere::core::{DMat3, DVec2, DVec3, Miss, Pinhole, SpaceMap, Stage, View};
@@ -8,7 +8,7 @@ use belvedere::scene::{BoxLayer, BoxShape, Color, Heightfield, LayerKind, Scene}
 use belvedere::{BelvedereError, PictureOptions, Session};
 use std::path::Path;
 
-/// Raises what lies farther to the north, smoothly: `z' = z + rise * y^2 / (y^2 + reach^2)` for `y > 0`.
+/// Raises points smoothly, the more the farther north they lie: `z' = z + rise * y^2 / (y^2 + reach^2)` for `y > 0`.
 #[derive(Debug)]
 struct Ramp {
     rise: f64,
@@ -40,7 +40,7 @@ impl SpaceMap for Ramp {
 
 impl StageMap for Ramp {}
 
-/// The layer that a view shows where it has the image of a point, if any.
+/// Id of the layer that a view shows at the image of a point, if any.
 fn layer_at(session: &Session, point: DVec3) -> Result<Option<String>, BelvedereError> {
     let Ok(image) = session.view().project(point) else { return Ok(None) };
     let seen = session.pick(&[image.pixel.to_array()])?;

@@ -1,4 +1,4 @@
-//! Heights and a path made in memory to a picture on disk.
+//! Draws heights and a path from memory as a picture file.
 
 use belvedere::core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere::scene::{Heightfield, Scene};

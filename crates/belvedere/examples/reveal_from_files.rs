@@ -1,4 +1,4 @@
-//! An elevation model and a route to a picture in which the route is visible.
+//! Draws an elevation model and a route as a picture in which the route is visible.
 //!
 //! `cargo run --example reveal_from_files -- dem.tif route.gpx out.png`; without arguments on generated ground.
 

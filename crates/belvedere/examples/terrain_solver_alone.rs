@@ -1,4 +1,4 @@
-//! The terrain solver without scene file, session or picture: which ground has to move, and how far.
+//! The terrain solver without scene file, session or picture: computes where and how far the ground moves.
 
 use belvedere::builtin::massif;
 use belvedere::core::{DVec3, Pinhole, Projection, View};

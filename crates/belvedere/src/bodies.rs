@@ -1,4 +1,4 @@
-//! Rigid layers of a picture: which they are, where it shows them, and who does not know of them.
+//! Rigid layers of a picture: which they are, and their carried positions.
 
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Bodies, Frame, Scene};
@@ -15,22 +15,22 @@ impl RigidLayers {
         Self(scene.layers.iter().map(|layer| Bodies::of(&layer.kind).is_some()).collect())
     }
 
-    /// Whether there are any.
+    /// Whether the scene has rigid layers.
     pub(crate) fn any(&self) -> bool {
         self.0.contains(&true)
     }
 
-    /// Their ids.
+    /// Ids of the rigid layers.
     pub(crate) fn ids(&self, scene: &Scene) -> Vec<String> {
         scene.layers.iter().zip(&self.0).filter(|(_, rigid)| **rigid).map(|(layer, _)| layer.id.clone()).collect()
     }
 
-    /// Whether a pixel shows one, by the pixel's number.
+    /// Whether a pixel shows a rigid layer, by the pixel's number.
     pub(crate) fn shown_at(&self, frame: &Frame, i: usize) -> bool {
         frame.id[i].checked_sub(1).and_then(|layer| self.0.get(layer as usize)) == Some(&true)
     }
 
-    /// Where the stages of `view` leave the point `p_world` that a pixel shows: of a rigid layer the picture itself tells; `None` if it has no
+    /// Displaced position of the point `p_world` that a pixel shows: for a rigid layer from the picture itself; `None` if it has no
     /// image.
     pub(crate) fn displaced(&self, view: &View, frame: &Frame, i: usize, p_world: DVec3) -> Option<DVec3> {
         if !p_world.is_finite() {
@@ -44,8 +44,8 @@ impl RigidLayers {
     }
 }
 
-/// Why `what`, which judges by rays that meet every point where the stages carry it by itself, cannot work for a scene with rigid layers;
-/// `None` where none is carried otherwise.
+/// Why `what`, which assumes that the stages displace every point by itself, cannot work for a scene with rigid layers; `None` if it has
+/// none.
 pub(crate) fn refusal(what: &str, scene: &Scene, view: &View) -> Option<String> {
     let stage = view.stages().iter().find(|stage| !stage.is_of_world() && !stage.bends_rays())?.name();
     let ids = RigidLayers::of(scene, view).ids(scene);

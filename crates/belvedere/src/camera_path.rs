@@ -1,4 +1,4 @@
-//! Where the camera of an animation is in every frame.
+//! Cameras of the frames of an animation.
 
 use crate::resolve::constructor;
 use crate::resolve::solving::Memory;
@@ -20,10 +20,10 @@ use std::path::Path;
 
 /// Frames per second unless stated.
 const FPS: f64 = 25.0;
-/// Frames unless something says how many are needed.
+/// Number of frames if neither the animation nor its motion gives one.
 const FRAMES: u32 = 250;
 
-/// Where the camera is in one frame.
+/// The camera of one frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Pose {
     eye: DVec3,
@@ -37,12 +37,12 @@ struct Pose {
 /// The cameras of all frames of an animation.
 #[derive(Debug, Clone)]
 pub(crate) struct CameraPath {
-    /// The resolved scene.
+    /// The resolved scene of the session.
     base: Document,
     poses: Vec<Pose>,
     /// Position on the path of a preview in every frame; empty if there is none.
     positions: Vec<f64>,
-    /// What the camera turns about; `None` where the pivot of a spline travels with the camera.
+    /// Point that the camera turns about; `None` where the pivot of a spline moves with the camera.
     pivot: Option<DVec3>,
     /// Frames per second.
     pub(crate) fps: f64,
@@ -82,7 +82,7 @@ impl Session {
     }
 }
 
-/// Ranges that a sweep or turn without numbers leaves open.
+/// Fills in the ranges of a sweep or turntable without numbers.
 fn defaults(scene: &Document, animation: &mut AnimationDoc) -> Result<(), BelvedereError> {
     if let Some(SweepDoc { phi_deg: [first, last, step] }) = &mut animation.sweep {
         if *first == 0.0 && *last == 0.0 {
@@ -100,8 +100,8 @@ fn defaults(scene: &Document, animation: &mut AnimationDoc) -> Result<(), Belved
     Ok(())
 }
 
-/// Smallest and largest viewing angle at which the picture of a document turns, degrees: those that its presets are made for, up to
-/// straight down where it follows the camera, all where it stands still in the world.
+/// Range of viewing angles over which the picture of a document changes, degrees: that of its presets; up to straight down if it follows
+/// the camera; 0 to 90 if it is fixed to the world.
 fn preset_range(document: &Document) -> Option<[f64; 2]> {
     let spline = document.stage.iter().find_map(|s| match s {
         StageDoc::SplineBend(spline) => Some(spline),
@@ -172,7 +172,7 @@ impl CameraPath {
         self.poses.len()
     }
 
-    /// Whether the camera goes where the constructor of a path preview puts it.
+    /// Whether the constructor of a path preview places the camera.
     pub(crate) fn is_previewed(&self) -> bool {
         !self.positions.is_empty()
     }
@@ -214,7 +214,7 @@ impl CameraPath {
         for stage in &mut document.stage {
             match (stage, self.pivot) {
                 (StageDoc::SplineBend(spline), None) => spline.pivot = None,
-                // Around the camera nothing moves, wherever it goes.
+                // The anchor moves with the camera.
                 (StageDoc::Strip(strip), None) => strip.anchor = None,
                 (StageDoc::CurvedRays(rays), Some(pivot)) if pose.turn != 0.0 => {
                     turn_rays(rays, pivot, DQuat::from_rotation_z(pose.turn));
@@ -251,9 +251,9 @@ fn along(
     Ok(positions.into_iter().map(pose).collect())
 }
 
-/// Where on a route of a length every frame is: evenly, by the speed or the number of frames.
+/// Positions on a route of a given length, one per frame, evenly spaced by the speed or by the number of frames.
 ///
-/// * `usual_start`: where it begins if the animation does not say.
+/// * `usual_start`: start of the motion if the animation gives none.
 fn walk(length: f64, usual_start: f64, animation: &mut AnimationDoc) -> Result<Vec<f64>, String> {
     let start = *animation.start_m.get_or_insert(usual_start);
     let left = length - start;
@@ -280,9 +280,9 @@ fn walk(length: f64, usual_start: f64, animation: &mut AnimationDoc) -> Result<V
     Ok((0..frames).map(|i| start + f64::from(i) * per_frame).collect())
 }
 
-/// A camera that stays where it is until all layers have come to rest.
+/// A camera at rest until all layers have come to rest.
 ///
-/// * `frames`: how many instead.
+/// * `frames`: number of frames instead, if given.
 fn resting(
     session: &Session,
     scene: &Document,
@@ -317,7 +317,7 @@ fn checked(frames: u32) -> Result<u32, BelvedereError> {
     )))
 }
 
-/// The longest line of a layer, with the others that go on where it ends.
+/// The longest line of a layer, joined with other lines that continue it.
 fn route(scene: &Scene, id: &str) -> Result<Vec<DVec2>, BelvedereError> {
     let lines = |kind: &LayerKind| matches!(kind, LayerKind::Line(_));
     let known: Vec<&str> = scene.layers.iter().filter(|l| lines(&l.kind)).map(|l| l.id.as_str()).collect();
@@ -375,7 +375,7 @@ fn through_cameras(scene: &Document, path: &Path, animation: &mut AnimationDoc) 
     Ok((0..frames).map(pose).collect())
 }
 
-/// Catmull-Rom through the keys: C1, and each key itself at whole numbers.
+/// Catmull-Rom spline through the keys: C1, and equal to each key at whole numbers.
 fn at(keys: &[Numbers], t: f64) -> Numbers {
     let i = (t.floor() as usize).min(keys.len() - 1);
     let f = t - i as f64;
@@ -420,7 +420,7 @@ fn sweep_phi(
     let pinhole = session.view().pinhole();
     let normal = stages::plane_normal(scene).and_then(DVec3::try_normalize).unwrap_or(DVec3::Z);
     let level = |v: DVec3| (v - v.dot(normal) * normal).try_normalize();
-    // Looking straight down, what is up in the picture is ahead.
+    // For a camera straight down, the picture's upward direction counts as ahead.
     let ahead = level(pinhole.forward).filter(|_| pinhole.forward.dot(normal).abs() < 0.999_999);
     let ahead = ahead.or_else(|| level(-pinhole.down)).unwrap_or(DVec3::Y);
     let distance = pinhole.eye.distance(pivot);

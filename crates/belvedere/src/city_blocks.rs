@@ -5,13 +5,13 @@ use belvedere_core::DVec2;
 use belvedere_io::city::prism_on;
 use belvedere_scene::city::City;
 
-/// How far walls reach into terrain, which is drawn more coarsely from afar, metres.
+/// Depth of walls below the terrain, which is drawn with level of detail, metres.
 const FOOT_M: f64 = 2.0;
-/// Buildings nearer to a place than this count alike for its ground, metres.
+/// Distance from a point below which all buildings have the same weight for its ground, metres.
 const NEAR_M: f64 = 10.0;
 
-/// Gives blocks of `city` at a level the shape of prisms over sloping ground: that of `terrain`, and where buildings bring heights
-/// of their own ground, between these, over the terrain everywhere. Blocks whose ground is not known stay as they are.
+/// Gives blocks of `city` at a level the shape of prisms over sloping ground: that of `terrain`, and where buildings have ground heights
+/// of their own, interpolated between these, above the terrain everywhere. Blocks without any ground height are unchanged.
 pub(crate) fn stand(level: &mut Level, city: &City, terrain: Option<&dyn Fn(DVec2) -> Option<f64>>) {
     for (block, shape) in level.blocks.iter().zip(&mut level.city.buildings) {
         let own = level.cells[block.cell].buildings.iter().filter_map(|i| {
@@ -34,7 +34,7 @@ pub(crate) fn stand(level: &mut Level, city: &City, terrain: Option<&dyn Fn(DVec
     }
 }
 
-/// Height at a place between others, weighted by the inverse square of distance.
+/// Height at a point interpolated between others (inverse squared distance).
 fn between(heights: &[(DVec2, f64)], p: DVec2) -> Option<f64> {
     let (sum, weights) = heights.iter().fold((0.0, 0.0), |(sum, weights), (at, z)| {
         let weight = 1.0 / (at.distance_squared(p) + NEAR_M * NEAR_M);

@@ -19,20 +19,20 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Largest hole that is filled, share of the ground: what would be made up in a larger one is no ground.
+/// Largest hole that is filled, as a share of the ground: heights made up for a larger one would be arbitrary.
 pub const LARGEST_HOLE: f64 = 0.03;
 
 /// Colour of lines of rivers.
 const RIVER_COLOR: &str = "#2b7bba";
 
-/// Files of a terrain and of what must be seen on it.
+/// Files of a terrain and of features that must be seen on it.
 #[derive(Debug, Clone, Default)]
 pub struct DataFiles {
     /// Terrain: a file, or `builtin:massif?seed=7`.
     pub dem: String,
     /// Routes, areas or points: files, or `builtin:massif?seed=7`.
     pub features: Vec<String>,
-    /// Rivers that are not to run uphill where the ground moves: files with lines.
+    /// Rivers that must not run uphill where the ground moves: files with lines.
     pub rivers: Vec<String>,
     /// Coordinate system of the scene; automatic if left out.
     pub crs: Option<String>,
@@ -40,9 +40,9 @@ pub struct DataFiles {
     pub keep_voids: bool,
     /// Tint of the terrain by height.
     pub palette: PaletteDoc,
-    /// Leaves the sea ground as any other.
+    /// Draws the sea like other ground.
     pub no_sea: bool,
-    /// What areas are drawn as; automatic if left out.
+    /// Surface that areas are drawn as; automatic if left out.
     pub area_style: Option<SurfaceDoc>,
     /// `EPSG:n` of the terrain, instead of what its file says.
     pub source_crs: Option<String>,
@@ -52,11 +52,11 @@ pub struct DataFiles {
     pub vertical_unit: Option<VerticalUnit>,
 }
 
-/// What the files hold.
+/// Contents of the files.
 pub(crate) struct Data {
     pub(crate) scene: Arc<Scene>,
     pub(crate) warnings: Vec<String>,
-    /// Samples of the terrain's file as they are there, if they were to be kept.
+    /// Unchanged samples of the terrain's file, if they are to be kept.
     pub(crate) original: Option<OriginalTerrain>,
     /// Ids of the layers of rivers.
     pub(crate) rivers: Vec<String>,
@@ -163,7 +163,7 @@ fn locate(name: &str, roots: &mut Roots) -> Result<String, BelvedereError> {
     path.to_str().map(str::to_owned).ok_or_else(|| BelvedereError::not_utf8(name))
 }
 
-/// A layer of the features of a file, called by its name.
+/// A layer of the features of a file, with an id from its name.
 pub(crate) fn features_of(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
     let kind = kind_of(&load_vectors(path)?.value);
     let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
@@ -173,7 +173,7 @@ pub(crate) fn features_of(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, 
     Ok(feature_layer(id.unwrap_or_default(), Paths::One(name.to_owned()), kind))
 }
 
-/// Rivers are drawn, but nothing has to make way for them.
+/// A layer of rivers: drawn, but not a required feature.
 fn river_layer(id: String, source: Paths) -> LineDoc {
     let style = LineStyleDoc { color: RIVER_COLOR.into(), width_px: 2.0, ..LineStyleDoc::default() };
     LineDoc { id, source: Some(source), route: None, must_see: false, style }

@@ -1,4 +1,4 @@
-//! What can go wrong, as values. Texts name what was given and what is possible in the words of the library; an application
+//! Errors of the library. Texts name the given value and the possible ones in the words of the library; an application
 //! adds the names of its own options.
 
 use std::path::PathBuf;
@@ -14,7 +14,7 @@ pub enum BelvedereError {
         path: Option<PathBuf>,
         /// Line of the mistake, 1-based.
         line: Option<usize>,
-        /// What is wrong, measured value, limit, what to do.
+        /// What is wrong: the measured value, the limit, and what to do.
         reason: String,
         /// The refusal of a file that the document names.
         source: Option<Box<BelvedereError>>,
@@ -34,7 +34,7 @@ pub enum BelvedereError {
     Points {
         /// The file.
         path: PathBuf,
-        /// Which element, what is wrong, what to do.
+        /// Number of the element, what is wrong, and what to do.
         reason: String,
     },
     /// An output that would destroy something, or cannot be written.
@@ -42,7 +42,7 @@ pub enum BelvedereError {
     Output {
         /// The output.
         path: PathBuf,
-        /// Why not, and what to do.
+        /// Why it is refused, and what to do.
         reason: String,
     },
     /// A field of view outside (0, 180) degrees.
@@ -54,12 +54,12 @@ pub enum BelvedereError {
     /// The eye is the point that it looks at.
     #[error("the eye and the point to look at are the same; look somewhere else")]
     EyeIsTarget,
-    /// A position that cannot be found on the map.
+    /// A position that is not on the map.
     #[error("{what}: {reason}")]
     Position {
         /// `eye` or `target`.
         what: &'static str,
-        /// Why not, and what to do.
+        /// Why it is not, and what to do.
         reason: String,
     },
     /// The eye is under the ground.
@@ -75,7 +75,7 @@ pub enum BelvedereError {
     /// No file of routes, areas or points was given.
     #[error("no features are given; name at least one file of routes, areas or points")]
     NoFeatures,
-    /// Something to be revealed that is not there.
+    /// A target that does not exist.
     #[error("{0}")]
     Target(String),
     /// A parameter of the terrain solver that does not exist or is out of range.
@@ -95,7 +95,7 @@ pub enum BelvedereError {
         /// Nearest depth of the camera, scene units.
         near: f64,
     },
-    /// Nothing says where rays end.
+    /// Neither the call nor the camera nor the scene gives an end of rays.
     #[error("nothing says where rays end: the scene has no layer in front of the camera")]
     NoRayEnd,
     /// Too few or too many samples of rays.
@@ -124,13 +124,13 @@ pub enum BelvedereError {
         folder: PathBuf,
         /// What it holds.
         reason: String,
-        /// Whether they can be gone on with.
+        /// Whether the animation can be resumed from them.
         resumable: bool,
     },
     /// An animation was cancelled between frames or in one.
     #[error("cancelled after {done} of {frames} frames in {}", folder.display())]
     Interrupted {
-        /// Frames that are there.
+        /// Frames that are finished.
         done: usize,
         /// Frames of the whole animation.
         frames: usize,
@@ -145,12 +145,12 @@ pub enum BelvedereError {
         /// Why not.
         source: Box<BelvedereError>,
     },
-    /// A report or document that has no text form; none of this library's has none.
+    /// A report or document that has no text form, which no type of this library gives.
     #[error("{what} cannot be written as text: {reason}")]
     Text {
-        /// What was to be written.
+        /// Name of the text that was to be written.
         what: &'static str,
-        /// What the writer said.
+        /// Reason given by the writer.
         reason: String,
     },
     /// An invalid camera.
@@ -188,7 +188,7 @@ pub enum BelvedereError {
     Cancelled(#[from] belvedere_scene::Cancelled),
 }
 
-/// `:12: ` after the name of a document, nothing for one without a name.
+/// `:12: ` after the name of a document; empty for a document without a name.
 fn at_line(named: bool, line: Option<usize>) -> String {
     match (named, line) {
         (true, Some(line)) => format!(":{line}: "),

@@ -1,4 +1,4 @@
-//! From a scene file, or a document made in memory, to a session.
+//! Opens scene files and documents as sessions.
 
 use crate::resolve::constructor;
 use crate::resolve::motion::Motions;
@@ -23,7 +23,7 @@ impl Session {
         Self::from_document(scene_file::read(path)?, options)
     }
 
-    /// Opens a scene from its text (TOML, or JSON if it starts with `{`); `path` says where its files are.
+    /// Opens a scene from its text (TOML, or JSON if it starts with `{`); `path` gives the folder of its files.
     ///
     /// # Errors
     /// As [`Session::open`].
@@ -31,7 +31,7 @@ impl Session {
         Self::from_document(scene_file::parse(path, text)?, options)
     }
 
-    /// Opens a document that was read already, or made in memory; the files that the latter names are looked for in the current
+    /// Opens a document that was read already, or made in memory; files named by the latter are relative to the current
     /// folder.
     ///
     /// # Errors
@@ -89,7 +89,7 @@ impl Session {
     }
 }
 
-/// What has to be read for what is wanted.
+/// Parts of the scene to read for the given options.
 fn needs(source: &SourceDocument, options: &OpenOptions) -> Needs {
     let document = &source.document;
     let constructs = document.solves_terrain() || constructor::stated(source).is_some();
@@ -114,7 +114,7 @@ fn ground_is_needed(doc: &Document) -> bool {
             relief.levelling.is_some_and(|v| v > 0.0) || relief.plane.as_ref().is_none_or(|p| p.height_m.is_none())
         }
         StageDoc::TerrainDisocclusion(_) => true,
-        // Where the camera looks, if nothing says so.
+        // Without an anchor the point that the camera looks at is used, which may lie on the terrain.
         StageDoc::Strip(strip) => strip.anchor.is_none(),
         StageDoc::CurvedRays(_) => false,
     });
@@ -125,7 +125,7 @@ fn ground_is_needed(doc: &Document) -> bool {
     points.into_iter().flatten().any(stands) || spline_floats || (automatic && needs_crs)
 }
 
-/// The UTM zone of an eye given by longitude and latitude: what `auto` means without terrain.
+/// The UTM zone of an eye given by longitude and latitude, which `auto` stands for without terrain.
 fn crs_of_eye(doc: &Document) -> Option<Crs> {
     match doc.camera.eye {
         PointDoc::Map(MapPointDoc { lon: Some(lon), lat: Some(lat), .. }) => utm_epsg(lon, lat).map(Crs::Epsg),

@@ -1,14 +1,14 @@
-//! How a scene is opened.
+//! Options for opening a scene.
 
 use crate::scene_file::{PaletteDoc, SurfaceDoc};
 use belvedere_io::Limits;
 use belvedere_scene::Progress;
 use std::path::PathBuf;
 
-/// What of a scene is wanted.
+/// Parts of a scene to load.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Needs {
-    /// The view alone: of the layers only the terrain is read, and only if the camera or a stage stands on it.
+    /// The view alone: of the layers only the terrain is read, and only if the camera or a stage depends on it.
     View,
     /// The view and the terrain.
     Ground,
@@ -17,26 +17,26 @@ pub enum Needs {
     Everything,
 }
 
-/// How to open a scene.
+/// Options for opening a scene.
 #[derive(Debug, Clone, Default)]
 pub struct OpenOptions {
     /// Folders beside that of the scene from which files may come.
     pub allow_roots: Vec<PathBuf>,
-    /// What is wanted.
+    /// Parts of the scene to load.
     pub needs: Needs,
-    /// Another size of the picture than the scene's, pixels.
+    /// Size of the picture instead of the scene's, pixels.
     pub image: Option<[u32; 2]>,
-    /// Another seed than the scene's for whatever is generated.
+    /// Seed of generated data instead of the scene's.
     pub seed: Option<u64>,
-    /// Another tint of terrain than the scene's.
+    /// Tint of terrain instead of the scene's.
     pub palette: Option<PaletteDoc>,
-    /// Whether the sea is drawn as such, whatever the scene says.
+    /// Whether the sea is drawn as such, instead of the scene's setting.
     pub sea: Option<bool>,
-    /// What the areas of all layers are drawn as, whatever scene and files say; `Some(Auto)` = what the files say.
+    /// Surface of the areas of all layers, instead of the scene's settings; `Some(Auto)`: as the files say.
     pub area_style: Option<SurfaceDoc>,
-    /// Leaves stages that a solver would have to make out of the view: for callers that need the document alone.
+    /// Leaves stages that need a solver out of the view, for callers that need the document alone.
     pub unsolved: bool,
-    /// Memory that the samples of one file may take, bytes; `None` = what [`Limits::default`] says.
+    /// Memory limit for the samples of one file, bytes; `None`: that of [`Limits::default`].
     pub max_bytes: Option<u64>,
     /// Progress and cancellation.
     pub progress: Progress,

@@ -1,4 +1,4 @@
-//! Outputs: never over an input, never over an existing file unasked, never half written.
+//! Outputs: never written over an input, over an existing file only on request, and never left half written.
 
 use crate::BelvedereError;
 use crate::scene_file::Document;
@@ -6,7 +6,7 @@ use belvedere_io::{fs, split_table};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Fails at once if `path` is one of `inputs`, or exists and `overwrite` is false, or cannot exist. Ask before long work.
+/// Returns an error if `path` is one of `inputs`, exists while `overwrite` is false, or cannot be created. Call it before long work.
 ///
 /// # Errors
 /// [`BelvedereError::Output`], [`BelvedereError::Io`].
@@ -25,14 +25,14 @@ pub fn check(path: &Path, inputs: &[PathBuf], overwrite: bool) -> Result<(), Bel
 /// `value` as JSON, one line, ending in a newline; numbers round-trip exactly.
 ///
 /// # Errors
-/// [`BelvedereError::Text`] if a map has keys that are no texts, which no report has.
+/// [`BelvedereError::Text`] if a map has keys that are not strings, which does not occur in reports.
 pub fn json<T: Serialize>(value: &T) -> Result<String, BelvedereError> {
     let text =
         serde_json::to_string(value).map_err(|e| BelvedereError::Text { what: "the report", reason: e.to_string() })?;
     Ok(text + "\n")
 }
 
-/// Writes a text in one piece.
+/// Writes a text as a whole or not at all.
 ///
 /// # Errors
 /// [`BelvedereError::Io`].
@@ -43,7 +43,7 @@ pub fn write_text(path: &Path, text: &str, overwrite: bool) -> Result<(), Belved
 /// A document as TOML.
 ///
 /// # Errors
-/// [`BelvedereError::Text`], which no valid document gives.
+/// [`BelvedereError::Text`], which does not occur for valid documents.
 pub fn document_toml(document: &Document) -> Result<String, BelvedereError> {
     toml::to_string(document).map_err(|e| BelvedereError::Text { what: "the document", reason: e.to_string() })
 }

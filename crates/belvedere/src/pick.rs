@@ -1,4 +1,4 @@
-//! `pick`: what is seen at a pixel.
+//! `pick`: the object and point at a pixel.
 
 use crate::{BelvedereError, Session};
 use belvedere_core::{DVec2, DVec3, View, polygon};
@@ -15,10 +15,10 @@ pub struct PickReport {
     pub pixels: Vec<Option<Picked>>,
 }
 
-/// What is seen at one pixel.
+/// The object and point at one pixel.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Picked {
-    /// True (undisplaced) world point: of the surface, of the line where it is nearest to the pixel, or of the point; scene coordinates.
+    /// Undisplaced world point: of the surface, of the line at its point nearest to the pixel, or of the point feature; scene coordinates.
     pub point: [f64; 3],
     /// Depth at which it is seen, scene units.
     pub depth: f64,
@@ -26,15 +26,16 @@ pub struct Picked {
     pub segment: u32,
     /// Id of the layer.
     pub layer: String,
-    /// Name of the feature of a line, area or point layer, of the part of a mesh, or of the atom of a molecule; null for other surfaces and features without a
-    /// name.
+    /// Name of the feature of a line, area or point layer, of the part of a mesh, or of the atom of a molecule; null for other surfaces
+    /// and for features without a name.
     pub feature: Option<String>,
 }
 
-/// What each pixel (origin at the outer corner of the top-left pixel, centres at .5) shows, by the exact tracer.
+/// Objects at pixels (origin at the outer corner of the top-left pixel, centres at .5), by the exact tracer.
 ///
-/// A visible line or point within half its width of the pixel counts before the surface, the last layer first; areas belong to the ground
-/// they are painted on; a volume is seen where it has absorbed half of the light. Pixels outside the image are answered as far as the camera has rays there.
+/// A visible line or point within half its width of the pixel takes precedence over the surface, and of several the one in the last
+/// layer. Areas belong to the ground on which they are painted. A volume is reported where it has absorbed half of the light. Pixels
+/// outside the image have results as far as the camera has rays there.
 ///
 /// # Errors
 /// [`BelvedereError::UnderGround`], [`BelvedereError::Cancelled`].
@@ -74,7 +75,7 @@ fn named(name: &str) -> Option<String> {
     (!name.is_empty()).then(|| name.to_owned())
 }
 
-/// The surface itself, or the last area painted there.
+/// The surface, or the last area painted on it.
 fn surface(scene: &Scene, seen: &RayHit) -> Option<Picked> {
     let layer = scene.layers.get(seen.layer)?;
     let (mut id, mut feature) = (&layer.id, None);
@@ -108,16 +109,16 @@ struct Marks<'a> {
     layers: Vec<(&'a Layer, f64, Vec<Path<'a>>)>,
 }
 
-/// Vertices this near to the drawn ground lie on it, scene units.
+/// Distance from the drawn ground below which a vertex counts as lying on it, scene units.
 const ON_GROUND: f64 = 0.01;
-/// A line or point that is seen lies no deeper than the first surface by more than this share of the depth: on the ground rounding, elsewhere
+/// Largest relative depth of a visible line or point behind the first surface: on the ground only rounding, elsewhere
 /// less than the lift of a line seen across its own ground.
 const NO_DEEPER: [f64; 2] = [1e-6, 5e-4];
 
 /// A feature: its name and the images of its vertices, lifted.
 struct Path<'a> {
     name: &'a str,
-    /// Height over the ground, if all vertices lie on that.
+    /// The ground and the height over it, if all vertices lie on the ground.
     laid: Option<(&'a Heightfield, f64)>,
     vertices: Vec<(DVec3, Option<(DVec2, f64)>)>,
 }
@@ -188,7 +189,7 @@ impl Path<'_> {
             let along = b - a;
             let length = along.length_squared();
             let t = if length > 0.0 { ((pixel - a).dot(along) / length).clamp(0.0, 1.0) } else { 0.0 };
-            // Shares on the image become shares in space by the depths.
+            // Converts a share on the image to a share in space by the depths.
             let share = t * near / (t * near + (1.0 - t) * far);
             take(p.lerp(q, share), (a + t * along).distance(pixel));
         }

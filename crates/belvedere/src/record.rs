@@ -1,4 +1,4 @@
-//! Where a picture comes from: what was read, and from where it is seen.
+//! Origin of a picture: input files, and the camera in numbers.
 
 use crate::BelvedereError;
 use belvedere_core::{Projection, View};
@@ -24,16 +24,16 @@ pub(crate) fn inputs(files: &[InputFile]) -> Result<Vec<InputFile>, BelvedereErr
     Ok(out)
 }
 
-/// What the areas of a layer are drawn as, and why.
+/// Surface that the areas of a layer are drawn as, and its source.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct AreaRecord {
     /// Id of the layer.
     pub layer: String,
-    /// What covers them: water, forest, glacier, park, outline, plain.
+    /// Surface: water, forest, glacier, park, outline, plain.
     pub kind: &'static str,
     /// Number of areas.
     pub areas: usize,
-    /// Who says so.
+    /// Source of this choice.
     pub why: String,
 }
 

@@ -1,4 +1,4 @@
-//! A scene with a view and a light: everything that a picture needs, nothing left to look up.
+//! A session: a scene with a view and a light, ready to be drawn.
 
 use crate::record::{AreaRecord, InputFile};
 use crate::resolve::StripReport;
@@ -19,7 +19,7 @@ use std::sync::Arc;
 
 /// Scene, view and light, from memory ([`Session::from_parts`]) or from a scene file ([`Session::open`]).
 ///
-/// Clones share the scene and the renderer, with what that remembers from picture to picture.
+/// Clones share the scene and the renderer, with its caches.
 #[derive(Clone)]
 pub struct Session {
     pub(crate) loaded: Loaded,
@@ -27,7 +27,7 @@ pub struct Session {
     pub(crate) renderer: Arc<dyn Renderer + Send + Sync>,
 }
 
-/// What was read from files; it stays while the view changes.
+/// Data read from files; they stay while the view changes.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Loaded {
     pub(crate) scene: Arc<Scene>,
@@ -37,7 +37,7 @@ pub(crate) struct Loaded {
     pub(crate) warnings: Vec<String>,
 }
 
-/// What was made of a document over it.
+/// Results of resolving a document over the loaded data.
 #[derive(Debug, Clone)]
 pub(crate) struct Resolved {
     pub(crate) view: View,
@@ -75,7 +75,7 @@ impl std::fmt::Debug for Session {
 }
 
 impl Loaded {
-    /// The same with volumes drawn as the constructor of a view wants them.
+    /// The same with volumes drawn as the constructor of a view requires.
     fn drawn_for(self, resolved: &Resolved) -> Self {
         let drawn = wall::drawn(&self.scene, constructor::walls(resolved.constructor.as_ref()));
         Self { scene: drawn.map_or(self.scene, Arc::new), ..self }
@@ -83,7 +83,7 @@ impl Loaded {
 }
 
 impl Resolved {
-    /// A view under the default light (north-west, 45 degrees high), of no document.
+    /// A view under the default light (north-west, 45 degrees high), without a document.
     fn of_view(view: View) -> Self {
         Self {
             view,
@@ -99,7 +99,7 @@ impl Resolved {
         }
     }
 
-    /// A document resolved over the loaded data. Without `solving` an intent of terrain disocclusion is left out.
+    /// Resolves a document over the loaded data. Without `solving` an intent of terrain disocclusion is left out.
     fn of(
         source: SourceDocument,
         roots: Roots,
@@ -129,7 +129,7 @@ impl Session {
         Self::together(loaded, Resolved::of_view(view))
     }
 
-    /// What was loaded and what a document makes of it: every session of a document comes from here.
+    /// A session of loaded data and a document: all sessions of documents are made here.
     pub(crate) fn of_document(
         loaded: Loaded,
         source: SourceDocument,
@@ -140,7 +140,7 @@ impl Session {
         Ok(Self::together(loaded.drawn_for(&resolved), resolved))
     }
 
-    /// What was loaded in a view that a verb has found and describes.
+    /// A session of loaded data in a view that a verb has found, with its description.
     pub(crate) fn of_view(loaded: Loaded, view: View, description: Description) -> Self {
         Self::together(loaded, Resolved { description: Some(description), ..Resolved::of_view(view) })
     }
@@ -149,7 +149,7 @@ impl Session {
         Self { loaded, resolved, renderer: Arc::new(CpuRenderer::default()) }
     }
 
-    /// The same drawn by another renderer.
+    /// The same with another renderer.
     pub fn with_renderer(self, renderer: Arc<dyn Renderer + Send + Sync>) -> Self {
         Self { renderer, ..self }
     }
@@ -164,12 +164,12 @@ impl Session {
         Self { resolved: Resolved { overlay, ..self.resolved }, ..self }
     }
 
-    /// The same with its surfaces drawn over.
+    /// The same with another stylisation of its surfaces.
     pub fn with_stylisation(self, stylisation: Stylisation) -> Self {
         Self { resolved: Resolved { stylisation, ..self.resolved }, ..self }
     }
 
-    /// The same scene in another view. A document that described the view before is left behind.
+    /// The same scene in another view. A document that described the former view is dropped.
     pub fn with_view(self, view: View) -> Self {
         let Resolved { light, overlay, stylisation, .. } = self.resolved;
         Self { resolved: Resolved { light, overlay, stylisation, ..Resolved::of_view(view) }, ..self }
@@ -192,10 +192,10 @@ impl Session {
         Ok(Self { loaded: self.loaded.clone().drawn_for(&resolved), resolved, ..self.clone() })
     }
 
-    /// The same scene by a document that was edited, opened as by `options`: as [`Session::from_document`] of that document, without
+    /// The same scene by an edited document, resolved with `options`: equal to [`Session::from_document`] of that document, without
     /// reading the layers again.
     ///
-    /// * `memory`: what constructors remember of the document before.
+    /// * `memory`: memory of the constructors from the former document.
     pub(crate) fn edited(
         &self,
         document: Document,
@@ -241,7 +241,7 @@ impl Session {
         self.resolved.constructor.as_ref()
     }
 
-    /// The same with every layer where its motion has brought it at a time, seconds; the view stays as it is.
+    /// The same with every layer moved to its position at a time, seconds; the view is unchanged.
     pub(crate) fn at_time(&self, t: f64) -> Self {
         match &self.loaded.motions {
             Some(motions) => {
@@ -257,14 +257,14 @@ impl Session {
         self.resolved.description.as_ref().is_some_and(|d| constructor::tracks(&d.source))
     }
 
-    /// What was odd, of loading first: one sentence each.
+    /// Warnings of loading and then of resolving: one sentence each.
     pub fn warnings(&self) -> Vec<String> {
         let mut all = self.loaded.warnings.clone();
         all.extend(self.resolved.warnings.iter().filter(|w| !self.loaded.warnings.contains(w)).cloned());
         all
     }
 
-    /// What the areas of each layer are drawn as, and why; nothing for a session from parts.
+    /// Surfaces that the areas of each layer are drawn as, and their sources; empty for a session from parts.
     pub fn areas(&self) -> &[AreaRecord] {
         &self.loaded.areas
     }
@@ -274,7 +274,7 @@ impl Session {
         self.loaded.inputs.iter().chain(&self.resolved.inputs).cloned().collect()
     }
 
-    /// Their paths.
+    /// Paths of the input files.
     pub fn input_paths(&self) -> Vec<PathBuf> {
         self.inputs().into_iter().map(|file| file.path).collect()
     }
@@ -290,7 +290,7 @@ impl Session {
         self.resolved.description.as_ref().map(|d| &d.resolved)
     }
 
-    /// Terrain disocclusion that the document asks for and a solver has to find.
+    /// The intent of terrain disocclusion in the document, which a solver has to solve.
     #[cfg(not(target_family = "wasm"))]
     pub(crate) fn stated_terrain(&self) -> Option<crate::scene_file::TerrainStageDoc> {
         let mut stages = self.resolved.description.iter().flat_map(|d| &d.source.document.stage);
@@ -300,7 +300,7 @@ impl Session {
         })
     }
 
-    /// Parameters of terrain disocclusion as the document states them, else the usual ones.
+    /// Parameters of terrain disocclusion given by the document, else the default ones.
     ///
     /// # Errors
     /// [`BelvedereError::Setting`] with the parameter that is out of range.
@@ -344,18 +344,18 @@ impl Session {
         Ok(deepest)
     }
 
-    /// Refuses views that cannot be drawn.
+    /// Refuses views whose eye lies under the ground.
     ///
     /// # Errors
     /// [`BelvedereError::UnderGround`].
     pub fn check_drawable(&self) -> Result<(), BelvedereError> {
         if matches!(self.resolved.constructor, Some(ConstructorReport::PathPreview(_))) {
-            // Its eye is put where there is room, as far as there is.
+            // The eye of a path preview is fitted to the space around the path.
             return Ok(());
         }
         let eye = self.resolved.view.pinhole().eye;
         let moved = self.resolved.view.stages().iter().any(|s| s.moves_ground());
-        // The ground that a strip carries under the eye; beside the strip there is none.
+        // The ground that a strip carries under the eye; beside the strip there is no ground.
         let over = self.resolved.view.strip().map_or(Some(eye), |strip| strip.invert(eye).ok());
         let ground = over.and_then(|p| self.loaded.scene.terrain().and_then(|t| t.surface_at(p.truncate())));
         match ground {

@@ -1,4 +1,4 @@
-//! What is meant by the name of a target: a point, a layer, a part of one, atoms.
+//! Targets by name: a point, a layer, a part of one, atoms.
 
 use crate::BelvedereError;
 use belvedere_construct::rays::Target;
@@ -6,7 +6,7 @@ use belvedere_core::DVec3;
 use belvedere_scene::molecule::Selection;
 use belvedere_scene::{LayerKind, MeshLayer, Scene};
 
-/// The point that `x,y,z` means; `None` if it is something else.
+/// The point of `x,y,z`; `None` for other texts.
 pub(crate) fn point(see: &str) -> Option<DVec3> {
     let numbers: Vec<f64> = see.split(',').map(|n| n.trim().parse().ok()).collect::<Option<_>>()?;
     match numbers[..] {
@@ -15,7 +15,7 @@ pub(crate) fn point(see: &str) -> Option<DVec3> {
     }
 }
 
-/// What must be seen.
+/// The target with a name.
 pub(crate) fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError> {
     if let Some(point) = point(see) {
         return Ok(Target::points([point]));
@@ -58,7 +58,7 @@ pub(crate) fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError>
     )))
 }
 
-/// The parts of a mesh that have a name, of the first mesh that has some; or `LAYER/NUMBER`, a box of a layer, the first being 1.
+/// The parts of a mesh with a name, of the first mesh that has such parts; or `LAYER/NUMBER`, a box of a layer, counted from 1.
 pub(crate) fn part(scene: &Scene, name: &str) -> Option<Target> {
     if let Some((layer, number)) = name.rsplit_once('/')
         && let (Some(index), Ok(number)) = (scene.layers.iter().position(|l| l.id == layer), number.parse::<u32>())

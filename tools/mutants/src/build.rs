@@ -11,11 +11,11 @@ use std::process::{Command, Stdio};
 pub(crate) struct Packages {
     /// Root of the library of each package that has one.
     pub(crate) roots: BTreeMap<String, PathBuf>,
-    /// For each package the workspace packages that its tests contain, itself included.
+    /// For each package, the workspace packages that its tests are linked with, itself included.
     contains: BTreeMap<String, BTreeSet<String>>,
 }
 
-/// A program with tests.
+/// An executable that contains tests.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Suite {
     /// Its package.
@@ -24,18 +24,18 @@ pub(crate) struct Suite {
     pub(crate) kind: String,
     /// Name of the target.
     pub(crate) name: String,
-    /// The program.
+    /// Path of the executable.
     pub(crate) program: PathBuf,
-    /// Folder of its package, where it is run.
+    /// Folder of its package, in which it is run.
     pub(crate) folder: PathBuf,
-    /// Workspace packages that it contains.
+    /// Workspace packages that it is linked with.
     pub(crate) contains: BTreeSet<String>,
     /// Whether it belongs to an application.
     pub(crate) of_application: bool,
 }
 
 impl Suite {
-    /// Its package and name.
+    /// The names of its package and of its target.
     pub(crate) fn label(&self) -> String {
         format!("{} {}", self.package, if self.kind == "lib" { "unit" } else { &self.name })
     }
@@ -75,7 +75,7 @@ pub(crate) fn packages(tree: &Path) -> Result<Packages> {
     Ok(Packages { roots, contains })
 }
 
-/// Everything that the tests of `name` contain: its dependencies, those of its tests, and what these depend on in turn.
+/// Every package that the tests of `name` are linked with: its dependencies, those of its tests, and their dependencies in turn.
 fn closure(name: &str, direct: &BTreeMap<String, Vec<(String, bool)>>) -> BTreeSet<String> {
     let (mut all, mut open) = (BTreeSet::new(), vec![(name.to_owned(), true)]);
     while let Some((package, tests)) = open.pop() {
@@ -86,14 +86,14 @@ fn closure(name: &str, direct: &BTreeMap<String, Vec<(String, bool)>>) -> BTreeS
     all
 }
 
-/// Brings the crates that the workspace needs to this machine: everything later is done offline.
+/// Downloads the crates that the workspace needs. Everything later is done offline.
 pub(crate) fn fetch(workspace: &Path) -> Result<()> {
     let status = cargo(workspace, Path::new("target"), &["fetch", "--locked"]).status()?;
     ensure!(status.success(), "the crates that the workspace needs cannot be fetched");
     Ok(())
 }
 
-/// Compiles the libraries; the faults that do not compile, none if all do.
+/// Compiles the libraries and returns the faults that do not compile; none if all of them compile.
 pub(crate) fn refused(tree: &Path, target: &Path, packages: &[String], planted: &Planted) -> Result<BTreeSet<usize>> {
     let mut command = cargo(tree, target, &["check", "--offline", "--keep-going", "--message-format=json", "--lib"]);
     command.args(packages.iter().flat_map(|p| ["-p", p])).stderr(Stdio::null());
@@ -119,7 +119,7 @@ fn messages(stdout: &[u8]) -> impl Iterator<Item = Value> {
     stdout.split(|b| *b == b'\n').filter_map(|line| serde_json::from_slice(line).ok())
 }
 
-/// The faults that a message of the compiler points at: those under its primary spans, else under any.
+/// The faults that a compiler message refers to: those under its primary spans, otherwise those under any of its spans.
 fn faults_at(message: &Value, planted: &Planted) -> BTreeSet<usize> {
     let spans = message["spans"].as_array().map(Vec::as_slice).unwrap_or_default();
     let under = |primary: bool| {

@@ -1,4 +1,4 @@
-//! Where a fault can be planted: expressions of the library's own code, with the text that replaces them.
+//! Finds the expressions of the library code in which a fault can be planted, with the text that replaces each.
 
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
@@ -21,9 +21,9 @@ pub(crate) struct Fault {
     pub(crate) module: String,
     /// Bytes of the file that are replaced.
     pub(crate) bytes: Range<usize>,
-    /// What stands there.
+    /// The original text.
     pub(crate) original: String,
-    /// What stands there when the fault is switched on.
+    /// The text that takes its place when the fault is switched on.
     pub(crate) mutated: String,
     /// Whether it replaces a whole statement, not a value.
     pub(crate) statement: bool,
@@ -31,7 +31,7 @@ pub(crate) struct Fault {
 
 /// Every fault that can be planted in the crate whose root is the file `root`, in the order of the source.
 ///
-/// Modules are followed from the root, so that tests and files that nothing compiles are left out.
+/// Only modules reachable from the root are read, so tests and files that are not compiled are left out.
 pub(crate) fn faults(workspace: &Path, package: &str, root: &Path) -> Result<Vec<Fault>> {
     let mut found = Vec::new();
     let folder = root.parent().context("a source file lies in a folder")?;
@@ -117,7 +117,7 @@ impl<'a> Finder<'a> {
                 }
             }
             Lit::Float(x) => {
-                // Tolerances are chosen, not derived: a quarter more is no fault.
+                // Tolerances are chosen, not derived, so a tolerance a quarter larger is no fault.
                 if let Ok(value) = x.base10_parse::<f64>()
                     && (value == 0.0 || value > 1e-5)
                 {
@@ -144,7 +144,7 @@ impl<'a> Finder<'a> {
     }
 }
 
-/// Whether a condition binds names (`if let`): it cannot be moved into another expression.
+/// Whether a condition binds names (`if let`). Such a condition cannot be moved into another expression.
 fn binds(e: &Expr) -> bool {
     match e {
         Expr::Let(_) => true,
@@ -190,7 +190,7 @@ impl<'ast> Visit<'ast> for Finder<'_> {
         }
     }
 
-    // Constants, types, patterns and attributes hold no code that runs.
+    // Constants, types, patterns and attributes contain no code that runs.
     fn visit_impl_item_const(&mut self, _: &'ast syn::ImplItemConst) {}
     fn visit_trait_item_const(&mut self, _: &'ast syn::TraitItemConst) {}
     fn visit_expr_const(&mut self, _: &'ast syn::ExprConst) {}
@@ -220,7 +220,7 @@ impl<'ast> Visit<'ast> for Finder<'_> {
             Expr::If(i) if !binds(&i.cond) => self.add(&i.cond, format!("!({})", self.source(&i.cond)), false),
             Expr::Unary(u) if matches!(u.op, UnOp::Not(_)) => self.add(e, self.source(&u.expr).to_owned(), false),
             Expr::Range(r) => {
-                // `a..b` and `a..=b` are different types: the end moves by one instead.
+                // `a..b` and `a..=b` have different types, so the end is moved by one instead.
                 if let Some(end) = &r.end {
                     let sign = if matches!(r.limits, RangeLimits::HalfOpen(_)) { '+' } else { '-' };
                     self.add(end, format!("({}) {sign} 1", self.source(end)), false);

@@ -1,4 +1,4 @@
-//! Which test notices which fault: level by level, so that an unfinished run already says much.
+//! Finds out which test notices which fault. It works level by level, so that an unfinished run is already informative.
 
 use crate::build::Suite;
 use crate::find::Fault;
@@ -12,26 +12,26 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// What is written down, one line each.
+/// The entries of the log, one line each.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Line {
-    /// A test without a fault.
+    /// The result of a test without a fault.
     Baseline { suite: String, test: String, passed: bool, seconds: f64, reached: BTreeSet<usize> },
-    /// A fault after the tests of one level.
+    /// The result for a fault after the tests of one level.
     Tried { fault: usize, level: usize, tests: usize, noticed_by: Option<String> },
 }
 
-/// What became of the faults.
+/// The results for the faults.
 #[derive(Debug, Default)]
 pub(crate) struct Results {
-    /// By fault: the test that noticed it.
+    /// For each fault, the test that noticed it.
     pub(crate) noticed: BTreeMap<usize, String>,
-    /// By fault: the tests that ran and noticed nothing.
+    /// For each fault, the number of tests that ran.
     pub(crate) tests: BTreeMap<usize, usize>,
-    /// By fault: the level that it got through.
+    /// For each fault, the last level whose tests were run.
     pub(crate) levels: BTreeMap<usize, usize>,
-    /// Tests that fail without a fault: they were left out.
+    /// Tests that fail without a fault. They were left out.
     pub(crate) broken: Vec<String>,
     usual: BTreeMap<(String, String), Baseline>,
 }
@@ -56,7 +56,7 @@ impl Results {
     }
 }
 
-/// How far a suite is from a fault; `None` if it does not contain it.
+/// The level of a suite for a fault; `None` if the suite is not linked with the code of the fault.
 fn level(suite: &Suite, fault: &Fault) -> Option<usize> {
     match suite {
         _ if !suite.contains.contains(&fault.package) => None,
@@ -65,13 +65,13 @@ fn level(suite: &Suite, fault: &Fault) -> Option<usize> {
     }
 }
 
-/// Runs what was not run yet.
+/// Runs all tests that are not in the log yet.
 pub(crate) fn hunt(plan: &Plan, suites: &[Suite], home: &Path, args: &Args) -> Result<Results> {
     let path = home.join("results.jsonl");
     let scratch = home.join("tmp");
     let mut results = Results::default();
     for line in std::fs::read_to_string(&path).unwrap_or_default().lines() {
-        // The last line of an interrupted run may be cut.
+        // The last line of an interrupted run may be incomplete.
         if let Ok(line) = serde_json::from_str(line) {
             results.take(line);
         }
@@ -114,7 +114,8 @@ pub(crate) fn hunt(plan: &Plan, suites: &[Suite], home: &Path, args: &Args) -> R
     Ok(results)
 }
 
-/// Runs the tests of a level that come to a fault, those of its module first, then by time, until one fails.
+/// Runs the tests of a level that reach a fault until one fails: first those of the fault's module, then the others, each in order of
+/// running time.
 fn attempt(plan: &Plan, suites: &[Suite], results: &Results, id: usize, now: usize, scratch: &Path) -> Result<Line> {
     let fault = &plan.faults[id];
     let near: BTreeMap<String, &Suite> =
@@ -140,7 +141,7 @@ fn attempt(plan: &Plan, suites: &[Suite], results: &Results, id: usize, now: usi
     Ok(Line::Tried { fault: id, level: now, tests: tests.len(), noticed_by: None })
 }
 
-/// Does something with every item on `jobs` threads; the answers in any order.
+/// Calls a function for every item on `jobs` threads. The results come in any order.
 fn in_parallel<T: Sync, R: Send>(jobs: usize, items: &[T], job: impl Fn(&T) -> Result<R> + Sync) -> Result<Vec<R>> {
     let next = AtomicUsize::new(0);
     let work = || -> Result<Vec<R>> {

@@ -1,5 +1,5 @@
-//! Would a test notice? Plants many small faults in a copy of the workspace, each behind a switch, builds the tests once,
-//! and runs for every fault those tests that come to its code, narrowest first, until one fails.
+//! Would a test notice? Plants many small faults in a copy of the workspace, each behind a switch, and builds the tests once. Then runs
+//! for every fault the tests that reach its code, the most specific first, until one fails.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 mod build;
@@ -50,7 +50,7 @@ struct Args {
     list: bool,
 }
 
-/// What a run is about: kept, so that it can go on.
+/// The settings of a run, saved so that it can be continued.
 #[derive(Debug, Serialize, Deserialize)]
 struct Plan {
     seed: u64,
@@ -58,9 +58,9 @@ struct Plan {
     packages: Vec<String>,
     /// Commit of the source.
     commit: String,
-    /// All that were tried, in the order of the draw.
+    /// All faults that were tried, in the order in which they were drawn.
     faults: Vec<Fault>,
-    /// Numbers of those that compile, `count` of them at most.
+    /// Numbers of the faults that compile, at most `count`.
     chosen: Vec<usize>,
 }
 
@@ -109,7 +109,8 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// Faults in random order, at most one per line and none inside another, a few more than are wanted: some will not compile.
+/// Faults in random order, at most one per line and none inside another. There are a few more than requested, because some will not
+/// compile.
 fn draw(workspace: &Path, packages: &Packages, args: &Args) -> Result<Vec<Fault>> {
     let mut by_line: BTreeMap<(PathBuf, usize), Vec<Fault>> = BTreeMap::new();
     for package in &args.packages {
@@ -137,7 +138,7 @@ fn draw(workspace: &Path, packages: &Packages, args: &Args) -> Result<Vec<Fault>
     Ok(drawn)
 }
 
-/// Plants the faults, drops those that do not compile, and builds the tests.
+/// Plants the faults, removes those that do not compile, and builds the tests.
 fn prepare(workspace: &Path, home: &Path, packages: &Packages, faults: Vec<Fault>, args: &Args) -> Result<Plan> {
     build::fetch(workspace)?;
     let (tree, target) = (home.join("tree"), home.join("build"));

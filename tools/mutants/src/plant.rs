@@ -1,4 +1,5 @@
-//! The tree with every fault in it, each behind a switch that is read from the environment when the program starts.
+//! Writes a copy of the source that contains every fault, each behind a switch that the program reads from the environment when it
+//! starts.
 
 use crate::find::Fault;
 use anyhow::{Context, Result, ensure};
@@ -7,16 +8,17 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Environment variable with the number of the fault that is on; none is on without it.
+/// Environment variable with the number of the fault that is switched on. Without it no fault is.
 pub(crate) const SWITCH: &str = "BELVEDERE_MUTANT";
 
-/// Environment variable with a file to which the number of every fault is added that the program comes to.
+/// Environment variable with the path of a file. The program appends to it the number of every fault whose code it reaches.
 pub(crate) const REACHED: &str = "BELVEDERE_MUTANTS_REACHED";
 
-/// Where the faults lie in the files that were written, by their number.
+/// The place of each fault in the written files, by the number of the fault.
 pub(crate) type Planted = BTreeMap<usize, (PathBuf, Range<usize>)>;
 
-/// Copies the tracked files of `workspace` to `tree` with the faults of these numbers planted; unchanged files keep their time.
+/// Copies the tracked files of `workspace` to `tree` with the faults of these numbers planted. Unchanged files keep their
+/// modification time.
 pub(crate) fn plant(
     workspace: &Path,
     tree: &Path,
@@ -52,7 +54,7 @@ pub(crate) fn plant(
     Ok(planted)
 }
 
-/// Puts the faults of these numbers, sorted and apart from each other, into the text; where each lies then.
+/// Writes the faults of these numbers into the text and returns the place of each. The faults must be sorted and must not overlap.
 fn rewrite(text: &mut String, faults: &[Fault], here: &[usize]) -> Vec<(usize, Range<usize>)> {
     let (mut out, mut copied, mut ranges) = (String::new(), 0, Vec::new());
     for &id in here {
@@ -72,7 +74,7 @@ fn rewrite(text: &mut String, faults: &[Fault], here: &[usize]) -> Vec<(usize, R
     ranges
 }
 
-/// The module that every crate with faults gets.
+/// The module that is added to every crate with faults.
 fn switch(faults: usize) -> String {
     format!(
         r#"

@@ -1,4 +1,4 @@
-//! Running tests one by one, with a fault or without.
+//! Runs tests one by one, with or without a fault.
 
 use crate::build::Suite;
 use crate::plant::{REACHED, SWITCH};
@@ -9,10 +9,10 @@ use std::process::{Command, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
-/// Address space that a test may take, KiB: a fault may ask for all there is.
+/// Address space that a test may use, in KiB. A fault may otherwise allocate all memory.
 const MEMORY_KIB: u64 = 12 << 20;
 
-/// How often its usual time a test may take before it counts as failed, and what every test may take.
+/// The multiple of its usual running time after which a test counts as failed, and the time that every test is allowed.
 const PATIENCE: (f64, Duration) = (5.0, Duration::from_secs(5));
 
 /// How a run of a test ended.
@@ -23,12 +23,12 @@ pub(crate) enum Ending {
     Late,
 }
 
-/// One test alone, as it is without a fault.
+/// A test and how it behaves without a fault.
 #[derive(Debug, Clone)]
 pub(crate) struct Baseline {
     pub(crate) passed: bool,
     pub(crate) seconds: f64,
-    /// Faults whose code it comes to.
+    /// Faults whose code the test reaches.
     pub(crate) reached: BTreeSet<usize>,
 }
 
@@ -40,7 +40,7 @@ pub(crate) fn tests(suite: &Suite) -> Result<Vec<String>> {
     Ok(text.lines().filter_map(|l| l.strip_suffix(": test").map(str::to_owned)).collect())
 }
 
-/// Runs a test without a fault and notes what it comes to.
+/// Runs a test without a fault and records which faults it reaches.
 pub(crate) fn usual(suite: &Suite, test: &str, scratch: &Path) -> Result<Baseline> {
     let temporary = Temporary::new(scratch)?;
     let record = temporary.0.join("reached");
@@ -74,7 +74,7 @@ fn run(suite: &Suite, test: &str, temporary: &Temporary, variable: (&str, &str),
         .stdout(Stdio::null())
         .stderr(Stdio::null());
     if std::env::var_os("BELVEDERE_DATA").is_none() {
-        // Tests look for their data beside the workspace; the copy lies elsewhere.
+        // Tests look for their data next to the workspace, but the copy is in another place.
         command.env("BELVEDERE_DATA", concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
     }
     #[cfg(unix)]
@@ -86,7 +86,7 @@ fn run(suite: &Suite, test: &str, temporary: &Temporary, variable: (&str, &str),
             return Ok(if status.success() { Ending::Passed } else { Ending::Failed });
         }
         if started.elapsed() > limit {
-            // The whole group: a test of the command line waits for a program of its own.
+            // Kill the whole group: a test of the command line waits for a program that it started.
             Command::new("kill").args(["-KILL", "--", &format!("-{}", child.id())]).status()?;
             child.wait()?;
             return Ok(Ending::Late);
@@ -95,7 +95,7 @@ fn run(suite: &Suite, test: &str, temporary: &Temporary, variable: (&str, &str),
     }
 }
 
-/// A folder for the temporary files of one test, removed afterwards whatever becomes of the test.
+/// A folder for the temporary files of one test. It is removed afterwards, whatever the result of the test.
 struct Temporary(PathBuf);
 
 impl Temporary {

@@ -4,14 +4,14 @@ use crate::Plan;
 use crate::find::Fault;
 use crate::hunt::Results;
 
-/// A fault in one line: where, what stood there, what stands there.
+/// A fault as one line: its place, the original text and the replacement.
 pub(crate) fn line(fault: &Fault) -> String {
     let short = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|");
     let mutated = if fault.statement { "nothing".into() } else { format!("`{}`", short(&fault.mutated)) };
     format!("{}:{} | `{}` | {mutated}", fault.file.display(), fault.line, short(&fault.original))
 }
 
-/// Counts by package, then the faults that were missed, then those that were noticed and by which test.
+/// Counts by package, then the faults that were missed, then the faults that were noticed, each with the test that noticed it.
 pub(crate) fn report(plan: &Plan, results: &Results) -> String {
     let mut out = format!(
         "Seed {}, commit {}.\n\n| package | faults | noticed | missed |\n|---|---|---|---|\n",

@@ -8,7 +8,7 @@ use belvedere::core::map::curved_rays::{Model, Turn};
 use belvedere::core::{DVec2, DVec3, View};
 use belvedere::scene::Color;
 
-/// Places on a ray from which lines are drawn.
+/// Points of a ray that are joined with their viewpoints.
 const PLACES: u32 = 7;
 /// Rays drawn, extent of the ground that is shown, metres, and the crossing.
 const RAYS: u32 = 9;
@@ -18,7 +18,7 @@ const LINE: Color = Color::rgb(110, 60, 160);
 const RAY: Color = Color::rgb(230, 150, 0);
 const END: Color = Color::rgb(0, 96, 168);
 
-/// The turn to the left from above: on one of its rays some places, each joined with the viewpoint that sees it.
+/// The turn to the left from above: points of one of its rays, each joined with the intermediate viewpoint that sees it.
 pub(super) fn viewpoints(easel: &Easel<'_>) -> Result<Figure> {
     let town = town(easel, [640, 640])?;
     let session = bent(&town, Model::Modified, &[turn(CROSSING, -1.0)])?;
@@ -67,7 +67,7 @@ fn fan(view: &View) -> Vec<Vec<DVec3>> {
     (0..RAYS).filter_map(points).collect()
 }
 
-/// Where the ray of a pixel passes the plane of the pencil at `s`, see [`Turn::intermediate_viewpoint`].
+/// The point at which the ray of a pixel passes the plane of the pencil at `s` (bisection), see [`Turn::intermediate_viewpoint`].
 fn place_at(view: &View, turn: &Turn, pixel: DVec2, s: f64) -> Option<DVec3> {
     let ray = view.ray(pixel);
     let [mut low, mut high] = ray.pieces().ok()?.get(1)?.depth;

@@ -10,7 +10,7 @@ use belvedere::scene::{Color, Frame, LayerKind, Progress};
 use belvedere::{CameraPicture, Session};
 
 const SCENE: &str = include_str!("../../../../scenes/canyon_preview.toml");
-/// What the scene says about the preview, metres.
+/// Lines of the scene file that give length and position of the preview, metres.
 const LENGTH: &str = "preview_m = 4000.0";
 const POSITION: &str = "position_m = 4500.0";
 const START: f64 = 4500.0;
@@ -21,9 +21,10 @@ fn ahead(easel: &Easel<'_>, length: f64, image: [u32; 2]) -> Result<Session> {
     easel.open(&SCENE.replace(LENGTH, &format!("preview_m = {length:.1}")), image)
 }
 
-/// The part of the way to the first turn at which each picture of [`collapse`] is taken.
+/// Shares of the distance to the first turn at which the pictures of [`collapse`] are taken.
 const WAYS: [f64; 4] = [0.0, 0.5, 0.8, 0.95];
-/// Length of its preview; its lens, so that none has to be searched for; turns as far apart in plan are another turn. Metres.
+/// For `collapse`: length of the preview, metres; its lens, given so that none is searched for; distance in plan, metres, from which on
+/// two bend points count as different turns.
 const SHORT: f64 = 1500.0;
 const LENS: &str = "lens = { behind_m = 1500.0, width_m = 375.0, rise_m = 150.0 }\n";
 const SAME: f64 = 60.0;
@@ -34,7 +35,7 @@ const RAY: Color = Color::rgb(230, 150, 0);
 const BEFORE: Color = Color::rgb(0, 96, 168);
 const AFTER: Color = Color::rgb(200, 60, 130);
 
-/// What is said of a preview, and metres of the river that it shows.
+/// Caption of a preview, and the visible length of the river, metres.
 fn note(session: &Session) -> Result<(String, f64)> {
     let turns = bends(session)?.len();
     let options = MeasureOptions::default();
@@ -43,19 +44,19 @@ fn note(session: &Session) -> Result<(String, f64)> {
     Ok((format!("{turns} turns; {seen:.0} m of the river in sight"), seen))
 }
 
-/// The turns of a preview but the one that widens its rays, which bends none aside.
+/// The turns of a preview that bend rays aside: all but the one that widens them.
 fn bends(session: &Session) -> Result<Vec<TurnSpec>> {
     let all = specs(session)?;
     Ok(all.into_iter().filter(|turn| matches!(turn.pencil, Pencil::Line { .. })).collect())
 }
 
-/// Share of the lower half of a picture in which there is nothing.
+/// Share of the pixels of a picture's lower half that show no layer.
 fn sky(frame: &Frame) -> f64 {
     let lower = &frame.id[frame.id.len() / 2..];
     lower.iter().filter(|id| **id == 0).count() as f64 / lower.len().max(1) as f64
 }
 
-/// Further and further round the bends.
+/// The preview at growing lengths, round one bend after the other.
 pub(super) fn preview(easel: &Easel<'_>) -> Result<Figure> {
     let (mut panels, mut seen) = (Vec::new(), Vec::new());
     for length in [600.0, 1500.0, 2500.0, 4000.0] {
@@ -69,7 +70,7 @@ pub(super) fn preview(easel: &Easel<'_>) -> Result<Figure> {
     Ok(Figure { panels, columns: 2, seen, facts, ..Figure::default() })
 }
 
-/// Picture and rays of one camera.
+/// The preview as a picture, and the rays of its camera.
 pub(super) fn turns(easel: &Easel<'_>) -> Result<Figure> {
     let session = ahead(easel, 1500.0, [1000, 750])?;
     let panels = vec![
@@ -85,7 +86,7 @@ pub(super) fn turns(easel: &Easel<'_>) -> Result<Figure> {
     Ok(Figure { panels, columns: 2, facts, ..Figure::default() })
 }
 
-/// From position to position towards a turn of the river: its planes draw together until it is passed.
+/// Positions towards a turn of the river: the planes of the turn draw together until it is passed.
 pub(super) fn collapse(easel: &Easel<'_>) -> Result<Figure> {
     let at = |position: f64| -> Result<Session> {
         let text = SCENE.replace(LENGTH, &format!("preview_m = {SHORT:.1}\n{LENS}"));
@@ -129,7 +130,7 @@ fn marks(session: &Session, turn: Option<usize>) -> Vec<(&'static str, Vec<Vec<D
     vec![("rays", rays, RAY, 1.4), ("t0", t0, BEFORE, 4.0), ("t2", t2, AFTER, 4.0)]
 }
 
-/// Arc length of the point of the river nearest to a place in plan, metres.
+/// Arc length, metres, of the river's vertex nearest in plan to a point.
 fn along_river(session: &Session, place: DVec3) -> Result<f64> {
     let line = session.scene().layers.iter().find_map(|l| match &l.kind {
         LayerKind::Line(l) => l.features.first(),

@@ -64,7 +64,7 @@ pub(super) fn across(easel: &Easel<'_>) -> Result<Figure> {
     Ok(Figure { panels, columns: 3, seen, facts, ..Figure::default() })
 }
 
-/// Largest distance of the image of an edge of the car from the straight line between its ends, as a share of that.
+/// Largest distance of the image of an edge of the car from the chord between its ends, as a share of the chord's length.
 fn bent_edges(session: &Session) -> f64 {
     let layers = session.scene().layers.iter().filter(|l| l.id == CAR);
     let boxes = layers.filter_map(|l| match &l.kind {

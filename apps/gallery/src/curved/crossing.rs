@@ -1,4 +1,4 @@
-//! Something long that lies across a transition.
+//! A long mast that lies across a transition.
 
 use crate::easel::{Easel, bent, straight, with_boxes};
 use crate::figure_set::Figure;

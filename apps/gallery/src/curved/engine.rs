@@ -16,7 +16,7 @@ fn scene(easel: &Easel<'_>) -> Result<(Session, TurnSpec)> {
     Ok((session, turn))
 }
 
-/// The turn with its second viewpoint a part of the way from the eye.
+/// The turn with its second viewpoint at a share of the line from the eye.
 fn part(session: &Session, turn: &TurnSpec, share: f64) -> TurnSpec {
     TurnSpec { viewpoint: session.view().pinhole().eye.lerp(turn.viewpoint, share), ..*turn }
 }

@@ -11,10 +11,10 @@ use belvedere::cpu::canvas::Canvas;
 use belvedere::scene::{Color, LayerKind};
 
 const SCENE: &str = include_str!("../../../../scenes/dna.toml");
-/// Layer of what must be seen.
+/// Layer of the required feature.
 const BEHIND: &str = "behind";
 const GOLD: Color = Color::rgb(214, 138, 0);
-/// Room between the box and the atoms, angstrom, and points along an edge.
+/// Margin between the box and the atoms, angstrom, and steps along an edge.
 const MARGIN: f64 = 1.0;
 const POINTS: u32 = 24;
 

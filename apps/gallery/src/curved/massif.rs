@@ -10,7 +10,7 @@ use belvedere::scene::Progress;
 
 const SCENE: &str = include_str!("../../../../scenes/massif_curved_rays.toml");
 
-/// The second viewpoint on its way from the eye.
+/// The second viewpoint at several shares of the line from the eye.
 pub(super) fn viewpoints(easel: &Easel<'_>) -> Result<Figure> {
     let session = easel.open(SCENE, [560, 315])?;
     let [turn] = turns(&session)?[..] else { return None.context("the scene has not one turn") };

@@ -8,9 +8,9 @@ use belvedere::core::DVec2;
 use belvedere::{CameraPicture, Session};
 
 pub(crate) const SCENE: &str = include_str!("../../../../scenes/dna_merge.toml");
-/// Layer of what must be seen.
+/// Layer of the required feature.
 const BEHIND: &str = "behind";
-/// Depths on either side of the seam at which its rays are compared: between the ways, and behind the merge, scene units.
+/// Depths at which the rays on either side of the seam are compared, scene units: between fork and merge, and behind the merge.
 const AMID: f64 = 110.0;
 const PAST: f64 = 215.0;
 

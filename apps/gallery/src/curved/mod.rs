@@ -137,7 +137,7 @@ const FIGURES: [Entry; 17] = [
 /// Draws the figures of the curved ray camera into `folder`: sheets, a page and a record. Returns the files.
 ///
 /// # Errors
-/// A file that exists if `overwrite` is false; those of drawing a scene.
+/// A file that exists if `overwrite` is false; the errors of drawing a scene.
 pub fn figures(folder: &Path, options: &OpenOptions, overwrite: bool) -> Result<Vec<PathBuf>> {
     let set = FigureSet {
         name: "curved",

@@ -1,4 +1,4 @@
-//! Modified rays beside, and over, original ones.
+//! Modified rays beside, and drawn over, original rays.
 
 use super::street::TILE;
 use super::town::{CROSSING, town, turn};
@@ -11,7 +11,7 @@ use belvedere::core::map::curved_rays::Model;
 use belvedere::core::{DVec2, DVec3};
 use belvedere::scene::{Color, Frame};
 
-/// Differences are drawn this many times as strong.
+/// Factor by which differences of colours are amplified.
 const STRONGER: u8 = 20;
 /// Rays drawn of each model, and points of each in its transition.
 const RAYS: u32 = 9;
@@ -93,12 +93,12 @@ fn to_polyline(p: DVec3, line: &[DVec3]) -> f64 {
     line.windows(2).map(off).fold(f64::INFINITY, f64::min)
 }
 
-/// White where both are the same.
+/// Amplified difference of two colours on white: white where they are the same.
 fn difference(a: [u8; 3], b: [u8; 3]) -> [u8; 3] {
     std::array::from_fn(|k| 255 - a[k].abs_diff(b[k]).saturating_mul(STRONGER))
 }
 
-/// Largest and mean distance between the images of a place that is in both pictures, pixels.
+/// Largest and mean distance, pixels, between the images of one point in two pictures.
 fn apart(a: &Session, b: &Session) -> [f64; 2] {
     let [w, h] = a.view().pinhole().image.map(f64::from);
     let (mut most, mut sum, mut count) = (0.0f64, 0.0, 0.0);

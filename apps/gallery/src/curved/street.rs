@@ -1,4 +1,4 @@
-//! A street corner: what waits in the side streets.
+//! A street corner: vehicles in the side streets come into sight.
 
 use super::town::{BUS, CAR, CROSSING, LORRY, NEXT_CROSSING, TRAM, ahead_and_right, both_sides, town, town_for, turn};
 use crate::easel::{Easel, bent, pixels_of, straight};
@@ -16,7 +16,7 @@ pub(super) const TURNS: [(&str, f64, f64, &str); 3] = [
     ("Forward, then to the right", NEXT_CROSSING, 1.0, LORRY),
 ];
 
-/// A picture, with the pixels of the vehicles that it should show under it.
+/// A picture whose caption counts the pixels of the vehicles that it should show; also returns their sum.
 fn picture(easel: &Easel<'_>, session: &Session, title: &str, wanted: &[&str]) -> Result<(Panel, f64)> {
     let frame = easel.draw(session)?;
     let counts: Vec<usize> = wanted.iter().map(|id| pixels_of(&frame, session, id)).collect();

@@ -10,14 +10,14 @@ use belvedere::core::{DVec2, DVec3};
 use belvedere::cpu::Tracer;
 use belvedere::{CameraPicture, Session};
 
-/// Panels; rays across the picture, and the rows of it in which they start, shares of its height: from the horizon down.
+/// Size of the panels, pixels; number of rays across the picture; rows in which they start, shares of its height from the horizon down.
 const TILE: [u32; 2] = [560, 560];
 const ACROSS: u32 = 24;
 const ROWS: [f64; 3] = [0.5, 0.55, 0.6];
-/// Rays that meet nothing are followed so far, metres.
+/// Length of rays that hit nothing, metres.
 const FAR: f64 = 300.0;
 
-/// Of the rays that start within a part of the picture, the share that pass a place for which `there` holds.
+/// Share of the rays that start within a part of the picture and pass a point for which `there` holds.
 ///
 /// * `part`: shares of the picture's width.
 fn reaching(session: &Session, part: [f64; 2], there: &dyn Fn(DVec3) -> bool) -> f64 {

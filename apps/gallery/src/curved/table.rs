@@ -17,19 +17,19 @@ const CANYON: &str = include_str!("../../../../scenes/canyon_preview.toml");
 const CITY: &str = include_str!("../../../../scenes/town.toml");
 const ENGINE: &str = include_str!("../../../../scenes/engine_curved_rays.toml");
 
-/// Frames that are measured.
+/// Size of the measured frames, pixels.
 const IMAGE: [u32; 2] = [1280, 720];
-/// Panels are so many times smaller.
+/// Factor by which panels are smaller than the frames.
 const SMALLER: usize = 3;
-/// Rounds of frames, after one that makes what the others share; the fastest frame of each camera counts.
+/// Rounds of frames, after one that fills the caches; the fastest frame of each camera counts.
 const ROUNDS: usize = 1;
 /// Houses along a side of the blocks.
 const SIDE: u32 = 60;
-/// Planes of the turn, shares of the depth of the scene's middle; how far aside the second viewpoint is, a share of that.
+/// Depths of the turn's planes, shares of the depth of the scene's middle; sideways distance of the second viewpoint, a share of it too.
 const PLANES: [f64; 3] = [0.8, 1.0, 1.2];
 const ASIDE: f64 = 0.25;
 
-/// A scene of the table; what the paper says of its own: load, and frames in a second straight, with a kink, curved.
+/// A scene of the table, with the figures of the paper for its own scene: load, and frames per second straight, with a kink, curved.
 struct Load {
     name: &'static str,
     scene: &'static str,
@@ -69,7 +69,7 @@ pub(super) fn times(easel: &Easel<'_>) -> Result<Figure> {
 }
 
 impl Load {
-    /// The scene, without what would bend its view.
+    /// The scene without stages and constructor, which would bend its view.
     fn open(&self, easel: &Easel<'_>) -> Result<Session> {
         let plain = |text: &'static str| {
             ["[[stage]]", "[constructor]"].iter().fold(text, |t, end| t.split(end).next().unwrap_or(t))
@@ -101,7 +101,7 @@ fn house(column: u32, row: u32) -> BoxShape {
 /// Straight, with a kink, curved.
 fn cameras(session: &Session) -> Result<[Session; 3]> {
     let pinhole = session.view().pinhole();
-    // Without the ground, which may reach far beyond what the scene is about.
+    // Without the ground, which may reach far beyond the models.
     let mut things = session.scene().layers.iter().filter(|l| l.id != "ground").map(belvedere::scene::Layer::bounds);
     let bounds = things.rfind(|b| !b.is_empty()).unwrap_or_else(|| session.scene().bounds());
     let middle = (bounds.center() - pinhole.eye).dot(pinhole.forward);
@@ -112,7 +112,7 @@ fn cameras(session: &Session) -> Result<[Session; 3]> {
     Ok([straight(session), bent(session, Model::C0, &turn)?, bent(session, Model::Modified, &turn)?])
 }
 
-/// Milliseconds of the fastest frame of each, frames in turn, without cast shadows; and the last curved frame.
+/// Wall time of the fastest frame of each camera, milliseconds, without cast shadows; and the last curved frame.
 fn measured(sessions: &[Session; 3]) -> Result<([f64; 3], Frame)> {
     let (renderer, progress, light) = (CpuRenderer::default(), Progress::silent(), Light::default());
     let options = RenderOptions { samples: 1, lod_px: 0.0, ..RenderOptions::default() };
@@ -132,7 +132,7 @@ fn measured(sessions: &[Session; 3]) -> Result<([f64; 3], Frame)> {
     Ok((best, frame))
 }
 
-/// How much is drawn, in words.
+/// The number of triangles or samples in words.
 fn size(frame: &Frame) -> String {
     match (frame.stats.triangles_in, frame.stats.samples) {
         (0, samples) => format!("{:.1} million samples", 1e-6 * samples as f64),

@@ -17,12 +17,12 @@ pub(super) const NEXT_CROSSING: f64 = -55.0;
 pub(super) const HALF_STREET: f64 = 18.0;
 const EYE: [f64; 2] = [-234.0, 22.0];
 const LEVEL: f64 = 20.5;
-/// South of the crossing's middle, metres: as from there the side streets stand in the middle of each half of the picture.
+/// Shift of the second viewpoints to the south, metres: the side streets then stand in the middle of each half of the picture.
 const ASIDE: f64 = 6.0;
 /// Height of the ground, metres.
 const GROUND: f64 = 12.0;
 
-/// What the scene says about its lens; lenses for turns at the first crossing and at the next one, degrees.
+/// Line of the scene file that gives the lens; lenses for turns at the first crossing and at the next one, degrees.
 const FOV: &str = "fov_y_deg = 24.0";
 const NEAR_FOV: f64 = 24.0;
 const FAR_FOV: f64 = 9.0;
@@ -111,12 +111,12 @@ pub(super) fn ahead_and_right(town: &Session) -> Result<Session> {
     parted(town, Model::Modified, [Vec::new(), half_turn(1.0)])
 }
 
-/// Whether a place lies in the side street of a crossing, past the walls of the avenue.
+/// Whether a point lies in the side street of a crossing, past the walls of the avenue.
 pub(super) fn in_side_street(place: DVec3, crossing: f64, side: f64) -> bool {
     side * (place.x - AVENUE) > HALF_STREET && (place.y - crossing).abs() < HALF_STREET
 }
 
-/// Whether a place lies on the avenue, past the crossing.
+/// Whether a point lies on the avenue, past the crossing.
 pub(super) fn ahead_on_avenue(place: DVec3) -> bool {
     (place.x - AVENUE).abs() < HALF_STREET && place.y > CROSSING + HALF_STREET
 }

@@ -1,4 +1,4 @@
-//! How far a table of samples leads astray, against the number of samples.
+//! Error of a table of samples for arc length against the number of its samples.
 
 use crate::chart::{self, Chart, Curve, SeriesLabelPosition, Style};
 use crate::easel::Easel;
@@ -13,7 +13,7 @@ use belvedere::scene::Frame;
 
 /// Samples of the tables; the paper's is the last but one.
 const SAMPLES: [usize; 7] = [50, 100, 200, 500, 1000, 2000, 5000];
-/// Places at which a table is asked.
+/// Arc lengths at which a table is evaluated.
 const PLACES: usize = 4000;
 const PRESETS: [(&str, [u8; 3]); 4] = [
     ("progressive", [30, 90, 170]),
@@ -23,16 +23,16 @@ const PRESETS: [(&str, [u8; 3]); 4] = [
 ];
 const SIZE: [u32; 2] = [720, 430];
 
-/// What a table gets wrong, both as shares of the curve unit.
+/// Errors of a table.
 #[derive(Debug, Clone, Copy)]
 struct Error {
-    /// Largest distance between the point that it finds and the one at that arc length.
+    /// Largest distance between the table's point and the curve's at the same arc length, curve units.
     place: f64,
-    /// Largest deviation of lengths along the curve from lengths along the ground.
+    /// Largest relative deviation of a step along the table from the same step along the curve.
     stretch: f64,
 }
 
-/// Points at equal steps of the curve's parameter, found by the lengths of the chords between them, linear between two.
+/// Points at equal steps of the curve's parameter with the summed lengths of their chords, interpolated linearly.
 struct Table {
     lengths: Vec<f64>,
     points: Vec<DVec2>,
@@ -60,7 +60,7 @@ impl Table {
         for k in 0..PLACES {
             let [a, b] = [k, k + 1].map(|k| k as f64 * step);
             place = place.max(self.at(a).distance(curve.at(a).0));
-            // Against the same step along the exact curve, whose chord is a little shorter than the step, too.
+            // Compared with the chord of the exact curve, since both are a little shorter than the arc.
             let exact = curve.at(a).0.distance(curve.at(b).0);
             stretch = stretch.max((self.at(a).distance(self.at(b)) / exact - 1.0).abs());
         }

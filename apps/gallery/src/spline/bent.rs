@@ -19,7 +19,7 @@ pub(super) fn document(name: &str, operations: &[&str]) -> Result<PresetDocument
     Ok(preset::set(&PresetDocument::builtin(name)?, &operations)?.0)
 }
 
-/// The operations that divide a preset of one section into three, even ones.
+/// Operations that divide a preset of one section into three equal ones.
 pub(super) const IN_THREE: [&str; 7] = [
     "1.split=1",
     "1.split=2",

@@ -1,4 +1,4 @@
-//! Relief that passes into a map.
+//! Relief with a continuous transition to a map.
 
 use super::bent::{TILE, curve};
 use crate::easel::{Easel, straight};

@@ -1,4 +1,4 @@
-//! Doubled control points, hard and spread, and houses that keep their shape where they fold.
+//! Doubled control points, hard and spread, and houses that keep their shape where the ground folds.
 
 use super::bent::{IN_THREE, TILE, curve, document, panel};
 use super::town::seen;
@@ -29,7 +29,7 @@ pub(super) fn hard_and_soft(easel: &Easel<'_>) -> Result<Figure> {
     Ok(Figure { panels, columns: 2, ..Figure::default() })
 }
 
-/// The town from near by, its houses rigid or not.
+/// A close view of the town, with its houses rigid or not.
 fn near(easel: &Easel<'_>, rigid: bool, title: &str, note: &str) -> Result<Panel> {
     let mut document = parse(Path::new("figure.toml"), NEAR)?.document;
     for layer in &mut document.layer {

@@ -1,4 +1,4 @@
-//! What a frame takes at the three combinations of levels of abstraction that the paper measures.
+//! Time per frame at the three combinations of levels of abstraction that the paper measures.
 
 use super::bent::TILE;
 use crate::easel::Easel;
@@ -8,11 +8,11 @@ use belvedere::Session;
 use belvedere::cpu::CpuRenderer;
 use belvedere::scene::{Instant, Progress, RenderJob, RenderOptions, Renderer};
 
-/// Frames of each combination that are measured, after a first one that prepares them.
+/// Measured frames of each combination, after a first one that fills the caches.
 const FRAMES: usize = 5;
 const IMAGE: [u32; 2] = [1600, 1200];
 
-/// A row of the paper's table (GeForce GTX 285), and the generated town that has about as many faces.
+/// A row of the paper's table (frames per second on a GeForce GTX 285), and the size of a generated town with about as many faces.
 struct Combination {
     levels: &'static [u32],
     faces: usize,

@@ -94,7 +94,7 @@ const FIGURES: [Entry; 10] = [
 /// Draws the figures of multi-perspective views into `folder`: sheets, a page and a record. Returns the files.
 ///
 /// # Errors
-/// A file that exists if `overwrite` is false; those of drawing a scene.
+/// A file that exists if `overwrite` is false; the errors of drawing a scene.
 pub fn figures(folder: &Path, options: &OpenOptions, overwrite: bool) -> Result<Vec<PathBuf>> {
     let set = FigureSet {
         name: "spline",

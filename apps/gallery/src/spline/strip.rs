@@ -9,7 +9,7 @@ use belvedere::core::{DVec2, DVec3, Pinhole, Projection, Stage, View};
 
 const SCENE: &str = include_str!("../../../../scenes/massif_strip.toml");
 
-/// The picture stage by stage, and the plan on the way from the winding road to the straight one.
+/// The picture stage by stage, and the plan of the strip at three shares of its unrolling.
 pub(super) fn unrolled(easel: &Easel<'_>) -> Result<Figure> {
     let session = easel.open(SCENE, TILE)?;
     let strip = session.view().stages().iter().find_map(|s| match s {
@@ -31,7 +31,7 @@ pub(super) fn unrolled(easel: &Easel<'_>) -> Result<Figure> {
     Ok(Figure { panels, columns: 3, ..Figure::default() })
 }
 
-/// The strip at a share of the way, from straight above: all of what the three of them need.
+/// The strip unrolled by a share, from straight above; the same picture extent for all three shares.
 fn plan(strip: &Strip, share: f64) -> Result<View> {
     let at = |share: f64| Strip::new(strip.route().clone(), strip.half_width(), share, strip.anchor());
     let shapes = [0.0, 0.5, 1.0].map(at).into_iter().collect::<Result<Vec<_>, _>>()?;

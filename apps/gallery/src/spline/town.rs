@@ -9,7 +9,7 @@ use belvedere::core::{DVec3, Pinhole, View};
 use belvedere::scene_file::{LayerDoc, parse};
 use std::path::Path;
 
-/// Distance within which houses take light from each other, metres: that of our specification, section 7.
+/// Reach of ambient occlusion, metres: that of our specification, section 7.
 const REACH_M: f64 = 40.0;
 const SCENE: &str = include_str!("../../../../scenes/town_sections.toml");
 

@@ -1,4 +1,4 @@
-//! A mountain area of the figures: a scene, its camera, and everything of the solver that is made once.
+//! A mountain area of the figures: a scene, its camera, and the solver's data that are prepared once.
 
 use anyhow::{Context, Result};
 use belvedere::core::grid::Grid;
@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Size of a picture of a sheet, pixels.
 pub(crate) const TILE: [u32; 2] = [640, 360];
 
-/// An area and what is known of it before anything is solved.
+/// An area with everything that is computed before solving.
 pub(crate) struct Area {
     /// Start of the names of its files.
     pub(crate) name: String,
@@ -40,7 +40,7 @@ impl Area {
             Some(text) => Session::from_text(path, text, &options)?,
             None => Session::open(path, &options)?,
         };
-        // As stated: the resolved document holds defaults of its own mode, and other modes have others.
+        // Unresolved settings: the resolved document holds defaults of its own mode, and other modes have others.
         let settings = session.terrain_settings()?;
         let terrain = session.scene().terrain().context("the scene has no terrain; add a layer of kind \"terrain\"")?;
         let field = Field::new(terrain, |_| 0.0)?;

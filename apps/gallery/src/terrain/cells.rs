@@ -1,4 +1,4 @@
-//! A drape of the cells: mountains in colours that neighbours do not share.
+//! The cells as a drape: mountains in colours that differ from those of their neighbours.
 
 use super::area::Area;
 use belvedere::disocclusion::internals::NO_CELL;
@@ -7,7 +7,7 @@ use belvedere::scene::{Drape, LayerKind, Palette, Scene};
 /// Opacity of the colours over the relief.
 const ALPHA: u8 = 215;
 
-/// The scene with every cell in a colour of its own.
+/// The scene with every cell in a separate colour.
 pub(crate) fn painted(area: &Area) -> Scene {
     let field = &area.field;
     let colors = colors(area);
@@ -17,7 +17,7 @@ pub(crate) fn painted(area: &Area) -> Scene {
         pixels: area.cells.labels().iter().map(pixel).collect(),
         width: field.cols(),
         height: field.rows(),
-        // Centres of pixels lie on nodes.
+        // The pixel centres are at nodes.
         pixel_from_scene: [1.0 / d.x, 0.0, 0.5 - nw.x / d.x, 0.0, -1.0 / d.y, 0.5 + nw.y / d.y],
     };
     let mut scene = area.session.scene().clone();
@@ -30,7 +30,7 @@ pub(crate) fn painted(area: &Area) -> Scene {
     scene
 }
 
-/// The first of a few muted colours that no neighbour has: cells are few-coloured like countries on a map.
+/// The first of a few muted colours that no neighbour has. As for countries on a map, a few colours are sufficient.
 fn colors(area: &Area) -> Vec<[u8; 4]> {
     const TABLE: [[u8; 3]; 8] = [
         [166, 206, 227],
@@ -45,7 +45,7 @@ fn colors(area: &Area) -> Vec<[u8; 4]> {
     let mut chosen: Vec<Option<usize>> = vec![None; area.cells.len()];
     for cell in 0..area.cells.len() {
         let taken: Vec<usize> = area.cells.neighbours(cell).0.iter().filter_map(|&r| chosen[r as usize]).collect();
-        // Starting at another colour for each cell keeps any one from covering most of the map.
+        // The search starts at another colour for each cell, so that no colour covers most of the map.
         let mut free = (0..TABLE.len()).map(|k| (k + cell) % TABLE.len()).filter(|k| !taken.contains(k));
         chosen[cell] = Some(free.next().unwrap_or(cell % TABLE.len()));
     }

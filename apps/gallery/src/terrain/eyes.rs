@@ -6,10 +6,10 @@ use belvedere::core::{DVec3, Pinhole, View};
 use belvedere::disocclusion::SolverMode;
 use serde::Serialize;
 
-/// A walker, a tower, a drone, and the heights of the paper's kind of view, metres over the ground.
+/// Heights of a walker, a tower, a drone, and of the paper's kind of view, metres over the ground.
 const HEIGHTS: [f64; 8] = [2.0, 30.0, 100.0, 200.0, 400.0, 700.0, 1000.0, 1500.0];
 
-/// What the modes come to from one eye.
+/// Results of both modes from one eye.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(crate) struct EyeRow {
     pub(crate) above_ground_m: f64,
@@ -19,7 +19,7 @@ pub(crate) struct EyeRow {
     pub(crate) qp: EyeResult,
 }
 
-/// One mode's figures.
+/// Results of one mode.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub(crate) struct EyeResult {
     pub(crate) visible: f64,

@@ -40,8 +40,9 @@ fn usual_areas() -> Vec<(PathBuf, Option<&'static str>)> {
     builtin.into_iter().chain(REAL.map(|(name, text)| (scene(&data, name), Some(text)))).collect()
 }
 
-/// Draws the figures of terrain disocclusion into `folder`, which is made if need be, for the areas of `scenes` (two built-in ones
-/// if there are none, and two real ranges where `BELVEDERE_DATA` names their files): pictures, `figures.json` with every report, and `index.html`. Returns the files.
+/// Draws the figures of terrain disocclusion into `folder`, which is created if necessary, for the areas of `scenes` (two built-in
+/// ones if there are none, and two real ranges where `BELVEDERE_DATA` names their files): pictures, `figures.json` with every report,
+/// and `index.html`. Returns the files.
 ///
 /// # Errors
 /// A file that exists if `overwrite` is false; those of opening, solving and drawing a scene.
@@ -72,7 +73,7 @@ pub fn figures(folder: &Path, scenes: &[PathBuf], options: &OpenOptions, overwri
     Ok(written)
 }
 
-/// What pictures of an area show.
+/// Endings of the picture names of an area.
 const PICTURES: [&str; 6] = ["pair", "steps", "profile", "w", "eta", "times"];
 
 fn figures_of(area: &Area, folder: &Path, overwrite: bool, written: &mut Vec<PathBuf>) -> Result<AreaRecord> {
@@ -120,5 +121,5 @@ fn figures_of(area: &Area, folder: &Path, overwrite: bool, written: &mut Vec<Pat
     })
 }
 
-/// Goes with every picture.
+/// Comment in the metadata of every picture.
 const NOTE: &str = "displaced ground unless a panel says perspective; not to scale, not for navigation";

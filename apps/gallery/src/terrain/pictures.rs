@@ -1,4 +1,4 @@
-//! Perspective beside occlusion-free, and the way from one to the other: cells, naive ground, final ground.
+//! Perspective beside occlusion-free, and the steps between them: cells, naive ground, final ground.
 
 use super::area::{Area, TILE};
 use crate::sheet::{Panel, Pixels, sheet};

@@ -20,7 +20,7 @@ pub(crate) struct Profile<'a> {
 }
 
 impl<'a> Profile<'a> {
-    /// One for every reference point in view, the one over whose line of sight the ground rises most first.
+    /// Profiles to all reference points in view, ordered by how far the ground rises over their lines of sight, the highest first.
     pub(crate) fn all(area: &'a Area) -> Vec<Self> {
         let (field, eye) = (&area.field, area.eye());
         let to = field.grid_from_scene(eye.truncate());
@@ -50,7 +50,7 @@ impl<'a> Profile<'a> {
         (0..=SAMPLES).filter_map(sample).collect()
     }
 
-    /// Eye and reference point, which moves with the ground.
+    /// The line of sight from the eye to the reference point, which moves with the ground.
     pub(crate) fn line_of_sight(&self, stage: Option<&TerrainDisocclusion>) -> Vec<(f64, f64)> {
         let moved = stage.map_or(0.0, |s| s.delta_at(self.foot.extend(0.0)));
         vec![(0.0, self.area.eye().z), (self.km(), self.point.ground + self.point.lift + moved)]

@@ -10,7 +10,7 @@ use serde::Serialize;
 const W: [f64; 5] = [0.1, 0.6, 1.0, 10.0, 100.0];
 const ETA: [f64; 5] = [0.0, 0.1, 1.0, 5.0, 10.0];
 
-/// One value of a sweep and what it leads to.
+/// One value of a sweep and the report of its solution.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct Trial {
     pub(crate) value: f64,

@@ -1,4 +1,4 @@
-//! What the steps cost on a grid, with cells and points as many as the paper had.
+//! Wall times of the solver's steps on a grid with as many cells and points as the paper had.
 
 use super::area::Area;
 use crate::chart::{self, Chart, Curve, SeriesLabelPosition, Style};
@@ -23,7 +23,7 @@ pub(crate) const PAPER_NODES: usize = 1025;
 pub(crate) const PAPER_CELLS: (usize, f64) = (651, 1570.0);
 /// The paper's unknowns, and milliseconds of a solution per frame.
 pub(crate) const PAPER_SOLVE: (usize, f64) = (16_641, 30.0);
-/// Times are medians of so many runs.
+/// Number of runs; times are their medians.
 const RUNS: usize = 5;
 
 /// Times of one area, wall milliseconds.
@@ -31,7 +31,7 @@ const RUNS: usize = 5;
 pub(crate) struct Timing {
     /// Nodes of the terrain's own grid.
     pub(crate) own_nodes: [usize; 2],
-    /// Nodes that everything is measured on.
+    /// Nodes of the grid on which everything is measured.
     pub(crate) nodes: [usize; 2],
     pub(crate) cells: usize,
     /// Cells and their tables.
@@ -42,9 +42,9 @@ pub(crate) struct Timing {
     pub(crate) prepare_ms: f64,
     /// One solution of the smooth pass, elevation rows included.
     pub(crate) solve_ms: f64,
-    /// Greedy pass for as many points as the paper had; fewer lines if the features have not as many.
+    /// Greedy pass for the numbers of points of the paper; numbers larger than the features allow are left out.
     pub(crate) greedy: Vec<GreedyTime>,
-    /// Fitted: greedy time grows like this power of the points.
+    /// Exponent of the fitted power law of greedy time over points.
     pub(crate) exponent: Option<f64>,
 }
 
@@ -107,7 +107,7 @@ pub(crate) fn timing(area: &Area) -> Result<Timing> {
     let w = settings.smoothness(stated_spacing(field.cols(), field.rows(), field.spacing()));
     let usual = grid.points(area, settings.spacing);
     let began = Instant::now();
-    // The paper's unknowns, whatever the scene asks for.
+    // The paper's unknowns, whatever solver grid the scene sets.
     let hierarchy = Hierarchy::whole(field.cols(), field.rows(), TerrainSettings::default().solver_nodes);
     let unknowns = hierarchy.nodes();
     let rows: Vec<DVec2> = usual.iter().map(|p| p.grid).chain(grid.summits()).collect();
@@ -117,7 +117,7 @@ pub(crate) fn timing(area: &Area) -> Result<Timing> {
         |points: &[ReferencePoint]| Naive::new(field, &grid.cells, Some(&grid.blocks), &settings, area.eye(), points);
     let naive = greedy_of(&usual).displacement(field, &grid.cells);
     let solve_ms = median(|| drop(pass.run(&naive, None, None)));
-    // Closer together than any count needs.
+    // Close enough for the largest count.
     let spacing = settings.spacing * usual.len() as f64 / 2000.0;
     let many = grid.points(area, spacing.clamp(0.05, settings.spacing));
     let mut greedy = Vec::new();

@@ -9,11 +9,11 @@ const MOST: usize = 400;
 /// A question for files.
 #[derive(Debug)]
 pub(super) struct Ask {
-    /// Whether a name to write to is asked for, else files that are there.
+    /// Whether it asks for a name to write to; else for existing files.
     writes: bool,
     folder: PathBuf,
     name: String,
-    /// Folders first, each with whether it is one.
+    /// Whether an entry is a folder, and its name; folders first.
     entries: Vec<(bool, String)>,
     chosen: Vec<PathBuf>,
 }
@@ -45,7 +45,7 @@ impl Ask {
         self.folder = folder;
     }
 
-    /// Shows the window. The answer: files, none if the user thought better of it.
+    /// Shows the window. Returns the chosen files, empty after a cancellation; `None` while the window is open.
     pub(super) fn show(&mut self, ctx: &Context) -> Option<Vec<PathBuf>> {
         let mut answer = None;
         let title = if self.writes { "Write to a file" } else { "Open files" };
@@ -104,7 +104,7 @@ impl Ask {
         }
     }
 
-    /// What is meant: a folder is gone to, files are the answer.
+    /// Acts on the input: enters a folder, or returns the files.
     fn decide(&mut self) -> Option<Vec<PathBuf>> {
         let typed = self.name.trim();
         let path = self.folder.join(typed);

@@ -10,12 +10,12 @@ use wasm_bindgen_futures::spawn_local;
 use web_sys::js_sys::{Array, Uint8Array};
 use web_sys::{Blob, HtmlAnchorElement, Url};
 
-/// A question for files whose answer comes later.
+/// A pending question for files.
 #[derive(Debug)]
 pub(crate) struct Choosing(Inputs);
 
 impl Choosing {
-    /// The answer, if there is one; no files if the user thought better of it.
+    /// The answer, if it has arrived; empty if the user cancelled.
     ///
     /// # Errors
     /// One sentence about a file that could not be read.
@@ -31,7 +31,7 @@ impl Choosing {
     }
 }
 
-/// Where to write: beside the scene, under the usual name; the browser asks the user what to do with it.
+/// Path of the output: the usual name beside the scene, without a question; the browser asks the user when it is downloaded.
 pub(crate) fn choose_output(folder: &Path, name: &str, _: bool) -> Choosing {
     let (outbox, inbox) = mpsc::channel();
     let _ = outbox.send(Ok(vec![folder.join(name)]));
@@ -75,7 +75,7 @@ fn keep(name: &str, bytes: Result<Vec<u8>, String>) -> Result<PathBuf, String> {
     Ok(path)
 }
 
-/// Gives a file that was written to the user, as a download.
+/// Hands a written file to the user as a download.
 pub(crate) fn hand_over(path: &Path) -> Result<(), String> {
     let bytes = fs::read(path).map_err(|e| e.to_string())?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();

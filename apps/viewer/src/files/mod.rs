@@ -1,4 +1,4 @@
-//! Files: chosen by the user, dropped on the window, handed over; where the application keeps what it remembers.
+//! Files: chosen by the user, dropped on the window, handed over; the folder of the application's state.
 
 #[cfg(not(target_family = "wasm"))]
 mod ask;
@@ -15,5 +15,5 @@ pub(crate) use native::{Choosing, choose_input, choose_output, dropped, hand_ove
 use std::path::PathBuf;
 use std::sync::mpsc::Receiver;
 
-/// Files to open, as soon as they are there; none if the user thought better of it.
+/// Receiver of the files to open; empty if the user cancelled.
 pub(crate) type Inputs = Receiver<Result<Vec<PathBuf>, String>>;

@@ -7,13 +7,13 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, Receiver, TryRecvError};
 use std::time::{Duration, Instant};
 
-/// Nobody closes a window so soon: there was none.
+/// An empty answer sooner than this means that the system showed no window.
 const TOO_SOON: Duration = Duration::from_millis(400);
 
-/// A question for files whose answer comes later.
+/// A pending question for files.
 #[derive(Debug)]
 pub(crate) struct Choosing {
-    /// `None`: the system has no window for it.
+    /// Receives `None` where the system has no window for files.
     inbox: Receiver<Option<Vec<PathBuf>>>,
     own: Ask,
     is_own: bool,
@@ -32,7 +32,7 @@ impl Choosing {
         Self { inbox, own, is_own: !system }
     }
 
-    /// The answer, if there is one; no files if the user thought better of it.
+    /// The answer, if it has arrived; empty if the user cancelled.
     ///
     /// # Errors
     /// None.
@@ -50,9 +50,9 @@ impl Choosing {
     }
 }
 
-/// Lets the user choose where to write; the answer comes later.
+/// Asks the user for a file to write; the answer comes later.
 ///
-/// * `folder`: where to look first. `system`: whether in a window of the system, if it has one.
+/// * `folder`: where the window opens. `system`: whether to use a window of the system, if it has one.
 pub(crate) fn choose_output(folder: &Path, name: &str, system: bool) -> Choosing {
     let dialog = rfd::FileDialog::new().set_file_name(name);
     let dialog = if folder.as_os_str().is_empty() { dialog } else { dialog.set_directory(folder) };
@@ -61,7 +61,7 @@ pub(crate) fn choose_output(folder: &Path, name: &str, system: bool) -> Choosing
 
 /// Lets the user choose a scene, or data.
 ///
-/// * `system`: whether in a window of the system, if it has one.
+/// * `system`: whether to use a window of the system, if it has one.
 pub(crate) fn choose_input(system: bool) -> Choosing {
     Choosing::new(system, Ask::input(), || rfd::FileDialog::new().pick_files())
 }
@@ -73,12 +73,12 @@ pub(crate) fn dropped(files: &[DroppedFileHandle]) -> Inputs {
     inbox
 }
 
-/// A file that was written is where the user wanted it.
+/// Does nothing: the file is already at the path that the user chose.
 pub(crate) fn hand_over(_: &Path) -> Result<(), String> {
     Ok(())
 }
 
-/// Where the application keeps what it remembers; `None` where the system has no such place.
+/// Folder of the application's state; `None` where the system defines no such folder.
 pub(crate) fn state_folder() -> Option<PathBuf> {
     let var = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     let base = if cfg!(target_os = "windows") {

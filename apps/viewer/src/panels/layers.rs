@@ -118,7 +118,7 @@ fn style(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDoc) {
             });
         }
     }
-    // A layer is read again for each new style: only when the pointer is let go.
+    // Changes are applied when the pointer is released, since a layer is read again for each new style.
     if next == *layer {
         ui.data_mut(|data| data.remove::<Pending>(key));
     } else if ui.input(|input| input.pointer.any_down()) {
@@ -129,7 +129,7 @@ fn style(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDoc) {
     }
 }
 
-/// A style that waits for the pointer to be let go.
+/// A style that is applied when the pointer is released.
 #[derive(Clone)]
 struct Pending(LayerDoc);
 
@@ -140,7 +140,7 @@ fn width(ui: &mut Ui, name: &str, value: &mut f64) {
     });
 }
 
-/// Distance within which things take light from each other, where that is first asked for: that of a town, metres.
+/// Initial reach of ambient occlusion when it is switched on, metres: that of a town.
 const REACH: f64 = 40.0;
 
 fn occlusion(ui: &mut Ui, id: &str, value: &mut Option<f64>) {

@@ -62,7 +62,7 @@ fn marks(ui: &mut Ui, model: &mut Model) {
         if ui.checkbox(&mut on, name).changed() {
             overlay.highlight.retain(|other| *other != mark);
             if on {
-                // Two ramps of colours exclude each other.
+                // The two colour ramps exclude each other.
                 let ramps = [HighlightMark::Shift, HighlightMark::Stages];
                 if ramps.contains(&mark) {
                     overlay.highlight.retain(|other| !ramps.contains(other));

@@ -58,7 +58,7 @@ impl Panels {
             ui.weak("opening");
             return;
         }
-        // The panel is as wide as the user wants it, whatever is in it.
+        // The width that the user gave the panel is kept, whatever its content.
         ScrollArea::both().auto_shrink(false).show(ui, |ui| match self.tab {
             Tab::Layers => layers::show(ui, model),
             Tab::Look => look::show(ui, model),
@@ -69,7 +69,7 @@ impl Panels {
         });
     }
 
-    /// What goes on by itself from frame to frame.
+    /// Advances playing previews and sweeps, and the export.
     pub(crate) fn play(&mut self, ctx: &eframe::egui::Context, model: &mut Model) {
         self.rays.play(ctx, model);
         self.spline.play(ctx, model);
@@ -77,7 +77,7 @@ impl Panels {
     }
 }
 
-/// Puts a stage in its place of the chain, in place of one of its kind.
+/// Inserts a stage at its position in the chain, in place of another of its kind.
 pub(crate) fn set_stage(document: &mut Document, stage: StageDoc) {
     const ORDER: [&str; 5] = ["terrain_disocclusion", "strip", "relief", "spline_bend", "curved_rays"];
     let rank = |stage: &StageDoc| ORDER.iter().position(|kind| *kind == stage.kind());

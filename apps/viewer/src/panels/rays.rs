@@ -11,13 +11,13 @@ use eframe::egui::{CollapsingHeader, ComboBox, Context, Ui};
 const KIND: &str = "curved_rays";
 /// Speed of a played preview, share of the previewed length per second.
 const PLAY: f64 = 0.25;
-/// Share of the previewed length that is still ahead where it ends: at the end of a path there is nothing to show.
+/// Share of the previewed length that is still ahead when playing ends, since nothing is left to show at the end of a path.
 const AHEAD: f64 = 0.25;
 
-/// A target of which the picture shows so much is in sight.
+/// Visible share from which on a target counts as in sight.
 const WHOLE: f64 = 0.99;
 
-/// What the panel remembers.
+/// State of the panel.
 #[derive(Debug, Default)]
 pub(crate) struct RaysPanel {
     playing: bool,
@@ -80,7 +80,7 @@ impl RaysPanel {
         ui.weak("The preview has a camera of its own.");
     }
 
-    /// Goes on along the path.
+    /// Advances the played preview along the path.
     pub(crate) fn play(&mut self, ctx: &Context, model: &mut Model) {
         let constructor = model.document().constructor.clone();
         let Some(mut doc) = constructor.filter(|doc| self.playing && doc.kind == ConstructorKind::PathPreview) else {
@@ -100,9 +100,9 @@ impl RaysPanel {
     }
 }
 
-/// What the window says of a target.
+/// Text on the visibility of a target.
 ///
-/// * `seen`: share of it that the picture shows, as measured.
+/// * `seen`: measured visible share, 0..=1.
 fn in_sight(target: &str, seen: Option<f64>) -> String {
     match seen {
         Some(share) if share >= WHOLE => format!("In sight: {target}"),

@@ -14,7 +14,7 @@ const KIND: &str = "spline_bend";
 /// Speed of a played sweep, degrees per second.
 const SWEEP: f64 = 12.0;
 
-/// What the panel remembers.
+/// State of the panel.
 #[derive(Debug, Default)]
 pub(crate) struct SplinePanel {
     /// Position of the edited preset in the document.
@@ -22,9 +22,9 @@ pub(crate) struct SplinePanel {
     playing: bool,
     played_at: f64,
     downwards: bool,
-    /// What the last change did less far than the pointer went.
+    /// Message about a value of the last change that was stopped at its limit.
     clamped: Option<String>,
-    /// The same of the change that is about to be made.
+    /// The same for a change that is not made yet.
     stopped: Option<String>,
 }
 
@@ -51,7 +51,7 @@ impl SplinePanel {
         self.chosen = self.chosen.min(presets.presets.len().saturating_sub(1));
         let phi = model.shown.as_ref().and_then(|shown| viewing_angle(&shown.session).ok());
         self.angles(ui, model, &presets, phi);
-        // A copy may have been made, or a preset taken away.
+        // A preset may have been copied or removed.
         let presets = match model.stage(KIND) {
             Some(StageDoc::SplineBend(stage)) => presets_of(model, stage).unwrap_or(presets),
             _ => presets,
@@ -74,7 +74,7 @@ impl SplinePanel {
         self.numbers(ui, model, &presets);
     }
 
-    /// The ruler, and what is done with whole presets.
+    /// The ruler, and the operations on whole presets.
     fn angles(&mut self, ui: &mut Ui, model: &mut Model, presets: &PresetDocument, phi: Option<f64>) {
         let listed: Vec<(String, f64)> = presets.presets.iter().map(|p| (p.name.clone(), p.phi)).collect();
         match ruler(ui, ui.scope_id().with("ruler"), &listed, self.chosen, phi) {
@@ -211,13 +211,13 @@ impl SplinePanel {
         }
     }
 
-    /// An operation that is a step of its own.
+    /// Makes a change that is one step of undo.
     fn step(&mut self, model: &mut Model, presets: &PresetDocument, change: PresetChange) {
         model.begin_gesture();
         self.change(model, presets, change);
     }
 
-    /// An operation on the chosen preset in the course of the gesture; what cannot be is said.
+    /// Changes the chosen preset within the gesture; an error is shown.
     fn change(&mut self, model: &mut Model, presets: &PresetDocument, change: PresetChange) {
         let preset = (self.chosen + 1).to_string();
         let stopped = self.stopped.take();
@@ -237,14 +237,14 @@ impl SplinePanel {
         }
     }
 
-    /// A value within its limits; that it was stopped there is said with the change.
+    /// A value clamped to its limits; a message is kept for the next change if it was clamped.
     fn within(&mut self, what: &str, value: f64, [least, most]: [f64; 2]) -> f64 {
         let stopped = !(least..=most).contains(&value);
         self.stopped = stopped.then(|| format!("{what} stops at its limit: {least} to {most} are possible"));
         value.clamp(least, most)
     }
 
-    /// Goes on with the sweep: up and down through the viewing angles.
+    /// Advances the sweep: up and down through the viewing angles.
     pub(crate) fn play(&mut self, ctx: &Context, model: &mut Model) {
         if !self.playing {
             return;
@@ -323,12 +323,12 @@ fn free_name(presets: &PresetDocument) -> String {
     (1..).map(|n| format!("preset {n}")).find(|name| !taken(name)).unwrap_or_default()
 }
 
-/// Text on a quiet colour.
+/// Text on a muted colour.
 fn dark(text: String) -> eframe::egui::RichText {
     eframe::egui::RichText::new(text).color(Color32::from_rgb(30, 34, 44))
 }
 
-/// A quiet colour of its own for each name.
+/// A muted colour derived from a name.
 fn color_of(name: &str) -> Color32 {
     let hash = name.bytes().fold(7u32, |hash, byte| hash.wrapping_mul(31).wrapping_add(u32::from(byte)));
     let palette =

@@ -1,4 +1,4 @@
-//! Terrain disocclusion: what must be seen, how far the ground may move for it, what stays hidden.
+//! Terrain disocclusion: required features, limits of the displacement, what stays hidden.
 
 use super::{percent, set_stage, slider};
 use crate::model::Model;
@@ -41,7 +41,7 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
     let of_picture =
         |judged: &Judged| model.shown.as_ref().is_some_and(|shown| Arc::ptr_eq(&shown.document, &judged.document));
     let judged = model.judged.as_deref().is_some_and(of_picture);
-    // What is still being judged is shown as it was, in grey.
+    // The last known shares are shown in grey while new ones are measured.
     ui.scope(|ui| {
         if !judged {
             ui.set_opacity(0.5);
@@ -75,7 +75,7 @@ fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {
         model.begin_gesture();
         put(model, &|stage| stage.mode = Some(mode));
     }
-    // What the document leaves open has the values that the last picture was solved with.
+    // Values that the document does not give are those that the last picture was solved with.
     let resolved = model.shown.as_ref().and_then(|shown| shown.session.resolved()).and_then(|document| {
         document.stage.iter().find_map(|stage| match stage {
             StageDoc::TerrainDisocclusion(stage) => Some(stage.clone()),

@@ -19,14 +19,14 @@ const FOLD: Color32 = Color32::from_rgb(170, 50, 40);
 /// Facing that is coloured as good: sine of 20 degrees.
 const WELL_SEEN: f64 = 0.34;
 
-/// What the user did.
+/// An edit of the user.
 pub(crate) struct CurveEdit {
     pub(crate) change: PresetChange,
-    /// Whether a drag begins, so that what follows is one step.
+    /// Whether it begins a drag: the edits up to the next beginning are one step of undo.
     pub(crate) begins: bool,
 }
 
-/// From curve units to the window.
+/// Maps curve units to the window.
 struct Scale {
     rect: Rect,
     low: DVec2,
@@ -34,7 +34,7 @@ struct Scale {
 }
 
 impl Scale {
-    /// Everything but an eye that a dolly has moved far away fits in.
+    /// Fits curve, control points and eye; an eye that a dolly has moved far away is left out.
     fn of(sketch: &Sketch, rect: Rect) -> Self {
         let near = Some(sketch.eye).filter(|eye| eye.length() < 4.0);
         let all = sketch.curve.iter().map(|p| p.at).chain(sketch.control.iter().copied()).chain(near);
@@ -60,7 +60,7 @@ impl Scale {
 pub(crate) fn curve(ui: &mut Ui, id: Id, sketch: &Sketch) -> Option<CurveEdit> {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Curve of the preset"));
-    // The scale stays while something is dragged, or the curve would run away under the pointer.
+    // The scale is kept during a drag, or the curve would move away from the pointer.
     let key = id.with("scale");
     let dragging = ui.input(|input| input.pointer.any_down());
     let kept = ui.data(|data| data.get_temp::<(DVec2, f64)>(key)).filter(|_| dragging);

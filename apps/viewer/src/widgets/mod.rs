@@ -1,4 +1,4 @@
-//! Controls of our own: each shows a value and returns what the user wants of it.
+//! Controls of our own: each shows a value and returns the user's edit.
 
 pub(crate) mod curve;
 pub(crate) mod overhead;
@@ -6,7 +6,7 @@ pub(crate) mod ruler;
 
 use eframe::egui::{EventFilter, Key, Response, Ui};
 
-/// Steps of the arrow keys, right and up, on a handle that has the focus; a click gives it that.
+/// Steps of the arrow keys, right and up, on a handle that has the focus, which a click gives it.
 fn nudged(ui: &Ui, response: &Response) -> Option<[f64; 2]> {
     if response.clicked() {
         response.request_focus();
@@ -14,7 +14,7 @@ fn nudged(ui: &Ui, response: &Response) -> Option<[f64; 2]> {
     if !response.has_focus() {
         return None;
     }
-    // The arrow keys move it rather than the focus.
+    // The arrow keys move the handle and not the focus.
     let filter = EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
     let keys = [

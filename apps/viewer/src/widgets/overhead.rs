@@ -20,13 +20,13 @@ pub(crate) enum Part {
     Normal,
     /// The line that the planes share.
     Line,
-    /// Its direction.
+    /// Direction of that line.
     LineDirection,
-    /// How sharply the rays bend.
+    /// Sharpness of the turn.
     Sharpness,
 }
 
-/// What the user did: part of a turn, where to, whether the drag begins.
+/// An edit of the user: number of the turn, part, new position, whether a drag begins.
 pub(crate) struct OverheadEdit {
     pub(crate) turn: usize,
     pub(crate) part: Part,
@@ -44,14 +44,14 @@ const COLORS: [Color32; 8] = [
     Color32::from_rgb(120, 120, 120),
     Color32::from_rgb(120, 60, 170),
 ];
-/// Handles nearer together than this, points, are one: as of a line that stands upright.
+/// Handles closer than this, points, are drawn as one, such as those of a vertical line.
 const APART: f32 = 14.0;
 /// Step of the arrow keys, points.
 const NUDGE: f32 = 4.0;
 
 /// Shows the picture with handles.
 ///
-/// * `view`: how it was taken, from above and without perspective.
+/// * `view`: view of the picture, from above and in parallel projection.
 pub(crate) fn overhead(
     ui: &mut Ui,
     id: Id,
@@ -75,7 +75,7 @@ pub(crate) fn overhead(
             f64::from((p.y - rect.top()) / rect.height() * h),
         );
         let (start, direction) = view.pinhole().line(pixel);
-        // The height of the point stays: from above it cannot be seen.
+        // The point keeps its height, which cannot be seen from above.
         let along = (z - start.z) / direction.z;
         start + along * direction
     };
@@ -114,7 +114,7 @@ pub(crate) fn overhead(
         for ((part, name, place), color) in parts.into_iter().zip(COLORS) {
             let Some((place, spot)) = place.and_then(|p| Some((p, at(p)?))) else { continue };
             let label = format!("{name} of turn {}", i + 1);
-            // What lies outside the picture has its handle at the edge.
+            // A part outside the picture has its handle at the edge.
             let handle = rect.shrink(8.0).clamp(spot);
             let own = id.with((i, name));
             let response = ui.interact(Rect::from_center_size(handle, vec2(18.0, 18.0)), own, Sense::click_and_drag());
@@ -151,7 +151,7 @@ impl OverheadEdit {
             Part::Viewpoint => turn.viewpoint = to,
             Part::First => turn.t0 = to,
             Part::Last => turn.t2 = to,
-            // The planes go with the bend point.
+            // The planes move with the bend point.
             Part::Bend => {
                 let by = self.to - DVec3::from_array(turn.t1);
                 for point in [&mut turn.t0, &mut turn.t1, &mut turn.t2] {

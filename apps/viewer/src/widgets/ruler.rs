@@ -1,4 +1,4 @@
-//! The angle ruler: presets over the range of viewing angles, and where the camera is.
+//! The angle ruler: presets over the range of viewing angles, and the viewing angle of the camera.
 
 use eframe::egui::{Align2, Color32, FontId, Id, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
@@ -6,11 +6,11 @@ const HEIGHT: f32 = 52.0;
 /// Range of angles, degrees.
 pub(crate) const RANGE: [f64; 2] = [0.0, 90.0];
 
-/// What the user did.
+/// An edit of the user.
 pub(crate) enum RulerEdit {
     /// Chose the preset of that number.
     Choose(usize),
-    /// Drags it to an angle, degrees, possibly outside [`RANGE`]; whether the drag begins.
+    /// Drags that preset to an angle, degrees, possibly outside [`RANGE`]; whether the drag begins.
     Move(usize, f64, bool),
 }
 

@@ -1,4 +1,4 @@
-//! A preset of one's own, from the template, by hand.
+//! Authoring of a preset from the template by pointer and keyboard.
 
 use crate::{app, find, opened, press, scene, settle};
 use belvedere::picture::PictureOptions;

@@ -1,4 +1,4 @@
-//! What is opened, saved, and left behind by a crash.
+//! Opening, saving, and recovery after a crash.
 
 use crate::{app, opened, press, scene, settle};
 use belvedere_viewer::Opening;
@@ -24,7 +24,7 @@ fn a_killed_application_comes_back_as_it_was() {
         harness.step();
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
-    drop(harness); // Without the word that an application says when it ends.
+    drop(harness); // Dropped without the end of session that an application reports.
     let state = folder.path().join("other");
     std::fs::create_dir(&state).expect("folder");
     std::fs::copy(folder.path().join("state/state-0.json"), state.join("state-0.json")).expect("copied");
@@ -108,7 +108,7 @@ fn a_scene_of_no_file_comes_back_with_its_bookmarks_and_the_way_it_was_looked_at
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
     drop(harness);
-    // Another file is opened: the scene that was never saved is kept all the same.
+    // Another file is opened: the scene that was never saved is still kept.
     let other = folder.path().join("other");
     std::fs::create_dir(&other).expect("folder");
     std::fs::copy(state.join("state-0.json"), other.join("state-0.json")).expect("copied");

@@ -1,4 +1,4 @@
-//! The application, by its accessibility tree: what a screen reader finds, a test presses.
+//! The application driven by its accessibility tree, as a screen reader sees it.
 
 mod authoring;
 mod controls;
@@ -25,10 +25,10 @@ fn app(opening: &Opening) -> Harness<'static, Viewer> {
     builder.build_eframe(move |cc| Viewer::new(&cc.egui_ctx, &opening))
 }
 
-/// Goes on until the picture rests.
+/// Runs frames until the picture rests.
 fn settle(harness: &mut Harness<'_, Viewer>) {
     let began = Instant::now();
-    // What was just done is taken up by the next two frames.
+    // An action takes effect in the next two frames.
     harness.step();
     harness.step();
     while !harness.state().rests() {
@@ -50,7 +50,7 @@ fn find<'a>(harness: &'a Harness<'_, Viewer>, name: &'a str) -> Node<'a> {
     harness.get_by_label(name)
 }
 
-/// A small scene of its own in a folder.
+/// A small scene file in a folder.
 fn scene(folder: &Path) -> PathBuf {
     let path = folder.join("scene.toml");
     let text = r#"

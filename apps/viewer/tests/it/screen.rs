@@ -1,4 +1,4 @@
-//! A screen in memory: what the application would draw on a graphics card, triangle by triangle, the same everywhere.
+//! A software screen: the triangles that the application would draw on a graphics card, with the same result on all machines.
 
 use eframe::egui::{Color32, Context, FullOutput, ImageData, Mesh, Rect, TextureId, TexturesDelta, epaint::Primitive};
 use egui_kittest::TestRenderer;
@@ -47,7 +47,7 @@ impl TestRenderer for Screen {
     }
 }
 
-/// Draws the triangles of a mesh, their colours times those of the texture over what is there.
+/// Draws the triangles of a mesh: their colours times those of the texture, blended over the image.
 fn draw(image: &mut RgbaImage, mesh: &Mesh, texture: &Texture, clip: Rect, scale: f32) {
     let edge = |at: f32, end: u32| (at * scale).round().clamp(0.0, end as f32) as u32;
     let (x_end, y_end) = (edge(clip.max.x, image.width()), edge(clip.max.y, image.height()));
@@ -69,7 +69,7 @@ fn draw(image: &mut RgbaImage, mesh: &Mesh, texture: &Texture, clip: Rect, scale
                     ((q - p).x * (at - p).y - (q - p).y * (at - p).x) / area
                 };
                 let shares = [side(b, c), side(c, a), side(a, b)];
-                // Of two triangles that share an edge through the middle of a pixel one has it.
+                // A pixel whose middle lies on an edge belongs to one of the two triangles that share it.
                 let owns = |share: f32, p: eframe::egui::Pos2, q: eframe::egui::Pos2| {
                     let d = (q - p) * area.signum();
                     share > 0.0 || (share == 0.0 && (d.y < 0.0 || (d.y == 0.0 && d.x > 0.0)))
@@ -91,7 +91,7 @@ fn draw(image: &mut RgbaImage, mesh: &Mesh, texture: &Texture, clip: Rect, scale
     }
 }
 
-/// The texture between the middles of its pixels.
+/// Bilinear sample of a texture.
 fn sample(texture: &Texture, [u, v]: [f32; 2]) -> [f32; 4] {
     let [width, height] = texture.size;
     let place = |at: f32, size: usize| {

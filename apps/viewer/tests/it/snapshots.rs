@@ -1,5 +1,4 @@
-//! What the application looks like. After a change that is meant: `UPDATE_SNAPSHOTS=1 cargo test -p belvedere-viewer`, and look at
-//! the pictures.
+//! Snapshots of the window. After an intended change: `UPDATE_SNAPSHOTS=1 cargo test -p belvedere-viewer`, then inspect the pictures.
 
 use crate::screen::Screen;
 use crate::{PATIENCE, opened, press, scene, settle};
@@ -7,7 +6,7 @@ use belvedere_viewer::Viewer;
 use egui_kittest::{Harness, SnapshotOptions};
 use std::time::{Duration, Instant};
 
-/// Pixels that may differ: other processors round other bits of the picture.
+/// Pixels that may differ between processors, which round differently.
 const PIXELS: usize = 60;
 
 /// The application with a small scene, in a window of 960 x 640 points.
@@ -19,7 +18,7 @@ fn drawn(folder: &std::path::Path) -> Harness<'static, Viewer> {
     harness
 }
 
-/// Goes on until it is told what the picture shows, which is judged after it is shown.
+/// Runs frames until the visibility is measured, which happens after the picture is shown.
 fn judged(harness: &mut Harness<'_, Viewer>) {
     let began = Instant::now();
     while !harness.state().is_judged() {

@@ -1,4 +1,4 @@
-//! The application in a real window on a virtual display, by a pointer that is moved.
+//! The application in a real window on a virtual display, driven by a moving pointer.
 
 use belvedere::{OpenOptions, Session, core::Stage};
 use serde_json::Value;
@@ -7,13 +7,13 @@ use std::path::PathBuf;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Longest that anything may take on a machine without a GPU.
+/// Longest time of any step on a machine without a GPU.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The program under test.
 const PROGRAM: &str = env!("CARGO_BIN_EXE_belvedere-view");
 
-/// A folder of its own.
+/// A temporary folder.
 struct Folder(tempfile::TempDir);
 
 impl Folder {
@@ -26,14 +26,14 @@ impl Folder {
     }
 }
 
-/// A virtual display; gone with this value.
+/// A virtual display that ends when it is dropped.
 struct Display {
     server: Child,
     name: String,
 }
 
 impl Display {
-    /// `None`, said loudly, where there is none to be had.
+    /// Opens a display; prints why and returns `None` where there is no display server.
     #[allow(clippy::print_stderr)]
     fn open() -> Option<Self> {
         let required = std::env::var("BELVEDERE_REQUIRE_DISPLAY").is_ok_and(|v| v == "1");
@@ -94,7 +94,7 @@ fn window(place: &Folder, display: &Display, args: &[&str]) -> Child {
     program.expect("the program starts")
 }
 
-/// What the application has written down, as soon as that passes a test.
+/// The recovery file, as soon as it passes a test.
 fn written(place: &Folder, what: &str, passes: impl Fn(&Value) -> bool) -> Value {
     let began = Instant::now();
     loop {
@@ -145,7 +145,7 @@ fn a_preset_is_made_in_a_window_saved_and_drawn_and_a_killed_window_comes_back()
     let saved = Session::open(&place.path("scene.toml"), &OpenOptions::default()).expect("what was saved opens");
     assert!(matches!(saved.view().stages(), [Stage::SplineBend(_)]), "{:?}", saved.view());
 
-    // The camera is moved, then the program is killed: a new one begins where that was.
+    // The camera is moved, then the program is killed: a new instance starts with that camera.
     display.drag([800, 500], [900, 520]);
     let state = written(&place, "moved", |state| state["changed"] == true);
     program.kill().expect("killed");

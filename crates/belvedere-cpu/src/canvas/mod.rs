@@ -9,7 +9,7 @@ use crate::color::{encode, linear};
 use belvedere_core::{DVec2, polygon::to_segment};
 use belvedere_scene::Color;
 
-/// A finished picture to draw on. Coordinates are pixels, (0, 0) the outer corner of the top-left one; what lies outside is left out.
+/// A finished picture to draw on. Coordinates are pixels, (0, 0) the outer corner of the top-left one; drawing outside the picture is clipped.
 ///
 /// ```
 /// use belvedere_core::DVec2;

@@ -1,10 +1,10 @@
-//! Filled polygons: the exact area of every pixel that lies inside.
+//! Filled polygons: the exact area of every pixel inside (signed area accumulation).
 
 use super::Canvas;
 use belvedere_core::DVec2;
 use belvedere_scene::Color;
 
-/// What a polygon covers of the pixels of a box.
+/// Coverage of the pixels of a box by a polygon.
 struct Coverage {
     width: usize,
     height: usize,
@@ -17,7 +17,7 @@ impl Coverage {
         Self { width, height, change: vec![0.0; (width + 1) * height] }
     }
 
-    /// Adds the ground to the right of an edge, signed by its direction.
+    /// Adds the area to the right of an edge, signed by its direction.
     fn edge(&mut self, a: DVec2, b: DVec2) {
         if a.y == b.y {
             return;

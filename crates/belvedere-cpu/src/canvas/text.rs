@@ -14,7 +14,7 @@ static FONT: LazyLock<Option<FontRef<'static>>> = LazyLock::new(|| FontRef::try_
 /// Longest text that is set, characters; longer ones end in an ellipsis.
 const MAX_CHARS: usize = 80;
 
-/// Room that a line of text takes.
+/// Size of a line of text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TextSize {
     /// Width, pixels.
@@ -32,7 +32,7 @@ pub fn can_set(text: &str) -> bool {
     FONT.as_ref().is_some_and(|font| text.chars().filter(|c| !plain(*c)).all(|c| font.glyph_id(c) != none))
 }
 
-/// Room that `text` takes with letters of `size_px`.
+/// Size of `text` with letters of `size_px`, pixels.
 pub fn text_size(size_px: f64, text: &str) -> TextSize {
     let Some(font) = FONT.as_ref() else { return TextSize { width: 0.0, ascent: 0.0, descent: 0.0 } };
     let (_, width) = set(font, size_px, text);
@@ -78,7 +78,7 @@ pub(super) fn draw(
     let rim = halo.map_or(0.0, |(_, w)| w);
     let pad = rim.ceil() as i64 + 2;
     let size = size_px.clamp(1.0, 400.0);
-    // The mask stands on whole pixels; the letters keep their place within them.
+    // The mask begins at a whole pixel; the letters keep their subpixel position.
     let corner = DVec2::new(at.x.floor(), (at.y - size * 1.1).floor()) - pad as f64;
     let (w, h) = ((width.ceil() as usize + 2 * pad as usize + 2), ((1.5 * size).ceil() as usize + 2 * pad as usize));
     let mut mask = vec![0.0f32; w * h];

@@ -35,9 +35,9 @@ pub(crate) enum Geometry {
 #[derive(Debug)]
 pub(crate) struct Block {
     pub(crate) layer: u32,
-    /// First and last of the passes of the view that draw it.
+    /// Numbers of the first and the last pass of the view that draw it.
     pub(crate) passes: [usize; 2],
-    /// Whether these are rigid bodies, drawn by the passes of what was carried.
+    /// Whether these are rigid bodies, drawn by the passes of `BodyPasses`.
     pub(crate) bodies: bool,
     /// First column and row (terrain), first box or first triangle (mesh).
     pub(crate) origin: [usize; 2],
@@ -51,14 +51,14 @@ pub(crate) struct Block {
     pub(crate) seam: [bool; 4],
     /// Number of the first soup triangle.
     pub(crate) soup_base: u32,
-    /// What the block may touch of the image.
+    /// Part of the image that the block may touch.
     pub(crate) cover: ScreenExtent,
     pub(crate) counts: Counts,
-    /// Place along the deformation curve of the corners of each soup triangle, where only some samples are shown; else empty.
+    /// Position along the deformation curve of the corners of each soup triangle, where only some samples are shown; else empty.
     pub(crate) thin: Vec<[f32; 3]>,
 }
 
-/// Contribution to [`belvedere_scene::FrameStats`].
+/// Contribution of a block to [`belvedere_scene::FrameStats`].
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Counts {
     pub(crate) drawn: u64,
@@ -98,7 +98,7 @@ impl BufferPool {
 }
 
 impl Block {
-    /// Numbers of the row or column of cells along the north, east, south and west side if nodes were moved there, else one
+    /// Numbers of the row or column of cells along the north, east, south and west side where a seam moves nodes, else a number
     /// that no cell has.
     #[inline(always)]
     pub(crate) fn seam_cells(&self) -> [u32; 4] {
@@ -146,8 +146,8 @@ impl Block {
 }
 
 impl Block {
-    /// The block, its triangles to be shown sample by sample.
-    /// * `corners`: of a parent triangle, by its number: their places along the deformation curve.
+    /// The block with its triangles marked to be shown sample by sample.
+    /// * `corners`: positions along the deformation curve of the corners of a parent triangle, by its number.
     pub(crate) fn thinned(mut self, corners: impl Fn(u32) -> [f64; 3]) -> Self {
         if let Geometry::Soup(soup) = &self.geometry {
             let thin = soup.iter().map(|t| {
@@ -164,7 +164,7 @@ impl Block {
     }
 }
 
-/// What all blocks of a layer have in common.
+/// Parameters common to all blocks of a layer.
 pub(crate) struct Job<'a> {
     pub(crate) layer: u32,
     pub(crate) screen: &'a Screen,

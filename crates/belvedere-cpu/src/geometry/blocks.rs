@@ -23,10 +23,10 @@ pub(crate) const SOUP: u32 = 1 << 31;
 /// Bits of a grid primitive below the block number: 10 of the cell, 1 of the triangle.
 pub(crate) const CELL_BITS: u32 = 11;
 
-/// Blocks of boxes or triangles: each part of a layer once for each record that shows it, or once if its records may draw it at once, and
-/// once for each segment that shows what records leave out.
-/// * `bounds`: of the parts.
-/// * `draw`: a part, by its number.
+/// Blocks of boxes or triangles. Each part of a layer is drawn once per record that shows it, or once for all of its records if they
+/// displace it as one map, and once per segment that shows what the records leave out.
+/// * `bounds`: bounds of the parts.
+/// * `draw`: draws the part with a number by a pass.
 fn soups(
     locator: &Locator<'_>,
     bounds: &[Aabb],
@@ -55,7 +55,7 @@ fn soups(
         .collect()
 }
 
-/// All blocks of a frame; kept between frames for its memory.
+/// All blocks of a frame; kept between frames so that its memory is reused.
 #[derive(Debug, Default)]
 pub(crate) struct Blocks {
     pub(crate) list: Vec<Block>,
@@ -69,7 +69,7 @@ pub(crate) struct Blocks {
 
 impl Blocks {
     /// Displaces, projects, subdivides and clips every surface of the scene.
-    /// * `bodies`: if rigid bodies are carried as a whole.
+    /// * `bodies`: passes of the rigid bodies, if there are any.
     pub(crate) fn build(
         &mut self,
         job: &RenderJob<'_>,
@@ -79,7 +79,7 @@ impl Blocks {
         detail: &GroundCache<(), Arc<Tree>>,
     ) {
         let RenderJob { scene, view, options, .. } = *job;
-        // A tolerance of zero or less would split without end.
+        // A tolerance of zero or less would split edges without end.
         let tolerance_px = if options.tolerance_px > 0.01 { options.tolerance_px } else { 0.01 };
         self.list.drain(..).for_each(|b| self.spare.keep(b.geometry));
         self.triangles_in = 0;
@@ -170,7 +170,7 @@ impl Blocks {
             .sort_unstable_by(|&a, &b| list[b as usize].cover.q.total_cmp(&list[a as usize].cover.q).then(a.cmp(&b)));
     }
 
-    /// Draws everything that touches the band and is not hidden, nearest first, but what is shown sample by sample.
+    /// Draws the blocks that touch the band and are not hidden, nearest first, except those shown sample by sample.
     pub(crate) fn draw(&self, band: &mut Band) {
         for (i, block) in self.in_band(band).filter(|(_, block)| block.thin.is_empty()) {
             if band.hides(block.cover.x, block.cover.q) {
@@ -188,12 +188,12 @@ impl Blocks {
         }
     }
 
-    /// Whether something that touches the band is shown sample by sample.
+    /// Whether a block that touches the band is shown sample by sample.
     pub(crate) fn are_thin_in(&self, band: &Band) -> bool {
         self.in_band(band).any(|(_, block)| !block.thin.is_empty())
     }
 
-    /// Draws what is shown sample by sample; the band has the samples of `exposure`.
+    /// Draws the blocks that are shown sample by sample; the band has the samples of `exposure`.
     pub(crate) fn draw_thin(&self, band: &mut Band, ortho: bool, sections: &Sections<'_>, exposure: &Exposure) {
         for (_, block) in self.in_band(band).filter(|(_, block)| !block.thin.is_empty()) {
             let Geometry::Soup(soup) = &block.geometry else { continue };

@@ -9,15 +9,15 @@ use belvedere_scene::{BoxLayer, BoxShape};
 use belvedere_sight::CarriedLayer;
 use rayon::prelude::*;
 
-/// Boxes to a block.
+/// Number of boxes of a block.
 const BOXES: usize = 64;
 
-/// The boxes that are drawn as a block each.
+/// The boxes of a block, by its number.
 fn chunk_of(layer: &BoxLayer, chunk: usize) -> &[BoxShape] {
     &layer.boxes[chunk * BOXES..layer.boxes.len().min((chunk + 1) * BOXES)]
 }
 
-/// Corners of the boxes of a part, where a view carries them to if they are rigid bodies; `None` for one without image.
+/// Corners of the boxes of a block, displaced if they are rigid bodies; `None` for a body without image.
 fn corners_of<'b>(
     layer: &'b BoxLayer,
     carried: Option<&'b CarriedLayer>,
@@ -29,16 +29,16 @@ fn corners_of<'b>(
     })
 }
 
-/// Bounds of the parts of a layer that are drawn as a block each.
-/// * `carried`: if its boxes are rigid bodies.
+/// Bounds of the blocks of a layer.
+/// * `carried`: motions of its boxes if they are rigid bodies.
 pub(crate) fn box_chunks(layer: &BoxLayer, carried: Option<&CarriedLayer>) -> Vec<Aabb> {
     let chunks = (0..layer.boxes.len().div_ceil(BOXES)).into_par_iter();
     chunks.map(|i| Aabb::of(corners_of(layer, carried, i).flatten().flatten())).collect()
 }
 
 impl Job<'_> {
-    /// Displaces, projects, subdivides and clips a part of the boxes.
-    /// * `carried`: if they are rigid bodies; then by a pass of what was carried.
+    /// Displaces, projects, subdivides and clips the boxes of a block.
+    /// * `carried`: motions of the boxes if they are rigid bodies; `pass` is then one of `BodyPasses`.
     pub(crate) fn box_block(
         &self,
         pass: &Pass<'_>,

@@ -114,7 +114,7 @@ impl<'a> Displacer<'a> {
     }
 
     /// Displaces points of slices of equal length; `false` if one of them has no image (the rest is then unspecified).
-    /// A point that leaves the numbers comes out as not finite.
+    /// A point that overflows comes out as not finite.
     pub(crate) fn row(&self, p: &mut Points<'_>) -> bool {
         self.steps.iter().all(|step| step.row(p))
     }

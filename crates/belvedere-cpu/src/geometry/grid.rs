@@ -17,7 +17,7 @@ pub(crate) struct Nodes {
     pub(crate) x: Vec<i32>,
     pub(crate) y: Vec<i32>,
     pub(crate) q: Vec<f32>,
-    /// What each row of nodes covers.
+    /// Extent of each row of nodes.
     spans: Vec<ScreenExtent>,
     /// Cells along both axes.
     cells: [usize; 2],
@@ -25,7 +25,7 @@ pub(crate) struct Nodes {
     holes: bool,
 }
 
-/// What a block covers at most: fixed-point positions and the largest nearness.
+/// Extent of a block at most: fixed-point positions and the largest nearness.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ScreenExtent {
     pub(crate) x: [i32; 2],
@@ -44,7 +44,7 @@ impl ScreenExtent {
         }
     }
 
-    /// What both cover.
+    /// Extent of both together.
     #[inline(always)]
     fn with(self, other: Self) -> Self {
         Self {
@@ -56,7 +56,7 @@ impl ScreenExtent {
 }
 
 impl Nodes {
-    /// Room for the nodes of `cells`; what they were before does not matter.
+    /// Resizes to the nodes of `cells`; the old values are not kept.
     pub(crate) fn reset(&mut self, cells: [usize; 2]) {
         let n = (cells[0] + 1) * (cells[1] + 1);
         self.x.resize(n, 0);
@@ -92,7 +92,7 @@ impl Nodes {
         }
     }
 
-    /// What the nodes cover; to be called once all are set.
+    /// Extent of the nodes; to be called once all are set.
     pub(crate) fn cover(&mut self) -> ScreenExtent {
         self.spans.clear();
         if !self.holes {
@@ -113,7 +113,7 @@ impl Nodes {
         simd::run(Draw { nodes: self, first_prim, band });
     }
 
-    /// Nodes of a row, and ends that mean nothing where there are fewer than most.
+    /// Nodes of a row, filled up to `NODES` with arbitrary values.
     #[inline(always)]
     fn row<'n, T: Copy>(&self, values: &'n [T], r: usize, spare: &'n mut [T; NODES]) -> &'n [T; NODES] {
         let n = self.cells[0] + 1;
@@ -138,7 +138,7 @@ impl Nodes {
     }
 }
 
-/// The range of nodes without holes.
+/// Computes the extent of nodes without holes.
 struct Around<'a>(&'a mut Nodes);
 
 impl Kernel for Around<'_> {
@@ -169,7 +169,7 @@ fn range(values: &[i32]) -> [i32; 2] {
 
 #[inline(always)]
 fn largest(values: &[f32]) -> f32 {
-    // Lane by lane: the compiler may not change the order of comparisons.
+    // Lane by lane, since the compiler may not reorder comparisons.
     const LANES: usize = 16;
     let mut lanes = [f32::NEG_INFINITY; LANES];
     for part in values.chunks(LANES) {
@@ -222,7 +222,7 @@ impl Kernel for Draw<'_> {
     }
 }
 
-/// The node that stands in for node (c, r) of a block with seams: itself, or the even one before it on a seam.
+/// The node drawn in place of node (c, r) of a block with seams: itself, or the even one before it on a seam.
 pub(crate) fn kept_node(seam: [bool; 4], cells: [usize; 2], [c, r]: [usize; 2]) -> [usize; 2] {
     let [north, east, south, west] = seam;
     if (north && r == 0) || (south && r == cells[1]) {

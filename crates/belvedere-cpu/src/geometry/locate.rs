@@ -6,14 +6,14 @@ use belvedere_core::{Aabb, View};
 use std::collections::HashMap;
 use std::ops::Range;
 
-/// The passes that draw a box, as ranges in a list, in order.
+/// The passes that draw a box: two ranges in a list of pass numbers.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Held {
-    /// The records that may hold part of it.
+    /// Records that may show part of the box.
     pub(crate) records: Range<usize>,
-    /// The segments that draw what these leave out.
+    /// Segments that draw what the records leave out.
     pub(crate) segments: Range<usize>,
-    /// Whether they displace the whole box as one map: it is drawn once, uncut.
+    /// Whether the records displace the whole box as one map: it is then drawn once, uncut.
     pub(crate) whole: bool,
 }
 
@@ -30,7 +30,7 @@ impl<'a> Locator<'a> {
         Self { view, passes, screen }
     }
 
-    /// All passes, whatever the box.
+    /// Every pass, for a box of any size.
     pub(crate) fn all(&self, list: &mut Vec<u32>) -> Held {
         let records = self.view.records();
         list.clear();
@@ -38,14 +38,14 @@ impl<'a> Locator<'a> {
         Held { records: 0..records, segments: records..list.len(), whole: records == 1 }
     }
 
-    /// Which of the passes that may draw part of a larger box may draw part of this one; written behind the list.
+    /// Those of the passes of a larger box that may draw part of this one; their numbers are appended to the list.
     pub(crate) fn locate(&self, bounds: &Aabb, larger: &Held, list: &mut Vec<u32>) -> Held {
         if self.passes.len() == 1 {
             return larger.clone();
         }
         let Some(rays) = self.view.curved_rays() else { return larger.clone() };
         let one = self.view.records() == 1;
-        // Without bounds before the rays nothing is known.
+        // Where the earlier stages give no bounds, all passes of the larger box are kept.
         let Some(before) = displaced(self.view.earlier_stages(), bounds) else {
             return Held { whole: one, ..larger.clone() };
         };
@@ -73,7 +73,7 @@ impl<'a> Locator<'a> {
         Held { records, segments: from..list.len(), whole }
     }
 
-    /// Pixels that a unit of height inside the box can make on the image, infinite where unknown; `None` if no pass shows it.
+    /// Bound on the pixels per unit of height inside the box, infinite where unknown; `None` if no pass shows it.
     pub(crate) fn px_per_height(&self, bounds: &Aabb, passes: impl Iterator<Item = u32>) -> Option<f64> {
         let of = |number: u32| {
             let pass = &self.passes[number as usize];
@@ -89,14 +89,14 @@ impl<'a> Locator<'a> {
     }
 }
 
-/// Passes for what records draw together.
+/// Passes that draw several records together.
 pub(crate) struct JoinedPasses<'a> {
     passes: &'a [Pass<'a>],
     joined: HashMap<[u32; 2], Pass<'a>>,
 }
 
 impl<'a> JoinedPasses<'a> {
-    /// Those for all lists of records that are drawn at once.
+    /// Joins the passes of each list of records that displace as one map.
     pub(crate) fn new<'l>(view: &'a View, passes: &'a [Pass<'a>], lists: impl Iterator<Item = &'l [u32]>) -> Self {
         let mut joined = HashMap::new();
         for ends in lists.filter_map(ends).filter(|[first, last]| first < last) {
@@ -105,7 +105,7 @@ impl<'a> JoinedPasses<'a> {
         Self { passes, joined }
     }
 
-    /// The one pass that draws what `records` hold, or one for each of them; then those of `segments`.
+    /// The joined pass of `records`, or one pass for each of them; then those of `segments`.
     pub(crate) fn of<'s>(
         &'s self,
         [records, segments]: [&'s [u32]; 2],

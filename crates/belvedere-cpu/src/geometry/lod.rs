@@ -1,4 +1,4 @@
-//! The ground as a tree of blocks: range of heights, and what drawing it in less detail costs.
+//! The ground as a tree of blocks: range of heights, and error of drawing each in less detail.
 
 use crate::raster::cells::SIDE;
 use crate::simd::{self, Kernel};
@@ -7,7 +7,7 @@ use belvedere_scene::{Heightfield, NodeState};
 use belvedere_sight::Pyramid;
 use rayon::prelude::*;
 
-/// A block at one level: cells of 2^level nodes' distance.
+/// A block at one level: its cells are 2^level grid cells wide.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Span {
     /// Lowest and highest node; empty (min > max) where all are voids.
@@ -15,7 +15,7 @@ pub(crate) struct Span {
     /// Largest distance in height between the ground and the block drawn at this level, every skipped node counted; infinite
     /// where the block cannot be drawn so (holes, sides that are no multiple of the step).
     pub(crate) error: f32,
-    /// What is added along the north, east, south and west side when every second node is left out there, to meet a
+    /// Addition to the error along the north, east, south and west side when every second node is left out there, to meet a
     /// neighbour of the next level.
     pub(crate) seam: [f32; 4],
 }
@@ -30,11 +30,11 @@ pub(crate) struct Tree {
     pub(crate) sparse: DecimatedHeights,
 }
 
-/// Nodes along both axes to one of [`DecimatedHeights`].
+/// Spacing, in nodes, of the samples of [`DecimatedHeights`].
 const EVERY: usize = 8;
 
-/// Heights of every [`EVERY`]th node along both axes: blocks in little detail find theirs side by side instead of each in a
-/// line of memory of its own.
+/// Heights of every [`EVERY`]th node along both axes, stored densely: coarse blocks read consecutive heights instead of one cache
+/// line per height.
 #[derive(Debug)]
 pub(crate) struct DecimatedHeights {
     cols: usize,
@@ -49,8 +49,8 @@ impl DecimatedHeights {
         Self { cols, heights }
     }
 
-    /// Heights of a row of the ground from column `first` on, those of every `step`-th node and perhaps more; how many make
-    /// that step.
+    /// Heights of a row of the ground from column `first` on, at least those of every `step`-th node; also the stride between these
+    /// in the returned slice.
     #[inline(always)]
     pub(crate) fn row<'h>(&'h self, hf: &'h Heightfield, [first, row]: [usize; 2], step: usize) -> (&'h [f32], usize) {
         if (first | row | step).is_multiple_of(EVERY) {
@@ -60,7 +60,7 @@ impl DecimatedHeights {
         }
     }
 
-    /// Bytes for a ground of so many nodes.
+    /// Bytes for a ground of `nodes` nodes.
     pub(crate) fn bytes(nodes: u64) -> u64 {
         nodes / (EVERY * EVERY) as u64 * size_of::<f32>() as u64
     }
@@ -86,7 +86,7 @@ impl Tree {
         self.spans.block(level, block)
     }
 
-    /// Box around the ground of a block; `None` where it is one hole.
+    /// Bounding box of the ground of a block; `None` where all of its nodes are voids.
     pub(crate) fn bounds(&self, hf: &Heightfield, level: usize, block: [usize; 2]) -> Option<Aabb> {
         let [z0, z1] = self.span(level, block).z;
         let (from, to) = nodes(hf, level, block);
@@ -128,7 +128,7 @@ fn coarser(hf: &Heightfield, level: usize, block: [usize; 2], children: &[Span])
     for child in children {
         out.z = [out.z[0].min(child.z[0]), out.z[1].max(child.z[1])];
         out.error = out.error.max(child.error);
-        // Infinite seams tell of holes, or of an odd side.
+        // Infinite seams mark holes, or a side of odd length.
         if child.z[0] > child.z[1] || (level == 1 && child.seam == [f32::INFINITY; 4]) {
             out.error = f32::INFINITY;
         }
@@ -146,7 +146,7 @@ fn coarser(hf: &Heightfield, level: usize, block: [usize; 2], children: &[Span])
     out
 }
 
-/// Largest distance in height of the nodes of a block from the triangles drawn with every `step`-th of them.
+/// Largest distance in height of the nodes of a block from the triangles drawn with every `step`-th node.
 struct Distance<'a> {
     hf: &'a Heightfield,
     step: usize,
@@ -169,14 +169,14 @@ impl Kernel for Distance<'_> {
 }
 
 impl Distance<'_> {
-    /// * `N`: nodes looked at together; the step is a multiple.
+    /// * `N`: nodes compared together; the step is a multiple.
     #[inline(always)]
     fn largest<const N: usize>(&self) -> f32 {
         let Self { hf, step, from, to } = *self;
         let (cols, h) = (hf.cols(), hf.heights());
         let mut worst = [0.0f32; N];
         for r in from[1]..=to[1] {
-            // The last row ends the cells above.
+            // The last row of nodes belongs to the cells north of it.
             let first = if r < to[1] { r - (r - from[1]) % step } else { r - step };
             let (north, south, row) = (&h[first * cols..], &h[(first + step) * cols..], &h[r * cols..]);
             for c in (from[0]..to[0]).step_by(step) {
@@ -194,10 +194,9 @@ impl Distance<'_> {
     }
 }
 
-/// Heights of the two triangles of a cell along one row of the nodes that it leaves out: a line up to the diagonal, and one
-/// from there on.
+/// Heights of the two triangles of a coarse cell along one row of skipped nodes: one line up to the diagonal, another from there on.
 struct CellLine {
-    /// Height at the west end, and at the east end seen from the west.
+    /// Height at the west end of the line west of the diagonal, and of that east of it, extended to the west end.
     start: [f32; 2],
     /// Change per node.
     slope: [f32; 2],
@@ -214,7 +213,7 @@ impl CellLine {
         Self { start: [nw + v * (sw - nw), nw + v * (se - ne)], slope, diagonal: j as f32 }
     }
 
-    /// Adds the distances of `N` nodes from number `i` on.
+    /// Updates the largest distances with those of `N` nodes from number `i` on.
     #[inline(always)]
     fn add<const N: usize>(&self, i: usize, nodes: &[f32], worst: &mut [f32; N]) {
         let Some(nodes) = nodes.first_chunk::<N>() else { return };

@@ -11,12 +11,12 @@ use belvedere_sight::CarriedLayer;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Triangles to a block.
+/// Number of triangles of a block.
 const TRIANGLES: usize = 512;
 /// Weights of vertices 1 and 2 of a triangle at its corners.
 const WEIGHTS: [[f32; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
 
-/// What is drawn of a mesh.
+/// Part of a mesh that is drawn.
 #[derive(Clone, Copy)]
 pub(crate) enum Drawn<'a> {
     /// All triangles.
@@ -34,7 +34,7 @@ impl<'a> Drawn<'a> {
         }
     }
 
-    /// Key of the body of a triangle, over the number of a vertex; `None` if the triangle is not drawn.
+    /// Upper half of the corner keys of a triangle: the number of its body; `None` if the triangle is not drawn.
     fn key(self, triangle: usize) -> Option<u64> {
         match self {
             Self::All(_) => Some(0),
@@ -43,14 +43,14 @@ impl<'a> Drawn<'a> {
         }
     }
 
-    /// Numbers of the triangles of a part that are drawn, and their corners by key.
+    /// Numbers of the drawn triangles of a part, and the keys of their corners.
     fn corners(self, part: Range<usize>) -> (Vec<u32>, Vec<[u64; 3]>) {
         let mesh = self.mesh();
         let drawn = part.filter_map(|t| Some((t as u32, self.key(t)?)));
         drawn.map(|(t, key)| (t, mesh.triangles()[t as usize].map(|v| key | u64::from(v)))).unzip()
     }
 
-    /// Where a corner is, by its key: before anything displaces it, and as a body leaves it.
+    /// Position of a corner by its key: undisplaced, and as carried with its body.
     fn place(self, key: u64) -> [DVec3; 2] {
         let p = self.mesh().vertex(key as u32);
         match self {
@@ -64,7 +64,7 @@ impl<'a> Drawn<'a> {
         (chunk * TRIANGLES).min(count)..((chunk + 1) * TRIANGLES).min(count)
     }
 
-    /// Bounds of the parts that are drawn as a block each.
+    /// Bounds of the blocks.
     pub(crate) fn chunks(self) -> Vec<Aabb> {
         let chunks = (0..self.mesh().triangles().len().div_ceil(TRIANGLES)).into_par_iter();
         let bounds = |chunk| Aabb::of(self.corners(self.part(chunk)).1.iter().flatten().map(|&key| self.place(key)[1]));
@@ -75,9 +75,9 @@ impl<'a> Drawn<'a> {
 /// A vertex of a mesh on the image.
 struct Vertex {
     p: DVec3,
-    /// Its image if it needs no clipping, and beyond which sides of the image it lies.
+    /// Its image if it needs no clipping, and its outcode (`Screen::outcode`).
     image: Option<(ScreenVertex, u8)>,
-    /// For the error of edges; `None` where it is not known.
+    /// Data for the error of edges; `None` where it is not known.
     edge: Option<EdgePoint>,
     missed: bool,
 }
@@ -139,7 +139,7 @@ impl Job<'_> {
     }
 }
 
-/// Keys of the corners of triangles, each once, and for every corner the place of its key among them.
+/// Keys of the corners of triangles without repetition, and the index of the key of every corner.
 fn distinct(triangles: &[[u64; 3]]) -> (Vec<u64>, Vec<[u32; 3]>) {
     let mut order: Vec<(u64, u32)> =
         triangles.as_flattened().iter().enumerate().map(|(slot, &key)| (key, slot as u32)).collect();

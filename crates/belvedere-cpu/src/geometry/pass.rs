@@ -1,5 +1,5 @@
-//! One drawing of the scene, or of part of it: a record of a curved-ray chain, several that displace as one map, a segment of the rays
-//! where records leave something out, or the only one there is.
+//! One drawing of the scene, or of part of it: a record of a curved-ray chain, several records that displace as one map, or a segment
+//! of the rays where records leave something out.
 
 use crate::geometry::displace::Displacer;
 use crate::geometry::lod::DecimatedHeights;
@@ -17,12 +17,12 @@ use belvedere_sight::Carried;
 pub(crate) struct Pass<'a> {
     view: &'a View,
     way: Way,
-    /// Numbers of the first and the last of all passes of the view that it is.
+    /// Numbers of the first and the last record or segment, among all passes of the view.
     pub(crate) numbers: [usize; 2],
-    /// Whether what does not belong to the record or segment is cut off.
+    /// Whether geometry that does not belong to the record or segment is clipped.
     cut: bool,
     displacer: Displacer<'a>,
-    /// Where one turn is all that bends edges.
+    /// `None` unless edges are bent by a single turn alone.
     edges: Option<Edges<'a>>,
     projector: Option<Projector<'a>>,
     height: HeightPx,
@@ -40,16 +40,16 @@ impl<'a> BodyPasses<'a> {
     }
 }
 
-/// What the image shows of a box.
+/// Whether the image shows a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum InView {
-    /// Nothing, or nothing of this pass.
+    /// The box is not visible in this pass.
     No,
-    /// Perhaps some of it; `None` where part of it may be beside the eye.
+    /// The box may be visible, with its extent; `None` where part of it may be beside or behind the eye.
     Maybe(Option<Extent>),
 }
 
-/// Where all of a box lies.
+/// Extent of a box on the image and in depth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Extent {
     /// Least depth, positive.
@@ -64,12 +64,12 @@ pub(crate) struct Columns {
     first: usize,
     step: usize,
     count: usize,
-    /// Relative to the eye, where single precision does.
+    /// Coordinate relative to the eye, in single precision.
     x: [f32; NODES],
 }
 
 impl Columns {
-    /// Their heights in a row of the ground.
+    /// Heights of the columns in a row of the ground.
     #[inline(always)]
     pub(crate) fn heights(&self, hf: &Heightfield, sparse: &DecimatedHeights, row: usize, out: &mut [f32; NODES]) {
         let (from, step) = sparse.row(hf, [self.first, row], self.step);
@@ -81,8 +81,8 @@ impl Columns {
 }
 
 impl<'a> Pass<'a> {
-    /// The passes of a view: one for each record, then one for each segment of curved rays. The records together draw every image of every
-    /// point once, but for what they leave out ([`CurvedRays::leaves_out`]); that the segments concerned draw.
+    /// The passes of a view: one for each record, then one for each segment of curved rays. The records draw every image of every point
+    /// once, except what they leave out ([`CurvedRays::leaves_out`]), which the segments draw.
     pub(crate) fn all(view: &'a View) -> Vec<Self> {
         let records = view.records();
         let segments = view.curved_rays().filter(|rays| rays.turn_count() > 0).map_or(0, CurvedRays::segments);
@@ -92,7 +92,7 @@ impl<'a> Pass<'a> {
         of_records.chain(of_segments).collect()
     }
 
-    /// The pass for what records from the first to the last displace as one map, see [`CurvedRays::is_continuous`].
+    /// The pass for records from the first to the last that displace as one map, see [`CurvedRays::is_continuous`].
     pub(crate) fn between(view: &'a View, records: [usize; 2]) -> Self {
         Self::new(view, Way::Records(records), records, false)
     }
@@ -180,13 +180,13 @@ impl<'a> Pass<'a> {
         }
     }
 
-    /// Whether the records may leave something out in a box that this segment has to draw.
+    /// Whether the records may leave out part of a box that this segment then has to draw.
     pub(crate) fn is_left_out(&self, bounds: &Aabb) -> bool {
         let (Way::Segment(number), Some(rays)) = (self.way, self.view.curved_rays()) else { return false };
         displaced(self.view.earlier_stages(), bounds).is_none_or(|b| rays.leaves_out(number, &b))
     }
 
-    /// Whether part of a box may be cut off from a segment.
+    /// Whether part of a box may be clipped from a segment.
     pub(crate) fn cuts(&self, bounds: &Aabb) -> bool {
         let (Way::Segment(number), Some(rays)) = (self.way, self.view.curved_rays()) else { return false };
         let planes = rays.segment_planes(number);
@@ -200,17 +200,17 @@ impl<'a> Pass<'a> {
         self.is_straight() || (straight_part && self.view.stages().len() == 1)
     }
 
-    /// Whether all edges inside a box may be drawn straight; `false` also where that is not known.
+    /// Whether all edges inside a box may be drawn straight within the tolerance; `false` also where the error is unknown.
     pub(crate) fn is_straight_in(&self, bounds: &Aabb, tolerance_px: f64) -> bool {
         self.keeps_edges() || self.edges.as_ref().is_some_and(|edges| edges.box_error_px(bounds) <= tolerance_px)
     }
 
-    /// What [`Pass::edge_error_between`] needs; `None` where it is not known.
+    /// Input of [`Pass::edge_error_between`]; `None` where it cannot be precomputed.
     pub(crate) fn edge_point(&self, p: DVec3) -> Option<EdgePoint> {
         self.edges.as_ref()?.point(p)
     }
 
-    /// [`Pass::edge_error_px`] of an edge whose ends are known; `None` where it must be asked for by their places.
+    /// [`Pass::edge_error_px`] from precomputed ends; `None` where it must be computed from their positions.
     pub(crate) fn edge_error_between(&self, a: Option<&EdgePoint>, b: Option<&EdgePoint>) -> Option<f64> {
         Some(self.edges.as_ref()?.error_px(a?, b?))
     }
@@ -230,7 +230,7 @@ impl<'a> Pass<'a> {
         self.view.stages().iter().any(|s| s.has_border())
     }
 
-    /// Where the record shows the box, judged by its displaced bounds.
+    /// Whether the pass may show the box, judged by its displaced bounds.
     pub(crate) fn in_view(&self, screen: &Screen, bounds: &Aabb) -> InView {
         if is_missed(self.view.stages(), bounds) {
             return InView::No;
@@ -257,14 +257,14 @@ impl<'a> Pass<'a> {
         if self.view.records() == 1 { image_of(screen, &Aabb::of(hull).corners()) } else { image_of(screen, &hull) }
     }
 
-    /// Bound in pixels on what a unit of height inside the box can change on the image; infinite where unknown.
+    /// Bound on the pixels that a unit of height inside the box spans on the image; infinite where unknown.
     /// * `extent`: of the box, see [`InView::Maybe`].
     pub(crate) fn px_per_height(&self, screen: &Screen, bounds: &Aabb, extent: Option<Extent>) -> f64 {
         let Some(Extent { depth, image }) = extent else { return f64::INFINITY };
         let turning = self.view.stages().iter().filter(|s| s.turns_heights());
         let stretch = turning.enumerate().map(|(i, stage)| {
-            // Heights are upright up to the first stage that turns them: it lengthens them by that of the z axis, later ones by no more
-            // than the norm.
+            // The first stage that turns heights stretches the upright direction by the length of its image; later stages stretch by at most
+            // the norm of their Jacobian.
             let upright = i == 0;
             let length = |j: DMat3| {
                 if upright {
@@ -276,7 +276,7 @@ impl<'a> Pass<'a> {
             let points = bounds.corners().into_iter().chain([bounds.center()]);
             points.map(|p| stage.jacobian(p).map_or(f64::INFINITY, length)).fold(0.0, f64::max)
         });
-        // What lies beyond the image is not drawn.
+        // Parts beyond the image are not drawn.
         let image = image.map(|at| at.clamp(-screen.center.abs(), screen.center.abs()));
         let height_px = self.height.most(screen, image) * stretch.product::<f64>();
         if screen.ortho { height_px } else { height_px / depth }
@@ -296,7 +296,7 @@ pub(crate) fn edge_error_px(view: &View, way: Way, a: DVec3, b: DVec3) -> f64 {
     }
 }
 
-/// What the image shows of the hull of displaced points.
+/// Whether the image may show the hull of displaced points.
 fn image_of(screen: &Screen, hull: &[DVec3]) -> InView {
     let (mut code, mut depth) = (u8::MAX, f64::INFINITY);
     let mut image = [DVec2::INFINITY, DVec2::NEG_INFINITY];
@@ -310,7 +310,7 @@ fn image_of(screen: &Screen, hull: &[DVec3]) -> InView {
     if code != 0 { InView::No } else { InView::Maybe((depth > 0.0).then_some(Extent { depth, image })) }
 }
 
-/// Whether no point of a box comes through the stages.
+/// Whether the stages give no point of a box an image.
 fn is_missed(stages: &[Stage], bounds: &Aabb) -> bool {
     let mut with_border = stages.iter().enumerate().filter(|(_, stage)| stage.has_border());
     with_border.any(|(at, stage)| displaced(&stages[..at], bounds).is_some_and(|b| stage.misses(&b)))
@@ -327,9 +327,9 @@ pub(crate) fn displaced(stages: &[Stage], bounds: &Aabb) -> Option<Aabb> {
 /// a spline a height points anywhere.
 #[derive(Debug)]
 enum HeightPx {
-    /// Across the axis in pixels, and along it, of the ends of what a height may become.
+    /// Extreme images of a unit height: its part across the axis in pixels, and its part along the axis.
     Ways(Vec<(DVec2, f64)>),
-    /// Any direction, of this length.
+    /// Any direction, with this length.
     Any(f64),
 }
 
@@ -365,7 +365,7 @@ impl HeightPx {
         }
     }
 
-    /// At most, in a part of the image: its least and largest position, pixels from the centre.
+    /// Largest number of pixels per unit of height in a part of the image, given by its least and largest position from the centre, pixels.
     fn most(&self, screen: &Screen, [min, max]: [DVec2; 2]) -> f64 {
         let corners = [min, max, DVec2::new(min.x, max.y), DVec2::new(max.x, min.y)];
         match self {
@@ -431,7 +431,7 @@ mod tests {
                 }
                 assert!(worst <= most * (1.0 + 1e-9), "view {k}, box {i} {j}: {worst} > {most}");
                 boxes += usize::from(worst > 0.0);
-                // Far away, where all of a box is about as deep.
+                // Far away, where the depths of all points of a box are about equal.
                 if worst > 0.0 && j >= 10 {
                     loose = loose.max(most / worst);
                 }

@@ -1,4 +1,4 @@
-//! Nodes of the ground onto the image, many at once, in single precision.
+//! Projects nodes of the ground onto the image in single precision, many at once.
 //!
 //! Everything is measured from the eye, where rounding to 24 bits costs a direction less than 1e-7 of a radian. Plain loops
 //! without branches over slices, so that compilers turn them into vector instructions; only operations that IEEE 754
@@ -26,14 +26,14 @@ const CHUNK: usize = 64;
 #[derive(Debug)]
 pub(crate) struct Projector<'a> {
     eye: DVec3,
-    /// Height of the eye, and what its first 24 bits leave over.
+    /// Height of the eye, and its remainder after rounding to single precision.
     eye_z: [f32; 2],
     /// Drop of the ground per squared distance.
     earth: f32,
     lift: Option<&'a TerrainDisocclusion>,
-    /// One, or those of records that displace as one map.
+    /// Parts of one record, or of all records that displace as one map.
     parts: Vec<Part>,
-    /// Between each part and the next: positive beyond.
+    /// Affine forms between each part and the next: positive beyond.
     separators: Vec<Form>,
     scale: f32,
     center: [i32; 2],
@@ -103,7 +103,7 @@ impl<'a> Projector<'a> {
         [(xy.x - self.eye.x) as f32, (xy.y - self.eye.y) as f32]
     }
 
-    /// Images of nodes with the given heights; `false` if one of them has none here: no image at all, to be clipped, or
+    /// Images of nodes with the given heights; `false` if one of them has none here: it has no image, must be clipped, or lies
     /// far outside the image.
     /// * `x`, `y`: relative to the eye.
     pub(crate) fn row(&self, x: &[f32], y: f32, heights: &[f32], out: &mut Row<'_>) -> bool {
@@ -149,7 +149,7 @@ impl<'a> Projector<'a> {
         self.separators.partition_point(|s| s.at(s.row(y), x, z) > 0.0)
     }
 
-    /// The part that all nodes of a row belong to, if there is one: that of the corners of a rectangle around them.
+    /// The part that all nodes of a row belong to, if there is one, judged by the corners of a rectangle around them.
     fn only_part(&self, x: &[f32], y: f32, heights: &[f32]) -> Option<usize> {
         let (&west, &east) = (x.first()?, x.last()?);
         let low = heights.iter().fold(f32::INFINITY, |a, &b| if b < a { b } else { a });
@@ -192,7 +192,7 @@ impl Part {
     }
 }
 
-/// Images of all nodes of a ground, row-major: what a frame computes first, on its own.
+/// Images of all nodes of a ground, row-major, as the first step of a frame.
 ///
 /// Pixels in 1/256, nearness (1 / depth in perspective, -depth in parallel projection); within 0.01 px of
 /// [`View::project_all`]'s image by one record.

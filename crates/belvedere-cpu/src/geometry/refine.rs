@@ -1,4 +1,4 @@
-//! Subdivision of triangles until their bent image is straight enough, and clipping.
+//! Subdivision of triangles until the error of their bent edges is within the tolerance, and clipping.
 
 use crate::geometry::block::{SoupTriangle, SoupVertex};
 use crate::geometry::pass::Pass;
@@ -7,11 +7,11 @@ use belvedere_core::DVec3;
 
 /// An edge is halved at most this often.
 const MAX_HALVINGS: u8 = 10;
-/// The same where no bound of the error is known: beside the near plane, where images are large, and at the borders of a strip, which are
+/// The same where the error has no bound: beside the near plane, where images are large, and at the borders of a strip, which are
 /// long.
 const MAX_BLIND_HALVINGS: u8 = 9;
 const MAX_BLIND_HALVINGS_BESIDE_STRIPS: u8 = 6;
-/// How far beyond the image a triangle whose bend is unknown is still followed.
+/// Distance beyond the image up to which triangles whose bend is unknown are refined.
 const MAX_MARGIN_PX: f64 = 4096.0;
 /// Level of an edge that must not be split.
 const FROZEN: u8 = u8::MAX;
@@ -22,7 +22,7 @@ pub(crate) struct Corner {
     p: DVec3,
     /// View space after displacement; `None` without image.
     v: Option<DVec3>,
-    /// Image, if another piece of the surface places it.
+    /// Image that the corner shares with another piece of the surface, if any.
     image: Option<ScreenVertex>,
     margins: [f64; 2],
     weights: [f64; 2],
@@ -46,7 +46,7 @@ pub(crate) struct Refiner<'a> {
 }
 
 impl<'a> Refiner<'a> {
-    /// * `out`: memory to use.
+    /// * `out`: a buffer to reuse.
     pub(crate) fn new(pass: &'a Pass<'a>, screen: &'a Screen, tolerance_px: f64, mut out: Vec<SoupTriangle>) -> Self {
         out.clear();
         let blind_halvings = if pass.has_border() { MAX_BLIND_HALVINGS_BESIDE_STRIPS } else { MAX_BLIND_HALVINGS };
@@ -101,7 +101,7 @@ impl<'a> Refiner<'a> {
         if missing == [true; 2] && self.pass.crosses(a.p, b.p) {
             return f64::INFINITY;
         }
-        // An edge without any image matters only beside one that has some.
+        // An edge without images matters only beside an edge with one.
         if a.v.is_none() && b.v.is_none() {
             return 0.0;
         }
@@ -112,7 +112,7 @@ impl<'a> Refiner<'a> {
         if error == 0.0 || missing == [false; 2] {
             return error;
         }
-        // What bends is halved towards the border of what can be seen.
+        // An edge that crosses the border of the domain is halved towards it.
         f64::INFINITY
     }
 
@@ -125,7 +125,7 @@ impl<'a> Refiner<'a> {
         let next = |l: u8| if l == FROZEN { FROZEN } else { l + 1 };
         let mid: [Option<Corner>; 3] = std::array::from_fn(|i| split[i].then(|| self.middle(&c[i], &c[(i + 1) % 3])));
         self.splits += split.iter().filter(|&&s| s).count() as u64;
-        // A new inner edge has been halved as often as the most halved of its triangle.
+        // A new inner edge counts as often halved as the most halved edge of its triangle.
         let inner = levels.iter().zip(split).filter(|(_, s)| *s).map(|(&l, _)| next(l)).max().unwrap_or(0);
         match mid {
             [Some(m0), Some(m1), Some(m2)] => {

@@ -1,4 +1,4 @@
-//! Which blocks of the ground are drawn, and in how much detail.
+//! Chooses the blocks of the ground to draw, and their levels of detail.
 
 use crate::geometry::locate::{Held, Locator};
 use crate::geometry::lod::{Tree, nodes};
@@ -12,7 +12,7 @@ use belvedere_scene::Heightfield;
 pub(crate) struct SelectedBlock {
     pub(crate) level: usize,
     pub(crate) block: [usize; 2],
-    /// Whether straight edges of its cells may be too far off.
+    /// Whether drawing the edges of its cells straight may exceed the tolerance.
     pub(crate) edges: bool,
     /// The passes that draw it, in [`Selection::passes`].
     pub(crate) held: Held,
@@ -20,12 +20,12 @@ pub(crate) struct SelectedBlock {
     pub(crate) judged: [bool; 4],
     /// Sides along which the neighbour is drawn in half the detail.
     pub(crate) seam: [bool; 4],
-    /// Pixels that a difference in height can make; infinite where unknown.
+    /// Pixels per unit of height in the block; infinite where unknown.
     px_per_unit: f64,
     dropped: bool,
 }
 
-/// What is known of a block of the tree; kept between frames for its memory.
+/// Chosen blocks of the tree; kept between frames so that its memory is reused.
 #[derive(Debug, Default)]
 pub(crate) struct Selection {
     /// Per block of all levels: [`NOTHING`], [`SPLIT`] or [`FIRST`] plus the index in `list`.
@@ -43,7 +43,7 @@ const FIRST: u32 = 2;
 /// North, east, south, west.
 const AROUND: [[isize; 2]; 4] = [[0, -1], [1, 0], [0, 1], [-1, 0]];
 
-/// The ground, the camera and what may be left out.
+/// Inputs of the choice: the ground, the camera and the permitted errors.
 pub(crate) struct DetailSelector<'a> {
     pub(crate) hf: &'a Heightfield,
     pub(crate) tree: &'a Tree,
@@ -51,13 +51,13 @@ pub(crate) struct DetailSelector<'a> {
     pub(crate) locator: &'a Locator<'a>,
     /// Worst error of a bent edge drawn straight, pixels.
     pub(crate) tolerance_px: f64,
-    /// Worst error of less detail, bend included, pixels; 0 draws every cell.
+    /// Worst error of level of detail, bend included, pixels; 0 draws every cell.
     pub(crate) lod_px: f64,
 }
 
 impl DetailSelector<'_> {
-    /// Walks the tree from the whole ground down: leaves out what the image does not show, stops where less detail will
-    /// do, then halves what is too coarse beside a finer neighbour.
+    /// Walks the tree from the root down: drops blocks outside the image, stops where the error is small enough, then halves blocks
+    /// that are too coarse beside a finer neighbour.
     pub(crate) fn choose(&self, out: &mut Selection) {
         out.clear(self.tree);
         let top = self.tree.levels() - 1;
@@ -75,20 +75,20 @@ impl DetailSelector<'_> {
                 let SelectedBlock { level, block, edges, .. } = out.list[i];
                 let near = self.neighbour(level, block, side, out).map(|k| (out.list[k].level, out.list[k].edges));
                 out.list[i].seam[side] = near.is_some_and(|(n, _)| n > level);
-                // An edge between two blocks is judged alike by both; a coarser neighbour's edges are straight enough.
+                // Both blocks judge a common edge alike; the edges of a coarser neighbour are straight enough.
                 out.list[i].judged[side] = near.map_or(edges, |(n, e)| n == level && (edges || e)) && level == 0;
             }
         }
         out.list.retain(|c| !c.dropped);
     }
 
-    /// * `larger`: the records of the block around.
+    /// * `larger`: passes of the parent block.
     fn visit(&self, level: usize, block: [usize; 2], larger: &Held, mut plain: bool, out: &mut Selection) {
         let Some(bounds) = self.tree.bounds(self.hf, level, block) else { return };
         let held = self.locator.locate(&bounds, larger, &mut out.passes);
         let Some(px_per_unit) = self.locator.px_per_height(&bounds, out.drawn_by(&held)) else { return };
         let height_px = f64::from(self.tree.span(level, block).error) * px_per_unit;
-        // Where records are cut from each other, all of them must cut the same triangles.
+        // Where records are clipped from each other, all of them must clip the same triangles, so level 0 is drawn.
         let coarse = level > 0 && held.whole && height_px <= self.lod_px && self.lod_px > 0.0;
         let mut bend_px = 0.0;
         if !self.view.stages().is_empty() && (coarse || !plain) {
@@ -125,11 +125,11 @@ impl DetailSelector<'_> {
         }
     }
 
-    /// Bound of the error of the edges of cells, `n` to a side of the box, drawn straight.
+    /// Bound on the error in pixels of drawing the edges of cells straight, `n` cells to a side of the box.
     ///
     /// The chord of a curve that turns by a given angle deviates in proportion to its length, so the bound of the box's
     /// long edges, shared out over its cells with a factor 2 in hand, covers the cells' edges.
-    /// * `ways`: of all passes that draw the box.
+    /// * `ways`: ways of all passes that draw the box.
     fn cells_error(&self, bounds: &Aabb, ways: impl Iterator<Item = Way>, n: usize) -> f64 {
         let c = bounds.corners();
         let pairs = [(0, 7), (1, 6), (2, 5), (3, 4), (0, 1), (2, 3), (0, 2), (1, 3), (4, 7), (5, 6)];
@@ -146,7 +146,7 @@ impl DetailSelector<'_> {
         worst * 2.0 / n as f64
     }
 
-    /// Halves the neighbour beyond a side until it is at most one level coarser and the seam is close enough.
+    /// Halves the neighbour beyond a side until it is at most one level coarser and the error of the seam is small enough.
     fn settle(&self, i: usize, side: usize, out: &mut Selection) {
         let SelectedBlock { level, block, px_per_unit, held: Held { whole, .. }, .. } = out.list[i];
         while let Some(k) = self.neighbour(level, block, side, out) {
@@ -162,7 +162,7 @@ impl DetailSelector<'_> {
         }
     }
 
-    /// The four quarters of a block, unless they are off the image. No error grows towards finer levels.
+    /// Replaces a block by its four quarters, except those off the image. Errors do not grow towards finer levels.
     fn halve(&self, parent: SelectedBlock, out: &mut Selection) {
         let level = parent.level - 1;
         let [cols, rows] = self.tree.size(level);
@@ -219,7 +219,7 @@ impl Selection {
         self.held(held).into_iter().flatten().copied()
     }
 
-    /// By what curved rays displace a block whose records do so as one map.
+    /// Ways in which curved rays displace a block, those of records that displace it as one map joined.
     fn ways(&self, held: &Held, view: &View) -> impl Iterator<Item = Way> {
         let [records, segments] = self.held(held);
         let all = records.first().zip(records.last());

@@ -6,12 +6,12 @@ use belvedere_core::{DVec2, DVec3, SpaceMap};
 
 /// Pieces of the curve between its ends.
 const PIECES: usize = 512;
-/// Largest accepted error of a point on the curve, curve units, and of a unit normal. The eye is about a curve unit away
+/// Largest accepted error of a point on the curve, curve units, and of a unit normal. The eye is about one curve unit away
 /// from the curve, so both stay far below 0.01 pixel.
 const PLACE_ERROR: f64 = 1e-7;
 const NORMAL_ERROR: f64 = 1e-6;
 
-/// Cubic pieces of equal length along the curve for its point and its normal, ours; pieces that are not close enough (at
+/// Cubic pieces of equal length along the curve for its point and its normal, ours; pieces whose error is too large (at
 /// corners of the curve) fall back on the stage itself.
 #[derive(Debug)]
 pub(crate) struct SplineTable<'a> {
@@ -35,7 +35,7 @@ struct Piece {
     good: bool,
 }
 
-/// Place and normal with their derivatives by pieces.
+/// Point and normal with their derivatives by pieces.
 #[derive(Clone, Copy)]
 struct Knot {
     value: [f64; 4],
@@ -108,7 +108,7 @@ impl<'a> SplineTable<'a> {
         let v = p - self.origin;
         let [right, heading, normal] = self.axes.map(|axis| v.dot(axis));
         let x = heading * self.pieces_per_unit + self.piece_of_origin;
-        // NaN goes with the near extension, and stays NaN.
+        // NaN goes to the near extension, and stays NaN.
         let (k, from) = if x >= 0.0 {
             let k = (x as usize).min(PIECES);
             (k + 1, k as f64)

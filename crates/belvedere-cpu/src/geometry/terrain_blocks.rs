@@ -1,4 +1,4 @@
-//! Blocks of ground.
+//! Blocks of ground: displaced, projected, subdivided and clipped.
 
 use crate::geometry::block::{Block, Counts, Geometry, Job, cover_of};
 use crate::geometry::grid::{CELL_TRIANGLES, Nodes, ScreenExtent, cell_weights, kept_node};
@@ -12,8 +12,8 @@ use belvedere_core::Aabb;
 use belvedere_scene::{Heightfield, NodeState};
 
 impl Job<'_> {
-    /// A block of ground at its level of detail; `None` if nothing of it is on the image.
-    /// * `bounds`: of the block.
+    /// A block of ground at its level of detail; `None` if no part of it is on the image.
+    /// * `bounds`: bounds of the block.
     pub(crate) fn terrain_block(
         &self,
         pass: &Pass<'_>,
@@ -85,7 +85,7 @@ impl Job<'_> {
         let count = cols + 1;
         let columns = pass.columns(hf, block.origin[0], step, count);
         let mut whole = true;
-        // All of them first: rows lie far apart in memory, and none has to wait for another.
+        // All rows are read first: they lie far apart in memory, and the reads overlap.
         let mut heights = [[0.0; NODES]; NODES];
         for (r, heights) in heights[..=rows].iter_mut().enumerate() {
             columns.heights(hf, sparse, block.origin[1] + step * r, heights);

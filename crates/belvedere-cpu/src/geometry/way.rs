@@ -1,6 +1,6 @@
-//! By what curved rays displace.
+//! The part of curved rays that displaces a pass.
 
-/// By what curved rays displace.
+/// The part of curved rays that displaces a pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Way {
     /// A record ([`View::displace_in`]), or the first and the last one of several that displace as one map

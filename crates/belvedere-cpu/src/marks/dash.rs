@@ -1,16 +1,16 @@
-//! Strokes along a line, whole or in dashes.
+//! Strokes along a line, solid or dashed.
 
 use crate::marks::ribbon::{Lane, Stroke};
 use crate::marks::visibility::Station;
 use belvedere_core::polygon;
 
-/// Share of a period that is ink, and its shortest length in widths of the line.
+/// Share of a period that is inked, and shortest period in widths of the line.
 const INK: f64 = 0.55;
 const PERIOD: f64 = 4.4;
-/// Stretch of line on the image that says how many pixels a scene unit has, pixels to either side.
+/// Half the stretch of line over which pixels per scene unit are measured, pixels.
 const WINDOW_PX: f64 = 60.0;
 
-/// Strokes along stations, as few as straightness allows.
+/// Joins stations into as few strokes as straightness allows.
 pub(crate) fn trace(part: &[Station], half: f64, lane: Lane, out: &mut Vec<Stroke>) {
     if half <= 0.0 {
         return;
@@ -34,8 +34,8 @@ pub(crate) fn trace(part: &[Station], half: f64, lane: Lane, out: &mut Vec<Strok
     }
 }
 
-/// Dashes that lie still on the ground: they begin at multiples of a period along the line, which is a power of two of the scene unit
-/// and, on the image, once to twice as long as the width asks for.
+/// Dashes that stay fixed to the ground: they begin at multiples of a period along the line, which is a power of two in scene units
+/// and one to two times as long on the image as the width requires.
 pub(crate) fn dashes(part: &[Station], width: f64, half: f64, out: &mut Vec<Stroke>) {
     let wanted_px = PERIOD * width.max(1.5);
     let periods = periods(part, wanted_px);
@@ -75,13 +75,13 @@ fn periods(part: &[Station], wanted_px: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Ink and gaps between two lengths along a line: shares of the way between them.
+/// Inked and empty pieces between two lengths along a line, as shares of the length between them.
 fn pieces([g0, g1]: [f64; 2], period: f64) -> Vec<(bool, [f64; 2])> {
     let length = g1 - g0;
     if !(length > 0.0) {
         return Vec::new();
     }
-    // Finer than the eye: as good as ink.
+    // A period much shorter than the step between two stations is drawn solid.
     if length > 8.0 * period {
         return vec![(true, [0.0, 1.0])];
     }
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn dashes_lie_still_on_the_ground() {
-        // Whether a line comes out of hiding earlier, or is seen a little nearer, its dashes stay where they are.
+        // Dashes keep their positions when a line becomes visible earlier or is seen from slightly nearer.
         let seen = beginnings(0.0, 1.0);
         assert!(seen.len() > 40, "{} dashes", seen.len());
         let period = seen[1] - seen[0];

@@ -3,7 +3,7 @@
 use crate::marks::path::LinePoint;
 use belvedere_scene::DistanceMarkers;
 
-/// Marks wanted on the longest line when the distance is left to us.
+/// Number of marks on the longest line when the distance is chosen automatically.
 const WANTED: f64 = 10.0;
 /// Most marks on a line.
 const MOST: usize = 2000;
@@ -18,7 +18,7 @@ pub(crate) fn spacing(markers: DistanceMarkers, lengths: impl Iterator<Item = f6
     (every > 0.0 && every < longest && longest / every <= MOST as f64).then_some(every)
 }
 
-/// The round number (1, 2, 5 times a power of ten) nearest above.
+/// The next round number (1, 2 or 5 times a power of ten) at or above a value.
 fn round(value: f64) -> f64 {
     if !(value > 0.0 && value.is_finite()) {
         return 0.0;
@@ -27,7 +27,7 @@ fn round(value: f64) -> f64 {
     [1.0, 2.0, 5.0, 10.0].map(|k| k * power).into_iter().find(|v| *v >= value * 0.999_999).unwrap_or(10.0 * power)
 }
 
-/// Places at multiples of `every` along the draped line, the beginning left out, with their texts.
+/// Points at multiples of `every` along the draped line, except its beginning, with their texts.
 pub(crate) fn marks(line: &[LinePoint], every: f64) -> Vec<(LinePoint, String)> {
     let mut out = Vec::new();
     let mut next = every;
@@ -56,7 +56,7 @@ mod tests {
 
     #[test]
     fn marks_are_equally_far_apart_over_the_ground() {
-        // Up a slope of 3 in 4: 5 units of way for 4 across.
+        // On a slope of 3 in 4, a line of 5 units covers 4 in plan.
         let at = |x: f64| LinePoint { p: DVec3::new(x, 0.0, 0.75 * x), along: 1.25 * x, on_ground: true };
         let line: Vec<LinePoint> = (0..=64).map(|i| at(f64::from(i) * 62.5)).collect();
         let marks = marks(&line, 1000.0);

@@ -6,7 +6,7 @@ use crate::screen::Screen;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::OverlayFace;
 
-/// Share of the opacity that is left behind surfaces.
+/// Factor of the opacity behind surfaces.
 const BEHIND: f32 = 0.35;
 
 /// A face on the image.
@@ -23,7 +23,7 @@ pub(crate) struct Face {
 }
 
 impl Face {
-    /// `None` if nothing of it can be seen.
+    /// `None` if no part of it can be visible.
     pub(crate) fn new(face: &OverlayFace, pass: &Pass<'_>, screen: &Screen) -> Option<Self> {
         let corners: Vec<DVec3> =
             face.corners.iter().map(|&p| Some(screen.view_from(pass.displace(p)?))).collect::<Option<_>>()?;

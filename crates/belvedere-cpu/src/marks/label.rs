@@ -1,4 +1,4 @@
-//! Names: placed one after the other where nothing is yet, with a leader up from the point if need be, as in panoramas.
+//! Labels: placed greedily where no other label is, with a leader up from the point if need be, as in panoramas.
 
 use crate::canvas::{Canvas, text_size};
 use belvedere_core::DVec2;
@@ -6,12 +6,12 @@ use belvedere_scene::Color;
 
 /// Lengths of leaders tried, pixels.
 const LEADERS: [f64; 14] = [0.0, 10.0, 18.0, 26.0, 36.0, 48.0, 60.0, 74.0, 90.0, 108.0, 128.0, 150.0, 175.0, 200.0];
-/// Room between texts, pixels.
+/// Gap between texts, pixels.
 const ROOM: f64 = 2.0;
 /// Most texts of a picture.
 const MOST: usize = 400;
 
-/// A text that wants a place.
+/// A text to be placed.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LabelRequest {
     pub(crate) text: String,
@@ -22,11 +22,11 @@ pub(crate) struct LabelRequest {
     /// Height of the letters, pixels.
     pub(crate) size_px: f64,
     pub(crate) color: Color,
-    /// Whether it may stand away from its point.
+    /// Whether the text may be placed away from its point.
     pub(crate) leader: bool,
 }
 
-/// A text in its place.
+/// A placed text.
 #[derive(Debug, Clone, PartialEq)]
 struct Placed {
     label_request: LabelRequest,
@@ -47,7 +47,7 @@ fn overlap(a: &Rect, b: &Rect) -> bool {
 }
 
 impl Labels {
-    /// Places what fits into a picture of `size`; earlier wishes first.
+    /// Places the texts that fit into a picture of `size` pixels, in the order of the requests.
     pub(crate) fn place(requests: Vec<LabelRequest>, size: DVec2) -> Self {
         let markers: Vec<Rect> = requests.iter().map(marker).collect();
         let mut taken: Vec<Rect> = Vec::new();
@@ -74,7 +74,7 @@ impl Labels {
         Self { placed }
     }
 
-    /// Writes them.
+    /// Draws the texts.
     pub(crate) fn draw(&self, canvas: &mut Canvas<'_>) {
         for p in &self.placed {
             let ink = p.label_request.color;
@@ -90,7 +90,7 @@ impl Labels {
     }
 }
 
-/// White around dark letters, dark around light ones.
+/// Colour of the halo: white around dark letters, dark around light ones.
 fn rim(ink: Color) -> Color {
     let light = 2 * u32::from(ink.r) + 5 * u32::from(ink.g) + u32::from(ink.b) > 8 * 140;
     if light { Color::rgb(30, 34, 40) } else { Color::rgb(255, 255, 255) }

@@ -14,7 +14,7 @@ const MAX_NODES: usize = 64 << 20;
 const SLACK: f64 = 1e-6;
 const SLACK_PX: f64 = 0.05;
 
-/// Asks the surfaces themselves what hides what; prepared when first needed.
+/// Tests lines of sight against the surfaces themselves; the tracer is prepared on first use.
 pub(crate) struct LineOfSight<'a> {
     scene: &'a Scene,
     view: &'a View,
@@ -27,7 +27,7 @@ impl<'a> LineOfSight<'a> {
         Self { scene, view, sections, tracer: OnceLock::new() }
     }
 
-    /// The point itself, exactly on the drawn surface if its line lies on the ground.
+    /// The point itself, moved exactly onto the drawn surface if its line lies on the ground.
     pub(crate) fn on_surface(&self, on_line: &LinePoint, lift_m: f64) -> DVec3 {
         let p = on_line.p;
         let height =
@@ -35,7 +35,7 @@ impl<'a> LineOfSight<'a> {
         height.map_or(p, |z| p.with_z(z + lift_m))
     }
 
-    /// Whether nothing lies before `depth` on the ray of `pixel`; `None` if it cannot be told.
+    /// Whether no surface lies before `depth` on the ray of `pixel`; `None` if that cannot be decided.
     pub(crate) fn sees(&self, screen: &Screen, pixel: DVec2, depth: f64) -> Option<bool> {
         let tracer = self.tracer.get_or_init(|| self.prepare()).as_ref()?;
         let slack = SLACK * depth + SLACK_PX * screen.footprint(depth);

@@ -97,7 +97,7 @@ impl Marks {
         Self { under, faces: faces.collect(), sheets, labels: Labels::place(requests, 2.0 * screen.center) }
     }
 
-    /// Whether there may be any.
+    /// Whether the job may have any marks.
     pub(crate) fn are_in(job: &RenderJob<'_>) -> bool {
         let drawn = |kind: &LayerKind| {
             matches!(kind, LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) | LayerKind::Volume(_))
@@ -156,8 +156,8 @@ struct Marker {
 }
 
 impl<'a> MarkBuilder<'a> {
-    /// The passes that draw what lies in some boxes, each image once: the records, or, where they leave something out, the segments, which
-    /// part at the ends of the turns.
+    /// The passes that draw the contents of some boxes, each image once: the records, or the segments where the records leave something
+    /// out; segments part at the ends of the turns.
     fn passes_for(&self, boxes: impl Iterator<Item = Aabb>) -> &'a [Pass<'a>] {
         let (records, segments) = self.passes.split_at(self.records.min(self.passes.len()));
         let mut boxes = boxes;
@@ -273,7 +273,7 @@ impl MarkBuilder<'_> {
         let lengths = lines.iter().filter_map(|l| l.last().map(|p| p.along));
         let every = distance::spacing(markers, lengths)?;
         let half_px = (0.5 * width_or_none(layer.width_px)).max(1.0) + 1.2;
-        // A hidden mark would drown among the dashes.
+        // A hidden mark cannot be told from the dashes.
         let hidden = if layer.hidden == Hidden::Show { Hidden::Show } else { Hidden::Cut };
         let marker = Marker { symbol: Symbol::Dot, half_px, casing: true, hidden };
         let mut strokes = Vec::new();
@@ -385,7 +385,7 @@ fn darker(c: Color) -> Color {
     Color::rgb(r, g, b)
 }
 
-/// A width that cannot be drawn counts as 0.
+/// The width, or 0 if it cannot be drawn.
 fn width_or_none(width_px: f64) -> f64 {
     if width_px.is_finite() { width_px.clamp(0.0, 1000.0) } else { 0.0 }
 }

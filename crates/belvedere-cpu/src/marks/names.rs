@@ -1,4 +1,4 @@
-//! Names of lines.
+//! Names of lines, placed along them.
 
 use crate::canvas::text_size;
 use crate::marks::label::LabelRequest;
@@ -8,12 +8,12 @@ use belvedere_core::DVec2;
 use belvedere_scene::{Hidden, LineLayer};
 use rayon::prelude::*;
 
-/// Room that a name leaves at the rim of the picture, pixels.
+/// Margin between a name and the rim of the picture, pixels.
 const RIM: f64 = 4.0;
 /// A name needs a stretch of line of at least this share of its own width.
 const LEAST_SHARE: f64 = 0.6;
 
-/// A stretch of line that is drawn as seen: its length and middle, pixels.
+/// A drawn stretch of line: its length and middle, pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Stretch {
     length: f64,
@@ -42,7 +42,7 @@ impl MarkBuilder<'_> {
             }
         }
         names.retain(|(name, s)| s.length >= LEAST_SHARE * text_size(size_px, name).width);
-        // The longer a line is seen, the sooner its name finds a place.
+        // Names of lines with longer visible stretches are placed first.
         names.sort_by(|a, b| b.1.length.total_cmp(&a.1.length).then(a.0.cmp(b.0)));
         let side = casing_of(half_px);
         let label_request = |(name, s): (&str, Stretch)| LabelRequest {
@@ -58,7 +58,7 @@ impl MarkBuilder<'_> {
 
     fn longest(&self, line: &[path::LinePoint], style: Style) -> Option<Stretch> {
         let size = 2.0 * self.screen.center;
-        // Where hidden parts are drawn like the others a name has all of the line to choose from.
+        // Where hidden parts are drawn like visible ones, the whole line may bear the name.
         let drawn = |run: Run| match style.hidden {
             Hidden::Show => vec![run.stations],
             _ => run.parts().into_iter().filter(|(visible, _)| *visible).map(|(_, part)| part).collect(),

@@ -1,13 +1,13 @@
-//! Lines from the ground to the image.
+//! Lines draped on the ground and projected onto the image.
 
 use crate::geometry::pass::Pass;
 use crate::screen::Screen;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Heightfield, Scene};
 
-/// A line is judged to lie on the ground if its vertices are this close to it, scene units.
+/// Largest distance of the vertices from the ground up to which a line counts as lying on it, scene units.
 const ON_GROUND: f64 = 1.0;
-/// Halvings of a piece of line under the bend.
+/// Largest number of halvings of a piece of line under the bend.
 const MAX_HALVINGS: u32 = 8;
 
 /// A point of a line on the image.
@@ -15,7 +15,7 @@ const MAX_HALVINGS: u32 = 8;
 pub(crate) struct PathPoint {
     pub(crate) pixel: DVec2,
     pub(crate) depth: f64,
-    /// Where it is.
+    /// The point in the world.
     pub(crate) on_line: LinePoint,
 }
 
@@ -40,7 +40,7 @@ impl LinePoint {
     }
 }
 
-/// The line laid on the drawn surface: vertices and enough points between them to follow its triangles, lifted.
+/// The line draped on the drawn surface: its vertices, and points every 0.4 node spacings between them, lifted.
 pub(crate) fn drape(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<LinePoint> {
     let lift = DVec3::Z * lift_m;
     let mut out: Vec<LinePoint> = Vec::with_capacity(points.len() * 3);
@@ -71,7 +71,7 @@ pub(crate) fn drape(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<LinePoi
     out
 }
 
-/// The points as they are.
+/// The points without draping.
 pub(crate) fn as_given(points: &[DVec3]) -> Vec<LinePoint> {
     let mut along = 0.0;
     let mut last: Option<DVec3> = None;
@@ -84,7 +84,7 @@ pub(crate) fn as_given(points: &[DVec3]) -> Vec<LinePoint> {
         .collect()
 }
 
-/// The line laid on the drawn surface whatever its heights, lifted: pieces without holes.
+/// The line draped on the drawn surface, whatever its own heights, lifted: pieces without holes.
 pub(crate) fn lay(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<Vec<LinePoint>> {
     let Some(hf) = scene.terrain() else { return Vec::new() };
     let step = 0.9 * hf.spacing().min_element();
@@ -120,7 +120,7 @@ fn is_on_ground(hf: &Heightfield, p: DVec3) -> bool {
     near(hf.height_at(p.truncate())) || near(hf.surface_at(p.truncate()))
 }
 
-/// Vertex of a line with everything that clipping needs.
+/// Vertex of a line with the data for clipping.
 #[derive(Clone, Copy)]
 struct Vertex {
     on_line: LinePoint,

@@ -1,4 +1,4 @@
-//! Anti-aliased ribbons and symbols: the union of strokes, never darker where they overlap.
+//! Anti-aliased ribbons and symbols: the union of strokes, so that overlaps are not darker.
 
 use crate::color::{Packed, Rgb};
 use crate::marks::symbol;
@@ -13,7 +13,7 @@ pub(crate) struct Ink {
     pub(crate) alpha: f32,
 }
 
-/// What a stroke contributes to.
+/// Coverage mask that a stroke is drawn into.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Lane {
     /// Below: parts behind surfaces.
@@ -123,7 +123,7 @@ impl StrokeLayer {
                 continue;
             }
             let mut rgb = color[i].rgb();
-            // What is hidden does not shine through what is visible.
+            // Hidden parts do not show through visible ones.
             let h = h * (1.0 - c.max(f).max(s));
             for (ink, cover) in self.inks.iter().zip([h, c, f.max(s)]) {
                 rgb = rgb.lerp(ink.color, ink.alpha * cover);
@@ -144,7 +144,7 @@ fn cover(s: &Stroke, mask: &mut [f32], y0: i32, rows: i32, width: i32) {
     let x1 = (hi.x - 0.5).floor().min((width - 1) as f32) as i32;
     let ya = ((lo.y - 0.5).ceil().max(y0 as f32) as i32).min(y0 + rows);
     let yb = (hi.y - 0.5).floor().min((y0 + rows - 1) as f32) as i32;
-    // A line thinner than a pixel covers in proportion.
+    // The coverage of a line thinner than a pixel is proportional to its width.
     let most = (2.0 * s.half).min(1.0);
     for y in ya..=yb {
         for x in x0..=x1 {

@@ -1,4 +1,4 @@
-//! The parts of lines, outlines and points that styling sections show.
+//! Parts of lines, outlines and points that styling sections show.
 
 use crate::marks::MarkBuilder;
 use crate::marks::path::LinePoint;
@@ -8,7 +8,7 @@ use belvedere_scene::{LineFeature, LineLayer, PointLayer};
 use std::borrow::Cow;
 
 impl MarkBuilder<'_> {
-    /// Whether a layer is drawn everywhere, nowhere, or as a test of places tells.
+    /// Whether a layer is drawn everywhere, nowhere, or partly, and a test whether it is drawn at a point.
     fn shows(&self, layer: usize) -> (Shown, impl Fn(DVec3) -> bool + '_) {
         let shown = self.sections.map_or(Shown::Everything, |s| s.of_layer(layer));
         (shown, move |p: DVec3| self.sections.is_none_or(|s| s.prevails(layer, p)))

@@ -17,7 +17,7 @@ pub(crate) fn reach(symbol: Symbol) -> f32 {
     }
 }
 
-/// How far the ink goes above the point, in half sizes.
+/// Height of the symbol above its point, in half sizes.
 pub(crate) fn top(symbol: Symbol) -> f64 {
     match symbol {
         Symbol::Triangle => 1.15,

@@ -1,4 +1,4 @@
-//! Which parts of a line the surfaces hide, steadily.
+//! Visible and hidden parts of a line, stable from frame to frame.
 
 use crate::geometry::pass::Pass;
 use crate::marks::line_of_sight::LineOfSight;
@@ -6,12 +6,12 @@ use crate::marks::path::{LinePoint, PathPoint};
 use crate::screen::Screen;
 use belvedere_core::DVec2;
 
-/// Hidden gaps shorter than this are closed, then visible specks shorter than this are dropped, pixels; up to twice that length
-/// they are drawn shorter than they are, so that none springs up.
+/// Hidden gaps shorter than this are closed, then visible specks shorter than this are dropped, pixels; up to twice this length
+/// they are shortened, so that they grow continuously from nothing.
 const SHORTEST_RUN_PX: f64 = 4.0;
-/// Halvings of the stretch between two stations in which a line goes into hiding: a few thousandths of a pixel.
+/// Halvings that locate a change of visibility between two stations: to a few thousandths of a pixel.
 const HALVINGS: u32 = 8;
-/// How much farther than the surface a point must be to count as hidden at once, in units of the tolerance.
+/// Distance behind the surface at which a point counts as hidden without a line of sight, in units of the tolerance.
 const HYSTERESIS: f64 = 2.5;
 
 /// Depths of the surfaces at the pixel centres.
@@ -28,8 +28,8 @@ impl DepthMap<'_> {
         inside.then(|| f64::from(self.depth[(y * self.width + x) as usize]))
     }
 
-    /// How far `depth` lies behind the surface seen at `pixel`, in units of the tolerance: the depth that the surface
-    /// itself gains within a pixel, plus the width of a pixel on it.
+    /// Distance of `depth` behind the surface seen at `pixel`, in units of the tolerance, which is the change of the surface's depth
+    /// within a pixel plus the width of a pixel on it.
     pub(crate) fn behind(&self, screen: &Screen, pixel: DVec2, depth: f64) -> Option<f64> {
         let (x, y) = (pixel.x.floor() as i32, pixel.y.floor() as i32);
         let surface = self.at(x, y)?;
@@ -37,7 +37,7 @@ impl DepthMap<'_> {
             return Some(f64::NEG_INFINITY);
         }
         let step = |a: Option<f64>, b: Option<f64>| {
-            // The smaller of the two: the surface goes on at least on one side, also along a skyline.
+            // The smaller of both differences: the surface continues on at least one side, also along a skyline.
             let d = |n: Option<f64>| n.map_or(f64::INFINITY, |n| (n - surface).abs());
             let least = d(a).min(d(b));
             if least.is_finite() { least } else { 0.0 }
@@ -48,7 +48,7 @@ impl DepthMap<'_> {
     }
 }
 
-/// A point on a line about a pixel from the next.
+/// A sample of a line; stations are about a pixel apart.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Station {
     pub(crate) pixel: DVec2,
@@ -67,7 +67,7 @@ impl Station {
     }
 }
 
-/// A stretch of line on the image and where it is hidden.
+/// A stretch of line on the image and its hidden parts.
 #[derive(Debug, Default)]
 pub(crate) struct Run {
     pub(crate) stations: Vec<Station>,
@@ -76,7 +76,7 @@ pub(crate) struct Run {
 }
 
 impl Run {
-    /// Stretches of one visibility, in order, with exact ends.
+    /// Stretches of equal visibility, in order, with exact ends.
     pub(crate) fn parts(&self) -> Vec<(bool, Vec<Station>)> {
         let [Some(first), Some(last)] = [self.stations.first(), self.stations.last()] else { return Vec::new() };
         let mut parts = Vec::new();
@@ -109,7 +109,7 @@ impl Run {
     }
 }
 
-/// Judges the stations of a line: by the depth buffer where that is beyond doubt, else by the line of sight itself.
+/// Judges the stations of a line: by the depth buffer where it is clear, else by lines of sight.
 #[derive(Clone, Copy)]
 pub(crate) struct LineVisibility<'a> {
     pub(crate) pass: &'a Pass<'a>,
@@ -140,7 +140,7 @@ impl LineVisibility<'_> {
             for i in usize::from(!run.is_empty())..=n {
                 let k = s + (t - s) * i as f64 / n as f64;
                 let (pixel, depth) = (a.pixel.lerp(b.pixel, k), between(self.screen, a.depth, b.depth, k));
-                // Share of the way in the world; on the image the far half is shorter.
+                // Share of the segment in the world; on the image the far half is shorter (perspective).
                 let w = if self.screen.ortho { k } else { k * a.depth / (b.depth + k * (a.depth - b.depth)) };
                 run.push(Station { pixel, arc_px: arc + k * length, on_line: a.on_line.lerp(b.on_line, w) });
                 verdicts.push(match self.map.behind(self.screen, pixel, depth) {
@@ -169,8 +169,8 @@ impl LineVisibility<'_> {
         runs.push(Run { stations, hidden });
     }
 
-    /// Whether each station is visible. The line of sight decides where the buffer is in doubt, on both sides of every change, and on from
-    /// there until both agree.
+    /// Whether each station is visible. Lines of sight decide where the depth buffer is in doubt and on both sides of every change, and
+    /// further along until both agree.
     fn states(&self, stations: &[Station], verdicts: &[Option<bool>]) -> Vec<bool> {
         let n = stations.len();
         let mut states: Vec<bool> = Vec::with_capacity(n);
@@ -240,7 +240,7 @@ impl LineVisibility<'_> {
     }
 }
 
-/// Short hidden gaps are closed, then short visible specks dropped. What is a little longer shrinks towards that, so that it grows from
+/// Closes short hidden gaps, then drops short visible specks. Somewhat longer ones are shortened, so that they grow continuously from
 /// nothing as the camera moves.
 fn steady(hidden: Vec<[f64; 2]>, stations: &[Station]) -> Vec<[f64; 2]> {
     let (Some(first), Some(last)) = (stations.first(), stations.last()) else { return hidden };
@@ -270,7 +270,7 @@ fn steady(hidden: Vec<[f64; 2]>, stations: &[Station]) -> Vec<[f64; 2]> {
     out
 }
 
-/// A stretch as it is drawn: not at all up to [`SHORTEST_RUN_PX`], whole from twice that on, continuously between.
+/// A stretch as drawn: empty up to [`SHORTEST_RUN_PX`], whole from twice that on, continuous between.
 fn shrunk([a, b]: [f64; 2]) -> Option<[f64; 2]> {
     let length = b - a;
     let drawn = if length >= 2.0 * SHORTEST_RUN_PX { length } else { 2.0 * (length - SHORTEST_RUN_PX) };

@@ -1,4 +1,4 @@
-//! What the samples of a band of image rows see.
+//! A band of image rows: nearness and primitive of every sample.
 
 use crate::screen::SUB;
 use std::ops::Range;
@@ -6,7 +6,7 @@ use std::ops::Range;
 /// Rows of a band.
 pub(crate) const BAND: usize = 16;
 
-/// Samples that may be written past the last one of a row.
+/// Samples of padding at the end of a row, which wide writes may touch.
 pub(crate) const SLACK: usize = 8;
 
 /// No surface.
@@ -44,19 +44,19 @@ pub(crate) fn sample_offsets(samples: u32) -> Vec<[i32; 2]> {
 
 /// Nearness and primitive of every sample of the rows `y0..y1`.
 ///
-/// The nearer surface wins; of two equally near ones that with the smaller number. So the order of drawing does not matter.
+/// The nearer surface wins; of equally near ones the one with the smaller number, so the order of drawing does not matter.
 #[derive(Debug, Default)]
 pub(crate) struct Band {
     pub(crate) y0: i32,
     pub(crate) y1: i32,
     pub(crate) width: i32,
     pub(crate) offsets: Vec<[i32; 2]>,
-    /// Smallest and largest offset along x and y.
+    /// Smallest and largest offset of samples along x and y, fixed-point steps.
     reach: [[i32; 2]; 2],
-    /// Larger = nearer, planes by sample.
+    /// Nearness (larger = nearer), one plane per sample.
     pub(crate) q: Vec<f32>,
     pub(crate) prim: Vec<u32>,
-    /// Samples from one row to the next: a few more than there are pixels, so that whole lanes fit.
+    /// Distance of rows in samples: a multiple of the lane width, larger than the width of the picture.
     pub(crate) stride: usize,
     tiles: Tiles,
     /// Fragments inside a triangle, for tests of coverage.
@@ -72,7 +72,7 @@ impl Band {
         band
     }
 
-    /// Makes the band one of sky, for other rows; memory is kept.
+    /// Resets the band to sky for other rows; its memory is reused.
     pub(crate) fn clear(&mut self, y0: i32, y1: i32, width: i32, offsets: &[[i32; 2]]) {
         let alike = (self.y1 - self.y0, self.width, self.offsets.as_slice()) == (y1 - y0, width, offsets);
         (self.y0, self.y1, self.width) = (y0, y1, width);
@@ -98,7 +98,7 @@ impl Band {
         }
     }
 
-    /// Clears the columns in which something was drawn.
+    /// Resets the columns that were drawn to.
     fn clear_drawn(&mut self) {
         let rows = self.q.chunks_mut(self.stride.max(1)).zip(self.prim.chunks_mut(self.stride.max(1)));
         for (q, prim) in rows {
@@ -114,7 +114,7 @@ impl Band {
         self.hits.fill(0);
     }
 
-    /// The columns from left to right, by whether anything may be seen there but sky.
+    /// Parts of the columns from left to right, by whether a surface was drawn there.
     pub(crate) fn parts(&self) -> impl Iterator<Item = Part> {
         parts(&self.tiles.drawn, self.width.max(0) as usize)
     }
@@ -135,13 +135,13 @@ impl Band {
         (xa > xb) | (ya > yb) | (xb < 0) | (xa >= self.width) | (yb < self.y0) | (ya >= self.y1)
     }
 
-    /// Whether everything in these columns of the image, whose nearness is at most `q`, is hidden by what was drawn.
+    /// Whether the samples in these columns of the image hide everything whose nearness is at most `q`.
     pub(crate) fn hides(&mut self, x: [i32; 2], q: f32) -> bool {
         let (from, to) = ((x[0] >> 8).max(0) as usize / TILE, (x[1] >> 8).clamp(0, self.width - 1) as usize / TILE);
         (from..=to).all(|tile| {
             if self.tiles.stale[tile] {
                 let columns = tile * TILE..((tile + 1) * TILE).min(self.width as usize);
-                // Column by column: many at once.
+                // Column by column, so that the loop is vectorised.
                 let mut least = [f32::INFINITY; TILE];
                 for row in self.q.chunks(self.stride) {
                     for (least, q) in least.iter_mut().zip(&row[columns.clone()]) {
@@ -155,9 +155,9 @@ impl Band {
         })
     }
 
-    /// Repeats the samples apart from the centre (or, where there are no others, the centre): what they see so far, they see in every
-    /// exposure.
-    /// * `offsets`: of all samples then, those that there are first.
+    /// Repeats the samples apart from the centre (or the centre, if there are no others) for several exposures, each starting from what
+    /// was drawn so far.
+    /// * `offsets`: offsets of all samples of all exposures; the existing ones come first.
     pub(crate) fn expose(&mut self, offsets: Vec<[i32; 2]>) {
         let plane = (self.y1 - self.y0).max(0) as usize * self.stride;
         let own = self.offsets.len();
@@ -171,7 +171,7 @@ impl Band {
         self.offsets = offsets;
     }
 
-    /// Tells that something was drawn in these columns; what nobody tells of is neither coloured nor cleared.
+    /// Marks columns as drawn to. Columns that are not marked are neither coloured nor cleared.
     pub(crate) fn drew(&mut self, x: [i32; 2]) {
         let (from, to) = ((x[0] >> 8).max(0) as usize / TILE, (x[1] >> 8).clamp(0, self.width - 1) as usize / TILE);
         for tiles in [&mut self.tiles.stale, &mut self.tiles.drawn] {
@@ -194,26 +194,26 @@ impl Band {
     }
 }
 
-/// Pixels along a tile, whose least nearness is known.
+/// Width of a tile, pixels; each tile keeps its least nearness.
 const TILE: usize = 32;
 
-/// Least nearness of all samples per tile: what is farther is hidden there.
+/// Least nearness of all samples per tile: a surface that is farther is hidden there.
 #[derive(Debug, Default)]
 struct Tiles {
     least: Vec<f32>,
     stale: Vec<bool>,
-    /// Whether anything was drawn since the band was cleared.
+    /// Whether a surface was drawn in the tile since the band was cleared.
     drawn: Vec<bool>,
 }
 
-/// Columns in all of which something was drawn, or nothing.
+/// Adjacent columns in all of which a surface was drawn, or in none.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Part {
     pub(crate) columns: Range<usize>,
     pub(crate) drawn: bool,
 }
 
-/// The first `width` columns, tiles of one kind together.
+/// The first `width` columns, adjacent tiles of one kind joined.
 fn parts(drawn: &[bool], width: usize) -> impl Iterator<Item = Part> {
     let mut from = 0;
     drawn.chunk_by(|a, b| a == b).map_while(move |tiles| {

@@ -1,4 +1,4 @@
-//! Rows of small cells, judged many at a time.
+//! Rasterises rows of small cells of the ground, all cells of a row at once.
 
 use crate::raster::band::Band;
 use crate::raster::triangle::owns_edge;
@@ -9,23 +9,23 @@ pub(crate) const SIDE: usize = 32;
 /// Nodes along a side of a block at most.
 pub(crate) const NODES: usize = SIDE + 1;
 
-/// Cells with bounding boxes below this go together: eight pixels, or so. Differences of their corners have products whose
+/// Cells with bounding boxes below this, about eight pixels, are drawn together. Differences of their corners have products whose
 /// differences stay below 2^24, so single precision decides exactly.
 const TINY: i32 = 8 * SUB;
 const _: () = assert!(SIDE == u32::BITS as usize, "a bit per cell of a row");
 const _: () = assert!(TINY as i64 * TINY as i64 * 2 < 1 << 24, "differences of products fit the mantissa of f32");
 
-/// In a cell's half with the north-east node.
+/// The sample lies in the half of the cell with the north-east node.
 const UPPER: u32 = 1;
-/// In the half with the south-west node.
+/// The sample lies in the half with the south-west node.
 const LOWER: u32 = 2;
-/// On the border of a half: the rule for edges decides.
+/// The sample lies on the border of a half: the top-left rule decides.
 const EDGE: u32 = 4;
 
 type Whole = [i32; SIDE];
 type Lanes = [f32; SIDE];
 
-/// Nodes north and south of a row of cells; those past the last cell mean nothing.
+/// Nodes north and south of a row of cells; values past the last cell are arbitrary.
 pub(crate) struct CellRow<'n> {
     pub(crate) cells: usize,
     pub(crate) x: [&'n [i32; NODES]; 2],
@@ -48,23 +48,23 @@ struct Boxes {
     y: [Whole; 2],
 }
 
-/// The cells of a row, made once for all samples.
+/// Corners of the cells of a row, computed once for all samples.
 struct Corners {
-    /// Places from the first corner of the box: north-west, north-east, south-west, south-east.
+    /// Offsets from the first corner of the box: north-west, north-east, south-west, south-east.
     x: [Lanes; 4],
     y: [Lanes; 4],
 }
 
-/// What a sample of each cell sees of it.
+/// Result of testing one sample per cell.
 struct Judged {
     code: [u32; SIDE],
     /// Index of the sample in its band.
     at: [u32; SIDE],
-    /// Nearness there, of the lower half if only that is seen.
+    /// Nearness at the sample, of the lower half if only that half holds it.
     q: Lanes,
 }
 
-/// Which samples are looked at: those of one kind, so many pixels from the first in each cell's box.
+/// One sample per cell: of one kind, at a pixel offset from the first one in each cell's box.
 #[derive(Clone, Copy)]
 struct SampleGrid {
     kind: usize,
@@ -173,7 +173,7 @@ impl Band {
         }
     }
 
-    /// Draws what one sample per cell sees.
+    /// Tests one sample per cell and draws those that a cell holds.
     #[inline(always)]
     fn draw_tiny(
         &mut self,
@@ -184,7 +184,7 @@ impl Band {
         prim: u32,
     ) {
         let judged = self.judge(row, (boxes, corners), tiny, grid);
-        // No processor guesses which samples see their cell: these as bits, without a branch.
+        // Collects the samples held as bits without branches, which no processor could predict.
         let mut seen = 0u32;
         for c in 0..SIDE {
             seen |= if judged.code[c] != 0 { 1 << c } else { 0 };
@@ -201,7 +201,7 @@ impl Band {
         }
     }
 
-    /// Finds the halves that each sample lies in, and its nearness there.
+    /// Finds the halves that hold each sample, and the nearness there.
     #[inline(always)]
     fn judge(&self, row: &CellRow<'_>, (boxes, corners): (&Boxes, &Corners), tiny: &Whole, grid: SampleGrid) -> Judged {
         let mut out = Judged { code: [0; SIDE], at: [0; SIDE], q: [0.0; SIDE] };
@@ -215,7 +215,7 @@ impl Band {
             let inside = (sx <= boxes.x[1][c]) & (sy <= boxes.y[1][c]);
             let on_band = (px >= 0) & (px < width) & (py >= y0) & (py < y1) & (tiny[c] != 0);
             let (tx, ty) = ((sx - from[0]) as f32, (sy - from[1]) as f32);
-            // No closures here: they would be compiled apart, for the oldest processors.
+            // No closures here: they would be compiled separately, for the oldest processors.
             let edges = edges(
                 [xa[c] - tx, xb[c] - tx, xc[c] - tx, xd[c] - tx],
                 [ya[c] - ty, yb[c] - ty, yc[c] - ty, yd[c] - ty],
@@ -270,7 +270,7 @@ fn edges(x: [f32; 4], y: [f32; 4]) -> [f32; 5] {
     [cross(0, 1), cross(1, 3), cross(3, 0), cross(0, 2), cross(2, 3)]
 }
 
-/// Mean, not beyond its values. Each corner weighs with the edge function of the edge opposite.
+/// Weighted mean, clamped to the range of its values. The weight of a corner is the edge function of the opposite edge.
 #[inline(always)]
 fn mean(w: [f32; 3], q: [f32; 3]) -> f32 {
     let m = (w[0] * q[0] + w[1] * q[1] + w[2] * q[2]) / (w[0] + w[1] + w[2]);

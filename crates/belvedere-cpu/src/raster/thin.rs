@@ -1,21 +1,21 @@
-//! Triangles of which only some samples are shown.
+//! Rasterises triangles of which only some samples are shown.
 
 use crate::raster::band::Band;
 use crate::raster::triangle::Setup;
 use crate::screen::{SUB, ScreenVertex};
 
-/// Which samples of a pixel show what, by a value at their place.
+/// Decides which samples show a surface, by a value interpolated on it.
 pub(crate) trait ThinShow {
-    /// What is known of a value, for all samples there.
+    /// Data derived from a value, for all samples at one position.
     type At;
     fn at(&self, value: f64) -> Self::At;
     fn shows(&self, at: &Self::At, sample: usize, pixel: [i32; 2]) -> bool;
 }
 
 impl Band {
-    /// Draws the samples of a triangle that `show` shows, by a value given at its corners and linear on the triangle itself.
+    /// Draws the samples of a triangle that `show` shows, by a value that is given at the corners and linear on the triangle.
     ///
-    /// * `places`: samples apart from the centre that lie in different places; those after them lie in the same places again.
+    /// * `places`: number of distinct sample positions apart from the centre; later samples repeat these positions.
     #[inline(never)]
     pub(crate) fn draw_thin(
         &mut self,
@@ -32,7 +32,7 @@ impl Band {
             return;
         }
         let Some(setup) = Setup::new(a, b, c) else { return };
-        // On the image the product with nearness is linear, in parallel projection the value itself.
+        // The product with nearness is linear on the image; in parallel projection the value itself is.
         let weighted = |i: usize| if ortho { values[i] } else { values[i] * tri[i].q };
         let Some(value) = Setup::new(
             ScreenVertex { q: weighted(0), ..a },
@@ -45,7 +45,7 @@ impl Band {
         for first in 0..all.min(1 + places) {
             let [ox, oy] = self.offsets[first];
             let [xa, xb, ya, yb] = self.pixels([ox, oy], x, y);
-            // The centre alone, or a place again and again.
+            // The centre alone, or all samples at one position.
             let samples = (first..if first == 0 { 1 } else { all }).step_by(places.max(1));
             for py in ya..=yb {
                 let ys = py * SUB + oy;

@@ -31,7 +31,7 @@ impl Band {
         ]
     }
 
-    /// A triangle of a few pixels: 32-bit edge functions, a row of samples at once.
+    /// Draws a triangle of a few pixels by 32-bit edge functions, a row of samples at once.
     #[inline(always)]
     fn draw_small(&mut self, [a, b, c]: [ScreenVertex; 3], x: [i32; 2], y: [i32; 2], prim: u32) {
         let area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
@@ -105,9 +105,9 @@ impl Band {
     }
 }
 
-/// Samples of a row that are looked at together.
+/// Samples of a row that are tested together.
 const LANES: usize = SLACK;
-/// Bounding boxes below this many fixed-point steps fit the lanes, and go with 32-bit edge functions.
+/// Bounding boxes below this many fixed-point steps fit the lanes and 32-bit edge functions.
 const SMALL: i32 = 7 * SUB;
 
 /// Nearness along a row of samples.
@@ -225,7 +225,7 @@ impl Setup {
         Some(Self { e0, dx: ex.map(|e| e * i64::from(SUB)), ex, ey, plane: Plane::new(v, area) })
     }
 
-    /// Nearness at a place on the image, between those of the corners.
+    /// Nearness at a position on the image, clamped to the range of the corners.
     #[inline(always)]
     pub(super) fn nearness(&self, xs: i32, ys: i32) -> f64 {
         self.plane.at(xs, ys).clamp(f64::from(self.plane.q_min), f64::from(self.plane.q_max))

@@ -1,4 +1,4 @@
-//! From samples to pixels.
+//! Colours pixels from the samples of a band.
 
 pub(crate) mod relief;
 
@@ -16,15 +16,15 @@ pub(crate) struct Rows<'a, 'c> {
     pub(crate) depth: &'a mut [f32],
     pub(crate) id: &'a mut [u32],
     pub(crate) world: Option<&'a mut [[f64; 3]]>,
-    /// Makes depth and world point exact, if wanted.
+    /// Exact points and depths at pixel centres, if they are asked for.
     pub(crate) centers: Option<&'a PixelCenters<'a>>,
 }
 
-/// Where colours go.
+/// Target of the colours.
 pub(crate) enum Colors<'a> {
-    /// To be drawn over.
+    /// Linear colours that marks may still be drawn over.
     Open(&'a mut [Packed]),
-    /// Finished.
+    /// Finished colours in sRGB.
     Stored(&'a mut [[u8; 3]]),
 }
 
@@ -46,7 +46,7 @@ pub(crate) fn resolve(band: &Band, shader: &Shader<'_>, screen: &Screen, rows: &
             let at = (&x[columns.clone()], &y[columns.clone()]);
             match &mut *rows.color {
                 Colors::Stored(color) if !drawn => {
-                    // Places of the sky are no numbers from the start.
+                    // World points of the sky are NaN from the start.
                     rows.depth[out.clone()].fill(f32::INFINITY);
                     rows.id[out.clone()].fill(0);
                     shader.sky.store([at.0[0], at.1[0]], &mut color[out]);
@@ -57,7 +57,7 @@ pub(crate) fn resolve(band: &Band, shader: &Shader<'_>, screen: &Screen, rows: &
     }
 }
 
-/// Memory for colours.
+/// Reusable buffers for colouring a row.
 #[derive(Default)]
 struct RowColors {
     painted: Painted,
@@ -65,8 +65,8 @@ struct RowColors {
 }
 
 impl RowColors {
-    /// Colours columns of a row.
-    /// * `at`: positions of the samples at the pixels' centres; `out`: the pixels among those of the band.
+    /// Colours some columns of a row.
+    /// * `at`: fixed-point positions of the samples at the pixel centres; `out`: range of the pixels in the band.
     #[allow(clippy::too_many_arguments, reason = "what is seen, where, by whom, and where it goes")]
     fn paint(
         &mut self,
@@ -118,7 +118,7 @@ impl Kernel for Depths<'_> {
     }
 }
 
-/// Place, and depth where that is to be exact, of what a pixel's centre sees.
+/// Writes the world point seen at a pixel centre, and its depth where exact depths are asked for.
 fn place(band: &Band, shader: &Shader<'_>, rows: &mut Rows<'_, '_>, out: usize, [x, y]: [i32; 2]) {
     let centre = sample(band, 0, x, y);
     let mut world = shader.world(centre);
@@ -141,17 +141,17 @@ struct Edges {
     x: Vec<i32>,
     y: Vec<i32>,
     painted: Painted,
-    /// Not 0 for pixels painted that may see several surfaces.
+    /// Not 0 for pixels that may see several surfaces.
     uneven: Vec<u32>,
-    /// Number of the pixel among those painted, share of its centre, and number of its first sample.
+    /// Number of the pixel among those painted, coverage samples that share the colour of its centre, and number of its first own sample.
     pixels: Vec<(usize, u32, usize)>,
-    /// Coverage samples of each sample.
+    /// Number of coverage samples that share the colour of each sample.
     shares: Vec<u32>,
 }
 
 impl Edges {
-    /// Replaces the colours of pixels by the mean of their coverage samples, where these see more than one surface;
-    /// samples on one surface share the colour of the first of them.
+    /// Replaces the colours of pixels whose samples see several surfaces by the mean over the samples; samples on one surface share
+    /// the colour of the first of them.
     /// * `columns`, `y`: the pixels that were painted.
     fn mix(&mut self, band: &Band, shader: &Shader<'_>, (columns, y): (Range<usize>, i32), painted: &mut Painted) {
         let Self { prim, q, x, y: ys, shares, pixels, .. } = self;
@@ -217,7 +217,7 @@ struct Unevenness<'u> {
     band: &'u Band,
     first: usize,
     y: i32,
-    /// Whether there is but one terrain to be seen, whose colours change smoothly.
+    /// Whether a single terrain is the only surface, so that colours change smoothly.
     terrain: bool,
     out: &'u mut [u32],
 }
@@ -254,13 +254,13 @@ fn is_even(band: &Band, shader: &Shader<'_>, x: i32, y: i32) -> bool {
     })
 }
 
-/// Whether two samples, given by what they hit and its nearness, may share a colour.
+/// Whether two samples, given by primitive and nearness, may share a colour.
 #[inline(always)]
 fn is_same(shader: &Shader<'_>, a: (u32, f32), b: (u32, f32)) -> bool {
     a.0 == b.0 || (a.0 != SKY && b.0 != SKY && is_near(a.1, b.1) && shader.is_terrain(a.0, b.0))
 }
 
-/// Whether two samples are about equally far away: shares of depth and of nearness are the same thing.
+/// Whether the depths of two samples are about equal; relative differences of depth and of nearness are the same.
 #[inline(always)]
 fn is_near(a: f32, b: f32) -> bool {
     (a - b).abs() <= SAME_SURFACE * a.abs().min(b.abs())

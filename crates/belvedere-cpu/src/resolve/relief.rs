@@ -1,14 +1,14 @@
-//! From samples to what edges are found from.
+//! Depths and faces of samples, from which edges are drawn.
 
 use crate::raster::band::{Band, SKY};
 use crate::shade::Shader;
 use crate::stylise::{Face, ReliefRows, SKY_NEAR};
 
-/// Depths and faces of the band's samples, apart from the centres where there are others.
+/// Writes depth and face of the band's samples, without the centres if there are other samples.
 pub(crate) fn resolve_relief(band: &Band, shader: &Shader<'_>, rows: &mut ReliefRows<'_>) {
     let places = rows.places;
     let first = usize::from(band.offsets.len() > 1);
-    // Samples lie on the same face as the one before, mostly.
+    // Most samples lie on the face of the sample before.
     let mut last = (SKY, Face::default());
     let mut at = 0;
     for y in band.y0..band.y1 {

@@ -1,22 +1,22 @@
-//! Shadows that boxes and meshes throw, and those that fall on them: straight rays towards the sun, on the map.
+//! Cast shadows of boxes and meshes, and shadows on them: straight rays towards the sun in the undisplaced scene.
 
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{LayerKind, Light, Scene};
 use belvedere_sight::Obstacles;
 
-/// Half the width of the sun, radians.
+/// Angular radius of the sun, radians.
 const SUN_RADIUS: f64 = 0.004_65;
-/// How far a ray begins off the surface that it leaves, in sides of a pixel, and in coordinates' own size: rounding.
+/// Offset of a ray's start from its surface, as a share of the side of the pixel's square and of the coordinates' size (rounding).
 const OFF_PX: f64 = 0.02;
 const OFF: f64 = 1e-9;
-/// Rays that tell whether a pixel lies wholly in light or in shadow; the rest is asked on borders alone.
+/// Rays that decide whether a pixel lies wholly in light or in shadow; only pixels on borders take the others.
 const FIRST: usize = 4;
 
-/// Places within a pixel, -0.5..0.5 to the right and down, and on the sun, -1..1 across; the first four are those in the corners.
+/// Positions within a pixel, -0.5..0.5 to the right and down, and on the sun's disc, -1..1 across; the first four lie in the corners.
 const PATTERN: [[f64; 4]; 16] = pattern();
 
 const fn pattern() -> [[f64; 4]; 16] {
-    // Rows of a 4 x 4 lattice that is turned, in an order that visits the corners first.
+    // Rows of a rotated 4 x 4 lattice, in an order that visits the corners first.
     const ORDER: [[u8; 2]; 16] = [
         [0, 0],
         [3, 0],
@@ -48,19 +48,19 @@ const fn pattern() -> [[f64; 4]; 16] {
     out
 }
 
-/// What throws shadows beside the ground on itself.
+/// Casters of shadows, except the ground on itself.
 pub(crate) struct Casters<'a> {
     obstacles: Obstacles<'a>,
-    /// Around all boxes and meshes, and highest place of everything.
+    /// Bounds of all boxes and meshes, and the largest height of everything.
     solid: Aabb,
     top: f64,
     sun: DVec3,
-    /// Two directions across it, as long as the sun is wide.
+    /// Two directions across the sun's direction, as long as the sun's radius.
     across: [DVec3; 2],
 }
 
 impl<'a> Casters<'a> {
-    /// `None` where no shadows are wanted, the sun is down, or nothing but the ground throws any.
+    /// `None` if shadows are off, the sun is down, or only the ground could cast any.
     pub(crate) fn new(scene: &'a Scene, light: &Light) -> Option<Self> {
         let sun = light.direction();
         if !(light.shadows && sun.z > 0.01) {
@@ -80,11 +80,11 @@ impl<'a> Casters<'a> {
         Some(Self { obstacles, solid, top, sun, across: [SUN_RADIUS * u, SUN_RADIUS * v] })
     }
 
-    /// Share of the sun that boxes and meshes leave to a pixel on the ground.
-    /// * `axes`: way on the map per pixel to the right and per pixel down.
-    /// * `throws`: whether a layer, by its index, does so here.
+    /// Share of the sun's disc that boxes and meshes leave visible from a pixel on the ground, 0..=1.
+    /// * `axes`: displacement on the map per pixel to the right and per pixel down.
+    /// * `throws`: whether a layer, by its index, casts shadows here.
     pub(crate) fn on_ground(&self, p: DVec3, axes: [DVec2; 2], throws: &dyn Fn(usize) -> bool) -> f32 {
-        // Away from every caster: the box that the rays run through.
+        // Early exit: the box of all rays touches no caster.
         let way = self.way(p.z, self.solid.max.z);
         let reach = (axes[0].length() + axes[1].length()) + 2.0 * SUN_RADIUS * way;
         let end = p + way * self.sun;
@@ -96,8 +96,8 @@ impl<'a> Casters<'a> {
         self.share(p, [right, down], false, throws)
     }
 
-    /// Share of the sun that everything leaves to a pixel on a surface with a normal.
-    /// * `side`: of the square that the pixel covers there; `throws`: see [`Self::on_ground`].
+    /// Share of the sun's disc that is visible from a pixel on a surface with a unit normal, 0..=1.
+    /// * `side`: side of the square that the pixel covers, scene units; `throws`: see [`Self::on_ground`].
     pub(crate) fn on_surface(&self, p: DVec3, normal: DVec3, side: f64, throws: &dyn Fn(usize) -> bool) -> f32 {
         if normal.dot(self.sun) <= 0.0 {
             return 0.0;
@@ -121,7 +121,7 @@ impl<'a> Casters<'a> {
         (corners + rest) as f32 / PATTERN.len() as f32
     }
 
-    /// Length of a ray from a height until it is above another.
+    /// Length of a ray towards the sun from a height to another.
     fn way(&self, z: f64, top: f64) -> f64 {
         (top - z) / self.sun.z
     }
@@ -157,7 +157,7 @@ mod tests {
         LayerKind::Boxes(BoxLayer::new(vec![BoxShape { base, size, yaw: 0.0, color: Color::rgb(200, 200, 200) }]))
     }
 
-    /// The same as triangles.
+    /// The same tower as triangles.
     fn tower_mesh() -> LayerKind {
         let LayerKind::Boxes(b) = tower() else { panic!("boxes") };
         let triangles = BoxShape::TRIANGLES.map(|t| t.map(|k| k as u32)).to_vec();

@@ -1,12 +1,12 @@
-//! What a pixel covers on the ground.
+//! Footprint of a pixel on the ground.
 
 use belvedere_core::DVec2;
 
-/// The longer side of a pixel's print on the ground is at most this many times what it is where the ground faces the eye:
-/// slivers of triangles would say anything.
+/// The longer side of a pixel's footprint is at most this many times its side on ground that faces the eye, since the derivatives of
+/// slivers are not reliable.
 pub(crate) const LONGEST: f64 = 24.0;
 
-/// The patch of the map that a pixel covers: an ellipse by its axes.
+/// The part of the map that a pixel covers: an ellipse by its axes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Footprint {
     /// Longer axis, scene units.
@@ -16,8 +16,8 @@ pub(crate) struct Footprint {
 }
 
 impl Footprint {
-    /// * `axes`: way on the map per pixel to the right and per pixel down, scene units;
-    /// * `facing`: side of the square that the pixel would cover on ground that faces the eye, the least there is.
+    /// * `axes`: displacement on the map per pixel to the right and per pixel down, scene units;
+    /// * `facing`: side of the square that the pixel would cover on ground that faces the eye, a lower bound, scene units.
     pub(crate) fn new([a, b]: [DVec2; 2], facing: f64) -> Self {
         // The ellipse that a circle on the image becomes: eigenvectors of the axes' matrix times its transpose.
         let (p, q, r) = (a.x * a.x + b.x * b.x, a.y * a.y + b.y * b.y, a.x * a.y + b.x * b.y);
@@ -36,14 +36,14 @@ impl Footprint {
         self.major.length()
     }
 
-    /// Width of the print along a unit vector.
+    /// Width of the footprint along a unit vector, scene units.
     pub(crate) fn along(&self, direction: DVec2) -> f64 {
         let length = self.length();
         let (u, v) = (self.major.dot(direction), self.major.perp_dot(direction) / length * self.minor);
         (u * u + v * v).sqrt()
     }
 
-    /// How many squares side by side along the longer axis cover the print, `most` at most, and their side.
+    /// Number of squares, `most` at most, that cover the footprint side by side along the longer axis, and their side.
     pub(crate) fn samples(&self, most: usize) -> (usize, f64) {
         let n = ((self.length() / self.minor - 1e-6).ceil() as usize).clamp(1, most);
         (n, self.minor.max(self.length() / n as f64))

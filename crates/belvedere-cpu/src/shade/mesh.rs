@@ -7,13 +7,13 @@ use belvedere_core::DVec3;
 use belvedere_scene::{Light, MeshLayer, Relief};
 use glam::Vec3A;
 
-/// Share of the sun that a point with a normal sees.
+/// Function that gives the share of the sun's disc visible at a point with a normal.
 pub(crate) type Sun<'s> = dyn Fn(DVec3, DVec3) -> f32 + 's;
 
-/// Openness that a point is shaded with that no light from around reaches.
+/// Openness in shading of a point that no ambient light reaches.
 const DARKEST: f32 = 0.25;
 
-/// Whether the side is seen from which the corners of a triangle run counter-clockwise.
+/// Whether the visible side is the one from which the corners of a triangle run counter-clockwise.
 pub(super) fn is_front(found: &DrawnTriangle<'_>) -> bool {
     let [a, b, c] = found.v.map(|v| [i64::from(v.screen.x), i64::from(v.screen.y)]);
     // y runs down the image: counter-clockwise in space is clockwise here.
@@ -24,7 +24,7 @@ pub(super) fn is_front(found: &DrawnTriangle<'_>) -> bool {
 pub(crate) struct MeshShade<'a> {
     layer: &'a MeshLayer,
     light: ReliefLight,
-    /// Lowest height and extent upwards.
+    /// Lowest height and vertical extent.
     foot: f64,
     height: f64,
 }
@@ -53,7 +53,7 @@ impl<'a> MeshShade<'a> {
         self.color(triangle, weights, is_front(found), (self.place(found, weights), footprint), sun)
     }
 
-    /// * `footprint`: size of a pixel there, scene units; `front`: whether the side is seen from which the corners run counter-clockwise.
+    /// * `footprint`: size of a pixel there, scene units; `front`: whether the visible side is the one from which the corners run counter-clockwise.
     fn color(
         &self,
         triangle: usize,
@@ -66,7 +66,7 @@ impl<'a> MeshShade<'a> {
         let normal = mesh.normal_at(triangle, weights);
         let n = if front { normal } else { -normal };
         let color = mesh.surface_color_at(triangle, weights, footprint).unwrap_or(self.layer.color);
-        // Darker where others take light, else towards the foot; and from below.
+        // Darker where the ambient light is blocked, else towards the foot; and from below.
         let open = if mesh.has_openness() {
             DARKEST + (1.0 - DARKEST) * mesh.openness_at(triangle, weights) as f32
         } else {
@@ -74,7 +74,7 @@ impl<'a> MeshShade<'a> {
             0.60 + 0.40 * smoothstep(-0.1, 0.6, up)
         };
         let open = open * (1.0 - 0.25 * (-n.z as f32).max(0.0));
-        // Shadows end where the triangle does, whatever its smooth normals say.
+        // Shadows depend on the normal of the triangle, not on the smooth one.
         let face = mesh.face_normal(triangle);
         let sun = sun(p, if front { face } else { -face });
         let lit = self.light.at(Vec3A::new(n.x as f32, n.y as f32, n.z as f32), open, sun) * 0.82

@@ -5,7 +5,7 @@ use crate::raster::band::SKY;
 use crate::shade::{Painted, Sample, Samples, Shader};
 use belvedere_core::DVec3;
 
-/// What a sample shows of several layers: the sum of their colours by share, and the layer of the greatest share.
+/// Colour of a sample of several layers: the sum of their colours by share, and the layer of the greatest share.
 #[derive(Debug, Clone, Copy)]
 struct Mixture {
     color: Rgb,

@@ -1,4 +1,4 @@
-//! Colour of what a sample sees.
+//! Colours of samples.
 
 mod cast;
 pub(crate) mod footprint;
@@ -38,7 +38,7 @@ pub(crate) use painted::{Painted, Samples};
 use relief::ReliefLight;
 use sky::Sky;
 
-/// Everything that colours need, made once per frame.
+/// Data for colouring, prepared once per frame.
 pub(crate) struct Shader<'a> {
     pub(crate) sky: Sky,
     screen: &'a Screen,
@@ -59,14 +59,14 @@ enum LayerShade<'a> {
     Other,
 }
 
-/// A sample of the picture: what was hit, and its place on the image in fixed-point steps.
+/// A sample of the picture: primitive, nearness, and fixed-point position on the image.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sample {
     pub(crate) prim: u32,
     pub(crate) at: [i32; 2],
 }
 
-/// Colour, identity and place of a sample.
+/// Colour, id and world point of a sample.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shaded {
     pub(crate) color: Rgb,
@@ -76,8 +76,8 @@ pub(crate) struct Shaded {
     pub(crate) world: DVec3,
 }
 
-/// Bytes that colours need of a ground beside its heights: averages, some heights side by side, heights that a stage lifted now
-/// and before, shadows, and both pictures of the lit ground.
+/// Bytes for colouring a ground, beside its heights: averages, decimated heights, lifted heights of this and the last frame, shadows,
+/// and both pictures of the lit ground.
 pub(crate) fn ground_bytes(job: &RenderJob<'_>, hf: &Heightfield) -> u64 {
     let nodes = hf.heights().len() as u64;
     let lifted = job.view.stages().iter().any(|s| s.moves_ground());
@@ -85,7 +85,7 @@ pub(crate) fn ground_bytes(job: &RenderJob<'_>, hf: &Heightfield) -> u64 {
     let pixels = job.view.pinhole().image.map(u64::from).iter().product();
     let lit = 2 * tiles::most_bytes([hf.cols(), hf.rows()], pixels);
     let means = surface::means_bytes(nodes);
-    // Lifted ground is tinted by the averages of the map.
+    // Lifted ground takes its tint from the averages of the map.
     means + DecimatedHeights::bytes(nodes) + shadows + lit + if lifted { 8 * nodes + means } else { 0 }
 }
 
@@ -108,7 +108,7 @@ impl<'a> Shader<'a> {
             LayerKind::Area(a) => AreaMap::new(i as u32, a),
             _ => None,
         });
-        // The sea lies under all other areas.
+        // The sea is drawn below all other areas.
         let mut areas: Vec<AreaMap> = areas.collect();
         areas.sort_by_key(|a| a.surface != AreaSurface::Sea);
         let mut surfaces = layers.iter().filter(|l| !matches!(l, LayerShade::Other));
@@ -154,7 +154,7 @@ impl<'a> Shader<'a> {
         centers.exact(&found?, near, DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5))
     }
 
-    /// True position of what a sample sees, scene coordinates; NaN in the sky.
+    /// World point that a sample sees, scene coordinates; NaN in the sky.
     pub(crate) fn world(&self, sample: Sample) -> DVec3 {
         let found = if sample.prim == SKY { None } else { self.blocks.find(sample.prim) };
         let Some(found) = found else { return DVec3::NAN };
@@ -170,7 +170,7 @@ impl<'a> Shader<'a> {
 }
 
 impl Shader<'_> {
-    /// The face of a solid that a primitive is of, towards the eye; nothing of others.
+    /// Face of a primitive of a solid, with its normal towards the eye; the default for others.
     pub(crate) fn face(&self, prim: u32) -> Face {
         let found = if prim == SKY { None } else { self.blocks.find(prim) };
         let Some(found) = found else { return Face::default() };
@@ -186,18 +186,18 @@ impl Shader<'_> {
         normal.map_or_else(Face::default, |n| Face::solid(if front { n } else { -n }))
     }
 
-    /// Share of the sun that a surface sees, all of it without cast shadows.
-    /// * `layer`: of the surface; `n`: unit normal to the side that is seen; `footprint`: size of a pixel there, scene units.
+    /// Share of the sun's disc visible from a surface, 1 without cast shadows.
+    /// * `layer`: layer of the surface; `n`: unit normal to the visible side; `footprint`: size of a pixel there, scene units.
     fn sun_on(&self, layer: usize, p: DVec3, n: DVec3, footprint: f64) -> f32 {
         self.casters.as_ref().map_or(1.0, |c| c.on_surface(p, n, footprint, &|other| self.throws(other, layer, p)))
     }
 
-    /// Whether a layer throws shadows on a place of another.
+    /// Whether a layer casts shadows on another at a point.
     fn throws(&self, layer: usize, onto: usize, p: DVec3) -> bool {
         self.sections.as_ref().is_none_or(|s| s.throws(layer, onto, p))
     }
 
-    /// Boxes look like an architect's model: matt, darker towards the foot, with drawn edges.
+    /// Colour of boxes, like an architect's model: matt, darker towards the foot, with drawn edges.
     /// * `n`: outward unit normal of the face; `footprint`: size of a pixel at the box, scene units.
     fn box_color(
         &self,
@@ -226,7 +226,7 @@ fn pixel_of([x, y]: [i32; 2]) -> [f32; 2] {
     [x as f32 / SUB as f32, y as f32 / SUB as f32]
 }
 
-/// Level of averages for a pixel that covers `cells` squares of a cell: 128 log2, 256 steps to a level, 0 up to one cell.
+/// Level of averages for a pixel that covers `cells` cells: 128 log2(cells), 256 steps to a level, 0 up to one cell.
 #[inline(always)]
 fn lod(cells: f32) -> u32 {
     let bits = cells.max(1.0).to_bits();
@@ -236,7 +236,7 @@ fn lod(cells: f32) -> u32 {
     nearest(128.0 * log2) as u32
 }
 
-/// Place of a sample inside the parent triangle.
+/// Position of a sample inside the parent triangle.
 struct SurfacePoint {
     /// Weights of the parent's vertices.
     weights: [f64; 3],
@@ -265,7 +265,7 @@ impl SurfacePoint {
         Self { weights: b }
     }
 
-    /// Place on the ground.
+    /// Position on the ground.
     fn on_ground(&self, found: &DrawnTriangle<'_>, hf: &Heightfield) -> DVec3 {
         let cell = (found.parent >> 1) as usize;
         let Block { origin, step, .. } = *found.block;
@@ -281,7 +281,7 @@ impl SurfacePoint {
         xy.extend(z)
     }
 
-    /// The box and the place on it, and the outward normal of its face.
+    /// The box, the position on it, and the outward normal of its face.
     fn on_box<'b>(&self, found: &DrawnTriangle<'_>, layer: &'b BoxLayer) -> (&'b BoxShape, DVec3, DVec3) {
         let shape = &layer.boxes[found.block.origin[0] + (found.parent / 12) as usize];
         let corners = shape.corners();
@@ -291,14 +291,14 @@ impl SurfacePoint {
     }
 }
 
-/// How much of a pixel the edge of a box covers, at a point on its surface relative to its centre.
+/// Coverage of a pixel by the drawn edges of a box, at a point on its surface relative to its centre.
 fn edge_share(shape: &BoxShape, from_centre: DVec3, footprint: f64) -> f32 {
     let local = DVec2::from_angle(-shape.yaw).rotate(from_centre.truncate()).extend(from_centre.z);
     let mut inside = (0.5 * shape.size - local.abs()).to_array();
     inside.sort_by(f64::total_cmp);
-    // The smallest is the face itself, the next the way to the nearest edge.
+    // The smallest distance is that to the face itself, the next that to the nearest edge.
     let line = 1.0 - smoothstep(0.5, 1.6, (inside[1] / footprint) as f32);
-    // Small boxes would be nothing but edges.
+    // Edges fade on small boxes, which they would fill.
     line * smoothstep(5.0, 24.0, (shape.size.min_element() / footprint) as f32)
 }
 

@@ -1,25 +1,25 @@
-//! Colour of molecules: soft light from over the beholder's left shoulder, darker between atoms, inked where the surface turns away.
+//! Colour of molecules: soft light from behind the viewer's left shoulder, darker between atoms, inked where the surface turns away.
 
 use crate::color::{Rgb, linear, smoothstep};
 use crate::geometry::block::DrawnTriangle;
 use belvedere_core::{DVec3, View};
 use belvedere_scene::MeshLayer;
 
-/// Where the light comes from: to the right, down and forward of the camera.
+/// Direction towards the light: right, down and forward of the camera.
 const LIGHT: [f64; 3] = [-0.42, -0.58, -0.70];
 
-/// Share of the light that comes from all around, and the part of it that comes from below.
+/// Share of ambient light, and the part of it that comes from below.
 const AROUND: f32 = 0.50;
 const FROM_BELOW: f32 = 0.62;
 /// Direct light, and the highlight.
 const DIRECT: f32 = 0.72;
 const HIGHLIGHT: f32 = 0.16;
 const SHARPNESS: i32 = 28;
-/// What the ink takes of the colour, and the cosine of the slant at which it begins.
+/// Share of the colour that the ink takes, and the cosines between which it fades in.
 const INK: f32 = 0.62;
 const INKED: [f32; 2] = [0.10, 0.42];
 
-/// A molecule ready for colouring. Nothing about it is up or down, so the light goes with the camera and not with the map.
+/// A molecule ready for colouring. A molecule has no upright direction, so the light is fixed to the camera and not to the map.
 pub(crate) struct MoleculeShade<'a> {
     layer: &'a MeshLayer,
     view: &'a View,
@@ -58,7 +58,7 @@ impl<'a> MoleculeShade<'a> {
         let color = mesh.color_at(triangle, weights).unwrap_or(self.layer.color);
         let open = mesh.openness_at(triangle, weights) as f32;
         let facing = n.dot(towards).abs() as f32;
-        // Light that wraps a little round the edge models small balls softly.
+        // Wrapped diffuse light shades small balls softly.
         let lit = ((n.dot(self.light) as f32 + 0.25) / 1.25).max(0.0);
         let around = FROM_BELOW + (1.0 - FROM_BELOW) * (0.5 + 0.5 * n.dot(self.up) as f32);
         let half = (self.light + towards).normalize_or(self.light);
@@ -68,7 +68,7 @@ impl<'a> MoleculeShade<'a> {
         (linear([color.r, color.g, color.b]) * light + Rgb::splat(shine)) * ink
     }
 
-    /// Unit vector from a point against the ray that sees it.
+    /// Unit vector from a point towards the eye, along the ray that sees it.
     fn towards_eye(&self, p: DVec3) -> DVec3 {
         let pinhole = self.view.pinhole();
         let straight =
@@ -76,7 +76,7 @@ impl<'a> MoleculeShade<'a> {
         if self.straight {
             return straight;
         }
-        // Along the ray the pixel stays: across the changes of its x and its y.
+        // The pixel is constant along the ray, which is therefore perpendicular to the gradients of x and y.
         match self.view.jacobian(p) {
             Ok([x, y]) => x.cross(y).try_normalize().map_or(straight, |ray| -ray),
             Err(_) => straight,

@@ -1,4 +1,4 @@
-//! Colours of many samples at a time.
+//! Colours of many samples at once.
 
 use crate::color::Rgb;
 use crate::geometry::block::Geometry;
@@ -8,7 +8,7 @@ use crate::shade::ground::batch::Batch;
 use crate::shade::{LayerShade, Painted, Samples, Shader, SurfacePoint};
 use crate::simd::{self, Kernel};
 
-/// How many of the first primitives belong to the block of the first one, or are sky.
+/// Number of leading primitives that belong to the block of the first one, or are sky.
 #[inline(always)]
 fn run_of(first: u32, prims: &[u32]) -> usize {
     const N: usize = 16;
@@ -27,7 +27,7 @@ fn run_of(first: u32, prims: &[u32]) -> usize {
 struct Paint<'p> {
     shader: &'p Shader<'p>,
     samples: Samples<'p>,
-    /// In whose colours; `None` = those of the layer that was drawn.
+    /// Layer whose colours are used; `None`: the layer that was drawn.
     colors_of: Option<u32>,
     painted: &'p mut Painted,
 }
@@ -35,7 +35,7 @@ struct Paint<'p> {
 impl Kernel for Paint<'_> {
     type Output = ();
 
-    /// Runs of samples on one block, or of sky.
+    /// Colours the samples, run by run of one block or of sky.
     #[inline(always)]
     fn run(self) {
         let Self { shader, samples, colors_of, painted } = self;
@@ -68,7 +68,7 @@ impl Shader<'_> {
         self.mix(samples, painted);
     }
 
-    /// Colours of samples in those of a layer that is the same surface.
+    /// Colours of samples as if they belonged to another layer of the same surface.
     pub(super) fn paint_as(&self, colors_of: Option<u32>, samples: Samples<'_>, painted: &mut Painted) {
         painted.resize(samples.prim.len());
         simd::run(Paint { shader: self, samples, colors_of, painted });

@@ -3,8 +3,7 @@
 use crate::color::{self, Encoder, LANES, PIXELS, Packed, Rgb};
 use crate::simd::{self, Kernel};
 
-/// Samples of the picture: what was hit, its nearness, and the place on the image in fixed-point steps; slices of equal
-/// length.
+/// Samples of the picture: primitive, nearness, and fixed-point position on the image; slices of equal length.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Samples<'s> {
     pub(crate) prim: &'s [u32],
@@ -48,11 +47,11 @@ impl Painted {
         self.id[k] = id;
     }
 
-    /// Colours of the samples with these numbers, mostly one after the other.
+    /// Sets the colours of the samples with these numbers, most of them consecutive.
     #[inline(always)]
     pub(crate) fn set_roots<const N: usize>(&mut self, numbers: &[u32], root: &[[f32; N]; 3], id: u32) {
         let (Some(&first), Some(&last)) = (numbers.first(), numbers.last()) else { return };
-        // They rise.
+        // The numbers rise.
         if (last - first) as usize + 1 == numbers.len() {
             let all = first as usize..=last as usize;
             for (plane, root) in self.root.iter_mut().zip(root) {
@@ -66,12 +65,12 @@ impl Painted {
         }
     }
 
-    /// As it is kept to be drawn over.
+    /// Packs the colours for further drawing.
     pub(crate) fn pack(&self, out: &mut [Packed]) {
         simd::run(Pack { root: self.root.each_ref().map(Vec::as_slice), out });
     }
 
-    /// As it is stored in pictures.
+    /// Encodes the colours as sRGB.
     pub(crate) fn encode(&self, out: &mut [[u8; 3]]) {
         simd::run(Encode { root: self.root.each_ref().map(Vec::as_slice), out });
     }

@@ -1,8 +1,8 @@
-//! The very point that the centre of a pixel sees.
+//! The exact surface point at the centre of a pixel (Newton's method).
 //!
-//! The rasteriser draws bent edges straight to within a tolerance in pixels. On ground seen under a small angle that is little on the
-//! image and much in depth. Where depths and points are wanted, the point found is moved on its surface, by Newton steps on the
-//! true map, until its image is the centre of the pixel.
+//! The rasteriser draws bent edges straight to within a tolerance in pixels. On ground seen at a grazing angle that error is small on
+//! the image and large in depth. Where depths and points are asked for, the point found is moved on its surface, by Newton steps on the
+//! exact map, until its image is the centre of the pixel.
 
 use crate::geometry::block::DrawnTriangle;
 use crate::geometry::pass::{BodyPasses, Pass};
@@ -11,22 +11,22 @@ use belvedere_core::{DVec2, DVec3, RigidMotion};
 use belvedere_scene::{BoxShape, Heightfield, LayerKind, Scene};
 use glam::DMat3;
 
-/// Steps at most, and the distance from the centre that is near enough, pixels.
+/// Largest number of Newton steps, and the distance from the centre at which they stop, pixels.
 const STEPS: usize = 10;
 const NEAR_PX: f64 = 2e-4;
-/// A point whose image stays farther from the centre than this is no better than the one before, pixels.
+/// Largest distance from the centre at which a moved point is accepted, pixels.
 const ACCEPTED_PX: f64 = 5e-3;
-/// Farther than this no point is moved, pixels on its surface.
+/// Largest distance by which a point is moved, pixels on its surface.
 const REACH_PX: f64 = 3.0;
 
-/// A ray this far above the ground, pixels, meets nothing that less detail leaves out.
+/// Height over the ground, pixels, above which a ray cannot meet ground that level of detail leaves out.
 const CLEAR_PX: f64 = 0.8;
-/// Steps of an eighth of a cell that a ray is followed at most, halvings of the step in which it goes under, and how often that is done.
+/// Largest number of steps of an eighth of a cell along a ray, halvings of the step that crosses the ground, and rounds of both.
 const MOST_STEPS: u32 = 128;
 const HALVINGS: usize = 10;
 const ROUNDS: usize = 4;
 
-/// A point on a surface, how far its image is from the pixel, pixels, and its depth.
+/// A point on a surface, the distance of its image from the pixel, pixels, and its depth.
 #[derive(Debug, Clone, Copy)]
 struct Solution {
     off: f64,
@@ -34,7 +34,7 @@ struct Solution {
     depth: f64,
 }
 
-/// A ray near a point on it and its depth: the way towards the eye by unit of depth, and pixels per unit of height.
+/// A ray near a point: the point and its depth, the displacement towards the eye per unit of depth, and pixels per unit of height.
 struct Ray {
     near: DVec3,
     depth: f64,
@@ -56,7 +56,7 @@ struct PassCenters<'a> {
     screen: &'a Screen,
 }
 
-/// A surface to move on.
+/// The surface on which a point is moved.
 enum Surface<'a> {
     Ground(&'a Heightfield),
     /// Point and unit normal.
@@ -64,7 +64,7 @@ enum Surface<'a> {
 }
 
 impl<'a> PixelCenters<'a> {
-    /// * `bodies`: if rigid bodies are carried as a whole.
+    /// * `bodies`: passes of the rigid bodies, if there are any.
     pub(crate) fn new(
         scene: &'a Scene,
         passes: &'a [Pass<'a>],
@@ -74,13 +74,13 @@ impl<'a> PixelCenters<'a> {
         Self { scene, passes, bodies, screen }
     }
 
-    /// Point and depth that `pixel` sees of the surface found there, near `near`; `None` if it cannot be told better.
+    /// Point and depth that `pixel` sees of the surface found there, near `near`; `None` if no better point is found.
     ///
-    /// Ground drawn in less detail may lack a fold of less than half a pixel that hides the point found, or have one that the true
-    /// ground has not: the ray is followed over the cells around.
+    /// Ground drawn with level of detail may lack a fold of less than half a pixel that hides the point found, or have one that the exact
+    /// ground lacks: the ray is therefore followed over the cells around.
     pub(crate) fn exact(&self, found: &DrawnTriangle<'_>, near: DVec3, pixel: DVec2) -> Option<(DVec3, f32)> {
         if found.block.bodies {
-            // Where it was carried to, the body is a surface like any other.
+            // A carried body is a surface like any other at its carried position.
             let (motion, bodies) = (self.motion(found)?, self.bodies?);
             let [a, b, c] = self.corners(found)?.map(|p| motion.carry(p));
             let (surface, near) = (Surface::through(a, b, c)?, motion.carry(near));
@@ -94,12 +94,12 @@ impl<'a> PixelCenters<'a> {
             Surface::Ground(hf) => centers.first_on(hf, settled, near, pixel),
             Surface::Plane(..) => None,
         };
-        // What a record shows elsewhere, continued, no ray sees.
+        // A point where the record does not apply is not seen by any ray.
         let belongs = |s: &Solution| centers.pass.margins(s.p).iter().all(|m| *m >= -1e-6 * s.depth);
         first.filter(belongs).or(settled.filter(belongs)).map(|s| (s.p, s.depth as f32))
     }
 
-    /// The pass, of those that drew the surface, that draws `p` nearest to `pixel`.
+    /// The pass, among those that drew the surface, whose image of `p` is nearest to `pixel`.
     fn of_pass(
         &self,
         passes: &'a [Pass<'a>],
@@ -146,7 +146,7 @@ impl<'a> PixelCenters<'a> {
 }
 
 impl PassCenters<'_> {
-    /// The first point on the ground near where Newton's steps have settled, or near `near`; `None` if none is better.
+    /// The first point on the ground near the point that Newton's method found, or near `near`; `None` if there is no accepted one.
     fn first_on(&self, hf: &Heightfield, settled: Option<Solution>, near: DVec3, pixel: DVec2) -> Option<Solution> {
         let mut at = settled.unwrap_or(Solution { off: f64::INFINITY, p: near, depth: 0.0 });
         for _ in 0..ROUNDS {
@@ -160,9 +160,9 @@ impl PassCenters<'_> {
         (at.off <= ACCEPTED_PX).then_some(at)
     }
 
-    /// Newton steps on the surface from `near` to where the image is `pixel`.
+    /// Newton steps on the surface from `near` to the point whose image is `pixel`.
     fn settle(&self, surface: &Surface<'_>, near: DVec3, pixel: DVec2) -> Option<Solution> {
-        // Ground in less detail lies beside the ground itself.
+        // The start may lie off the ground, where level of detail was used.
         let mut p = surface.at(near)?;
         let mut image = self.image(p)?;
         let mut best = (image.0.distance(pixel), p, image.1);
@@ -172,7 +172,7 @@ impl PassCenters<'_> {
                 break;
             }
             let along = surface.tangents(p);
-            // Twenty pixels' thousandths: far above rounding, far below what bends.
+            // Step of the differences, a fiftieth of a pixel: far above rounding, far below the scale of bends.
             let h = 0.02 * self.screen.footprint(image.1);
             let [ex, ey] =
                 [self.image(p + h * along[0])?.0, self.image(p + h * along[1])?.0].map(|q| (q - image.0) / h);
@@ -194,10 +194,10 @@ impl PassCenters<'_> {
         (off <= ACCEPTED_PX || off < 0.1 * first).then_some(Solution { off, p, depth })
     }
 
-    /// Where the ray of `pixel` enters the ground first near a point, as far as it stays within [`CLEAR_PX`] of the ground; `None` if
-    /// that is where Newton's steps have settled.
+    /// First point near a start where the ray of `pixel` enters the ground, followed while it stays within [`CLEAR_PX`] of the ground;
+    /// `None` if that is the point found by Newton's method.
     ///
-    /// The ray is taken for straight here. Where Newton's steps run to and fro over an edge of the ground, halving does not.
+    /// The ray is taken as straight here. Bisection converges at edges of the ground where Newton's method oscillates.
     fn first_near(&self, hf: &Heightfield, start: &Solution, pixel: DVec2) -> Option<DVec3> {
         let ray = self.ray(start.p, pixel)?;
         // An eighth of a cell on the map.
@@ -214,10 +214,10 @@ impl PassCenters<'_> {
             let q = ray.near + k * step;
             hf.surface_at(q.truncate()).map(|z| q.z - z)
         };
-        // Towards the eye until the ray is well above the ground: the last point under it counts.
+        // Towards the eye until the ray is well above the ground; the last point below it counts.
         let settled = start.off <= NEAR_PX;
         let mut under = if settled || gap(0.0)? >= 0.0 { None } else { Some(0.0) };
-        // Steps may be too wide for an edge that Newton's steps have settled behind.
+        // A first small step, for an edge that hides the point found and that longer steps would miss.
         for k in std::iter::once(0.02).chain((1..=MOST_STEPS).map(f64::from)) {
             match gap(k) {
                 Some(g) if g < -1e-6 * clear => under = Some(k),
@@ -226,7 +226,7 @@ impl PassCenters<'_> {
             }
         }
         if under.is_none() && !settled {
-            // The ray passes over what was found: on until it goes under.
+            // The ray passes over the point found: continue until it goes under the ground.
             under = (1..=MOST_STEPS).map(|k| -f64::from(k)).find(|&k| gap(k).is_none_or(|g| g < 0.0));
         }
         let mut under = under?;
@@ -259,7 +259,7 @@ impl PassCenters<'_> {
         Some(Ray { near, depth: here.1, towards: back * DVec3::NEG_Z, px_per_z: change.z_axis.truncate().length() })
     }
 
-    /// Pixel and depth of a point.
+    /// Pixel and depth of the image of a point.
     fn image(&self, p: DVec3) -> Option<(DVec2, f64)> {
         let v = self.screen.view_from(self.pass.displace(p)?);
         (v.z >= self.screen.near).then(|| (self.screen.pixel(v), v.z))
@@ -271,7 +271,7 @@ impl Surface<'_> {
         Some(Self::Plane(a, (b - a).cross(c - a).try_normalize()?))
     }
 
-    /// Two directions along the surface.
+    /// Two tangents of the surface.
     fn tangents(&self, p: DVec3) -> [DVec3; 2] {
         match self {
             Self::Plane(_, normal) => {
@@ -296,7 +296,7 @@ impl Surface<'_> {
         }
     }
 
-    /// The surface near a point beside it.
+    /// The point of the surface near a point off it.
     fn at(&self, p: DVec3) -> Option<DVec3> {
         match self {
             Self::Plane(point, normal) => Some(p - normal.dot(p - *point) * *normal),

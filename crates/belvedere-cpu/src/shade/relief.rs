@@ -6,22 +6,22 @@ use belvedere_scene::{Light, Relief};
 use glam::Vec3A;
 use std::sync::LazyLock;
 
-/// Steps of the table of tones, and the brightness at its end.
+/// Steps of the table of tones, and the brightness of its last entry.
 const STEPS: usize = 1024;
 type Tones = [f32; STEPS + 1];
 const BRIGHTEST: f32 = 4.0;
 
-/// Highest main light of the Swiss blend, radians: lower light models gentle slopes better.
+/// Highest altitude of the main light of the Swiss blend, radians: low light models gentle slopes better.
 const SWISS_ALTITUDE: f64 = 0.68;
 
-/// How much steeper a Swiss relief draws level ground, and the tangent of the slope at which half of that is left.
+/// Relative exaggeration of level ground in a Swiss relief, and the tangent of the slope at which half of it remains.
 const GENTLE: f32 = 1.2;
 const GENTLE_SLOPE: f32 = 0.25;
 
-/// How much more a Swiss relief makes of the openness of a point than the sky does.
+/// Factor on the openness of a point in a Swiss relief, relative to the light of the sky.
 const FORM: f32 = 2.0;
 
-/// What a cast shadow leaves of the direct light of a Swiss relief, whose light is a drawing rather than a sun.
+/// Share of direct light left in a cast shadow of a Swiss relief, whose light is a drawing technique rather than a sun.
 const SWISS_SHADOW: f32 = 0.45;
 
 /// The same for ground without relief, on which only boxes and meshes throw shadows.
@@ -31,13 +31,13 @@ const FLAT_SHADOW: f32 = 0.62;
 #[derive(Debug, Clone)]
 pub(crate) struct ReliefLight {
     relief: Relief,
-    /// Direction to the sun, stretched so that level ground gets 1.
+    /// Direction to the sun, scaled so that level ground gets 1.
     sun: [f32; 3],
-    /// Side lights of the blend, stretched likewise, and the direction their weight vanishes in.
+    /// Directions of the side lights, scaled likewise, and the aspects at which their weights vanish.
     sides: [([f32; 3], [f32; 2]); 4],
-    /// What is left of direct light in a cast shadow.
+    /// Share of direct light left in a cast shadow.
     pub(crate) in_shadow: f32,
-    /// Colours of direct light and of that from the sky, see [`ReliefLight::parts`].
+    /// Colours of direct light and of the light of the sky, see [`ReliefLight::parts`].
     pub(crate) warm: Rgb,
     pub(crate) cool: Rgb,
 }
@@ -69,15 +69,15 @@ impl ReliefLight {
     }
 
     /// Factor by which light from everywhere colours a surface with unit normal `n`.
-    /// * `open`: share of the sky that the surroundings leave, 1 = level ground;
-    /// * `lit`: share of the sun that no shadow takes.
+    /// * `open`: visible share of the sky, 1 = level ground;
+    /// * `lit`: visible share of the sun's disc.
     pub(crate) fn at(&self, n: Vec3A, open: f32, lit: f32) -> Rgb {
         let [direct, sky] = self.parts(n, open, lit);
         self.warm * direct + self.cool * sky
     }
 
-    /// Amounts of direct light and of light from the sky on a surface with unit normal `n`.
-    /// * `lit`: share of the sun that no shadow takes.
+    /// Amounts of direct light and of light of the sky on a surface with unit normal `n`.
+    /// * `lit`: visible share of the sun's disc.
     ///
     /// Swiss: the main light blended with four side lights, each weighted by the squared sine of the angle between its
     /// azimuth and the slope's aspect, so that slopes along the main light are modelled too (after Mark 1992, USGS
@@ -129,7 +129,7 @@ impl ReliefLight {
             sum += w * positive(dot(n, *d));
             weights += w;
         }
-        // Level ground has no aspect: fade the side lights in with the slope.
+        // Level ground has no aspect, so the side lights fade in with the slope.
         let share = 0.42 * if steep < 1.0 / 12.0 { steep * 12.0 } else { 1.0 };
         main + share * (sum / (if weights > 1e-9 { weights } else { 1e-9 }) - main)
     }
@@ -145,7 +145,7 @@ fn positive(v: f32) -> f32 {
     if v > 0.0 { v } else { 0.0 }
 }
 
-/// The normal as the drawing models it: gentle slopes up to twice as steep, so that plains have a relief; walls as they are.
+/// The normal used for shading: gentle slopes up to twice as steep, so that plains show relief; steep ones unchanged.
 #[inline(always)]
 fn modelled([x, y, z]: [f32; 3]) -> [f32; 3] {
     let zz = if z * z > 1e-6 { z * z } else { 1e-6 };
@@ -159,15 +159,15 @@ fn modelled([x, y, z]: [f32; 3]) -> [f32; 3] {
 
 static TONES: LazyLock<Tones> = LazyLock::new(|| std::array::from_fn(|i| tone_of(i as f32 * BRIGHTEST / STEPS as f32)));
 
-/// 1 on level ground; softly limited above, lifted below so that shadows keep their drawing. From a table: powers cost
-/// as much as the rest of the light.
+/// Tone curve: 1 on level ground, softly limited above, lifted below so that shadows keep their relief. From a table, since powers
+/// cost as much as the rest of the shading.
 #[inline(always)]
 fn tone(bright: f32, tones: &Tones) -> f32 {
-    // The last place in the table lies just before its end.
+    // The last index of the table lies just before its end.
     const MOST: f32 = STEPS as f32 - 0.01;
     let x = bright * (STEPS as f32 / BRIGHTEST);
     let x = if x < MOST { x } else { MOST };
-    // On a step, either of the two beside it will do.
+    // On an entry of the table either neighbour gives the same tone.
     let i = nearest(x - 0.5);
     let (a, b) = (tones[i as usize & (STEPS - 1)], tones[(i as usize & (STEPS - 1)) + 1]);
     a + (x - i as f32) * (b - a)
@@ -195,7 +195,7 @@ mod tests {
         let light = ReliefLight::new(Relief::Swiss, &Light::default());
         let towards = |slope: f32| Vec3A::new(-slope, slope, 1.0).normalize();
         let away = |slope: f32| Vec3A::new(slope, -slope, 1.0).normalize();
-        // Three degrees towards the light and away from it: a step of a tenth and more.
+        // Slopes of three degrees towards the light and away from it differ by a tenth and more.
         let [bright, dark] = [towards(0.037), away(0.037)].map(|n| light.parts(n, 1.0, 1.0)[0]);
         assert!(bright / dark > 1.1, "{bright} {dark}");
         let mut before = f32::INFINITY;

@@ -1,4 +1,4 @@
-//! Colour of what a traced ray meets.
+//! Colours of traced hits.
 
 use crate::color::Rgb;
 use crate::shade::ground::terrain::TerrainShade;
@@ -8,7 +8,7 @@ use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{CellTriangle, NodeState};
 
 impl Shader<'_> {
-    /// What the ray of `pixel` sees: `seen`, or the sky.
+    /// Colour, id and point of the hit `seen` on the ray of `pixel`, or of the sky.
     pub(crate) fn shade_hit(&self, view: &View, seen: Option<&RayHit>, pixel: DVec2) -> Shaded {
         let Some(seen) = seen else {
             return Shaded { color: self.sky.at(pixel.as_vec2().to_array()), id: 0, world: DVec3::NAN };
@@ -18,7 +18,7 @@ impl Shader<'_> {
         Shaded { color, id, world: seen.point }
     }
 
-    /// Colour and identity of what was hit, in the colours of a layer that is its surface.
+    /// Colour and id of a hit, in the colours of a layer that is the same surface.
     fn color_of(&self, layer: usize, view: &View, seen: &RayHit, pixel: DVec2) -> (Rgb, u32) {
         let footprint = self.screen.footprint(seen.depth);
         let sun = |p: DVec3, n: DVec3| self.sun_on(layer, p, n, footprint);
@@ -44,8 +44,8 @@ impl Shader<'_> {
 }
 
 impl TerrainShade<'_> {
-    /// Way on the map per pixel to the right and per pixel down, scene units: the derivative of the image along the triangle,
-    /// turned round.
+    /// Displacement on the map per pixel to the right and per pixel down, scene units: the inverse of the image's derivative along the
+    /// triangle.
     fn ground_per_px(
         &self,
         view: &View,

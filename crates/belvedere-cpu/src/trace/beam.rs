@@ -1,25 +1,25 @@
-//! Rows of pixels traced together: what several rays of a row clear they need not try one by one.
+//! Traces rows of pixels together: free space that is proved for a group of rays is skipped by each of them.
 
 use crate::trace::curve::{Curve, Span};
 use crate::trace::row::Row;
 use crate::trace::tracer::{RayHit, Tracer, nearer};
 use belvedere_core::{Aabb, DVec2, DVec3};
 
-/// Pixels that go together.
+/// Number of pixels traced together.
 const GROUP: usize = 8;
-/// A part of the rays is halved at most this often.
+/// Largest number of halvings of a part of the rays.
 const MAX_HALVINGS: u32 = 16;
-/// Parts shorter than this many cells of the ground are left to the rays themselves.
+/// Parts shorter than this many cells of the ground are traced ray by ray.
 const CELLS: f64 = 3.0;
 
-/// Rays of one height on the image.
+/// Rays of one image row.
 pub(crate) struct RowRays<'t, 'a> {
     tracer: &'t Tracer<'a>,
     row: Option<Row<'a>>,
     y: f64,
     /// Number of the sample of a pixel.
     sample: usize,
-    /// The same rays among rigid bodies.
+    /// The same rays in the space of the rigid bodies.
     bodies: Option<Box<RowRays<'t, 'a>>>,
 }
 
@@ -44,7 +44,7 @@ impl<'t, 'a> RowRays<'t, 'a> {
         self.tracer.hit_on(&self.curve(x), start, threshold)
     }
 
-    /// First hits at the pixels `0.5, 1.5 ..`.
+    /// First hits of the rays at `x` = 0.5, 1.5 ..
     pub(crate) fn first_hits(&self, out: &mut [Option<RayHit>]) {
         for (i, group) in out.chunks_mut(GROUP).enumerate() {
             let x = |k: usize| (i * GROUP + k) as f64 + 0.5;
@@ -60,7 +60,7 @@ impl<'t, 'a> RowRays<'t, 'a> {
         }
     }
 
-    /// Depth before which the rays from `x0` to `x1` meet nothing.
+    /// Depth up to which the rays from `x0` to `x1` hit nothing.
     fn clear_until(&self, x0: f64, x1: f64) -> f64 {
         let range = self.tracer.range;
         if !self.tracer.split.rows_are_straight() {
@@ -77,7 +77,7 @@ impl<'t, 'a> RowRays<'t, 'a> {
     }
 }
 
-/// The rays between two of a row.
+/// All rays of a row between two of them.
 struct Beam<'b, 'a> {
     tracer: &'b Tracer<'a>,
     sides: [&'b Curve<'b, 'a>; 2],
@@ -85,7 +85,7 @@ struct Beam<'b, 'a> {
 }
 
 impl Beam<'_, '_> {
-    /// First depth of the spans from which on something may be met.
+    /// Depth at which the first part begins where a hit is possible.
     fn blocked(&self, a: &Span, b: &Span, halvings: u32) -> Option<f64> {
         let stop = Some(a.depth[0]);
         let (Some((a0, a1)), Some((b0, b1))) = (a.chord(), b.chord()) else { return stop };

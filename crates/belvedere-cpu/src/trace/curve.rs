@@ -1,4 +1,4 @@
-//! The curved ray of a pixel as chords with a bound on their distance from it.
+//! The curved ray of a pixel as chords with a bound on its distance from them.
 
 use crate::fast::Fast;
 use crate::trace::row::Row;
@@ -6,12 +6,12 @@ use belvedere_core::map::curved_rays::{RayPiece, Shape};
 use belvedere_core::{DVec2, DVec3, EarthCurvature, RayPath, SplineBend, Stage, Strip, TerrainDisocclusion, View};
 use std::borrow::Cow;
 
-/// Spans that a ray of unknown shape is first looked at in.
+/// Number of spans into which a ray of unknown shape is first divided.
 const SPANS: usize = 8;
-/// Deviation of the right axes of camera and curve up to which the rays of an image row bend alike.
+/// Largest deviation between the right axes of camera and curve at which the rays of an image row bend alike.
 const ALIKE: f64 = 1e-12;
 
-/// A view in two parts: the smooth displacements, which bend rays, and the displacement of the ground, which moves the ground instead.
+/// A view split into smooth displacements, which bend rays, and the displacement of the ground, which is applied to the ground instead.
 ///
 /// Earth curvature and terrain disocclusion both move points of a vertical line alike, so their order does not matter and the
 /// latter may be left on the ground: there it is a height per point of the map, kinks and all, and no curve has to follow it.
@@ -25,18 +25,18 @@ pub(crate) struct Split<'a> {
     kind: Kind,
 }
 
-/// What bends the rays, beside the earth.
+/// Shape of the rays, beside the earth's curvature.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
-    /// Nothing, or curved rays: pieces in closed form.
+    /// Straight or curved rays: pieces in closed form.
     Pieces,
     /// A spline whose curve lies across the image's rows.
     Rows,
-    /// Anything else.
+    /// Any other stages.
     Any,
 }
 
-/// Earth curvature, undone: heights grow with the square of the distance from the eye.
+/// Inverse of the earth's curvature: heights grow with the square of the distance from the eye.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Parabola {
     eye: DVec2,
@@ -54,7 +54,7 @@ impl Parabola {
 
     /// Bound on the distance from the raised chord of a curve within `reach` of the chord `a b`.
     ///
-    /// On the chord the square is off by a quarter of that of its length at most, beside it by `2 r |p - eye| + r^2`.
+    /// On the chord the square deviates by at most a quarter of the squared length, beside it by `2 r |p - eye| + r^2`.
     fn reach(self, a: DVec3, b: DVec3, reach: f64) -> f64 {
         let (a, b) = (a.truncate(), b.truncate());
         let far = a.distance(self.eye).max(b.distance(self.eye));
@@ -67,7 +67,7 @@ impl<'a> Split<'a> {
         Self::of(Cow::Borrowed(view), view.ground(), view.strip(), view.spline_bend())
     }
 
-    /// Of a view of rigid bodies that were carried: nothing but curved rays bends it.
+    /// For a view of carried rigid bodies, bent by curved rays alone.
     pub(crate) fn after_bodies(view: View) -> Self {
         Self::of(Cow::Owned(view), None, None, None)
     }
@@ -83,7 +83,7 @@ impl<'a> Split<'a> {
         let earth = view.earth().map(Parabola::new);
         let strip = strip.and_then(|strip| {
             let later = view.stages().iter().skip_while(|s| !s.has_border()).skip(1).cloned().collect();
-            // The end of a chain is a chain.
+            // The tail of a chain is a valid chain.
             Some((strip, View::new(view.pinhole().clone(), later).ok()?))
         });
         let unknown = stages.iter().any(|s| matches!(Fast::of(s), Fast::None) && !s.bends_rays());
@@ -96,17 +96,17 @@ impl<'a> Split<'a> {
             }
             _ => Kind::Any,
         };
-        // A chain without one of its stages is in order if the chain is.
+        // A chain without one of its stages is valid if the chain is.
         let smooth = View::new(view.pinhole().clone(), stages).unwrap_or_else(|_| view.as_ref().clone());
         Self { view, smooth, ground, earth, bend, strip, kind }
     }
 
-    /// Height by which the ground at a point is displaced.
+    /// Height by which the ground at a point is displaced, scene units.
     pub(crate) fn lift(&self, p: DVec3) -> f64 {
         self.ground.map_or(0.0, |g| g.delta_at(p))
     }
 
-    /// Bound on how much more the ground is lifted between two points than at them: what it changes over them, or is high at most.
+    /// Bound on the absolute lift of the ground between two points.
     pub(crate) fn most_lift(&self, a: DVec3, b: DVec3) -> f64 {
         self.ground.map_or(0.0, |g| {
             let (min, max) = (a.min(b).truncate(), a.max(b).truncate());
@@ -115,13 +115,13 @@ impl<'a> Split<'a> {
         })
     }
 
-    /// What the rays of an image row (`y` in pixels) have in common, over a range of depths.
+    /// Shape common to the rays of an image row (`y` in pixels), over a range of depths.
     pub(crate) fn row(&self, y: f64, range: [f64; 2]) -> Option<Row<'a>> {
         let bend = self.bend.filter(|_| self.kind == Kind::Rows)?;
         Some(Row::new(bend, self.view.pinhole(), y, range))
     }
 
-    /// The ray of a pixel; `row` is that of its row.
+    /// The ray of a pixel; `row` is the common shape of its image row.
     pub(crate) fn curve<'s>(&'s self, pixel: DVec2, row: Option<&'s Row<'a>>) -> Curve<'s, 'a> {
         let ray = self.smooth.ray(pixel);
         let shape = match (self.kind, row) {
@@ -137,12 +137,12 @@ impl<'a> Split<'a> {
         Curve { shape, earth, strip }
     }
 
-    /// Whether at every depth the rays of a row lie on a line, evenly: what two of them clear between them, all between them clear.
+    /// Whether the rays of a row lie evenly on a line at every depth, so that space clear between two of them is clear for all between.
     pub(crate) fn rows_are_straight(&self) -> bool {
         self.kind == Kind::Rows || (self.kind == Kind::Pieces && !self.view.stages().iter().any(|s| s.bends_rays()))
     }
 
-    /// How far two points of rays of a row at one depth may lie above the rays between them, for the earth's curvature.
+    /// Largest height of two points of a row at one depth above the rays between them, due to the earth's curvature, scene units.
     pub(crate) fn sag(&self, a: DVec3, b: DVec3) -> f64 {
         self.earth.map_or(0.0, |e| 0.25 * e.factor.abs() * (a - b).truncate().length_squared())
     }
@@ -152,16 +152,16 @@ impl<'a> Split<'a> {
 pub(crate) struct Curve<'s, 'a> {
     shape: Curved<'s, 'a>,
     earth: Option<Parabola>,
-    /// A strip, and the ray before it comes there.
+    /// The strip, and the ray up to it.
     strip: Option<(&'a Strip, RayPath<'s>)>,
 }
 
 enum Curved<'s, 'a> {
     /// Straight, conic and other pieces.
     Pieces(Vec<RayPiece>),
-    /// What the row tells, and where the ray lies across it: at depth 0 and per unit of depth.
+    /// The common shape of the row, and the ray's position across it: at depth 0 and per unit of depth.
     Row { row: &'s Row<'a>, lateral: [f64; 2] },
-    /// By the inverse of the stages.
+    /// Points by the inverse of the stages.
     Any(RayPath<'s>),
 }
 
@@ -171,7 +171,7 @@ pub(crate) struct Span {
     pub(crate) depth: [f64; 2],
     /// Points of the ray at these depths; `None` where it has none.
     ends: [Option<DVec3>; 2],
-    /// Bound on the distance between ray and chord at the same share of the depths, scene units.
+    /// Bound on the distance between ray and chord at equal shares of the depths, scene units.
     pub(crate) reach: f64,
     /// Number of the piece, or of the node of the row.
     at: u32,
@@ -210,9 +210,9 @@ impl Curve<'_, '_> {
         Some(self.raised(p))
     }
 
-    /// Whether the ray may have points between two depths at which it has none; `None` where nothing tells.
+    /// Whether the ray may have points between two depths at which it has none; `None` where there is no strip to tell.
     ///
-    /// Before the strip is undone the ray is a line or nearly: it stays within the way to its ends of its middle.
+    /// Up to the strip the ray is nearly straight: it stays no farther from the middle of the span than its ends.
     pub(crate) fn may_enter(&self, span: &Span) -> Option<bool> {
         let (strip, before) = self.strip.as_ref()?;
         let at = |w: f64| before.at(w).ok().map(|p| p.point);
@@ -281,7 +281,7 @@ impl Curve<'_, '_> {
             }
             Shape::C2(_) => bow(|w| Some(pieces[i].at(w)), depth, ends),
         };
-        // Rounding of the points themselves.
+        // Allows for rounding of the points themselves.
         let reach = if reach > 0.0 { reach + 1e-13 * ends[0].abs().max(ends[1].abs()).max_element() } else { 0.0 };
         self.finished(depth, ends, reach, i as u32)
     }
@@ -321,19 +321,19 @@ fn sampled(ray: &RayPath<'_>, depth: [f64; 2]) -> Span {
     Span { depth, ends, reach: bow(at, depth, [a, b]) + rounding, at: 0 }
 }
 
-/// How far a curve is from its chord, from three points between: infinite if one of them is missing.
+/// Estimated distance of a curve from its chord, from three inner points: infinite if one of them is missing.
 ///
-/// For a parabola the quarters hold the very largest distance, for a cubic 97 % of it, for a kink three quarters: half as much again is
-/// a bound for all three, and an estimate for others.
+/// For a parabola the quarters have exactly the largest distance, for a cubic 97 % of it, for a kink three quarters: 1.5 times as much
+/// is a bound for all three, and an estimate for other curves.
 fn bow(at: impl Fn(f64) -> Option<DVec3>, [w0, w1]: [f64; 2], [a, b]: [DVec3; 2]) -> f64 {
     let off = |t: f64| at(w0 + t * (w1 - w0)).map_or(f64::INFINITY, |p| p.distance(a.lerp(b, t)));
     1.5 * [0.25, 0.5, 0.75].into_iter().map(off).fold(0.0, f64::max)
 }
 
-/// Largest distance between a conic arc and its chord, at the same share of the depths: exact.
+/// Largest distance between a conic arc and its chord at equal shares of the depths: exact.
 ///
-/// Places and depths of the arc are one rational curve in four dimensions, and so is its part between two parameters, with a middle control
-/// point `C` of weight `w`. The distance sought is affine, 0 at both ends and `D` at `C`, so it is `D` times the share of the middle Bernstein
+/// Points and depths of the arc form one rational curve in four dimensions, and so does its part between two parameters, with a middle
+/// control point `C` of weight `w`. The distance is affine, 0 at both ends and `D` at `C`, so it is `D` times the share of the middle Bernstein
 /// term, at most `w / (1 + w)`. Source: ours, by the blossom of Farin.
 fn conic_reach(
     weight: f64,
@@ -440,7 +440,7 @@ mod tests {
                 }
             }
             assert!(spans_seen > 5000, "{name}: {spans_seen}");
-            // Bounds that are never nearly met would be of little use, and of a fault in this test.
+            // Bounds that are never nearly reached would be of little use, or hint at an error of this test.
             assert!(tightest > 0.02 || name == "kink", "{name}: {tightest}");
         }
     }
@@ -461,7 +461,7 @@ mod tests {
             for _ in 0..3 {
                 spans = spans.iter().flat_map(|s| curve.halves(s)).collect();
             }
-            // A jump of the curvature, where a curve goes over into its straight extension, costs half a power.
+            // A jump of the curvature, where a curve meets its straight extension, costs half a power.
             assert!(worst(&spans) < coarse / 7.0, "{name}: {coarse} to {}", worst(&spans));
         }
     }

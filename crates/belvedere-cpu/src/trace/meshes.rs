@@ -1,4 +1,4 @@
-//! Where a ray passes the triangles of a mesh.
+//! Intersections of a ray with the triangles of meshes.
 
 use crate::trace::curve::Span;
 use crate::trace::root::root;
@@ -6,14 +6,14 @@ use crate::trace::tracer::{Found, Part, Walk};
 use belvedere_core::DVec3;
 use belvedere_sight::MeshTree;
 
-/// How far outside a triangle, in weights of its corners, a bent ray still meets it: more than rounding, so that no ray slips
-/// between two triangles.
+/// Slack of the barycentric weights at which a bent ray still hits a triangle: more than rounding, so that no ray slips between
+/// two triangles.
 const SLACK: f64 = 1e-9;
-/// Parts of a span that may graze a triangle are halved at most this often.
+/// Largest number of halvings of a part of a span that may graze a triangle.
 const MAX_HALVINGS: u32 = 12;
 
 impl Walk<'_, '_> {
-    /// Offers `take` the first hit of every mesh within a span that is all but straight.
+    /// Passes the first hit of every mesh within a nearly straight span to `take`.
     pub(crate) fn meet_meshes(&self, span: &Span, (a, b): (DVec3, DVec3), reach: f64, take: &mut dyn FnMut(Found)) {
         for (layer, tree) in self.tracer.obstacles.meshes() {
             let straight = span.is_straight() && tree.is_still() && self.shows_all(*layer);
@@ -27,7 +27,7 @@ impl Walk<'_, '_> {
                     if let Some(found) = found.filter(|f| best.is_none_or(|b| *f < b)) {
                         best = Some(found);
                     }
-                    // Bounds are met a little before the curve is.
+                    // A little beyond the hit, since bounds are met before the curve is.
                     best.map_or(1.0, |(depth, _)| (depth - span.depth[0]) / (span.depth[1] - span.depth[0]) + 1e-6)
                 });
             }
@@ -57,7 +57,7 @@ impl<'w, 't, 'a> Plane<'w, 't, 'a> {
         self.walk.true_point(depth).map_or(f64::NAN, |p| self.normal.dot(p - self.corner))
     }
 
-    /// Depth at which the span passes the triangle.
+    /// Depth at which the span crosses the triangle, if it does.
     fn meet(&self, span: &Span, reach: f64) -> Option<f64> {
         let [w0, w1] = span.depth;
         self.between(span, reach, (w0, self.over(w0)), (w1, self.over(w1)), 0)
@@ -74,7 +74,7 @@ impl<'w, 't, 'a> Plane<'w, 't, 'a> {
                 return Some(depth);
             }
         }
-        // A span that bends, or goes over ground that does, may pass the plane more than once.
+        // A bent span, or one over displaced ground, may cross the plane more than once.
         let least = start.1.abs().min(end.1.abs());
         let sway = self.walk.sway(span, reach, start.0, end.0);
         if sway == 0.0 || least > sway || halvings >= MAX_HALVINGS {

@@ -1,4 +1,4 @@
-//! Where a function changes its sign.
+//! Roots by regula falsi (Illinois).
 
 /// Argument in `[a.0, b.0]` where `f` changes its sign, to 1e-13 of itself; `a` and `b` are arguments with values of `f` of different sign.
 ///

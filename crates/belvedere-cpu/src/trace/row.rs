@@ -1,16 +1,16 @@
-//! What the rays of an image row have in common under a spline bend: along the curve and above it they are all alike.
+//! Common shape of the rays of an image row under a spline bend: along the curve and above it they are equal.
 
 use belvedere_core::map::spline::SplineBend;
 use belvedere_core::{DVec2, DVec3, Pinhole};
 use std::cell::RefCell;
 
-/// Where 1 - curvature x height falls below this, nothing is known of a part of a ray.
+/// Least `1 - curvature x height` for which a bound is computed for a part of a ray.
 const LEAST_STRETCH: f64 = 0.02;
 
 /// Arc length and height over the curve, curve units.
 pub(crate) type CurvePoint = [f64; 2];
 
-/// Part of the rays: a node of a tree that halves depths and grows where it is looked at.
+/// A part of the rays: a node of a tree that halves depths and grows on demand.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Node {
     pub(crate) depth: [f64; 2],
@@ -20,7 +20,7 @@ pub(crate) struct Node {
     children: Option<[u32; 2]>,
 }
 
-/// The rays of a row.
+/// Common shape of the rays of an image row.
 pub(crate) struct Row<'a> {
     bend: &'a SplineBend,
     /// In the plane of the curve: position at depth 0 and change per unit of depth, curve units.
@@ -49,7 +49,7 @@ impl<'a> Row<'a> {
         self.nodes.borrow()[i as usize]
     }
 
-    /// World point of a point of the row and a distance across, before other stages are undone.
+    /// World point of a point of the row at a distance across, before other stages are undone.
     pub(crate) fn world_point(&self, [l, d]: CurvePoint, across: f64) -> DVec3 {
         self.bend.unbent(l, d, across)
     }
@@ -64,7 +64,7 @@ impl<'a> Row<'a> {
         self.bend.curve().foot(self.line[0] + depth * self.line[1]).map(|(l, d)| [l, d])
     }
 
-    /// The foot at a depth, begun from that of the smallest known part of the row.
+    /// Foot at a depth, by iteration from the smallest known part of the row.
     fn near_foot(&self, depth: f64) -> Option<CurvePoint> {
         let nodes = self.nodes.borrow();
         let mut node = &nodes[0];
@@ -77,7 +77,7 @@ impl<'a> Row<'a> {
         self.bend.curve().foot_near(q, a[0] + t * (b[0] - a[0])).map(|(l, d)| [l, d])
     }
 
-    /// Both halves of a node; none where depths cannot be told apart any more.
+    /// Both halves of a node; `None` where depths cannot be halved further.
     pub(crate) fn children(&self, i: u32) -> Option<[u32; 2]> {
         let node = self.node(i);
         if node.children.is_some() {
@@ -106,8 +106,8 @@ impl<'a> Row<'a> {
         Node { depth, ends, reach, children: None }
     }
 
-    /// What stands for a bound close to the fold: half as much again as the largest distance of three points. Infinite for parts so long
-    /// that a bound may be found for most of their halves.
+    /// Replaces the bound close to the fold: 1.5 times the largest distance of three points. Infinite for parts so long that a bound may
+    /// exist for most of their halves.
     fn estimate(&self, [w0, w1]: [f64; 2], a: CurvePoint, b: CurvePoint) -> f64 {
         let curvature = self.bend.curve().curvature_range().map(f64::abs).into_iter().fold(0.0, f64::max);
         if self.line[1].length() * (w1 - w0) * curvature.min(1e3) > 1e-3 {
@@ -121,7 +121,7 @@ impl<'a> Row<'a> {
         self.bend.scale() * 1.5 * worst
     }
 
-    /// Bound on the distance of the undone ray from its chord, scene units; `None` where none is known.
+    /// Bound on the distance of the undone ray from its chord, scene units; `None` where there is no bound.
     ///
     /// With `v` the direction of the line per depth, `T` and `N` tangent and normal of the curve at the foot, the foot moves by
     /// `l' = v T / (1 - kap d)`, `d' = v N`. `l` is monotone: where `v T = 0` it stands still for ever. A function whose derivative varies in
@@ -136,7 +136,7 @@ impl<'a> Row<'a> {
         let variation = curve.curvature_variation_to(l1) - curve.curvature_variation_to(l0);
         let curvature = curve.curvature_at(l0).abs() + variation;
         let least = 1.0 - curvature * height;
-        // Feet farther apart than the line can carry them belong to different parts of the curve.
+        // Feet farther apart than the line's length allows lie on different parts of the curve.
         if !(least > LEAST_STRETCH) || (l1 - l0) * least > way * (1.0 + 1e-9) + 1e-12 {
             return None;
         }

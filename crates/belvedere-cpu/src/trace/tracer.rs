@@ -1,4 +1,4 @@
-//! First hits of curved rays.
+//! First hits of curved rays on the surfaces of a scene.
 
 use crate::screen::Screen;
 use crate::sections::{Exposure, Sections, Shown};
@@ -9,15 +9,15 @@ use belvedere_scene::{CellTriangle, Heightfield, LayerKind, NodeState, Scene};
 use belvedere_sight::{Carried, GridLine, Lift, MeshTree, Obstacles, UprightBox};
 use std::ops::ControlFlow;
 
-/// Largest distance of a ray from the chord that tells where to look for its hits, pixels.
+/// Distance of a ray from its chord, pixels, below which the chord is used to find its hits.
 const CHORD_PX: f64 = 1e-3;
-/// A span is halved at most this often, one without any point of the ray at most that often.
+/// Largest number of halvings of a span, and of a span without any point of the ray.
 const MAX_HALVINGS: u32 = 40;
 const MAX_HALVINGS_OF_NOTHING: u32 = 3;
 /// The same where it may enter a strip.
 const MAX_HALVINGS_BESIDE_STRIP: u32 = 12;
 
-/// What the ray of a pixel meets first.
+/// First hit of the ray of a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RayHit {
     /// Index of the layer in the scene.
@@ -54,31 +54,31 @@ pub(crate) enum Part {
     Voxels,
 }
 
-/// A scene made ready for rays of one view.
+/// A scene prepared for rays of one view.
 ///
-/// For every pixel the ray `RayPath::at` is followed by depth; nothing is subdivided, projected or rasterised. Spans of the ray that clear the
-/// ground and the boxes by more than they bend are skipped; in the others the sign of the height over the drawn surface
-/// ([`Heightfield::surface_in_cell`]), or of the distance from a box, is followed from cell to cell and its change bracketed to
+/// The ray `RayPath::at` of every pixel is followed by depth; nothing is subdivided, projected or rasterised. Spans of the ray that clear
+/// the ground and the boxes by more than their bend are skipped; in the others the sign of the height over the drawn surface
+/// ([`Heightfield::surface_in_cell`]), or of the distance from a box, is followed from cell to cell, and a change of sign is bracketed to
 /// about 1e-12 of the depth. The maximum mipmap is that of Tevs et al. 2008; curved rays through it are ours.
 pub struct Tracer<'a> {
     pub(crate) split: Split<'a>,
     screen: Screen,
     pub(crate) obstacles: Obstacles<'a>,
-    /// Around all boxes and meshes, wherever the ground has moved them to.
+    /// Bounds of all boxes and meshes, displaced with the ground.
     solid: Aabb,
     pub(crate) range: [f64; 2],
     sections: Option<Sections<'a>>,
     exposure: Exposure,
-    /// If what it meets are rigid bodies where the view carried them to.
+    /// Set if this tracer holds the carried rigid bodies.
     carried: Option<(Carried, &'a Scene)>,
-    /// Meets the rigid bodies, if the view carries any.
+    /// Tracer of the rigid bodies, if the view carries any.
     pub(crate) bodies: Option<Box<Tracer<'a>>>,
 }
 
 impl<'a> Tracer<'a> {
     /// Prepares terrain, boxes and meshes of `scene`: one pass over the nodes and the triangles.
     ///
-    /// Where styling sections show layers in part, a ray meets what its pixel's threshold shows.
+    /// Where styling sections show layers in part, a ray hits only surfaces that its pixel's threshold shows.
     pub fn new(scene: &'a Scene, view: &'a View) -> Self {
         Self::exposed(scene, view, Sections::of(scene, view, None, true), Exposure::new(1, 1))
     }
@@ -109,7 +109,7 @@ impl<'a> Tracer<'a> {
         Self { split, screen, obstacles, solid, range, sections, exposure, carried: None, bodies }
     }
 
-    /// For rigid bodies, in the space that they are carried to.
+    /// A tracer of the rigid bodies, in the space to which they are carried.
     fn of_bodies(scene: &'a Scene, carried: Carried, sections: Option<Sections<'a>>, exposure: Exposure) -> Self {
         let view = carried.after();
         let obstacles = Obstacles::of_bodies(scene, &carried);
@@ -120,9 +120,9 @@ impl<'a> Tracer<'a> {
         Self { split, screen, obstacles, solid, range, sections, exposure, carried, bodies: None }
     }
 
-    /// What the ray of `pixel` meets first between the near and far depth of the camera; `None` for the sky.
+    /// First hit of the ray of `pixel` between the near and far depth of the camera; `None` for the sky.
     ///
-    /// Of surfaces seen at the same depth the layer listed first counts.
+    /// Of surfaces at the same depth the layer listed first is hit.
     pub fn first_hit(&self, pixel: DVec2) -> Option<RayHit> {
         let row = self.split.row(pixel.y, self.range);
         let hit = self.hit_on(&self.split.curve(pixel, row.as_ref()), self.range[0], self.threshold(0, pixel));
@@ -134,7 +134,7 @@ impl<'a> Tracer<'a> {
         self.exposure.threshold(sample, pixel.x.floor() as i32, pixel.y.floor() as i32)
     }
 
-    /// First hit of a curve that is known to meet nothing before depth `start`, by a sample with a threshold.
+    /// First hit of a curve that is known to hit nothing before depth `start`, for a sample with a threshold.
     pub(crate) fn hit_on(&self, curve: &Curve<'_, '_>, start: f64, threshold: f64) -> Option<RayHit> {
         let walk = Walk { tracer: self, curve, start, threshold };
         let spans = curve.spans([start, self.range[1]]);
@@ -149,7 +149,7 @@ impl<'a> Tracer<'a> {
         if self.carried.is_some() { self.taken_back(hit) } else { Some(hit) }
     }
 
-    /// What is met of a body, as its layer holds it.
+    /// A hit on a carried body, in the coordinates of its layer.
     fn taken_back(&self, hit: RayHit) -> Option<RayHit> {
         let Part::Triangle(index, front) = hit.part else { return None };
         let (_, tree) = self.obstacles.meshes().iter().find(|(i, _)| *i == hit.layer)?;
@@ -163,14 +163,14 @@ impl<'a> Tracer<'a> {
         Some(RayHit { point: motion.undo(hit.point), part, ..hit })
     }
 
-    /// The place before any displacement of what a ray meets at a point of a triangle, by the triangle's number in its tree.
+    /// The undisplaced position of a point on a triangle, by the triangle's number in its tree.
     fn place_of(&self, layer: usize, tree: &MeshTree<'_>, triangle: usize, p: DVec3) -> Option<DVec3> {
         let Some((carried, _)) = &self.carried else { return Some(p) };
         let (_, motion) = carried.layer(layer)?.body(tree.mesh().part(triangle)? as usize)?;
         Some(motion.undo(p))
     }
 
-    /// Whether nothing of the scene lies in a box.
+    /// Whether a box contains no surface of the scene.
     pub(crate) fn is_empty(&self, bounds: &Aabb) -> bool {
         let apart = bounds.min.cmpgt(self.solid.max).any() || bounds.max.cmplt(self.solid.min).any();
         apart && self.obstacles.grounds().iter().all(|(_, g)| g.is_off(bounds))
@@ -182,7 +182,7 @@ impl<'a> Tracer<'a> {
         spacing.fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether a ray meets the side of a triangle from which its corners run counter-clockwise.
+    /// Whether a ray hits the side of a triangle from which its corners run counter-clockwise.
     fn is_front(&self, layer: usize, triangle: usize, at: &impl Fn(f64) -> Option<DVec3>, depth: f64) -> bool {
         let Some((_, tree)) = self.obstacles.meshes().iter().find(|(i, _)| *i == layer) else { return true };
         let step = 1e-6 * depth;
@@ -213,7 +213,7 @@ pub(crate) fn nearer(a: Option<RayHit>, b: Option<RayHit>) -> Option<RayHit> {
     }
 }
 
-/// Depth beyond which nothing of the scene is seen: the largest depth of a lattice over its bounds and a step more.
+/// Depth beyond which no surface is seen: the largest depth of a lattice over the scene's bounds, and a step more.
 pub(crate) fn deepest(scene: &Scene, view: &View) -> f64 {
     deepest_in(&scene.bounds(), view)
 }
@@ -251,7 +251,7 @@ fn deepest_in(bounds: &Aabb, view: &View) -> f64 {
     (largest + step + 1e-6 * largest).min(far).max(near * (1.0 + 1e-9))
 }
 
-/// Points all over the part of a strip that lies in a box in plan, at its least and largest height; none without a strip.
+/// Points of the part of a strip that lies in a box in plan, at the box's least and largest height; empty without a strip.
 fn strip_points(view: &View, bounds: &Aabb) -> Vec<DVec3> {
     const ALONG: usize = 400;
     let Some(strip) = view.strip() else { return Vec::new() };
@@ -272,7 +272,7 @@ pub(crate) type Found = (f64, usize, Part);
 pub(crate) struct Walk<'t, 'a> {
     pub(crate) tracer: &'t Tracer<'a>,
     curve: &'t Curve<'t, 'a>,
-    /// Depth up to which nothing is met.
+    /// Depth up to which nothing is hit.
     start: f64,
     threshold: f64,
 }
@@ -285,7 +285,7 @@ impl Walk<'_, '_> {
         }
         match span.chord().filter(|_| span.reach.is_finite()) {
             Some((a, b)) => {
-                // What begins before the start need not be tried as a whole.
+                // A span that begins before the start cannot be skipped as a whole.
                 if span.depth[0] >= self.start && self.tracer.obstacles.is_clear(a, b, span.reach) {
                     return None;
                 }
@@ -311,7 +311,7 @@ impl Walk<'_, '_> {
         self.curve.halves(&span).into_iter().find_map(|half| self.span(half, halvings + 1))
     }
 
-    /// First hit within a span that is all but straight.
+    /// First hit within a nearly straight span.
     fn search(&self, span: &Span, chord: (DVec3, DVec3), reach: f64) -> Option<Found> {
         let mut best: Option<Found> = None;
         let mut take = |found: Found| {
@@ -340,10 +340,10 @@ impl Walk<'_, '_> {
         best
     }
 
-    /// How far the distance from a plane may be from linear between two depths.
+    /// Bound on the deviation of the distance from a plane from linear between two depths.
     pub(crate) fn sway(&self, span: &Span, reach: f64, w0: f64, w1: f64) -> f64 {
         let share = (w1 - w0) / (span.depth[1] - span.depth[0]);
-        // The bow of part of a curve goes with the square of its length.
+        // The bow of a part of a curve is proportional to the square of its length.
         let bend = 4.0 * reach * share * share;
         let Some(ground) = self.tracer.split.ground else { return bend };
         match (self.curve.at(w0), self.curve.at(w1)) {
@@ -352,35 +352,35 @@ impl Walk<'_, '_> {
         }
     }
 
-    /// True point at a depth, and the point before the ground is displaced.
+    /// Undisplaced point at a depth.
     pub(crate) fn true_point(&self, depth: f64) -> Option<DVec3> {
         let p = self.curve.at(depth)?;
         Some(p - self.tracer.split.lift(p) * DVec3::Z)
     }
 
-    /// Whether the ray's sample shows the layer at a depth.
+    /// Whether the sample shows the layer at a depth of its ray.
     pub(crate) fn shows(&self, layer: usize, depth: f64) -> bool {
         let Some(sections) = &self.tracer.sections else { return true };
         self.true_point(depth).is_some_and(|p| sections.shows(layer, sections.parameter(p), self.threshold))
     }
 
-    /// Whether the ray's sample shows a triangle, by its number in its tree, at a depth.
+    /// Whether the sample shows a triangle, by its number in its tree, at a depth.
     pub(crate) fn shows_triangle(&self, layer: usize, tree: &MeshTree<'_>, triangle: usize, depth: f64) -> bool {
         let Some(sections) = &self.tracer.sections else { return true };
         let place = self.true_point(depth).and_then(|p| self.tracer.place_of(layer, tree, triangle, p));
         place.is_some_and(|p| sections.shows(layer, sections.parameter(p), self.threshold))
     }
 
-    /// Whether the ray's sample shows the layer wherever it goes.
+    /// Whether the layer is shown everywhere.
     pub(crate) fn shows_all(&self, layer: usize) -> bool {
         self.tracer.sections.as_ref().is_none_or(|s| s.of_layer(layer) == Shown::Everything)
     }
 
-    /// Depth at which the ray first passes the surface of a box that it shows there.
+    /// Depth at which the ray first crosses the surface of a box that its sample shows there.
     fn meet_box(&self, shape: &UprightBox, span: &Span, [t0, t1]: [f64; 2]) -> Option<f64> {
         let outside = |w: f64| self.true_point(w).map_or(f64::NAN, |p| shape.outside(p));
         let steps = if shape.is_sheared() { 64 } else { 8 };
-        // A little more on both sides, so that the ends lie off the surface.
+        // Slack on both sides, so that the ends lie off the surface.
         let slack = 1e-3 * (t1 - t0) + 1e-12;
         let (t0, t1) = ((t0 - slack).max(0.0), (t1 + slack).min(1.0));
         let at = |i: usize| {
@@ -402,7 +402,7 @@ impl Walk<'_, '_> {
     }
 }
 
-/// The height over the ground, followed along a span from cell to cell.
+/// Follows the height of a span over the ground from cell to cell.
 struct Follow<'w, 't, 'a> {
     walk: &'w Walk<'t, 'a>,
     layer: usize,
@@ -410,7 +410,7 @@ struct Follow<'w, 't, 'a> {
     chord: (DVec3, DVec3),
     reach: f64,
     hf: &'w Heightfield,
-    /// Where the last part ended, and whether above the ground.
+    /// Depth at the end of the last part, and whether that lies above the ground.
     last: Option<(f64, bool)>,
 }
 
@@ -423,7 +423,7 @@ struct Plane {
 }
 
 impl Plane {
-    /// Change of height per unit of way, along the grid's lines and summed.
+    /// Change of height per unit of length in plan: the sum of the absolute slopes along both axes.
     fn steepness(&self, hf: &Heightfield) -> f64 {
         let per_unit = (self.slope / hf.spacing()).abs();
         per_unit.x + per_unit.y
@@ -468,7 +468,7 @@ impl Follow<'_, '_, '_> {
 
     fn triangle(&mut self, plane: &Plane, t0: f64, t1: f64) -> Option<f64> {
         let (walk, span, hf) = (self.walk, self.span, self.hf);
-        // The chord tells where the curve within reach of it is clearly above or below.
+        // The chord decides where a curve within `reach` of it is clearly above or below.
         if walk.tracer.split.ground.is_none() {
             let over = |t: f64| plane.below(hf, self.chord.0.lerp(self.chord.1, t));
             let (a, b) = (over(t0), over(t1));
@@ -491,7 +491,7 @@ impl Follow<'_, '_, '_> {
             return None;
         }
         let was = self.last.replace((t1, end.1 > 0.0));
-        // Between two parts that meet, rounding must not swallow the change.
+        // Between two adjoining parts, rounding must not lose the change of sign.
         if was.is_some_and(|(t, above)| t == t0 && above != (start.1 > 0.0)) {
             return Some(w0);
         }
@@ -501,7 +501,7 @@ impl Follow<'_, '_, '_> {
         self.graze(start, end, &gap, 0)
     }
 
-    /// A part whose ends lie on one side of the surface may touch it between them if it bends, or the ground does.
+    /// A part whose ends lie on one side of the surface may touch it between them if the ray or the ground is bent.
     fn graze(&self, start: (f64, f64), end: (f64, f64), gap: &dyn Fn(f64) -> f64, halvings: u32) -> Option<f64> {
         let least = start.1.abs().min(end.1.abs());
         let sway = self.walk.sway(self.span, self.reach, start.0, end.0);

@@ -1,11 +1,11 @@
-//! How far from every brick the nearest visible one is: what a ray may leap over.
+//! Distance of every brick to the nearest visible one, for skipping empty space.
 
 use super::table::Table;
 use belvedere_scene::Volume;
 use belvedere_scene::volume::BRICK;
 use glam::Vec3A;
 
-/// Bricks along the edge of a cube: 8 cells each.
+/// Edge of a brick, cells.
 pub(super) const EDGE: f32 = BRICK as f32;
 
 /// Distances of bricks.
@@ -37,7 +37,7 @@ impl Leaps {
         self.distance.fill(0);
     }
 
-    /// Whether nothing at all is visible.
+    /// Whether no brick is visible.
     pub(super) fn is_clear(&self) -> bool {
         self.distance.iter().all(|d| *d > 0)
     }
@@ -47,7 +47,7 @@ impl Leaps {
         self.dims
     }
 
-    /// Whether any of the bricks from the first to before the last along each axis is visible.
+    /// Whether any of the bricks in the ranges (end excluded) along each axis is visible.
     pub(super) fn shows(&self, cube: [[usize; 2]; 3]) -> bool {
         let [x, y, z] = std::array::from_fn(|a| cube[a][0]..cube[a][1].min(self.dims[a]));
         z.flat_map(|z| y.clone().map(move |y| (z * self.dims[1] + y) * self.dims[0]))
@@ -64,13 +64,13 @@ impl Leaps {
     }
 }
 
-/// Lowers the distances of one line of bricks: the largest of the ways along the axes counts, so that after a pass along one axis an
-/// entry `d` away from another is at most the larger of `d` and that other's.
+/// Lowers the distances of one line of bricks: the largest of the distances along the axes counts, so after a pass along one axis an
+/// entry `d` away from another is at most the larger of `d` and that other entry.
 fn spread(distance: &mut [u8], first: usize, stride: usize, n: usize) {
     let line: Vec<u8> = (0..n).map(|k| distance[first + k * stride]).collect();
     for k in 0..n {
         let mut best = line[k];
-        // No farther than the best so far can there be better.
+        // Only entries nearer than the best so far can improve it.
         for off in 1..n {
             if off >= usize::from(best) {
                 break;

@@ -1,4 +1,4 @@
-//! Volumes over the surfaces of a picture.
+//! Composites volumes over the surfaces of a picture.
 
 use super::march::Marcher;
 use super::ray::{Rays, Segment};
@@ -15,12 +15,12 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 /// Rows that a thread draws at a time.
 const ROWS: usize = 4;
 
-/// How rays are followed.
+/// Algorithm that follows rays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Way {
-    /// Groups of samples, leaps over what is empty.
+    /// Groups of samples, with empty-space skipping.
     Fast,
-    /// Sample by sample in 64 bits.
+    /// One sample at a time in 64 bits.
     Exact,
 }
 
@@ -32,8 +32,8 @@ struct Drawn<'a> {
     spans: Spans,
 }
 
-/// Lays the volumes of a scene over its surfaces, at the pixel centres. Volumes that overlap are laid over each other as a whole, the
-/// one that a ray enters first in front. Answers how many samples were taken.
+/// Composites the volumes of a scene over its surfaces, at the pixel centres. Volumes that overlap are composited as wholes, the
+/// one that a ray enters first in front. Returns the number of samples taken.
 pub(crate) fn compose(job: &RenderJob<'_>, way: Way, buffers: &mut Buffers) -> Result<u64, RenderError> {
     let volumes: Vec<Drawn<'_>> = job
         .scene
@@ -87,7 +87,7 @@ impl Rows<'_> {
     /// Draws row `y` of these, row `image_y` of the picture.
     fn draw(&mut self, rays: &Rays<'_>, volumes: &[Drawn<'_>], way: Way, far: f64, [y, image_y]: [usize; 2]) -> u64 {
         let row = y * self.width..(y + 1) * self.width;
-        // How far each ray goes: surfaces as they were before any volume.
+        // Ends of the rays: depths of the surfaces before any volume is drawn.
         let ends: Vec<f64> = self.depth[row.clone()].iter().map(|d| f64::from(*d).min(far)).collect();
         let mut found: Vec<Vec<(usize, Gathered)>> = vec![Vec::new(); self.width];
         let mut samples = 0;
@@ -118,7 +118,7 @@ impl Rows<'_> {
             }
         }
         for (x, mut list) in found.into_iter().enumerate() {
-            // Farthest first.
+            // Farthest volume first.
             list.sort_by(|a, b| b.1.enters.total_cmp(&a.1.enters));
             for (layer, gathered) in list {
                 let half = gathered.half.map(|(depth, place)| (rays.depth_of(place, depth), place));

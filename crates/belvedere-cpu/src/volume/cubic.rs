@@ -1,12 +1,12 @@
-//! Parts of rays as cubics, and their parts inside a box.
+//! Parts of rays as cubics, clipped to a box.
 
 use belvedere_core::DVec3;
 
-/// A curve over 0..=1, all but of even speed: `c0 + t (c1 + t (c2 + t c3))`.
+/// A curve over 0..=1 of nearly constant speed: `c0 + t (c1 + t (c2 + t c3))`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cubic(pub(super) [DVec3; 4]);
 
-/// Roots are found to this share of the curve.
+/// Tolerance of roots, as a share of the parameter range.
 const ROOT: f64 = 1e-9;
 
 impl Cubic {
@@ -33,7 +33,7 @@ impl Cubic {
         Self([self.at(t0), h * slope, h * h * (c2 + 3.0 * t0 * c3), h * h * h * c3])
     }
 
-    /// Corners whose hull holds the curve.
+    /// Bezier control points, whose hull contains the curve.
     fn hull(&self) -> [DVec3; 4] {
         let [c0, c1, c2, c3] = self.0;
         [c0, c0 + c1 / 3.0, c0 + (2.0 * c1 + c2) / 3.0, c0 + c1 + c2 + c3]
@@ -66,7 +66,7 @@ impl Cubic {
         }
     }
 
-    /// Parameters at which a coordinate passes a bound: between its turning points it does so once at most.
+    /// Parameters at which a coordinate crosses a bound: at most once between its turning points.
     fn crossings(&self, axis: usize, bound: f64, out: &mut Vec<f64>) {
         let [c0, c1, c2, c3] = self.0.map(|c| c[axis]);
         let f = |t: f64| c0 - bound + t * (c1 + t * (c2 + t * c3));
@@ -94,7 +94,7 @@ impl Cubic {
     }
 }
 
-/// The root between two parameters with values of different sign: false position that halves the value kept (Illinois).
+/// The root between two parameters with values of different sign: false position (Illinois).
 fn root(f: &dyn Fn(f64) -> f64, mut a: (f64, f64), mut b: (f64, f64)) -> f64 {
     for _ in 0..60 {
         let t = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);

@@ -1,19 +1,19 @@
-//! Shading of samples in light that comes from the eye along the ray.
+//! Shading of samples by a headlight along the ray.
 
-/// Light that every sample gets, and what a surface across the ray gets besides.
+/// Ambient light, and diffuse light of a surface perpendicular to the ray.
 const AMBIENT: f32 = 0.26;
 const DIFFUSE: f32 = 0.74;
-/// Light of a sample where values change so little that there is no surface.
+/// Light of a sample with a small gradient, where there is no surface.
 const INSIDE: f32 = 0.80;
-/// How much darker what looks down is than what looks up.
+/// Difference in light between normals that point down and up.
 const SKY: f32 = 0.12;
 /// Highlight.
 const SPECULAR: f32 = 0.20;
-/// Change per voxel edge, as a share of the range of values, that makes half a surface.
+/// Gradient per voxel edge, as a share of the range of values, at which a sample counts as half a surface.
 pub(super) const SURFACE: f32 = 0.012;
 
 /// Factor of the colour, and white added to it.
-/// * `cos`: cosine between gradient and ray; `solid`: how much of a surface it is, 0..=1; `up`: upward share of the normal, -1..=1.
+/// * `cos`: cosine between gradient and ray; `solid`: weight of the surface, 0..=1; `up`: vertical component of the unit normal, -1..=1.
 #[inline(always)]
 pub(super) fn light(cos: f32, solid: f32, up: f32) -> [f32; 2] {
     let surface = (AMBIENT + DIFFUSE * cos) * (1.0 - SKY + SKY * up);

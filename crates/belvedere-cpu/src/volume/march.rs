@@ -1,4 +1,4 @@
-//! The fast way along a ray: groups of samples, leaps over what is empty.
+//! Fast ray marching: groups of samples, with empty-space skipping.
 
 use super::bricks::{EDGE, Leaps};
 use super::light::{SURFACE, light};
@@ -12,15 +12,15 @@ use belvedere_core::{DVec3, View};
 use belvedere_scene::{Volume, VolumeLayer, VolumeModel, VoxelValues};
 use glam::{Mat3A, Vec3A};
 
-/// A volume ready for many rays.
+/// A volume prepared for many rays.
 pub(super) struct Marcher<'v> {
     layer: &'v VolumeLayer,
     table: Table,
     leaps: Leaps,
     step: f64,
-    /// Scene normals from lattice gradients, per voxel edge.
+    /// Matrix from lattice gradients to scene normals, per voxel edge.
     normal_from_gradient: Mat3A,
-    /// Change per voxel edge that makes half a surface, squared.
+    /// Squared gradient per voxel edge at which a sample counts as half a surface.
     surface_squared: f32,
 }
 
@@ -42,7 +42,7 @@ impl<'v> Marcher<'v> {
         }
     }
 
-    /// Whether nothing of the volume is visible.
+    /// Whether no part of the volume is visible.
     pub(super) fn is_clear(&self) -> bool {
         self.leaps.is_clear()
     }
@@ -56,13 +56,13 @@ impl<'v> Marcher<'v> {
         &self.layer.volume
     }
 
-    /// Takes every sample from now on.
+    /// Switches empty-space skipping off.
     #[cfg(test)]
     pub(super) fn forget_leaps(&mut self) {
         self.leaps.forget();
     }
 
-    /// What a ray gathers along its segments.
+    /// Light gathered by a ray along its segments.
     pub(super) fn gather(&self, segments: &[Segment]) -> Gathered {
         let volume = self.volume();
         match volume.values() {
@@ -109,7 +109,7 @@ impl<T: Voxel> Kernel for Walk<'_, '_, T> {
     }
 }
 
-/// A segment in 32 bits: position by the way from its start, in steps.
+/// A segment in single precision: position by the distance from its start, in steps.
 struct Stretch {
     c: [Vec3A; 4],
     /// Bound on half the second derivative, per axis; `None` for a straight one.
@@ -141,7 +141,7 @@ impl Stretch {
         self.c[1] + n * (2.0 * self.c[2] + n * 3.0 * self.c[3])
     }
 
-    /// Whole steps that stay within the cube of bricks around a brick.
+    /// Number of whole steps that stay within the cube of empty bricks around a brick.
     #[inline(always)]
     fn leap(&self, n: f32, p: Vec3A, (brick, distance): ([usize; 3], u8)) -> f32 {
         let v = self.direction(n);
@@ -152,8 +152,8 @@ impl Stretch {
         let pace = v.abs().max(Vec3A::splat(1e-12)).recip();
         let leap = (way * pace).min_element();
         let Some(bend) = self.bend else { return leap.floor().max(1.0) };
-        // The bend may bring it to a side earlier: as far as it goes within the leap. Sides that it goes away from are as near as they
-        // are, and what speed it may come to have towards them counts.
+        // The bend may bring the ray to a side earlier, by at most `off` within the leap. For sides that it moves away from, the distance
+        // itself counts, and the speed that the bend may give it towards them.
         let off = bend * (leap * leap);
         let ahead = ((way - off) * pace).min_element();
         let behind = (high - low - way - off).min_element() + 1e-3;
@@ -161,11 +161,11 @@ impl Stretch {
     }
 }
 
-/// Segments that go on from each other, and how far along them one is.
+/// Adjoining segments, and the position along them.
 struct Run<'s> {
     segments: &'s [Segment],
     step: f64,
-    /// The present segment, where it starts and ends, in steps.
+    /// Number of the current segment, and its start and end in steps.
     at: usize,
     start: f64,
     end: f64,
@@ -179,7 +179,7 @@ impl<'s> Run<'s> {
         Self { segments, step, at: 0, start: 0.0, end: segments[0].length / step, stretch }
     }
 
-    /// Goes on to the segment of a way, in steps.
+    /// Advances to the segment at a distance, in steps.
     #[inline(always)]
     fn seek(&mut self, way: f64) {
         while way >= self.end && self.at + 1 < self.segments.len() {
@@ -195,8 +195,8 @@ impl<'s> Run<'s> {
         self.stretch = Stretch::new(segment, self.step);
     }
 
-    /// Positions of samples from the way `way` on, a step apart, and the steps themselves if `directions` are wanted. The first one lies
-    /// in the present segment; the others may lie in later ones, and then these become the present one.
+    /// Positions of samples from the distance `way` on, a step apart, and the direction per step if `directions` are asked for. The first
+    /// lies in the current segment; if others lie in later ones, these become current.
     #[inline(always)]
     fn group(&mut self, way: f64, taken: usize, directions: bool) -> ([Group; 3], [Group; 3]) {
         let (mut p, mut v) = ([[0.0; GROUP]; 3], [[0.0; GROUP]; 3]);
@@ -240,12 +240,12 @@ impl<'s> Run<'s> {
 }
 
 impl<T: Voxel> Walk<'_, '_, T> {
-    /// Samples of segments that go on from each other, at `(k + 1/2)` steps of their common length; the last step ends with them.
+    /// Takes samples along adjoining segments, at `(k + 1/2)` steps of their joint length; the last, shorter step ends with them.
     #[inline(always)]
     fn run_of(&self, segments: &[Segment], out: &mut Gathered) {
         let step = self.marcher.step;
         let total: f64 = segments.iter().map(|s| s.length).sum::<f64>() / step;
-        // Rounding makes no step of its own.
+        // Rounding must not add a step.
         let whole = (total + 1e-6).floor();
         let mut run = Run::new(segments, step);
         let mut k = 0.0f64;
@@ -274,7 +274,7 @@ impl<T: Voxel> Walk<'_, '_, T> {
         }
     }
 
-    /// `taken` samples from the way `way` on; each counts for `share` of a step. Answers whether that was enough.
+    /// Takes `taken` samples from the distance `way` on; each counts for `share` of a step. Returns whether the ray is opaque.
     #[inline(always)]
     fn group(&self, run: &mut Run<'_>, way: f64, taken: usize, share: f32, out: &mut Gathered) -> bool {
         let marcher = self.marcher;
@@ -285,7 +285,7 @@ impl<T: Voxel> Walk<'_, '_, T> {
         let (mut place, mut rest) = ([0i32; GROUP], [0.0f32; GROUP]);
         for l in 0..GROUP {
             let at = ((values[l] - table.least) * table.scale).max(0.0);
-            // The entry below, or at an entry perhaps the one before: the opacity is the same.
+            // The entry below, or on an entry perhaps the one before, which gives the same opacity.
             place[l] = nearest(at - 0.5);
             rest[l] = at - place[l] as f32;
         }
@@ -325,15 +325,15 @@ impl<T: Voxel> Walk<'_, '_, T> {
         false
     }
 
-    /// Factors of the colours, and white added to them.
+    /// Factors of the colours, and white that is added to them.
     ///
-    /// * `v`: steps of the ray, lattice coordinates.
+    /// * `v`: direction per step, lattice coordinates.
     #[inline(always)]
     fn shading(&self, p: &[Group; 3], v: &[Group; 3]) -> [Group; 2] {
         let g = self.sampler.gradients(p);
         let m = self.marcher.normal_from_gradient;
         let [x, y, z] = [m.x_axis, m.y_axis, m.z_axis].map(|c| c.to_array());
-        // The length of a step, in lattice coordinates, is that of the direction.
+        // The length of a step in voxel edges.
         let edges = self.marcher.layer.step as f32;
         let surface_squared = self.marcher.surface_squared;
         let mut out = [[0.0; GROUP]; 2];

@@ -1,12 +1,13 @@
-//! Volumes: rays, bent or straight, are followed through the voxels from the eye to the surface that the pixel shows, and what they
-//! gather is laid over it.
+//! Volume rendering: straight or bent rays are followed through the voxels from the eye to the first surface, and the light that they
+//! gather is composited over it.
 //!
-//! 1. [`ray`]: within the [`spans`] of the picture that may show the volume, the ray of a pixel becomes segments inside the box of the volume, cubics by arc length.
+//! 1. [`ray`]: within the [`spans`] of the picture that may show the volume, the ray of a pixel becomes segments inside the box of the
+//!    volume, cubics by arc length.
 //! 2. [`march`]: samples at equal distances along them, front to back; [`bricks`] tell where nothing can be seen, [`table`] gives colour
 //!    and opacity, [`sampler`] interpolates several samples at once.
 //! 3. [`compose`]: over the surfaces by depth, and into depth, id and place where more than half of the light is absorbed.
 //!
-//! [`reference`] does the same in 64 bits, one sample after the other: the exact renderer draws by it, and the fast way is judged by it.
+//! [`reference`] does the same in 64 bits, one sample after the other: the exact renderer uses it, and the fast method is tested against it.
 //! Source: Cui et al. 2010, section on volumes; equal steps, opacity by length and skipping are ours or common.
 
 mod bricks;
@@ -29,27 +30,27 @@ pub use pick::VolumeTracer;
 use belvedere_core::DVec3;
 use glam::Vec3A;
 
-/// Absorbed light at which a ray ends.
+/// Absorbed share of light at which a ray ends.
 const ENOUGH: f32 = 0.99;
-/// Absorbed light at which a pixel shows the volume rather than what lies behind.
+/// Absorbed share of light at which a pixel shows the volume rather than the surface behind.
 const HALF: f32 = 0.5;
 
-/// What a ray gathers in a volume.
+/// Light that a ray gathers in a volume.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct Gathered {
-    /// Linear light, times its share.
+    /// Linear light, weighted by its share.
     pub(crate) color: Vec3A,
-    /// Light absorbed, 0..=1.
+    /// Absorbed share of light, 0..=1.
     pub(crate) alpha: f32,
     /// Depth at which the ray enters, scene units.
     pub(crate) enters: f64,
-    /// Depth and true place where half of the light is absorbed.
+    /// Depth and world point where half of the light is absorbed.
     pub(crate) half: Option<(f64, DVec3)>,
     /// Samples taken.
     pub(crate) samples: u32,
 }
 
-/// Share of a step, 0..=1, after which half of the light is left: what is left of it fades by a constant factor per length.
+/// Share of a step, 0..=1, after which half of the light is left; light decays exponentially along the step.
 ///
 /// * `before`: light left where the step begins, above a half. `alpha`: what the step absorbs, 0..=1.
 fn half_within(before: f32, alpha: f32) -> f64 {

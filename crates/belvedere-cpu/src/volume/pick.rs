@@ -1,11 +1,11 @@
-//! Where a pixel shows a volume rather than what lies behind.
+//! The point at which a pixel shows a volume rather than the surface behind.
 
 use super::reference;
 use crate::trace::{Part, RayHit, deepest};
 use belvedere_core::{DVec2, View};
 use belvedere_scene::{LayerKind, Scene};
 
-/// The volumes of a scene, made ready for rays of one view.
+/// The volumes of a scene, prepared for rays of one view.
 pub struct VolumeTracer<'a> {
     scene: &'a Scene,
     view: &'a View,
@@ -19,8 +19,8 @@ impl<'a> VolumeTracer<'a> {
         Self { scene, view, range: [view.pinhole().near, deepest(scene, view).min(far)] }
     }
 
-    /// Where a volume has absorbed half of the light that the ray of `pixel` carries, nearer than `before` (scene units of depth), as
-    /// the exact renderer samples it; `None` if none does.
+    /// The point where a volume has absorbed half of the light along the ray of `pixel`, nearer than `before` (scene units of depth), sampled
+    /// as by the exact renderer; `None` if no volume absorbs half.
     pub fn first_hit(&self, pixel: DVec2, before: f64) -> Option<RayHit> {
         let range = [self.range[0], self.range[1].min(before)];
         let hits = self.scene.layers.iter().enumerate().filter_map(|(layer, l)| match &l.kind {

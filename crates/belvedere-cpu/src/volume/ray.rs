@@ -7,27 +7,27 @@ use belvedere_core::map::curved_rays::{Bend, C2Arc, RayPiece, Shape};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::Volume;
 
-/// How far a segment may be from the ray, voxels.
+/// Largest distance of a segment from the ray, voxels.
 const NEAR: f64 = 1e-3;
-/// Depths nearer to each other than this share are those of one image of a place.
+/// Relative difference below which two depths belong to one image of a point.
 const SAME_DEPTH: f64 = 0.02;
-/// Change of speed over a part, as a share, from which on it is halved: lengths are then known to about 1e-5 of themselves.
+/// Relative change of speed above which a part is halved, so that lengths are accurate to about 1e-5.
 const UNEVEN: f64 = 0.1;
-/// Parts of a bent piece are halved at most this often.
+/// Largest number of halvings of a part of a bent piece.
 const MAX_HALVINGS: u32 = 12;
-/// Parts of a ray without points are halved at most this often.
+/// Largest number of halvings of a part of a ray without points.
 const MAX_HALVINGS_OF_NOTHING: u32 = 5;
 
 /// Part of a ray.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Segment {
-    /// Lattice coordinates by the share of the length.
+    /// Lattice coordinates over the share of the length.
     pub(super) curve: Cubic,
     /// Length, scene units.
     pub(super) length: f64,
     /// Depths at its ends.
     pub(super) depth: [f64; 2],
-    /// Whether it does not go on where the one before ends.
+    /// Whether it does not adjoin the segment before.
     pub(super) is_new: bool,
 }
 
@@ -38,18 +38,18 @@ impl Segment {
     }
 }
 
-/// What makes rays of a view.
+/// Generates the segments of the rays of a view.
 pub(super) struct Rays<'a> {
     view: &'a View,
     split: Split<'a>,
-    /// Whether rays are the pieces of curved rays, or straight.
+    /// Whether rays consist of straight and curved pieces in closed form.
     pieces: bool,
-    /// Depths between which anything can be seen.
+    /// Range of depths in which surfaces can be seen.
     range: [f64; 2],
 }
 
 impl<'a> Rays<'a> {
-    /// * `range`: nearest depth, and one beyond which nothing of the scene is seen.
+    /// * `range`: nearest depth, and a depth beyond which no surface is seen.
     pub(super) fn new(view: &'a View, range: [f64; 2]) -> Self {
         let pieces = view.stages().iter().all(|s| s.bends_rays());
         Self { view, split: Split::new(view), pieces, range }
@@ -60,7 +60,7 @@ impl<'a> Rays<'a> {
         self.range[0]
     }
 
-    /// A depth beyond which nothing of the scene is seen.
+    /// A depth beyond which no surface is seen.
     pub(super) fn deepest(&self) -> f64 {
         self.range[1]
     }
@@ -69,18 +69,18 @@ impl<'a> Rays<'a> {
         self.view
     }
 
-    /// Depth at which the ray of a pixel sees a place that lies on it at about `depth`.
+    /// Depth at which the ray of a pixel sees a point that lies on it at about `depth`.
     pub(super) fn depth_of(&self, place: DVec3, depth: f64) -> f64 {
         match self.view.project(place) {
             Ok(image) if (image.depth - depth).abs() <= SAME_DEPTH * depth => image.depth,
-            // Seen by another part of the rays first.
+            // Another part of the rays sees it first.
             _ => depth,
         }
     }
 
-    /// Calls `each` with the segments of every pixel of a row that `wants` to be followed.
+    /// Calls `each` with the segments of those pixels of a row that `wants` selects.
     ///
-    /// * `wants`: for a column, the depth to follow its ray to; `None` = not at all.
+    /// * `wants`: the depth to which the ray of a column is followed; `None`: it is not.
     pub(super) fn row(
         &self,
         y: usize,
@@ -108,12 +108,12 @@ impl<'a> Rays<'a> {
     }
 }
 
-/// Collects what of a ray lies in a volume.
+/// Collects the segments of a ray inside a volume.
 struct Clip<'v, 's> {
     volume: &'v Volume,
     most: DVec3,
     out: &'s mut Vec<Segment>,
-    /// Whether the next segment goes on where the last one ended.
+    /// Whether the next segment adjoins the last one.
     goes_on: bool,
 }
 
@@ -128,12 +128,12 @@ struct Knot {
     speed: f64,
 }
 
-/// A bent piece of a ray, by its parameter; places and slopes in the scene.
+/// A bent piece of a ray over its parameter; points and derivatives in the scene.
 trait Arc {
     fn point(&self, u: f64) -> DVec3;
     fn derivative(&self, u: f64) -> DVec3;
     fn depth(&self, u: f64) -> f64;
-    /// A triangle around the whole piece.
+    /// A triangle that contains the whole piece.
     fn corners(&self) -> [DVec3; 3];
 }
 
@@ -215,7 +215,7 @@ impl<'v, 's> Clip<'v, 's> {
         self.goes_on = w1 == depth[1];
     }
 
-    /// The part of a conic between two depths that lies in the box: between its crossings of the faces it does so or not.
+    /// The part of a conic between two depths that lies in the box, between its crossings of the faces.
     fn conic(&mut self, arc: &Bend<ConicArc>, depth: [f64; 2]) {
         let Some([lo, hi]) = self.meets(arc) else { return };
         let [u0, u1] = depth.map(|w| arc.parameter(w));
@@ -268,7 +268,7 @@ impl<'v, 's> Clip<'v, 's> {
         Knot { parameter: u, place, slope: *self.volume.lattice_axes() * slope, speed: slope.length() }
     }
 
-    /// A part of a bent piece as cubics near enough to it, with their lengths and depths.
+    /// Divides a part of a bent piece into cubics that are close enough to it, with their lengths and depths.
     fn halved<A: Arc>(
         &mut self,
         arc: &A,
@@ -281,7 +281,7 @@ impl<'v, 's> Clip<'v, 's> {
         // Simpson's rule.
         let length = (b.parameter - a.parameter) * (a.speed + 4.0 * middle.speed + b.speed) / 6.0;
         let curve = Cubic::hermite([a, b].map(|k| k.place), [a, b].map(|k| k.slope * (length / k.speed)));
-        // The cubic goes by length: its middle lies where half of that is passed, to the first order in the change of speed.
+        // The cubic is parametrised by length: its middle is where half of the length is passed, to first order in the change of speed.
         let (off, along) = (curve.at(0.5) - middle.place, middle.slope);
         let across = off - along * (off.dot(along) / along.length_squared());
         let uneven = (a.speed - b.speed).abs() > UNEVEN * middle.speed;
@@ -299,7 +299,7 @@ impl<'v, 's> Clip<'v, 's> {
         self.out.push(Segment { curve, length, depth, is_new });
     }
 
-    /// Keeps what of a cubic lies in the box.
+    /// Keeps the parts of a cubic that lie in the box.
     fn inside(&mut self, curve: Cubic, length: f64, depth: [f64; 2]) {
         let mut goes_on = std::mem::replace(&mut self.goes_on, false);
         let (out, ends) = (&mut *self.out, &mut self.goes_on);
@@ -312,7 +312,7 @@ impl<'v, 's> Clip<'v, 's> {
         });
     }
 
-    /// A ray that only the inverse of the stages tells, as chords.
+    /// Chords of a ray that is known only by the inverse of the stages.
     fn chords(&mut self, split: &Split<'_>, curve: &Curve<'_, '_>, range: [f64; 2]) {
         if !(range[0] < range[1]) {
             return;
@@ -336,7 +336,7 @@ impl<'v, 's> Clip<'v, 's> {
         };
         let lift = |p: DVec3| p - split.lift(p) * DVec3::Z;
         let [p, q] = [lift(a), lift(b)].map(|p| self.volume.lattice_from_scene(p));
-        // Lattice units that the ray, or lifted ground between its ends, may be away from the chord.
+        // Distance of the ray, or of lifted ground between its ends, from the chord, lattice units.
         let edge = self.volume.voxel_edge();
         let room = (span.reach + split.most_lift(a, b)) / edge;
         let (lo, hi) = (p.min(q) - room, p.max(q) + room);

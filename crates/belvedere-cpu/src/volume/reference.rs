@@ -1,7 +1,7 @@
-//! The obvious way along a ray, in 64 bits: what the fast way is judged by, and how the exact renderer draws.
+//! Reference ray marching in 64 bits: the fast method is tested against it, and the exact renderer uses it.
 //!
-//! The ray is cut into short chords by halving depths, each chord clipped to the box; along their joined length stand steps of equal
-//! length, one sample in the middle of each, weighed by the chord of its step. Nothing is tabulated or skipped.
+//! The ray is cut into short chords by halving depths, and each chord is clipped to the box. Steps of equal length are laid along their
+//! joint length, one sample in the middle of each, weighted by the chord of its step. Nothing is tabulated or skipped.
 
 use super::light::{SURFACE, light};
 use super::table::light_and_opacity;
@@ -13,7 +13,7 @@ use glam::Vec3A;
 
 /// Longest chord, steps.
 const CHORD: f64 = 0.25;
-/// Depths are halved at most this often.
+/// Largest number of halvings of depths.
 const MAX_HALVINGS: u32 = 24;
 
 /// A chord of the ray inside the volume: lattice coordinates, depths.
@@ -22,7 +22,7 @@ struct Chord {
     depth: [f64; 2],
 }
 
-/// What the ray of `pixel` gathers between two depths.
+/// Light that the ray of `pixel` gathers between two depths.
 pub(super) fn gather(view: &View, layer: &VolumeLayer, pixel: DVec2, [near, far]: [f64; 2]) -> Gathered {
     let mut out = Gathered::default();
     if !(near < far) {
@@ -44,7 +44,7 @@ pub(super) fn gather(view: &View, layer: &VolumeLayer, pixel: DVec2, [near, far]
 fn march(layer: &VolumeLayer, run: &[Chord], out: &mut Gathered) {
     let volume = &*layer.volume;
     let scene = |q: DVec3| volume.scene_from_lattice(q);
-    // Way at the beginning of every chord, and at the end of the last.
+    // Distance at the beginning of every chord, and at the end of the last.
     let mut ways = vec![0.0];
     for chord in run {
         ways.push(ways[ways.len() - 1] + scene(chord.ends[0]).distance(scene(chord.ends[1])));
@@ -72,7 +72,7 @@ fn march(layer: &VolumeLayer, run: &[Chord], out: &mut Gathered) {
     }
 }
 
-/// Adds the sample of a step to what was gathered before; answers what the step absorbs.
+/// Composites the sample of a step behind the light gathered so far; returns the share that the step absorbs.
 fn sample(layer: &VolumeLayer, q: DVec3, chord: DVec3, out: &mut Gathered) -> f32 {
     let Some(value) = layer.volume.at(inside(layer, q)) else { return 0.0 };
     let (rgb, opacity) = light_and_opacity(&layer.transfer, value);
@@ -93,7 +93,7 @@ fn sample(layer: &VolumeLayer, q: DVec3, chord: DVec3, out: &mut Gathered) -> f3
     alpha
 }
 
-/// Rounding may leave a position just outside.
+/// Clamps a position that rounding has left just outside.
 fn inside(layer: &VolumeLayer, q: DVec3) -> DVec3 {
     q.clamp(DVec3::ZERO, DVec3::from_array(layer.volume.dims().map(|n| (n - 1) as f64)))
 }
@@ -102,7 +102,7 @@ fn shading(layer: &VolumeLayer, q: DVec3, along: DVec3) -> [f32; 2] {
     let volume = &*layer.volume;
     let value = |q: DVec3| volume.at(inside(layer, q)).unwrap_or(0.0);
     let gradient = [DVec3::X, DVec3::Y, DVec3::Z].map(|e| 0.5 * (value(q + e) - value(q - e)));
-    // Normals go by the inverse transposed of the axes.
+    // Normals transform by the inverse transpose of the axes.
     let normal = volume.lattice_axes().transpose() * DVec3::from_array(gradient);
     let per_edge = normal.length() * volume.voxel_edge();
     let [lo, hi] = volume.range().map(f64::from);
@@ -129,7 +129,7 @@ impl<'a> Chords<'a> {
         let ball = (bounds.center(), 0.5 * bounds.min.distance(bounds.max));
         let most = DVec3::from_array(layer.volume.dims().map(|n| (n - 1) as f64));
         let mut chords = Self { ray: view.ray(pixel), layer, most, ball, found: Vec::new() };
-        // Bends are told by parts that are short beside them.
+        // Equal parts, short compared with the bends.
         let parts = 64;
         let depth = |i: i32| range[0] + (range[1] - range[0]) * f64::from(i) / f64::from(parts);
         let point = |w: f64| chords.ray.at(w).ok().map(|p| p.point);

@@ -15,7 +15,7 @@ pub(super) trait Voxel: Copy + Sync {
     const NO_FOUR: Self::Four;
     fn two(values: [Self; 2]) -> Self::Two;
     fn four(values: [Self; 4]) -> Self::Four;
-    /// Number `K` of those that were read.
+    /// Value `K` of the two that were read.
     fn of_two<const K: usize>(two: Self::Two) -> f32;
     fn of_four<const K: usize>(four: Self::Four) -> f32;
 }
@@ -134,14 +134,14 @@ impl Voxel for f32 {
 #[derive(Clone, Copy)]
 pub(super) struct Sampler<'v, T> {
     values: &'v [T],
-    /// Voxels to the next along y and z.
+    /// Index strides along y and z.
     stride: [usize; 2],
-    /// Largest coordinates, and those of the last cell.
+    /// Largest coordinates, and numbers of the last cells.
     most: [f32; 3],
     last: [i32; 3],
 }
 
-/// Cells of positions, and where in them these are.
+/// Cells of positions, and the fractions inside them.
 struct Cells {
     cell: [[i32; GROUP]; 3],
     share: [Group; 3],
@@ -170,7 +170,7 @@ impl<'v, T: Voxel> Sampler<'v, T> {
                 // In this order NaN becomes 0.
                 let q = if p[a][l] > 0.0 { p[a][l] } else { 0.0 };
                 let q = if q < most { q } else { most };
-                // The whole number below, or at a whole number perhaps the one before: the value is the same.
+                // Rounds down; on a whole number perhaps to the one before, which gives the same value.
                 let c = nearest(q - 0.5).min(last).max(0);
                 cell[a][l] = c;
                 share[a][l] = q - c as f32;
@@ -179,7 +179,7 @@ impl<'v, T: Voxel> Sampler<'v, T> {
         Cells { cell, share }
     }
 
-    /// Numbers of the first voxels of cells.
+    /// Indices of the first voxels of cells.
     #[inline(always)]
     fn numbers(&self, cell: &[[i32; GROUP]; 3]) -> [usize; GROUP] {
         let [sy, sz] = self.stride;
@@ -206,7 +206,7 @@ impl<'v, T: Voxel> Sampler<'v, T> {
         }
     }
 
-    /// Values at lattice coordinates; positions outside count as the nearest inside.
+    /// Values at lattice coordinates; positions outside are clamped.
     #[inline(always)]
     pub(super) fn at(&self, p: &[Group; 3]) -> Group {
         let Cells { cell, share } = self.cells(p);
@@ -229,7 +229,7 @@ impl<'v, T: Voxel> Sampler<'v, T> {
         out
     }
 
-    /// Central differences over a voxel to both sides, per voxel.
+    /// Central differences over two voxels, per voxel.
     #[inline(always)]
     pub(super) fn gradients(&self, p: &[Group; 3]) -> [Group; 3] {
         let Cells { cell, share } = self.cells(p);
@@ -237,7 +237,7 @@ impl<'v, T: Voxel> Sampler<'v, T> {
         if deep { self.gradients_inside(&self.numbers(&cell), &share) } else { self.gradients_anywhere(p) }
     }
 
-    /// Away from the outer voxels: differences of the voxels around, interpolated, which is the same.
+    /// Away from the border: interpolated differences of the neighbouring voxels, which gives the same result.
     #[inline(always)]
     fn gradients_inside(&self, numbers: &[usize; GROUP], share: &[Group; 3]) -> [Group; 3] {
         let [sy, sz] = self.stride;
@@ -256,7 +256,7 @@ impl<'v, T: Voxel> Sampler<'v, T> {
         let mut out = [[0.0; GROUP]; 3];
         for l in 0..GROUP {
             let [fx, fy, fz] = [share[0][l], share[1][l], share[2][l]];
-            // Along x through the middle, and its change over two voxels.
+            // Along x through the middle, and the difference over two voxels.
             let along = |z: usize, y: usize| mix(T::of_four::<1>(rows[z][y][l]), T::of_four::<2>(rows[z][y][l]), fx);
             let change = |z: usize, y: usize| {
                 let row = rows[z][y][l];

@@ -1,18 +1,18 @@
-//! The pixels of each row between which a volume may be seen.
+//! Range of the pixels of each row that may show a volume.
 
 use super::bricks::{EDGE, Leaps};
 use belvedere_core::{Aabb, DVec3, ImageBox, View};
 use belvedere_scene::Volume;
 use rayon::prelude::*;
 
-/// Bricks are taken together in cubes, at most so many of them.
+/// Largest number of cubes into which bricks are grouped.
 const MAX_CUBES: usize = 4096;
 
-/// First pixel and the one behind the last, per row; `None` where everything may show the volume.
+/// First pixel and the one past the last, per row; `None` where every pixel may show the volume.
 pub(super) struct Spans(Option<Vec<[u32; 2]>>);
 
 impl Spans {
-    /// From the image boxes of what is visible.
+    /// Spans of the image boxes of the visible bricks.
     pub(super) fn new(view: &View, volume: &Volume, leaps: &Leaps) -> Self {
         let [nx, ny, nz] = leaps.dims();
         let mut edge = 1;
@@ -43,11 +43,11 @@ fn bounds(volume: &Volume, cube: [[usize; 2]; 3]) -> Aabb {
     Aabb::of(Aabb { min, max }.corners().map(|q| volume.scene_from_lattice(q)))
 }
 
-/// What the images cover of each row, and a pixel around.
+/// Range of each row that the images cover, widened by a pixel.
 fn rows(images: &[ImageBox], [width, height]: [u32; 2]) -> Vec<[u32; 2]> {
     let mut rows = vec![[width, 0]; height as usize];
     for image in images {
-        // Numbers that are too large or negative end at the bounds of u32.
+        // Casts saturate at the bounds of u32.
         let [x0, y0] = (image.min.floor() - 1.0).to_array().map(|v| v as u32);
         let [x1, y1] = (image.max.ceil() + 1.0).to_array().map(|v| v as u32);
         for row in rows.iter_mut().take(y1 as usize).skip(y0 as usize) {

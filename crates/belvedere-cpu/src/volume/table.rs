@@ -5,10 +5,10 @@ use belvedere_scene::volume::absorbed;
 use belvedere_scene::{TransferFunction, VolumeLayer};
 use glam::Vec3A;
 
-/// Entries: enough that a ramp over a hundredth of the range has forty.
+/// Number of entries: a ramp over a hundredth of the range has forty.
 pub(super) const ENTRIES: usize = 4096;
 
-/// Light of a value (linear red, green, blue) and what a reference step absorbs.
+/// Linear red, green, blue of a value, and the opacity of a reference step.
 pub(super) fn light_and_opacity(transfer: &TransferFunction, value: f64) -> ([f32; 3], f64) {
     let [r, g, b, _] = transfer.at(value);
     let rgb: Rgb = linear_of([r, g, b].map(|c| c as f32));
@@ -21,10 +21,10 @@ pub(super) struct Table {
     pub(super) alphas: Box<[[f32; 2]; ENTRIES]>,
     /// Linear red, green, blue.
     pub(super) colors: Box<[Vec3A; ENTRIES]>,
-    /// Place of a value: `(value - least) * scale`.
+    /// Maps a value to an index: `(value - least) * scale`.
     pub(super) least: f32,
     pub(super) scale: f32,
-    /// How many entries before this one are not transparent.
+    /// Number of entries before this one that are not transparent.
     visible_before: Vec<u32>,
 }
 

@@ -1,4 +1,4 @@
-//! Volumes against what is known of them, and the fast way against the obvious one.
+//! Volumes against closed forms, and the fast method against the reference.
 
 use super::march::Marcher;
 use super::ray::{Rays, Segment};
@@ -26,7 +26,7 @@ fn camera() -> Pinhole {
     pinhole(DVec3::new(-60.0, -90.0, 70.0), DVec3::new(20.0, 20.0, 16.0), Projection::Perspective { fov_y: 0.3 })
 }
 
-/// Turns at distances from the eye, each a tenth of that wide to both sides.
+/// A view with turns at distances from the eye; each transition extends a tenth of the distance to both sides.
 fn bent(model: Model, turns: &[(f64, DVec3)]) -> View {
     let pinhole = camera();
     let spec = |&(at, viewpoint): &(f64, DVec3)| TurnSpec {
@@ -85,7 +85,7 @@ impl StageMap for Swayed {}
 
 const RANGE: [f64; 2] = [1.0, 2000.0];
 
-/// What the fast way gathers, and along which segments.
+/// Light gathered by the fast method, and the segments.
 fn fast(view: &View, layer: &VolumeLayer, pixel: [usize; 2], far: f64) -> (Gathered, Vec<Segment>) {
     let marcher = Marcher::new(layer);
     let rays = Rays::new(view, RANGE);
@@ -107,13 +107,13 @@ fn pixels() -> impl Iterator<Item = [usize; 2]> {
     (0..96usize).map(|i| [i * 37 % 64, i * 11 % 48])
 }
 
-/// A function with one opacity from a value on, and none below.
+/// A transfer function with one opacity from a value on, and 0 below.
 fn from_value(value: f64, opacity: f64) -> TransferFunction {
     let point = |value, opacity| TransferPoint { value, color: Color::rgb(255, 255, 255), opacity };
     TransferFunction::new("test", vec![point(value, 0.0), point(value, opacity)], 1.0).unwrap()
 }
 
-/// Length of a ray within `inside`, by short depths.
+/// Length of a ray within `inside`, by short steps in depth.
 fn length_within(view: &View, [x, y]: [usize; 2], range: [f64; 2], inside: impl Fn(DVec3) -> bool) -> f64 {
     let ray = view.ray(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
     let steps = 400_000;
@@ -160,7 +160,7 @@ fn a_homogeneous_box_absorbs_by_the_length_of_the_ray_whatever_the_step() {
                 }
             }
             let off = (f64::from(exact(&view, &layer, pixel, 1e9).alpha) - want).abs();
-            // The chord of the step over a kink is shorter than the way.
+            // The chord of a step over a kink is shorter than the arc.
             assert!(off < if name == "kink" { 1e-3 } else { 2e-4 }, "{name} {pixel:?}: reference off by {off}");
         }
     }
@@ -187,7 +187,7 @@ fn a_homogeneous_ball_absorbs_by_its_chord() {
             for step in [0.25, 0.5, 1.0] {
                 layer.step = step;
                 let (found, _) = fast(&view, &layer, pixel, 1e9);
-                // The step in which the ray enters counts whole or not at all, and the one in which it leaves.
+                // The steps in which the ray enters and leaves count whole or not at all.
                 let bound = 0.02 * step + 5e-4;
                 let off = (f64::from(found.alpha) - want).abs();
                 assert!(off < bound, "{name} {pixel:?} step {step}: {} for {want}", found.alpha);
@@ -197,7 +197,7 @@ fn a_homogeneous_ball_absorbs_by_its_chord() {
     assert!(crossed > 5, "{crossed}");
 }
 
-/// How made-up values are stored.
+/// Storage of made-up values.
 type Stored = fn(Vec<f64>) -> VoxelValues;
 
 /// Waves and a shell: empty, thin and dense parts.
@@ -297,7 +297,7 @@ fn leaps_miss_nothing_and_save_samples() {
 
 #[test]
 fn every_pixel_that_sees_anything_lies_in_the_spans() {
-    // One brick, seen to its faces.
+    // One brick seen towards its faces.
     let axes = DMat3::from_rotation_z(0.3) * DMat3::from_diagonal(DVec3::splat(2.0));
     let block = Volume::new([9; 3], axes, DVec3::new(14.0, 10.0, 8.0), VoxelValues::U8(vec![200; 729])).unwrap();
     let layer = VolumeLayer::new(block, from_value(100.0, 0.5));
@@ -348,7 +348,7 @@ fn lines_of_sight_let_through_what_the_picture_does() {
         for (pixel, depth) in pixels().zip([120.0, 135.0, 150.0, 300.0].into_iter().cycle()) {
             let centre = DVec2::new(pixel[0] as f64 + 0.5, pixel[1] as f64 + 0.5);
             let Ok(point) = view.ray(centre).at(depth) else { continue };
-            // To within an edge of a voxel of the point, which does not hide itself.
+            // To within one voxel edge before the point, which does not hide itself.
             let before = view.ray(centre).at(depth - 1e-3).map_or(1.0, |p| p.point.distance(point.point) / 1e-3);
             let want = 1.0 - f64::from(exact(&view, &layer, pixel, depth - layer.volume.voxel_edge() / before).alpha);
             let off = (voxels.light(&view, centre, depth) - want).abs();

@@ -1,4 +1,4 @@
-//! Pictures of rays that part: each side is its branch's own picture, and both renderers and the tracer agree.
+//! Pictures of branching rays: each side equals the picture of its own branch, and both renderers and the tracer agree.
 
 use crate::exact::difference;
 use crate::support::{hills, layer, options, pinhole, render, scene, terrain};
@@ -14,7 +14,7 @@ fn ground() -> Scene {
     scene(vec![layer("ground", LayerKind::Terrain(terrain(hills(129, 25.0, 260.0, 11))))])
 }
 
-/// The left half of the picture leans to the west, the right half to the east.
+/// The rays of the left half of the picture bend to the west, those of the right half to the east.
 fn parting(model: Model) -> View {
     let ph = pinhole(DVec3::new(0.0, -1500.0, 700.0), DVec3::ZERO, 40.0, IMAGE);
     let side = |x: f64| {

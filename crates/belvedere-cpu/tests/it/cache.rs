@@ -1,4 +1,4 @@
-//! What a renderer remembers changes no picture.
+//! The data that a renderer keeps between pictures change no picture.
 
 use crate::support::{hills, layer, pinhole, scene, terrain};
 use belvedere_core::grid::Grid;
@@ -21,7 +21,7 @@ fn camera() -> Pinhole {
     pinhole(DVec3::new(0.0, -3000.0, 2200.0), DVec3::new(0.0, 300.0, 0.0), 60.0, [160, 90])
 }
 
-/// The ground gives way around `at`, at one end of the ground.
+/// Disocclusion around `at`, at one end of the ground.
 fn hollow(at: DVec2, depth: f64) -> Stage {
     let corner = DVec2::new(-3500.0, 3500.0);
     let value = |i: usize| {
@@ -87,14 +87,14 @@ fn a_renderer_tells_apart_everything_that_its_pictures_depend_on() {
     let bent = View::new(camera(), vec![hollow(DVec2::new(-400.0, 300.0), 300.0)]).expect("one stage");
     for view in [View::straight(camera()), bent] {
         let (renderer, mut pictures) = (CpuRenderer::default(), Vec::<(&str, Vec<[u8; 3]>)>::new());
-        // Each after all others, before and after them in turn.
+        // Each picture after all others, which are drawn before and after it in turn.
         for &(name, ref terrain, ref light) in cases.iter().chain(cases.iter().rev()) {
             let scene = scene(vec![layer("ground", LayerKind::Terrain(terrain.clone()))]);
             let fresh = render_by(&CpuRenderer::default(), &scene, &view, light).color;
             assert!(render_by(&renderer, &scene, &view, light).color == fresh, "{name}");
             let same = |other: &&(&str, Vec<[u8; 3]>)| other.1 == fresh;
             let others: Vec<&str> = pictures.iter().filter(same).map(|p| p.0).collect();
-            // Without displaced ground, both kinds of shading are the map's.
+            // Without displaced ground, both kinds of shading are that of the map.
             let expected = |other: &str| {
                 let plain = |n: &str| n.starts_with("base") || n == "shading" && !view.is_bent();
                 other == name || plain(other) && plain(name)

@@ -1,4 +1,4 @@
-//! The rasteriser against the exact tracer: two ways to a picture that share nothing but the colours.
+//! Compares the rasteriser with the exact tracer. The two ways to make a picture have only the colours in common.
 
 use crate::support::{Random, hills, layer, options, pinhole, render, scene, terrain};
 use crate::support_views::{spline, turns, views};
@@ -17,10 +17,10 @@ use belvedere_scene::{
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// Largest difference in depth, as a share of it.
+/// Largest allowed relative difference in depth.
 const DEPTH: f64 = 1e-4;
 
-/// Default tolerance, and depths by the true map: what `--aux depth` asks for.
+/// Options with the default tolerance, and depths by the true map, which is what `--aux depth` requests.
 pub(crate) fn exactly() -> RenderOptions {
     let options = options(1);
     assert_eq!(options.tolerance_px, RenderOptions::default().tolerance_px);
@@ -32,13 +32,13 @@ pub(crate) fn trace(scene: &Scene, view: &View, options: &RenderOptions) -> Fram
     ExactRenderer.render(&job).expect("picture is possible")
 }
 
-/// What two pictures have in common.
+/// The result of comparing two pictures.
 #[derive(Debug, Default, Clone, Copy)]
 pub(crate) struct Difference {
     pub(crate) pixels: usize,
-    /// Pixels off the silhouettes.
+    /// Number of pixels away from the silhouettes.
     pub(crate) judged: usize,
-    /// Of those, with another id, and with the same id and another depth.
+    /// How many of those pixels have another id, and how many have the same id and another depth.
     ids: usize,
     depths: usize,
 }
@@ -51,15 +51,15 @@ impl Difference {
         self.depths += other.depths;
     }
 
-    /// At most one in a thousand pixels off the silhouettes differs in id, and one in a thousand in depth.
+    /// Requires that at most one in a thousand pixels away from the silhouettes differs in id, and one in a thousand in depth.
     pub(crate) fn is_small(&self) -> bool {
         let few = |n: usize| n as f64 <= 1e-3 * self.judged as f64;
         few(self.ids) && few(self.depths)
     }
 }
 
-/// Compares off the silhouettes: a pixel lies on one if a neighbour of the traced picture has another id, or its depth jumps by more
-/// than [`STEP`].
+/// Compares the pixels away from the silhouettes. A pixel is on a silhouette if a neighbour in the traced picture has another id, or if
+/// the depth between them jumps by more than [`STEP`].
 fn compare(reference: &Frame, other: &Frame) -> Difference {
     let (w, h) = (reference.width, reference.height);
     let mut out = Difference { pixels: w * h, ..Difference::default() };
@@ -78,7 +78,7 @@ fn compare(reference: &Frame, other: &Frame) -> Difference {
     out
 }
 
-/// Largest step of depth between neighbours on one surface, as a share of it.
+/// Largest relative step of depth between neighbours on one surface.
 const STEP: f64 = 0.04;
 
 pub(crate) fn on_silhouette(frame: &Frame, i: usize) -> bool {
@@ -101,7 +101,7 @@ fn tower(hf: &Heightfield, x: f64, y: f64, yaw: f64) -> BoxShape {
     BoxShape { base: DVec3::new(x, y, z), size: DVec3::new(60.0, 40.0, 150.0), yaw, color: Color::rgb(190, 180, 170) }
 }
 
-/// The built-in church twice as large; with a fault, two of its corners are taken for each other.
+/// The built-in church at twice its size; with a fault, two of its corners are exchanged.
 fn church(at: DVec3, faulty: bool) -> LayerKind {
     let (scene, _) = belvedere_builtin::church().expect("the church can be built");
     let LayerKind::Mesh(made) = &scene.layers[0].kind else { panic!("a mesh") };
@@ -130,7 +130,7 @@ fn hilly() -> Scene {
     with_towers(hills(24, 50.0, 160.0, 7))
 }
 
-/// A trench across the hills.
+/// A trench through the hills.
 fn trench(depth: f64) -> TerrainDisocclusion {
     let n = 31;
     let values = (0..n * n)
@@ -185,7 +185,7 @@ fn rasteriser_and_tracer_agree_on_built_in_scenes() {
     }
 }
 
-/// A camera around the hills, and one of the kinds of view, at random; `None` where the parameters make no view.
+/// A camera around the hills and one of the kinds of view, at random; `None` where the parameters give no valid view.
 fn random_view(random: &mut Random, kind: usize, image: [u32; 2]) -> Option<View> {
     let around = DVec2::from_angle(random.range(0.0, TAU)) * random.range(350.0, 900.0);
     let eye = around.extend(random.range(180.0, 700.0));
@@ -224,7 +224,7 @@ fn random_view(random: &mut Random, kind: usize, image: [u32; 2]) -> Option<View
 const KINDS: usize = 17;
 const MODELS: [Model; 5] = [Model::Modified, Model::Original, Model::C0, Model::C2, Model::Circular];
 
-/// Ground that gives way, under a spline, seen along curved rays.
+/// Ground that is displaced by disocclusion, under a spline, seen along curved rays.
 fn under_spline(random: &mut Random, ph: &Pinhole, ground: Stage, model: Model) -> Option<View> {
     let bent = spline(ph.clone(), "progressive");
     let rays = random_turns(random, bent.pinhole(), model, 1)?;
@@ -258,7 +258,7 @@ fn random_turns(random: &mut Random, ph: &Pinhole, model: Model, turns: usize) -
     CurvedRays::new(ph, model, &specs).ok().map(Stage::CurvedRays)
 }
 
-/// On what kind of curve a picture sees its places, of a lattice of pixels: how often each.
+/// For a lattice of pixels of a picture, how often the seen place is on each kind of curve.
 fn count_curves(scene: &Scene, view: &View, counts: &mut BTreeMap<String, usize>) {
     let tracer = Tracer::new(scene, view);
     let [w, h] = view.pinhole().image.map(f64::from);
@@ -310,7 +310,7 @@ fn rasteriser_and_tracer_agree_on_random_views_of_all_stages() {
     }
     assert!(total.judged > total.pixels / 2, "{total:?}");
     assert!(total.is_small(), "{total:?}; {worst:#?}");
-    // Every kind of curve and every chain of stages has been looked along.
+    // Every kind of curve and every chain of stages has been seen.
     let wanted = ["a line", "a line past a turn", "a parabola", "an ellipse", "a hyperbola", "a quartic"];
     for name in wanted.iter().map(ToString::to_string).chain((0..5).map(|k| format!("segment {k} of 2 turns"))) {
         assert!(curves.get(&name).is_some_and(|n| *n >= 20), "{name}: {curves:#?}");
@@ -357,7 +357,8 @@ fn ground_only(hf: Heightfield) -> Scene {
     scene(vec![layer("ground", LayerKind::Terrain(terrain(hf)))])
 }
 
-/// The rasteriser draws `right`, the tracer is given `wrong`: must be noticed; the same with `right` for both must not.
+/// The rasteriser draws `right` and the tracer gets `wrong`. The difference must be noticed, and with `right` for both there must be
+/// none.
 fn must_notice(name: &str, right: (&Scene, &View), wrong: (&Scene, &View)) {
     let drawn = render(right.0, right.1, &exactly());
     let clean = compare(&trace(right.0, right.1, &exactly()), &drawn);
@@ -385,7 +386,7 @@ fn a_bend_wrong_by_one_percent_is_noticed() {
 
 #[test]
 fn the_other_diagonal_is_noticed() {
-    // The weights of a cell's corners: the picture of the mirrored ground, mirrored, has the other diagonal.
+    // Wrong weights of the corners of a cell: the mirrored picture of the mirrored ground has the other diagonal.
     let hf = hills(24, 50.0, 160.0, 7);
     let n = hf.cols();
     let flip = |values: &[f32]| (0..n * n).map(|i| values[i / n * n + n - 1 - i % n]).collect::<Vec<f32>>();
@@ -404,7 +405,7 @@ fn the_other_diagonal_is_noticed() {
 
 #[test]
 fn swapped_conic_weights_are_noticed() {
-    // The arc's weights (1, w, 1) taken for (w, 1, w): a conic of weight 1 / w, that is m_sigma^2 / m.
+    // The weights of the arc, (1, w, 1), are exchanged to (w, 1, w). The result is a conic of weight 1 / w, that is m_sigma^2 / m.
     let scene = hilly();
     let turn = |m: Sharpness| {
         let ph = high();
@@ -459,7 +460,7 @@ fn a_cell_too_many_is_noticed() {
 
 #[test]
 fn a_missing_arc_length_table_is_noticed() {
-    // The parameter of the curve taken for its arc length: places along the heading (north) lie off by a mean of L.
+    // The parameter of the curve is used in place of its arc length: places along the heading (north) are wrong by a mean of L.
     let hf = hills(24, 50.0, 160.0, 7);
     let view = spline(high(), "progressive");
     let Some(Stage::SplineBend(bend)) = view.stages().first() else { panic!("a spline was asked for") };
@@ -496,7 +497,7 @@ fn a_hit_is_the_point_of_the_ray_on_the_surface() {
 
 #[test]
 fn nothing_lies_before_a_hit() {
-    // Tiny steps along the ray up to the hit never change the side of the ground: no hill is stepped over.
+    // Small steps along the ray up to the hit never change the side of the ground, so the tracer steps over no hill.
     let scene = ground_only(hills(60, 20.0, 220.0, 33));
     let hf = scene.terrain().expect("hills");
     for (name, view) in all_views([48, 36]) {

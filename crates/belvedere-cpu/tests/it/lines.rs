@@ -1,4 +1,4 @@
-//! Lines: where they are visible, and that hidden styles touch nothing else.
+//! Lines: where they are visible, and that the styles for hidden lines change nothing else.
 
 use crate::support::{hills, layer, line, options, pinhole, render, scene, terrain};
 use crate::support_views::views;
@@ -25,7 +25,8 @@ fn with_line(hf: &Heightfield, style: LineLayer) -> Scene {
     scene(vec![layer("ground", LayerKind::Terrain(terrain(hf.clone()))), layer("route", LayerKind::Line(style))])
 }
 
-/// Least height over the ground of the (curved) ray from the eye to just before the point, metres; negative = hidden.
+/// Smallest height above the ground of the (curved) ray from the eye to just before the point, in metres; negative if the point is
+/// hidden.
 fn clearance(hf: &Heightfield, view: &View, pixel: DVec2, depth: f64) -> f64 {
     let ray = view.ray(pixel);
     let (near, steps) = (view.pinhole().near, 4000);
@@ -41,7 +42,7 @@ fn clearance(hf: &Heightfield, view: &View, pixel: DVec2, depth: f64) -> f64 {
 fn visibility_agrees_with_lines_of_sight() {
     let hf = ground();
     let points = route(&hf, 400);
-    // High enough that a point in sight clears the ground by more than a pixel covers.
+    // The line is so high that the ray to a visible point passes the ground at more than the size of a pixel.
     let mut style = line(points.clone(), Hidden::Cut);
     style.lift_m = 8.0;
     let scene = with_line(&hf, style);
@@ -55,7 +56,7 @@ fn visibility_agrees_with_lines_of_sight() {
             .collect();
         let (mut judged, mut wrong, mut hidden) = (0, Vec::new(), 0);
         for &(pixel, clear) in &seen {
-            // A ray that grazes may fall either way within a pixel; a hidden point may lie beside a visible part.
+            // A grazing ray may count as visible or hidden within a pixel, and a hidden point may be next to a visible part.
             let beside = |other: &&(DVec2, f64)| other.1 > -4.0 && other.0.distance(pixel) < 5.0;
             if clear.abs() < 4.0 || (clear < 0.0 && seen.iter().any(|o| beside(&o))) {
                 continue;
@@ -122,7 +123,7 @@ fn width_and_casing_are_as_asked() {
 
 #[test]
 fn a_line_on_rough_ground_does_not_flicker() {
-    // From above nothing is hidden: the line must be one piece, whatever the twist of the cells.
+    // From above nothing is hidden, so the line must be one piece, whatever the twist of the cells.
     let hf = hills(60, 20.0, 260.0, 33);
     let points = route(&hf, 90);
     let view = View::straight(pinhole(DVec3::new(0.0, -250.0, 1500.0), DVec3::ZERO, 50.0, [640, 480]));

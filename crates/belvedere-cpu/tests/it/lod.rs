@@ -1,4 +1,4 @@
-//! Ground drawn in less detail far away: no cracks, and no farther off on the image than allowed.
+//! Ground with reduced detail far away has no cracks, and its error on the image is no larger than allowed.
 
 use crate::real_data::andorra;
 use crate::support::{hills, layer, options, pinhole, render, scene, show, terrain};
@@ -17,7 +17,8 @@ fn coarse() -> RenderOptions {
     RenderOptions { lod_px: LOD_PX, aux: Aux { world: true, ..Aux::default() }, ..options(1) }
 }
 
-/// How far the true ground at the place that a pixel sees lies from the pixel, at worst, and how many pixels were judged.
+/// Largest distance, in pixels, between a pixel and the image of the true ground at the place seen there, and the number of pixels
+/// compared.
 fn off_px(frame: &Frame, hf: &Heightfield, view: &View) -> (f64, usize) {
     let (mut worst, mut n) = (0.0f64, 0);
     for (i, p) in frame.world.as_ref().expect("asked for").iter().enumerate().filter(|(i, _)| frame.id[*i] != 0) {
@@ -31,7 +32,7 @@ fn off_px(frame: &Frame, hf: &Heightfield, view: &View) -> (f64, usize) {
     (worst, n)
 }
 
-/// Pixels of sky in the middle of ground: no skyline moves that far.
+/// Number of sky pixels surrounded by ground. No skyline moves that far.
 fn cracks(frame: &Frame, full: &Frame) -> usize {
     let (w, h) = (frame.width, frame.height);
     let inside = |x: usize, y: usize| (0..9).all(|k| full.id[(y + k / 3 - 1) * w + x + k % 3 - 1] != 0);
@@ -49,7 +50,7 @@ fn judge(name: &str, hf: &Heightfield, view: &View, at_most: f64) {
     assert_eq!(cracks(&frame, &full), 0, "{name}: cracks");
     let (worst, n) = off_px(&frame, hf, view);
     assert!(n > frame.id.len() / 4, "{name}: {n} pixels judged");
-    // The bent edges of leaves have a tolerance of their own; fixed-point pixels another hundredth.
+    // The bent edges of leaves have a separate tolerance, and fixed-point pixels add another hundredth.
     assert!(worst <= LOD_PX + 0.02, "{name}: what a pixel sees lies {worst:.3} px away from it");
     let other = full.id.iter().zip(&frame.id).filter(|(a, b)| a != b).count();
     assert!(other < frame.id.len() / 200, "{name}: {other} pixels see something else");

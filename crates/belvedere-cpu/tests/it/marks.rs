@@ -1,4 +1,4 @@
-//! Where lines go into hiding, points with names, and what belongs to no layer.
+//! Where lines become hidden, points with names, and marks that belong to no layer.
 
 use crate::support::{layer, line, options, pinhole, render, scene, terrain};
 use belvedere_core::{DVec2, DVec3, View};
@@ -43,7 +43,7 @@ fn with_line(hf: &Heightfield, hidden: Hidden) -> Scene {
     scene(vec![layer("ground", ground(hf)), layer("route", LayerKind::Line(style))])
 }
 
-/// Black over what is drawn without it, in pixels of full cover, linear light.
+/// Amount of black added to the picture without the mark, in fully covered pixels, in linear light.
 fn ink(with: &Frame, without: &Frame) -> f64 {
     let light = |v: u8| {
         let s = f64::from(v) / 255.0;
@@ -52,7 +52,7 @@ fn ink(with: &Frame, without: &Frame) -> f64 {
     with.color.iter().zip(&without.color).map(|(a, b)| 1.0 - light(a[1]) / light(b[1])).sum()
 }
 
-/// Length of the visible line on the image, pixels, its two crossings found by sampling lines of sight.
+/// Length of the visible line on the image, in pixels. Its two crossings are found by sampling lines of sight.
 fn visible_px(hf: &Heightfield, view: &View) -> f64 {
     let eye = view.pinhole().eye;
     let place = |t: f64| {
@@ -88,7 +88,7 @@ fn lines_end_where_the_line_of_sight_says_and_move_with_the_camera() {
     let hf = ridge();
     let bare = scene(vec![layer("ground", ground(&hf))]);
     let route = with_line(&hf, Hidden::Cut);
-    // Round ends at the two ends and the two crossings.
+    // There are round ends at the two ends of the line and at the two crossings.
     let ends = 4.0 * 0.5 * std::f64::consts::PI * (0.5 * WIDTH_PX).powi(2) / WIDTH_PX;
     for samples in [1, 4] {
         let errors: Vec<f64> = (0..24)
@@ -100,7 +100,7 @@ fn lines_end_where_the_line_of_sight_says_and_move_with_the_camera() {
             .collect();
         let (least, most) = errors.iter().fold((f64::MAX, f64::MIN), |(l, m), e| (l.min(*e), m.max(*e)));
         assert!(least > -0.45 && most < 0.45, "{samples} samples: length off by {errors:.2?} pixels");
-        // From frame to frame: what the camera moves and no more.
+        // From frame to frame the ink changes as much as the camera's motion requires and no more.
         let jump = errors.windows(2).map(|w| (w[1] - w[0]).abs()).fold(0.0, f64::max);
         assert!(jump < 0.3, "{samples} samples: the ends jump by {jump:.2} pixels: {errors:.2?}");
     }

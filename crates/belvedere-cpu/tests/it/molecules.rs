@@ -1,4 +1,4 @@
-//! Molecules in both renderers: the same picture, straight and bent, and atoms found where they stand.
+//! Molecules in both renderers: both draw the same picture, straight and bent, and report atoms at their true places.
 
 use crate::exact::difference;
 use crate::support::{pinhole, scene};
@@ -17,7 +17,7 @@ fn helix(representation: Representation) -> Scene {
     Scene { unit: Unit::Angstrom, ..scene(layers) }
 }
 
-/// Rays that turn to the right half-way through the helix.
+/// Rays that turn to the right half-way along the helix.
 fn bent(model: Model, image: [u32; 2]) -> View {
     let eye = DVec3::new(0.0, -80.0, 10.0);
     let ph = pinhole(eye, DVec3::ZERO, 30.0, image);
@@ -64,6 +64,6 @@ fn a_ray_at_an_atom_meets_that_atom_or_one_before_it() {
         assert!(hit.depth < image.depth, "the surface lies before the centre");
         if named == layer.molecule.name_of(i) { own += 1 } else { others += 1 }
     }
-    // Of the oxygens of the phosphates those on the near side stand free.
+    // Of the oxygens of the phosphates, those on the near side are not covered.
     assert!(own >= 20 && others >= 20, "{own} {others}");
 }

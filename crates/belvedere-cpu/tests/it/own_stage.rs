@@ -1,4 +1,4 @@
-//! A stage that the renderers know nothing of but its map, its inverse and its derivative.
+//! A stage of which the renderers know only the map, its inverse and its derivative.
 
 use crate::exact::{Difference, difference, exactly, trace};
 use crate::support::{hills, layer, pinhole, render, scene, terrain};
@@ -9,7 +9,8 @@ use belvedere_core::map::curved_rays::Model;
 use belvedere_core::{DMat3, DVec2, DVec3, EarthCurvature, Miss, SpaceMap, Stage, TerrainDisocclusion, View};
 use belvedere_scene::{BoxLayer, BoxShape, Color, LayerKind, Scene};
 
-/// Moves ground aside and up along y: `x' = x + sway sin(y / reach)`, `z' = z + rise y^2 / (y^2 + 4 reach^2)`; nothing south of `border`.
+/// Moves ground sideways and up along y: `x' = x + sway sin(y / reach)`, `z' = z + rise y^2 / (y^2 + 4 reach^2)`. Nothing moves south
+/// of `border`.
 #[derive(Debug)]
 struct Dummy {
     sway: f64,
@@ -59,7 +60,7 @@ fn town() -> Scene {
     scene(vec![ground, layer("towers", LayerKind::Boxes(BoxLayer::new(towers)))])
 }
 
-/// Views with the dummy alone and between other stages.
+/// Views with the test stage alone and between other stages.
 fn views() -> Vec<(&'static str, View)> {
     let camera = pinhole(DVec3::new(-100.0, -900.0, 500.0), DVec3::new(0.0, 0.0, 60.0), 50.0, [96, 54]);
     let own = || Stage::own(DUMMY);
@@ -88,7 +89,7 @@ fn rasteriser_and_tracer_agree_on_a_stage_that_they_do_not_know() {
     for (name, view) in views() {
         let d: Difference = difference(&scene, &view);
         assert!(d.judged * 3 > d.pixels && d.is_small(), "{name}: {d:?}");
-        // And it is drawn: the straight picture is another one.
+        // The stage has an effect: the straight picture is another one.
         let (bent, straight) = (trace(&scene, &view, &exactly()), trace(&scene, &view.straightened(), &exactly()));
         let other = bent.depth.iter().zip(&straight.depth).filter(|(a, b)| (*a / *b - 1.0).abs() > 0.01).count();
         assert!(other * 20 > d.pixels, "{name}: {other} pixels differ from the straight picture");
@@ -107,7 +108,7 @@ fn what_is_drawn_of_an_unknown_stage_lies_where_the_view_has_it() {
             let image = view.project(point).unwrap();
             assert!(image.pixel.distance(pixel) < 1e-6, "{name} {pixel}: {}", image.pixel);
             let up = scene.terrain().and_then(|t| t.surface_at(point.truncate())).map_or(0.0, |z| point.z - z);
-            // Towers begin 20 m under the ground; beside a border one sees into them.
+            // Towers begin 20 m below the ground, and next to a border one sees their lower parts.
             assert!(up > -21.0, "{name} {pixel}: {up} m above the ground");
             seen += 1;
         }
@@ -141,7 +142,7 @@ fn a_body_turns_as_the_derivative_of_an_unknown_stage_does() {
     let rotation = view.body_motion(foot).unwrap().rotation();
     let j = DUMMY.jacobian(foot).unwrap();
     assert!((rotation.determinant() - 1.0).abs() < 1e-12);
-    // Nearest: what is left over is symmetric.
+    // Samples are the nearest, so the remaining error is symmetric.
     let left = rotation.transpose() * j;
     assert!((left - left.transpose()).to_cols_array().iter().all(|v| v.abs() < 1e-9), "{left}");
 }

@@ -1,5 +1,5 @@
-//! The rasteriser against the exact tracer along curved rays of every kind that is valid: wide wedges, bends beyond a right angle, chains,
-//! bends in any plane, over boxes, huge triangles, ground and volumes, not at the turns alone but all along the rays.
+//! Compares the rasteriser with the exact tracer along every valid kind of curved ray: wide wedges, bends beyond a right angle, chains,
+//! bends in any plane. The scenes have boxes, huge triangles, ground and volumes along the whole rays, not at the turns alone.
 
 use crate::exact::{Difference, difference, exactly, on_silhouette, trace};
 use crate::support::{hills, layer, render, scene, terrain};
@@ -13,10 +13,10 @@ use belvedere_testkit::rays::{MODELS, RandomRays, random_split};
 
 const VIEWS: usize = 200;
 const IMAGE: [u32; 2] = [48, 36];
-/// Of these every eighth one parts its rays.
+/// Every eighth of these has branching rays.
 const SPLITS: usize = 8;
 
-/// A place that a ray of the picture passes.
+/// A place through which a ray of the picture passes.
 fn place(view: &View, random: &mut Random) -> DVec3 {
     for _ in 0..100 {
         let pixel = DVec2::new(random.unit(), random.unit()) * DVec2::from_array(IMAGE.map(f64::from));
@@ -38,7 +38,7 @@ fn boxes(view: &View, random: &mut Random) -> LayerKind {
     LayerKind::Boxes(BoxLayer::new((0..40).map(|i| shape(i, random)).collect()))
 }
 
-/// Some dozen triangles, most of them many times larger than what the picture shows of them.
+/// A few dozen triangles, most of them many times larger than the part that the picture shows.
 fn triangles(view: &View, random: &mut Random) -> LayerKind {
     let mut places = Vec::new();
     for _ in 0..14 {
@@ -100,7 +100,7 @@ fn rasteriser_and_tracer_agree_along_random_rays() {
     }
 }
 
-/// A body of waves, most of it translucent.
+/// A volume of waves, most of it translucent.
 fn body(center: DVec3, size: f64, turn: DMat3) -> VolumeLayer {
     let n = 16u32;
     let wave = |x: u32, y: u32, z: u32| {

@@ -1,4 +1,4 @@
-//! Andorra, looked at.
+//! Pictures of Andorra.
 
 use crate::support::{layer, line, options, pinhole, render, scene, show, terrain};
 use crate::support_views::spline_over;
@@ -8,7 +8,7 @@ use belvedere_scene::{AreaFeature, AreaLayer, Color, Heightfield, Hidden, LayerK
 const LAT0: f64 = 42.5;
 const LON0: f64 = 1.5;
 
-/// Rough metric position: good enough to look at pictures.
+/// Approximate metric position, accurate enough for pictures.
 fn metric(lon: f64, lat: f64) -> DVec2 {
     DVec2::new((lon - LON0) * 111_320.0 * LAT0.to_radians().cos(), (lat - LAT0) * 111_132.0)
 }
@@ -43,7 +43,7 @@ fn andorra_scene() -> Option<(Scene, Heightfield)> {
     Some((scene(layers), hf))
 }
 
-/// The GR 11, segment by segment, densified to the spacing of the ground.
+/// The GR 11, segment by segment, with added points so that their spacing is that of the ground.
 fn route(hf: &Heightfield) -> Option<belvedere_scene::LineLayer> {
     let text = std::fs::read_to_string(belvedere_testkit::data("andorra/gr11_andorra_no_elevation.gpx")?).ok()?;
     let mut out = line(Vec::new(), Hidden::Dash);
@@ -108,7 +108,7 @@ fn andorra_has_no_cracks_below_its_skyline() {
     for (name, eye, at, fov) in cameras {
         let frame = render(&scene, &view(&hf, eye, at, fov, [1280, 720]), &options(4));
         show(name, &frame);
-        // Below the first ground of a column what sky there is are the holes of the data.
+        // Sky below the first ground of a column comes from holes in the data.
         let mut holes = 0;
         for x in 0..frame.width {
             let column: Vec<u32> = (0..frame.height).map(|y| frame.id[y * frame.width + x]).collect();

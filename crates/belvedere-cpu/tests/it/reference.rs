@@ -1,4 +1,4 @@
-//! Every pixel against a ray caster that knows nothing of triangles on the image: it walks along the (curved) ray.
+//! Compares every pixel with a ray caster that uses no triangles on the image but walks along the (curved) ray.
 
 use crate::support::{hills, layer, options, pinhole, render, scene, terrain};
 use crate::support_views::views;
@@ -6,7 +6,7 @@ use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{BoxLayer, BoxShape, Color, Heightfield, LayerKind, NodeState, Scene};
 use rayon::prelude::*;
 
-/// Height of a point over the drawn ground; `None` beside it.
+/// Height of a point above the drawn ground; `None` outside the ground.
 fn over_ground(hf: &Heightfield, p: DVec3) -> Option<f64> {
     Some(p.z - hf.surface_at(p.truncate())?)
 }
@@ -18,7 +18,7 @@ fn in_box(shape: &BoxShape, p: DVec3) -> bool {
     x.abs() <= 0.5 * shape.size.x && y.abs() <= 0.5 * shape.size.y && (0.0..=shape.size.z).contains(&d.z)
 }
 
-/// Id and depth of what the ray of `pixel` meets first: where it goes through the ground, or into a box.
+/// Id and depth of the first hit of the ray of `pixel`: where it enters the ground or a box.
 fn cast(scene: &Scene, view: &View, pixel: DVec2, far: f64, steps: usize) -> (u32, f64) {
     let ray = view.ray(pixel);
     let state = |depth: f64| {
@@ -80,7 +80,7 @@ fn silhouettes(reference: &[(u32, f64)], w: usize, h: usize) -> Vec<bool> {
 
 fn compare(name: &str, scene: &Scene, view: &View, tolerance: f64) {
     let [w, h] = view.pinhole().image.map(|s| s as usize);
-    // Half a pixel of bend would be seen in the depth of grazing ground: judge with a fiftieth.
+    // An error of half a pixel in a bent edge would change the depth of grazing ground, so the comparison uses a fiftieth.
     let fine = belvedere_scene::RenderOptions { tolerance_px: 0.02, ..options(4) };
     let frame = render(scene, view, &fine);
     let reference: Vec<(u32, f64)> = (0..w * h)
@@ -127,7 +127,7 @@ fn hilly_scene() -> Scene {
 fn every_pixel_agrees_with_a_ray_caster() {
     let scene = hilly_scene();
     for (name, view) in views([96, 72]) {
-        // A bent edge may be off by the tolerance, and the depth by what the ground (4 % per pixel at most) gains on it.
+        // A bent edge may be wrong by the tolerance, and the depth by the change (at most 4 % per pixel) of the ground over that distance.
         let tolerance = if view.stages().is_empty() { 1e-4 } else { 1e-3 };
         compare(name, &scene, &view, tolerance);
     }
@@ -140,7 +140,7 @@ fn with_a_fine_tolerance_bent_depth_is_as_exact_as_straight_depth() {
         let fine = belvedere_scene::RenderOptions { tolerance_px: 0.01, ..options(1) };
         let coarse = render(&scene, &view, &options(1));
         let frame = render(&scene, &view, &fine);
-        // A sharp turn has no curve to follow more closely: both cut down to its plane.
+        // A sharp turn has no curve that could be followed more closely: both cut at its plane.
         let more = frame.stats.edges_split > coarse.stats.edges_split;
         assert!(more || name == "a sharp turn", "{name}: nothing more was split");
         let mut off: Vec<f64> = frame

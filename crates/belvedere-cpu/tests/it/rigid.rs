@@ -1,4 +1,4 @@
-//! Rigid bodies in both renderers: carried as a whole, seen alike, told by their true places.
+//! Rigid bodies in both renderers: they move as a whole, look the same in both, and are reported at their true places.
 
 use crate::exact::difference;
 use crate::support::{hills, layer, options, pinhole, render, scene, terrain};
@@ -21,7 +21,7 @@ fn tower(x: f64, y: f64, height: f64, yaw: f64) -> BoxShape {
     BoxShape { base: DVec3::new(x, y, 0.0), size, yaw, color: Color::rgb(190, 180, 170) }
 }
 
-/// Rows of houses, every third a tower.
+/// Rows of houses, of which every third is a tower.
 fn shapes() -> Vec<BoxShape> {
     (0..80)
         .map(|i| {
@@ -32,7 +32,8 @@ fn shapes() -> Vec<BoxShape> {
         .collect()
 }
 
-/// Every second shape as a part of a mesh over a plate that is no body; its triangles take turns, and one corner is shared by two parts.
+/// Every second shape is a part of a mesh over a plate that is not rigid. The triangles of the parts alternate, and two parts share one
+/// corner.
 fn houses(shapes: &[BoxShape], rigid: RigidParts) -> MeshLayer {
     let plate = [[-200.0, -200.0], [200.0, -200.0], [200.0, 260.0], [-200.0, 260.0]];
     let mut places: Vec<DVec3> = plate.map(|[x, y]| DVec3::new(x, y, 0.0)).to_vec();
@@ -62,13 +63,13 @@ fn town(rigid: bool) -> Scene {
     ])
 }
 
-/// Near enough for houses to fold.
+/// So near that houses fold.
 fn hybrid() -> View {
     let camera = pinhole(DVec3::new(-40.0, -250.0, 180.0), DVec3::ZERO, 50.0, IMAGE);
     spline(camera, "hybrid-flat-steep-flat")
 }
 
-/// The chain with other stages around its spline.
+/// The chain with other stages before and after its spline.
 fn around(view: &View, before: Vec<Stage>, rise: f64) -> View {
     let rays = turns(view.pinhole().clone(), Model::Modified, &[(330.0, rise)]);
     let stages = before.into_iter().chain(view.stages().iter().cloned());
@@ -92,7 +93,7 @@ fn the_rasteriser_draws_rigid_bodies_as_the_tracer_meets_them() {
     for (name, view) in chains() {
         let found = difference(&town(true), &view);
         assert!(found.is_small() && 2 * found.judged > found.pixels, "{name}: {found:?}");
-        // They are not where the bend would put them.
+        // They are not where the bend would move them.
         let (rigid, bent) = (render(&town(true), &view, &options(1)), render(&town(false), &view, &options(1)));
         let moved = rigid.depth.iter().zip(&bent.depth).filter(|(a, b)| (*a - *b).abs() > 0.01 * a.min(**b)).count();
         assert!(moved > 180, "{name}: {moved}");
@@ -132,7 +133,7 @@ fn what_is_seen_of_a_body_is_told_by_its_true_place() {
             let p = DVec3::from_array(*p);
             assert!(p.distance(hit.point) < 0.02, "{name}: {p} is {}", hit.point);
             let body = match hit.layer {
-                // On the surface of one of the boxes, whose number the frame does not hold: the nearest.
+                // The place is on the surface of one of the boxes. The frame does not store the number of the box, so the nearest is used.
                 0 => {
                     let LayerKind::Boxes(layer) = &town.layers[0].kind else { panic!("boxes") };
                     let far = |b: &BoxShape| {
@@ -169,7 +170,7 @@ fn towers_beyond_the_fold_limit_are_drawn_whole() {
     let Some(Stage::SplineBend(bend)) = view.stages().first() else { panic!("a spline") };
     let limit = bend.fold_heights()[1];
     assert!(limit < 50.0, "{limit}");
-    // Where the curve bends upwards most.
+    // The place where the curve bends upwards most.
     let foot = (-200..400).map(|y| DVec3::new(0.0, f64::from(y), 0.0)).min_by(|a, b| {
         let stretch = |p: &DVec3| bend.stretch(*p + 100.0 * DVec3::Z);
         stretch(a).total_cmp(&stretch(b))
@@ -182,7 +183,7 @@ fn towers_beyond_the_fold_limit_are_drawn_whole() {
         let scene = scene(vec![layer("tower", boxes)]);
         render(&scene, &view, &options(1))
     };
-    // Its image is that of a convex body: every row of pixels is one run without gaps, and so is the outline of the corners.
+    // The image is that of a convex body: every row of pixels is one run without gaps, and so is the outline of the corners.
     let motion = view.body_motion(foot).expect("an image");
     let corners = tall.corners().map(|p| view.of_body(motion).project(p).expect("in front").pixel);
     let (low, high) = corners.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));

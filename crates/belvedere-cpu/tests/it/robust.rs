@@ -1,4 +1,4 @@
-//! Pictures that are defined whatever the input, and the same for any number of threads.
+//! Pictures are defined for every input and equal for any number of threads.
 
 use crate::support::{hills, layer, line, options, pinhole, render, scene, terrain};
 use crate::support_views::views;

@@ -1,4 +1,4 @@
-//! Styling sections in both renderers: what is shown where, and what the mean of the exposures is.
+//! Styling sections in both renderers: which layers are visible where, and the mean of the exposures.
 
 use crate::exact::difference;
 use crate::support::{hills, layer, options, pinhole, render, scene, terrain};
@@ -17,7 +17,7 @@ fn representation(id: &str, layers: &[&str]) -> Representation {
     Representation { id: id.into(), layers: layers.iter().map(|l| (*l).to_owned()).collect() }
 }
 
-/// Hills as relief and as plan, with towers on the relief alone.
+/// Hills as relief and as plan, with towers in the relief alone.
 fn land() -> Scene {
     let relief = terrain(hills(129, 25.0, 120.0, 11));
     let mut plan = relief.clone();
@@ -90,7 +90,7 @@ fn a_transition_shows_shares_of_both_and_exactly_one_of_them_at_each_sample() {
     let (mut scene, view) = (land(), view(&[TagPoint { u: 0.5, delta: 0.3 }], &["near", "far"]));
     scene.layers[1].kind = LayerKind::Boxes(BoxLayer::default());
     let frame = placed(&scene, &view, 1);
-    // By tenths of the curve: pixels of the plan, their number by the weights, and all.
+    // For each tenth of the curve: the number of pixels of the plan, the number expected from the weights, and the number of all pixels.
     let mut tenths = [[0.0; 3]; 10];
     for (id, p) in frame.id.iter().zip(frame.world.expect("asked for")) {
         let t = parameter(&view, p);
@@ -104,7 +104,7 @@ fn a_transition_shows_shares_of_both_and_exactly_one_of_them_at_each_sample() {
     for (i, [plan, want, all]) in tenths.into_iter().enumerate().filter(|(_, t)| t[2] > 300.0) {
         assert!((plan - want).abs() < 0.02 * all, "tenth {i}: {plan} of {all}, weights {want}");
     }
-    // Both grounds are one surface: no sample falls between them.
+    // Both grounds are one surface, so no sample falls between them.
     let whole = render(&Scene { representations: vec![], ..scene }, &view, &options(1));
     assert!(whole.id.iter().zip(&frame.id).all(|(a, b)| (*a == 0) == (*b == 0)));
 }
@@ -116,7 +116,8 @@ fn plain_transition() -> (Scene, View) {
     (scene, view)
 }
 
-/// Largest difference, in steps of 255, of a picture of [`plain_transition`] from the composite by weights of its layers, each drawn alone.
+/// Largest difference, in steps of 255, between a picture of [`plain_transition`] and the composite by weights of its layers, each drawn
+/// alone.
 fn off_by(scene: &Scene, view: &View, picture: &Frame) -> f64 {
     let only = |keep: &str| {
         let of = |id: &str| representation(id, if id == keep { &["relief", "plan"] } else { &[] });
@@ -149,7 +150,7 @@ fn off_by(scene: &Scene, view: &View, picture: &Frame) -> f64 {
 fn exposures_tend_to_the_weighted_composite_where_layers_see_one_surface() {
     let (scene, view) = plain_transition();
     let worst = off_by(&scene, &view, &placed(&scene, &view, 64));
-    // Half a step of 64 between two colours, and rounding.
+    // Half a step of 64 between two colours, plus rounding.
     assert!(worst <= 2.0, "{worst}");
 }
 
@@ -165,7 +166,7 @@ fn one_surface_in_two_colours_is_drawn_once_and_mixed_by_weight() {
     assert!(off.is_some_and(|off| off <= 2), "{off:?} of 255");
     let whole = render(&Scene { representations: vec![], ..scene.clone() }, &view, &options(1));
     assert_eq!(2 * single.stats.triangles_drawn, whole.stats.triangles_drawn, "one ground instead of two");
-    // Each sample is called by the layer of the greater share.
+    // Each sample has the id of the layer with the greater share.
     for (id, p) in single.id.iter().zip(single.world.expect("asked for")).filter(|(id, _)| **id != 0) {
         let t = parameter(&view, p);
         assert!(*id == if t < 0.5 { 1 } else { 3 } || (t - 0.5).abs() < 1e-6, "{id} at {t}");
@@ -189,7 +190,7 @@ fn meshes_of_one_surface_are_mixed_and_others_are_not() {
     let hues = |scene: &Scene| {
         let frame = composed(scene, &view, 1, Compositing::Single);
         let of_roof = frame.id.iter().zip(&frame.color).filter(|(id, _)| **id == 4 || **id == 5);
-        // Mixtures: neither channel prevails by much.
+        // Mixtures, in which neither channel is much stronger than the other.
         of_roof.fold([0, 0], |[all, mixed], (_, c)| [all + 1, mixed + usize::from(c[0].abs_diff(c[2]) < 40)])
     };
     let [all, mixed] = hues(&scene);
@@ -235,7 +236,7 @@ fn layers_are_the_mean_of_the_exposures_where_they_see_one_surface() {
     let layers = render(&scene, &view, &RenderOptions { compositing: Compositing::Layers, ..options(1) });
     let off = mean.color.iter().zip(&layers.color).flat_map(|(a, b)| (0..3).map(|k| a[k].abs_diff(b[k]))).max();
     assert!(off.is_some_and(|off| off <= 2), "{off:?} of 255");
-    // Two pictures with colour, depth, identity and place; exposures need none.
+    // Layers need memory for two pictures with colour, depth, identity and place; exposures need none.
     assert_eq!((layers.stats.layer_bytes, mean.stats.layer_bytes), (2 * 160 * 120 * 35, 0));
 }
 
@@ -263,7 +264,7 @@ fn edges_are_those_of_each_representation_alone() {
     let (mut whole, mut inked) = ([0; 2], 0);
     for i in 0..picture.color.len() {
         let seen = [0, 1].map(|number: usize| !alone[number].world.as_ref().expect("asked for")[i][0].is_nan());
-        // Where one of them alone shows anything, it is all that is seen.
+        // Where only one of them shows anything, the result is that one.
         let ([true, false] | [false, true]) = seen else { continue };
         let number = usize::from(seen[1]);
         whole[number] += 1;

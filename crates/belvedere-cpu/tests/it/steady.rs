@@ -1,4 +1,4 @@
-//! Pictures in motion: what stands still in the world neither shimmers nor jumps.
+//! Pictures in motion: what does not move in the world must neither shimmer nor jump.
 
 use crate::real_data::andorra;
 use crate::support::{Random, hills, layer, options, pinhole, render, scene, terrain};
@@ -13,7 +13,7 @@ fn ground(hf: Heightfield) -> Scene {
     scene(vec![layer("ground", LayerKind::Terrain(terrain(hf)))])
 }
 
-/// Hills with a height of its own at every node, far more of them than pixels.
+/// Hills with an independent height at every node, with far more nodes than pixels.
 fn rough() -> Heightfield {
     let smooth = hills(1025, 4.0, 300.0, 11);
     let mut random = Random::new(5);
@@ -25,7 +25,7 @@ fn drawn(scene: &Scene, view: &View, lod_px: f64) -> Frame {
     render(scene, view, &RenderOptions { lod_px, aux: Aux { world: true, ..Aux::default() }, ..options(4) })
 }
 
-/// How much colours change where they should not, and how much they differ between neighbours: root mean squares, steps of 8 bits.
+/// How much colours change that should not change, and how much neighbours differ: root mean squares, in steps of 8 bits.
 #[derive(Debug, Default, Clone, Copy)]
 struct Motion {
     change: f64,
@@ -59,7 +59,7 @@ fn grey(frame: &Frame, i: usize) -> Option<f64> {
     Some(0.3 * r + 0.6 * g + 0.1 * b)
 }
 
-/// Whether a pixel and its neighbours lie on one surface.
+/// Whether a pixel and its neighbours are on one surface.
 fn is_inner(frame: &Frame, i: usize) -> bool {
     let (w, h) = (frame.width, frame.height);
     let (x, y) = (i % w, i / w);
@@ -67,7 +67,7 @@ fn is_inner(frame: &Frame, i: usize) -> bool {
     x > 0 && y > 0 && x + 1 < w && y + 1 < h && [i, i - 1, i + 1, i - w, i + w].into_iter().all(near)
 }
 
-/// Brightness between four pixels of one surface, if it is that at `depth`.
+/// Brightness interpolated between four pixels of one surface, if the surface is the one at `depth`.
 fn between_pixels(frame: &Frame, pixel: DVec2, depth: f64) -> Option<f64> {
     let p = pixel - 0.5;
     let (w, h) = (frame.width as f64, frame.height as f64);
@@ -85,7 +85,7 @@ fn between_pixels(frame: &Frame, pixel: DVec2, depth: f64) -> Option<f64> {
     Some(top + f.y * (bottom - top))
 }
 
-/// Cameras that turn by a good third of a pixel from one to the next.
+/// Cameras of which each is turned by a little more than a third of a pixel from the previous one.
 fn turning(camera: &Pinhole, frames: usize) -> Vec<View> {
     let per_frame = 0.37 / camera.scale_px();
     (0..frames)
@@ -110,7 +110,7 @@ fn rough_ground_does_not_shimmer_when_the_camera_turns() {
     assert!(motion.change < 0.33 * motion.contrast, "{motion:?}");
 }
 
-/// Frames of a flight forwards, in less detail and in full.
+/// Frames of a flight forwards, with reduced and with full detail.
 fn flight(scene: &Scene, eye: DVec3, step: DVec3, look: DVec3) -> Vec<[Frame; 2]> {
     (0..12)
         .map(|i| {
@@ -121,8 +121,8 @@ fn flight(scene: &Scene, eye: DVec3, step: DVec3, look: DVec3) -> Vec<[Frame; 2]
         .collect()
 }
 
-/// Largest change from frame to frame of what less detail changes: over the picture, root mean square, and at worst the mean of
-/// 16 x 16 pixels; steps of 8 bits.
+/// Largest change from frame to frame of the difference that reduced detail makes: the root mean square over the picture, and the
+/// largest mean over a block of 16 x 16 pixels, in steps of 8 bits.
 fn popping(frames: &[[Frame; 2]]) -> [f64; 2] {
     let off = |[coarse, full]: &[Frame; 2]| -> Vec<f64> {
         (0..full.id.len()).map(|i| grey(coarse, i).unwrap_or(0.0) - grey(full, i).unwrap_or(0.0)).collect()

@@ -1,4 +1,4 @@
-//! Lines in motion: a camera that turns by a tenth of a pixel changes no pixel of a line by much more than that.
+//! Lines in motion: when the camera turns by a tenth of a pixel, no pixel of a line changes by much more than a tenth.
 
 use crate::support::{hills, layer, line, options, pinhole, render, scene, terrain};
 use crate::support_views::{spline, turns};
@@ -18,7 +18,7 @@ fn camera(turn_px: f64) -> Pinhole {
     pinhole(straight.eye, straight.eye + 1000.0 * forward, 50.0, IMAGE)
 }
 
-/// Hills, and a way over them.
+/// Hills with a path over them.
 fn ground(nodes: usize) -> (Heightfield, Vec<DVec3>) {
     let hf = hills(nodes, 1152.0 / (nodes - 1) as f64, 120.0, 21);
     let points = (0..600)
@@ -31,7 +31,7 @@ fn ground(nodes: usize) -> (Heightfield, Vec<DVec3>) {
     (hf, points)
 }
 
-/// Share of each pixel that a black line covers, told from the light that it takes.
+/// Share of each pixel that a black line covers, computed from how much darker the pixel is.
 fn coverage([bare, lined]: [&Scene; 2], view: &View, lod_px: f64) -> Vec<f64> {
     let options = RenderOptions { lod_px, ..options(4) };
     let light = |v: u8| {
@@ -44,16 +44,16 @@ fn coverage([bare, lined]: [&Scene; 2], view: &View, lod_px: f64) -> Vec<f64> {
     ground.color.iter().zip(&drawn.color).map(|(g, d)| 1.0 - light(d[1]) / light(g[1])).collect()
 }
 
-/// What a line does in motion.
+/// Measurements of a line in motion.
 #[derive(Debug, Default)]
 struct Motion {
-    /// Pixels of all frames that the line covers by more than a tenth.
+    /// Number of pixels, over all frames, of which the line covers more than a tenth.
     covered: usize,
-    /// Of those and the ones that it leaves, how many changed by more than half a pixel's worth in a step of a tenth.
+    /// How many of those pixels, and of those that the line leaves, changed by more than half a pixel's worth in a step of a tenth.
     jumps: usize,
     /// Root mean square of the change of those pixels.
     change: f64,
-    /// Largest change of all the line covers, from frame to frame, as a share.
+    /// Largest relative change, from frame to frame, of the whole area that the line covers.
     ink: f64,
 }
 
@@ -76,7 +76,7 @@ impl Motion {
 }
 
 fn judge(name: &str, width_px: f64, hidden: Hidden, lod_px: f64, view: impl Fn(Pinhole) -> View) {
-    // Far more nodes than pixels where there is to be less of them.
+    // Far more nodes than pixels where the detail is to be reduced.
     let (hf, points) = ground(if lod_px > 0.0 { 1025 } else { 257 });
     let below = || layer("ground", LayerKind::Terrain(terrain(hf.clone())));
     let mut style = line(points, hidden);

@@ -1,4 +1,4 @@
-//! Strips along a route: two ways to a picture, and what the border of the strip leaves of it.
+//! Strips along a route: two renderers of the same picture, and the parts that the border of the strip leaves visible.
 
 use crate::exact::difference;
 use crate::support::{hills, layer, options, pinhole, render, scene, terrain};
@@ -24,7 +24,7 @@ fn ground() -> Scene {
     scene(vec![layer("ground", LayerKind::Terrain(terrain(hills(24, 50.0, 90.0, 7))))])
 }
 
-/// From over the start of the road along it, and from beside and above it.
+/// A view along the road from above its start, and one from the side and above.
 fn cameras(image: [u32; 2]) -> [Pinhole; 3] {
     let along = strip(1.0).route().at(0.0).tangent.extend(0.0);
     let start = DVec3::new(0.0, -560.0, 0.0);
@@ -74,7 +74,7 @@ fn nothing_outside_the_strip_is_drawn_and_all_of_it_inside() {
         let pixel = DVec2::new((i % frame.width) as f64 + 0.5, (i / frame.width) as f64 + 0.5);
         let on_ground = view.pinhole().unproject(pixel, 1500.0);
         let off = map.outside(on_ground);
-        // Ground that is high or low is seen elsewhere than level ground.
+        // Ground that is higher or lower is seen at another place than level ground.
         if off > 20.0 {
             beside += 1;
             assert!(*id == 0 && tracer.first_hit(pixel).is_none(), "{pixel} is drawn, {off} outside");
@@ -88,7 +88,7 @@ fn nothing_outside_the_strip_is_drawn_and_all_of_it_inside() {
 
 #[test]
 fn narrow_strips_are_found_from_beside_and_far_away() {
-    // Rays that cross a strip look at it for a small part of their way.
+    // Rays that cross a strip are above it only for a small part of their length.
     let route = [DVec2::new(-400.0, 500.0), DVec2::new(0.0, 490.0), DVec2::new(400.0, 500.0)];
     let route = SmoothedRoute::new(&route, 12.0, None).expect("it fits");
     let strip = Strip::new(route.curve, 12.0, 1.0, DVec2::ZERO).expect("it fits");

@@ -1,4 +1,4 @@
-//! Coarse ground under a bend, against the same ground cut finely beforehand.
+//! Compares coarse ground under a bend with the same ground divided finely beforehand.
 
 use crate::support::{Random, hills, layer, options, pinhole, render, scene, terrain};
 use crate::support_views::{small_planet, spline, views};
@@ -40,7 +40,7 @@ fn a_coarse_grid_bends_like_a_fine_one() {
         assert!(frame.stats.edges_split > 20, "{name}: {} edges split", frame.stats.edges_split);
         let off = skyline_off(&frame, &reference);
         assert!(off <= 1, "{name}: the skyline is {off} px off");
-        // World positions seen by a pixel must project to within the tolerance of it.
+        // The world position seen by a pixel must be projected to that pixel within the tolerance.
         let with_world = RenderOptions { aux: belvedere_scene::Aux { world: true, exact: false }, ..options(1) };
         let frame = render(&coarse, &view, &with_world);
         let mut worst = 0.0f64;
@@ -55,7 +55,7 @@ fn a_coarse_grid_bends_like_a_fine_one() {
 
 #[test]
 fn without_subdivision_the_coarse_grid_would_be_wrong() {
-    // The test above can fail: with an enormous tolerance the same grid is several pixels off.
+    // Shows that the test above can fail: with an enormous tolerance the same grid is wrong by several pixels.
     let coarse = hills(5, 280.0, 60.0, 11);
     let fine = ground(refined(&coarse, 48));
     let coarse = ground(coarse);

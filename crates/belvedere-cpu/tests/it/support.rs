@@ -76,7 +76,7 @@ pub(crate) fn line(points: Vec<DVec3>, hidden: Hidden) -> LineLayer {
     }
 }
 
-/// Writes a picture as PPM into `$BELVEDERE_PICTURES`, if set: for looking at.
+/// Writes a picture as PPM into `$BELVEDERE_PICTURES`, if that is set, so that a person can look at it.
 pub(crate) fn show(name: &str, frame: &Frame) {
     let Some(dir) = std::env::var_os("BELVEDERE_PICTURES") else { return };
     let mut bytes = format!("P6 {} {} 255\n", frame.width, frame.height).into_bytes();

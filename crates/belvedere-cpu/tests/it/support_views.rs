@@ -1,4 +1,4 @@
-//! Views of the test hills: straight, on a small planet, and bent.
+//! Views of the test hills: straight, on a small planet, and along bent rays.
 
 use crate::support::pinhole;
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
@@ -6,7 +6,7 @@ use belvedere_core::map::spline::{ReferencePlane, default_pivot};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{CurvedRays, DVec3, EarthCurvature, Pinhole, SplineBend, Stage, View};
 
-/// A planet so small that its curvature is seen across the test hills.
+/// A planet so small that its curvature is visible across the test hills.
 pub(crate) fn small_planet(pinhole: Pinhole) -> View {
     let earth = EarthCurvature { eye: pinhole.eye, radius: 8_000.0, refraction: 0.13 };
     View::new(pinhole, vec![Stage::EarthCurvature(earth)]).expect("one stage is in order")
@@ -17,7 +17,7 @@ pub(crate) fn spline(pinhole: Pinhole, preset: &str) -> View {
     spline_over(pinhole, preset, 0.0)
 }
 
-/// The same over level ground at a height.
+/// A built-in spline preset over level ground at a given height.
 pub(crate) fn spline_over(pinhole: Pinhole, preset: &str, height: f64) -> View {
     let ground = ReferencePlane::level(height);
     let pivot = default_pivot(&pinhole, &ground);
@@ -26,7 +26,7 @@ pub(crate) fn spline_over(pinhole: Pinhole, preset: &str, height: f64) -> View {
     View::new(bend.adapted_pinhole(&pinhole), vec![Stage::SplineBend(bend)]).expect("one stage is in order")
 }
 
-/// Rays that rise and look down: after the turn at distance `at` they seem to come from `rise` metres higher.
+/// Rays that rise and look down: after the turn at distance `at` they seem to start `rise` metres higher.
 pub(crate) fn turns(pinhole: Pinhole, model: Model, turns: &[(f64, f64)]) -> View {
     let forward = pinhole.forward.with_z(0.0).normalize();
     let eye = pinhole.eye;

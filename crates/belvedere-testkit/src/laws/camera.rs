@@ -4,7 +4,7 @@ use super::{Similarity, hostile_points};
 use crate::Random;
 use belvedere_core::{DVec2, DVec3, Miss, View};
 
-/// A camera under test and where to try it.
+/// A camera under test and the range in which it is tested.
 pub struct CameraCase {
     name: String,
     make: Box<dyn Fn(&Similarity) -> View>,
@@ -18,7 +18,7 @@ pub struct CameraCase {
 }
 
 impl CameraCase {
-    /// A case: `make` builds the view with all its parameters moved by a similarity; rays are followed over the range `depth`.
+    /// Makes a case. `make` builds the view with all its parameters moved by a similarity. Rays are followed over the range `depth`.
     ///
     /// Defaults: round trips to 1e-9 px, every ray is in the domain over the whole range, one image per point, any rotation allowed, 1000 rays.
     pub fn new(name: impl Into<String>, depth: [f64; 2], make: impl Fn(&Similarity) -> View + 'static) -> Self {
@@ -47,13 +47,13 @@ impl CameraCase {
         self
     }
 
-    /// Points may be seen twice: the round trip must be among all images.
+    /// Allows points to be seen twice: the round trip must be among all images.
     pub fn overlapping(mut self) -> Self {
         self.overlapping = true;
         self
     }
 
-    /// The view knows which way is up: it moves along with rotations about the vertical only.
+    /// States that the view depends on the vertical, so that it moves with rotations about the vertical only.
     pub fn upright(mut self) -> Self {
         self.upright = true;
         self
@@ -79,7 +79,7 @@ impl CameraCase {
         format!("{} (seed {:#x})", self.name, self.seed)
     }
 
-    /// Random pixels, the image corners among them.
+    /// Random pixels, including the corners of the image.
     fn pixels(&self, view: &View) -> Vec<DVec2> {
         let [w, h] = view.pinhole().image.map(f64::from);
         let mut random = Random::new(self.seed);
@@ -125,7 +125,7 @@ pub fn camera_round_trips(case: &CameraCase) {
     }
 }
 
-/// Along a ray the points move on without a jump, and the depth of their image rises.
+/// Along a ray the points change without a jump, and the depth of their image increases.
 ///
 /// # Panics
 /// If the law is broken.
@@ -187,7 +187,7 @@ pub fn camera_jacobian_matches_differences(case: &CameraCase) {
     assert!(checked > 0 && sharp * 2 > checked, "{}: only {sharp} of {checked} comparisons are sharp", case.label());
 }
 
-/// No input whatever makes the camera panic or answer with NaN or infinity.
+/// For no input does the camera panic or return NaN or infinity.
 ///
 /// # Panics
 /// If the law is broken.
@@ -220,7 +220,7 @@ pub fn camera_never_gives_nan(case: &CameraCase) {
     }
 }
 
-/// Moving the whole scene and all parameters leaves the picture as it is, with depths scaled.
+/// Moving the whole scene and all parameters does not change the picture except that depths are scaled.
 ///
 /// # Panics
 /// If the law is broken.
@@ -237,7 +237,7 @@ pub fn camera_moves_with_its_parameters(case: &CameraCase) {
             if case.overlapping && a.segment != b.segment {
                 continue;
             }
-            // Coordinates far from the origin are rounded; a near point shows that most.
+            // Coordinates far from the origin are rounded, which affects a near point most.
             let rounding =
                 f64::EPSILON * (s.translation.length() + s.length(p.length())) / s.length(depth.min(a.depth));
             let tolerance_px = 1e5 * rounding * view.pinhole().scale_px() + case.tolerance_px;

@@ -4,19 +4,19 @@ use super::{Continuity, Similarity, hostile_points};
 use crate::Random;
 use belvedere_core::{Aabb, DMat3, DVec3, SpaceMap};
 
-/// A point where a map is put together from two pieces, and a direction across it.
+/// A point where two pieces of a map meet, and a direction across the joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Joint {
     /// Point on the joint, scene units.
     pub point: DVec3,
-    /// Direction across it; any length but 0.
+    /// Direction across the joint, of any length but 0.
     pub across: DVec3,
 }
 
 type Maker<M> = Box<dyn Fn(&Similarity) -> M>;
 type Inside<M> = Box<dyn Fn(&M, DVec3) -> bool>;
 
-/// A map under test and what it promises.
+/// A map under test and its promised properties.
 pub struct MapCase<M> {
     name: String,
     make: Maker<M>,
@@ -33,7 +33,7 @@ pub struct MapCase<M> {
 }
 
 impl<M: SpaceMap> MapCase<M> {
-    /// A case: `make` builds the map with all its parameters moved by a similarity; test points are drawn from `region`.
+    /// Makes a case. `make` builds the map with all its parameters moved by a similarity. Test points are drawn from `region`.
     ///
     /// Defaults: declared C1 without known joints, any rotation allowed, round trips to 1e-12 of the size of the scene,
     /// the whole region is in the domain, 2000 points.
@@ -54,25 +54,25 @@ impl<M: SpaceMap> MapCase<M> {
         }
     }
 
-    /// Declares how smooth the map is.
+    /// Declares the continuity class of the map.
     pub fn continuity(mut self, continuity: Continuity) -> Self {
         self.continuity = continuity;
         self
     }
 
-    /// Names points where continuity must be measured.
+    /// Gives points where continuity must be measured.
     pub fn joints(mut self, joints: impl IntoIterator<Item = Joint>) -> Self {
         self.joints.extend(joints);
         self
     }
 
-    /// The map knows which way is up: it moves along with rotations about the vertical only.
+    /// States that the map depends on the vertical, so that it moves with rotations about the vertical only.
     pub fn upright(mut self) -> Self {
         self.upright = true;
         self
     }
 
-    /// How to build the map with its strength turned to zero.
+    /// Sets the function that builds the map with strength zero.
     pub fn identity_at_zero_strength(mut self, zero: impl Fn() -> M + 'static) -> Self {
         self.zero = Some(Box::new(zero));
         self
@@ -111,7 +111,7 @@ impl<M: SpaceMap> MapCase<M> {
         format!("{} (seed {:#x})", self.name, self.seed)
     }
 
-    /// Size of coordinates: rounding errors are proportional to it.
+    /// Size of the coordinates, to which rounding errors are proportional.
     fn size(&self) -> f64 {
         let b = &self.region;
         (b.max - b.min).length().max(b.min.abs().max(b.max.abs()).max_element())
@@ -165,7 +165,7 @@ pub fn map_keeps_orientation<M: SpaceMap>(case: &MapCase<M>) {
     }
 }
 
-/// `jacobian` agrees with central differences of `apply`, to what two step widths say about their own error.
+/// `jacobian` agrees with central differences of `apply`, within the error estimated from two step widths.
 ///
 /// # Panics
 /// If the law is broken.
@@ -199,10 +199,10 @@ fn norm(m: DMat3) -> f64 {
     m.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt()
 }
 
-/// With its strength at zero the map leaves every point where it is.
+/// With strength zero the map does not move any point.
 ///
 /// # Panics
-/// If the law is broken, or if the case does not say how to turn the strength to zero.
+/// If the law is broken, or if the case has no function for strength zero.
 pub fn map_is_identity_at_zero_strength<M: SpaceMap>(case: &MapCase<M>) {
     let zero = case.zero.as_ref().unwrap_or_else(|| panic!("{}: no zero-strength map is given", case.label()));
     let (map, mut random) = (zero(), Random::new(case.seed));
@@ -214,8 +214,8 @@ pub fn map_is_identity_at_zero_strength<M: SpaceMap>(case: &MapCase<M>) {
     }
 }
 
-/// Derivatives up to the declared order do not jump at the joints: their one-sided values meet as the step shrinks.
-/// The next one does jump somewhere, so the class is not declared lower than it is.
+/// Derivatives up to the declared order do not jump at the joints: their one-sided values converge as the step shrinks. The next
+/// derivative jumps at some joint, so the declared class is not too low.
 ///
 /// # Panics
 /// If the law is broken, or if joints are missing for a map that is not smooth.
@@ -228,7 +228,7 @@ pub fn map_has_its_continuity<M: SpaceMap>(case: &MapCase<M>) {
     let mut next_jumps = false;
     for joint in &case.joints {
         let across = joint.across.normalize();
-        // Rounding of the point, carried on by the map, and of its image.
+        // Rounding of the point, propagated by the map, and of its image.
         let carried = map.jacobian(joint.point).map_or(1.0, norm) * joint.point.length();
         let coordinates = case.size() + carried + map.apply(joint.point).map_or(0.0, DVec3::length);
         for order in 0..=2 {
@@ -238,7 +238,7 @@ pub fn map_has_its_continuity<M: SpaceMap>(case: &MapCase<M>) {
                 panic!("{}: joint {joint:?} is not inside the domain", case.label())
             };
             let noise = 4e-14 * coordinates / (0.25 * h).powi(order as i32);
-            // A true jump stays when the step shrinks to a quarter; what is left of a smooth function shrinks about fourfold.
+            // A true jump remains when the step shrinks to a quarter; the remainder of a smooth function shrinks about fourfold.
             let vanishes = fine <= 0.5 * coarse + noise;
             if order <= case.continuity.order() {
                 assert!(
@@ -259,7 +259,7 @@ pub fn map_has_its_continuity<M: SpaceMap>(case: &MapCase<M>) {
 fn one_sided_jump<M: SpaceMap>(map: &M, p: DVec3, d: DVec3, h: f64, order: usize) -> Option<f64> {
     let side = |sign: f64| {
         let f = |k: f64| map.apply(p + sign * k * h * d).ok();
-        // Either side for the value itself, the joint for derivatives of what is continuous.
+        // For the value itself, a point on either side; for derivatives, where the value is continuous, the joint.
         let (f0, f1, f2, f3) = (f(if order == 0 { 1e-9 } else { 0.0 })?, f(1.0)?, f(2.0)?, f(3.0)?);
         Some(match order {
             0 => f0,
@@ -268,11 +268,11 @@ fn one_sided_jump<M: SpaceMap>(map: &M, p: DVec3, d: DVec3, h: f64, order: usize
         })
     };
     let jump = (side(1.0)? - side(-1.0)?).length();
-    // The two points that stand for the joint itself are 2e-9 h apart.
+    // The two points that represent the joint itself are 2e-9 h apart.
     Some(if order == 0 { (jump - 1e-8 * h).max(0.0) } else { jump })
 }
 
-/// No input whatever makes the map panic or answer with NaN or infinity.
+/// For no input does the map panic or return NaN or infinity.
 ///
 /// # Panics
 /// If the law is broken.
@@ -299,7 +299,7 @@ pub fn map_never_gives_nan<M: SpaceMap>(case: &MapCase<M>) {
     }
 }
 
-/// Moving all parameters and the point moves the image alike: `make(s).apply(s(p)) = s(make(1).apply(p))`.
+/// Moving all parameters and the point moves the image in the same way: `make(s).apply(s(p)) = s(make(1).apply(p))`.
 ///
 /// # Panics
 /// If the law is broken.

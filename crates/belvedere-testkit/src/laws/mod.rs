@@ -1,4 +1,4 @@
-//! What every displacement and every camera of the project promises, as tests.
+//! The properties that every displacement and every camera of the project must have, as tests.
 //!
 //! Describe a map once as a [`MapCase`] and let [`space_map_laws!`](crate::space_map_laws) write the tests:
 //!
@@ -89,7 +89,7 @@ impl Similarity {
     }
 }
 
-/// How smooth a map declares itself to be, along lines that cross its joints.
+/// The continuity class that a map declares, along lines that cross its joints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Continuity {
     /// Continuous, with kinks.
@@ -113,7 +113,7 @@ impl Continuity {
     }
 }
 
-/// Coordinates that input files are known to contain.
+/// Coordinates that are known to occur in input files.
 pub fn hostile_points() -> Vec<DVec3> {
     let values = [0.0, -0.0, 1.0, -1.0, 1e-320, 1e-30, 1e30, -1e30, 1e300, f64::MAX, f64::INFINITY, f64::NAN];
     let mut points: Vec<DVec3> = values.iter().map(|&v| DVec3::splat(v)).collect();

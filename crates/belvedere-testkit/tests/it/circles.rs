@@ -1,8 +1,8 @@
-//! Modules of a crate import each other in one direction: no circles, on any floor of the tree of modules.
+//! The modules of a crate import each other in one direction: there are no circles at any level of the tree of modules.
 //!
-//! An edge leads from the module of a file to the module that a path beginning with `crate`, `super`, `self` or a child leads to, through
-//! re-exports. Between two modules it counts on the floor where their ways from the root part, so that a child may use its parent and
-//! the other way round.
+//! An edge leads from the module of a file to the module to which a path beginning with `crate`, `super`, `self` or a child refers,
+//! through re-exports. Between two modules the edge counts at the level where their paths from the root diverge (their floor), so that
+//! a child may use its parent and a parent its child.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -11,7 +11,7 @@ use syn::visit::{self, Visit};
 
 type Module = Vec<String>;
 
-/// What a file says: paths that it uses, and names that it gives on.
+/// The paths that a file uses and the names that it re-exports.
 #[derive(Default)]
 struct Said {
     paths: Vec<Vec<String>>,
@@ -57,7 +57,7 @@ impl<'a> Visit<'a> for Said {
     }
 }
 
-/// The modules of a crate by their ways from its root.
+/// The modules of a crate by their paths from its root.
 struct Tree {
     said: BTreeMap<Module, Said>,
     known: BTreeSet<Module>,
@@ -77,7 +77,7 @@ impl Tree {
         Self { said, known }
     }
 
-    /// A path from the root of the crate; `None` for those of other crates, and for names of the file itself.
+    /// A path from the root of the crate; `None` for paths of other crates and for names of the file itself.
     fn absolute(&self, module: &Module, path: &[String]) -> Option<Vec<String>> {
         let supers = path.iter().take_while(|name| *name == "super").count();
         match path.first()?.as_str() {
@@ -109,7 +109,7 @@ impl Tree {
         at
     }
 
-    /// For each floor who imports whom, with a path that says so.
+    /// For each floor, which module imports which, with a path as evidence.
     fn floors(&self) -> BTreeMap<Module, BTreeMap<String, BTreeMap<String, String>>> {
         let mut floors: BTreeMap<_, BTreeMap<_, BTreeMap<_, _>>> = BTreeMap::new();
         for (module, said) in &self.said {
@@ -126,7 +126,7 @@ impl Tree {
         floors
     }
 
-    /// Edges that lie on circles, one sentence each.
+    /// The edges that are part of circles, one sentence each.
     fn circles(&self) -> Vec<String> {
         let mut found = Vec::new();
         for edges in self.floors().values() {

@@ -1,4 +1,4 @@
-//! The import rule of docs/ARCHITECTURE.md, read off `cargo metadata`.
+//! The import rule of docs/ARCHITECTURE.md, checked with `cargo metadata`.
 
 use std::collections::BTreeMap;
 use std::process::Command;

@@ -1,4 +1,4 @@
-//! Checks of the workspace itself: who imports whom, that documents name what exists, that files stay small.
+//! Checks of the workspace itself: which crate imports which, that documents name existing items, that files stay small.
 
 mod circles;
 mod dependencies;

@@ -1,4 +1,4 @@
-//! docs/papers.md maps every equation, figure and parameter to code and tests that exist.
+//! docs/papers.md assigns code and tests that exist to every equation, figure and parameter.
 
 use std::fs;
 

@@ -1,9 +1,9 @@
-//! House rules that no lint knows.
+//! House rules that no lint checks.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Longest source file: beyond it a file holds more than one idea.
+/// Largest number of lines of a source file. A longer file contains more than one idea.
 const MAX_LINES: usize = 600;
 
 fn rust_files(folder: &Path, out: &mut Vec<PathBuf>) {

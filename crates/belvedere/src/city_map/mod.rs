@@ -13,7 +13,7 @@ use belvedere_scene::city::{Building, City};
 use plan::Plan;
 use std::path::{Path, PathBuf};
 
-/// Ground of blocks and of landmarks.
+/// Fill colours of blocks and of landmarks.
 const FILLS: [Color; 2] = [Color::rgb(226, 218, 207), Color::rgb(203, 176, 160)];
 /// Their outlines.
 const OUTLINES: [Color; 2] = [Color::rgb(201, 190, 176), Color::rgb(160, 122, 104)];
@@ -24,7 +24,7 @@ pub fn bounds(city: &City) -> Option<[DVec2; 2]> {
     points.fold(None, |box2: Option<[DVec2; 2]>, p| Some(box2.map_or([*p; 2], |[a, b]| [a.min(*p), b.max(*p)])))
 }
 
-/// A map as pixels with their place.
+/// A georeferenced picture of a map.
 #[derive(Debug, Clone)]
 pub struct MapPicture {
     /// sRGB and opacity, row 0 in the north.
@@ -37,7 +37,7 @@ pub struct MapPicture {
     pub pixel_to_model: Affine,
 }
 
-/// The map of a city within `bounds`, its longer side at most `most_px` pixels, pixels of at least `least_m` metres. Roads have a
+/// The map of a city within `bounds`, with at most `most_px` pixels along its longer side, each of at least `least_m` metres. Roads have a
 /// casing of one pixel; `blocks` are filled, landmarks among them darker.
 pub fn map_picture(ground: &City, blocks: &[Building], bounds: [DVec2; 2], most_px: usize, least_m: f64) -> MapPicture {
     let plan = Plan::within(bounds, most_px.max(1), least_m);

@@ -11,7 +11,7 @@ use belvedere_scene::city::{Building, City};
 pub struct Panel<'a> {
     /// Title and a line below it.
     pub title: [&'a str; 2],
-    /// What is drawn.
+    /// The city that is drawn.
     pub city: &'a City,
     /// Whether landmarks are marked.
     pub landmarks: bool,
@@ -25,7 +25,7 @@ const FOOT: usize = 64;
 const INK: Color = Color::rgb(52, 50, 48);
 const FAINT: Color = Color::rgb(124, 118, 110);
 const LANDMARK: Color = Color::rgb(196, 78, 52);
-/// Heights from low to high.
+/// Colours from low to high.
 const SHADES: [Color; 5] = [
     Color::rgb(231, 219, 200),
     Color::rgb(216, 190, 160),
@@ -33,7 +33,7 @@ const SHADES: [Color; 5] = [
     Color::rgb(146, 112, 108),
     Color::rgb(92, 76, 92),
 ];
-/// Shadow of a metre of height, metres to the south-east.
+/// Length of the shadow of a metre of height, metres to the south-east.
 const SHADOW: f64 = 0.45;
 
 /// Colour of a share 0..=1 of the highest height.
@@ -44,8 +44,8 @@ fn shade(share: f64) -> Color {
     Color::rgb(mix(low.r, high.r), mix(low.g, high.g), mix(low.b, high.b))
 }
 
-/// The square around the middle of the city that all buildings lie in, or fewer, at least 85 of 100, where single ones far away
-/// would make the town small.
+/// The square around the middle of the city that holds all buildings, or at least 85 of 100 of them if single distant ones would make
+/// the town small.
 fn crop(city: &City) -> Option<[DVec2; 2]> {
     const FEWEST: f64 = 0.85;
     const WIDER: f64 = 1.7;
@@ -67,7 +67,7 @@ fn crop(city: &City) -> Option<[DVec2; 2]> {
     Some([middle - 0.54 * side, middle + 0.54 * side])
 }
 
-/// The height under which 97 of 100 buildings are, rounded up to 5 m.
+/// The height that 97 of 100 buildings do not exceed, rounded up to 5 m.
 fn top_of_scale(city: &City) -> f64 {
     let mut heights: Vec<f64> = city.buildings.iter().map(|b| b.height_m).filter(|h| h.is_finite()).collect();
     heights.sort_by(f64::total_cmp);
@@ -117,7 +117,7 @@ fn draw(panel: &Panel<'_>, box2: [DVec2; 2], top: f64) -> Vec<[u8; 3]> {
         let fill = if marked { LANDMARK } else { shade(building.height_m / top) };
         for polygon in &building.footprint {
             plan.fill(&mut canvas, polygon, fill, DVec2::ZERO);
-            // At small scales the outlines would be all that is seen.
+            // At small scales outlines would cover the fills.
             if plan.m_per_px > 3.0 {
                 continue;
             }

@@ -5,10 +5,10 @@ use belvedere_cpu::canvas::Canvas;
 use belvedere_scene::Color;
 use belvedere_scene::city::{City, LandCover, Polygon, Way, WayClass};
 
-/// Ground without anything.
+/// Colour of ground without land cover.
 pub(super) const PAPER: Color = Color::rgb(243, 240, 233);
 
-/// Where a drawing lies.
+/// Scale and position of a drawing.
 pub(super) struct Plan {
     /// South-western corner, metres.
     pub low: DVec2,
@@ -39,7 +39,7 @@ const fn way_style(class: WayClass, width_m: f64, least_px: f64, fill: [u8; 3], 
     WayStyle { class, width_m, least_px, fill: Color::rgb(fill[0], fill[1], fill[2]), casing }
 }
 
-/// What is drawn first lies lowest.
+/// In drawing order: later ones cover earlier ones.
 const WAYS: [WayStyle; 9] = [
     way_style(WayClass::Waterway, 6.0, 1.2, [160, 196, 222], None),
     way_style(WayClass::Footway, 2.0, 0.8, [226, 214, 196], None),
@@ -94,7 +94,7 @@ impl Plan {
         }
     }
 
-    /// One straight piece: a box of its own, which long lines do not fill. Pieces off the drawing are left out.
+    /// Draws one straight piece in a box of its own, so that long lines do not fill large boxes. Pieces off the drawing are left out.
     fn segment(&self, canvas: &mut Canvas<'_>, a: DVec2, b: DVec2, width_px: f64, color: Color) {
         let (a, b) = (self.pixel(a), self.pixel(b));
         let (low, high) = (a.min(b) - width_px, a.max(b) + width_px);
@@ -124,7 +124,7 @@ impl Plan {
     pub(super) fn ways(&self, canvas: &mut Canvas<'_>, ways: &[Way]) {
         for style in &WAYS {
             let width = (style.width_m / self.m_per_px).max(style.least_px);
-            // Where a road is hardly wider than its casing, the casing alone would be seen.
+            // No casing where a road is hardly wider than it: it would cover the fill.
             let casing = style.casing.filter(|_| width >= 1.5).map(|color| (width + 2.0, color));
             for (width, color) in casing.into_iter().chain([(width, style.fill)]) {
                 for way in ways.iter().filter(|w| w.class == style.class) {

@@ -1,13 +1,13 @@
-//! The camera of a document in the hand.
+//! Navigation with the camera of a document.
 
 use crate::scene_file::{CameraDoc, Document, PointDoc};
 use belvedere_core::{Aabb, DVec3, Navigation, Pinhole, Projection, View};
 use belvedere_scene::Scene;
 
-/// The camera of a document and the point that it looks at; a point of the scene straight ahead if it names none.
+/// The camera of a document and the point that it looks at; if it names none, the point on the optical axis nearest to the scene's middle.
 ///
-/// * `written`: the camera as the document has it. `resolved`: the same with every rule replaced by its value, as it was shown last in
-///   `view`; it counts where `written` has rules.
+/// * `written`: the camera as the document has it. `resolved`: the same with every rule replaced by its value, as last shown in
+///   `view`; it is used where `written` has rules.
 /// * `image`: size of the picture on the screen, pixels.
 pub fn navigation(
     written: &CameraDoc,
@@ -21,7 +21,7 @@ pub fn navigation(
     let shown = view.pinhole();
     let eye = position(&camera.eye).unwrap_or(shown.eye);
     let target = camera.look_at.as_ref().and_then(position).unwrap_or_else(|| ahead(shown, scene));
-    // A preset may have changed the field of view of the picture; the hand holds the camera of the document.
+    // A preset may change the field of view of the picture; navigation uses that of the document.
     let projection = match camera.ortho_height_m {
         Some(height) => Projection::Orthographic { height },
         None => Projection::Perspective { fov_y: camera.fov_y_deg.to_radians() },
@@ -31,7 +31,7 @@ pub fn navigation(
     Navigation { pinhole: pinhole.unwrap_or_else(|_| Pinhole { image, ..shown.clone() }), target }
 }
 
-/// The document's camera is that one, whatever rules placed it before; its size in pixels stays.
+/// Writes a camera into the document in place of its rules; the size in pixels is kept.
 pub fn set_camera(document: &mut Document, camera: &Navigation) {
     let of = CameraDoc::of(&camera.pinhole, camera.target);
     let old = &mut document.camera;
@@ -46,7 +46,7 @@ pub fn set_camera(document: &mut Document, camera: &Navigation) {
 /// Least height of an eye over the ground, metres.
 const EYE_M: f64 = 2.0;
 
-/// The camera raised with what it looks at, if its eye would lie under the ground.
+/// The camera raised together with its target if its eye would lie less than 2 m over the ground.
 pub fn above_ground(camera: Navigation, scene: &Scene) -> Navigation {
     let eye = camera.pinhole.eye;
     let ground = scene.terrain().and_then(|terrain| terrain.surface_at(eye.truncate()));
@@ -74,7 +74,7 @@ fn position(doc: &PointDoc) -> Option<DVec3> {
     }
 }
 
-/// Where the optical axis comes nearest to the middle of the scene.
+/// Point of the optical axis nearest to the middle of the scene.
 fn ahead(pinhole: &Pinhole, scene: &Scene) -> DVec3 {
     let bounds = scene.bounds();
     let middle = if bounds.is_empty() { pinhole.eye + pinhole.forward } else { 0.5 * (bounds.min + bounds.max) };

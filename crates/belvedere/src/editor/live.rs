@@ -1,4 +1,4 @@
-//! A session that follows a document: everything is resolved again, nothing that stays is read again.
+//! A session that follows a document: everything is resolved again, but unchanged layers are not read again.
 
 use super::thin::{self, Thin};
 use super::{Place, THREADS};
@@ -17,22 +17,22 @@ use belvedere_scene::{Frame, Progress, RenderJob, RenderOptions, Scene};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A picture that is wanted of a document.
+/// An order for a picture of a document.
 #[derive(Debug, Clone)]
 pub struct Order {
     /// The document.
     pub document: Arc<Document>,
-    /// Where its files are.
+    /// Folders of its files.
     pub place: Place,
     /// Size of the picture on the screen, pixels.
     pub image: [u32; 2],
-    /// How much time there is.
+    /// Time that the picture may take.
     pub pace: Pace,
     /// Which pictures.
     pub sides: Sides,
-    /// Share of its strength at which the bent picture is bent while something moves, 0..=1; at rest it is bent in full.
+    /// Share of the bend while the camera moves, 0..=1; at rest the bend is full.
     pub bend: f64,
-    /// With the picture of the camera from above; at rest only.
+    /// Whether to draw the camera from above as well; at rest only.
     pub overhead: bool,
 }
 
@@ -47,85 +47,85 @@ pub enum Sides {
     Both,
 }
 
-/// How much time a picture may take.
+/// Time that a picture may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Pace {
-    /// As little as possible: something is being moved. What takes long to solve waits.
+    /// As little as possible, during a motion; slow solvers are postponed.
     Moving {
-        /// Worst error of terrain drawn in less detail, pixels.
+        /// Worst error of terrain drawn with level of detail, pixels.
         detail_px: f64,
     },
-    /// As much as it needs: the picture that the command line draws.
+    /// As much as needed: the same picture that the command line draws.
     Resting,
 }
 
-/// A picture and what it was made of.
+/// A picture with its inputs.
 #[derive(Debug, Clone)]
 pub struct Shown {
-    /// The document, as it was ordered.
+    /// The document of the order.
     pub document: Arc<Document>,
     /// Scene, view, light and reports.
     pub session: Session,
-    /// The bent picture, if it was wanted.
+    /// The bent picture, if it was ordered.
     pub bent: Option<Frame>,
-    /// The straight one, likewise.
+    /// The straight picture, if it was ordered.
     pub straight: Option<Frame>,
-    /// The camera from above, if that was wanted, and how that picture was taken.
+    /// The camera from above and the view of that picture, if it was ordered.
     pub overhead: Option<(Frame, View)>,
-    /// How far it moves what it shows; `None` if it is straight, or nobody had the time to look.
+    /// Displacement of the points in the picture; `None` if it is straight or was not measured.
     pub displacement: Option<DisplacementReport>,
-    /// How much time there was.
+    /// Pace of the order.
     pub pace: Pace,
-    /// What was left out because it takes long, for the time being; one sentence.
+    /// What was postponed because it takes long; one sentence.
     pub waits: Option<&'static str>,
-    /// Wall time of everything, milliseconds.
+    /// Wall time of all steps, milliseconds.
     pub milliseconds: f64,
 }
 
-/// What a picture shows of what must be seen.
+/// Visibility of the required features in a picture.
 #[derive(Debug, Clone)]
 pub struct Judged {
     /// The document.
     pub document: Arc<Document>,
-    /// How much time there was for the picture.
+    /// Pace of the picture's order.
     pub pace: Pace,
     /// Visible shares by lines of sight.
     pub measures: Measures,
-    /// What stays hidden, part by part.
+    /// Hidden stretches of the features.
     pub hidden: Vec<HiddenRun>,
-    /// Share of the tracked target that the bent picture at rest shows, by its pixels, 0..=1; `None` while something moves, or if
-    /// nothing is tracked.
+    /// Share of the tracked target that the bent picture at rest shows, by its pixels, 0..=1; `None` during a motion or without a
+    /// tracked target.
     pub target_seen: Option<f64>,
 }
 
-/// Longest that judging may take between any two moving pictures.
+/// Longest judgement that is made after every moving picture.
 const JUDGE_WITHIN: Duration = Duration::from_millis(40);
-/// Longest that it may take between moving pictures at all, and how many times as long nothing is judged after that.
+/// Longest judgement that is made between moving pictures at all, and the pause after it in multiples of its duration.
 const JUDGE_AT_MOST: Duration = Duration::from_millis(250);
 const JUDGE_SHARE: u32 = 6;
-/// Longest that solving may take while something is moved.
+/// Longest solution that is made during a motion.
 const SOLVE_WITHIN: Duration = Duration::from_millis(120);
 
 /// A session that follows a document.
 #[derive(Debug, Default)]
 pub struct LiveSession {
     session: Option<Session>,
-    /// The document that its layers were read by.
+    /// The document by which its layers were read.
     opened: Option<Document>,
-    /// How long constructing took last.
+    /// Duration of the last construction.
     constructing: Duration,
-    /// What constructors remember of the last picture at rest.
+    /// Memory of the constructors after the last picture at rest.
     memory: Memory,
-    /// That of the last picture.
+    /// Session of the last picture.
     shown: Option<Session>,
-    /// How long judging took last, and when that was.
+    /// Duration of the last judgement, and the time of its end.
     judging: Duration,
     judged_at: Option<Instant>,
     ground: Ground,
     thin: Thin,
 }
 
-/// Ground that makes way while something is moved.
+/// Displaced ground during a motion.
 #[derive(Debug, Default)]
 struct Ground {
     #[cfg(not(target_family = "wasm"))]
@@ -134,7 +134,7 @@ struct Ground {
 }
 
 impl LiveSession {
-    /// Follows the document, and draws it.
+    /// Resolves the order's document and draws it.
     ///
     /// # Errors
     /// As [`Session::open`] and [`Session::render`]; the session stays as it was.
@@ -179,15 +179,15 @@ impl LiveSession {
         Ok(Shown { document, session, bent, straight, overhead, displacement, pace: order.pace, waits, milliseconds })
     }
 
-    /// Whether there is time to judge a picture: at rest there is, between moving ones if it is done beside and took little before, or
-    /// was not done for much longer than it takes.
+    /// Whether there is time to judge a picture: always at rest; during a motion only in the background, and if the last judgement was
+    /// short, or long enough ago.
     pub fn has_time_to_judge(&self, pace: Pace) -> bool {
         let waited = || self.judged_at.is_none_or(|at| at.elapsed() >= JUDGE_SHARE * self.judging);
         let in_time = || self.judging <= JUDGE_WITHIN || (self.judging <= JUDGE_AT_MOST && waited());
         pace == Pace::Resting || (THREADS && in_time())
     }
 
-    /// What the view of the last picture shows of what must be seen; `None` if nothing must be.
+    /// Visibility of the required features in the view of the last picture; `None` if there are none.
     ///
     /// # Errors
     /// [`BelvedereError::Construct`], [`BelvedereError::Cancelled`].
@@ -212,7 +212,7 @@ impl LiveSession {
         Ok(Some(Judged { document: order.document.clone(), pace: order.pace, measures, hidden, target_seen }))
     }
 
-    /// Everything is solved.
+    /// Resolves a document with all solvers.
     fn resting(&mut self, document: Document, order: &Order, progress: &Progress) -> Result<Session, BelvedereError> {
         let options = options(order, progress);
         let session = match self.open(&document) {
@@ -229,7 +229,7 @@ impl LiveSession {
         Ok(session)
     }
 
-    /// What takes long is left out or taken from before.
+    /// Resolves a document for a moving picture: slow results are left out or reused.
     fn moving(
         &mut self,
         document: Document,
@@ -239,7 +239,7 @@ impl LiveSession {
         const GROUND: &str = "the ground makes way when the view rests";
         const RAYS: &str = "rays are bent when the view rests";
         let (solves, constructs) = (document.solves_terrain(), document.constructor.is_some());
-        // A preview has a camera of its own: without it the picture would be another one altogether.
+        // A preview has a camera of its own, so its picture is not drawn without it.
         let is_preview = document.constructor.as_ref().is_some_and(|doc| doc.kind == ConstructorKind::PathPreview);
         let in_time = constructs && !solves && (is_preview || self.constructing <= SOLVE_WITHIN);
         let options = OpenOptions { unsolved: !in_time, ..options(order, progress) };
@@ -260,7 +260,7 @@ impl LiveSession {
         Ok((session, (constructs && !in_time).then_some(RAYS)))
     }
 
-    /// The session, if it holds the layers of a document.
+    /// The session, if it has the layers of a document.
     fn open(&mut self, document: &Document) -> Option<Session> {
         let (opened, session) = (self.opened.as_ref()?, self.session.as_ref()?);
         let must_see: Vec<bool> = document.layer.iter().map(LayerDoc::must_see).collect();
@@ -296,7 +296,7 @@ impl LiveSession {
 }
 
 impl Ground {
-    /// The newest ground there is for the view of a session in which nothing has moved it yet; before the first that of the last picture
+    /// The newest solved ground for the view of a session without displaced ground; before the first one that of the last picture
     /// at rest.
     #[cfg(not(target_family = "wasm"))]
     fn under(&mut self, session: &Session) -> Result<Option<Stage>, BelvedereError> {
@@ -312,14 +312,14 @@ impl Ground {
         Ok(live.newest(session.view())?.map(Stage::TerrainDisocclusion).or_else(|| self.last.clone()))
     }
 
-    /// The ground of the last resting picture: there is no thread that could solve beside the drawing.
+    /// The ground of the last picture at rest: there is no thread to solve in the background.
     #[cfg(target_family = "wasm")]
     fn under(&mut self, _: &Session) -> Result<Option<Stage>, BelvedereError> {
         Ok(self.last.clone())
     }
 }
 
-/// The document with reference planes where the last picture at rest had them: the median of the terrain is not looked for in every
+/// The document with the reference planes of the last picture at rest, so that the median of the terrain is not computed for every
 /// picture.
 fn with_known_planes(mut document: Document, session: &Session) -> Document {
     let Some(resolved) = session.resolved().filter(|_| session.scene().terrain().is_some()) else { return document };
@@ -329,7 +329,7 @@ fn with_known_planes(mut document: Document, session: &Session) -> Document {
             (StageDoc::Relief(stage), StageDoc::Relief(known)) => (&mut stage.plane, &known.plane),
             _ => continue,
         };
-        // Over level ground it is the same wherever the camera goes.
+        // A plane over level ground does not depend on the camera.
         let Some(known) = known.as_ref().filter(|known| known.normal == [0.0, 0.0, 1.0]) else { continue };
         let stated = plane.get_or_insert_with(|| known.clone());
         if stated.normal == known.normal {
@@ -339,7 +339,7 @@ fn with_known_planes(mut document: Document, session: &Session) -> Document {
     document
 }
 
-/// The session with moved ground in its chain.
+/// The session with a stage of displaced ground in its chain.
 fn with_ground(session: Session, ground: Stage) -> Result<Session, BelvedereError> {
     let (pinhole, mut stages) = (session.view().pinhole().clone(), session.view().stages().to_vec());
     let at = stages.iter().take_while(|stage| stage.rank() < ground.rank()).count();
@@ -358,14 +358,14 @@ fn options(order: &Order, progress: &Progress) -> OpenOptions {
     }
 }
 
-/// The view on its way between straight and bent; where there is nothing between, it is one or the other.
+/// The view at a share of the transition from straight to bent; straight or bent where there is no transition.
 fn eased(view: &View, share: f64) -> View {
     view.eased(share).unwrap_or_else(|| if share < 0.5 { view.straightened() } else { view.clone() })
 }
 
-/// One sample per pixel, less detail, no marks that need further pictures.
+/// Draws with one sample per pixel, level of detail, and no marks that need further pictures.
 ///
-/// * `scene`: that of the session, its lines as thin as the picture is coarse.
+/// * `scene`: the session's scene with thinner lines for the coarse picture.
 fn quick(
     session: &Session,
     scene: &Scene,
@@ -408,7 +408,7 @@ fn target_seen(session: &Session, progress: &Progress) -> Result<Option<f64>, Be
     fallback::in_sight::of_session(session, (view, &frame), &draw)
 }
 
-/// The camera from above, with its rays, planes and legend.
+/// Draws the camera from above, with its rays, planes and legend.
 fn overhead(session: &Session, progress: &Progress) -> Result<(Frame, View), BelvedereError> {
     let quality = RenderOptions { samples: 1, ..RenderOptions::default() };
     let request = PictureOptions { quality, ..PictureOptions::default() };
@@ -449,7 +449,7 @@ mod tests {
             assert!(eye(&shown).distance(last) > 10.0, "the camera stands still");
             last = eye(&shown);
         }
-        // At rest the picture is that of a session that remembers nothing.
+        // A picture at rest equals that of a session without memory.
         let settled = live.show(&order(&text(4900.0), Pace::Resting), &progress).expect("picture");
         let alone = LiveSession::default().show(&order(&text(4900.0), Pace::Resting), &progress).expect("picture");
         let color = |shown: &Shown| shown.bent.as_ref().map(|frame| frame.color.clone());

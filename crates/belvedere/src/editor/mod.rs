@@ -1,6 +1,6 @@
-//! Scenes in the hands of a user: one document with its past and future, a session that follows it, and a painter beside the window.
+//! Editing of scenes: a document with its undo history, a session that follows it, and a painter in the background.
 //!
-//! The document is everything: whatever a user does is an edit of it, and what is saved renders to the same picture elsewhere.
+//! The document holds all state: every action of the user is an edit of it, and the saved document renders to the same picture elsewhere.
 
 mod beside;
 mod camera;
@@ -23,53 +23,53 @@ use crate::scene_file::{Document, LayerDoc};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A document that is edited, and what it was before.
+/// An edited document with its undo history.
 #[derive(Debug, Clone)]
 pub struct Editor {
-    /// Where it and its files lie.
+    /// Path of its file, and folders of its files.
     pub place: Place,
     present: Arc<Document>,
     past: Vec<Arc<Document>>,
     future: Vec<Arc<Document>>,
-    /// What the file holds; `None` if that is not known.
+    /// Document in the file; `None` if that is not known.
     saved: Option<Arc<Document>>,
     /// The gesture that the last edit belongs to.
     gesture: Option<u64>,
 }
 
 impl Editor {
-    /// Documents that are remembered.
+    /// Largest number of undo steps.
     pub const DEPTH: usize = 512;
 
-    /// A document without a past.
+    /// A document without history.
     pub fn new(document: Document, place: Place) -> Self {
         let present = Arc::new(document);
         let saved = Some(present.clone());
         Self { place, saved, present, past: Vec::new(), future: Vec::new(), gesture: None }
     }
 
-    /// A document that was changed since it was saved, if it ever was.
+    /// A document with changes that are not saved.
     pub(crate) fn unsaved(document: Document, place: Place) -> Self {
         Self { saved: None, ..Self::new(document, place) }
     }
 
-    /// Adds layers whose files lie in those folders; one step of undo.
+    /// Adds layers whose files lie in the given folders; one step of undo.
     pub fn add_layers(&mut self, layers: Vec<LayerDoc>, folders: Vec<PathBuf>) {
         self.place.roots.allowed.extend(folders);
         self.edit(|document| document.layer.extend(layers));
     }
 
-    /// The document as it is.
+    /// The current document.
     pub fn document(&self) -> &Arc<Document> {
         &self.present
     }
 
-    /// Whether everything is in the file of the scene.
+    /// Whether the scene file holds all changes.
     pub fn is_saved(&self) -> bool {
         self.place.scene.is_some() && !self.is_changed()
     }
 
-    /// Whether anything was changed since it was opened or saved.
+    /// Whether the document has changed since it was opened or saved.
     pub fn is_changed(&self) -> bool {
         self.saved.as_deref() != Some(&*self.present)
     }
@@ -80,7 +80,7 @@ impl Editor {
         self.step(change);
     }
 
-    /// Edits it in the course of a gesture, such as a drag: all edits of one gesture are one step of undo.
+    /// Edits the document within a gesture, such as a drag: all edits of one gesture are one step of undo.
     pub fn edit_within(&mut self, gesture: u64, change: impl FnOnce(&mut Document)) {
         if self.gesture == Some(gesture) && !self.past.is_empty() {
             let mut next = (*self.present).clone();
@@ -106,17 +106,17 @@ impl Editor {
         self.future.clear();
     }
 
-    /// Whether there is something to take back.
+    /// Whether there is a step to undo.
     pub fn can_undo(&self) -> bool {
         !self.past.is_empty()
     }
 
-    /// Whether there is something to do again.
+    /// Whether there is a step to redo.
     pub fn can_redo(&self) -> bool {
         !self.future.is_empty()
     }
 
-    /// Takes the last step back; `false` if there is none.
+    /// Undoes the last step; `false` if there is none.
     pub fn undo(&mut self) -> bool {
         let Some(before) = self.past.pop() else { return false };
         self.future.push(std::mem::replace(&mut self.present, before));
@@ -124,7 +124,7 @@ impl Editor {
         true
     }
 
-    /// Does again what was taken back last; `false` if there is nothing.
+    /// Redoes the last undone step; `false` if there is none.
     pub fn redo(&mut self) -> bool {
         let Some(after) = self.future.pop() else { return false };
         self.past.push(std::mem::replace(&mut self.present, after));
@@ -132,7 +132,7 @@ impl Editor {
         true
     }
 
-    /// What is there now is what the file holds.
+    /// Marks the current document as saved.
     pub(crate) fn mark_saved(&mut self) {
         self.saved = Some(self.present.clone());
     }

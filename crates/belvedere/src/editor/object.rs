@@ -1,4 +1,4 @@
-//! What somebody means who points at something.
+//! Objects under the pointer.
 
 use crate::Session;
 use crate::pick::pick;
@@ -6,9 +6,9 @@ use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{BoxShape, LayerKind, Progress};
 
 /// The object at a pixel of the picture, as a constructor's target: a part of a mesh by its name, a box as `LAYER/NUMBER`, else the whole
-/// layer; `None` where nothing is.
+/// layer; `None` if the pixel shows no object.
 ///
-/// * `layer`: id of the layer that the picture shows there. `point`: true place of what is seen, scene coordinates.
+/// * `layer`: id of the layer that the picture shows there. `point`: world point that is seen, scene coordinates.
 pub fn object_at(session: &Session, layer: &str, pixel: DVec2, point: Option<DVec3>) -> Option<String> {
     let found = session.scene().layers.iter().find(|other| other.id == layer)?;
     let part = match &found.kind {
@@ -26,7 +26,7 @@ pub fn object_at(session: &Session, layer: &str, pixel: DVec2, point: Option<DVe
     Some(part.unwrap_or_else(|| layer.to_owned()))
 }
 
-/// How far a point lies from the surface of a box or outside it.
+/// Distance of a point from the surface of a box, inside or outside, scene units.
 fn distance(shape: &BoxShape, point: DVec3) -> f64 {
     let (sin, cos) = shape.yaw.sin_cos();
     let d = point - shape.base;

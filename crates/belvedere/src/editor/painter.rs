@@ -1,4 +1,4 @@
-//! Pictures made beside the window: the newest wish counts, and a picture at rest gives way to a new one.
+//! Draws pictures in the background: the newest order counts, and a picture at rest is cancelled by a new order.
 
 use super::beside::{THREADS, beside};
 use super::live::{Judged, LiveSession, Order, Pace, Shown};
@@ -7,33 +7,33 @@ use std::sync::atomic::Ordering;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
-/// What a painter has to say.
+/// An answer of a painter.
 #[derive(Debug)]
 pub enum Answer {
     /// A picture.
     Shown(Box<Shown>),
-    /// What the last picture shows of what must be seen.
+    /// Visibility of the required features in the last picture.
     Judged(Box<Judged>),
-    /// Why there is none, one sentence; what was shown before stays.
+    /// Why there is no picture, one sentence; the last picture stays.
     Failed(String),
 }
 
-/// Called from where the painter works when there is an answer, or something to ask for.
+/// Called from the painter's thread when there is an answer, or when `Painter::answer` should be called.
 type Wake = Box<dyn Fn() + Send + Sync>;
 
-/// Draws the newest order: beside the window, or where there are no threads, when [`Painter::answer`] is asked.
+/// Draws the newest order in the background, or, where there are no threads, within [`Painter::answer`].
 pub struct Painter {
     desk: Arc<Desk>,
     outbox: Sender<Answer>,
     answers: Receiver<Answer>,
-    /// Without threads: whether the last picture is still to be shown, before anything else is done.
+    /// Without threads: the last picture has not been shown yet, and nothing else is done before.
     waits: bool,
 }
 
-/// Where orders are laid down, and whoever works at them.
+/// Orders, shared by the painter and its thread.
 struct Desk {
     state: Mutex<State>,
-    /// Held by the one who works.
+    /// Locked by the working thread.
     session: Mutex<LiveSession>,
     wake: Wake,
 }
@@ -41,25 +41,25 @@ struct Desk {
 #[derive(Debug, Default)]
 struct State {
     order: Option<Order>,
-    /// The picture that was drawn last and is not judged yet.
+    /// Order of the last picture, if it is to be judged.
     to_judge: Option<Order>,
-    /// Cancels the work in hand, if that may give way.
+    /// Cancels the current task, if a new order may cancel it.
     yielding: Option<Progress>,
-    /// Whether somebody works.
+    /// Whether a thread is working.
     at_work: bool,
 }
 
 impl Painter {
     /// A painter without an order.
     ///
-    /// * `wake`: called when it is worth asking for an answer, from any thread.
+    /// * `wake`: called from any thread when there may be an answer.
     pub fn new(wake: impl Fn() + Send + Sync + 'static) -> Self {
         let (outbox, answers) = mpsc::channel();
         let desk = Desk { state: Mutex::default(), session: Mutex::default(), wake: Box::new(wake) };
         Self { desk: Arc::new(desk), outbox, answers, waits: false }
     }
 
-    /// The next picture; one that was ordered before and is not begun is forgotten, one at rest that is begun is broken off.
+    /// Orders the next picture; an earlier order that has not begun is dropped, a picture at rest that has begun is cancelled.
     pub fn order(&mut self, order: Order) {
         let mut state = self.desk.state();
         state.give_way();
@@ -77,12 +77,12 @@ impl Painter {
         }
     }
 
-    /// The next answer, if there is one.
+    /// The next answer, if it has arrived.
     pub fn answer(&mut self) -> Option<Answer> {
         if THREADS { self.answers.try_recv().ok() } else { self.answer_in_turn() }
     }
 
-    /// Draws what was ordered, if anything was; what a picture shows is judged when it is on the screen.
+    /// Draws the order, if there is one; the picture is judged after it has been shown.
     fn answer_in_turn(&mut self) -> Option<Answer> {
         if std::mem::take(&mut self.waits) {
             if self.desk.state().to_judge.is_some() {
@@ -95,7 +95,7 @@ impl Painter {
         self.desk.perform(task, &progress)
     }
 
-    /// The next answer within a time: for tests and scripts.
+    /// The next answer within a time limit, for tests and scripts.
     #[cfg(not(target_family = "wasm"))]
     pub fn answer_within(&mut self, time: std::time::Duration) -> Option<Answer> {
         self.answers.recv_timeout(time).ok()
@@ -126,11 +126,11 @@ enum Task {
 }
 
 impl Desk {
-    /// Does everything that there is to do.
+    /// Performs tasks until there are none.
     fn work(&self, outbox: &Sender<Answer>) {
         while let Some((task, progress)) = self.next() {
             if let Some(answer) = self.perform(task, &progress) {
-                // Whoever does not listen any more has withdrawn the orders, too.
+                // A receiver that was dropped has withdrawn its orders, too.
                 let _ = outbox.send(answer);
                 (self.wake)();
             }
@@ -149,7 +149,7 @@ impl Desk {
     }
 
     fn perform(&self, task: Task, progress: &Progress) -> Option<Answer> {
-        // A picture that panicked is made anew.
+        // After a panic the session is used again for the next picture.
         let mut session = self.session.lock().unwrap_or_else(PoisonError::into_inner);
         match task {
             Task::Show(order) => {
@@ -164,7 +164,7 @@ impl Desk {
         }
     }
 
-    /// Never held for long. The page of a browser may not sleep, only try again.
+    /// Locks the state, which is held for short times only. The main thread of a browser may not block, so it spins.
     fn state(&self) -> MutexGuard<'_, State> {
         loop {
             match self.state.try_lock() {
@@ -176,7 +176,7 @@ impl Desk {
     }
 }
 
-/// A picture or the reason why there is none; nothing if it was broken off. A panic is a reason, too: the window lives on.
+/// A picture, or the reason why there is none; `None` if it was cancelled. A panic is a reason too, so that the window lives on.
 fn guarded(show: impl FnOnce() -> Result<Shown, crate::BelvedereError>) -> Option<Answer> {
     match std::panic::catch_unwind(std::panic::AssertUnwindSafe(show)) {
         Ok(Ok(shown)) => Some(Answer::Shown(Box::new(shown))),
@@ -186,7 +186,7 @@ fn guarded(show: impl FnOnce() -> Result<Shown, crate::BelvedereError>) -> Optio
     }
 }
 
-/// What cannot be judged is not: the picture stands for itself.
+/// Judges the last picture; an error gives no answer, since the picture stands for itself.
 fn judge(session: &mut LiveSession, order: &Order, progress: &Progress) -> Option<Answer> {
     session.judge(order, progress).ok().flatten().map(|judged| Answer::Judged(Box::new(judged)))
 }

@@ -1,4 +1,4 @@
-//! Where a document and its files lie: opening, saving, and what is left after a crash.
+//! Files of a document: opening, saving, and recovery after a crash.
 
 use super::Editor;
 use crate::scene_file::paths::Roots;
@@ -10,18 +10,18 @@ use serde::{Deserialize, Serialize};
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
 
-/// Where a document and its files lie.
+/// Paths of a document and its files.
 #[derive(Debug, Clone, Default)]
 pub struct Place {
     /// The scene file; `None` if it was never saved.
     pub scene: Option<PathBuf>,
-    /// Where the files that it names may lie.
+    /// Folders that its files may lie in.
     pub roots: Roots,
 }
 
 impl Place {
-    /// The session of a document that lies here, as the command line opens it: if it is what the file of the scene says, that file is
-    /// among what pictures were made of.
+    /// The session of a document in this place, as the command line opens it. If the scene file holds the same document, it is among the
+    /// inputs.
     ///
     /// # Errors
     /// As [`Session::from_document`].
@@ -48,7 +48,7 @@ impl Editor {
         Ok(Self::new(source.document, place))
     }
 
-    /// Writes the scene file. Names of its files are made to hold there: below the folder of the scene relative, else absolute.
+    /// Writes the scene file. Names of its files are adapted: relative below the folder of the scene, else absolute.
     ///
     /// # Errors
     /// [`BelvedereError::Output`] if `path` is one of the scene's own files; [`BelvedereError::Io`].
@@ -78,7 +78,7 @@ impl Editor {
         Ok(())
     }
 
-    /// Folders outside that of the scene file from which its files come: what a command line needs to be allowed.
+    /// Folders outside that of the scene file that hold its files: a command line must allow them.
     pub fn outside(&self) -> Vec<PathBuf> {
         let home = fs::canonicalize(&self.place.roots.scene_dir).unwrap_or_default();
         let mut out = Vec::new();
@@ -92,27 +92,27 @@ impl Editor {
     }
 }
 
-/// The folder of a file as an absolute path, if there is one.
+/// The folder of a file, as an absolute path if possible.
 fn folder_of(path: &Path) -> PathBuf {
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
 }
 
-/// What an application was doing, written while it runs and taken away when it ends.
+/// Recovery file of an instance of an application: written while it runs and removed when it ends.
 #[derive(Debug)]
 pub struct Recovery {
     file: PathBuf,
-    /// Held as long as the application lives; the system lets go of it when that is killed.
+    /// Lock on the instance's number; the system releases it when the application is killed.
     _lock: File,
     lock: PathBuf,
 }
 
-/// What was left by an application that did not end.
+/// State left by an instance that did not end properly.
 #[derive(Debug, Clone)]
 pub struct Recovered {
     /// The document with its unsaved changes.
     pub editor: Editor,
-    /// Whatever else the application wrote.
+    /// Further state that the application wrote.
     pub extra: serde_json::Value,
 }
 
@@ -128,10 +128,10 @@ struct Left {
 }
 
 impl Recovery {
-    /// Instances that may run at once.
+    /// Largest number of instances that run at once.
     const MOST: usize = 64;
 
-    /// Claims a place in `folder` (made if it is not there), and gives back what an instance that did not end left in it.
+    /// Claims a recovery file in `folder` (made if it does not exist), and returns the state that an ended instance left in it.
     ///
     /// # Errors
     /// [`BelvedereError::Io`] if nothing can be written there.
@@ -159,7 +159,7 @@ impl Recovery {
         })
     }
 
-    /// Writes what the application is doing; whole, or not at all.
+    /// Writes the state of the application atomically.
     ///
     /// # Errors
     /// [`BelvedereError::Io`].
@@ -176,7 +176,7 @@ impl Recovery {
         output::write_text(&self.file, &output::pretty(&left)?, true)
     }
 
-    /// The application ends as it should: nothing is left.
+    /// Removes the recovery file at the proper end of the application.
     pub fn end(self) {
         let _ = std::fs::remove_file(&self.file);
         let _ = std::fs::remove_file(&self.lock);
@@ -195,7 +195,7 @@ fn recovered(text: &str) -> Option<Recovered> {
             editor.edit(|document| *document = parsed);
             editor
         }
-        // It was never saved, or its file is gone: it lives here alone.
+        // The document was never saved, or its file is gone: this is the only copy.
         (true, None) => Editor::unsaved(parsed, place),
         (false, saved) => Editor::new(saved.unwrap_or(parsed), place),
     };
@@ -226,7 +226,7 @@ mod tests {
         let (other, left) = Recovery::claim(&state).expect("a second instance");
         assert!(left.is_none(), "what a living instance does is its own");
         other.end();
-        drop(recovery); // As the system does for a killed process.
+        drop(recovery); // Dropped as the system does for a killed process.
         let (recovery, left) = Recovery::claim(&state).expect("place");
         let left = left.expect("left behind");
         assert!(left.editor.document().title == "changed" && left.editor.is_changed() && left.extra["tool"] == 3);

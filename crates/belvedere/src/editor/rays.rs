@@ -1,14 +1,14 @@
-//! Turns to begin with, and what of them can be taken in the hand.
+//! Turns to begin with, and their handles.
 
 use crate::scene_file::{AxisDoc, RaysStageDoc, TurnDoc};
 use belvedere_core::map::curved_rays::Sharpness;
 use belvedere_core::{DQuat, DVec3, Navigation};
 
-/// How far the rays of a new turn are led aside, radians.
+/// Angle by which the rays of a new turn are led aside, radians.
 const ASIDE: f64 = 0.35;
 
-/// A further turn of curved rays, to the left, for a user to go on from: the first one about the point that the camera looks at, the
-/// others behind the last one.
+/// A further turn of curved rays to the left, as a start for editing: the first one about the point that the camera looks at, others
+/// behind the last one.
 pub fn next_turn(camera: &Navigation, stage: Option<&RaysStageDoc>) -> TurnDoc {
     let eye = camera.pinhole.eye;
     let (from, bend, half) = match stage.and_then(|stage| stage.turn.last()) {
@@ -21,7 +21,7 @@ pub fn next_turn(camera: &Navigation, stage: Option<&RaysStageDoc>) -> TurnDoc {
         }
     };
     let ahead = (bend - from).normalize_or_zero();
-    // The planes stand upright where the rays are level enough for that.
+    // The planes are vertical where the rays are level enough.
     let level = ahead.truncate().extend(0.0);
     let normal = if level.length() > 0.3 { level.normalize() } else { ahead };
     let viewpoint = bend - DQuat::from_rotation_z(ASIDE) * (bend - from);
@@ -36,20 +36,20 @@ pub fn next_turn(camera: &Navigation, stage: Option<&RaysStageDoc>) -> TurnDoc {
     }
 }
 
-/// The least and the largest sharpness of a turn.
+/// Least and largest sharpness of a turn.
 const SHARPNESS: [f64; 2] = [0.2, 20.0];
-/// Where the handle of the least sharpness stands beside the bend point, and how much farther that of the largest: distances between the
-/// first and the last plane.
+/// Distance of the handle of the least sharpness from the bend point, and the additional distance of that of the largest, in distances between
+/// the first and the last plane.
 const KNOB: [f64; 2] = [0.5, 1.5];
 
-/// The turn with planes that share an upright line instead of being parallel, beside the picture on the side to which the viewpoint goes.
+/// The turn with planes that share a vertical line instead of being parallel, beside the picture on the side of the viewpoint.
 ///
 /// * `before`: the viewpoint before the turn, scene coordinates.
 pub fn with_pivot_line(turn: &TurnDoc, before: DVec3) -> TurnDoc {
     let [bend, viewpoint] = [turn.t1, turn.viewpoint].map(DVec3::from_array);
     let (normal, side) = axes(turn);
     let side = if side.dot(viewpoint - before) < 0.0 { -side } else { side };
-    // Farther aside than pictures are wide, and so far that the planes lie nearly parallel.
+    // Farther aside than pictures are wide, and far enough that the planes are nearly parallel.
     let away = (8.0 * thickness(turn)).max(3.0 * bend.distance(before));
     let line =
         AxisDoc { point: (bend + away * side).to_array(), dir: side.cross(normal).normalize_or(DVec3::Z).to_array() };
@@ -61,7 +61,7 @@ pub fn with_parallel_planes(turn: &TurnDoc) -> TurnDoc {
     TurnDoc { line: None, normal: Some(axes(turn).0.to_array()), ..turn.clone() }
 }
 
-/// Where the sharpness of a turn is taken in the hand: within its middle plane, beside the bend point, the farther the sharper.
+/// Position of the handle of a turn's sharpness: in its middle plane, beside the bend point, farther for a sharper turn.
 ///
 /// * `sharpness`: 0.2 to 20.
 pub fn sharpness_knob(turn: &TurnDoc, sharpness: f64) -> DVec3 {
@@ -82,7 +82,7 @@ fn thickness(turn: &TurnDoc) -> f64 {
     DVec3::from_array(turn.t0).distance(DVec3::from_array(turn.t2)).max(1e-6)
 }
 
-/// Direction through the planes, and the level direction (if there is one) within them.
+/// Normal of the planes, and a level direction within them, if there is one.
 fn axes(turn: &TurnDoc) -> (DVec3, DVec3) {
     let [t0, t2] = [turn.t0, turn.t2].map(DVec3::from_array);
     let through = turn.normal.map_or(t2 - t0, DVec3::from_array).normalize_or(DVec3::X);

@@ -1,4 +1,4 @@
-//! Lines and letters of coarse pictures: on the screen they are as wide as those of the picture at rest.
+//! Widths of lines and letters in coarse pictures, so that they look as wide on the screen as those of the picture at rest.
 
 use belvedere_scene::{LayerKind, OverlayLine, Scene};
 use std::sync::Arc;
@@ -15,9 +15,9 @@ pub(super) struct Thin {
 }
 
 impl Thin {
-    /// The scene with widths for a picture that has a share of the pixels' width.
+    /// The scene with line widths for a coarse picture.
     ///
-    /// * `scale`: that share, 0..=1.
+    /// * `scale`: width of the coarse picture as a share of the full width, 0..=1.
     pub(super) fn scene(&mut self, scene: Arc<Scene>, scale: f64) -> Arc<Scene> {
         let has_marks =
             |kind: &LayerKind| matches!(kind, LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_));
@@ -55,7 +55,7 @@ fn thinned(scene: &Scene, scale: f64) -> Scene {
     scene
 }
 
-/// A line of the grid, likewise.
+/// A line of the grid with the same scaling.
 pub(super) fn line(line: OverlayLine, scale: f64) -> OverlayLine {
     let label = if GRID_PX * scale >= LEGIBLE_PX { line.label } else { String::new() };
     OverlayLine { width_px: line.width_px * scale.min(1.0), label, ..line }

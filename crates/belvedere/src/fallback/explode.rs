@@ -1,4 +1,4 @@
-//! Parts moved aside, each just as far as its image needs to leave that of the target.
+//! Explosion: parts are moved aside until their images are clear of the target's.
 
 use super::occluders::{Extent, Part, is_one_of};
 use belvedere_core::{DVec3, View};
@@ -6,12 +6,12 @@ use belvedere_scene::{LayerKind, Scene, Unit};
 
 /// Directions across the view that are tried.
 const DIRECTIONS: usize = 16;
-/// Halvings of the distance.
+/// Number of halvings of the distance.
 const HALVINGS: usize = 30;
 
-/// The shortest way, scene units, on which a part leaves the image of the target: of 16 directions across the view, none of them
-/// into the ground. `None` if there is none.
-/// * `target`: around the image of the target; the part keeps `margin_px` away from it.
+/// The shortest displacement, scene units, that moves the image of a part clear of the target's: the best of 16 directions across the
+/// view, none of them into the ground. `None` if no direction does.
+/// * `target`: extent of the target's image; the part keeps `margin_px` away from it.
 pub(super) fn way(view: &View, unit: Unit, part: &Part, target: &Extent, margin_px: f64) -> Option<DVec3> {
     let pinhole = view.pinhole();
     let is_clear = |by: DVec3| {
@@ -23,7 +23,7 @@ pub(super) fn way(view: &View, unit: Unit, part: &Part, target: &Extent, margin_
         let (sin, cos) = (std::f64::consts::TAU * k as f64 / DIRECTIONS as f64).sin_cos();
         let mut direction = cos * pinhole.right + sin * pinhole.down;
         if unit == Unit::Metre && direction.z < 0.0 {
-            // Along the ground; straight down is no way.
+            // Downward directions are projected onto the ground; straight down is left out.
             direction.z = 0.0;
         }
         let direction = direction.try_normalize()?;
@@ -44,7 +44,7 @@ pub(super) fn way(view: &View, unit: Unit, part: &Part, target: &Extent, margin_
     ways.min_by(|a, b| a.length().total_cmp(&b.length()))
 }
 
-/// The scene with parts moved. Their shape stays.
+/// The scene with parts moved, their shape unchanged.
 pub(super) fn moved(scene: &Scene, moves: &[(&Part, DVec3)]) -> Scene {
     let mut out = scene.clone();
     for (i, layer) in out.layers.iter_mut().enumerate() {

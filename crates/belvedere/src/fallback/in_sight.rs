@@ -1,4 +1,4 @@
-//! How much of a target a picture shows, pixel by pixel.
+//! Visible share of a target in a picture, pixel by pixel.
 
 use super::{SAME_DEPTH, occluders};
 use crate::resolve::constructor;
@@ -14,8 +14,8 @@ pub(super) fn is_target(target: &Target, id: u32) -> bool {
     target.own_layers.iter().any(|&layer| is(layer)) || target.own_parts.as_ref().is_some_and(|p| is(p.0))
 }
 
-/// Pixels of a target in the picture of it alone, and the share of them that a picture shows, 0..=1: by ids, and by depths where other
-/// things of its layer may hide it.
+/// Number of pixels of a target in a picture of it alone, and the share of them that a picture shows, 0..=1: by ids, and by depths where
+/// other parts of its layer may hide it.
 pub(super) fn share(target: &Target, frame: &Frame, alone: &Frame) -> (usize, f64) {
     let own = (0..alone.id.len()).filter(|&i| is_target(target, alone.id[i]));
     let is_seen = |i: usize| {
@@ -27,10 +27,10 @@ pub(super) fn share(target: &Target, frame: &Frame, alone: &Frame) -> (usize, f6
     (all, seen as f64 / all.max(1) as f64)
 }
 
-/// Share of the target that a session keeps in sight that a picture of it shows, 0..=1; `None` if it tracks none, or one without
-/// pixels of its own, such as a point.
+/// Visible share, 0..=1, of the session's tracked target in a picture; `None` if it tracks none, or one without pixels of its own, such
+/// as a point.
 ///
-/// * `frame`: the picture through `view`.
+/// * `frame`: the picture drawn through `view`.
 ///
 /// # Errors
 /// Those of `draw`, [`BelvedereError::Target`].

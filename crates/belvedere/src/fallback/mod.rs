@@ -1,8 +1,8 @@
-//! What shows a target where no bend does: what hides it is drawn transparent, cut away, or moved apart.
+//! Fallbacks for targets that no bend shows: occluders are drawn transparent, cut away, or moved apart.
 //!
-//! Ours, beside the papers: the three usual ways in their simplest exact form. All of it is made of whole pictures and changed
+//! Ours, beside the papers: the three usual techniques in their simplest exact form. All are composed of whole pictures of changed
 //! scenes, so every renderer draws the same: a transparent group is the picture blended with the one without it; a cone through the
-//! eye has no walls that could be seen, so a cutaway is the picture without what hides the target, within the cone.
+//! eye has no visible walls, so a cutaway is the picture without the occluders, within the cone.
 
 mod explode;
 pub(crate) mod in_sight;
@@ -24,51 +24,51 @@ use occluders::{Extent, Part};
 use serde::Serialize;
 use std::fmt;
 
-/// Opacity of what is drawn transparent.
+/// Opacity of transparent parts.
 const OPACITY: f32 = 0.3;
-/// Space around the target that is cut open, or kept free of what is moved, pixels of a picture 720 high.
+/// Margin around the target that is cut open, or kept free of moved parts, pixels of a picture 720 high.
 const MARGIN_PX: f64 = 10.0;
-/// A target of which so much is seen needs no fallback.
+/// Visible share from which on a target needs no fallback.
 const ENOUGH: f64 = 0.99;
-/// Depths of the same thing in two pictures differ by less than this share of them.
+/// Relative difference below which depths in two pictures count as the same.
 const SAME_DEPTH: f64 = 2e-4;
 const EDGE: [Color; 2] = [Color::rgb(255, 255, 255), Color::rgb(60, 60, 60)];
 
-/// What was changed.
+/// Report of a fallback.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FallbackRecord {
-    /// What is shown.
+    /// Name of the target.
     pub target: String,
-    /// Share of it that was seen before, 0..=1: of the pixels that it fills where it is drawn alone, those that show it. Of points
+    /// Visible share before, 0..=1: of the pixels that the target fills where it is drawn alone, those that show it. For points
     /// and lines the share with a free line of sight.
     pub visible_before: f64,
-    /// The same in the picture that was drawn.
+    /// Visible share in the drawn picture, 0..=1.
     pub visible: f64,
-    /// Pixels that it fills where it is drawn alone; left out for points and lines.
+    /// Pixels that the target fills where it is drawn alone; left out for points and lines.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pixels_alone: Option<usize>,
-    /// Layer by layer what was done.
+    /// Changes by layer.
     pub changed: Vec<FallbackChange>,
 }
 
-/// What was done to a layer.
+/// Change of one layer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FallbackChange {
-    /// Its id.
+    /// Id of the layer.
     pub layer: String,
-    /// How it gives the view free.
+    /// Kind of the change.
     pub kind: FallbackKind,
-    /// How many of its parts that concerns: boxes, named parts of a mesh, or 1 for the whole.
+    /// Number of changed parts: boxes, named parts of a mesh, or 1 for the whole layer.
     pub parts: usize,
-    /// Parts that hide the target but stay as they are: none of their ways leads out of its image.
+    /// Parts that hide the target but stay unchanged, since no direction leads out of its image.
     pub stuck: usize,
-    /// Opacity of what is drawn transparent.
+    /// Opacity of transparent parts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub opacity: Option<f32>,
     /// Margin around the target, pixels.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub margin_px: Option<f64>,
-    /// Longest way of a part, scene units.
+    /// Largest displacement of a part, scene units.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub moved_by: Option<f64>,
 }
@@ -93,20 +93,20 @@ impl fmt::Display for FallbackRecord {
     }
 }
 
-/// A picture's scene with everything that gives way for its target.
+/// A scene prepared to show a target by fallbacks.
 pub struct FallbackPlan {
-    /// With parts moved.
+    /// The scene with parts moved.
     scene: Scene,
     target: Target,
     transparent: Vec<Part>,
     cut: Vec<Part>,
     moves: Vec<(Part, DVec3)>,
     margin_px: f64,
-    /// What was changed.
+    /// Report of the changes.
     pub record: FallbackRecord,
 }
 
-/// The plan that a session's document asks for in `view`; `None` if it asks for none, or the view shows the target anyway.
+/// The plan that a session's document asks for in `view`; `None` if it asks for none, or if the view shows the target anyway.
 pub(crate) fn of_session(session: &Session, view: &View) -> Result<Option<FallbackPlan>, BelvedereError> {
     let Some(source) = session.resolved.description.as_ref().map(|d| &d.source) else { return Ok(None) };
     let Some(doc) = source.document.constructor.as_ref().filter(|doc| !doc.fallback.is_empty()) else {
@@ -122,8 +122,8 @@ pub(crate) fn of_session(session: &Session, view: &View) -> Result<Option<Fallba
     Ok(Some(plan).filter(|p| always || p.record.visible_before < ENOUGH))
 }
 
-/// What has to give way in `view` so that a target is seen.
-/// * `target`: its name for the record, and itself.
+/// Plans the fallbacks in `view` that show a target.
+/// * `target`: its name for the report, and the target.
 ///
 /// # Errors
 /// [`BelvedereError::Target`] for a rule of a layer that does not exist or cannot do it, and for rigid layers behind a bend.
@@ -193,7 +193,7 @@ pub fn plan(
     Ok(FallbackPlan { scene, target: target.clone(), transparent, cut, moves, margin_px, record })
 }
 
-/// Whether a layer can give way so, and if not, why and what to do.
+/// Whether a layer supports a fallback; if not, why, and what to do.
 fn possible(kind: &LayerKind, how: FallbackKind) -> Result<(), &'static str> {
     match (kind, how) {
         (LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_), _) => {
@@ -210,13 +210,13 @@ fn possible(kind: &LayerKind, how: FallbackKind) -> Result<(), &'static str> {
 }
 
 impl FallbackPlan {
-    /// The scene with parts moved; everything else is as it was.
+    /// The scene with parts moved.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
     /// Draws the picture.
-    /// * `draw`: draws a scene in a view, always with the same quality and light.
+    /// * `draw`: draws a scene in a view with fixed quality and light.
     ///
     /// # Errors
     /// Those of `draw`; [`BelvedereError::View`] if the camera cannot look into a volume.
@@ -238,7 +238,7 @@ impl FallbackPlan {
             }
             let (scale, width) = ((frame.height as f64 / 720.0).max(0.4), frame.width);
             let mut canvas = Canvas::new(&mut frame.color, width);
-            // The edge runs round what is shown, not over it.
+            // The edge is drawn around the target, not over it.
             let own = |i: usize| self.target.own_layers.iter().any(|layer| frame.id[i] as usize == layer + 1);
             for i in border(&gone, width).into_iter().filter(|i| !own(*i)) {
                 let at = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
@@ -251,7 +251,7 @@ impl FallbackPlan {
         Ok(frame)
     }
 
-    /// Lines from where parts were to where they are now, behind the target.
+    /// Draws lines from the old to the new positions of parts, behind the target.
     fn draw_leaders(
         &self,
         frame: &mut Frame,
@@ -277,8 +277,8 @@ impl FallbackPlan {
         Ok(())
     }
 
-    /// What the picture shows of the target, by ids, and by depths where other things of its layer may hide it.
-    /// * `before`: the scene as it was; `frame`: the picture that [`FallbackPlan::draw`] made.
+    /// Measures the visibility of the target, by ids, and by depths where other parts of its layer may hide it.
+    /// * `before`: the unchanged scene; `frame`: the picture drawn by [`FallbackPlan::draw`].
     ///
     /// # Errors
     /// Those of `draw`.
@@ -301,7 +301,7 @@ impl FallbackPlan {
         in_sight::is_target(&self.target, id)
     }
 
-    /// Pixel by pixel whether a cutaway cuts there: around what atoms fill in the picture, else around the target's box or points.
+    /// Mask of the cutaway: around the image of the target's atoms, else around its box or points.
     fn region(
         &self,
         view: &View,
@@ -314,7 +314,7 @@ impl FallbackPlan {
         Ok(region::around(&image, self.margin_px, size))
     }
 
-    /// The scene without the parts of `gone`, the transparent ones blended over the rest.
+    /// Draws the scene without the parts of `gone`, with transparent parts blended over the rest.
     fn blended(
         &self,
         gone: &[&Part],
@@ -339,7 +339,7 @@ impl FallbackPlan {
         Ok(frame)
     }
 
-    /// Volumes are cut at the nearest depth of the target, and what lies behind the cut is seen.
+    /// Cuts volumes at the nearest depth of the target and shows their inside behind the cut.
     fn look_into_volumes(
         &self,
         open: &mut Frame,
@@ -365,7 +365,7 @@ impl FallbackPlan {
     }
 }
 
-/// Takes over what is seen at a pixel, but for its colour.
+/// Copies depth, id and world point of a pixel, but not its colour.
 fn copy(frame: &mut Frame, from: &Frame, i: usize) {
     (frame.depth[i], frame.id[i]) = (from.depth[i], from.id[i]);
     if let (Some(to), Some(from)) = (&mut frame.world, &from.world) {

@@ -1,11 +1,11 @@
-//! What hides a target, part by part: boxes one by one, named parts of meshes, everything else as a whole.
+//! Occluders of a target, part by part: single boxes, named parts of meshes, other layers as a whole.
 
 use belvedere_construct::rays::{Target, TargetSight};
 use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::molecule::MoleculeLayer;
 use belvedere_scene::{BoxLayer, BoxShape, Layer, LayerKind, Scene};
 
-/// Depths nearer than this many near distances of the camera count as its near plane.
+/// Depths up to this many near distances of the camera count as lying on its near plane.
 const AT_EYE: f64 = 1.0 + 1e-9;
 
 /// A part of a layer.
@@ -15,13 +15,13 @@ pub(super) struct Part {
     pub(super) layer: usize,
     /// Number of the box, or of the part of the mesh; `None` = the whole layer.
     pub(super) number: Option<usize>,
-    /// Corners of a box around it, scene coordinates.
+    /// Corners of its bounding box, scene coordinates.
     pub(super) corners: Vec<DVec3>,
-    /// What of the layer is the target and stays as it is: atoms of a molecule, by their numbers, rising.
+    /// The target's own part of the layer, which is unchanged: numbers of atoms of a molecule, ascending.
     pub(super) spared: Vec<u32>,
 }
 
-/// An axis-parallel rectangle in the picture, pixels, and the depths of what it holds.
+/// An axis-parallel rectangle in the picture, pixels, and the depth range of its contents.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Extent {
     pub(super) low: DVec2,
@@ -30,7 +30,7 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    /// Around the images of points; `None` if one of them has none before the camera.
+    /// Extent of the images of points; `None` if one of them has no image in front of the camera.
     pub(super) fn of(view: &View, points: &[DVec3]) -> Option<Self> {
         let nothing =
             Self { low: DVec2::INFINITY, high: DVec2::NEG_INFINITY, depth: [f64::INFINITY, f64::NEG_INFINITY] };
@@ -41,14 +41,14 @@ impl Extent {
         })
     }
 
-    /// Whether both have pixels in common, with a margin between them.
+    /// Whether both overlap or come closer than a margin.
     pub(super) fn meets(&self, other: &Self, margin_px: f64) -> bool {
         let (low, high) = (other.low - margin_px, other.high + margin_px);
         self.low.cmplt(high).all() && self.high.cmpgt(low).all()
     }
 }
 
-/// The parts of a layer that are no part of the target.
+/// The parts of a layer that do not belong to the target.
 fn parts(scene: &Scene, index: usize, target: &Target) -> Vec<Part> {
     let layer = &scene.layers[index];
     let own = target.own_parts.as_ref().filter(|(layer, _)| *layer == index).map_or(&[][..], |(_, parts)| parts);
@@ -93,7 +93,7 @@ fn parts(scene: &Scene, index: usize, target: &Target) -> Vec<Part> {
     }
 }
 
-/// Whether a triangle's part is among numbers, which rise.
+/// Whether a triangle's part is in a list of ascending numbers.
 pub(super) fn is_one_of(numbers: &[u32], part: Option<u32>) -> bool {
     part.is_some_and(|part| numbers.binary_search(&part).is_ok())
 }
@@ -127,14 +127,14 @@ fn keep_atoms(layer: &mut MoleculeLayer, atoms: &[u32]) {
     layer.surface.mesh = mesh.only(&|t| is_one_of(atoms, mesh.part(t)));
 }
 
-/// The parts of the layers that stand in the way of lines of sight to `target`, each judged as if it were alone.
+/// The parts of the layers that hide some of `target`, each tested as if it were alone.
 pub(super) fn find(scene: &Scene, view: &View, target: &Target, layers: &[usize]) -> Vec<Part> {
     let empty = filtered(scene, &|_| None);
     let open = TargetSight::new(&empty, target).shown(view, 0.0);
     let extent = Extent::of(view, &target.points);
     let hides = |part: &Part| {
         let apart = extent.as_ref().zip(Extent::of(view, &part.corners));
-        // A ball is larger than its middle.
+        // The image of a ball is larger than that of its centre.
         let margin = 2.0 + target.radius() * view.pinhole().scale_px() / extent.map_or(1.0, |e| e.depth[0]);
         if apart.is_some_and(|(e, p)| !e.meets(&p, margin) || p.depth[0] > e.depth[1]) {
             return false;
@@ -146,7 +146,7 @@ pub(super) fn find(scene: &Scene, view: &View, target: &Target, layers: &[usize]
     layers.iter().flat_map(|&i| parts(scene, i, target)).filter(hides).collect()
 }
 
-/// The scene with the same ids and numbers of layers, of what `kind` gives for each; nothing where it gives nothing.
+/// The scene with the same ids and numbers of layers, whose contents `kind` gives; empty layers where it gives none.
 fn filtered(scene: &Scene, kind: &dyn Fn(usize) -> Option<LayerKind>) -> Scene {
     let nothing = || LayerKind::Boxes(BoxLayer::default());
     let layer = |(i, l): (usize, &Layer)| Layer {
@@ -163,7 +163,7 @@ fn filtered(scene: &Scene, kind: &dyn Fn(usize) -> Option<LayerKind>) -> Scene {
     }
 }
 
-/// A part of a layer, alone.
+/// A layer with a single part.
 fn only(layer: &Layer, number: Option<usize>) -> LayerKind {
     let mut kind = layer.kind.clone();
     match (&mut kind, number) {

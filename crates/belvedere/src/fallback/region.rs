@@ -1,9 +1,9 @@
-//! The part of the picture in which a cutaway cuts: the convex hull of the target's image, or discs around points, with a margin.
+//! The region of a cutaway in the picture: the convex hull of the target's image, or discs around points, with a margin.
 
 use belvedere_construct::rays::Target;
 use belvedere_core::{DVec2, DVec3, View};
 
-/// Pixel by pixel whether it lies in the region.
+/// Mask of the region.
 pub(super) fn mask(view: &View, target: &Target, margin_px: f64, [width, height]: [usize; 2]) -> Vec<bool> {
     let solid = target.radius() == 0.0 && (!target.own_layers.is_empty() || target.own_parts.is_some());
     let image = |p: &DVec3| view.project(*p).ok().filter(|i| i.depth >= view.pinhole().near).map(|i| i.pixel);
@@ -29,7 +29,7 @@ pub(super) fn mask(view: &View, target: &Target, margin_px: f64, [width, height]
     out
 }
 
-/// Pixel by pixel whether it lies in an image, or at most `margin_px` from it.
+/// Mask of an image widened by `margin_px`.
 pub(super) fn around(image: &[bool], margin_px: f64, [width, height]: [usize; 2]) -> Vec<bool> {
     let mut out = image.to_vec();
     let reach = margin_px.floor() as isize;

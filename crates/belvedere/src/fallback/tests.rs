@@ -1,4 +1,4 @@
-//! Laws of the fallbacks, on a wall of boxes before a block.
+//! Laws of the fallbacks, tested on a wall of boxes in front of a block.
 
 use super::*;
 use belvedere_core::Projection;
@@ -8,7 +8,7 @@ use belvedere_scene::molecule::{
 };
 use belvedere_scene::{Aux, BoxLayer, BoxShape, Light, Progress, RenderJob, RenderOptions, Renderer, Unit};
 
-/// Five boxes side by side before the eye, a block behind their middle, and two boxes that hide nothing.
+/// Five boxes side by side in front of the eye, a block behind the middle one, and two boxes that hide nothing.
 fn scene() -> Scene {
     let shape = |base: [f64; 3], size: [f64; 3]| BoxShape {
         base: DVec3::from_array(base),
@@ -18,7 +18,7 @@ fn scene() -> Scene {
     };
     let mut wall: Vec<BoxShape> =
         (-2..=2).map(|k| shape([8.0 * f64::from(k), 50.0, -10.0], [7.9, 3.0, 20.0])).collect();
-    // Beside the target by a fraction of a pixel: it hides nothing.
+    // A fraction of a pixel next to the target, so that it hides nothing.
     wall.push(shape([20.865, 80.0, -10.0], [8.0, 1.0, 20.0]));
     wall.push(shape([0.0, 200.0, -10.0], [30.0, 5.0, 30.0]));
     let scene = Scene::default().with_layer("wall", LayerKind::Boxes(BoxLayer::new(wall)));
@@ -57,7 +57,7 @@ fn whatever_gives_way_the_target_is_seen_and_only_what_hides_it_gives_way() {
         let plan = planned(rule);
         let FallbackRecord { visible_before, visible, changed, .. } = &plan.record;
         assert!(*visible_before < 0.01 && *visible > 0.999, "{rule}: {visible_before} {visible}");
-        // The three in the middle; neither those at the ends nor what stands beside or behind.
+        // The three boxes in the middle, but neither those at the ends nor the objects next to the wall or behind it.
         assert!(changed.len() == 1 && changed[0].parts == 3 && changed[0].stuck == 0, "{rule}: {changed:?}");
         let [cpu, exact] = pictures(&plan);
         let alone = by(&CpuRenderer::default(), &occluders::without(&scene(), &[&whole(0)]), &view()).unwrap();
@@ -141,7 +141,7 @@ fn rules_that_cannot_be_followed_say_why() {
     );
 }
 
-/// An atom of oxygen, alone in its residue, in the middle of a ball of carbon atoms that hides it from all sides.
+/// An oxygen atom, alone in its residue, in the middle of a ball of carbon atoms that hides it from all sides.
 fn molecule() -> Scene {
     let residue = |name: &str, number| Residue { name: name.into(), number, chain: "A".into(), ..Residue::default() };
     let atom =
@@ -173,10 +173,10 @@ fn atoms_of_a_molecule_are_spared_by_what_shows_them_and_measured_in_the_picture
             let record = plan.measured(&view(), (&scene, &frame), &draw).unwrap();
             assert!(record.pixels_alone > Some(50), "{rule}: {record:?}");
             assert!(record.visible_before == 0.0 && record.visible >= 0.99, "{rule}: {record:?}");
-            // Oxygen is red, carbon grey: the colours say the same.
+            // Oxygen is red and carbon grey, so the colour confirms the result.
             let [r, g, _] = frame.color[60 * 180 + 90];
             assert!(r > g + 40, "{rule}: {r} {g}");
-            // A picture that does not show the target is not said to.
+            // For a picture that does not show the target, no visible part is reported.
             let full = by(renderer, &scene, &view()).unwrap();
             assert_eq!(plan.measured(&view(), (&scene, &full), &draw).unwrap().visible, 0.0, "{rule}");
         }

@@ -7,23 +7,23 @@ use belvedere_scene::{Color, Unit};
 
 /// The shortest words of the mark.
 const WORDS: &str = "bent view";
-/// Smallest picture that has room for the mark, pixels.
+/// Smallest picture that the mark fits into, pixels.
 const SMALLEST: [f64; 2] = [160.0, 90.0];
 const LETTERS_PX: f64 = 12.0;
 /// Height of the strip with the titles of a pair, pixels.
 const STRIP: usize = 28;
 
-/// Whether a picture of this size has room for the mark.
+/// Whether the mark fits into a picture of this size.
 pub(crate) fn fits(width: usize, height: usize) -> bool {
     width as f64 >= SMALLEST[0] && height as f64 >= SMALLEST[1]
 }
 
-/// Room that the mark takes beside its words, and its distance from the rim of the picture, pixels.
+/// Width of the mark without its words, and its distance from the rim of the picture, pixels.
 const BESIDE: f64 = 46.0;
 const MARGIN: f64 = 10.0;
 
-/// What the mark of a picture says: how far at most what is seen was moved, in the longest words that fit.
-/// * `moved`: scene units.
+/// Words of the mark: the largest displacement in the picture, in the longest form that fits.
+/// * `moved`: largest displacement, scene units.
 pub(crate) fn words(width: usize, moved: f64, unit: Unit) -> String {
     let most = self::moved(moved, unit);
     let room = width as f64 - 2.0 * MARGIN - BESIDE;
@@ -31,8 +31,8 @@ pub(crate) fn words(width: usize, moved: f64, unit: Unit) -> String {
     all.into_iter().find(|words| text_size(LETTERS_PX, words).width <= room).unwrap_or_else(|| WORDS.to_owned())
 }
 
-/// A length in words.
-/// * `moved`: scene units.
+/// A displacement in words.
+/// * `moved`: displacement, scene units.
 pub(crate) fn moved(moved: f64, unit: Unit) -> String {
     match unit {
         Unit::Metre => length_above(moved),
@@ -66,7 +66,7 @@ pub(crate) fn draw(canvas: &mut Canvas<'_>, words: &str) {
     canvas.text(lo + DVec2::new(36.0, 0.5 * box_size.y + 0.36 * LETTERS_PX), LETTERS_PX, words, INK, None);
 }
 
-/// Adds a strip with titles under pictures that stand side by side: text and left edge of each. Narrow pictures stay as they are.
+/// Adds a strip with titles below pictures side by side: text and left edge of each. Narrow pictures are unchanged.
 pub(crate) fn titled(
     (width, height, mut pixels): (usize, usize, Vec<[u8; 3]>),
     titles: &[(&str, usize)],

@@ -1,5 +1,5 @@
-//! An inset with the deformation curve from the side, as figures of presets show it: the curve, its control and tag points, the eye and
-//! what of the plane of the curve it sees.
+//! An inset with the deformation curve from the side, as in figures of presets: the curve, its control and tag points, the eye, and the
+//! part of the curve's plane that it sees.
 
 use super::{INK, PAPER};
 use belvedere_core::map::spline::SplineBend;
@@ -11,18 +11,18 @@ use belvedere_scene::Color;
 const CURVE: Color = Color::rgb(0, 114, 178);
 const CONTROL: Color = Color::rgb(120, 128, 136);
 const TAG: Color = Color::rgb(213, 94, 0);
-/// Share of the picture's smaller side that the inset is high, and its bounds, pixels.
+/// Height of the inset as a share of the picture's smaller side, and its limits, pixels.
 const SHARE: f64 = 0.24;
 const HEIGHT_PX: [f64; 2] = [84.0, 260.0];
-/// Width of the inset by its height.
+/// Ratio of width to height of the inset.
 const ASPECT: f64 = 1.7;
 const MARGIN: f64 = 10.0;
 const LETTERS_PX: f64 = 11.0;
-/// Points of the curve, and how far its straight extensions are drawn, as a share of its length.
+/// Number of points of the curve, and drawn length of its straight extensions, as a share of its length.
 const POINTS: usize = 160;
 const BEYOND: f64 = 0.12;
 
-/// What the inset shows; curve coordinates, u ahead and v up.
+/// Contents of the inset; curve coordinates, u ahead and v up.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct CurveFigure {
     curve: Vec<DVec2>,
@@ -63,21 +63,21 @@ impl CurveFigure {
         })
     }
 
-    /// Smallest and largest coordinates of everything but the rays, which end at the rim.
+    /// Bounds of everything but the rays, which end at the rim.
     fn bounds(&self) -> [DVec2; 2] {
         let all = self.curve.iter().chain(&self.control).chain(&self.tags);
         all.fold([self.eye; 2], |[lo, hi], p| [lo.min(*p), hi.max(*p)])
     }
 }
 
-/// Depth of the end of the curve, or what of it lies ahead.
+/// Depth of the end of the curve, or of its farthest point ahead of the eye.
 fn farthest(bend: &SplineBend, view: &View) -> f64 {
     let pinhole = view.pinhole();
     let end = bend.curve().at((1.0 + BEYOND) * bend.curve().length()).0 - bend.curve_position(pinhole.eye);
     (end.length() * bend.scale()).max(pinhole.near)
 }
 
-/// Draws the figure into the upper left corner; answers whether the picture has room for it.
+/// Draws the figure into the upper left corner; returns whether the picture is large enough.
 pub(crate) fn draw(canvas: &mut Canvas<'_>, figure: &CurveFigure) -> bool {
     let size = canvas.size();
     let height = (SHARE * size.min_element()).clamp(HEIGHT_PX[0], HEIGHT_PX[1]).round();
@@ -88,7 +88,7 @@ pub(crate) fn draw(canvas: &mut Canvas<'_>, figure: &CurveFigure) -> bool {
     draw_in(canvas, figure, [DVec2::splat(MARGIN), room + MARGIN])
 }
 
-/// Draws the figure into a rectangle, equal scales along both axes; answers whether there was anything to draw.
+/// Draws the figure into a rectangle with equal scales along both axes; returns whether the figure was not empty.
 pub(crate) fn draw_in(canvas: &mut Canvas<'_>, figure: &CurveFigure, [lo, hi]: [DVec2; 2]) -> bool {
     let [from, to] = figure.bounds();
     let extent = to - from;

@@ -1,9 +1,9 @@
-//! What the straight picture would show, faintly over the bent one.
+//! Skyline, ridges and routes of the straight picture, drawn faintly over the bent one.
 
 use belvedere_cpu::canvas::Canvas;
 use belvedere_scene::{Color, Frame, LayerKind, Scene};
 
-/// A bend of `1 / depth` between neighbours beyond this share of itself is a ridge: surfaces in a plane have none.
+/// Relative second difference of `1 / depth` beyond which a pixel is a ridge: it is 0 on planes.
 const RIDGE: f32 = 0.02;
 const INK: Color = Color { r: 24, g: 26, b: 84, a: 120 };
 
@@ -27,7 +27,7 @@ pub(crate) fn draw(bent: &mut Frame, straight: &Frame, scene: &Scene) {
             if let Some(Some(color)) = colors.get(straight.id[i] as usize) {
                 canvas.blend(x, y, *color, 1.0);
             }
-            // A soft line: a third of the neighbours' ink.
+            // A soft line: neighbours get a third of the ink.
             let at = |dx: i64, dy: i64| {
                 let (x, y) = (x + dx, y + dy);
                 let inside = x >= 0 && y >= 0 && x < width as i64 && y < height as i64;
@@ -39,7 +39,7 @@ pub(crate) fn draw(bent: &mut Frame, straight: &Frame, scene: &Scene) {
     }
 }
 
-/// How much every pixel lies on the near side of a jump in depth, 0..=1.
+/// Strength with which every pixel lies on the near side of a jump in depth, 0..=1.
 fn ridges(frame: &Frame) -> Vec<f32> {
     let (width, height) = (frame.width, frame.height);
     let near = |x: usize, y: usize| 1.0 / frame.depth[y * width + x];

@@ -1,11 +1,11 @@
-//! Lines of the coordinate system on the ground.
+//! Grid lines of the coordinate system on the ground.
 
 use super::round_below;
 use crate::scene_file::{OverlayDoc, SwitchOrLength};
 use belvedere_core::DVec3;
 use belvedere_scene::{Color, Hidden, OverlayLine, Scene};
 
-/// Lines across the shorter side of the terrain when the spacing is left to us, and most lines in one direction.
+/// Lines across the shorter side of the terrain if the spacing is automatic, and largest number of lines in one direction.
 const WANTED: f64 = 8.0;
 const MOST: f64 = 500.0;
 
@@ -17,7 +17,7 @@ pub(crate) fn spacing(scene: &Scene, given: Option<f64>) -> Option<f64> {
     (spacing > 0.0 && size.max_element() / spacing <= MOST).then_some(spacing)
 }
 
-/// What a scene asks for: a spacing, or `Some(None)` for a round one.
+/// The grid that a scene asks for: a spacing, or `Some(None)` for an automatic one.
 pub(crate) fn stated(overlay: &OverlayDoc) -> Option<Option<f64>> {
     match overlay.grid? {
         SwitchOrLength::Length(spacing) => Some(Some(spacing)),
@@ -25,7 +25,7 @@ pub(crate) fn stated(overlay: &OverlayDoc) -> Option<Option<f64>> {
     }
 }
 
-/// The lines of the grid that is wanted, if there is one.
+/// The lines of the grid, if one is asked for.
 pub(crate) fn wanted(scene: &Scene, grid: Option<Option<f64>>) -> Vec<OverlayLine> {
     grid.and_then(|given| spacing(scene, given)).map_or_else(Vec::new, |spacing| lines(scene, spacing))
 }

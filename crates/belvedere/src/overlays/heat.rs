@@ -1,4 +1,4 @@
-//! How far the bend moves what is seen, as colours.
+//! Heat map of the displacement of the points in the picture.
 
 use super::{INK, PAPER, length};
 use crate::bodies::RigidLayers;
@@ -30,7 +30,7 @@ pub(crate) fn ramp(share: f64) -> [u8; 3] {
     std::array::from_fn(|c| ((RAMP[i][c] + (t - i as f32) * (RAMP[i + 1][c] - RAMP[i][c])) * 255.0 + 0.5) as u8)
 }
 
-/// A colour's light and a little of itself, in another colour.
+/// A colour with the lightness of `color` and a little of its hue, in the hue of `tone`.
 pub(crate) fn tinted(color: [u8; 3], tone: [u8; 3]) -> [u8; 3] {
     let light = light(color);
     std::array::from_fn(|c| {
@@ -39,13 +39,13 @@ pub(crate) fn tinted(color: [u8; 3], tone: [u8; 3]) -> [u8; 3] {
     })
 }
 
-/// How light a colour looks, 0..=1.
+/// Lightness of a colour, 0..=1.
 pub(crate) fn light(color: [u8; 3]) -> f32 {
     let [r, g, b] = color.map(f32::from);
     (0.30 * r + 0.59 * g + 0.11 * b) / 255.0
 }
 
-/// Colours the surfaces of `frame`; what was drawn over them stays. Returns the largest displacement, scene units.
+/// Tints the surfaces of `frame`; marks drawn over them are unchanged. Returns the largest displacement, scene units.
 /// * `bare`: the same picture without marks, with world positions.
 pub(crate) fn paint(frame: &mut Frame, bare: &Frame, (view, rigid): (&View, &RigidLayers)) -> f64 {
     let Some(world) = &bare.world else { return 0.0 };
@@ -63,7 +63,7 @@ pub(crate) fn paint(frame: &mut Frame, bare: &Frame, (view, rigid): (&View, &Rig
         .collect();
     let most = moved.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max);
     for ((color, bare), moved) in frame.color.iter_mut().zip(&bare.color).zip(&moved) {
-        // A mark leaves no pixel as it is, but for one that it hardly touches.
+        // A mark changes every pixel, except those that it hardly touches.
         if moved.is_finite() && color == bare {
             *color = tinted(*color, ramp(if most > 0.0 { moved / most } else { 0.0 }));
         }

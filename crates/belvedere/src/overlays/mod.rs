@@ -1,4 +1,4 @@
-//! Drawings beside the scene itself: what tells that, where and how far a picture is bent, and pictures of the camera.
+//! Marks over pictures that explain the bend, and pictures of the camera.
 
 pub(crate) mod badge;
 pub(crate) mod camera;
@@ -14,10 +14,10 @@ use belvedere_scene::Color;
 
 /// Ink of texts and of the lines of legends.
 pub(crate) const INK: Color = Color::rgb(38, 44, 54);
-/// Ground of legends.
+/// Background of legends.
 const PAPER: Color = Color { r: 255, g: 255, b: 255, a: 224 };
 
-/// The round number (1, 2, 5 times a power of ten) nearest below `value`; 0 if there is none.
+/// The next round number (1, 2 or 5 times a power of ten) at or below `value`; 0 if there is none.
 fn round_below(value: f64) -> f64 {
     if !(value > 0.0 && value.is_finite()) {
         return 0.0;
@@ -35,7 +35,7 @@ fn length(value: f64) -> String {
     }
 }
 
-/// A length that nothing measured passes: metres rounded up to three digits, tenths below 10 m.
+/// A length rounded up, as a bound: metres to three digits, tenths below 10 m.
 fn length_above(metres: f64) -> String {
     if !(metres > 0.0 && metres.is_finite()) {
         return "0 m".into();

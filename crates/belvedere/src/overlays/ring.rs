@@ -1,4 +1,4 @@
-//! A ring around the image of a point that is to be seen.
+//! A ring around the image of the target point.
 
 use belvedere_core::DVec2;
 use belvedere_cpu::canvas::Canvas;
@@ -8,11 +8,11 @@ use belvedere_scene::{Color, Frame};
 const RADIUS: f64 = 13.0;
 const WIDTHS: [f64; 2] = [5.0, 2.4];
 const COLORS: [Color; 2] = [Color::rgb(255, 255, 255), Color::rgb(190, 30, 90)];
-/// Corners of the ring, and of each dash and gap.
+/// Numbers of corners of the ring, and of each dash and gap.
 const CORNERS: usize = 72;
 const DASH: usize = 6;
 
-/// Draws the ring; of dashes where the point is hidden.
+/// Draws the ring, dashed where the point is hidden.
 pub(crate) fn draw(frame: &mut Frame, at: DVec2, hidden: bool) {
     let scale = (frame.height as f64 / 720.0).max(0.4);
     let corner = |i: usize| {

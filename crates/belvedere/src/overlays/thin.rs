@@ -1,16 +1,16 @@
-//! Ground that still covers what must be seen, drawn see-through.
+//! Translucent ground over features that it still covers.
 
 use belvedere_core::{DVec2, View};
 use belvedere_disocclusion::report::Covered;
 use belvedere_disocclusion::{DisocclusionError, ghost};
 use belvedere_scene::{Frame, LayerKind, Scene};
 
-/// Occlusion at which the ground is half see-through, scene units.
+/// Depth of cover at which the ground is half transparent, scene units.
 const HALF_M: f64 = 20.0;
-/// Radius around a covered point in which the ground is see-through, share of the picture's width.
+/// Radius of the translucent ground around a covered point, as a share of the picture's width.
 const RADIUS: f64 = 0.02;
 
-/// The scene with the ground cut away down to the lines of sight of what it covers. `None` without terrain.
+/// The scene with the ground lowered to the lines of sight of the covered points. `None` without terrain.
 ///
 /// # Errors
 /// [`DisocclusionError::Field`].
@@ -25,7 +25,7 @@ pub(crate) fn cut(scene: &Scene, view: &View, covered: &[Covered]) -> Result<Opt
     Ok(Some(out))
 }
 
-/// Lets `behind`, the picture of the cut ground, show through `frame` around what is covered: the more, the deeper it is.
+/// Blends `behind`, the picture of the lowered ground, into `frame` around covered points, more strongly where the cover is deeper.
 pub(crate) fn draw(frame: &mut Frame, behind: &Frame, scene: &Scene, view: &View, covered: &[Covered]) {
     let (width, height) = (frame.width, frame.height);
     if (behind.width, behind.height) != (width, height) {
@@ -33,7 +33,7 @@ pub(crate) fn draw(frame: &mut Frame, behind: &Frame, scene: &Scene, view: &View
     }
     let opacity = opacity(scene, view, covered, [width, height]);
     for (i, solid) in opacity.into_iter().enumerate() {
-        // Only what was cut away covers anything.
+        // Only ground that was lowered covers anything.
         if solid < 1.0 && behind.depth[i] > frame.depth[i] * 1.0001 {
             for (over, under) in frame.color[i].iter_mut().zip(behind.color[i]) {
                 *over = (solid * f32::from(*over) + (1.0 - solid) * f32::from(under)).round() as u8;

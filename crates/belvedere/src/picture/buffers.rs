@@ -8,7 +8,7 @@ use belvedere_io::open_exr::{self, Channel};
 use belvedere_scene::Frame;
 use std::path::Path;
 
-/// Displaced minus world position of every pixel, NaN where there is none.
+/// Displaced minus world position of every pixel, NaN where the pixel shows no surface.
 pub(super) fn displacement<'f>(
     (view, rigid): (&'f View, &'f RigidLayers),
     frame: &'f Frame,
@@ -21,7 +21,7 @@ pub(super) fn displacement<'f>(
 
 /// Writes `depth.Z` (float), `id` (uint), `world.X/Y/Z` and `displacement.X/Y/Z` (float).
 ///
-/// World positions count from whole numbers near the eye, attribute `worldOrigin`: the scene's own would not fit into 32 bits.
+/// World positions are relative to whole numbers near the eye, attribute `worldOrigin`, since scene coordinates do not fit into 32 bits.
 pub(super) fn write(
     frame: &Frame,
     (view, rigid): (&View, &RigidLayers),

@@ -1,20 +1,20 @@
-//! How far a picture moves what it shows.
+//! Displacement of the points in a picture.
 
 use crate::bodies::RigidLayers;
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::Frame;
 use serde::{Deserialize, Serialize};
 
-/// How far a picture moves what it shows, against the same camera without bends; sampled every few pixels. Ground that it does not
-/// show may have moved farther.
+/// Displacement of the points in a picture against the same camera without bends, sampled every few pixels. Ground outside the picture
+/// may have moved farther.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct DisplacementReport {
-    /// Largest, scene units; looked for pixel by pixel around the largest samples.
+    /// Largest displacement, scene units; refined pixel by pixel around the largest samples.
     pub max_m: f64,
-    /// Root mean square, scene units.
+    /// Root mean square displacement, scene units.
     pub rms_m: f64,
-    /// Largest distance between the bent and the straight image of a point, pixels. What the straight picture would show farther than
-    /// one picture beside itself does not count: beside the eye such images lie anywhere.
+    /// Largest distance between the bent and the straight image of a point, pixels. Points whose straight image lies more than one picture
+    /// beside the picture do not count, since beside the eye images lie arbitrarily far.
     pub max_px: f64,
     /// Root mean square of that distance, pixels.
     pub rms_px: f64,
@@ -24,10 +24,10 @@ pub struct DisplacementReport {
     pub samples: usize,
 }
 
-/// Samples around which every pixel is looked at.
+/// Number of samples around which every pixel is measured.
 const LARGEST: usize = 24;
 
-/// Where the ground that a pixel shows went.
+/// Displacement of the point at a pixel.
 struct Moved {
     pixel: [usize; 2],
     by_m: f64,
@@ -35,7 +35,7 @@ struct Moved {
     folded: bool,
 }
 
-/// From a pixel to the straight image of the point that it shows; `None` for images farther than one picture beside the straight one.
+/// Distance from a pixel to the straight image of its point, pixels; `None` if that lies more than one picture beside the picture.
 fn distance_px(straight: &View, point: DVec3, pixel: DVec2) -> Option<f64> {
     let image = straight.project(point).ok()?;
     let size = DVec2::from(straight.pinhole().image.map(f64::from));
@@ -54,7 +54,7 @@ fn at_pixel(
     let pixel = DVec2::new(col as f64 + 0.5, row as f64 + 0.5);
     let i = row * frame.width + col;
     if rigid.shown_at(frame, i) {
-        // The rays of other points say nothing of it: the picture knows what it shows, and where.
+        // Rays of other points do not apply to a carried body; the picture's own world point does.
         let point = DVec3::from_array(*frame.world.as_ref()?.get(i)?);
         let (bent, plain) = (rigid.displaced(view, frame, i, point)?, straight.displace(point).ok()?.point);
         let by_px = distance_px(straight, point, pixel);
@@ -66,8 +66,8 @@ fn at_pixel(
     Some(Moved { pixel: [col, row], by_m: bent.point.distance(plain.point), by_px, folded: bent.folded })
 }
 
-/// Samples the ground in view: where it would be without bends, in space and on the image.
-/// * `frame`: with world positions if it shows rigid layers.
+/// Samples the displacement of points in the picture, in space and on the image.
+/// * `frame`: needs world points if it shows rigid layers.
 pub(super) fn measure(view: &View, rigid: &RigidLayers, frame: &Frame) -> DisplacementReport {
     let straight = view.straightened();
     let step = (frame.width.max(frame.height) / 128).max(1);

@@ -1,4 +1,4 @@
-//! From a session to its picture: layers, marks over them, the straight picture beside the bent one.
+//! Draws the picture of a session: layers, marks over them, the straight picture beside the bent one.
 
 use super::displacement::{self, DisplacementReport};
 use super::options::{AuxBuffer, PictureOptions};
@@ -26,7 +26,7 @@ impl Session {
     }
 }
 
-/// As [`Session::render`], with the record of the inputs at hand.
+/// The same as [`Session::render`], with the given record of inputs.
 pub(crate) fn draw(
     session: &Session,
     request: &PictureOptions,
@@ -72,7 +72,7 @@ pub(crate) fn draw(
     Ok(Picture { frame, straight, sidecar, aux, aux_format, view, rigid, crs, unit })
 }
 
-/// Pictures with everything over them.
+/// Pictures with all marks.
 pub(crate) struct Drawn {
     pub(crate) view: View,
     pub(crate) frame: Frame,
@@ -82,7 +82,7 @@ pub(crate) struct Drawn {
     fallback: Option<FallbackRecord>,
 }
 
-/// The view with everything over it.
+/// Draws the view with all marks.
 pub(crate) fn draw_view(
     session: &Session,
     request: &PictureOptions,
@@ -107,7 +107,7 @@ pub(crate) fn draw_view(
         Ok::<_, BelvedereError>(request.renderer.of(session).render(&job)?)
     };
     let mut frame = plan.as_ref().map_or_else(|| draw(scene, &view), |plan| plan.draw(&view, &draw))?;
-    // Measured before other pictures are laid over it.
+    // Measured before further pictures are drawn over it.
     let fallback = plan.as_ref().map(|plan| plan.measured(&view, (session.scene(), &frame), &draw)).transpose()?;
     if let Some(covered) =
         session.terrain_report().map(|r| &r.covered[..]).filter(|c| !c.is_empty() && !request.straight)
@@ -120,7 +120,7 @@ pub(crate) fn draw_view(
     let straight = if request.compare || ghost { Some(draw(session.scene(), &view.straightened())?) } else { None };
     let mut heatmap_max = None;
     if heatmap {
-        // Names and lines are read on the colours, not through them.
+        // Names and lines are drawn over the heat map, not tinted by it.
         let aux = Aux { world: true, exact: false };
         let options = RenderOptions { marks: false, aux, ..request.quality.clone() };
         let job = RenderJob { scene, view: &view, light: session.light(), options: &options, progress };
@@ -176,7 +176,7 @@ pub(crate) fn draw_view(
     Ok(Drawn { view, frame, straight: straight.filter(|_| request.compare), overlay, displacement, fallback })
 }
 
-/// The picture of the camera.
+/// Draws the picture of the camera.
 pub(crate) fn draw_camera(
     session: &Session,
     request: &PictureOptions,

@@ -1,4 +1,4 @@
-//! Points that are to be seen, in pictures.
+//! Marks of target points in pictures.
 
 use super::{Picture, TargetPlace};
 use crate::overlays::ring;
@@ -6,7 +6,7 @@ use belvedere_construct::rays::BendReport;
 use belvedere_core::DVec3;
 
 impl Picture {
-    /// Marks a point that is to be seen in both pictures, and records where it is.
+    /// Marks a target point in both pictures, and records its position.
     pub(crate) fn mark_target(&mut self, place: &TargetPlace, report: &BendReport) {
         let p = DVec3::from_array(place.point);
         let straight = self.view.straightened();

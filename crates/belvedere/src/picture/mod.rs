@@ -1,4 +1,4 @@
-//! Pictures with a record of where they come from.
+//! Pictures with a record of their origin.
 
 mod buffers;
 mod displacement;

@@ -1,41 +1,41 @@
-//! What to draw, and how well.
+//! Options for drawing a picture.
 
 use crate::scene_file::HighlightMark;
 use crate::{CameraPicture, Session};
 use belvedere_cpu::ExactRenderer;
 use belvedere_scene::{Progress, RenderOptions, Renderer, Stylisation};
 
-/// Thresholds of a pixel, all its samples together, where representations of styling sections pass into each other in pictures at rest.
+/// Thresholds per pixel, over all its samples, for transitions between styling sections in pictures at rest.
 pub const THRESHOLDS: u32 = 64;
 
-/// What to draw, and how well.
+/// Options for drawing a picture.
 #[derive(Debug, Clone)]
 pub struct PictureOptions {
     /// Samples, level of detail, threads and memory; by default with [`THRESHOLDS`].
     pub quality: RenderOptions,
-    /// Without the bends.
+    /// Draws the view without bends.
     pub straight: bool,
-    /// Straight beside bent.
+    /// Draws the straight picture beside the bent one.
     pub compare: bool,
     /// Buffers to write beside the picture.
     pub aux: Vec<AuxBuffer>,
     /// Format of the buffers.
     pub aux_format: AuxFormat,
-    /// Who draws.
+    /// Renderer that draws the picture.
     pub renderer: RendererChoice,
-    /// Edges and shades, whatever the scene says.
+    /// Stylisation instead of the scene's.
     pub stylisation: Option<Stylisation>,
-    /// Grid on the ground, whatever the scene says: spacing in scene units, or `Some(None)` for a round one.
+    /// Grid on the ground instead of the scene's: spacing in scene units, or `Some(None)` for an automatic one.
     pub grid: Option<Option<f64>>,
-    /// Colours for how far the bend moves what is seen, also if the scene does not ask for them.
+    /// Draws the heat map of displacements, even if the scene does not ask for it.
     pub heatmap: bool,
-    /// The straight picture faintly over the bent one, also if the scene does not ask for it.
+    /// Draws the straight picture faintly over the bent one, even if the scene does not ask for it.
     pub ghost: bool,
-    /// What shows what the bend did, instead of what the scene asks for; empty = as the scene says.
+    /// Highlights of the bend instead of the scene's; empty: those of the scene.
     pub highlight: Vec<HighlightMark>,
-    /// No mark on bent pictures, also if the scene does not say so.
+    /// Draws no mark on bent pictures, even if the scene does not ask for that.
     pub no_mark: bool,
-    /// A picture of the camera instead of one by it.
+    /// Draws a picture of the camera instead of the picture that it takes.
     pub camera: Option<CameraPicture>,
     /// Progress and cancellation.
     pub progress: Progress,
@@ -73,18 +73,18 @@ pub enum AuxFormat {
     Exr,
 }
 
-/// Who draws.
+/// Choice of the renderer.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum RendererChoice {
     /// The rasteriser.
     #[default]
     Cpu,
-    /// The tracer of curved rays: slower, without subdivision.
+    /// The exact tracer of curved rays: slower, without subdivision.
     Exact,
 }
 
 impl RendererChoice {
-    /// The renderer itself; the rasteriser is that of the session, with what it remembers.
+    /// The renderer; the rasteriser is the session's own, with its caches.
     pub fn of(self, session: &Session) -> &dyn Renderer {
         match self {
             Self::Cpu => &*session.renderer,

@@ -16,16 +16,16 @@ use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::{Crs, Frame, FrameStats, Heightfield, Layer, LayerKind, NodeState, Scene, Unit};
 use serde::Serialize;
 
-/// What of the ground is measured, and what is not.
+/// Measured and made-up parts of the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct TerrainRecord {
     /// Nodes of the grid.
     pub nodes: usize,
     /// Nodes without a height: holes, and the rim outside the data.
     pub void_nodes: usize,
-    /// Nodes whose height was made up to close a hole.
+    /// Nodes without data whose height was filled in to close a hole.
     pub filled_nodes: usize,
-    /// Share of made-up nodes, 0..=1.
+    /// Share of these nodes, 0..=1.
     pub filled_share: f64,
 }
 
@@ -38,7 +38,7 @@ impl TerrainRecord {
     }
 }
 
-/// What of a molecule was drawn.
+/// Drawn parts of a molecule.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MoleculeRecord {
     /// Id of the layer.
@@ -49,7 +49,7 @@ pub struct MoleculeRecord {
     pub drawn_atoms: usize,
     /// Bonds that were drawn.
     pub drawn_bonds: usize,
-    /// Triangles that they were drawn as.
+    /// Triangles of the drawn surface.
     pub triangles: usize,
 }
 
@@ -69,33 +69,33 @@ impl MoleculeRecord {
     }
 }
 
-/// What was drawn over the layers of a picture.
+/// Marks over the layers of a picture.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct OverlayRecord {
-    /// Whether the picture bears the mark of bent ones.
+    /// Whether the picture has the mark of bent pictures.
     pub mark: bool,
-    /// What that says: how far at most what is seen was moved.
+    /// Words of that mark: the largest displacement in the picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mark_words: Option<String>,
-    /// What the figure in the corner shows.
+    /// Contents of the inset in the corner.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub inset: Option<Inset>,
     /// Strength of dark edges.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub edges: Option<f32>,
-    /// Strength of the shade behind what stands out.
+    /// Strength of depth unsharp masking.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unsharp: Option<f32>,
     /// Spacing of the grid, scene units.
     pub grid: Option<f64>,
     /// Displacement at the upper end of the colours, scene units.
     pub heatmap_max: Option<f64>,
-    /// Whether the straight picture shows through.
+    /// Whether the straight picture was drawn faintly over it.
     pub ghost: bool,
-    /// What shows what the bend did; null if nothing does.
+    /// Figures of the highlights; null if there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub highlight: Option<HighlightRecord>,
-    /// If this is a picture of the camera: from where.
+    /// For a picture of the camera: the position from which it was drawn.
     pub camera: Option<&'static str>,
 }
 
@@ -104,20 +104,20 @@ pub struct OverlayRecord {
 pub struct Sidecar {
     /// Program and version.
     pub program: String,
-    /// Renderer that drew it.
+    /// Name of the renderer.
     pub renderer: &'static str,
-    /// What is special about the picture, if it is bent.
+    /// Note that the picture is bent, if it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
     /// Stages in order of application.
     pub stages: Vec<&'static str>,
-    /// What was drawn over the layers.
+    /// Marks over the layers.
     pub overlay: OverlayRecord,
-    /// How far things were moved; `None` for a straight picture.
+    /// Displacement of the points in the picture; `None` for a straight picture.
     pub displacement: Option<DisplacementReport>,
-    /// What of the ground is made up; `None` without terrain.
+    /// Measured and made-up parts of the ground; `None` without terrain.
     pub terrain: Option<TerrainRecord>,
-    /// What of each molecule was drawn.
+    /// Drawn parts of each molecule.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub molecules: Vec<MoleculeRecord>,
     /// How volumes were drawn.
@@ -126,7 +126,7 @@ pub struct Sidecar {
     /// Ids of the layers whose parts were carried as rigid bodies.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rigid: Vec<String>,
-    /// What areas were drawn as, and why.
+    /// Surfaces that areas were drawn as, and the sources of this choice.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub areas: Vec<AreaRecord>,
     /// Report of the solver of terrain disocclusion; `None` if it did not run.
@@ -138,10 +138,10 @@ pub struct Sidecar {
     /// Report of the constructor of curved rays; `None` if the scene has no constructor.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub constructor: Option<ConstructorReport>,
-    /// The point that the picture was made to show.
+    /// The target point of the picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub target: Option<TargetPlace>,
-    /// What gave way so that a target is seen; `None` if nothing was asked to.
+    /// Report of the fallback; `None` if none was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fallback: Option<FallbackRecord>,
     /// The camera in numbers.
@@ -154,7 +154,7 @@ pub struct Sidecar {
     pub title: String,
     /// Files that were read.
     pub inputs: Vec<InputFile>,
-    /// What was odd.
+    /// Warnings.
     pub warnings: Vec<String>,
     /// Counts of the renderer.
     pub stats: FrameStats,

@@ -1,45 +1,45 @@
-//! A point that is to be seen: where it is, in the scene and in the voxels of volumes.
+//! A target point: its position in the scene and in the voxels of volumes.
 
 use belvedere_core::DVec3;
 use belvedere_scene::{LayerKind, Scene, Unit, VolumeLayer};
 use serde::Serialize;
 use std::fmt;
 
-/// Where a point is.
+/// Position of a target point.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TargetPlace {
-    /// Scene coordinates, as it was asked for.
+    /// Scene coordinates as given.
     pub point: [f64; 3],
     /// Unit of the scene.
     pub unit: Unit,
-    /// The same in every volume that it lies in.
+    /// Position in every volume that contains the point.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub voxels: Vec<VoxelPlace>,
-    /// Whether it lies outside everything that the scene holds.
+    /// Whether it lies outside the bounds of all layers.
     pub outside: bool,
-    /// How pictures mark it.
+    /// Kind of its mark in pictures.
     pub mark: &'static str,
 }
 
-/// A place in a volume.
+/// A position in a volume.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct VoxelPlace {
     /// Id of the layer.
     pub layer: String,
     /// Voxel coordinates along x, y, z, the first voxel being 0.
     pub voxel: [f64; 3],
-    /// Value there, interpolated.
+    /// Interpolated value there.
     pub value: f64,
     /// Opacity of that value over a reference step, 0..=1.
     pub opacity: f64,
-    /// If that is opaque: the nearest place that is not, scene coordinates.
+    /// If that is opaque: the nearest point that is not, scene coordinates.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nearest_clear: Option<[f64; 3]>,
 }
 
-/// Opacity per reference step from which on rays do not get into matter.
+/// Opacity per reference step from which on rays do not enter matter.
 const OPAQUE: f64 = 0.5;
-/// How far around a place in such matter another is looked for, voxels.
+/// Distance within which a point that is not opaque is searched, voxels.
 const AROUND: i32 = 12;
 
 impl TargetPlace {
@@ -60,7 +60,7 @@ impl TargetPlace {
         Self { point: p.to_array(), unit: scene.unit, voxels: voxels.collect(), outside: !inside, mark }
     }
 
-    /// What is odd about the place.
+    /// Warning about the position, if there is any.
     pub(crate) fn warning(&self) -> Option<String> {
         self.outside.then(|| {
             "the point lies outside everything in the scene; give scene coordinates, `info` tells their range".into()

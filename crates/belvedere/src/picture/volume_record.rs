@@ -1,4 +1,4 @@
-//! What the record of a picture says of its volumes.
+//! Record of the volumes of a picture.
 
 use belvedere_scene::{LayerKind, Scene, VolumeLayer};
 use serde::Serialize;
@@ -12,7 +12,7 @@ pub struct VolumeRecord {
     pub transfer: String,
     /// Its points: value, red, green, blue (0..=255), opacity per reference step.
     pub points: Vec<[f64; 5]>,
-    /// Distance that opacities are stated for, voxel edges.
+    /// Distance to which opacities refer, voxel edges.
     pub reference_step: f64,
     /// Distance between samples, voxel edges.
     pub step: f64,

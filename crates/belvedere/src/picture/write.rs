@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// Width of the white gap between two pictures side by side, pixels.
 const GAP: usize = 8;
 
-/// File of the solved displacement of the ground, written beside a picture whose scene asks for it by an intent.
+/// File of the solved displacement of the ground, written beside a picture whose scene asks for terrain disocclusion by an intent.
 pub fn delta_path(out: &Path) -> PathBuf {
     out.with_extension("delta.tif")
 }
@@ -57,7 +57,7 @@ impl Picture {
         Ok(written)
     }
 
-    /// Writes the solved displacement of the ground beside the picture; the record then names it in place of the intent.
+    /// Writes the solved displacement of the ground beside the picture, and names it in the record in place of the intent.
     fn with_delta(
         &self,
         out: &Path,
@@ -79,7 +79,7 @@ impl Picture {
         Ok(Some(this))
     }
 
-    /// Writes the picture alone. Its bytes depend on scene, request and inputs only, not on threads or time.
+    /// Writes the picture alone. Its bytes depend on scene, options and inputs only, not on threads or time.
     ///
     /// # Errors
     /// [`BelvedereError::Io`].
@@ -90,7 +90,7 @@ impl Picture {
         Ok(png::write(out, overwrite, width, height, Channels::Rgb, pixels.as_flattened(), &text)?)
     }
 
-    /// Width, height and colours; a pair stands side by side.
+    /// Width, height and colours; the two pictures of a pair side by side.
     pub fn pixels(&self) -> (usize, usize, Vec<[u8; 3]>) {
         let Some(straight) = &self.straight else {
             return (self.frame.width, self.frame.height, self.frame.color.clone());
@@ -110,7 +110,7 @@ impl Picture {
         }
     }
 
-    /// Keywords and texts that go into the picture: the record without what differs from run to run.
+    /// Keywords and texts of the picture's metadata: the record without entries that differ from run to run.
     fn text(&self) -> Result<Vec<(&'static str, String)>, BelvedereError> {
         let mut text = vec![("Software", self.sidecar.program.clone())];
         if !self.sidecar.title.is_empty() {

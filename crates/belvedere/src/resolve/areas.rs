@@ -1,4 +1,4 @@
-//! Area layers: what covers them, and why.
+//! Area layers: their surfaces, and the sources of this choice.
 
 use super::ground::Ground;
 use super::loader::Loader;
@@ -54,7 +54,7 @@ pub(super) fn layer(
     }))
 }
 
-/// What options or the scene say.
+/// Surface given by options or the scene.
 fn stated(loader: &Loader<'_>, style: &AreaStyleDoc) -> Option<AreaKind> {
     let by_option = loader.options.area_style.and_then(surface);
     let by_option = by_option.map(|s| (s, format!("asked for: area style {}", s.name())));
@@ -66,7 +66,7 @@ fn stated(loader: &Loader<'_>, style: &AreaStyleDoc) -> Option<AreaKind> {
     by_option.or(by_key).or(by_water).map(|(surface, why)| AreaKind { surface, why })
 }
 
-/// `None` = to be found out.
+/// `None`: it is to be found from the file.
 fn surface(doc: SurfaceDoc) -> Option<AreaSurface> {
     Some(match doc {
         SurfaceDoc::Auto => return None,
@@ -79,12 +79,12 @@ fn surface(doc: SurfaceDoc) -> Option<AreaSurface> {
     })
 }
 
-/// The style of an area layer under another kind than its own: colours are those of the kind.
+/// The style of an area layer for another surface than its own: colours become those of the surface.
 pub(crate) fn restyle(style: &mut AreaStyleDoc, kind: SurfaceDoc) {
     (style.surface, style.water, style.color, style.outline) = (Some(kind), None, None, None);
 }
 
-/// Writes into the areas of a document what was found to cover them, and their colours.
+/// Writes the surfaces found, and their colours, into the areas of a document.
 pub(crate) fn fill_surfaces(layers: &mut [LayerDoc], scene: &Scene) {
     for doc in layers {
         let LayerDoc::Area(doc) = doc else { continue };

@@ -6,20 +6,20 @@ use belvedere_core::DVec3;
 use belvedere_io::city::CityColors;
 use belvedere_scene::{City, Crs, Layer, LayerKind, Scene, Unit};
 
-/// Seed of a built-in scene that names none.
+/// Seed of a built-in scene without one.
 pub(crate) const DEFAULT_SEED: u64 = 7;
-/// Nodes per side of a massif that names none.
+/// Nodes per side of a massif without a size.
 pub(crate) const DEFAULT_SIZE: usize = 513;
 
-/// Base pairs of a double helix that names none.
+/// Base pairs of a double helix without a size.
 const DEFAULT_PAIRS: usize = 12;
 
-/// Width of a town that names none, metres.
+/// Width of a town without a size, metres.
 const DEFAULT_TOWN_M: usize = 1200;
 
 const NAMES: &[&str] = &["massif", "canyon", "street", "church", "dna", "engine", "tube", "town"];
 
-/// Whether a source means a built-in scene.
+/// Whether a source names a built-in scene.
 pub(super) fn is_name(source: &str) -> bool {
     source.starts_with("builtin:")
 }
@@ -32,12 +32,12 @@ struct Request {
     size: usize,
 }
 
-/// Built-in scenes made so far: layers of one scene come from one making.
+/// Built-in scenes generated so far, so that layers of one scene are generated once.
 #[derive(Debug, Default)]
 pub(super) struct Builtins(Vec<(Request, Scene)>);
 
 impl Builtins {
-    /// What `pick` takes from the first layer of `source`'s scene that it accepts (and that has the id given as `layer=`).
+    /// Result of `pick` on the first layer of `source`'s scene that it accepts (and that has the id given as `layer=`).
     pub(super) fn find<T>(
         &mut self,
         source: &str,
@@ -82,7 +82,7 @@ fn make(request: &Request) -> Result<(Scene, builtin::SuggestedCamera), String> 
     made.map_err(|e| e.to_string())
 }
 
-/// The city of a built-in scene that is one.
+/// The city of a built-in scene, if it has one.
 pub(super) fn city(source: &str, seed: Option<u64>) -> Result<City, String> {
     let (request, layer) = parse(source)?;
     if request.name != "town" || layer.is_some() {

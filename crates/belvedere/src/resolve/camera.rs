@@ -1,4 +1,4 @@
-//! From the camera of a document to a pinhole.
+//! Resolves the camera of a document to a pinhole.
 
 use super::ground::Ground;
 use crate::BelvedereError;
@@ -16,7 +16,7 @@ pub(crate) struct ResolvedCamera {
     pub(crate) document: CameraDoc,
 }
 
-/// Distance at which a heading and pitch are turned into a point: so far that its rounding does not tilt the view.
+/// Distance at which a heading and pitch become a point, scene units: so large that rounding does not tilt the view.
 const AIM_DISTANCE: f64 = 1e6;
 
 /// Builds the pinhole. `spline_normal` is the plane normal of a spline stage, which then supplies the heading.
@@ -57,8 +57,8 @@ pub(crate) fn resolve(
     let make = |up: DVec3| Pinhole::look_at(eye, aim, up, projection, doc.image, doc.near, doc.far);
     let mut made = make(DVec3::from_array(doc.up));
     if let (Err(PinholeError::AlongUp { .. }), Some(normal)) = (&made, spline_normal) {
-        // The spline's plane supplies the heading. Straight down onto a level one, what is left is the heading of the
-        // angles, and without them north.
+        // The spline's plane gives the heading. Straight down onto a level plane, the heading is that of the angles, and without
+        // angles north.
         let level = DVec3::new(heading.sin(), heading.cos(), 0.0);
         made = make(normal).or_else(|_| make(level));
     }

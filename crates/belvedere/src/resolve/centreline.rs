@@ -7,7 +7,7 @@ use belvedere_core::DVec3;
 use belvedere_scene::volume::threshold;
 use belvedere_scene::{LayerKind, Scene, Volume};
 
-/// The centreline that a document asks for.
+/// The centreline that a document requests.
 pub(super) fn read(source: &SourceDocument, scene: &Scene, doc: &CentrelineDoc) -> Result<Centreline, BelvedereError> {
     let fail = |key: &str, reason: String| {
         let keys: &[&str] = &["constructor", "centreline", key];
@@ -31,7 +31,7 @@ pub(super) fn read(source: &SourceDocument, scene: &Scene, doc: &CentrelineDoc) 
     centreline(volume, from, to, values).map_err(|e| fail("from", e.to_string()))
 }
 
-/// The values on that side of the histogram's threshold on which both points lie.
+/// The values on the side of the histogram's threshold on which both points are.
 fn same_side(volume: &Volume, points: [DVec3; 2]) -> Result<[f64; 2], String> {
     let [lo, hi] = volume.range().map(f64::from);
     let parted = threshold(volume);

@@ -19,10 +19,10 @@ use belvedere_scene::{City, Crs, HeightSource, LayerKind, RigidParts, Surface};
 const WIDEST_M: f64 = 1.5e6;
 /// Format of cities that no file holds.
 const BUILT_IN: &str = "built in";
-/// Ground that is farther from the terrain than this is spoken of, metres.
+/// Difference between city ground and terrain above which a warning is given, metres.
 const NOTED_M: f64 = 1.0;
 
-/// The files of a layer; read once.
+/// The files of a layer, each read once.
 pub(super) fn files(loader: &mut Loader<'_>, index: usize, doc: &CityDoc) -> Result<Vec<CityFile>, BelvedereError> {
     if let Some(files) = loader.cities.get(&index) {
         return Ok(files.clone());
@@ -51,7 +51,7 @@ fn built_in(name: &str, city: City) -> CityFile {
     CityFile { path, format, crs: None, reference: String::new(), lods: Vec::new(), city }
 }
 
-/// The system that a city brings to a scene without another: its own if that is one for scenes, else the UTM zone of its middle.
+/// The coordinate system of a scene with this city alone: the city's own if scenes support it, else the UTM zone of its middle.
 pub(super) fn crs(loader: &mut Loader<'_>, index: usize, doc: &CityDoc) -> Result<Option<Crs>, BelvedereError> {
     let files = files(loader, index, doc)?;
     let Some(file) = files.first() else { return Ok(None) };
@@ -60,7 +60,7 @@ pub(super) fn crs(loader: &mut Loader<'_>, index: usize, doc: &CityDoc) -> Resul
     Ok(system.and_then(|s| s.epsg()).map(Crs::Epsg))
 }
 
-/// Median height of the ground under the buildings of all cities; `None` if they say none.
+/// Median height of the ground under the buildings of all cities; `None` if the files give no such heights.
 pub(super) fn floor(loader: &mut Loader<'_>) -> Result<Option<f64>, BelvedereError> {
     let mut bases = Vec::new();
     let docs = loader.layers;
@@ -75,7 +75,7 @@ pub(super) fn floor(loader: &mut Loader<'_>) -> Result<Option<f64>, BelvedereErr
     Ok((!bases.is_empty()).then(|| *bases.select_nth_unstable_by(middle, f64::total_cmp).1))
 }
 
-/// The system that the document states for the files.
+/// The coordinate system that the document gives for the files.
 fn stated(loader: &Loader<'_>, index: usize, doc: &CityDoc) -> Result<Option<CoordinateSystem>, BelvedereError> {
     let Some(stated) = &doc.crs else { return Ok(None) };
     let unknown = || loader.fail(index, "crs", format!("crs \"{stated}\" is not known; give \"EPSG:n\""));
@@ -137,7 +137,7 @@ pub(super) fn layer(
         loader.note(index, lost.into_iter().chain(remarks(&city, terrain)).collect());
     }
     compact(&city).map_err(|e| loader.fail(index, "source", e))?;
-    // Part 0 is what lies between buildings; bridges and trees follow the buildings.
+    // Part 0 is the space between buildings; bridges and trees follow the buildings.
     let buildings = (1..=city.buildings.len() as u32).collect();
     let mut layer = mesh(city, &colors, terrain, extent).map_err(|e| loader.fail(index, "source", e))?;
     layer.mesh = with_ambient_occlusion(loader, index, layer.mesh, style.ambient_occlusion, ground)?;
@@ -164,7 +164,7 @@ fn abstraction(
     let mut level = if loa == 1 { fine } else { coarse };
     if terrain.is_some() {
         city_blocks::stand(&mut level, city, terrain);
-        // Floors lie in the ground.
+        // Floors are hidden in the ground, so they are removed.
         let blocks = level.city.buildings.iter_mut().take(level.blocks.len());
         blocks.for_each(|b| b.faces.retain(|f| f.surface != Surface::Ground));
     }
@@ -176,19 +176,19 @@ fn abstraction(
     if let Some(missed) = missed {
         loader.note(index, vec![format!("{} keeps {:.0} % of the volume", missed.name, 100.0 * missed.volume_share)]);
     }
-    // What lay on the ground lies there still, green cells over it.
+    // Areas of the city stay on the ground, with green cells over them.
     let areas = city.areas.iter().cloned().chain(level.city.areas).collect();
     Ok(City { areas, ..level.city })
 }
 
-/// Pictures of faces count from `first` on.
+/// Adds `first` to the picture numbers of faces.
 fn renumber(city: &mut City, first: u32) {
     let faces = city.buildings.iter_mut().flat_map(|b| &mut b.faces);
     let faces = faces.chain(city.structures.iter_mut().flat_map(|s| &mut s.faces));
     faces.filter_map(|f| f.picture.as_mut()).for_each(|picture| picture.number += first);
 }
 
-/// Buildings whose height nothing tells, in words.
+/// Number of buildings without a known height, in words.
 fn without_height(city: &City) -> Vec<String> {
     let (all, assumed) =
         (city.buildings.len(), city.buildings.iter().filter(|b| b.height_source == HeightSource::Assumed).count());
@@ -198,10 +198,10 @@ fn without_height(city: &City) -> Vec<String> {
     }).into_iter().collect()
 }
 
-/// Leaves buildings out that have neither a height of their own ground nor terrain under them, and says so.
+/// Removes buildings that have neither a ground height of their own nor terrain under them; returns a warning.
 ///
 /// # Errors
-/// If there is no other.
+/// If no building is left.
 fn leave_out_beyond(city: &mut City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> Result<Option<String>, String> {
     let under =
         |b: &belvedere_scene::Building| b.footprint.iter().flat_map(|p| &p.outer).any(|xy| terrain(*xy).is_some());
@@ -216,7 +216,7 @@ fn leave_out_beyond(city: &mut City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> 
     Ok((lost > 0).then(|| format!("{lost} of {before} buildings lie outside the terrain and are left out")))
 }
 
-/// Refuses cities that are wider than any: something in them lies elsewhere.
+/// Refuses cities wider than the limit, in which some coordinates must be wrong.
 fn compact(city: &City) -> Result<(), String> {
     let width_m = plate_extent(city).map_or(0.0, |[low, high]| (high - low).max_element());
     if width_m <= WIDEST_M {
@@ -229,7 +229,7 @@ fn compact(city: &City) -> Result<(), String> {
     ))
 }
 
-/// What does not fit the terrain.
+/// Warnings about differences from the terrain.
 fn remarks(city: &City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> Vec<String> {
     let offset = |b: &belvedere_scene::Building| Some(b.base_m? - terrain(*b.footprint.first()?.outer.first()?)?);
     let mut offsets: Vec<f64> = city.buildings.iter().filter_map(offset).collect();
@@ -253,7 +253,7 @@ fn remarks(city: &City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> Vec<String> {
     out
 }
 
-/// Adds to all heights.
+/// Adds `by` to all heights, metres.
 fn lift(city: &mut City, by: f64) {
     city.buildings.iter_mut().filter_map(|b| b.base_m.as_mut()).for_each(|z| *z += by);
     let faces = city.buildings.iter_mut().filter(|b| b.base_m.is_some()).flat_map(|b| &mut b.faces);

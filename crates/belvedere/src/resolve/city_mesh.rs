@@ -5,7 +5,7 @@ use belvedere_core::DVec2;
 use belvedere_io::city::{CityColors, CityGround, surface};
 use belvedere_scene::{City, Mesh, MeshLayer};
 
-/// A city as triangles, its buildings as parts; without terrain on a plate of its land cover, as wide as `extent`.
+/// A city as triangles, with its buildings as parts. Without terrain it is on a plate of its land cover, as wide as `extent`.
 pub(super) fn mesh(
     mut city: City,
     colors: &CityColors,

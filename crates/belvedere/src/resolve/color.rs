@@ -1,6 +1,6 @@
 //! Colours as scene files write them.
 
-/// A key and what is wrong with its value.
+/// A key and the reason why its value is refused.
 pub(crate) type Complaint = (&'static str, String);
 
 /// Parses `#rrggbb` or `#rrggbbaa`.
@@ -19,7 +19,7 @@ pub(super) fn color(key: &'static str, text: &str) -> Result<belvedere_scene::Co
     }
 }
 
-/// As [`color`]; `none` is no colour.
+/// Like [`color`]; `none` means no colour.
 pub(super) fn optional_color(key: &'static str, text: &str) -> Result<Option<belvedere_scene::Color>, Complaint> {
     if text.eq_ignore_ascii_case("none") { Ok(None) } else { color(key, text).map(Some) }
 }

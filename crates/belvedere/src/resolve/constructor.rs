@@ -19,7 +19,7 @@ use belvedere_io::InputFile;
 use belvedere_scene::{LayerKind, Scene};
 use serde::{Deserialize, Serialize};
 
-/// How long a film of a probe shows it when it has all its turns, seconds.
+/// Time for which a film shows a probe after all of its turns are complete, seconds.
 const LOOKED_AT_S: f64 = 2.0;
 
 /// Report of a constructor of curved rays.
@@ -34,10 +34,10 @@ pub enum ConstructorReport {
     AutoProbe(ProbeReport),
 }
 
-/// A preview is said to be short below this share of the length asked for.
+/// Share of the length asked for below which a preview gets a warning.
 const SHORT: f64 = 0.95;
 
-/// Says that a preview follows less of the path than asked.
+/// Warning about a preview that follows less of the path than asked for.
 pub(super) fn remark(report: Option<&ConstructorReport>) -> Option<String> {
     let Some(ConstructorReport::PathPreview(PathReport { preview, .. })) = report else { return None };
     let PreviewReport { position_m, reach_m, wanted_m, .. } = *preview;
@@ -55,10 +55,10 @@ pub struct PathReport {
     /// The preview.
     #[serde(flatten)]
     pub preview: PreviewReport,
-    /// The centreline that is followed, if it was traced.
+    /// The centreline, if one was traced.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub centreline: Option<CentrelineReport>,
-    /// Volumes that are drawn as the wall around the path alone.
+    /// Volumes that are drawn as the wall around the path.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub walls: Vec<WallReport>,
 }
@@ -68,7 +68,7 @@ pub(crate) fn stated(source: &SourceDocument) -> Option<&ConstructorDoc> {
     source.document.constructor.as_ref().filter(|doc| doc.kind != ConstructorKind::Manual)
 }
 
-/// Whether a document looks ahead along a path.
+/// Whether a document previews a path.
 pub(super) fn previews(source: &SourceDocument) -> bool {
     stated(source).is_some_and(|doc| doc.kind == ConstructorKind::PathPreview)
 }
@@ -86,7 +86,7 @@ pub(crate) fn tracks(source: &SourceDocument) -> bool {
     stated(source).is_some_and(|doc| doc.kind != ConstructorKind::PathPreview)
 }
 
-/// Frames in which a probe under a resting camera has all its turns and is looked at for a while; `None` without one.
+/// Number of frames in which a probe under a resting camera completes its turns and is shown for a while; `None` without a probe.
 pub(crate) fn frames_of_probe(source: &SourceDocument, fps: f64) -> Option<f64> {
     let doc = stated(source).filter(|doc| doc.kind == ConstructorKind::AutoProbe)?;
     let options = probe_options(doc);
@@ -102,7 +102,7 @@ fn probe_options(doc: &ConstructorDoc) -> ProbeOptions {
     }
 }
 
-/// Stages that a constructor cannot follow.
+/// Refuses stages that do not combine with a constructor.
 pub(super) fn check_stages(source: &SourceDocument) -> Result<(), BelvedereError> {
     let Some(doc) = stated(source) else { return Ok(()) };
     let previews = doc.kind == ConstructorKind::PathPreview;
@@ -132,7 +132,7 @@ pub(super) fn check_stages(source: &SourceDocument) -> Result<(), BelvedereError
     }
 }
 
-/// The view of a document with the turns that its constructor adds to `base`.
+/// The view `base` with the turns of the document's constructor.
 pub(super) fn construct(
     source: &SourceDocument,
     roots: &Roots,
@@ -166,7 +166,7 @@ pub(super) fn construct(
     Ok((tracked.view, Some(ConstructorReport::TargetTracking(tracked.report))))
 }
 
-/// How a document's target is tracked, and what that is.
+/// Options of the document's target tracking, and the target.
 fn tracking(
     source: &SourceDocument,
     doc: &ConstructorDoc,
@@ -184,8 +184,8 @@ fn tracking(
     Ok((options, target(source, scene, doc.target.as_deref().unwrap_or_default())?))
 }
 
-/// Takes a frame of a film into the plan of its target tracking; `base` is the view without the turns of that. Nothing happens for
-/// other constructors, and where [`construct`] refuses the view.
+/// Adds a frame of a film to the plan of its target tracking; `base` is the view without the turns of the tracking. Does nothing for
+/// other constructors, and for views that [`construct`] refuses.
 pub(crate) fn plan_frame(
     source: &SourceDocument,
     scene: &Scene,
@@ -219,13 +219,13 @@ fn fail(source: &SourceDocument, e: ConstructError) -> BelvedereError {
     }
 }
 
-/// The view of a path preview at the position that the document states.
+/// The view of a path preview at the position given by the document.
 fn preview(source: &SourceDocument, base: &View, prepared: &Prepared) -> Result<(View, PathReport), BelvedereError> {
     let (pinhole, doc) = (base.pinhole(), stated(source));
     let position = doc.and_then(|d| d.position_m).unwrap_or(0.0);
     let seen = prepared.preview.at(position, pinhole.image, pinhole.far).map_err(|e| fail(source, e))?;
     let root = seen.view.pinhole().clone();
-    // The camera is another one; what hangs on the world stays.
+    // The preview has a camera of its own; stages fixed to the world stay.
     let earlier = base.stages().iter().filter_map(|stage| match stage {
         Stage::EarthCurvature(earth) => Some(Stage::EarthCurvature(EarthCurvature { eye: root.eye, ..*earth })),
         stage => stage.moves_ground().then(|| stage.clone()),
@@ -236,10 +236,10 @@ fn preview(source: &SourceDocument, base: &View, prepared: &Prepared) -> Result<
     Ok((view, PathReport { preview: seen.report, centreline: *centreline, walls: walls.clone() }))
 }
 
-/// Width of the picture at the position in a channel, clearances.
+/// Width of the picture at the position in a channel, in clearances of the path.
 const CLEARANCES: f64 = 6.0;
 
-/// The preview of the document, from the frame before where that had the same.
+/// The preview of the document, reused from the frame before if it is the same.
 fn prepared<'m>(
     source: &SourceDocument,
     roots: &Roots,
@@ -302,7 +302,7 @@ pub(crate) fn path_length(
     }
 }
 
-/// What is to be kept in view: a layer, a part or box of one, atoms, or a point.
+/// The target to keep in view: a layer, a part or box of one, atoms, or a point.
 fn target(source: &SourceDocument, scene: &Scene, id: &str) -> Result<Target, BelvedereError> {
     targets::target(scene, id).map_err(|e| {
         let hint = if scene.layers.iter().any(|l| l.id == id) { "; name something that stands on it" } else { "" };

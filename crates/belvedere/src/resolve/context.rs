@@ -1,4 +1,4 @@
-//! What stages are resolved with.
+//! Context in which stages are resolved.
 
 use super::camera::ResolvedCamera;
 use super::ground::Ground;
@@ -9,14 +9,14 @@ use belvedere_core::map::spline::ReferencePlane;
 use belvedere_core::{DVec3, Stage};
 use belvedere_scene::Scene;
 
-/// What stages are resolved with.
+/// Context in which stages are resolved.
 pub(super) struct StageContext<'a> {
     pub(super) source: &'a SourceDocument,
     pub(super) roots: &'a Roots,
     pub(super) scene: &'a Scene,
     pub(super) ground: &'a Ground<'a>,
     pub(super) camera: &'a ResolvedCamera,
-    /// Stages before those of the document.
+    /// Stages before those of the document, such as the earth's curvature.
     pub(super) earth: &'a [Stage],
 }
 

@@ -1,4 +1,4 @@
-//! Solved grids of terrain disocclusion from and to GeoTIFF files.
+//! Reads and writes solved grids of terrain disocclusion as GeoTIFF files.
 
 use crate::BelvedereError;
 use belvedere_core::DVec2;
@@ -39,7 +39,7 @@ pub(super) fn read(path: &Path, bytes: Vec<u8>, crs: Crs) -> Result<Grid, String
     Grid::new(DVec2::new(x, y), spacing, cols, rows, values).map_err(|e| format!("{shown}: {e}"))
 }
 
-/// Writes a grid of height changes so that [`read`] finds the same values.
+/// Writes a grid of height changes so that [`read`] returns the same values.
 pub(crate) fn write(path: &Path, grid: &Grid, crs: Crs, overwrite: bool) -> Result<(), BelvedereError> {
     let mut info = RasterInfo::new(path, grid.cols(), grid.rows(), SampleType::F64);
     let (start, step) = (grid.north_west(), grid.spacing());

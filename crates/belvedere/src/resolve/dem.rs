@@ -6,7 +6,7 @@ use crate::scene_file::{TerrainDoc, VerticalUnit};
 use belvedere_io::terrain::{CrsChoice, TerrainRequest, load_original, load_terrain};
 use belvedere_scene::{Crs, Heightfield};
 
-/// The heights and the coordinate system they bring.
+/// The heights and their coordinate system.
 pub(super) fn load(
     loader: &mut Loader<'_>,
     index: usize,

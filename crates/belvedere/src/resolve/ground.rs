@@ -47,7 +47,7 @@ pub(crate) struct Ground<'a> {
 }
 
 impl<'a> Ground<'a> {
-    /// That of a scene.
+    /// The ground of a scene.
     pub(crate) fn of(scene: &'a Scene) -> Self {
         Self { crs: scene.crs, terrain: scene.terrain() }
     }

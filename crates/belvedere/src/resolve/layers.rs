@@ -1,4 +1,4 @@
-//! From the layers of a document to the layers of a scene.
+//! Reads the layers of a document into layers of a scene.
 
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
@@ -25,38 +25,38 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Which layers to read.
+/// Request for layers.
 pub(crate) struct LayerRequest<'a> {
     pub(crate) origin: &'a Origin,
     pub(crate) layers: &'a [LayerDoc],
     /// `auto`, `local` or `EPSG:n`.
     pub(crate) crs: &'a str,
-    /// The system if `crs` is automatic and there is no terrain.
+    /// The coordinate system if `crs` is automatic and there is no terrain.
     pub(crate) fallback_crs: Option<Crs>,
-    /// Nothing, the terrain, or every layer.
+    /// Layers to read: none, the terrain, or all.
     pub(crate) needs: Needs,
     pub(crate) roots: &'a Roots,
     /// Vector files that were read already.
     pub(crate) vectors: BTreeMap<PathBuf, Loaded<Vectors>>,
-    /// Whether to keep the samples of the terrain's file as they are there.
+    /// Whether to keep the unchanged samples of the terrain's file.
     pub(crate) keep_original: bool,
 }
 
 impl<'a> LayerRequest<'a> {
-    /// Every layer.
+    /// A request for every layer.
     pub(crate) fn new(origin: &'a Origin, layers: &'a [LayerDoc], crs: &'a str, roots: &'a Roots) -> Self {
         let (fallback_crs, needs, vectors) = (None, Needs::Everything, BTreeMap::new());
         Self { origin, layers, crs, fallback_crs, needs, roots, vectors, keep_original: false }
     }
 }
 
-/// Layers, and what was found out on the way.
+/// Layers, with records and warnings of reading them.
 pub(crate) struct LoadedLayers {
     pub(crate) layers: Vec<Layer>,
     pub(crate) crs: Crs,
     pub(crate) inputs: Vec<InputFile>,
     pub(crate) warnings: Vec<String>,
-    /// What the areas were taken for.
+    /// Surfaces found for the areas.
     pub(crate) areas: Vec<AreaRecord>,
     pub(crate) original: Option<OriginalTerrain>,
 }
@@ -108,7 +108,7 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
             layers[i] = layer(&mut loader, i, doc, &ground)?;
         }
     }
-    // Layers keep their numbers: the sea comes last, and is drawn under all other areas.
+    // Layers keep their numbers: the sea comes last, but is drawn below all other areas.
     if needs == Needs::Everything {
         for (i, doc) in docs.iter().enumerate() {
             if let (LayerDoc::Terrain(doc), Some(Layer { kind: LayerKind::Terrain(t), .. })) = (doc, &layers[i]) {
@@ -123,7 +123,7 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
     Ok(LoadedLayers { layers, crs, inputs, warnings, areas, original })
 }
 
-/// Lets layers that were read from the same source know that they are one surface.
+/// Marks layers that were read from the same source as one surface.
 fn share_surfaces(layers: &mut [Layer]) {
     for i in 1..layers.len() {
         let (before, [layer, ..]) = layers.split_at_mut(i) else { return };
@@ -140,7 +140,7 @@ fn first_terrain(layers: &[Option<Layer>]) -> Option<&Heightfield> {
     })
 }
 
-/// The system that the document names; `None` = automatic.
+/// The coordinate system that the document names; `None`: automatic.
 pub(super) fn stated_crs(origin: &Origin, text: &str) -> Result<Option<Crs>, BelvedereError> {
     let text = text.trim();
     if text.eq_ignore_ascii_case("auto") {
@@ -162,7 +162,7 @@ pub(super) fn stated_crs(origin: &Origin, text: &str) -> Result<Option<Crs>, Bel
     Ok(Some(Crs::Epsg(code)))
 }
 
-/// The terrain of a layer and the coordinate system it brings.
+/// The terrain of a layer and its coordinate system.
 fn terrain(
     loader: &mut Loader<'_>,
     index: usize,
@@ -220,7 +220,7 @@ fn palette(loader: &mut Loader<'_>, index: usize, doc: &PaletteDoc) -> Result<Pa
     Ok(Palette::Ramp(Arc::new(loader.take(index, loaded))))
 }
 
-/// Pictures for a terrain that is already there.
+/// Drapes for a terrain that is already loaded.
 fn drapes(
     loader: &mut Loader<'_>,
     index: usize,

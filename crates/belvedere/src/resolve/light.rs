@@ -61,8 +61,8 @@ fn from_time(
     Ok(Light { azimuth: azimuth_deg.to_radians(), altitude: altitude_deg.to_radians(), shadows: doc.shadows })
 }
 
-/// Azimuth (clockwise from north) and altitude of the sun, degrees, `days` after J2000.0 at a WGS84 position; refraction
-/// is left out. Within 0.02 degrees from 1950 to 2050.
+/// Azimuth (clockwise from north) and altitude of the sun, degrees, `days` after J2000.0 at a WGS84 position, without refraction.
+/// Within 0.02 degrees from 1950 to 2050.
 ///
 /// Source: low-precision formulas of the Astronomical Almanac (mean longitude, equation of centre with two terms).
 pub(crate) fn sun_position_deg(days: f64, lon_deg: f64, lat_deg: f64) -> [f64; 2] {

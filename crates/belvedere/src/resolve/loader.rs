@@ -1,4 +1,4 @@
-//! What reading layers has in common: files, built-in scenes, warnings, errors with their line.
+//! State and helpers common to reading all layers: files, built-in scenes, warnings, errors with their line.
 
 use super::builtin;
 use super::color::{color, optional_color};
@@ -13,7 +13,7 @@ use belvedere_scene::{Color, LayerKind};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// What layers are loaded with, and what is found out on the way.
+/// Inputs of reading layers, and its records.
 pub(super) struct Loader<'a> {
     pub(super) origin: &'a Origin,
     pub(super) layers: &'a [LayerDoc],
@@ -22,7 +22,7 @@ pub(super) struct Loader<'a> {
     pub(super) builtins: builtin::Builtins,
     pub(super) inputs: Vec<InputFile>,
     pub(super) warnings: Vec<String>,
-    /// What areas were taken for.
+    /// Surfaces found for areas.
     pub(super) areas: Vec<AreaRecord>,
     /// Vector files that were read already.
     pub(super) vectors: BTreeMap<PathBuf, Loaded<Vectors>>,
@@ -30,7 +30,7 @@ pub(super) struct Loader<'a> {
     pub(super) cities: BTreeMap<usize, Vec<CityFile>>,
     /// Height of the ground of cities, for features without heights where there is no terrain.
     pub(super) floor: Option<f64>,
-    /// Whether the samples of the terrain's file are kept as they are there, and where.
+    /// Whether to keep the unchanged samples of the terrain's file, and these samples.
     pub(super) keep_original: bool,
     pub(super) original: Option<OriginalTerrain>,
 }
@@ -51,7 +51,7 @@ impl Loader<'_> {
         self.layers.get(index).map_or("", LayerDoc::id)
     }
 
-    /// What `pick` takes from a layer of a built-in scene.
+    /// Result of `pick` on a layer of a built-in scene.
     pub(super) fn builtin<T>(
         &mut self,
         index: usize,
@@ -70,14 +70,14 @@ impl Loader<'_> {
         paths.as_slice().iter().map(|name| self.file(index, key, name)).collect()
     }
 
-    /// The value of what was read for a layer; its warnings and files are kept.
+    /// The value read for a layer; keeps its warnings and files.
     pub(super) fn take<T>(&mut self, index: usize, loaded: Loaded<T>) -> T {
         self.note(index, loaded.warnings);
         self.inputs.extend(loaded.files);
         loaded.value
     }
 
-    /// Keeps warnings, with the layer they belong to.
+    /// Keeps warnings with the number of their layer.
     pub(super) fn note(&mut self, index: usize, warnings: Vec<String>) {
         let id = self.layers.get(index).map_or("", LayerDoc::id);
         self.warnings.extend(warnings.into_iter().map(|w| format!("layer \"{id}\": {w}")));

@@ -65,7 +65,7 @@ pub(super) fn with_ambient_occlusion(
     Ok(belvedere_sight::with_ambient_occlusion(mesh, ground, &settings, &loader.options.progress)?)
 }
 
-/// All files of the layer as one.
+/// All files of the layer joined into one.
 fn source(loader: &mut Loader<'_>, index: usize, doc: &MeshDoc) -> Result<MeshFile, BelvedereError> {
     if let Paths::One(name) = &doc.source
         && builtin::is_name(name)
@@ -123,7 +123,7 @@ fn of_mesh(mesh: &Mesh) -> MeshFile {
     }
 }
 
-/// Adds a file to others; colours survive where both have them in the same way.
+/// Adds a file to others; colours are kept if both have them in the same form.
 fn join(all: &mut MeshFile, other: MeshFile) {
     let first = all.positions.len() as u32;
     join_parts(all, &other);
@@ -150,7 +150,7 @@ fn join(all: &mut MeshFile, other: MeshFile) {
     };
 }
 
-/// Parts of one file after those of others.
+/// Appends the parts of a file to those of others.
 fn join_parts(all: &mut MeshFile, other: &MeshFile) {
     if all.names.is_empty() && other.names.is_empty() {
         return;
@@ -169,7 +169,7 @@ fn join_parts(all: &mut MeshFile, other: &MeshFile) {
     }
 }
 
-/// Pictures of one file after those of others.
+/// Appends the pictures of a file to those of others.
 fn join_pictures(all: &mut MeshFile, other: &MeshFile) {
     if all.texturing.is_none() && other.texturing.is_none() {
         return;
@@ -188,7 +188,7 @@ fn join_pictures(all: &mut MeshFile, other: &MeshFile) {
     all.texturing = Some(both);
 }
 
-/// Scales, turns about x, then y, then z, and moves.
+/// Scales, rotates about x, then y, then z, and translates.
 fn apply(file: &mut MeshFile, transform: &TransformDoc) -> Result<(), String> {
     if !(transform.scale > 0.0) {
         return Err(format!("scale is {}, it must be greater than 0", transform.scale));
@@ -208,7 +208,7 @@ pub(super) fn turn(transform: &TransformDoc) -> DMat3 {
     DMat3::from_euler(EulerRot::ZYX, z, y, x)
 }
 
-/// Takes x and y from the file's system to the scene's; heights stay.
+/// Converts x and y from the file's coordinate system to the scene's; heights are unchanged.
 fn reproject(file: &mut MeshFile, from: &str, to: Crs) -> Result<(), String> {
     let code = epsg(from).ok_or_else(|| format!("crs \"{from}\" is not known; give \"EPSG:n\""))?;
     let from = CoordinateSystem::from_epsg(code).map_err(|e| e.to_string())?;

@@ -1,4 +1,4 @@
-//! From a document to a scene and a view.
+//! Resolves a document to a scene and a view.
 
 mod areas;
 mod boxes;

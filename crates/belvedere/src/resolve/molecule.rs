@@ -58,7 +58,7 @@ fn source(loader: &mut Loader<'_>, index: usize, doc: &MoleculeDoc) -> Result<Mo
     Ok(loader.take(index, loaded).molecule)
 }
 
-/// What the document says of colours and selections; also the check of a document that is not opened.
+/// Colours and selections of the document; also checks documents that are not opened.
 pub(super) fn style(doc: &MoleculeDoc, wanted: Option<&Selection>) -> Result<MoleculeStyle, Complaint> {
     let parse = |key: &'static str, text: &str| Selection::parse(text).map_err(|e| (key, e.to_string()));
     let mut paint = Vec::new();
@@ -87,7 +87,7 @@ pub(super) fn style(doc: &MoleculeDoc, wanted: Option<&Selection>) -> Result<Mol
     })
 }
 
-/// All but water, and how many atoms that leaves out; everything where there is nothing but water.
+/// All atoms except water, and the number of those left out; all atoms if there is only water.
 fn without_water(molecule: &Molecule) -> (Selection, usize) {
     let dry = Selection::dry();
     let left_out = dry.mask(molecule).iter().filter(|kept| !**kept).count();
@@ -115,7 +115,7 @@ fn require_drawn(wanted: &Selection, drawn: &Selection, molecule: &Molecule) -> 
     ))
 }
 
-/// What could be selected instead.
+/// Names that can be selected instead.
 fn there_is(molecule: &Molecule) -> String {
     let names: Vec<&str> = molecule.chains().into_iter().filter(|c| !c.is_empty()).take(20).collect();
     let numbers = molecule.residues().iter().map(|r| r.number);

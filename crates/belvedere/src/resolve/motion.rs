@@ -1,4 +1,4 @@
-//! Movements of layers: rows of a CSV file.
+//! Motions of layers: rows of a CSV file.
 
 use crate::BelvedereError;
 use crate::scene_file::paths::Roots;
@@ -8,16 +8,16 @@ use belvedere_io::InputFile;
 use belvedere_scene::{Motion, Placement, Scene};
 use std::sync::Arc;
 
-/// The layers of a scene that move, and the scene where each stands at its own origin.
+/// The moving layers of a scene, and the scene with each of them at its own origin.
 #[derive(Debug, Clone)]
 pub(crate) struct Motions {
     rest: Arc<Scene>,
-    /// Index of the layer, and how it moves.
+    /// Index and motion of each layer.
     layers: Vec<(usize, Motion)>,
 }
 
 impl Motions {
-    /// Reads the movements that a document names; `None` if nothing moves.
+    /// Reads the motions that a document names; `None` if there are none.
     pub(crate) fn read(
         source: &SourceDocument,
         roots: &Roots,
@@ -26,7 +26,7 @@ impl Motions {
     ) -> Result<Option<Self>, BelvedereError> {
         let mut layers = Vec::new();
         for (i, layer) in source.document.layer.iter().enumerate() {
-            // What is not read cannot move.
+            // A layer that is not loaded has no motion.
             let Some(index) = scene.layers.iter().position(|l| l.id == layer.id()) else { continue };
             let Some(name) = layer.motion() else { continue };
             let about = format!("layer \"{}\": ", layer.id());
@@ -51,7 +51,7 @@ impl Motions {
         scene
     }
 
-    /// When the last layer comes to rest, seconds.
+    /// Time at which the last layer comes to rest, seconds.
     pub(crate) fn end(&self) -> f64 {
         self.layers.iter().map(|(_, motion)| motion.end()).fold(0.0, f64::max)
     }

@@ -1,4 +1,4 @@
-//! Paths to look along: a line layer, the way of a layer that moves, or a file.
+//! Paths of previews: a line layer, the motion of a layer, or a file.
 
 use super::motion;
 use crate::BelvedereError;
@@ -10,7 +10,7 @@ use belvedere_scene::{LayerKind, Scene};
 use serde::Deserialize;
 use std::path::Path;
 
-/// The points of the path that `[constructor] path` names, and the file that they were read from.
+/// The points of the path that `[constructor] path` names, and the file of the path, if any.
 pub(super) fn read(
     source: &SourceDocument,
     roots: &Roots,
@@ -57,7 +57,7 @@ fn parse(path: &Path, text: &str) -> Result<Vec<DVec3>, DocError> {
     Ok(points)
 }
 
-/// The first three numbers of every line that `cells` answers; a first line of names is skipped.
+/// The first three numbers of every line for which `cells` returns values; a first line of names is skipped.
 fn rows<'t>(text: &'t str, cells: impl Fn(&'t str) -> Option<Vec<&'t str>>) -> Result<Vec<DVec3>, DocError> {
     let mut points = Vec::new();
     for (i, line) in text.lines().enumerate() {
@@ -73,7 +73,7 @@ fn rows<'t>(text: &'t str, cells: impl Fn(&'t str) -> Option<Vec<&'t str>>) -> R
     Ok(points)
 }
 
-/// A camera that was saved; its eye lies on the path.
+/// A saved camera, whose eye lies on the path.
 #[derive(Deserialize)]
 struct Saved {
     eye: [f64; 3],

@@ -1,4 +1,4 @@
-//! From the turns of a document to curved rays.
+//! Resolves the turns of a document to curved rays.
 
 use crate::BelvedereError;
 use crate::scene_file::{AxisDoc, MergeDoc, RaysStageDoc, SplitDoc, StageDoc, Table, TurnDoc, WayDoc};
@@ -19,7 +19,7 @@ pub(super) fn resolve(root: &Pinhole, doc: &RaysStageDoc, at: Table<'_>) -> Resu
     let rays = CurvedRays::new(root, doc.model, &specs).map_err(|e| at.error(&["turn"], e))?;
     let mut resolved = doc.clone();
     for (turn, computed) in resolved.turn.iter_mut().zip(rays.turns()) {
-        // A rule may come to a number that a file may not state; then the rule stays.
+        // A rule may give a number that files may not state; then the rule is kept.
         if let Some(m) = computed.m.filter(|m| doc.model == Model::Modified && (0.2..=20.0).contains(m)) {
             turn.m = Sharpness::Value(m);
         }
@@ -27,7 +27,7 @@ pub(super) fn resolve(root: &Pinhole, doc: &RaysStageDoc, at: Table<'_>) -> Resu
     Ok((Stage::CurvedRays(rays), StageDoc::CurvedRays(resolved)))
 }
 
-/// Rays that part.
+/// Resolves rays that part.
 fn parting(
     root: &Pinhole,
     doc: &RaysStageDoc,
@@ -42,7 +42,7 @@ fn parting(
     Ok((Stage::SplitRays(rays), StageDoc::CurvedRays(resolved)))
 }
 
-/// * `path`: of the split within the stage.
+/// * `path`: path of the split within the stage.
 fn fork(doc: &SplitDoc, path: &[&str], at: Table<'_>) -> Result<Fork, BelvedereError> {
     let way = |name: &str, way: &WayDoc| -> Result<SplitSpec, BelvedereError> {
         let path = [path, &[name]].concat();
@@ -67,7 +67,7 @@ fn way_doc(spec: &SplitSpec) -> WayDoc {
     WayDoc { turn: spec.turns.iter().map(turn_doc).collect(), split: spec.fork.as_deref().map(split) }
 }
 
-/// * `path`: of the table that holds the turns, within the stage.
+/// * `path`: path of the table with the turns, within the stage.
 fn turn_specs(docs: &[TurnDoc], path: &[&str], at: Table<'_>) -> Result<Vec<TurnSpec>, BelvedereError> {
     let way = if path.is_empty() { String::new() } else { format!("{}, ", path.join(".")) };
     let spec = |(j, turn): (usize, &TurnDoc)| {
@@ -107,7 +107,7 @@ fn turn_spec(doc: &TurnDoc) -> Result<TurnSpec, (&'static str, String)> {
     })
 }
 
-/// The stage of a second viewpoint beside the eye of `root`.
+/// The stage of a single turn with its second viewpoint beside the eye of `root`.
 pub(crate) fn sidestep_stage(sidestep: &Sidestep, root: &Pinhole) -> RaysStageDoc {
     RaysStageDoc { model: Model::Modified, turn: vec![turn_doc(&sidestep.turn(root))], split: None }
 }

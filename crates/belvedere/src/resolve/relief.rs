@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 /// Foreground and background as shares of the distance of the pivot: those of the built-in presets.
 const RANGE: [f64; 2] = [0.5, 1.9];
-/// Large forms as a share of the range.
+/// Standard extent of the large forms, as a share of the range.
 const LARGE: f64 = 0.2;
 
 /// The stage and its document.
@@ -88,7 +88,7 @@ fn transition(context: &StageContext<'_>, plane: &ReferencePlane, number: usize)
         .map(|t| (bend.unbent(t * bend.curve().length(), 0.0, 0.0) - eye).dot(heading)))
 }
 
-/// The key of the document that an error is about.
+/// Key of the document to which an error refers.
 fn key(error: &ReliefError) -> &'static str {
     match error {
         ReliefError::Range { key: "horizon_radius", .. } => "horizon_radius_m",

@@ -7,10 +7,10 @@ use crate::scene_file::{SourceDocument, StageDoc, Table, suggestion};
 use belvedere_core::presets::{BUILTIN_NAMES, PresetDocument};
 use belvedere_scene::Representation;
 
-/// What sections show where nothing is named: the first representation.
+/// Name of sections that name no representation: the first one is shown.
 const UNNAMED: &str = "all";
 
-/// The representations that the document states, and one of its own for each layer that a section names; those of near sections first.
+/// The representations of the document, and a further one for each layer that a section names; those of near sections first.
 ///
 /// # Errors
 /// A layer or a section of no known name; presets that cannot be read.
@@ -45,13 +45,13 @@ pub(crate) fn of(source: &SourceDocument, roots: &Roots) -> Result<Vec<Represent
                 return Err(at.error(&["presets"], reason));
             }
         }
-        // The first one is what pictures without the bend show: that of the nearest section.
+        // Pictures without the bend show the first representation: that of the nearest section.
         all.sort_by_key(|r| named.iter().position(|id| *id == r.id).unwrap_or(named.len()));
     }
     Ok(all)
 }
 
-/// Whether the presets are built in: their sections are names to use, not to have.
+/// Whether the presets are built in: a scene may lack the sections that they name.
 fn is_builtin(presets: &PresetDocument) -> bool {
     BUILTIN_NAMES.iter().any(|name| PresetDocument::builtin(name).is_ok_and(|builtin| builtin == *presets))
 }

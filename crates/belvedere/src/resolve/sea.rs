@@ -6,7 +6,7 @@ use crate::record::AreaRecord;
 use crate::scene_file::TerrainDoc;
 use belvedere_scene::{AreaFeature, AreaLayer, AreaSurface, Hidden, Layer, LayerKind, Sea, TerrainLayer};
 
-/// The sea of a terrain layer; `None` where there is none, or none is wanted.
+/// The sea of a terrain layer; `None` if it has none, or none is to be drawn.
 pub(super) fn layer(loader: &mut Loader<'_>, doc: &TerrainDoc, terrain: &TerrainLayer) -> Option<Layer> {
     let wanted = doc.style.sea && !doc.source.as_slice().iter().any(|name| builtin::is_name(name));
     let sea = if wanted { Sea::of(&terrain.heightfield) } else { None }?;
@@ -20,7 +20,7 @@ pub(super) fn layer(loader: &mut Loader<'_>, doc: &TerrainDoc, terrain: &Terrain
     );
     let surface = AreaSurface::Sea;
     loader.areas.push(AreaRecord { layer: id.clone(), kind: surface.name(), areas: 1, why });
-    // Of rings in one feature every second one is a hole.
+    // Every second ring of a feature is a hole.
     let features = vec![AreaFeature { name: "Sea".into(), rings: sea.coasts }];
     let (fill, outline, width_px, hidden, lift_m) = (surface.color(), None, 1.0, Hidden::Cut, 0.0);
     let kind = LayerKind::Area(AreaLayer { features, fill, outline, width_px, surface, hidden, lift_m });

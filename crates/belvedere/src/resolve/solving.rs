@@ -1,4 +1,4 @@
-//! What constructors and the solver of terrain remember.
+//! Memory of constructors and of the terrain solver.
 
 use super::wall::WallReport;
 use crate::scene_file::ConstructorDoc;
@@ -8,7 +8,7 @@ use belvedere_disocclusion::TerrainMemory;
 use belvedere_io::InputFile;
 use belvedere_scene::Progress;
 
-/// What constructors remember between the frames of a film.
+/// Memory of constructors and solvers between the frames of a film.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Memory {
     pub(crate) terrain: TerrainMemory,
@@ -19,12 +19,12 @@ pub(crate) struct Memory {
 }
 
 impl Memory {
-    /// Nothing but the path of a preview, which depends on the scene and the document alone.
+    /// The memory of a preview's path alone, which depends on the scene and the document.
     pub(crate) fn of_path(&self) -> Self {
         Self { preview: self.preview.clone(), ..Self::default() }
     }
 
-    /// The same for a picture of another size: the preview keeps the camera that was fitted to the size before.
+    /// The same for a picture of another size: the preview keeps the camera that was fitted to the former size.
     pub(crate) fn of_path_sized(&self, image: [u32; 2]) -> Self {
         let mut memory = self.of_path();
         if let Some(prepared) = &mut memory.preview {
@@ -34,7 +34,7 @@ impl Memory {
     }
 }
 
-/// A preview of the path of a document, and what it was made from.
+/// A preview of the path of a document, with its inputs.
 #[derive(Debug, Clone)]
 pub(crate) struct Prepared {
     pub(super) made_from: (ConstructorDoc, [u32; 2]),
@@ -45,10 +45,10 @@ pub(crate) struct Prepared {
     pub(super) preview: PathPreview,
 }
 
-/// What a solver needs beside the document.
+/// Inputs of solvers, besides the document.
 pub(crate) struct Solving<'a> {
     pub(crate) memory: &'a mut Memory,
-    /// Seconds between frames of a film.
+    /// Time between frames of a film, seconds.
     pub(crate) time_step_s: Option<f64>,
     pub(crate) progress: &'a Progress,
 }

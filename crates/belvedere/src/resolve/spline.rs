@@ -49,7 +49,7 @@ pub(super) fn spline(
     Ok((bend, document))
 }
 
-/// Lowest and highest height of what the bend may fold: the terrain, and buildings that are no rigid bodies.
+/// Least and largest height of layers that the bend may fold: the terrain, and buildings that are not rigid bodies.
 fn heights(context: &StageContext<'_>) -> Option<[f64; 2]> {
     let terrain = context.ground.terrain.map(Heightfield::z_range);
     let solid = |layer: &Layer| match &layer.kind {

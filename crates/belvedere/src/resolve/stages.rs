@@ -1,4 +1,4 @@
-//! From the stages of a document to displacements.
+//! Resolves the stages of a document.
 
 use super::context::StageContext;
 use super::solving::Solving;
@@ -23,7 +23,7 @@ pub(crate) fn plane_normal(document: &Document) -> Option<DVec3> {
 pub(super) struct ResolvedStages {
     /// In order of application.
     pub(super) stages: Vec<Stage>,
-    /// The camera behind them: a preset may ask for another field of view.
+    /// The camera behind them: a preset may set another field of view.
     pub(super) pinhole: Pinhole,
     /// The documents with every rule replaced by its value.
     pub(super) documents: Vec<StageDoc>,
@@ -33,7 +33,7 @@ pub(super) struct ResolvedStages {
     pub(super) strip: Option<StripReport>,
 }
 
-/// The stages and their documents. Without `solving` an intent of terrain disocclusion gives no stage.
+/// Resolves the stages. Without `solving` an intent of terrain disocclusion gives no stage.
 pub(super) fn resolve(
     context: &StageContext<'_>,
     solving: Option<&mut Solving<'_>>,
@@ -69,7 +69,7 @@ pub(super) fn resolve(
         out.stages.push(stage);
         out.documents.push(document);
     }
-    // The terrain comes first and is solved last: what it promises has to hold behind the stages that follow it.
+    // The terrain stage comes first in the chain but is solved last, so that its guarantee holds behind the later stages.
     if let (Some((i, settings)), Some(solving)) = (intent, solving) {
         let chain = context.earth.iter().chain(&out.stages).cloned().collect();
         let base = View::new(out.pinhole.clone(), chain).map_err(|e| context.source.error(&["stage"], e))?;
@@ -81,7 +81,7 @@ pub(super) fn resolve(
     Ok(out)
 }
 
-/// A solved grid.
+/// The stage of a solved grid.
 fn solved_terrain(
     context: &StageContext<'_>,
     doc: &TerrainStageDoc,

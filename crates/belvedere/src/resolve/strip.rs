@@ -9,7 +9,7 @@ use belvedere_core::{DVec2, Stage};
 use belvedere_scene::LayerKind;
 use serde::Serialize;
 
-/// The usual half width as a share of the route's length in plan.
+/// Default half width as a share of the route's length in plan.
 const WIDTH: f64 = 0.1;
 
 /// Report of a strip.
@@ -25,7 +25,7 @@ pub struct StripReport {
     pub smoothing_m: f64,
     /// Largest distance of the route from the smoothed one, scene units.
     pub smoothed_off_m: f64,
-    /// Where that is.
+    /// Position in plan of that largest distance, scene units.
     pub smoothed_off_at: [f64; 2],
 }
 
@@ -101,7 +101,7 @@ fn route(
     Ok((line.longest_chain(gap).iter().map(|p| p.truncate()).collect(), "along"))
 }
 
-/// Where the camera looks, in plan.
+/// Point that the camera looks at, in plan.
 fn looked_at(context: &StageContext<'_>) -> DVec2 {
     let pinhole = &context.camera.pinhole;
     let met = || {
@@ -111,7 +111,7 @@ fn looked_at(context: &StageContext<'_>) -> DVec2 {
     context.camera.look_at.unwrap_or_else(met).truncate()
 }
 
-/// The key of the document that an error is about.
+/// Key of the document to which an error refers.
 fn key(error: &StripError, route: &'static str) -> &'static str {
     match error {
         StripError::Range { key: "half_width", .. } | StripError::Radius { .. } | StripError::Overlap { .. } => {

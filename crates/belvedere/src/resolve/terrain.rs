@@ -13,7 +13,7 @@ use belvedere_disocclusion::{
 };
 use belvedere_scene::Scene;
 
-/// Ranges of the parameters of a document.
+/// Checks the ranges of the parameters of a document.
 pub(crate) fn check(doc: &TerrainStageDoc) -> Result<(), (&'static str, String)> {
     if let Err(DisocclusionError::Setting { key, value, range }) = TerrainSolver::new(settings(doc)?) {
         return Err((key, DisocclusionError::Setting { key, value, range }.to_string()));
@@ -104,9 +104,9 @@ pub(crate) fn document(settings: &TerrainSettings, scene: &Scene) -> TerrainStag
     }
 }
 
-/// Judging and drawing takes about so many times as long as what comes before solving.
+/// Time for judging and drawing, as a multiple of the time before solving.
 const DRAWING: f64 = 3.0;
-/// Share of the time that is left for moving the camera.
+/// Share of the remaining time for adjusting the camera.
 const ADJUSTING: f64 = 0.4;
 
 /// Solves the intent for the picture of `base` (earth and later stages).
@@ -127,7 +127,7 @@ pub(super) fn solve(
     Ok(solver.solve(scene, base, &mut solving.memory.terrain, &solving.progress.before(DRAWING))?)
 }
 
-/// Moves the camera where the scene allows it and that saves ground; films keep theirs.
+/// Moves the camera if the scene allows it and less ground then moves; films keep their cameras.
 pub(super) fn adjust(
     source: &SourceDocument,
     scene: &Scene,
@@ -168,16 +168,16 @@ pub(super) fn adjust(
     Ok(())
 }
 
-/// Share of what is in view from which on it is said that it stays hidden.
+/// Hidden share of the features in view above which a warning is given.
 const WORTH_SAYING: f64 = 0.005;
-/// Ground below the lowest by more than this share of the relief looks like no ground, nor do slopes by so many degrees beyond the
-/// terrain's own.
+/// Displacement below the lowest ground, as a share of the relief, and excess of slopes over the terrain's own, degrees, beyond which
+/// the ground looks implausible.
 const IMPLAUSIBLE_SHARE: f64 = 0.2;
 const IMPLAUSIBLE_DEG: f64 = 5.0;
-/// Spikes that are named.
+/// Largest number of spikes that a warning names.
 const SPIKES_NAMED: usize = 3;
 
-/// What a user should know of a solution: one sentence each.
+/// Warnings about a solution: one sentence each.
 pub(crate) fn remarks(solved: &Solved, scene: &Scene) -> Vec<String> {
     let report = &solved.report;
     let mut out = Vec::new();
@@ -227,7 +227,7 @@ pub(crate) fn remarks(solved: &Solved, scene: &Scene) -> Vec<String> {
     out
 }
 
-/// That samples of the elevation model stand apart from all their neighbours.
+/// Warning that samples of the elevation model stand apart from all their neighbours.
 fn spiky(spikes: &[Spike]) -> Option<String> {
     let place = |s: &Spike| {
         let (by, side) = ((s.height_m - s.taken_m).abs(), if s.height_m > s.taken_m { "above" } else { "below" });
@@ -245,7 +245,7 @@ fn spiky(spikes: &[Spike]) -> Option<String> {
     })
 }
 
-/// That limits kept the ground from being dug deeper or steeper, where that hides something.
+/// Warning that limits of depth or slope keep something hidden.
 fn held(report: &TerrainReport) -> Option<String> {
     let limits = report.limited?;
     let hidden = 1.0 - report.metrics.visible_dense;
@@ -261,7 +261,7 @@ fn held(report: &TerrainReport) -> Option<String> {
     })
 }
 
-/// That rivers keep something hidden, and rivers that run uphill all the same.
+/// Warnings that rivers keep something hidden, or still run uphill.
 fn confined(report: &TerrainReport) -> Option<String> {
     let hidden = 1.0 - report.metrics.visible_dense;
     if let Some(worst) =
@@ -280,7 +280,7 @@ fn confined(report: &TerrainReport) -> Option<String> {
     })
 }
 
-/// That the ground moved farther than any ground looks like, and for what.
+/// Warning that the displaced ground looks implausible, with the feature that needs it.
 fn implausible(report: &TerrainReport, scene: &Scene) -> Option<String> {
     let m = &report.metrics;
     let relief = scene.terrain().map_or(0.0, |t| t.z_range()[1] - t.z_range()[0]);
@@ -314,7 +314,7 @@ fn implausible(report: &TerrainReport, scene: &Scene) -> Option<String> {
     ))
 }
 
-/// That there was nothing to do, and why.
+/// Warning that there was nothing to solve, with the reason.
 fn nothing_asked(ahead_m: Option<f64>) -> String {
     let (limit, remedy) = match ahead_m {
         Some(m) => {

@@ -10,11 +10,11 @@ use belvedere_scene::{Color, TransferFunction, TransferPoint, Volume};
 use serde::Deserialize;
 use std::path::Path;
 
-/// A file of ours, TOML or JSON.
+/// A transfer function file of our own, TOML or JSON.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TransferDoc {
-    /// Distance that opacities are stated for, voxel edges.
+    /// Distance to which opacities refer, voxel edges.
     #[serde(default = "one")]
     reference_step: f64,
     points: Vec<PointDoc>,
@@ -28,7 +28,7 @@ struct PointDoc {
     opacity: f64,
 }
 
-/// A colour map as ParaView exports it: a list with one entry. Values, then red, green, blue in 0..=1; opacities as value, opacity,
+/// A colour map as exported by ParaView: a list with one entry. Colours are value, red, green, blue in 0..=1; opacities are value, opacity,
 /// midpoint, sharpness. Midpoints and sharpness are not used.
 #[derive(Debug, Deserialize)]
 struct ParaViewDoc {
@@ -53,7 +53,7 @@ pub(super) fn find(
         return Ok(found);
     }
     if name == WALL {
-        // Until the path is known.
+        // Used until the path is known.
         return Ok(TransferFunction::auto(volume));
     }
     let is_file = [".toml", ".json"].iter().any(|e| name.to_ascii_lowercase().ends_with(e));
@@ -91,7 +91,7 @@ fn points(root: &Node, volume: &Volume) -> Result<(Vec<TransferPoint>, f64), Doc
     Ok((points.collect::<Result<_, DocError>>()?, doc.reference_step))
 }
 
-/// Points wherever colours or opacities have one. Without opacities they rise with the value over the range of the volume.
+/// Points at every value with a colour or an opacity. Without opacities, opacity rises with the value over the range of the volume.
 fn paraview(doc: &ParaViewDoc, volume: &Volume) -> Result<Vec<TransferPoint>, String> {
     let colors: Vec<[f64; 4]> = doc.rgb_points.as_chunks().0.to_vec();
     let [lo, hi] = volume.range().map(f64::from);
@@ -114,7 +114,7 @@ fn paraview(doc: &ParaViewDoc, volume: &Volume) -> Result<Vec<TransferPoint>, St
     Ok(made.collect())
 }
 
-/// Linear between entries that begin with their value.
+/// Linear interpolation of entries that begin with their value.
 fn between(list: &[[f64; 4]], value: f64) -> [f64; 4] {
     let above = list.partition_point(|p| p[0] <= value);
     match (above.checked_sub(1).and_then(|i| list.get(i)), list.get(above)) {

@@ -1,4 +1,4 @@
-//! Checks of a document that need nothing but the document.
+//! Checks of a document without its files.
 
 use super::color::{Complaint, color, optional_color};
 use crate::BelvedereError;
@@ -63,7 +63,7 @@ pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
     Ok(())
 }
 
-/// What a solver of terrain needs beside its parameters.
+/// Checks the inputs of the terrain solver besides its parameters.
 fn terrain_intent(source: &SourceDocument) -> Result<(), BelvedereError> {
     let layers = &source.document.layer;
     for (i, stage) in source.document.stage.iter().enumerate() {
@@ -161,7 +161,7 @@ fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
     }
 }
 
-/// Above `low`, up to `high`.
+/// Checks that a value is above `low` and at most `high`.
 fn within(key: &'static str, value: f64, low: f64, high: f64) -> Result<(), Complaint> {
     if value > low && value <= high {
         return Ok(());
@@ -239,7 +239,7 @@ fn constructor(doc: &ConstructorDoc) -> Result<(), Complaint> {
 
 /// Ranges and combinations of keys of an animation.
 ///
-/// * `may_rest`: the camera may stay where it is, for something else moves.
+/// * `may_rest`: whether the camera may rest, because something else moves.
 pub(crate) fn animation(doc: &AnimationDoc, may_rest: bool) -> Result<(), Complaint> {
     let ways = [doc.along.is_some(), doc.camera.is_some(), doc.sweep.is_some(), doc.turntable.is_some()];
     let given = ways.iter().filter(|w| **w).count();

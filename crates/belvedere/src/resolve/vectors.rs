@@ -1,4 +1,4 @@
-//! Lines, areas, points from files, laid on the terrain.
+//! Lines, areas and points from files, draped on the terrain.
 
 use super::ground::Ground;
 use super::loader::Loader;
@@ -11,7 +11,7 @@ use belvedere_io::{IoError, Loaded};
 use belvedere_scene::{AreaFeature, AreaSurface, Crs, Heightfield, LineFeature, PointFeature};
 use std::mem::take;
 
-/// What a file of features is mostly about.
+/// Main kind of the features of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FeatureKind {
     /// It has lines.
@@ -35,7 +35,7 @@ pub(crate) fn kind_of(vectors: &Vectors) -> FeatureKind {
 }
 
 impl FeatureKind {
-    /// Its word for several.
+    /// Plural of its name.
     pub(crate) fn plural(self) -> &'static str {
         match self {
             Self::Lines => "lines",
@@ -53,16 +53,16 @@ impl FeatureKind {
     }
 }
 
-/// All kinds that a file has, the one it is mostly about first.
+/// All kinds of features in a file, the main one first.
 pub(crate) fn kinds_of(vectors: &Vectors) -> Vec<FeatureKind> {
     let kinds = [FeatureKind::Lines, FeatureKind::Areas, FeatureKind::Points];
     let has = |kind: &FeatureKind| vectors.features.iter().any(|f| kind.is(&f.geometry));
     kinds.into_iter().filter(has).collect()
 }
 
-/// What of a file no layer of the scene draws: one sentence, if it has features of kinds that its layers are not of.
+/// Warning about features of a file that no layer of the scene draws, if there are any.
 fn left_out(loader: &Loader<'_>, index: usize, file: &str, vectors: &Vectors) -> Option<String> {
-    // Outlines of areas are lines, too.
+    // Outlines of areas are also lines.
     let drawn = |layer: &LayerDoc, kind: FeatureKind| match layer {
         LayerDoc::Line(l) => l.source.as_ref().is_some_and(|s| names(s, file)) && kind != FeatureKind::Points,
         LayerDoc::Area(l) => names(&l.source, file) && kind == FeatureKind::Areas,
@@ -72,7 +72,7 @@ fn left_out(loader: &Loader<'_>, index: usize, file: &str, vectors: &Vectors) ->
     };
     let first = loader.layers.iter().position(|l| kinds_of(vectors).iter().any(|kind| drawn(l, *kind)));
     if first != Some(index) {
-        return None; // said once
+        return None; // The warning is given once.
     }
     let count = |kind: FeatureKind| vectors.features.iter().filter(|f| kind.is(&f.geometry)).count();
     let lost: Vec<String> = kinds_of(vectors)
@@ -107,7 +107,7 @@ fn all<T>(
     for (name, file) in paths.as_slice().iter().zip(loader.files(index, "source", paths)?) {
         loader.options.progress.tick("reading features", 0.0)?;
         let known = loader.vectors.get_mut(&file).map(|known| {
-            // What there is to say is said once.
+            // Warnings are given once.
             Loaded { value: known.value.clone(), warnings: take(&mut known.warnings), files: take(&mut known.files) }
         });
         let vectors = known.map_or_else(|| load_vectors(&file), Ok)?;
@@ -121,7 +121,7 @@ fn all<T>(
     Ok(features)
 }
 
-/// Lays lines and points without heights on the ground of the cities, where there is no terrain.
+/// Places lines and points without heights on the ground of the cities if there is no terrain.
 fn stand(loader: &mut Loader<'_>, index: usize, vectors: &mut Vectors) {
     let Some(floor) = loader.floor else { return };
     let flat = |g: &&mut Geometry| !matches!(g, Geometry::Polygons(_));
@@ -137,7 +137,7 @@ fn stand(loader: &mut Loader<'_>, index: usize, vectors: &mut Vectors) {
     }
 }
 
-/// How many names have letters that the font has not, and the first of them: one sentence, if there are any.
+/// Warning with the number of names with letters that the font lacks, and the first of them.
 pub(super) fn unset_names<'n>(names: impl Iterator<Item = &'n str>) -> Option<String> {
     let unset: Vec<&str> = names.filter(|name| !belvedere_cpu::canvas::can_set(name)).collect();
     let first = unset.first()?;
@@ -157,7 +157,7 @@ pub(super) fn lines(
     all(loader, index, paths, ground, lines_on_terrain, |_| ())
 }
 
-/// Areas of files, and what they are: what the first file says that knows.
+/// Areas of files, and their surface: that of the first file that gives one.
 pub(super) fn areas(
     loader: &mut Loader<'_>,
     index: usize,

@@ -1,4 +1,4 @@
-//! What depends on camera and stages: the view, the light, and the document with every rule replaced by its value.
+//! Resolves camera and stages: the view, the light, and the document with every rule replaced by its value.
 
 use super::constructor::{self, ConstructorReport};
 use super::ground::{Ground, earth};
@@ -13,7 +13,7 @@ use belvedere_disocclusion::TerrainReport;
 use belvedere_io::InputFile;
 use belvedere_scene::{Light, Scene};
 
-/// What depends on camera and stages.
+/// Results that depend on camera and stages.
 pub(crate) struct ResolvedView {
     /// The document with every default filled in and every rule replaced by its value.
     pub(crate) document: Document,

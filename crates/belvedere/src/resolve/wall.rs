@@ -1,4 +1,4 @@
-//! Volumes that a path preview runs through, drawn as the wall around its path alone.
+//! Volumes around the path of a preview, drawn as its wall alone.
 
 use crate::BelvedereError;
 use crate::scene_file::{LayerDoc, SourceDocument, VolumeDoc};
@@ -9,9 +9,9 @@ use belvedere_scene::volume::WALL;
 use belvedere_scene::{LayerKind, Scene, TransferFunction};
 use serde::{Deserialize, Serialize};
 
-/// Share of the path inside a volume from which on that is drawn as its wall without being asked to.
+/// Share of the path inside a volume from which on the volume is drawn as a wall by default.
 const INSIDE: f64 = 0.5;
-/// The function of volumes that name none.
+/// Transfer function of volumes without one.
 const AUTO: &str = "auto";
 
 /// A volume that is drawn as the wall around the path.
@@ -30,7 +30,7 @@ impl WallReport {
     }
 }
 
-/// Refuses walls where no path says of what.
+/// Refuses walls in scenes without a path preview.
 pub(super) fn check(source: &SourceDocument, previews: bool) -> Result<(), BelvedereError> {
     let asks = |layer: &LayerDoc| matches!(layer, LayerDoc::Volume(v) if v.transfer == WALL);
     match source.document.layer.iter().position(asks) {
@@ -42,8 +42,8 @@ pub(super) fn check(source: &SourceDocument, previews: bool) -> Result<(), Belve
     }
 }
 
-/// The walls around a path: of volumes that ask for it, and of those that name no function and hold most of the path; and a sentence
-/// for each of the latter around whose path none was found.
+/// The walls around a path: of volumes that ask for one, and of volumes without a transfer function that contain most of the path; and a
+/// warning for each of the latter without a wall.
 pub(super) fn around(
     source: &SourceDocument,
     scene: &Scene,
@@ -69,14 +69,14 @@ pub(super) fn around(
     Ok((walls, warnings))
 }
 
-/// The scene with its volumes drawn as these walls and no others; `None` where they are so already.
+/// The scene with exactly these walls; `None` if nothing changes.
 pub(crate) fn drawn(scene: &Scene, walls: &[WallReport]) -> Option<Scene> {
     let mut changed = None;
     for (i, layer) in scene.layers.iter().enumerate() {
         let LayerKind::Volume(volume) = &layer.kind else { continue };
         let transfer = match walls.iter().find(|wall| wall.layer == layer.id) {
             Some(wall) => wall.transfer(),
-            // That of a path before.
+            // A wall of an earlier path is replaced.
             None if volume.transfer.name() == WALL => TransferFunction::auto(&volume.volume),
             None => continue,
         };

@@ -1,4 +1,4 @@
-//! `check`: what a scene holds.
+//! `check`: contents of a scene.
 
 use crate::scene_file::StageDoc;
 use crate::{BelvedereError, Session};
@@ -16,7 +16,7 @@ pub struct CheckReport {
     pub layers: Vec<CheckedLayer>,
     /// Stages in order of application.
     pub stages: Vec<&'static str>,
-    /// What was odd.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 
@@ -48,10 +48,10 @@ impl std::fmt::Display for CheckReport {
     }
 }
 
-/// What an opened scene holds; that it opened is the check.
+/// Contents of an opened scene; opening it is the check.
 ///
 /// # Errors
-/// [`BelvedereError`] if it could be opened but not drawn.
+/// [`BelvedereError`] if the scene can be opened but not drawn.
 pub fn check(session: &Session) -> Result<CheckReport, BelvedereError> {
     session.check_drawable()?;
     let layers = session.scene().layers.iter().map(|layer| {
@@ -77,7 +77,7 @@ pub fn check(session: &Session) -> Result<CheckReport, BelvedereError> {
     })
 }
 
-/// Names of the stages, those that are still to be solved for included.
+/// Names of the stages, including those that are not solved yet.
 fn stages(session: &Session) -> Vec<&'static str> {
     let mut names = session.stage_names();
     let stages = session.resolved().map(|document| document.stage.as_slice()).unwrap_or_default();

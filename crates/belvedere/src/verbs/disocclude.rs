@@ -1,4 +1,4 @@
-//! `disocclude`: an elevation model in, one in which features can be seen from an eye out.
+//! `disocclude`: writes an elevation model on which features are visible from an eye.
 
 use super::in_time;
 use super::level_lakes::LevelLakes;
@@ -26,25 +26,25 @@ use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Sides of the picture that the field of view belongs to, pixels.
+/// Size of the picture to which the field of view refers, pixels.
 const IMAGE: [u32; 2] = [1280, 720];
-/// Share from which on a promise is kept on resampled heights.
+/// Share from which on a guarantee counts as kept on resampled heights.
 const KEPT_SHARE: f64 = 0.9999;
-/// Share of the time that is left for moving the eye.
+/// Share of the remaining time for adjusting the eye.
 const ADJUSTING: f64 = 0.4;
-/// Judging and writing the ground takes about so many times as long as reading it.
+/// Time for judging and writing the ground, as a multiple of the time for reading it.
 const WRITING: f64 = 1.5;
-/// So many pictures above one another hold nearly all that lies above and below one.
+/// Height in pictures of the taller view, which contains nearly all ground above and below the picture.
 const TALLER: u32 = 8;
-/// Share of what is in view that is wanted visible.
+/// Visible share of the features in view that is the goal.
 const VISIBLE_LENGTH: f64 = 0.995;
 
-/// What to show, and from where.
+/// Features to show, and the eye.
 #[derive(Debug, Clone, Default)]
 pub struct DisoccludeRequest {
-    /// Elevation model (one file) and features; whether holes stay holes is up to `fill_voids`.
+    /// Elevation model (one file) and features; `fill_voids` decides about holes.
     pub data: DataFiles,
-    /// Fills holes of the elevation model of at most [`crate::data::LARGEST_HOLE`] of it, in the files that are written, too.
+    /// Fills holes of the elevation model of at most [`crate::data::LARGEST_HOLE`] of its area, also in the files that are written.
     pub fill_voids: bool,
     /// Eye: x, y in the system of the elevation model (degrees if geographic), z metres over its datum.
     pub eye: [f64; 3],
@@ -54,20 +54,20 @@ pub struct DisoccludeRequest {
     pub fov_x_deg: f64,
     /// Parameters of the solver.
     pub parameters: TerrainStageDoc,
-    /// Lets the ground fall away with the distance.
+    /// Lets the ground curve downwards with the distance.
     pub curved_earth: bool,
     /// Grid of the files that are written.
     pub grid: WrittenGrid,
 }
 
-/// A grid that heights are written on.
+/// Grid of the written heights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WrittenGrid {
-    /// That of the input, in its system. Where it is not the one that is solved on, heights are resampled.
+    /// The grid of the input, in its coordinate system. Heights are resampled if the solver's grid is another one.
     #[default]
     Input,
-    /// The one that is solved on, in metres: what was promised holds to the node.
+    /// The solver's grid, in metres: guarantees hold at every node.
     Scene,
 }
 
@@ -100,40 +100,40 @@ pub fn parameters(texts: &[String]) -> Result<TerrainStageDoc, BelvedereError> {
 pub struct Disoccluded {
     /// Terrain and features.
     pub session: Session,
-    /// Displacement and figures.
+    /// Displacement and report.
     pub solved: Solved,
-    /// Heights and displacement as they are written.
+    /// Written heights and displacement.
     rasters: [Raster; 2],
     record: Record,
 }
 
-/// The report file.
+/// Contents of the report file.
 #[derive(Debug, Clone, Serialize)]
 struct Record {
     program: String,
     crs: String,
     eye: [f64; 3],
-    /// Where adjust_viewpoint moved the eye, in `crs`.
+    /// Eye after adjust_viewpoint, in `crs`.
     #[serde(skip_serializing_if = "Option::is_none")]
     adjusted_eye: Option<[f64; 3]>,
     look: [f64; 2],
     fov_x_deg: f64,
     earth: &'static str,
     grid: WrittenGrid,
-    /// Share of what is in view that is seen on the heights as they are written, where those are resampled.
+    /// Visible share of the features in view on the written heights, if they are resampled.
     #[serde(skip_serializing_if = "Option::is_none")]
     visible_written: Option<f64>,
-    /// How rivers run on the heights as they are written, where those are resampled.
+    /// Reports of rivers on the written heights, if they are resampled.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     rivers_written: Vec<RiverReport>,
-    /// That of the report, if it holds for the heights as they are written.
+    /// The report's guarantee, if it holds for the written heights.
     guaranteed: bool,
     layers: Vec<String>,
     inputs: Vec<InputFile>,
     warnings: Vec<String>,
 }
 
-/// Where the results go.
+/// Output files.
 #[derive(Debug, Clone, Default)]
 pub struct DisoccludeFiles {
     /// Displaced elevation model, GeoTIFF on the grid of the input.
@@ -226,7 +226,7 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
     Ok(Disoccluded { session, solved, rasters, record })
 }
 
-/// What is seen of the features on the heights as they are written, read again as any file is.
+/// Visible share of the features on the written heights, read back like any file.
 fn written_share(
     scene: &Scene,
     straight: &View,
@@ -252,7 +252,7 @@ fn written_share(
     Ok(shares.min_by(f64::total_cmp))
 }
 
-/// The view with what lies above and below its picture, which the solver counts as well.
+/// The view extended above and below its picture, as the solver judges it.
 fn taller(view: &View) -> Result<View, BelvedereError> {
     let pinhole = view.pinhole();
     let Projection::Perspective { fov_y } = pinhole.projection else { return Ok(view.clone()) };
@@ -262,7 +262,7 @@ fn taller(view: &View) -> Result<View, BelvedereError> {
     Ok(View::new(taller, view.stages().to_vec())?)
 }
 
-/// That resampling hides again what was solved for.
+/// Warning that resampling hides features that the solution shows.
 fn resampled_away(share: f64, solved: &Solved) -> Option<String> {
     let lost = solved.report.metrics.visible_dense - share;
     (lost > 1.0 - KEPT_SHARE).then(|| {
@@ -275,7 +275,7 @@ fn resampled_away(share: f64, solved: &Solved) -> Option<String> {
     })
 }
 
-/// Eye and point looked at, in the scene.
+/// A level camera: eye and target in the scene.
 struct LevelCamera {
     eye: DVec3,
     target: DVec2,
@@ -314,7 +314,7 @@ impl LevelCamera {
         Ok(Self { eye, target, fov_x: deg.to_radians(), earth })
     }
 
-    /// Moves the eye where `slider` allows it and that saves ground; answers where to, and a sentence that says so.
+    /// Moves the eye if `slider` allows it and less ground then moves; returns the new eye and a sentence about it.
     fn adjust(
         &mut self,
         slider: Option<f64>,
@@ -341,7 +341,7 @@ impl LevelCamera {
         }))
     }
 
-    /// The view of `look_at`. A level one includes what lies above or below the picture as well, for the ground moves up and down.
+    /// The view towards `look_at`. A level one judges ground above and below the picture as well, since the ground moves vertically.
     fn view(&self, look_at: DVec3, ground: Option<Stage>) -> Result<View, BelvedereError> {
         let [width, height] = IMAGE.map(f64::from);
         let fov_y = 2.0 * ((0.5 * self.fov_x).tan() * height / width).atan();
@@ -352,7 +352,7 @@ impl LevelCamera {
 }
 
 impl Disoccluded {
-    /// Figures of the solution.
+    /// Report of the solution.
     pub fn report(&self) -> &TerrainReport {
         &self.solved.report
     }
@@ -385,7 +385,7 @@ impl Disoccluded {
         self.record.visible_written.map_or(solved, |written| written.min(solved))
     }
 
-    /// One sentence: what is visible before and after, and what that takes.
+    /// One sentence: visible shares before and after, and the displacement.
     pub fn summary(&self) -> String {
         let r = self.report();
         format!(
@@ -437,8 +437,8 @@ impl Disoccluded {
     }
 }
 
-/// Features on the displaced ground: GeoJSON in WGS 84 (scene coordinates without georeference), heights those of the displaced
-/// ground, the true positions as the property `true_coordinates`.
+/// Features on the displaced ground: GeoJSON in WGS 84 (scene coordinates without georeference), with heights of the displaced
+/// ground and the true positions as property `true_coordinates`.
 fn moved_features(session: &Session, stage: &TerrainDisocclusion) -> Result<Value, BelvedereError> {
     let scene = session.scene();
     let to_wgs84 = match scene.crs {
@@ -450,7 +450,7 @@ fn moved_features(session: &Session, stage: &TerrainDisocclusion) -> Result<Valu
         Some([xy.x, xy.y, p.z])
     };
     let moved = |p: DVec3| p + stage.delta_at(p) * DVec3::Z;
-    // A point outside the domain of the system is left out, from both lists alike.
+    // A point outside the domain of the coordinate system is left out of both lists.
     let both = |points: &[DVec3]| -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
         points.iter().filter_map(|p| Some((geographic(moved(*p))?, geographic(*p)?))).unzip()
     };

@@ -1,18 +1,18 @@
-//! What a picture shows, judged in the time that there is.
+//! Measures visibility within the time limit.
 
 use crate::BelvedereError;
 use belvedere_construct::{MeasureOptions, Measures, default_spacing, measure};
 use belvedere_core::View;
 use belvedere_scene::{Instant, Progress, Scene};
 
-/// Samples are first taken so many times as far apart as they should be, then at the others.
+/// Factors of the sample spacing that are tried in turn, from coarse to fine.
 const COARSER: [u32; 3] = [16, 4, 1];
-/// The next finer samples take at most so many times as long: those of areas lie in two directions.
+/// Largest factor of time to the next finer spacing: samples of areas lie in two dimensions.
 const DEARER: f64 = 16.0;
-/// They are not to take more than this share of the time that is left.
+/// Largest share of the remaining time that the next measurement may take.
 const SHARE: f64 = 0.3;
 
-/// Measures by lines of sight, as finely as there is time for; also the spacing of the samples against what it is without a limit.
+/// Measures by lines of sight, as finely as the time limit allows; also returns the factor of the sample spacing.
 ///
 /// # Errors
 /// Those of [`measure()`].
@@ -36,7 +36,7 @@ pub(super) fn measured(scene: &Scene, view: &View, progress: &Progress) -> Resul
     }
 }
 
-/// How to measure with samples so many times as far apart as usual.
+/// Options for measuring with a factor of the sample spacing.
 pub(super) fn options(scene: &Scene, coarser: u32) -> MeasureOptions {
     let spacing_m = (coarser > 1).then(|| f64::from(coarser) * default_spacing(scene));
     MeasureOptions { spacing_m, ..MeasureOptions::default() }

@@ -1,4 +1,4 @@
-//! `info`: what files hold, and what this machine can do.
+//! `info`: contents of files, and capabilities of this machine.
 
 mod city;
 mod volume;
@@ -25,21 +25,21 @@ use std::path::Path;
 #[derive(Debug, Clone, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum FileInfo {
-    /// Heights.
+    /// Terrain.
     Terrain(TerrainInfo),
     /// A picture.
     Picture(PictureInfo),
-    /// Samples that make no terrain of a scene; the last warning says why.
+    /// A raster that is not usable as terrain; the last warning gives the reason.
     Raster(PictureInfo),
-    /// Lines, areas, points.
+    /// Lines, areas or points.
     Features(FeatureInfo),
-    /// Triangles.
+    /// A mesh.
     Mesh(MeshInfo),
     /// A city.
     City(CityInfo),
-    /// Atoms.
+    /// A molecule.
     Molecule(MoleculeInfo),
-    /// Voxels.
+    /// A volume.
     Volume(VolumeInfo),
     /// A built-in scene.
     Builtin(BuiltinInfo),
@@ -54,13 +54,13 @@ pub struct UnreadInfo {
     pub path: String,
     /// Format.
     pub format: &'static str,
-    /// What such files hold.
+    /// Kind of contents of such files.
     pub holds: &'static str,
-    /// That it is not read, and what to do.
+    /// Note that it is not read, and what to do.
     pub note: String,
 }
 
-/// Triangles.
+/// A mesh.
 #[derive(Debug, Clone, Serialize)]
 pub struct MeshInfo {
     /// The file.
@@ -73,21 +73,21 @@ pub struct MeshInfo {
     pub triangles: usize,
     /// Whether vertices have normals.
     pub normals: bool,
-    /// Whether it has colours of its own.
+    /// Whether it has colours.
     pub colors: bool,
-    /// Sizes of the pictures that it wears: columns and rows.
+    /// Sizes of its pictures: columns and rows.
     pub pictures: Vec<[usize; 2]>,
     /// Names of its parts, as paths through the file; the first hundred.
     pub parts: Vec<String>,
-    /// Smallest coordinates, the file's own.
+    /// Smallest coordinates, in the file's own system.
     pub min: [f64; 3],
     /// Largest coordinates.
     pub max: [f64; 3],
-    /// What was odd.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 
-/// Heights: the file as it is, and the ground that a scene gets from it.
+/// Terrain: the file, and the ground that a scene gets from it.
 #[derive(Debug, Clone, Serialize)]
 pub struct TerrainInfo {
     /// The file.
@@ -96,9 +96,9 @@ pub struct TerrainInfo {
     pub size: [usize; 2],
     /// Coordinate system of the file.
     pub crs: String,
-    /// Unit of its plane.
+    /// Unit of its horizontal coordinates.
     pub unit: String,
-    /// Distances of its samples, in that unit.
+    /// Spacing of its samples, in that unit.
     pub spacing: [f64; 2],
     /// First and last samples in the file's system: west, south, east, north.
     pub extent: [f64; 4],
@@ -112,7 +112,7 @@ pub struct TerrainInfo {
     pub void_share: f64,
     /// The ground of a scene.
     pub scene: GroundInfo,
-    /// What was odd.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 
@@ -123,20 +123,20 @@ pub struct GroundInfo {
     pub crs: String,
     /// Columns and rows.
     pub nodes: [usize; 2],
-    /// Distances of the nodes, metres.
+    /// Spacing of the nodes, metres.
     pub spacing_m: [f64; 2],
     /// Scene x, y: west, south, east, north.
     pub extent: [f64; 4],
-    /// Whether the samples of the file are its nodes; else they were resampled.
+    /// Whether its nodes are the samples of the file; else these were resampled.
     pub as_in_file: bool,
 }
 
-/// What is said of files instead of what they say themselves.
+/// Properties of files that override those in the files.
 #[derive(Debug, Clone, Default)]
 pub struct InfoRequest {
-    /// `EPSG:n` of terrain.
+    /// `EPSG:n` of the terrain.
     pub source_crs: Option<String>,
-    /// Stored value of terrain that means "no data".
+    /// Stored value of the terrain that means "no data".
     pub nodata: Option<f64>,
     /// Unit of heights.
     pub vertical_unit: Option<VerticalUnit>,
@@ -159,7 +159,7 @@ pub struct PictureInfo {
     pub crs: String,
     /// Model coordinates of the corners: top left, top right, bottom right, bottom left.
     pub corners: Option<[[f64; 2]; 4]>,
-    /// What was odd.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 
@@ -180,15 +180,15 @@ pub struct FeatureInfo {
     pub points: usize,
     /// Field that their names are taken from, if any.
     pub name_field: Option<String>,
-    /// Features with a name.
+    /// Number of features with a name.
     pub named: usize,
     /// Their properties, at most fifty.
     pub properties: Vec<PropertyInfo>,
-    /// Vertices of all.
+    /// Vertices of all features.
     pub vertices: usize,
     /// Smallest x, y and largest x, y in the file's system.
     pub extent: Option<[DVec2; 2]>,
-    /// What was odd.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 
@@ -199,7 +199,7 @@ pub struct PropertyInfo {
     pub name: String,
     /// Features that have it.
     pub features: usize,
-    /// What one of them says, shortened.
+    /// Shortened value of one of them.
     pub example: String,
 }
 
@@ -216,13 +216,13 @@ pub struct BuiltinInfo {
     pub max: [f64; 3],
     /// Eye of the suggested camera.
     pub eye: [f64; 3],
-    /// Its look_at.
+    /// Target of the suggested camera.
     pub look_at: [f64; 3],
-    /// Its field of view, degrees.
+    /// Vertical field of view of the suggested camera, degrees.
     pub fov_y_deg: f64,
 }
 
-/// What the machine offers.
+/// Capabilities of the machine.
 #[derive(Debug, Clone, Serialize)]
 pub struct MachineInfo {
     /// Worker threads.
@@ -231,11 +231,11 @@ pub struct MachineInfo {
     pub renderers: Vec<&'static str>,
     /// GPU adapters: none in this version.
     pub adapters: Vec<String>,
-    /// In words.
+    /// Summary in words.
     pub note: &'static str,
 }
 
-/// What this machine can do.
+/// Capabilities of this machine.
 pub fn machine() -> MachineInfo {
     MachineInfo {
         threads: std::thread::available_parallelism().map_or(1, usize::from),
@@ -245,18 +245,18 @@ pub fn machine() -> MachineInfo {
     }
 }
 
-/// Describes a file: features, a picture, terrain, triangles, or atoms; or a built-in scene.
+/// Describes a file: features, a picture, terrain, a mesh, a city, a molecule or a volume; or a built-in scene.
 ///
 /// # Errors
-/// [`BelvedereError::Io`] with what is wrong with it.
+/// [`BelvedereError::Io`] with the reason.
 pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereError> {
     describe_as(name, &InfoRequest::default(), progress)
 }
 
-/// As [`describe`], with what is known of the file besides.
+/// Like [`describe`], with properties that override those in the file.
 ///
 /// # Errors
-/// [`BelvedereError::Io`] with what is wrong with it.
+/// [`BelvedereError::Io`] with the reason.
 pub fn describe_as(name: &str, request: &InfoRequest, progress: &Progress) -> Result<FileInfo, BelvedereError> {
     if name.starts_with("builtin:") {
         return built_in(name);
@@ -316,7 +316,7 @@ impl InfoRequest {
     }
 }
 
-/// A picture, terrain, or else the raster alone.
+/// Describes a GeoTIFF as picture, as terrain, or else as raster.
 fn geotiff(path: &Path, name: &str, request: &TerrainRequest, progress: &Progress) -> Result<FileInfo, BelvedereError> {
     let opened = GeoTiff::open(path, request.limits)?;
     let (file, info) = (&opened.value, opened.value.info());
@@ -333,7 +333,7 @@ fn geotiff(path: &Path, name: &str, request: &TerrainRequest, progress: &Progres
         return Ok(FileInfo::Picture(picture));
     }
     match terrain(path, request, progress) {
-        // Whole and readable, only no ground of a scene as it stands.
+        // Readable, but not usable as ground of a scene.
         Err(reason) if !reason.is_cancelled() && file.read(0, progress).is_ok() => {
             let warnings = picture.warnings.iter().cloned().chain([reason.to_string()]).collect();
             Ok(FileInfo::Raster(PictureInfo { warnings, ..picture }))
@@ -371,11 +371,11 @@ fn terrain(path: &Path, request: &TerrainRequest, progress: &Progress) -> Result
     }))
 }
 
-/// Most properties that are listed, and most characters of an example.
+/// Largest number of properties listed, and of characters of an example.
 const LISTED: usize = 50;
 const EXAMPLE: usize = 60;
 
-/// The properties of features, those that most have first.
+/// Properties of features, the most frequent first.
 fn properties(vectors: &Vectors) -> Vec<PropertyInfo> {
     let mut found: BTreeMap<&str, (usize, &str)> = BTreeMap::new();
     for (name, value) in vectors.features.iter().flat_map(|f| &f.properties) {

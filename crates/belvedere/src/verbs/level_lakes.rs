@@ -1,11 +1,11 @@
-//! Lakes on grids that are written: level there, too, where those are other grids than the one that was solved on.
+//! Lakes on written grids: kept level also where the grid is not the solver's.
 
 use belvedere_core::{DVec2, TerrainDisocclusion, polygon};
 use belvedere_disocclusion::TerrainReport;
 use belvedere_disocclusion::report::BANK_M;
 use belvedere_scene::{Heightfield, LayerKind, Scene};
 
-/// One lake: the box around it, its rings, the height up to which there is water, and by how much it moved.
+/// One lake: its bounding box, its rings, the height up to which its area counts as water, and its displacement.
 struct Lake<'a> {
     low: DVec2,
     high: DVec2,
@@ -14,7 +14,7 @@ struct Lake<'a> {
     moved: f64,
 }
 
-/// A displacement that is the same for all water of a lake; its bank moves as it was solved.
+/// A displacement that is constant over the water of a lake; its banks move as solved.
 pub(super) struct LevelLakes<'a> {
     stage: &'a TerrainDisocclusion,
     terrain: Option<&'a Heightfield>,
@@ -22,7 +22,7 @@ pub(super) struct LevelLakes<'a> {
 }
 
 impl<'a> LevelLakes<'a> {
-    /// * `report`: says which areas of the scene are lakes, and how they moved.
+    /// * `report`: gives the areas of the scene that are lakes, and their displacements.
     pub(super) fn new(stage: &'a TerrainDisocclusion, report: &TerrainReport, scene: &'a Scene) -> Self {
         let lake = |of: &belvedere_disocclusion::report::LakeReport| {
             let LayerKind::Area(areas) = &scene.layers.get(of.layer)?.kind else { return None };

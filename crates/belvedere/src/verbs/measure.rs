@@ -1,4 +1,4 @@
-//! `measure`: what a scene's picture shows of what must be seen.
+//! `measure`: visibility of the required features in a scene's picture.
 
 use crate::{BelvedereError, RendererChoice, Session};
 pub use belvedere_construct::MeasureOptions;
@@ -17,26 +17,26 @@ pub struct MeasureReport {
     pub crs: String,
     /// Stages in order of application.
     pub stages: Vec<&'static str>,
-    /// Who drew the depth buffers.
+    /// Renderer of the depth buffers.
     pub renderer: &'static str,
     /// Report of the solver of terrain disocclusion; `None` if it did not run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub terrain: Option<TerrainReport>,
-    /// The share of what must be seen that is seen in the picture, 0..=1: by the judge of terrain disocclusion where that judged all its
-    /// points and nothing but the ground hides, else by line of sight; of lines by length, areas by area, surfaces, and points by number the least. `None` if nothing
-    /// of it is in the picture.
+    /// Visible share of the required features in the picture, 0..=1: by the judge of terrain disocclusion where it judged all its points
+    /// and only the ground hides, else by lines of sight. The least of the shares of lines (by length), areas (by area), surfaces, and points
+    /// (by number). `None` if no part of them is in the picture.
     pub visible: Option<f64>,
-    /// The figures.
+    /// The measures.
     #[serde(flatten)]
     pub measures: Measures,
-    /// What was odd when the scene was opened.
+    /// Warnings of opening the scene.
     pub scene_warnings: Vec<String>,
 }
 
-/// Two ways to judge one picture of ground differ by so much at most.
+/// Largest difference between two measures of one picture of ground for which the judge's figure is reported.
 const ONE_FIGURE: f64 = 0.005;
 
-/// Visible share straight and bent: one figure for each picture, see [`MeasureReport::visible`].
+/// Visible shares straight and bent: one figure for each picture, see [`MeasureReport::visible`].
 pub(super) fn shares(measures: &Measures, terrain: Option<&TerrainReport>) -> [Option<f64>; 2] {
     let kinds = [&measures.lines, &measures.areas, &measures.points, &measures.surfaces];
     let least = |of: fn(&FeatureMeasure) -> &Visibility| {
@@ -44,12 +44,12 @@ pub(super) fn shares(measures: &Measures, terrain: Option<&TerrainReport>) -> [O
     };
     let [straight, bent] = [least(|m| &m.straight), least(|m| &m.bent)];
     let judged = terrain.filter(|t| t.judged_every == 1).map(|t| t.metrics.visible_dense);
-    // The judge knows the ground alone: where something else hides, or a surface must be seen, lines of sight find less.
+    // The judge knows the ground alone: where other layers hide, or a surface is required, lines of sight give less.
     let bent = bent.map(|share| judged.filter(|judged| (judged - share).abs() <= ONE_FIGURE).unwrap_or(share));
     [straight, bent]
 }
 
-/// Visible share of every feature that must be seen, straight and bent, by line of sight and by depth buffer drawn by `renderer`.
+/// Visible share of every required feature, straight and bent, by lines of sight and by depth buffers drawn by `renderer`.
 ///
 /// # Errors
 /// [`BelvedereError::Construct`] if nothing must be seen, [`BelvedereError::UnderGround`].
@@ -75,7 +75,7 @@ pub fn measure(
 }
 
 impl Session {
-    /// [`measure`] by the session's renderer, without progress.
+    /// [`measure`] with the session's renderer, without progress.
     ///
     /// # Errors
     /// Those of [`measure`].

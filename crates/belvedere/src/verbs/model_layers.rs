@@ -1,11 +1,11 @@
-//! Files of models as layers.
+//! Layers from model files.
 
 use crate::scene_file::{CityDoc, LayerDoc, MeshDoc, MoleculeDoc, VolumeDoc};
 use crate::{BelvedereError, OpenOptions};
 use belvedere_scene::Unit;
 use std::path::Path;
 
-/// The unit in which files of a kind are measured.
+/// The unit of a scene of such layers.
 pub(super) fn unit_of(layers: &[LayerDoc]) -> Unit {
     match layers.first() {
         Some(LayerDoc::Molecule(_)) => Unit::Angstrom,
@@ -14,7 +14,7 @@ pub(super) fn unit_of(layers: &[LayerDoc]) -> Unit {
     }
 }
 
-/// The layer of a file, by the ending of its name.
+/// The layer of a file, chosen by the ending of its name.
 pub(super) fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
     let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
     let file = path.file_name().and_then(|n| n.to_str()).unwrap_or_default().to_ascii_lowercase();
@@ -28,7 +28,7 @@ pub(super) fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, Belved
         _ if builtin && stem == "dna" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
         _ if builtin && (stem == "engine" || stem == "tube") => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
         _ if file.ends_with(".city.json") || (builtin && stem == "town") => Ok(LayerDoc::City(CityDoc::of(id, name))),
-        // Unknown names go on to where the nearest one is told.
+        // Unknown names go on to the error that suggests the nearest one.
         _ if builtin && !matches!(stem, "massif" | "canyon" | "street") => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
         "pdb" | "ent" | "cif" | "mmcif" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
         "obj" | "ply" | "stl" | "gltf" | "glb" => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
@@ -40,7 +40,7 @@ pub(super) fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, Belved
     }
 }
 
-/// Sets the transfer function of all volumes; a file may lie where it likes.
+/// Sets the transfer function of all volumes; its file may lie in any folder.
 pub(super) fn set_transfer(
     layers: &mut [LayerDoc],
     transfer: &str,

@@ -1,4 +1,4 @@
-//! What a file of atoms holds.
+//! Description of a molecule file.
 
 use crate::BelvedereError;
 use belvedere_io::{Limits, load_molecule};
@@ -6,14 +6,14 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Atoms.
+/// A molecule.
 #[derive(Debug, Clone, Serialize)]
 pub struct MoleculeInfo {
     /// The file.
     pub path: String,
     /// Format.
     pub format: &'static str,
-    /// Atoms of the first model, each counted at one place.
+    /// Atoms of the first model; alternate positions count once.
     pub atoms: usize,
     /// Residues, waters included.
     pub residues: usize,
@@ -23,23 +23,23 @@ pub struct MoleculeInfo {
     pub chains: BTreeMap<String, usize>,
     /// Elements by symbol, each with its number of atoms; `X` = unknown.
     pub elements: BTreeMap<&'static str, usize>,
-    /// Bonds, named or told by distance.
+    /// Bonds, named by the file or found by distance.
     pub bonds: usize,
     /// Bonds that the file names.
     pub named_bonds: usize,
     /// Models in the file; the first is read.
     pub models: usize,
-    /// Atoms at other places of lower occupancy, left out.
+    /// Alternate positions of lower occupancy, which are left out.
     pub alternates: usize,
     /// Smallest coordinates, angstrom.
     pub min: [f64; 3],
     /// Largest coordinates, angstrom.
     pub max: [f64; 3],
-    /// What was odd.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 
-/// Reads and counts.
+/// Reads and describes a molecule file.
 pub(super) fn describe(path: &Path) -> Result<MoleculeInfo, BelvedereError> {
     let loaded = load_molecule(path, &Limits::default())?;
     let (file, m) = (&loaded.value, &loaded.value.molecule);

@@ -1,4 +1,4 @@
-//! A scene from whatever files somebody drops.
+//! Opens files of any kind as one scene.
 
 use super::info::{self, FileInfo};
 use super::model_layers::{layer, unit_of};
@@ -13,11 +13,11 @@ use belvedere_io::{fs, join_table, split_table};
 use belvedere_scene::Progress;
 use std::path::{Path, PathBuf};
 
-/// What fits together.
+/// Files that can be opened together.
 const REMEDY: &str = "give one scene file, models (meshes, cities, molecules, volumes), an elevation model, or an elevation model together with routes, areas or points";
 
-/// Opens a scene file, or makes a scene of data: an elevation model and features become a picture in which those are visible, anything
-/// else is shown from the south.
+/// Opens a scene file, or makes a scene of data: an elevation model and features become a picture in which the features are visible,
+/// other data are shown from the south.
 ///
 /// * `allowed`: folders beside that of a scene file from which its files may come.
 ///
@@ -71,16 +71,16 @@ pub fn open_files(paths: &[PathBuf], allowed: &[PathBuf], progress: &Progress) -
     Ok(Editor::new(document, place))
 }
 
-/// What files are to whoever has a scene open already.
+/// Result of opening files beside an open scene.
 #[derive(Debug, Clone)]
 pub enum Opened {
-    /// A scene of their own.
+    /// A new scene.
     Scene(Box<Editor>),
-    /// Routes, areas or points for the terrain that is there, and the folders that they lie in.
+    /// Routes, areas or points for the open terrain, and their folders.
     Layers(Vec<LayerDoc>, Vec<PathBuf>),
 }
 
-/// Opens files as [`open_files`], or, if they are nothing but features and `current` has terrain, as further layers of it.
+/// Like [`open_files`]; but if all files are features and `current` has terrain, they become further layers of it.
 ///
 /// # Errors
 /// As [`open_files`].
@@ -128,7 +128,7 @@ fn ground(mut files: Vec<String>) -> LayerDoc {
     })
 }
 
-/// A document of layers, all of them in the picture.
+/// A document of layers with a camera that shows all of them.
 fn shown(layers: Vec<LayerDoc>, crs: &str, place: &Place, options: &OpenOptions) -> Result<Document, BelvedereError> {
     let camera = CameraDoc::looking(DVec3::new(0.0, -1.0, 0.0), DVec3::ZERO);
     let unit = unit_of(&layers);

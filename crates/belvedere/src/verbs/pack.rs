@@ -1,4 +1,4 @@
-//! A scene, its files and the application as a folder that any web server can host.
+//! Packs a scene, its files and the application into a folder that any web server can host.
 
 use super::open_files::open_files;
 use crate::editor::{Editor, Place};
@@ -11,19 +11,19 @@ use std::path::{Component, Path, PathBuf};
 
 /// The files of the application.
 pub const APPLICATION: [&str; 3] = ["index.html", "belvedere.js", "belvedere_bg.wasm"];
-/// Folder with the application for many threads, if it was built.
+/// Folder of the multi-threaded application, if it was built.
 const THREADS: &str = "threads";
-/// For servers that read such a file (as Netlify and Cloudflare Pages do): workers may share memory.
+/// Header file for servers that support it (such as Netlify and Cloudflare Pages): lets workers share memory.
 const HEADERS: (&str, &str) =
     ("_headers", "/*\n  Cross-Origin-Opener-Policy: same-origin\n  Cross-Origin-Embedder-Policy: require-corp\n");
-/// What the page reads to know what else there is.
+/// List of the packed files, which the page reads first.
 pub const BUNDLE: &str = "bundle.json";
 /// Folder of the scene and its files.
 const SCENE_FOLDER: &str = "scene";
-/// Most that a page is asked to load: memory of WebAssembly ends at 4 GiB, and what is read takes more than its files, bytes.
+/// Limit for the files of a page, bytes: the memory of WebAssembly ends at 4 GiB, and loaded data take more than their files.
 const MAX_BYTES: u64 = 1 << 30;
 
-/// What to pack.
+/// Request for a package.
 #[derive(Debug, Clone, Default)]
 pub struct PackRequest {
     /// A scene file, or data as [`open_files`] takes them; empty = the built-in scenes.
@@ -34,24 +34,24 @@ pub struct PackRequest {
     pub application: PathBuf,
     /// The folder to be made.
     pub out: PathBuf,
-    /// Whether files that are there may be replaced.
+    /// Whether existing files may be replaced.
     pub overwrite: bool,
 }
 
-/// What the page has to load, besides the application.
+/// Contents of a package, besides the application.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 pub struct Bundle {
     /// Title of the scene.
     pub title: String,
-    /// Whether there is an application for many threads, too.
+    /// Whether there is a multi-threaded application, too.
     pub threads: bool,
     /// Names of the files to open.
     pub open: Vec<String>,
-    /// All files; paths from the folder on, with `/`.
+    /// All files; paths relative to the folder, with `/`.
     pub files: Vec<InputFile>,
 }
 
-/// What was packed.
+/// Result of packing.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Packed {
     /// The folder.
@@ -64,11 +64,11 @@ pub struct Packed {
     pub scene_bytes: u64,
 }
 
-/// Writes the folder: the application, the scene, and every file that it takes, under names that tell nothing of where it came from.
+/// Writes the folder: the application, the scene, and every file that it needs, under names that do not show their origin.
 ///
 /// # Errors
-/// [`BelvedereError`] of a scene that cannot be opened; [`BelvedereError::Output`] if the application is not where it should be, or the
-/// files are too large for a page; [`IoError::Exists`] for files that are there already.
+/// [`BelvedereError`] of a scene that cannot be opened; [`BelvedereError::Output`] if the application is missing, or the
+/// files are too large for a page; [`IoError::Exists`] for existing files.
 pub fn pack(request: &PackRequest, progress: &Progress) -> Result<Packed, BelvedereError> {
     let application = application_files(&request.application)?;
     let names = application.iter().map(|(name, _)| name.as_path()).chain([Path::new(BUNDLE)]);
@@ -90,7 +90,7 @@ pub fn pack(request: &PackRequest, progress: &Progress) -> Result<Packed, Belved
     bundle.threads = application.iter().any(|(name, _)| name.starts_with(THREADS));
     let mut application_bytes = 0;
     for (name, bytes) in &application {
-        // A visitor loads one of the two.
+        // A visitor loads only one of the two applications.
         application_bytes += if name.starts_with(THREADS) { 0 } else { bytes.len() as u64 };
         put(&request.out.join(name), bytes, request.overwrite)?;
     }
@@ -98,12 +98,12 @@ pub fn pack(request: &PackRequest, progress: &Progress) -> Result<Packed, Belved
         progress.tick("writing", i as f64 / contents.len() as f64)?;
         put(&request.out.join(&file.path), bytes, request.overwrite)?;
     }
-    // Last, so that a page that finds it finds everything.
+    // Written last, so that a page that finds it finds all files.
     output::write_text(&request.out.join(BUNDLE), &output::pretty(&bundle)?, request.overwrite)?;
     Ok(Packed { folder: request.out.clone(), bundle, application_bytes, scene_bytes })
 }
 
-/// The application: names from its folder on, and contents.
+/// Files of the application: names relative to its folder, and contents.
 fn application_files(folder: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>, BelvedereError> {
     let mut names: Vec<PathBuf> = APPLICATION.into_iter().map(PathBuf::from).collect();
     names_below(folder, Path::new(THREADS), &mut names);
@@ -122,7 +122,7 @@ fn application_files(folder: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>, Belvedere
     Ok(files)
 }
 
-/// Adds the names of all files below a folder that may be there.
+/// Adds the names of all files below a folder, if it exists.
 fn names_below(root: &Path, folder: &Path, names: &mut Vec<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(root.join(folder)) else { return };
     for entry in entries.flatten() {
@@ -134,7 +134,7 @@ fn names_below(root: &Path, folder: &Path, names: &mut Vec<PathBuf>) {
     }
 }
 
-/// The scene with names that hold within the bundle, and every file that it takes, with its content.
+/// The scene with names valid in the bundle, and every file that it needs, with contents.
 fn scene_files(request: &PackRequest, progress: &Progress) -> Result<(Bundle, Vec<Vec<u8>>), BelvedereError> {
     let editor = open_files(&request.files, &request.allowed, progress)?;
     let session = editor.place.session((**editor.document()).clone(), progress)?;
@@ -151,7 +151,7 @@ fn scene_files(request: &PackRequest, progress: &Progress) -> Result<(Bundle, Ve
     if let Some(e) = failed {
         return Err(e);
     }
-    // Files that those name in turn, such as materials and tables.
+    // Files that the named files refer to, such as materials and tables.
     for input in session.input_paths() {
         if editor.place.scene.as_deref().is_none_or(|scene| !same(scene, &input)) {
             layout.place(&input)?;
@@ -182,11 +182,11 @@ fn same(a: &Path, b: &Path) -> bool {
     fs::canonicalize(a).is_ok_and(|a| fs::canonicalize(b).is_ok_and(|b| a == b))
 }
 
-/// Where files go: what lies below one folder stays together, so that files find their neighbours.
+/// Names of files in the bundle: files of one folder stay together, so that relative references hold.
 struct Layout {
-    /// Folders of the scene: its own, then those that were allowed.
+    /// Folders of the scene: its own, then the allowed ones.
     folders: Vec<PathBuf>,
-    /// Where each file goes, from the folder of the scene on.
+    /// Name of each file, relative to the folder of the scene.
     files: BTreeMap<PathBuf, String>,
 }
 
@@ -201,7 +201,7 @@ impl Layout {
         Self { folders, files: BTreeMap::new() }
     }
 
-    /// The name of a file in the bundle, from the folder of the scene on.
+    /// Name of a file in the bundle, relative to the folder of the scene.
     fn place(&mut self, file: &Path) -> Result<String, BelvedereError> {
         let (file, _) = split_table(file);
         if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("gpkg")) {

@@ -31,7 +31,7 @@ pub struct ProjectedPoint {
     pub segment: Option<u32>,
     /// Whether the pixel lies on the image.
     pub inside: bool,
-    /// Why there is no image.
+    /// Why the point has no image.
     pub miss: Option<&'static str>,
 }
 
@@ -51,7 +51,7 @@ pub struct RaySample {
     pub depth: f64,
     /// Segment of the ray.
     pub segment: Option<u32>,
-    /// Why there is no point; left out where there is one.
+    /// Why there is no point; left out if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub miss: Option<&'static str>,
 }
@@ -68,7 +68,7 @@ pub struct DisplaceReport {
 pub struct DisplacedPoint {
     /// The point after all stages, before the pinhole, scene coordinates.
     pub displaced: Option<[f64; 3]>,
-    /// Whether a stage folded over there.
+    /// Whether a stage folds space there.
     pub folded: bool,
     /// Why there is no displaced point.
     pub miss: Option<&'static str>,
@@ -106,7 +106,7 @@ impl Session {
     }
 }
 
-/// Where each point goes, before the pinhole.
+/// Displaced position of each point, before the pinhole.
 pub fn displace(view: &View, points: &[[f64; 3]]) -> DisplaceReport {
     let one = |p: &[f64; 3]| match view.displace(DVec3::from_array(*p)) {
         Ok(d) if d.point.is_finite() => {

@@ -1,4 +1,4 @@
-//! `reveal`: terrain and routes in, a picture in which the routes are visible out.
+//! `reveal`: draws a picture of terrain in which routes and other features are visible.
 
 use super::in_time;
 use crate::data::DataFiles;
@@ -31,130 +31,130 @@ const IMAGE: [u32; 2] = [1280, 720];
 /// Full vertical field of view unless given, degrees.
 const FOV_Y_DEG: f64 = 45.0;
 
-/// What to reveal, and from where.
+/// Features to reveal, and the view.
 #[derive(Debug, Clone, Default)]
 pub struct RevealRequest {
     /// Terrain and features.
     pub data: DataFiles,
-    /// Where to look from; chosen if left out.
+    /// Eye and target; chosen automatically if left out.
     pub viewpoint: Option<Viewpoint>,
     /// Full vertical field of view, degrees.
     pub fov_y_deg: Option<f64>,
     /// Picture size, pixels.
     pub image: Option<[u32; 2]>,
-    /// Earth shape.
+    /// Whether the earth is curved.
     pub curved_earth: bool,
-    /// What bends the picture.
+    /// Technique that bends the picture.
     pub technique: Technique,
-    /// Lets the ground be dug deeper and steeper than ground is.
+    /// Lifts the limits of depth and slope of the displaced ground.
     pub no_limits: bool,
     /// Quality of the pictures.
     pub picture: PictureOptions,
 }
 
-/// An eye and what it looks at; x, y in the scene's system, or degrees if small enough for a georeferenced scene.
+/// An eye and its target; x, y in the scene's system, or degrees if small enough for a georeferenced scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viewpoint {
     /// x, y, and z in metres.
     pub eye: [f64; 3],
-    /// x, y of the point looked at.
+    /// x, y of the target.
     pub target: [f64; 2],
-    /// Its height, metres; the ground's if left out.
+    /// Height of the target, metres; that of the ground if left out.
     pub target_height: Option<f64>,
 }
 
-/// What bends the picture.
+/// Technique that bends the picture.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Technique {
-    /// What shows most of the techniques that are tried: a spline; where that leaves something hidden both; where those do, too,
-    /// terrain disocclusion alone.
+    /// The technique that shows most: a spline is tried first, then both if something stays hidden, then terrain disocclusion alone if
+    /// something still does.
     Auto,
-    /// A spline.
+    /// A spline bend.
     #[default]
     Spline,
     /// Terrain disocclusion.
     Terrain,
-    /// Both.
+    /// Both together.
     Both,
-    /// Rays that bend once, around what hides most.
+    /// Rays with a single turn around the main occluder.
     CurvedRays,
 }
 
-/// Visible share from which nothing is worth moving the ground for.
+/// Visible share from which on the ground is not moved.
 const ENOUGH: f64 = 0.99;
 
-/// Samples of the features that curved rays are chosen by, at most.
+/// Largest number of samples of the features by which curved rays are chosen.
 const SAMPLES_TO_BEND_FOR: usize = 150;
 
-/// Time for solving the ground of each technique that is tried, where nothing else is said.
+/// Time limit for solving the ground of each tried technique, if none is given.
 const TRY_FOR: Duration = Duration::from_secs(120);
 
-/// Share of the time that is left for the search of a view and a bend: where nothing comes after it but the picture, and else.
+/// Share of the remaining time for the search of a view and a bend: if only the picture follows, and otherwise.
 const SEARCH_ALONE: f64 = 0.5;
 const SEARCH: f64 = 0.2;
-/// And for the first of two techniques.
+/// Share of the remaining time for the first of two techniques.
 const FIRST_TRY: f64 = 0.6;
 
 /// A technique that was tried.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Tried {
-    /// Which.
+    /// The technique.
     pub technique: Technique,
-    /// Visible share of the in-frame amount in its picture.
+    /// Visible share of the features in its picture.
     pub visible: Option<f64>,
     /// Wall time, seconds.
     pub seconds: f64,
-    /// Whether its time was up before it was done.
+    /// Whether its time limit ended it early.
     pub out_of_time: bool,
 }
 
-/// What the finished picture shows, by lines of sight through its whole chain of stages.
+/// Visibility in the finished picture, by lines of sight through its whole chain of stages.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct FinalShares {
-    /// What bends the picture in the end.
+    /// Technique of the finished picture.
     pub technique: Technique,
-    /// Visible share of the in-frame amount in the straight picture.
+    /// Visible share of the features in the straight picture.
     pub visible_straight: Option<f64>,
-    /// The same in the bent one.
+    /// Visible share of the features in the bent picture.
     pub visible_bent: Option<f64>,
 }
 
-/// What was found: a session that shows it, its picture beside the straight one, and the figures.
+/// Result of `reveal`: a session that shows the features, its picture beside the straight one, and reports.
 #[derive(Debug, Clone)]
 pub struct RevealAnswer {
     /// Scene and bent view.
     pub session: Session,
     /// Both pictures.
     pub picture: Picture,
-    /// Figures of the search for a view and a spline.
+    /// Report of the search for a view and a spline.
     pub report: RevealReport,
-    /// What the picture shows under terrain disocclusion.
+    /// Visibility under terrain disocclusion.
     pub shares: Option<FinalShares>,
-    /// Techniques that were tried, where that was left to the program.
+    /// Tried techniques, if the choice was automatic.
     pub tried: Vec<Tried>,
-    /// What of the features in the picture stays hidden, part by part.
+    /// Hidden stretches of the features in the picture.
     pub hidden: Vec<HiddenRun>,
-    /// The shares and `hidden` are judged by samples so many times as far apart as usual: 1, but more where time was short.
+    /// Factor of the sample spacing for the shares and `hidden`: 1, or more if time was short.
     pub measured_every: u32,
     missed: Vec<String>,
 }
 
-/// The report file.
+/// Contents of the report file.
 #[derive(Debug, Clone, Serialize)]
 struct ReportFile<'a> {
     program: String,
-    /// The spline; left out where only the ground moves.
+    /// Report of the spline; left out if only the ground moves.
     #[serde(flatten)]
     report: Option<&'a RevealReport>,
     #[serde(flatten)]
     shares: Option<FinalShares>,
     #[serde(skip_serializing_if = "Option::is_none")]
     disocclusion: Option<&'a TerrainReport>,
-    /// Techniques that were tried.
+    /// Tried techniques.
     #[serde(skip_serializing_if = "<[Tried]>::is_empty")]
     tried: &'a [Tried],
-    /// What of the features in the picture stays hidden.
+    /// Hidden stretches of the features in the picture.
     hidden: &'a [HiddenRun],
     measured_every: u32,
     displacement: Option<DisplacementReport>,
@@ -268,7 +268,7 @@ fn shortfall(visible: f64) -> String {
     format!("{:.1} % of what is in the picture is visible, {:.0} % were wanted", 100.0 * visible, 100.0 * ENOUGH)
 }
 
-/// The session with terrain disocclusion, beside the spline or in its place.
+/// The session with terrain disocclusion, with the spline or in its place.
 fn disoccluded(
     session: &Session,
     (technique, no_limits, rivers): (Technique, bool, &[String]),
@@ -285,7 +285,7 @@ fn disoccluded(
     session.with_document(document, Some(&mut Solving { memory: &mut memory, time_step_s: None, progress }))
 }
 
-/// The session with rays that bend once, in place of the spline, so that most of the features is seen.
+/// The session with rays of a single turn in place of the spline, chosen to show most of the features.
 fn around_what_hides(session: &Session, straight: &View, progress: &Progress) -> Result<Session, BelvedereError> {
     let Some(mut document) = session.resolved().cloned() else { return Ok(session.clone()) };
     let scene = session.scene();
@@ -302,7 +302,7 @@ fn around_what_hides(session: &Session, straight: &View, progress: &Progress) ->
     session.with_document(document, None)
 }
 
-/// Judges the whole chain of stages; also how many times as far apart as usual the samples are.
+/// Measures the whole chain of stages; also returns the factor of the sample spacing.
 fn final_shares(
     session: &Session,
     technique: Technique,
@@ -337,7 +337,7 @@ impl RevealAnswer {
         )
     }
 
-    /// Writes the bent picture with its record, the pair (`OUT.pair.png`), and whatever else is asked for.
+    /// Writes the bent picture with its record, the pair (`OUT.pair.png`), and the other files asked for.
     ///
     /// # Errors
     /// [`BelvedereError::Io`].
@@ -389,7 +389,7 @@ impl RevealAnswer {
     }
 }
 
-/// Where the results go.
+/// Output files.
 #[derive(Debug, Clone, Default)]
 pub struct RevealFiles {
     /// The bent picture.
@@ -398,7 +398,7 @@ pub struct RevealFiles {
     pub before: Option<PathBuf>,
     /// Figures, JSON.
     pub report: Option<PathBuf>,
-    /// Scene file that shows the same.
+    /// Scene file of the same picture.
     pub scene: Option<PathBuf>,
 }
 
@@ -417,7 +417,7 @@ impl RevealFiles {
     }
 }
 
-/// The spline that was found as a stage of a document.
+/// The found spline as a stage of a document.
 fn spline_stage(found: &Revealed) -> StageDoc {
     StageDoc::SplineBend(SplineStageDoc {
         presets: PresetsDoc::Inline(Box::new(found.document.clone())),
@@ -426,7 +426,7 @@ fn spline_stage(found: &Revealed) -> StageDoc {
     })
 }
 
-/// The given camera.
+/// The view of the given camera, if there is one.
 fn base_view(request: &RevealRequest, scene: &Scene) -> Result<Option<View>, BelvedereError> {
     let Some(Viewpoint { eye, target, target_height }) = request.viewpoint else { return Ok(None) };
     let ground = Ground::of(scene);

@@ -1,4 +1,4 @@
-//! `reveal --see`: models in, a picture in which one thing of them is visible out, by rays that bend around what hides it.
+//! `reveal --see`: draws a picture in which one target in models is visible, by rays that bend around its occluders.
 
 use super::model_layers::{layer, set_transfer, unit_of};
 use crate::output::{self, document_toml, pretty};
@@ -22,53 +22,53 @@ use std::path::{Path, PathBuf};
 const IMAGE: [u32; 2] = [1280, 720];
 /// Full vertical field of view unless given, degrees.
 const FOV_Y_DEG: f64 = 30.0;
-/// Directions that are looked from if none is given, degrees clockwise from north, and how steeply, degrees.
+/// Headings of the views that are tried if none is given, degrees clockwise from north, and their pitch, degrees.
 const HEADINGS: [f64; 8] = [30.0, 330.0, 75.0, 285.0, 120.0, 240.0, 165.0, 195.0];
 const PITCH: [f64; 2] = [20.0, 8.0];
-/// A view that shows so much of what is looked for is good enough.
+/// Visible share from which on a view is good enough.
 const ENOUGH: f64 = 0.99;
 
-/// What to show, and from where.
+/// Target to show, and the view.
 #[derive(Debug, Clone, Default)]
 pub struct TargetRequest {
     /// Models (meshes, molecules, volumes) or one scene file.
     pub files: Vec<PathBuf>,
-    /// What must be seen: the id of a layer (files are called by their name without its ending), atoms such as `chain B`, or a point
-    /// `x,y,z`, scene coordinates.
+    /// The target: id of a layer (that of a file is its name without the ending), atoms such as `chain B`, or a point `x,y,z`, scene
+    /// coordinates.
     pub see: String,
-    /// Transfer function of volumes that are files: a name or a file; `auto` if left out.
+    /// Transfer function of volume files: a name or a file; `auto` if left out.
     pub transfer: Option<String>,
-    /// Where to look from; chosen if left out, or the camera of the scene file.
+    /// Eye and target of the view; if left out, the camera of the scene file, or one chosen automatically.
     pub viewpoint: Option<Viewpoint>,
     /// Full vertical field of view, degrees.
     pub fov_y_deg: Option<f64>,
     /// Picture size, pixels.
     pub image: Option<[u32; 2]>,
-    /// What shows it where no bend does: `transparency`, `cutaway` or `explosion`, alone or as `LAYER:KIND`.
+    /// Fallbacks if no bend shows the target: `transparency`, `cutaway` or `explosion`, alone or as `LAYER:KIND`.
     pub fallback: Vec<String>,
     /// Quality of the pictures.
     pub picture: PictureOptions,
 }
 
-/// What was found: a session that shows it, its picture beside the straight one, and the figures.
+/// Result: a session that shows the target, its picture beside the straight one, and the report.
 #[derive(Debug, Clone)]
 pub struct TargetAnswer {
     /// Scene and bent view.
     pub session: Session,
     /// Both pictures.
     pub picture: Picture,
-    /// Figures.
+    /// Report of the search.
     pub report: BendReport,
-    /// What was looked for.
+    /// Name of the target.
     pub see: String,
-    /// Where that is, if it is a point.
+    /// Position of the target, if it is a point.
     pub place: Option<TargetPlace>,
 }
 
-/// Chooses a view (unless given) and the smallest bend that shows what is looked for, and draws both pictures.
+/// Chooses a view (unless given) and the smallest bend that shows the target, and draws both pictures.
 ///
 /// # Errors
-/// [`BelvedereError::Target`] if there is no such thing, else as [`Session::open`] and [`Session::render`].
+/// [`BelvedereError::Target`] if there is no such target, else as [`Session::open`] and [`Session::render`].
 pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnswer, BelvedereError> {
     let fov_y_deg = request.fov_y_deg.unwrap_or(FOV_Y_DEG);
     if !(fov_y_deg > 0.0 && fov_y_deg < 180.0) {
@@ -115,7 +115,7 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
     Ok(TargetAnswer { session, picture, report, see: request.see.clone(), place })
 }
 
-/// The layers, behind any camera.
+/// Opens the layers with a provisional camera.
 fn open(request: &TargetRequest, options: &OpenOptions) -> Result<Session, BelvedereError> {
     let is_scene = |p: &PathBuf| p.extension().is_some_and(|e| e == "toml" || e == "json");
     if let [file] = &request.files[..]
@@ -156,7 +156,7 @@ fn open(request: &TargetRequest, options: &OpenOptions) -> Result<Session, Belve
     Session::from_document(SourceDocument::new(document), &options)
 }
 
-/// The views to try: the one that is given, the scene file's, or some from all around.
+/// The views to try: the given one, the scene file's, or several from all around.
 fn views(session: &Session, request: &TargetRequest, fov_y_deg: f64) -> Result<Vec<View>, BelvedereError> {
     let scene = session.scene();
     let is_scene_file = session.path().is_some();
@@ -176,7 +176,7 @@ fn views(session: &Session, request: &TargetRequest, fov_y_deg: f64) -> Result<V
     around(&visible_bounds(scene), image, lens, PITCH[usize::from(scene.unit != Unit::Metre)])
 }
 
-/// Box around what is visible of a scene.
+/// Bounds of the visible layers of a scene.
 fn visible_bounds(scene: &Scene) -> Aabb {
     let of = |l: &Layer| match &l.kind {
         LayerKind::Volume(v) => v.visible_bounds(),
@@ -186,7 +186,7 @@ fn visible_bounds(scene: &Scene) -> Aabb {
     visible.unwrap_or_else(|| scene.bounds())
 }
 
-/// Views that hold everything, from all around.
+/// Views from all around that show the whole box.
 fn around(bounds: &Aabb, image: [u32; 2], lens: Projection, pitch_deg: f64) -> Result<Vec<View>, BelvedereError> {
     let (center, radius) = (bounds.center(), 0.5 * (bounds.max - bounds.min).length().max(1e-6));
     let half = match lens {
@@ -198,14 +198,14 @@ fn around(bounds: &Aabb, image: [u32; 2], lens: Projection, pitch_deg: f64) -> R
     let view = |heading: &f64| {
         let ((sin, cos), (down, ahead)) = (heading.to_radians().sin_cos(), pitch_deg.to_radians().sin_cos());
         let forward = DVec3::new(sin * ahead, cos * ahead, -down);
-        // Rays may bend long before they come to the model.
+        // Rays may bend long before they reach the model.
         let near = 0.02 * distance;
         Ok(View::straight(Pinhole::look_at(center - distance * forward, center, DVec3::Z, lens, image, near, None)?))
     };
     HEADINGS.iter().map(view).collect()
 }
 
-/// The document of the session with the view that was found.
+/// The document of the session with the found view.
 fn document(
     session: &Session,
     view: &View,
@@ -226,7 +226,7 @@ fn document(
     Ok(document)
 }
 
-/// The report file.
+/// Contents of the report file.
 #[derive(Debug, Serialize)]
 struct TargetReport<'a> {
     program: &'a str,
@@ -279,7 +279,7 @@ impl TargetAnswer {
         self.session.scene().layers.iter().any(|l| matches!(l.kind, LayerKind::Volume(_)))
     }
 
-    /// What was odd.
+    /// Warnings.
     pub fn warnings(&self) -> Vec<String> {
         self.session.warnings().iter().cloned().chain(self.place.as_ref().and_then(TargetPlace::warning)).collect()
     }
@@ -292,7 +292,7 @@ impl TargetAnswer {
         missed.then(text).into_iter().chain(self.place.iter().filter(|_| missed).filter_map(TargetPlace::why)).collect()
     }
 
-    /// Writes the bent picture with its record, the pair (`OUT.pair.png`), and whatever else is asked for.
+    /// Writes the bent picture with its record, the pair (`OUT.pair.png`), and the other files asked for.
     ///
     /// # Errors
     /// [`BelvedereError::Io`].
@@ -333,7 +333,7 @@ impl TargetAnswer {
 }
 
 impl CameraDoc {
-    /// A camera at a place that looks at another.
+    /// A camera at `eye` that looks at `look_at`.
     pub(crate) fn looking(eye: DVec3, look_at: DVec3) -> Self {
         let lens = Projection::Perspective { fov_y: FOV_Y_DEG.to_radians() };
         let axes = (DVec3::X, -DVec3::Z, DVec3::Y);

@@ -1,4 +1,4 @@
-//! Rivers on grids that are written: they run downhill there, too, where those are other grids than the one that was solved on.
+//! Rivers on written grids: they run downhill also where the grid is not the solver's.
 
 use super::level_lakes::LevelLakes;
 use crate::BelvedereError;
@@ -9,10 +9,10 @@ use belvedere_io::raster::{Raster, Samples};
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_scene::Scene;
 
-/// Lowers heights and displacement as they are written where a river would run uphill on them; lakes on its way sink as a whole. Answers
-/// how the rivers run.
+/// Lowers written heights and displacement where a river would run uphill on them; lakes on its course sink as a whole. Returns the
+/// reports of the rivers.
 ///
-/// * `rasters`: heights, and the displacement in them, on the grid of `original`;
+/// * `rasters`: heights, and the displacement contained in them, on the grid of `original`;
 /// * `ids`: layers of rivers.
 pub(super) fn run_downhill(
     [heights, displacement]: &mut [Raster; 2],
@@ -41,7 +41,7 @@ pub(super) fn run_downhill(
     Ok(rivers.report(&u))
 }
 
-/// The samples of the file on each lake.
+/// Indices of the file's samples on each lake.
 fn nodes_of_lakes(
     original: &OriginalTerrain,
     scene: &Scene,
@@ -51,7 +51,7 @@ fn nodes_of_lakes(
     if lakes.is_empty() {
         return Ok(out);
     }
-    // The number of the lake in place of a displacement.
+    // The raster holds the number of the lake in place of a displacement.
     let [_, numbers] = original.moved(scene.crs, |p| lakes.lake_at(p).map_or(-1.0, |lake| lake as f64))?;
     for i in 0..numbers.samples.len() {
         let lake = numbers.sample_f64(0, i % numbers.info.width, i / numbers.info.width);
@@ -63,7 +63,7 @@ fn nodes_of_lakes(
     Ok(out)
 }
 
-/// Where a node of a set was lowered, lowers all of them as far; answers whether any was.
+/// Lowers all nodes of a set to its lowest displacement; returns whether any node was lowered.
 fn sink(sets: &[Vec<usize>], u: &mut [f64]) -> bool {
     let mut sank = false;
     for set in sets {

@@ -1,4 +1,4 @@
-//! The library as a program meets it: its examples, and the names of everything it hands out.
+//! Tests of the library as its users see it: its examples, and the names of its types.
 
 mod examples;
 mod names;

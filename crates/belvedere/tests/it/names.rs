@@ -1,4 +1,4 @@
-//! Whatever a caller gives or receives can be named through `belvedere::` alone.
+//! All types that a caller gives or receives can be named through `belvedere::` alone.
 
 #![allow(dead_code, reason = "that it compiles is the test")]
 

@@ -1,4 +1,4 @@
-//! What the viewer sees while the camera tilts: a town in three representations, from the horizon to the map.
+//! Steadiness of pictures while the camera tilts: a town in three representations, from the horizon to the map.
 
 use belvedere::io::{Limits, Samples, png};
 use belvedere::picture::PictureOptions;
@@ -38,7 +38,7 @@ kind = "spline_bend"
 presets = "demo"
 "#;
 
-/// Largest mean difference of neighbouring frames, and how far one may stand out from those before and after it.
+/// Largest mean difference between neighbouring frames, and largest ratio to the differences before and after it.
 const LARGEST: f64 = 0.03;
 const OUTSTANDING: f64 = 1.6;
 /// Differences below this stand out from nothing.

@@ -76,7 +76,7 @@ fn previews_draw_the_wall_unless_another_function_is_named() {
 #[test]
 fn walls_of_no_path_are_refused_and_paths_without_a_wall_are_said() {
     let folder = tempfile::tempdir().unwrap();
-    // Along an edge of the volume, where there is nothing.
+    // A path along an edge of the volume, where the volume is empty.
     tube(folder.path(), "x,y,z\n1,1,2\n1,1,20\n1,1.5,37\n");
     let error = open(folder.path(), &with("wall")).unwrap_err().to_string();
     assert!(error.contains("layer \"tube\"") && error.contains("path_preview"), "{error}");

@@ -36,7 +36,7 @@ fn data(folder: &Path) -> DataFiles {
     }
 }
 
-/// Those of the solver, in order.
+/// Warnings of the solver, in order.
 fn solved(warnings: impl IntoIterator<Item = String>) -> Vec<String> {
     let mut out: Vec<String> = warnings.into_iter().filter(|w| w.starts_with("terrain_disocclusion")).collect();
     out.sort();

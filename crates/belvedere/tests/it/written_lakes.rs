@@ -1,4 +1,4 @@
-//! The heights that `disocclude` writes are those that were solved, and its lakes are level.
+//! The heights that `disocclude` writes are the solved ones, and its lakes are level.
 
 use belvedere::core::DVec2;
 use belvedere::scene::{Heightfield, Progress};

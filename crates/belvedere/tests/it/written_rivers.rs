@@ -1,4 +1,4 @@
-//! Rivers run downhill on the heights that `disocclude` writes, on other grids than the one that was solved on, too.
+//! Rivers run downhill on the heights that `disocclude` writes, also on other grids than the solver's.
 
 use belvedere::io::TerrainRequest;
 use belvedere::io::terrain::load_original;
@@ -8,7 +8,7 @@ use belvedere::{DataFiles, OpenOptions};
 use std::path::Path;
 
 const SIDE: usize = 48;
-/// Degrees between samples; the first stands at 8.0 east, the last row at 46.0 north.
+/// Spacing of the samples, degrees; the first column lies at 8.0 east, the last row at 46.0 north.
 const STEP: f64 = 0.001;
 
 /// Column of the middle of a winding valley.
@@ -25,7 +25,7 @@ fn degrees([col, row]: [f64; 2]) -> [f64; 2] {
     [8.0 + STEP * col, 46.0 + STEP * (SIDE as f64 - 1.0 - row)]
 }
 
-/// Places along the stream, downstream.
+/// Points along the stream, downstream.
 fn stream() -> Vec<[f64; 2]> {
     (0..=130).map(|k| 2.0 + f64::from(k) / 3.0).map(|row| [middle(row), row]).collect()
 }
@@ -36,7 +36,7 @@ fn line(path: &Path, places: &[[f64; 2]]) {
     std::fs::write(path, text).unwrap();
 }
 
-/// By how much the stream rises downstream on written heights more than on those that were given, at any of many places.
+/// Largest rise downstream along the stream that the written heights add to the given ones.
 fn excess(written: &[f64]) -> f64 {
     let surface = |heights: &dyn Fn(usize) -> f64, [x, y]: [f64; 2]| {
         let [col, row] = [x, y].map(|v| (v as usize).min(SIDE - 2));

@@ -23,7 +23,7 @@ impl Form {
         Self { gradient: gradient.to_array().map(|g| g as f32), at_eye: at_eye as f32 }
     }
 
-    /// What all points of a row share.
+    /// Part of the form that is constant along a row of nodes.
     #[inline(always)]
     pub(super) fn row(self, y: f32) -> f32 {
         self.at_eye + self.gradient[1] * y
@@ -44,7 +44,7 @@ pub(super) struct Bend {
     pub(super) shift: [f32; 3],
 }
 
-/// Fixed-point pixel and nearness, and not 0 where they cannot be used.
+/// Fixed-point pixel, nearness, and a flag that is not 0 where these cannot be used.
 type Image = (i32, i32, f32, u32);
 
 /// A camera for the nodes of a row.
@@ -145,7 +145,7 @@ impl Kernel for Run<'_, '_, '_> {
 }
 
 impl Run<'_, '_, '_> {
-    /// Many nodes at a time; the last ones with some before them, which come out the same again.
+    /// Computes all nodes in groups of `LANES`; the last group overlaps the one before.
     #[inline(always)]
     fn all(&mut self, camera: &impl Camera) -> bool {
         let n = self.x.len();
@@ -172,7 +172,7 @@ impl Run<'_, '_, '_> {
         };
         let ends = (x[from..].first_chunk_mut::<N>(), y[from..].first_chunk_mut::<N>());
         let ((Some(px), Some(py)), Some(pq)) = (ends, q[from..].first_chunk_mut::<N>()) else { return };
-        // Of arrays of its own a compiler knows that they do not overlap.
+        // Local arrays, so that the compiler knows that they do not overlap.
         let (mut ix, mut iy, mut iq, mut misses) = ([0; N], [0; N], [0.0; N], [0; N]);
         for i in 0..N {
             let z = self.projector.z(xs[i], self.y, hs[i]);

@@ -16,15 +16,15 @@ use belvedere_core::DVec2;
 
 const _: () = assert!(LANES == u32::BITS as usize, "a bit per sample");
 
-/// Samples waiting to be shaded, each on one half of a cell of the ground.
+/// Samples that wait to be shaded, each in one half of a cell of the ground.
 pub(crate) struct Batch {
     len: usize,
     layer: usize,
-    /// Where each result goes.
+    /// Index of each result.
     out: [u32; LANES],
     /// Nearness of the sample.
     near: Lanes,
-    /// Place of the sample, and the vertices of its triangle: north-west, south-east, and the one between; fixed-point steps.
+    /// Position of the sample, and the vertices of its triangle (north-west, south-east, and the one between), fixed-point steps.
     at: [IntLanes; 2],
     x: [IntLanes; 3],
     y: [IntLanes; 3],
@@ -33,12 +33,12 @@ pub(crate) struct Batch {
     node: [IntLanes; 2],
     step: Lanes,
     lower: IntLanes,
-    /// Lanes whose triangle is another one.
+    /// Number of lanes whose sample lies on another triangle.
     odd: usize,
     odd_lanes: [(usize, OffGridPoint); LANES],
 }
 
-/// Where a sample lies that is not on half a cell.
+/// Position of a sample that does not lie in half a cell.
 #[derive(Clone, Copy, Default)]
 struct OffGridPoint {
     node: [i32; 2],
@@ -46,12 +46,12 @@ struct OffGridPoint {
     cells_per_px: f32,
 }
 
-/// Where the samples of a batch lie on the ground.
+/// Positions of the samples of a batch on the ground.
 struct SamplePositions {
     /// Columns and rows from the node.
     u: Lanes,
     v: Lanes,
-    /// Squared side of the square that a pixel covers, in squares of a cell.
+    /// Area that a pixel covers, in cells.
     cells_per_px: Lanes,
     /// Forward distance.
     depth: Lanes,
@@ -77,7 +77,7 @@ impl Batch {
         }
     }
 
-    /// Takes in samples of a block without odd triangles, in the colours of a layer: those numbered `from..to`.
+    /// Adds the samples `from..to` of a block to the batch, in the colours of a layer; flushes whenever the batch is full.
     #[inline(always)]
     pub(crate) fn take(
         &mut self,
@@ -103,7 +103,7 @@ impl Batch {
         }
     }
 
-    /// Takes in samples up to the first one that does not lie on a plain half of a cell, `n` at most; the number of them.
+    /// Adds at most `n` samples, up to the first one that does not lie in half a cell; returns their number.
     #[inline(always)]
     fn take_plain(&mut self, (block, nodes): (&Block, &Nodes), samples: &Samples<'_>, from: usize, n: usize) -> usize {
         let (stride, step) = (block.cells[0] as u32 + 1, block.step as i32);
@@ -146,7 +146,7 @@ impl Batch {
         n
     }
 
-    /// Takes in a sample of any triangle of ground.
+    /// Adds a sample of any triangle of ground.
     pub(crate) fn take_odd(
         &mut self,
         layer: usize,
@@ -183,7 +183,7 @@ impl Batch {
         self.len += 1;
     }
 
-    /// Shades what is there.
+    /// Shades the samples of the batch and empties it.
     #[inline(always)]
     pub(crate) fn flush(&mut self, shader: &Shader<'_>, samples: &Samples<'_>, painted: &mut Painted) {
         if self.len > 0
@@ -208,7 +208,7 @@ impl Batch {
         }
     }
 
-    /// Where the samples lie.
+    /// Positions of the samples on the ground.
     #[inline(always)]
     fn positions(&mut self, shader: &Shader<'_>) -> SamplePositions {
         let zero = [0.0; LANES];
@@ -227,7 +227,7 @@ impl Batch {
         out
     }
 
-    /// Barycentric weights on the image, made those of the ground by nearness.
+    /// Barycentric weights on the image, corrected for perspective by nearness.
     #[inline(always)]
     fn weigh(&self, out: &mut SamplePositions) {
         let Self { at: [xs, ys], x: [x0, x1, x2], y: [y0, y1, y2], q: [q0, q1, q2], step, lower, .. } = self;
@@ -239,7 +239,7 @@ impl Batch {
             let (w0, w1, w2) =
                 (positive(w0 * inverse) * q0[i], positive(w1 * inverse) * q1[i], positive(w2 * inverse) * q2[i]);
             let scale = step[i] / (w0 + w1 + w2);
-            // The vertex between lies beside the diagonal, where only one coordinate differs.
+            // The vertex between shares one coordinate with each end of the diagonal.
             let (most, least) = ((w1 + w2) * scale, w1 * scale);
             out.u[i] = if lower[i] == 0 { most } else { least };
             out.v[i] = if lower[i] == 0 { least } else { most };
@@ -260,7 +260,7 @@ impl Batch {
         [columns, rows]
     }
 
-    /// Lays pictures and areas over the lanes that they cover.
+    /// Draws drapes, areas and cast shadows over the lanes that they cover.
     /// * `at`: see [`Batch::fixed`].
     #[inline(never)]
     fn cover(
@@ -304,7 +304,7 @@ fn positive(v: f32) -> f32 {
 }
 
 impl TerrainShade<'_> {
-    /// Squared sides, in cells, of the smallest and the largest square on the ground that a pixel can cover at a depth.
+    /// Areas, in cells, of the smallest and the largest square on the ground that a pixel can cover at a depth.
     #[inline(always)]
     fn footprints(&self, shader: &Shader<'_>, depth: &Lanes) -> [Lanes; 2] {
         let (mut near, mut far) = ([0.0; LANES], [0.0; LANES]);
@@ -317,13 +317,13 @@ impl TerrainShade<'_> {
         [near, far]
     }
 
-    /// Cells across a pixel that looks straight at the ground: a constant, and that per unit of depth.
+    /// Cells across a pixel that faces the ground: a constant, and a factor of depth.
     fn cells_per_depth(&self, shader: &Shader<'_>) -> (f32, f32) {
         let per_px = (1.0 / (shader.screen.scale * self.pitch)) as f32;
         if shader.screen.ortho { (per_px, 0.0) } else { (0.0, per_px) }
     }
 
-    /// Levels of averages, 256 steps to a level. The triangle tells slant and bend, the depth keeps it sane.
+    /// Levels of averages, 256 steps to a level: from the slant and bend of the triangle, limited by the depth.
     #[inline(always)]
     fn lods(&self, shader: &Shader<'_>, depth: &Lanes, cells_per_px: &Lanes) -> [u32; LANES] {
         let [near, far] = self.footprints(shader, depth);
@@ -334,7 +334,7 @@ impl TerrainShade<'_> {
         out
     }
 
-    /// Square roots of the colours of lit ground through the air.
+    /// Square roots of the lit colours, with haze.
     #[inline(always)]
     fn colors(&self, shader: &Shader<'_>, colors: &Colors, lods: &[u32; LANES], depth: &Lanes) -> [Lanes; 3] {
         let air = shader.sky.haze();
@@ -382,7 +382,7 @@ mod tests {
         Scene { layers: vec![layer], ..Scene::default() }
     }
 
-    /// Square roots of colours may differ by a step of an 8-bit picture: points of both ways are rounded apart.
+    /// Square roots of colours may differ by one step of an 8-bit picture: the two computations round differently.
     const STEP: f32 = 1.0 / 255.0;
 
     #[test]
@@ -392,7 +392,7 @@ mod tests {
         let options = RenderOptions { samples: 1, lod_px: 0.5, ..RenderOptions::default() };
         // Samples in cells along the north, east, south and west side beside coarser blocks, and others.
         let (mut odd, mut plain) = ([0; 4], 0);
-        // From all sides, for what is coarser lies farther away.
+        // From all sides, since coarser blocks lie farther away.
         for (x, y) in [(100.0, -1300.0), (1300.0, 100.0), (-100.0, 1300.0), (-1300.0, -100.0)] {
             let screen = Projection::Perspective { fov_y: 0.9 };
             let (eye, target) = (DVec3::new(x, y, 260.0), DVec3::new(0.0, 0.0, -60.0));

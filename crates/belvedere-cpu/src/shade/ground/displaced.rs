@@ -1,4 +1,4 @@
-//! Ground that a stage moves up and down: its heights, and its light, kept from frame to frame where it did not move on.
+//! Heights and light of ground that a stage moves vertically; the light is kept between frames where the ground did not change.
 
 use crate::cache::GroundCache;
 use crate::fast::Fast;
@@ -9,15 +9,15 @@ use belvedere_scene::{Heightfield, NodeState};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Light falls on ground that moves by whole multiples of this share of a node's distance. A slope errs by half of that at
-/// most, far less than an 8-bit step, and ground that hardly moves has the same light in the next frame, to the last bit.
+/// Displacements are rounded to multiples of this share of the node spacing before lighting. The error of a slope is at most half of
+/// that, far below an 8-bit step, and ground that hardly moves has exactly the same light in the next frame.
 const STEP: f64 = 1.0 / 4096.0;
 
-/// Nodes along a side of the squares that are compared.
+/// Side of the squares that are compared between frames, nodes.
 const SQUARE: usize = 64;
 
-/// How far beyond its own nodes the light of a point looks for its surroundings, nodes: averages over 32 nodes, made smooth
-/// from level to level.
+/// Distance, in nodes, up to which the surroundings of a point affect its light: averages over 32 nodes, smoothed from level
+/// to level.
 const SURROUNDINGS: usize = 256;
 
 /// Heights of the ground after `stages`, which move points along z alone.
@@ -39,10 +39,10 @@ pub(crate) fn heights(hf: &Heightfield, stages: &[Stage]) -> Vec<f32> {
     heights
 }
 
-/// The same for one stage, whose displacement is bilinear between the nodes of a grid: a line along a row.
+/// The same for one stage whose displacement is bilinear on a grid: interpolated row by row.
 fn lifted(hf: &Heightfield, ground: &TerrainDisocclusion, rounded: &(impl Fn(f32, f64) -> f32 + Sync)) -> Vec<f32> {
     let grid = ground.grid();
-    // Place of a node between the nodes of the grid along an axis, if it is on the grid.
+    // Cell and fraction of a node on the grid along an axis; `None` off the grid.
     let place = |g: f64, n: usize| {
         (g >= 0.0 && g <= (n - 1) as f64).then(|| {
             let i = (g as usize).min(n - 2);
@@ -76,8 +76,8 @@ pub(crate) struct DisplacedLight {
     pub(crate) lit: Arc<LitGround>,
 }
 
-/// Averages and light of displaced ground: those of the last frame, less the tiles whose ground, or what it leans on, has other
-/// heights now. What comes out does not depend on what was there before.
+/// Averages and light of displaced ground. Tiles of the last frame are reused unless their ground, or the ground that affects them,
+/// has changed; the result does not depend on what was cached.
 pub(crate) fn light(
     cache: &GroundCache<LitKey, DisplacedLight>,
     hf: &Arc<Heightfield>,
@@ -91,7 +91,7 @@ pub(crate) fn light(
         Some((changed, old)) if changed.is_empty() => old,
         old => {
             let means = Arc::new(MipPyramid::new(surface));
-            // Holes take the averages around them, from however far; the sun's shadows fall far.
+            // Voids take averages from any distance, and the sun's shadows reach far: then no tile is reused.
             let near = !key.light.shadows && hf.states().each().is_none_or(|s| !s.contains(&NodeState::Void));
             let lit = old.filter(|_| near).and_then(|(changed, old)| {
                 let mut lit = Arc::try_unwrap(old.lit).ok()?;
@@ -106,7 +106,7 @@ pub(crate) fn light(
     light
 }
 
-/// Squares of nodes, by whether two grounds differ there.
+/// Squares of nodes, and whether two grounds differ there.
 struct Squares {
     across: usize,
     differ: Vec<bool>,
@@ -132,7 +132,7 @@ impl Squares {
         !self.differ.contains(&true)
     }
 
-    /// Whether the light of points in these columns and rows, first and last, leans on a square that differs.
+    /// Whether the light of points in these columns and rows (first and last) depends on a square that differs.
     fn touch(&self, reach: [[usize; 2]; 2]) -> bool {
         let [columns, rows] =
             reach.map(|[from, to]| from.saturating_sub(SURROUNDINGS) / SQUARE..(to + SURROUNDINGS) / SQUARE + 1);

@@ -1,8 +1,8 @@
-//! Ground with its light on it: made node by node, tile by tile, where it is looked at.
+//! Lit ground: colours of nodes, computed in tiles on demand.
 //!
-//! Light is fixed to the map, so none of it depends on the view: what one frame makes serves the next. Two pictures of the
-//! ground are kept: its lit colour, which most pixels take as it is, and colour and light apart, where something lies over
-//! the ground. A node takes eight bytes in each, and a pixel a weighted sum of four nodes in 16-bit integers.
+//! Light is fixed to the map and does not depend on the view, so the tiles of one frame serve the next. Two pictures of the
+//! ground are kept: its lit colour, which most pixels use directly, and colour and light separately, for pixels where something
+//! lies over the ground. A node takes eight bytes in each; a pixel is a weighted sum of four nodes in 16-bit integers.
 
 use crate::color::Rgb;
 use crate::shade::ground::patch::{LightingInputs, Patch};
@@ -13,12 +13,12 @@ use crate::simd::{self, IntLanes, Kernel, LANES, Lanes, nearest};
 use belvedere_scene::{Light, Palette, Relief};
 use glam::Vec3A;
 
-/// Amounts of light that the stored values end at.
+/// Largest amounts of light that can be stored.
 const MOST_DIRECT: f32 = 1.4;
 const MOST_SKY: f32 = 0.8;
-/// Square root of the brightest lit colour that is told from still brighter ones; 1 = white.
+/// Square root of the largest lit colour that can be stored; 1 = white.
 const BRIGHTEST: f32 = 1.25;
-/// What a weighted sum gives for square root 1 of linear light.
+/// Value of a weighted sum for square root 1 of linear light.
 const ONE: f32 = 256.0 * 255.0 / BRIGHTEST;
 
 /// Colour and light at a point of the ground.
@@ -31,7 +31,7 @@ pub(crate) struct Lit {
     pub(crate) sky: f32,
 }
 
-/// All that the lit ground is computed from, besides the ground itself.
+/// Inputs of the lit ground, besides the ground itself.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LitKey {
     pub(crate) relief: Relief,
@@ -40,7 +40,7 @@ pub(crate) struct LitKey {
     pub(crate) exaggeration: f64,
 }
 
-/// The pictures of a ground, see the module.
+/// The two pictures of a ground, see the module.
 #[derive(Debug)]
 pub(crate) struct LitGround {
     /// Square roots of the lit colour of the level and of the next one, each with a spare byte.
@@ -50,12 +50,12 @@ pub(crate) struct LitGround {
 }
 
 impl LitGround {
-    /// No tile made yet.
+    /// Pictures without tiles.
     pub(crate) fn new(cols: usize, rows: usize, top: usize) -> Self {
         Self { colors: Tiles::new([cols, rows], top), parts: Tiles::new([cols, rows], top) }
     }
 
-    /// Whether so much is kept that the next frame had better start anew.
+    /// Whether the tiles exceed the limit of memory, so that the next frame starts without them.
     pub(crate) fn is_full(&self) -> bool {
         self.colors.is_full() || self.parts.is_full()
     }
@@ -66,13 +66,13 @@ impl LitGround {
         self.colors.bytes() + self.parts.bytes()
     }
 
-    /// Forgets the tiles that may not be kept, see [`Tiles::retain`].
+    /// Drops the tiles that may not be kept, see [`Tiles::retain`].
     pub(crate) fn retain(&mut self, keep: impl Fn([[usize; 2]; 2]) -> bool) {
         self.colors.retain(&keep);
         self.parts.retain(&keep);
     }
 
-    /// Square roots of the lit colour around `n` points, see [`LitGround::color`].
+    /// Square roots of the lit colour at `n` points, see [`LitGround::color`].
     /// * `at`: columns and rows, [`tiles::CELL`] steps to a cell.
     #[inline(always)]
     pub(crate) fn colors_of(
@@ -92,7 +92,7 @@ impl LitGround {
         let mut nodes = [[[0; LANES]; 2]; 4];
         let (mut last, mut tile) = ([u32::MAX; 3], None);
         for i in 0..n {
-            // Neighbours mostly lie in the same tile.
+            // Neighbouring points mostly lie in the same tile.
             let here = [k[i], x[i] / tiles::SPAN, y[i] / tiles::SPAN];
             if here != last {
                 (last, tile) = (here, self.colors.tile(here, |k, tile| self.make_colors(k, tile, inputs)));
@@ -113,7 +113,7 @@ impl LitGround {
         out
     }
 
-    /// Square roots of the lit colour around a point.
+    /// Square roots of the lit colour at a point.
     /// * `lod`: level of averages, 256 steps to a level.
     pub(crate) fn color(&self, at: [i32; 2], lod: u32, inputs: &LightingInputs<'_>) -> [f32; 3] {
         let places = [0, 1].map(|axis| [at[axis]; LANES]);
@@ -121,7 +121,7 @@ impl LitGround {
         colors.between(0, (lod & 255) as f32 / 256.0)
     }
 
-    /// Colour and light around a point, see [`LitGround::color`].
+    /// Colour and light at a point, see [`LitGround::color`].
     pub(crate) fn sample(&self, at: [i32; 2], lod: u32, inputs: &LightingInputs<'_>) -> Lit {
         let lod = lod.min((self.parts.top() as u32) << 8);
         let (k, share) = ((lod >> 8) as usize, lod & 255);
@@ -144,7 +144,7 @@ impl LitGround {
     fn make_colors(&self, k: usize, tile: [usize; 2], inputs: &LightingInputs<'_>) -> Box<Tile> {
         let [columns, rows] = self.colors.repeated(k, tile);
         let patch = Patch::new(inputs, k, columns.all(), rows.all());
-        // The coarsest level goes on for ever.
+        // The coarsest level stands for all coarser ones.
         let next = (k < self.colors.top()).then(|| CoarseColors::new(inputs, k + 1, [columns, rows]));
         simd::run(Writing { patch: &patch, next: next.as_ref(), light: inputs.light })
     }
@@ -212,7 +212,7 @@ fn add(around: &FourNodes<'_>, total: u32, sum: &mut [u16; 8]) {
     }
 }
 
-/// The nearest of 255 steps up to 1.
+/// A value of 0..=1 in 255 steps.
 #[inline(always)]
 fn byte(v: f32) -> u32 {
     // In this order NaN becomes 0.
@@ -220,13 +220,13 @@ fn byte(v: f32) -> u32 {
     nearest((if v < 1.0 { v } else { 1.0 }) * 255.0) as u32
 }
 
-/// Four values in a word.
+/// Packs four values into a word.
 #[inline(always)]
 fn word(v: [f32; 4]) -> u32 {
     byte(v[0]) | byte(v[1]) << 8 | byte(v[2]) << 16 | byte(v[3]) << 24
 }
 
-/// Two words, [`LANES`] nodes at a time.
+/// Appends nodes of two words each, [`LANES`] at a time.
 #[inline(always)]
 fn push(out: &mut Vec<Node>, low: &[u32; LANES], high: &[u32; LANES]) {
     for i in 0..LANES.min(tiles::NODES - out.len()) {
@@ -234,7 +234,7 @@ fn push(out: &mut Vec<Node>, low: &[u32; LANES], high: &[u32; LANES]) {
     }
 }
 
-/// Writes a tile of colour and light apart.
+/// Writes a tile of colour and light separately.
 struct Parts<'a>(&'a Patch);
 
 impl Kernel for Parts<'_> {
@@ -297,7 +297,7 @@ impl Writing<'_> {
 }
 
 impl Lit {
-    /// From a weighted sum of nodes, 256 times the stored values.
+    /// Converts a weighted sum of nodes, 256 times the stored values.
     fn of(sum: [u16; 8]) -> Self {
         const ONE: f32 = 256.0 * 255.0;
         let [r, g, b, direct, sky, ..] = sum.map(f32::from);

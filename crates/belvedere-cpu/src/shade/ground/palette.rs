@@ -7,27 +7,27 @@ use belvedere_scene::{Palette, Ramp};
 
 /// Steps of the table by height.
 const STEPS: usize = 1024;
-/// Ground under a ramp that lets it through.
+/// Colour of the ground below a translucent ramp.
 const GREY: [u8; 3] = [205, 205, 202];
 
 /// Tint by height, and the colours that steepness and height add.
 #[derive(Debug)]
 pub(crate) struct Tint {
-    /// One more, for the way to it: the last one again.
+    /// Colours and their changes to the next; the last one is repeated.
     ramp: Box<[[f32; 4]; STEPS + 1]>,
     bottom_m: f32,
     per_m: f32,
     rock: Rgb,
-    /// Tangent of the slope at which rock begins and has taken over.
+    /// Tangents of the slopes at which rock begins and at which it covers the ground.
     rock_slope: Step,
     snow: Rgb,
-    /// Heights at which snow begins and has taken over on gentle slopes, metres.
+    /// Heights at which snow begins and at which it covers gentle slopes, metres.
     snow_m: Step,
 }
 
 type Stops = &'static [(f32, [u8; 3])];
 
-/// A step that never comes; finite: a step between infinities is NaN.
+/// A step that no height reaches; finite, since a step between infinities is NaN.
 const NEVER: [f32; 2] = [1e30, 2e30];
 /// Tangents of the slopes at which snow begins to slide off and has gone.
 const SNOW_SLOPE: Step = Step::new([0.7, 1.3]);
@@ -67,7 +67,7 @@ const CLEAR: Stops = &[
     (0.8, [212, 199, 142]),
     (1.0, [245, 233, 168]),
 ];
-/// Not white: slopes in the light are brighter than this, and must not run into white.
+/// Not white, since slopes in the light are brighter than this and must stay below white.
 const SNOW: [u8; 3] = [229, 233, 238];
 const PLAIN: Stops = &[(0.0, GREY), (1.0, GREY)];
 
@@ -77,7 +77,7 @@ impl Tint {
         let [bottom, top] = z_range_m.map(|z| z as f32);
         let span = (top - bottom).max(1e-3);
         let palette = match palette {
-            // High ground that never comes down to the valleys is rock and ice; the rest is green below.
+            // Ground that is high everywhere is rock and ice; other ground is green in its valleys.
             Palette::Auto if top > 5000.0 => &Palette::Glacial,
             Palette::Auto => &Palette::Alpine,
             p => p,
@@ -112,14 +112,14 @@ impl Tint {
     /// it is high and not steep.
     #[inline(always)]
     pub(crate) fn colors<const N: usize>(&self, height_m: &[f32; N], steep: &[f32; N]) -> [[f32; N]; 3] {
-        // The last place in the table lies just before its end.
+        // The last index of the table lies just before its end.
         const MOST: f32 = (STEPS - 1) as f32 - 0.001;
         let (mut below, mut share, mut rock, mut snow) = ([0; N], [0.0; N], [0.0; N], [0.0; N]);
         for i in 0..N {
             let t = (height_m[i] - self.bottom_m) * self.per_m;
             let t = if t > 0.0 { t } else { 0.0 };
             let t = if t < MOST { t } else { MOST };
-            // On a step, either of the two beside it will do.
+            // On an entry of the table either neighbour gives the same colour.
             below[i] = nearest(t - 0.5);
             share[i] = t - below[i] as f32;
             rock[i] = 0.85 * self.rock_slope.at(steep[i]);
@@ -142,7 +142,7 @@ impl Tint {
         out
     }
 
-    /// One of [`Tint::colors`].
+    /// The colour of one point, see [`Tint::colors`].
     #[cfg(test)]
     pub(crate) fn color(&self, height_m: f32, steep: f32) -> Rgb {
         Rgb::from_array(self.colors(&[height_m], &[steep]).map(|[v]| v))

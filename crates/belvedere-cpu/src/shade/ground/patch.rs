@@ -10,11 +10,11 @@ use crate::shade::ground::tiles::Line;
 use crate::shade::relief::ReliefLight;
 use crate::simd::{self, Kernel, LANES, Lanes};
 
-/// Everything that the tiles of a ground are made from.
+/// Inputs of the tiles of lit ground.
 pub(crate) struct LightingInputs<'a> {
     pub(crate) surface: &'a Surface<'a>,
     pub(crate) means: &'a MipPyramid,
-    /// The undisplaced ground, where light falls on another: heights and slopes of the tint are the true ones.
+    /// The undisplaced ground, if the lit one is displaced: the tint uses its heights and slopes.
     pub(crate) map: Option<GroundShape<'a>>,
     pub(crate) shadows: Option<&'a Shadows>,
     pub(crate) tint: &'a Tint,
@@ -29,7 +29,7 @@ pub(crate) struct GroundShape<'a> {
     pub(crate) means: &'a MipPyramid,
 }
 
-/// What nodes look like.
+/// Colour and light of nodes.
 #[derive(Clone)]
 pub(crate) struct LitNodes {
     /// Square roots of linear red, green, blue without light.
@@ -39,13 +39,13 @@ pub(crate) struct LitNodes {
     pub(crate) sky: Lanes,
 }
 
-/// What the light on nodes depends on, plane by plane, padded to whole lanes.
+/// Inputs of the light on nodes, plane by plane, padded to whole lanes.
 struct Shapes {
     /// dz/dx, dz/dy, height.
     shape: [Vec<f32>; 3],
-    /// Height of the near surroundings and what the wider ones ask for, see [`MipPyramid::openness`].
+    /// Height of the near surroundings and weighted height of the wider ones, see [`MipPyramid::openness`].
     near: [Vec<f32>; 2],
-    /// The undisplaced shape, where the other is displaced.
+    /// The undisplaced shape, if `shape` is displaced.
     map: Option<[Vec<f32>; 3]>,
     /// Share of the sun that no shadow takes.
     sun: Vec<f32>,
@@ -101,7 +101,7 @@ impl Patch {
         Self { nodes: simd::run(LightUp { m, shapes: &shapes }) }
     }
 
-    /// The nodes, [`LANES`] at a time; those past the last one mean nothing.
+    /// The nodes, [`LANES`] at a time; those past the last one are arbitrary.
     pub(crate) fn nodes(&self) -> &[LitNodes] {
         &self.nodes
     }
@@ -123,7 +123,7 @@ impl LitNodes {
     }
 }
 
-/// A row of nodes of a ground in the making, from column `first` on.
+/// Fills a row of nodes, from column `first` on.
 struct Row<'a> {
     ground: GroundShape<'a>,
     first: usize,
@@ -139,7 +139,7 @@ impl<'a> Row<'a> {
         Self { ground, first, shape: Planes::new(n), near: Planes::new(n), refined }
     }
 
-    /// Writes row `row` of level `k`: dz/dx, dz/dy, height, and what [`Shapes`] wants to know of the surroundings.
+    /// Writes row `row` of level `k`: dz/dx, dz/dy, height, and the two planes of the surroundings, see [`Shapes`].
     fn fill(&mut self, k: usize, row: usize, to: [&mut [f32]; 5]) {
         let Self { ground: GroundShape { surface, means }, first, shape, near, refined } = self;
         let surroundings = if let Some(refined) = refined {
@@ -171,7 +171,7 @@ impl Kernel for Join<'_> {
         for (k, to) in [x, y, z].into_iter().enumerate() {
             let (to, here, near, w) = (&mut to[..n], &shape.xyz[k][..n], &surroundings.xyz[k][..n], &shape.w[..n]);
             for i in 0..n {
-                // A hole looks like the ground around it.
+                // A void takes the average of the ground around it.
                 let (here, near) = (here[i], near[i]);
                 to[i] = if w[i] == 0.0 { near } else { here };
             }

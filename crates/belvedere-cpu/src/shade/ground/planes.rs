@@ -10,7 +10,7 @@ use std::ops::Range;
 pub(crate) struct Planes {
     /// dz/dx, dz/dy, height.
     pub(crate) xyz: [Vec<f32>; 3],
-    /// What comes fourth: see [`Surface::row`] and [`Level`].
+    /// Fourth plane: see [`Surface::row`] and [`Level`].
     pub(crate) w: Vec<f32>,
 }
 
@@ -31,7 +31,7 @@ impl Planes {
         (x[i], y[i], z[i], self.w[i]) = (v.x, v.y, v.z, v.w);
     }
 
-    /// The same points of all planes.
+    /// The same range of all planes.
     #[inline(always)]
     pub(crate) fn part(&mut self, places: Range<usize>) -> [&mut [f32]; 4] {
         let [x, y, z] = &mut self.xyz;
@@ -72,8 +72,8 @@ impl Kernel for Inside<'_> {
     }
 }
 
-/// Averages of nodes away from voids and borders. The central differences along a row or a column of a square cancel but for
-/// the two nodes on either side of each end.
+/// Averages of nodes away from voids and borders. The sum of central differences along a row or a column of a square reduces to the
+/// two nodes on either side of each end.
 pub(crate) struct Inner<'a> {
     pub(crate) hf: &'a Heightfield,
     pub(crate) heights: &'a [f32],
@@ -85,7 +85,7 @@ pub(crate) struct Inner<'a> {
     pub(crate) out: &'a mut Planes,
 }
 
-/// Columns of the ground that are summed up at a time.
+/// Columns of the ground that are summed at a time.
 pub(crate) const CHUNK: usize = 256;
 
 impl Kernel for Inner<'_> {
@@ -103,7 +103,7 @@ impl Kernel for Inner<'_> {
 }
 
 impl Inner<'_> {
-    /// * `SIDE`: the side again, if it is one of those that are compiled apart, else 0.
+    /// * `SIDE`: `side` again, if it is one of the sizes with a version of its own, else 0.
     #[inline(always)]
     fn squares<const SIDE: usize>(self, side: usize) {
         let Self { hf, heights, row, columns, first, out, .. } = self;
@@ -114,13 +114,13 @@ impl Inner<'_> {
         for from in columns.clone().step_by(CHUNK / side) {
             let to = (from + CHUNK / side).min(columns.end);
             let (c0, n) = (from * side - 1, (to - from) * side + 2);
-            // Sums down the columns, and what the rows at either end of the square leave.
+            // Sums down the columns, and the remainders of the rows at either end of the square.
             let (mut sum, mut ends) = ([0.0f32; CHUNK + 2], [0.0f32; CHUNK + 2]);
             let line = |r: usize| &heights[r * cols + c0..][..n];
             let top = row * side;
             let (north0, south1) = (line(top - 1), line(top + side));
             if SIDE > 0 {
-                // All rows at once: they lie far apart in memory, and none has to wait for another.
+                // All rows are read at once: they lie far apart in memory, and the reads overlap.
                 let rows: [&[f32]; SIDE] = std::array::from_fn(|k| line(top + k));
                 for i in 0..n {
                     let mut down = 0.0;

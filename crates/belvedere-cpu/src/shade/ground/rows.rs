@@ -6,11 +6,11 @@ use crate::simd::{self, Kernel};
 
 /// Averages of the finest stored level at nodes of a finer one, row after row.
 pub(crate) struct RefinedRows {
-    /// Nodes of the finer level to one of the stored.
+    /// Spacing of the stored nodes in nodes of the finer level.
     step: f32,
-    /// Nodes west and east of each column, and the share of the way.
+    /// Nodes west and east of each column, and the weight of the eastern one.
     taps: Vec<(usize, usize, f32)>,
-    /// Rows of the stored level brought to the columns, those last asked for.
+    /// The two rows of the stored level that were last interpolated to the columns.
     lines: [(usize, Planes); 2],
 }
 

@@ -1,4 +1,4 @@
-//! A sample on any drawn triangle of ground.
+//! Position of a sample on any drawn triangle of ground.
 
 use crate::geometry::block::{Block, DrawnTriangle};
 use crate::geometry::grid::CELL_TRIANGLES;
@@ -7,7 +7,7 @@ use crate::screen::{SUB, Screen};
 use crate::shade::SurfacePoint;
 use belvedere_core::DVec2;
 
-/// The triangle as the sample sees it.
+/// A triangle of ground around a sample.
 pub(crate) struct GroundSample {
     /// Vertices relative to the sample, fixed-point steps.
     x: [f64; 3],
@@ -46,7 +46,7 @@ impl GroundSample {
         [(origin[0] + step * (cell % SIDE)) as i32, (origin[1] + step * (cell / SIDE)) as i32]
     }
 
-    /// Cells that a pixel of the triangle covers, perspective inside the triangle left out.
+    /// Cells that a pixel of the triangle covers, without the perspective inside the triangle.
     pub(crate) fn cells_per_px(&self) -> f64 {
         let area = |x: &[f64; 3], y: &[f64; 3]| (x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]);
         (area(&self.u, &self.v) / area(&self.x, &self.y)).abs() * f64::from(SUB * SUB)
@@ -56,7 +56,7 @@ impl GroundSample {
     pub(crate) fn axes(&self) -> [DVec2; 2] {
         let Self { x, y, q, u, v, at } = self;
         let next = |k: usize| ((k + 1) % 3, (k + 2) % 3);
-        // Weight of vertex k, and how it changes when the sample moves.
+        // Weight of vertex k, and its change as the sample moves.
         let sum = |of: &dyn Fn(usize) -> f64| -> [f64; 3] {
             let mut sums = [0.0; 3];
             for k in 0..3 {

@@ -1,14 +1,14 @@
 //! Cast shadows: the share of the sun's disc that every node of the ground sees.
 //!
-//! Rays of the sun that run over the ground are parallel lines on the map. Each line is swept once, away from the sun,
-//! with the height of the shadow that the ground so far throws: every node is looked at a constant number of times.
+//! Rays of the sun over the ground are parallel lines on the map. Each line is swept once, away from the sun, with the height of the
+//! shadow that the ground so far casts: every node is visited a constant number of times.
 
 use crate::shade::ground::surface::{MipPyramid, Surface};
 use belvedere_core::DVec2;
 use belvedere_scene::{Light, NodeState};
 use rayon::prelude::*;
 
-/// Half the width of the sun, radians.
+/// Angular radius of the sun, radians.
 const SUN_RADIUS: f64 = 0.004_65;
 
 /// Light on the nodes of one level and its averages on coarser ones, 0 = shadow, 255 = the whole sun.
@@ -20,7 +20,7 @@ pub(crate) struct Shadows {
 }
 
 impl Shadows {
-    /// Shadows of the full ground, or of the finest stored averages where the ground is huge.
+    /// Shadows of the full ground, or of the finest stored averages where the ground is very large.
     pub(crate) fn new(surface: &Surface<'_>, means: &MipPyramid, light: &Light) -> Self {
         let hf = surface.hf;
         let first = if means.first == 1 { 0 } else { means.first };
@@ -52,7 +52,7 @@ impl Shadows {
             }
             return;
         }
-        // Finer than what is stored: between its nodes.
+        // Finer than the stored level: interpolated between its nodes.
         let step = 1.0 / (1u32 << (self.first - k)) as f32;
         let tap = |x: usize, n: usize| {
             let x = ((x as f32 + 0.5) * step - 0.5).clamp(0.0, (n - 1) as f32);
@@ -75,7 +75,7 @@ fn halved(cols: usize, rows: usize, fine: &[u8]) -> (usize, usize, Vec<u8>) {
     (w, h, (0..w * h).map(|i| mean(i % w * 2, i / w * 2) as u8).collect())
 }
 
-/// Ground that throws a shadow: the height of the sun's ray over it, here, and how far away it is.
+/// Ground that casts a shadow: height of the sun's ray over it at the current step, and the distance to it, scene units.
 #[derive(Debug, Clone, Copy)]
 struct Edge {
     height: f64,
@@ -135,18 +135,18 @@ impl Lines {
     /// Light along line `l`, one value per step, 255 outside the grid.
     fn light(&self, l: usize, altitude: f64, height: &(dyn Fn(usize) -> f32 + Sync), out: &mut [u8]) {
         let wide = (altitude + SUN_RADIUS).tan() - (altitude - SUN_RADIUS).tan();
-        // The ground whose ray runs highest, and the one before it, whose shadow may still be fading out.
+        // The ground whose ray runs highest, and the one before it, whose penumbra may not have ended.
         let mut edges = [Edge { height: f64::NEG_INFINITY, far: 0.0 }; 2];
         for (t, out) in out.iter_mut().enumerate() {
             let y = (self.first + l as i64) as f64 + self.lean * t as f64;
             let last = (self.size[1] - 1) as f64;
-            // Lines just outside belong to the border: nodes there lie between them and the first one inside.
+            // Lines just outside count as the border: nodes at the border lie between them and the first line inside.
             if y > -1.0 && y < last + 1.0 {
                 let y = y.clamp(0.0, last);
                 let j = (y as usize).min(self.size[1].saturating_sub(2));
                 let share = y - j as f64;
                 let [a, b] = [j, (j + 1).min(self.size[1] - 1)].map(|j| f64::from(height(self.index(t, j))));
-                // A void beside the line counts only where the line meets it.
+                // A void beside the line counts only if the line meets it exactly.
                 let z = if share == 0.0 {
                     a
                 } else if share == 1.0 {
@@ -156,7 +156,7 @@ impl Lines {
                 };
                 if z > f64::NEG_INFINITY {
                     let light = |e: Edge| {
-                        // The border of a shadow is as wide as the sun, and as a cell at least.
+                        // The penumbra is as wide as the sun's disc makes it, and at least about a cell.
                         let width = (e.far * wide).max(self.drop * (0.5 * e.far / self.step).min(1.0));
                         if e.far > 0.0 { (0.5 + (z - e.height) / width).clamp(0.0, 1.0) } else { 1.0 }
                     };
@@ -190,7 +190,7 @@ fn sweep(size: [usize; 2], spacing: DVec2, light: &Light, height: &(dyn Fn(usize
     let mut lit = vec![255u8; lines.count * n];
     lit.par_chunks_mut(n).enumerate().for_each(|(l, row)| lines.light(l, altitude, height, row));
     let at = |t: usize, j: usize| {
-        // Between the two lines that pass the node.
+        // Interpolates between the two lines beside the node.
         let y = j as f64 - lines.lean * t as f64 - lines.first as f64;
         let (l, share) = (y as usize, (y.fract() * 256.0) as u32);
         let [a, b] = [l, (l + 1).min(lines.count - 1)].map(|l| u32::from(lit[l * n + t]));

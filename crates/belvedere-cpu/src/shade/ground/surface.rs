@@ -1,6 +1,6 @@
 //! The shape of the ground as shading sees it: slopes and heights, and their averages over ever larger cells.
 //!
-//! Only averages are kept: full detail is always at hand in the heights themselves.
+//! Only averages are stored: full detail is computed from the heights themselves.
 
 use crate::shade::ground::planes::{CHUNK, Inner, Inside, Planes};
 use crate::simd;
@@ -29,7 +29,7 @@ pub(crate) struct Surface<'a> {
     pub(crate) hf: &'a Heightfield,
     /// Heights row by row; differ from the heightfield's where the ground was moved up or down.
     heights: Heights<'a>,
-    /// Displacement that also moves sideways: slopes are taken between displaced neighbours.
+    /// Displacement in any direction: slopes are taken between displaced neighbours.
     bent: Option<Arc<Moved<'a>>>,
 }
 
@@ -77,7 +77,7 @@ impl<'a> Surface<'a> {
         if let Heights::Moved(heights) = &self.heights { Some(heights) } else { None }
     }
 
-    /// Heights row by row; those of voids mean nothing.
+    /// Heights row by row; those of voids are arbitrary.
     pub(crate) fn heights(&self) -> &[f32] {
         &self.heights
     }
@@ -87,7 +87,7 @@ impl<'a> Surface<'a> {
         let (cols, rows, n) = (self.hf.cols(), self.hf.rows(), out.w.len());
         let inner = row > 0 && row + 1 < rows && self.bent.is_none();
         let columns = first.max(1)..(first + n).min(cols - 1);
-        // The outermost nodes, voids and bends go one by one.
+        // Border nodes, nodes beside voids and bent ground are computed one by one.
         let solid = inner && !columns.is_empty() && self.is_solid(row, 1, columns.start - 1..columns.end + 1);
         let whole = if solid { columns.clone() } else { first..first };
         for c in (first..first + n).filter(|c| !whole.contains(c)) {
@@ -151,7 +151,7 @@ impl<'a> Surface<'a> {
         }
         let (cols, rows, side, n) = (self.hf.cols(), self.hf.rows(), 1 << k, out.w.len());
         let (from, to) = ((first * side).saturating_sub(1), ((first + n) * side + 1).min(cols));
-        // The outermost nodes, voids and bends go one by one.
+        // Border nodes, nodes beside voids and bent ground are computed one by one.
         let inner = row > 0
             && (row + 1) * side < rows
             && side <= CHUNK
@@ -169,7 +169,7 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// Whether there is no void among these columns of the rows of a row of averages and of one more on either side.
+    /// Whether these columns have no void in the rows under a row of averages and in one more row on either side.
     fn is_solid(&self, row: usize, side: usize, columns: Range<usize>) -> bool {
         let (cols, rows) = (self.hf.cols(), self.hf.rows());
         self.hf.states().each().is_none_or(|states| {
@@ -179,7 +179,7 @@ impl<'a> Surface<'a> {
     }
 
     /// [`Surface::mean_row`] of any nodes, from column `first`.
-    /// * `points`: where they go.
+    /// * `places`: range of the results in `out`.
     fn mean_of_each(&self, k: usize, row: usize, first: usize, out: &mut Planes, places: Range<usize>) {
         let (cols, rows, side) = (self.hf.cols(), self.hf.rows(), 1 << k);
         let (from, to) = (first * side, ((first + places.len()) * side).min(cols));
@@ -208,12 +208,12 @@ fn bent_slope(hf: &Heightfield, c: usize, r: usize, bent: &Moved<'_>) -> Option<
         difference((r + 1 < hf.rows()).then(|| at(c, r + 1)).flatten(), r.checked_sub(1).and_then(|r| at(c, r)));
     let n = east.cross(north);
     let n = if n.z < 0.0 { -n } else { n };
-    // Walls steeper than about 87 degrees shade like that.
+    // Walls steeper than about 87 degrees are shaded as if they had that slope.
     let z = n.z.max(0.05 * n.length());
     Some(if z > 0.0 { DVec2::new(-n.x / z, -n.y / z) } else { DVec2::ZERO })
 }
 
-/// Averages over `2^k x 2^k` nodes: dz/dx, dz/dy, height, and the height that the wider surroundings ask for (see
+/// Averages over `2^k x 2^k` nodes: dz/dx, dz/dy, height, and the weighted height of the wider surroundings (see
 /// [`Openness::at`]).
 #[derive(Debug)]
 pub(crate) struct Level {
@@ -235,7 +235,7 @@ pub(crate) fn first_level(nodes: usize) -> usize {
     if nodes <= SMALL_GROUND { 1 } else { (1..).find(|k| nodes >> (2 * k) <= MOST_NODES).unwrap_or(1) }
 }
 
-/// Bytes that the averages of a ground of so many nodes take.
+/// Bytes of the averages of a ground of `nodes` nodes.
 pub(crate) fn means_bytes(nodes: u64) -> u64 {
     (nodes >> (2 * first_level(nodes as usize))) * size_of::<Vec4>() as u64 * 4 / 3
 }
@@ -271,7 +271,7 @@ impl MipPyramid {
         self.first + self.levels.len() - 1
     }
 
-    /// Gives holes the average around them, so that interpolation beside them sees no height of 0.
+    /// Fills voids with the average around them, so that interpolation beside them uses no height of 0.
     fn fill_holes(&mut self) {
         for k in (0..self.levels.len() - 1).rev() {
             let (fine, coarse) = self.levels.split_at_mut(k + 1);
@@ -301,7 +301,7 @@ impl MipPyramid {
         }
     }
 
-    /// Heights of stored level `k` brought to the finest one step by step, which makes them smooth.
+    /// Heights of stored level `k` interpolated to the finest one level by level, which smooths them.
     fn smooth_heights(&self, k: usize) -> Vec<f32> {
         let mut values: Vec<f32> = self.levels[k].nodes.iter().map(|n| n.z).collect();
         for level in (0..k).rev() {
@@ -357,7 +357,7 @@ impl MipPyramid {
         [level.cols, level.rows]
     }
 
-    /// How open points are, see [`Openness::at`].
+    /// Weights of the openness of points, see [`Openness::at`].
     #[inline(always)]
     pub(crate) fn openness(&self) -> Openness {
         let per_m =
@@ -377,9 +377,9 @@ pub(crate) struct Openness {
 }
 
 impl Openness {
-    /// How far a point at `height` stands above its surroundings at three scales, as the share of the sky that they leave:
-    /// about 0.8..=1.2, 1 on level ground. Our stand-in for sky visibility.
-    /// * `near`, `asked`: height and what the surroundings ask for, of the finest stored level there.
+    /// Share of the sky that is visible at a point, from its height over its surroundings at three scales: about 0.8..=1.2, 1 on level
+    /// ground. Our approximation of sky visibility.
+    /// * `near`, `asked`: height and weighted height of the wider surroundings, of the finest stored level there.
     #[inline(always)]
     pub(crate) fn at(self, height: f32, near: f32, asked: f32) -> f32 {
         let above = self.near * (height - near) + self.wide * height - asked;
@@ -403,7 +403,7 @@ impl Level {
         Self { cols, rows, nodes }
     }
 
-    /// A row between its columns.
+    /// A row interpolated to given columns.
     pub(crate) fn between_columns(&self, row: usize, taps: &[(usize, usize, f32)], out: &mut Planes) {
         let nodes = &self.nodes[row * self.cols..][..self.cols];
         for (i, &(west, east, u)) in taps.iter().enumerate() {
@@ -416,7 +416,7 @@ impl Level {
         sum / n
     }
 
-    /// The nodes under a node of the next level.
+    /// The nodes that a node of the next level averages.
     fn under(&self, col: usize, row: usize) -> impl Iterator<Item = &Vec4> {
         let inside = move |i: usize, j: usize| 2 * col + i < self.cols && 2 * row + j < self.rows;
         [(0, 0), (1, 0), (0, 1), (1, 1)]

@@ -1,4 +1,4 @@
-//! Terrain: its light, and what is laid over it.
+//! Terrain: its light, and the drapes and areas over it.
 
 use crate::cache::GroundCache;
 use crate::color::{Rgb, linear, smoothstep};
@@ -39,7 +39,7 @@ pub(crate) struct TerrainShade<'a> {
     drapes: Vec<DrapeMap>,
 }
 
-/// Light on grounds, remembered from frame to frame.
+/// Caches of the light on grounds, kept between frames.
 #[derive(Debug, Default)]
 pub(crate) struct LightCache {
     means: GroundCache<(), Arc<MipPyramid>>,
@@ -65,7 +65,7 @@ impl<'a> TerrainShade<'a> {
         });
         let cast = |means: &MipPyramid| Arc::new(Shadows::new(&surface, means, &light));
         let (means, shadows, lit) = if surface.is_map() {
-            // The map's own light stays the same from frame to frame.
+            // The undisplaced ground has the same light in all frames.
             let means = cache.means.get(hf, (), averages);
             let shadows = light.shadows.then(|| cache.shadows.get(hf, light, || cast(&means)));
             let lit = cache.lit.take(hf, &key).filter(|lit| !lit.is_full()).unwrap_or_else(|| unlit(&means));
@@ -99,7 +99,7 @@ impl<'a> TerrainShade<'a> {
         }
     }
 
-    /// What tiles of lit ground are made from.
+    /// Inputs of the tiles of lit ground.
     pub(crate) fn inputs(&self) -> LightingInputs<'_> {
         LightingInputs {
             surface: &self.surface,
@@ -112,12 +112,12 @@ impl<'a> TerrainShade<'a> {
         }
     }
 
-    /// Whether anything lies over the ground.
+    /// Whether a drape, an area or a cast shadow may lie over the ground.
     pub(crate) fn is_covered(&self, shader: &Shader<'_>) -> bool {
         !self.drapes.is_empty() || !shader.areas.is_empty() || shader.casters.is_some()
     }
 
-    /// Colour of the ground at a point of which a pixel covers a square of side `fp`, and the area it lies in.
+    /// Colour of the ground at a point where a pixel covers a square of side `fp`, scene units, and the area it lies in.
     /// * `axes`: see [`Footprint::new`].
     pub(crate) fn shade_at(
         &self,
@@ -142,7 +142,7 @@ impl<'a> TerrainShade<'a> {
         })
     }
 
-    /// * `sun`: share of the sun that boxes and meshes leave.
+    /// * `sun`: share of the sun's disc that boxes and meshes leave visible.
     fn light_of(&self, lit: &Lit, sun: f32) -> Rgb {
         let left = self.light.in_shadow + (1.0 - self.light.in_shadow) * sun;
         self.light.warm * (lit.direct * left) + self.light.cool * lit.sky
@@ -154,7 +154,7 @@ impl<'a> TerrainShade<'a> {
         shader.sections.as_ref().map_or(1.0, of)
     }
 
-    /// Share of the sun that boxes and meshes leave to a point of which a pixel covers `print`.
+    /// Share of the sun's disc that boxes and meshes leave visible from a point with the footprint `print`.
     fn sun_on(&self, shader: &Shader<'_>, xy: DVec2, print: &Footprint) -> f32 {
         let Some(casters) = &shader.casters else { return 1.0 };
         let Some(z) = self.hf.surface_at(xy) else { return 1.0 };
@@ -162,11 +162,11 @@ impl<'a> TerrainShade<'a> {
         casters.on_ground(p, [print.major, across], &|other| shader.throws(other, self.layer, p))
     }
 
-    /// Colour and area where a picture or an area covers the ground; `None` where nothing does.
+    /// Colour and area where a drape, an area or a shadow of models covers the ground; `None` elsewhere.
     /// * `g`: column and row;
     /// * `cells`: side of the square that the pixel covers, cells;
-    /// * `print`: tells the patch itself;
-    /// * `ground`: tells the ground there.
+    /// * `print`: computes the footprint of the pixel;
+    /// * `ground`: computes the light of the ground there.
     pub(crate) fn covered(
         &self,
         shader: &Shader<'_>,
@@ -178,7 +178,7 @@ impl<'a> TerrainShade<'a> {
     ) -> Option<(Rgb, Option<u32>)> {
         let spacing = self.hf.spacing();
         let (xy, fp) = (self.hf.north_west() + DVec2::new(g.x, -g.y) * spacing, cells * self.pitch);
-        // No print is longer; how many pixels there are to a border the print itself tells, which looks along the ground.
+        // An upper bound of the footprint's length selects the areas; the footprint itself then gives the distance to the border in pixels.
         let areas = shader.areas.iter().map(|a| (a, a.border(xy)));
         let areas: Vec<_> = areas.filter(|(_, border)| border.inside > -0.5 * LONGEST * fp).collect();
         if self.drapes.is_empty() && areas.is_empty() && shader.casters.is_none() {
@@ -202,7 +202,7 @@ impl<'a> TerrainShade<'a> {
             albedo = albedo.lerp(color, alpha);
             draped = draped.max(alpha);
         }
-        // A photograph has its own light: model it only half.
+        // A photograph contains light already, so only half of ours is applied.
         let mut light = self.light_of(&lit, sun).lerp(Rgb::splat(0.95 * (0.5 + 0.5 * sun)), 0.5 * draped);
         let (mut id, mut water) = (None, 0.0f32);
         for (a, inside, shown) in areas {
@@ -214,7 +214,7 @@ impl<'a> TerrainShade<'a> {
             match a.surface {
                 AreaSurface::Water | AreaSurface::Sea => water += share * (1.0 - water),
                 AreaSurface::Glacier => {
-                    // Snow throws light into its own shadows.
+                    // Snow lights its own shadows.
                     light = light.lerp(Rgb::splat(1.02), 0.35 * share);
                     water *= 1.0 - share;
                 }
@@ -233,9 +233,9 @@ impl<'a> TerrainShade<'a> {
 }
 
 /// Colour of an area at a point.
-/// * `inside`: pixels from its border.
+/// * `inside`: distance from the border inwards, pixels.
 fn fill(area: &AreaMap, xy: DVec2, inside: f32, print: &Footprint) -> Rgb {
-    // Over the first pixel and a half.
+    // The rim is about a pixel and a half wide.
     let rim = if area.has_outline { 0.0 } else { 1.0 - smoothstep(0.6, 2.2, inside) };
     match area.surface {
         AreaSurface::Plain | AreaSurface::Outline | AreaSurface::Park => area.fill,
@@ -249,8 +249,8 @@ fn fill(area: &AreaMap, xy: DVec2, inside: f32, print: &Footprint) -> Rgb {
     }
 }
 
-/// The ground that light falls on; its tint is always that of the map. Light stays fixed to the map unless the ground itself was changed, else a lowered
-/// ridge keeps its old shadow.
+/// The ground that is lit; its tint is always that of the map. Light stays fixed to the map unless a stage moves the ground itself:
+/// a lowered ridge must not keep its old shadow.
 fn lit_surface<'a>(layer: &'a TerrainLayer, job: &RenderJob<'a>) -> Surface<'a> {
     let (hf, stages) = (&layer.heightfield, job.view.stages());
     let ground = stages.iter().position(|s| s.moves_ground());

@@ -1,4 +1,4 @@
-//! Quiet textures that are fixed to the map and as fine as the picture allows.
+//! Subtle textures that are fixed to the map, at the finest scale that does not shimmer.
 
 use belvedere_core::DVec2;
 
@@ -6,10 +6,10 @@ use belvedere_core::DVec2;
 const GRAIN_PX: f64 = 6.0;
 
 /// A stipple in -1..=1 at a point of the map.
-/// * `px`: longest way on the map that a pixel covers there, scene units.
+/// * `px`: longest extent on the map of a pixel there, scene units.
 ///
-/// Two grains of sizes a power of two apart fade into each other, so that the grain neither grows nor jumps when the
-/// eye comes nearer.
+/// Two grains whose sizes differ by a factor of two are cross-faded, so that the grain neither grows nor jumps as the eye
+/// approaches.
 pub(crate) fn stipple(xy: DVec2, px: f64) -> f32 {
     let octave = (GRAIN_PX * px).max(1e-9).log2();
     let (fine, share) = (octave.floor(), octave.fract().rem_euclid(1.0) as f32);
@@ -29,7 +29,7 @@ fn noise(p: DVec2) -> f32 {
     a + s.y * (b - a)
 }
 
-/// A value in -1..=1 from two whole numbers.
+/// A pseudo-random value in -1..=1 of two whole numbers.
 fn value(x: i64, y: i64) -> f32 {
     // The steps of splitmix64 (Steele, Lea, Flood 2014).
     let mut h = (x as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (y as u64).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -50,7 +50,7 @@ mod tests {
             let px = 0.3 * 1.0003f64.powi(i);
             let here = stipple(p, px);
             assert!(here.abs() <= 1.42);
-            // A pixel farther, or a little nearer to the eye, it is nearly the same.
+            // A step of a tenth of a pixel, or a slightly nearer eye, hardly changes it.
             assert!((stipple(p + DVec2::X * 0.1 * px, px) - here).abs() < 0.2, "{p} {px}");
             assert!((stipple(p, 1.01 * px) - here).abs() < 0.1, "{p} {px}");
             (sum, n) = (sum + here, n + 1.0f32);

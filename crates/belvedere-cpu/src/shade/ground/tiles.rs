@@ -1,4 +1,4 @@
-//! Pictures of the ground at ever coarser levels, in tiles that are made where they are looked at.
+//! Mip pyramid of the ground in tiles that are computed on demand.
 
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Fixed-point steps of a tile, of the nodes of its own level.
 pub(crate) const SPAN: u32 = SIDE as u32 * CELL as u32;
 
-/// What is kept of a node of the ground.
+/// Stored bytes of a node of the ground.
 pub(crate) type Node = [u8; 8];
 
 /// Cells along a side of a tile, a power of two; one more node along each side, so that no cell lies in two tiles.
@@ -19,10 +19,10 @@ pub(crate) type Tile = [Node; NODES];
 /// Fixed-point steps of a cell.
 pub(crate) const CELL: i32 = 256;
 
-/// Bytes of tiles after which a frame starts anew: long flights over a huge ground must not collect all of it.
+/// Bytes of tiles above which a frame starts without them, so that long flights over a large ground do not keep all of it.
 const MOST_BYTES: usize = 192 << 20;
 
-/// Bytes of tiles that a picture makes at most, about: a node or two for each of its pixels, and tiles of which it sees a corner.
+/// Bytes of tiles per pixel that a picture makes at most, about: one or two nodes per pixel, and tiles of which only a corner is seen.
 const BYTES_PER_PIXEL: u64 = 64;
 const BYTES_OF_CORNERS: u64 = 32 << 20;
 
@@ -39,7 +39,7 @@ fn level_size(nodes: [usize; 2], k: usize) -> ([usize; 2], [usize; 2]) {
     (nodes, nodes.map(|n| (n + 1).div_ceil(SIDE)))
 }
 
-/// Bytes that the tiles of a ground take at most: all of them, or what is kept and what one more picture makes.
+/// Bytes that the tiles of a ground take at most: all of them, or the limit and the tiles of one more picture.
 pub(crate) fn most_bytes(nodes: [usize; 2], pixels: u64) -> u64 {
     let levels = 1 + nodes[0].max(nodes[1]).next_power_of_two().trailing_zeros() as usize;
     let tiles: usize = (0..levels).map(|k| level_size(nodes, k).1.iter().product::<usize>()).sum();
@@ -47,14 +47,14 @@ pub(crate) fn most_bytes(nodes: [usize; 2], pixels: u64) -> u64 {
     all.min(pixels.saturating_mul(BYTES_PER_PIXEL).saturating_add(MOST_BYTES as u64 + BYTES_OF_CORNERS))
 }
 
-/// Levels of halved detail, each with a rim of one node that repeats the border: no place needs clamping.
+/// Levels of halved detail, each with a border of one repeated node, so that no position needs clamping.
 #[derive(Debug)]
 pub(crate) struct Tiles {
     levels: Vec<Level>,
     bytes: AtomicUsize,
 }
 
-/// The nodes around a point, west and east in a row, and its way from the first towards the others in 1/256.
+/// The nodes around a point, west and east in a row, and the point's offsets east and south in 1/256.
 pub(crate) struct FourNodes<'a> {
     pub(crate) north: &'a [Node; 2],
     pub(crate) south: &'a [Node; 2],
@@ -63,7 +63,7 @@ pub(crate) struct FourNodes<'a> {
 }
 
 impl Tiles {
-    /// No tile made yet.
+    /// Levels without tiles.
     pub(crate) fn new(nodes: [usize; 2], top: usize) -> Self {
         let level = |k: usize| {
             let (nodes, [across, down]) = level_size(nodes, k);
@@ -72,7 +72,7 @@ impl Tiles {
         Self { levels: (0..=top).map(level).collect(), bytes: AtomicUsize::new(0) }
     }
 
-    /// The coarsest level.
+    /// Number of the coarsest level.
     #[inline(always)]
     pub(crate) fn top(&self) -> usize {
         self.levels.len() - 1
@@ -89,7 +89,7 @@ impl Tiles {
         self.bytes.load(Ordering::Relaxed)
     }
 
-    /// Whether so much is kept that the next frame had better start anew.
+    /// Whether the tiles exceed the limit of memory, so that the next frame starts without them.
     pub(crate) fn is_full(&self) -> bool {
         self.bytes.load(Ordering::Relaxed) > MOST_BYTES
     }
@@ -132,13 +132,13 @@ impl Tiles {
         })
     }
 
-    /// Forgets the tiles that may not be kept.
-    /// * `keep`: by the columns and rows of level 0 that a tile repeats or leans on, first and last.
+    /// Drops the tiles that may not be kept.
+    /// * `keep`: decides by the first and last columns and rows of level 0 that affect a tile.
     pub(crate) fn retain(&mut self, keep: impl Fn([[usize; 2]; 2]) -> bool) {
         for (k, level) in self.levels.iter_mut().enumerate() {
             for (i, tile) in level.tiles.iter_mut().enumerate() {
                 let reach = [i % level.across, i / level.across].map(|i| {
-                    // Three nodes of the next level and a rim of one on either side.
+                    // A tile depends on three nodes of the next level and a border of one on either side.
                     [(i * SIDE).saturating_sub(8) << k, ((i + 1) * SIDE + 8) << k]
                 });
                 if tile.get().is_some() && !keep(reach) {
@@ -160,14 +160,14 @@ impl Tiles {
 }
 
 /// Position along an axis of level `k`, [`CELL`] steps from node to node.
-/// * `at`: the same of level 0.
+/// * `at`: position on level 0, `CELL` steps from node to node.
 #[inline(always)]
 pub(crate) fn level_position(at: i32, k: u32) -> u32 {
     // Node i of level k lies at (i + 0.5) 2^k - 0.5 of level 0, and is number i + 1 with the rim.
     ((at.wrapping_add(CELL / 2) >> (k & 31)) + CELL / 2) as u32
 }
 
-/// The north-western of the nodes around a point of a level, among those of its tile.
+/// Index of the north-western node around a point of a level, in its tile.
 #[inline(always)]
 pub(crate) fn first_of(x: u32, y: u32) -> u32 {
     (y / CELL as u32) % SIDE as u32 * STRIDE as u32 + (x / CELL as u32) % SIDE as u32
@@ -185,12 +185,12 @@ fn words([a, b, c, d, e, f, g, h]: Node) -> [u32; 2] {
     [u32::from_le_bytes([a, b, c, d]), u32::from_le_bytes([e, f, g, h])]
 }
 
-/// Nodes in a line, `count` of them from `first` on; those beyond the ends of the ground repeat the ones there.
+/// Nodes in a line, `count` of them from `first` on; those beyond the ends of the ground repeat the last node there.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Line {
     first: isize,
     pub(crate) count: usize,
-    /// The last node of the ground.
+    /// Number of the last node of the ground.
     last: usize,
 }
 
@@ -199,14 +199,14 @@ impl Line {
         (self.first..self.first + self.count as isize).map(move |i| (i.max(0) as usize).min(self.last))
     }
 
-    /// The first node that is there, and which of the line's nodes are there.
+    /// The first node on the ground, and the range of the line's nodes that lie on the ground.
     pub(crate) fn inside(self) -> (usize, Range<usize>) {
         let from = (-self.first).max(0) as usize;
         let to = (self.last as isize + 1 - self.first).clamp(from as isize, self.count as isize);
         ((self.first + from as isize) as usize, from..to as usize)
     }
 
-    /// Gives the nodes that are not there the values of those that they repeat.
+    /// Copies the values of the end nodes to the nodes beyond the ground.
     #[inline(always)]
     pub(crate) fn repeat(self, values: &mut [f32]) {
         let (_, Range { start, end }) = self.inside();
@@ -218,7 +218,7 @@ impl Line {
     }
 }
 
-/// The nodes along an axis that the nodes of a tile repeat.
+/// The nodes of a tile along an axis; those beyond the ground repeat the last one.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RepeatedNodes {
     from: usize,
@@ -230,12 +230,12 @@ impl RepeatedNodes {
         Line { first: self.from as isize - 1, count: STRIDE, last: self.nodes - 1 }
     }
 
-    /// The nodes of the next coarser level over them, and one more at either end; where there is none, the last one again.
+    /// The nodes of the next coarser level over them, and one more at either end; beyond the ground the last one is repeated.
     pub(crate) fn parents(self) -> Line {
         Line { first: (self.from / 2) as isize - 2, count: SIDE / 2 + 3, last: self.nodes.div_ceil(2) - 1 }
     }
 
-    /// Which of the parents lies over a node.
+    /// Index of the parent over a node.
     pub(crate) fn parent_of(self, node: usize) -> usize {
         node / 2 + 2 - self.from / 2
     }

@@ -1,4 +1,4 @@
-//! Lit colours of a level, brought to the nodes of the next finer one.
+//! Lit colours of a coarse level, interpolated to the nodes of the next finer one.
 
 use crate::shade::ground::patch::{LightingInputs, Patch};
 use crate::shade::ground::tiles::{NODES, RepeatedNodes, STRIDE};
@@ -7,9 +7,9 @@ use crate::simd::{LANES, Lanes};
 /// Nodes along a side: half as many as those of a tile, and two more around.
 const SIDE: usize = STRIDE / 2 + 3;
 
-/// Weights of the node over a finer one, and of those before and after it, for the finer one's position: even or odd. Between
-/// such nodes, a line errs from one between coarse nodes by as much at the coarse nodes as halfway to the next fine ones, and
-/// by less than anywhere else.
+/// Weights of the node over a finer one, and of those before and after it, for an even or odd position of the finer one. With these
+/// weights, linear interpolation between fine nodes and between coarse nodes differ equally at the coarse nodes and halfway
+/// to the next fine ones, and less than with other weights.
 const WEIGHTS: [[f32; 3]; 2] = [[0.1875, 0.875, -0.0625], [-0.0625, 0.875, 0.1875]];
 
 /// Square roots of lit colours around a tile of the finer level.
@@ -40,7 +40,7 @@ impl CoarseColors {
     pub(crate) fn finer(&self) -> FineColors {
         let [columns, rows] = self.fine;
         let mut all = [0; 3].map(|_| vec![0.0; NODES.next_multiple_of(LANES)]);
-        // No closures here: they would be compiled apart, for the oldest processors.
+        // No closures here: they would be compiled separately, for the oldest processors.
         for (plane, out) in self.planes.iter().zip(&mut all) {
             for (r, out) in rows.all().iter().zip(out.chunks_exact_mut(STRIDE)) {
                 let first = rows.parent_of(r).saturating_sub(1) * SIDE;
@@ -54,7 +54,7 @@ impl CoarseColors {
 }
 
 impl FineColors {
-    /// [`LANES`] nodes of the tile.
+    /// Colours of [`LANES`] nodes of the tile.
     #[inline(always)]
     pub(crate) fn get(&self, n: usize) -> Option<[Lanes; 3]> {
         let lanes = |plane: &Vec<f32>| plane.get(n * LANES..).and_then(|p| p.first_chunk().copied());
@@ -82,7 +82,7 @@ fn finer_row(columns: &RepeatedNodes, row: &[f32; SIDE], out: &mut [f32]) {
         even[i] = a * row[i] + b * row[i + 1] + c * row[i + 2];
         odd[i] = d * row[i] + e * row[i + 1] + f * row[i + 2];
     }
-    // A tile begins with the node before its first cell: an odd one.
+    // A tile begins with the node before its first cell, which is odd.
     for (i, pair) in out.chunks_mut(2).enumerate().take(N) {
         pair[0] = odd[i];
         if let ([_, second], Some(even)) = (pair, even.get(i + 1)) {

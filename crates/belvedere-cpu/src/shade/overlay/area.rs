@@ -1,4 +1,4 @@
-//! Polygons on the ground: inside or not, and how far from the border.
+//! Areas on the ground: point-in-polygon test and distance from the border, by a grid of edges.
 
 use crate::color::{Rgb, linear};
 use belvedere_core::{DVec2, polygon};
@@ -36,12 +36,12 @@ struct Edge {
     feature: u32,
 }
 
-/// Where a point lies from a border.
+/// Distance and direction of the nearest border.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Border {
     /// Distance, scene units, positive inside.
     pub(crate) inside: f64,
-    /// Unit vector along the way to it.
+    /// Unit vector towards it.
     pub(crate) across: DVec2,
 }
 
@@ -123,7 +123,7 @@ impl AreaMap {
         normal.dot(c - e.a).abs() <= reach
     }
 
-    /// The border that is nearest; as far as can be where none is near.
+    /// The nearest border; infinitely far where no edge is near.
     pub(crate) fn border(&self, p: DVec2) -> Border {
         let far = |inside: f64| Border { inside, across: DVec2::X };
         let g = (p - self.min) * self.per_cell;

@@ -6,10 +6,10 @@ use belvedere_core::DVec2;
 use belvedere_scene::Drape;
 use glam::Vec4;
 
-/// Most samples for one pixel; what is longer still is averaged over wider squares.
+/// Most samples for one pixel; longer footprints are averaged over wider squares.
 const MOST_SAMPLES: usize = 16;
 
-/// A drape with its averages; colours sRGB with premultiplication left to the filter.
+/// A drape with its averages: sRGB colours, premultiplied while filtering.
 #[derive(Debug)]
 pub(crate) struct DrapeMap {
     levels: Vec<(usize, usize, Vec<[u8; 4]>)>,

@@ -1,4 +1,4 @@
-//! What is laid over the ground: areas and pictures.
+//! Areas and drapes over the ground.
 
 pub(crate) mod area;
 pub(crate) mod drape;

@@ -1,4 +1,4 @@
-//! Sky and haze.
+//! Sky and haze, dithered (Bayer 1973).
 
 mod row;
 
@@ -20,7 +20,7 @@ const BAYER: [[u8; 8]; 8] = [
     [63, 31, 55, 23, 61, 29, 53, 21],
 ];
 
-/// What dithering adds to square roots of linear light, row by row.
+/// Offsets that dithering adds to square roots of linear light, row by row.
 const THRESHOLDS: [f32; 64] = {
     let mut out = [0.0; 64];
     let mut i = 0;
@@ -31,24 +31,24 @@ const THRESHOLDS: [f32; 64] = {
     out
 };
 
-/// What none of them exceeds.
+/// Bound on the absolute value of these offsets.
 const HALF_A_STEP: f32 = 0.5 / 255.0;
 
 /// Samples that are coloured together.
 pub(crate) const LANES: usize = 32;
 
-/// Ends of the rows of [`LANES`] pixels that are stored together.
+/// Number of ends of the rows of [`LANES`] pixels that are stored together.
 const POINTS: usize = PIXELS / LANES + 1;
 
-/// How far a row of samples may be off a line between its ends to be coloured along it: square roots of colours, less than half
-/// a step of an 8-bit picture, and positions in the table.
+/// Largest deviation of a row of samples from a line between its ends for interpolation along it: in square roots of colours, less than
+/// half a step of an 8-bit picture, and in positions in the table.
 const EVEN: f32 = 0.4 / 255.0;
 const EVEN_OFF: f32 = 0.25;
 
-/// Largest share of a colour that haze takes.
+/// Largest share of haze in a colour.
 const THICKEST: f32 = 0.54;
 
-/// Downward parts of the direction of view between which haze goes: a map seen from above has none.
+/// Downward components of the direction of view between which haze fades out: a map seen from above has none.
 const FROM_ABOVE: [f32; 2] = [0.77, 0.985];
 
 /// The same in a studio, and its backdrop: above, in the middle, below.
@@ -63,25 +63,25 @@ const MOST: f32 = 2.0 * STEPS - 0.01;
 /// Colours of the air.
 #[derive(Debug)]
 pub(crate) struct Sky {
-    /// Square roots of linear colours, by the sine of the elevation from -1 to 1, and how they change to the next; last in each
-    /// how much the change has changed up to there.
+    /// Square roots of linear colours, by the sine of the elevation from -1 to 1, and the differences to the next entry; the fourth value
+    /// is the summed change of these differences up to the entry.
     steps: Box<[[[f32; 4]; 2]; 2 * STEPS as usize]>,
     haze: Rgb,
     /// Upward parts of the ray of a pixel: sine = (a + b x + c y) / |(1, d (x - cx), d (y - cy))|.
     up: [f32; 3],
     center: [f32; 2],
     per_px: f32,
-    /// Whether the sine runs along a line over a row of [`LANES`] pixels, nearly.
+    /// Whether the sine is nearly linear over a row of [`LANES`] pixels.
     even: bool,
-    /// Depth at which haze begins, and how fast it thickens, per scene unit.
+    /// Depth at which haze begins, and its increase per scene unit.
     haze_from: f32,
     haze_per: f32,
-    /// Largest share of a colour that haze takes: none in a parallel projection, whose eye is nowhere, and none straight down.
+    /// Largest share of haze in a colour: 0 in parallel projection, which has no eye point, and 0 straight down.
     thickest: f32,
 }
 
 impl Sky {
-    /// * `bounds`: of everything in the scene.
+    /// * `bounds`: bounds of the scene.
     pub(crate) fn new(bounds: &Aabb, pinhole: &Pinhole) -> Self {
         let depths = if bounds.is_empty() {
             [0.0, 1.0]
@@ -93,7 +93,7 @@ impl Sky {
         };
         let (center, scale) = (pinhole.center_px(), pinhole.scale_px());
         let per_px = if pinhole.is_orthographic() { 0.0 } else { 1.0 / scale };
-        // Full contrast over the nearer part of the scene, whose depths end at these.
+        // Nearest and farthest depth of the scene, whose nearer part has full contrast.
         let [near, far]: [f32; 2] = depths;
         let span = (far - near).max(1e-6);
         let from_above = smoothstep(FROM_ABOVE[0], FROM_ABOVE[1], -pinhole.forward.z as f32);
@@ -112,25 +112,25 @@ impl Sky {
         }
     }
 
-    /// The air over a scene; a light studio behind molecules and other things that are no landscape.
+    /// Sky and haze over a scene; a light studio behind molecules and other scenes without landscape.
     pub(crate) fn of(scene: &Scene, pinhole: &Pinhole) -> Self {
         let sky = Self::new(&scene.bounds(), pinhole);
         if scene.unit == Unit::Metre || scene.terrain().is_some() {
             return sky;
         }
-        // Its light and dark are those of the picture, whichever way the camera is turned.
+        // The gradient of a studio is fixed to the picture, for every direction of the camera.
         let thickest = if pinhole.is_orthographic() { 0.0 } else { THICKEST_IN_STUDIO };
         Self { steps: steps(studio), haze: linear(STUDIO[1]), up: [0.0, 0.0, -1.0], thickest, ..sky }
     }
 
-    /// Sine of the elevation that the straight ray of a pixel looks at.
+    /// Sine of the elevation of the straight ray of a pixel.
     #[inline(always)]
     pub(crate) fn sine(&self, [x, y]: [f32; 2]) -> f32 {
         let (x, y) = ((x - self.center[0]) * self.per_px, (y - self.center[1]) * self.per_px);
         (self.up[0] + self.up[1] * x + self.up[2] * y) / (1.0 + x * x + y * y).sqrt()
     }
 
-    /// Sky in the direction of a pixel, dithered by one step of an 8-bit picture so that its slow changes show no bands.
+    /// Sky in the direction of a pixel, dithered by one step of an 8-bit picture against banding.
     #[inline]
     pub(crate) fn at(&self, pixel: [f32; 2]) -> Rgb {
         let [x, y] = pixel.map(|v| v.max(0.0) as usize % 8);
@@ -158,14 +158,14 @@ impl Sky {
         }
     }
 
-    /// Colours along a row of [`LANES`] pixels, if they change evenly.
-    /// * `end`: where the last row ended.
+    /// Line of colours along a row of [`LANES`] pixels; `None` if they are not nearly linear.
+    /// * `end`: end point of the last row, if known.
     #[inline(always)]
     pub(crate) fn line(&self, x: i32, y: i32, end: &mut Option<(i32, SkyPoint)>) -> Option<Line> {
         if !self.even {
             return None;
         }
-        // No closures: they would be compiled apart, for the oldest processors.
+        // No closures: they would be compiled separately, for the oldest processors.
         let next = x + LANES as i32 * SUB;
         let from = match *end {
             Some((at, point)) if at == x => point,
@@ -176,7 +176,7 @@ impl Sky {
         from.line_to(&to)
     }
 
-    /// Places along a row, [`LANES`] pixels apart, and what the table says there; `None` if colours do not change evenly.
+    /// Table entries at points of a row, [`LANES`] pixels apart; `None` if colours are not nearly linear between them.
     #[inline(always)]
     pub(crate) fn points(&self, x: i32, y: i32) -> Option<[SkyPoint; POINTS]> {
         if !self.even {
@@ -193,10 +193,10 @@ impl Sky {
         Some(out)
     }
 
-    /// What the table says at a point.
+    /// Table entry at a position.
     #[inline(always)]
     fn root_at(&self, at: f32) -> SkyPoint {
-        // Places are not negative: this is the whole number below.
+        // Positions are not negative, so the cast rounds down.
         let below = at as i32;
         let ([low, change], share) = (&self.steps[below as usize & (2 * STEPS as usize - 1)], at - below as f32);
         let mut root = [0.0; 4];
@@ -222,7 +222,7 @@ impl Sky {
         let (mut below, mut share, mut threshold) = ([0; LANES], [0.0; LANES], [0.0; LANES]);
         for i in 0..LANES {
             let at = self.table_position([px[i], py[i]]);
-            // On a step, either of the two beside it will do.
+            // On an entry of the table either neighbour gives the same colour.
             below[i] = nearest(at - 0.5);
             share[i] = at - below[i] as f32;
         }
@@ -258,7 +258,7 @@ impl Sky {
         low + at.fract() * change
     }
 
-    /// Share of a colour that haze takes at `depth`: full contrast over the nearer part of the scene, then slowly paler.
+    /// Share of haze in a colour at `depth`: none in the nearer part of the scene, then slowly more.
     #[inline(always)]
     pub(crate) fn haze_at(&self, depth: f32) -> f32 {
         let t = (depth - self.haze_from) * self.haze_per;
@@ -286,14 +286,14 @@ pub(crate) struct SkyPoint {
 }
 
 impl SkyPoint {
-    /// The line to a point [`LANES`] pixels further, if colours change evenly up to there.
+    /// The line of colours to a point [`LANES`] pixels further; `None` if they are not nearly linear.
     #[inline(always)]
     pub(crate) fn line_to(&self, to: &Self) -> Option<Line> {
         let mut change = [0.0; 4];
         for (k, change) in change.iter_mut().enumerate() {
             *change = (to.root[k] - self.root[k]) * (1.0 / LANES as f32);
         }
-        // A line that turns by so much, wherever it does, is nowhere farther from its chord.
+        // Bound on the distance from the chord of a line with this summed change of slope.
         let off = 0.25 * ((to.at - self.at).abs() + 1.0) * (to.root[3] - self.root[3]).abs();
         (off <= EVEN).then_some(Line { from: self.root, change })
     }
@@ -306,7 +306,7 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    /// Bounds of what [`Line::paint`] paints.
+    /// Range of the values that [`Line::paint`] writes.
     #[inline(always)]
     pub(crate) fn ends(&self) -> [[f32; 2]; 3] {
         let mut out = [[0.0; 2]; 3];
@@ -330,8 +330,8 @@ impl Line {
     }
 }
 
-/// What dithering adds to a row of pixels.
-/// * `x`, `y`: the first sample, fixed-point steps.
+/// Offsets that dithering adds to a row of pixels.
+/// * `x`, `y`: first sample, fixed-point steps.
 #[inline(always)]
 pub(crate) fn thresholds(x: i32, y: i32) -> [f32; LANES] {
     let row = &THRESHOLDS[((y >> 5) & 56) as usize..][..8];

@@ -1,4 +1,4 @@
-//! Rows of sky straight into the picture.
+//! Stores rows of sky directly as sRGB pixels.
 
 use crate::color::{Encoder, PIXELS};
 use crate::screen::SUB;
@@ -7,7 +7,7 @@ use crate::shade::sky::{LANES, Sky, thresholds};
 use crate::simd::{self, Kernel};
 
 impl Sky {
-    /// Stores the sky of neighbouring pixels of a row, as [`Sky::paint`] paints it.
+    /// Stores the sky of neighbouring pixels of a row, with the same result as [`Sky::paint`].
     /// * `at`: sample of the first pixel, fixed-point steps.
     pub(crate) fn store(&self, at: [i32; 2], out: &mut [[u8; 3]]) {
         simd::run(Store { sky: self, at, out });
@@ -53,7 +53,7 @@ impl Kernel for Store<'_> {
                         [[0.0, 1.0]; 3]
                     }
                 };
-                // No closures: they would be compiled apart, for the oldest processors.
+                // No closures: they would be compiled separately, for the oldest processors.
                 for ((plane, roots), ends) in planes.iter_mut().zip(&roots).zip(ends) {
                     plane[j * LANES..][..LANES].copy_from_slice(&encoder.encode_between(roots, ends));
                 }

@@ -1,4 +1,4 @@
-//! The picture of the camera, put together.
+//! Composes the picture of the camera.
 
 use super::subject::{CameraFigure, CameraPicture, DARK, Subject};
 use super::{position, rays, spline, turns};

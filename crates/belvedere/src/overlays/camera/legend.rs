@@ -1,4 +1,4 @@
-//! What the colours of a picture of the camera mean, and how long things are.
+//! Legend and scale bar of a picture of the camera.
 
 use super::super::{INK, PAPER, length, round_below};
 use super::subject::CameraFigure;
@@ -8,12 +8,12 @@ use belvedere_scene::Unit;
 
 const LETTERS_PX: f64 = 12.0;
 const ROW: f64 = 17.0;
-/// Between the legend and the rim of the picture, pixels.
+/// Margin between the legend and the rim of the picture, pixels.
 const MARGIN: f64 = 10.0;
 
-/// Draws legend, and from above also scale bar and north.
+/// Draws the legend, and in pictures from above also scale bar and north arrow.
 ///
-/// * `title`, `unit`: of the scene.
+/// * `title`, `unit`: those of the scene.
 pub(crate) fn draw(canvas: &mut Canvas<'_>, figure: &CameraFigure, (title, unit): (&str, Unit)) {
     let size = canvas.size();
     let widest = figure.legend.iter().map(|(_, text)| text_size(LETTERS_PX, text).width + 42.0);
@@ -36,7 +36,7 @@ pub(crate) fn draw(canvas: &mut Canvas<'_>, figure: &CameraFigure, (title, unit)
     }
 }
 
-/// Upper left corner of the legend: where it covers least of the rays; the upper left one of the picture if nothing speaks against it.
+/// Upper left corner of the legend: the corner of the picture where it covers the fewest rays, the upper left one in doubt.
 fn corner(figure: &CameraFigure, size: DVec2, legend: DVec2) -> DVec2 {
     let far = size - legend - MARGIN;
     let covered = |lo: DVec2| {

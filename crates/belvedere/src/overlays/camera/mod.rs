@@ -1,4 +1,4 @@
-//! Pictures of the camera itself, on its scene: rays as they really run, viewpoints, transition planes, the deformation curve.
+//! Pictures of the camera in its scene: traced rays, viewpoints, transition planes, the deformation curve.
 
 mod figure;
 mod legend;

@@ -1,11 +1,11 @@
-//! From where a picture of the camera is taken.
+//! Cameras for pictures of the camera.
 
 use super::subject::CameraPicture;
 use crate::BelvedereError;
 use belvedere_core::{Aabb, DVec2, DVec3, Pinhole, PinholeError, Projection, View};
 use belvedere_scene::{Overlay, Scene};
 
-/// Margin around what is shown from above, as a share.
+/// Factor by which pictures from above are larger than their contents.
 const MARGIN: f64 = 1.12;
 /// Vertical field of view from outside, radians.
 const FOV_Y: f64 = 0.7;
@@ -16,7 +16,7 @@ pub(super) fn view(
     overlay: &Overlay,
 ) -> Result<View, BelvedereError> {
     let subject = view.pinhole();
-    // What is drawn in full: hulls and continuations may leave the picture.
+    // Only opaque lines must fit: hulls and continuations may leave the picture.
     let lines = overlay.over.iter().filter(|l| l.color.a == 255).flat_map(|l| l.points.iter().copied());
     let points: Vec<DVec3> = lines.chain(overlay.points.iter().map(|p| p.position)).collect();
     let shown = Aabb::of(points.iter().copied());
@@ -28,13 +28,13 @@ pub(super) fn view(
     Ok(View::straight(pinhole?))
 }
 
-/// Height over which nothing is, of the scene and of what is drawn over it.
+/// Largest height of the scene and of the marks over it.
 fn top(scene: &Scene, shown: &Aabb) -> f64 {
     let bounds = scene.bounds();
     if bounds.is_empty() { shown.max.z } else { shown.max.z.max(bounds.max.z) }
 }
 
-/// * `top`: what lies higher would be cut off.
+/// * `top`: largest height, above which nothing is cut off.
 fn overhead(shown: &Aabb, top: f64, image: [u32; 2]) -> Result<Pinhole, PinholeError> {
     let [w, h] = image.map(f64::from);
     let size = (shown.max - shown.min).truncate() * MARGIN;
@@ -51,7 +51,7 @@ fn outside([eye, target]: [DVec3; 2], image: [u32; 2]) -> Result<Pinhole, Pinhol
     Pinhole::look_at(eye, target, DVec3::Z, Projection::Perspective { fov_y: FOV_Y }, image, near, None)
 }
 
-/// From the right of the camera and above, as near as lets everything be seen.
+/// Eye to the right of the camera and above, as near as all points fit, and its target.
 fn beside(shown: &Aabb, points: &[DVec3], subject: &Pinhole) -> [DVec3; 2] {
     let middle = 0.5 * (shown.min + shown.max);
     let reach = (0.5 * (shown.max - shown.min).length()).max(1e-3);

@@ -5,10 +5,10 @@ use belvedere_core::{CurvedRays, DVec2, DVec3, SplitRays, View};
 use belvedere_cpu::{RayHit, Tracer};
 use belvedere_scene::{Color, Overlay};
 
-/// Rays across the picture and from its bottom to its top.
+/// Numbers of rays across the picture and from its bottom to its top.
 const ACROSS: usize = 11;
 const UP: usize = 9;
-/// Points of a ray.
+/// Number of points of a ray.
 const POINTS: usize = 240;
 
 /// Pixels of the fan: a row somewhat below the middle, and the middle column.
@@ -25,7 +25,7 @@ pub(super) fn corners(view: &View) -> [DVec2; 4] {
     [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)]
 }
 
-/// What the rays of the fan and of the corners meet.
+/// First hits of the rays of the fan and of the corners.
 pub(super) fn hits(view: &View, tracer: &Tracer<'_>) -> Vec<RayHit> {
     pixels(view).into_iter().chain(corners(view)).filter_map(|p| tracer.first_hit(p)).collect()
 }
@@ -39,7 +39,7 @@ pub(super) fn pieces(view: &View, pixel: DVec2, depth: f64) -> Vec<(u32, Vec<DVe
         match out.last_mut() {
             Some((segment, points)) if *segment == seen.segment => points.push(seen.point),
             last => {
-                // The parts join: the new one begins where the one before ends.
+                // The parts join: each begins where the one before ends.
                 let joint = last.and_then(|(_, points)| points.last().copied());
                 out.push((seen.segment, joint.into_iter().chain([seen.point]).collect()));
             }

@@ -6,7 +6,7 @@ use belvedere_core::map::spline::SplineBend;
 use belvedere_core::{DVec2, DVec3, SpaceMap};
 use belvedere_scene::{Color, Hidden, Overlay, OverlayFace, OverlayLine, Symbol};
 
-/// Points of the curve, and rungs of the bent plane.
+/// Numbers of points of the curve, and of rungs of the bent plane.
 const POINTS: usize = 120;
 const RUNGS: usize = 13;
 
@@ -14,7 +14,7 @@ pub(super) fn draw(subject: &Subject<'_>, bend: &SplineBend, overlay: &mut Overl
     let [right, heading, _] = bend.axes();
     let pivot = bend.pivot();
     let length = bend.curve().length() * bend.scale();
-    // From the curve's near end to its far end, and a little of its straight extensions.
+    // From the near end of the curve to its far end, with short straight extensions.
     let start = -bend.coordinates(pivot).l * bend.scale();
     let along = |share: f64| start + length * (1.2 * share - 0.1);
     let half = 0.22 * length.min(subject.extent);
@@ -39,7 +39,7 @@ pub(super) fn draw(subject: &Subject<'_>, bend: &SplineBend, overlay: &mut Overl
     let plane = vec![flat(near, -half), flat(near, half), flat(far, half), flat(far, -half)];
     overlay.over.push(line([&plane[..], &plane[..1]].concat(), PLANE.with_alpha(200), 1.4));
     overlay.faces.push(OverlayFace { corners: plane, color: PLANE.with_alpha(40) });
-    // The eye's own straight rays, to where what they see is bent to.
+    // The eye's straight rays, up to the displaced positions of their hits.
     for hit in rays::pixels(subject.view).into_iter().filter_map(|p| subject.tracer.first_hit(p)) {
         if let Ok(seen) = subject.view.displace(hit.point) {
             overlay.over.push(line(vec![subject.view.pinhole().eye, seen.point], CURVE.with_alpha(120), 1.0));
@@ -63,7 +63,7 @@ pub(super) fn draw(subject: &Subject<'_>, bend: &SplineBend, overlay: &mut Overl
     legend.push((CURVE, "where it is bent to; the eye sees it straight".into()));
 }
 
-/// The control points in the plane of the curve. The curve itself tells where its coordinates begin.
+/// The control points in the plane of the curve, placed by the curve's own coordinates.
 fn controls(bend: &SplineBend) -> Vec<DVec3> {
     let [u, v] = bend.curve_axes();
     let pivot = bend.pivot();

@@ -1,15 +1,15 @@
-//! What a picture of the camera is about: the view, and how far its rays are followed.
+//! Subject of a picture of the camera: the view, and the length of its rays.
 
 use belvedere_core::{DVec3, View};
 use belvedere_cpu::Tracer;
 use belvedere_scene::{Color, Hidden, Overlay, OverlayLine, OverlayPoint, Symbol};
 
-/// Where a picture of the camera is taken from.
+/// Position from which a picture of the camera is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CameraPicture {
-    /// From above, north up, without perspective.
+    /// From above, north up, in parallel projection.
     Overhead,
-    /// From a given position: eye and point looked at, scene coordinates; `None` = from beside the camera.
+    /// From a given position: eye and target, scene coordinates; `None`: from beside the camera.
     Outside(Option<[[f64; 3]; 2]>),
 }
 
@@ -40,7 +40,7 @@ pub(super) fn segment_color(segment: u32) -> Color {
     SEGMENTS[segment as usize % SEGMENTS.len()]
 }
 
-/// What is drawn over the scene, and from where.
+/// Marks over the scene, and the camera that draws them.
 pub(crate) struct CameraFigure {
     /// The camera that draws the figure; straight.
     pub(crate) view: View,
@@ -49,18 +49,18 @@ pub(crate) struct CameraFigure {
     pub(crate) legend: Vec<(Color, String)>,
 }
 
-/// The view of a session, and how far its rays are followed.
+/// The view of a session, and the length of its rays.
 pub(super) struct Subject<'a> {
     pub(super) view: &'a View,
     pub(super) tracer: Tracer<'a>,
-    /// Depth at which rays end that meet nothing.
+    /// Depth at which rays without a hit end.
     pub(super) far: f64,
-    /// Size of what is shown, scene units.
+    /// Extent of the contents, scene units.
     pub(super) extent: f64,
 }
 
 impl Subject<'_> {
-    /// The eye and a small pyramid to its image.
+    /// Draws the eye and a small pyramid to its image.
     pub(super) fn eye(&self, overlay: &mut Overlay) {
         let p = self.view.pinhole();
         let depth = 0.05 * self.extent.min(self.far);
@@ -71,7 +71,7 @@ impl Subject<'_> {
         }
         overlay.over.push(line([&corners[..], &corners[..1]].concat(), DARK, 1.6));
         overlay.points.push(point(p.eye, Symbol::Dot, 9.0, DARK, "eye"));
-        // A bend that begins at the eye moves it as well: rays over the true ground start where it came from.
+        // A stage may displace the eye itself: rays over the undisplaced ground start at its undisplaced position.
         if let Ok((origin, _)) = self.view.undisplace(p.unproject(p.center_px(), 1e-4 * self.far))
             && origin.distance(p.eye) > 0.01 * self.far
         {

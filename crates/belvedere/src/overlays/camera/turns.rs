@@ -5,15 +5,15 @@ use belvedere_core::map::curved_rays::{LinearForm, Turn};
 use belvedere_core::{CurvedRays, DVec2, DVec3};
 use belvedere_scene::{Color, Overlay, OverlayFace, Symbol};
 
-/// Depths tried along a corner's ray before the crossing with a plane is halved.
+/// Depths tested along a corner's ray before the crossing with a plane is bisected.
 const STEPS: usize = 400;
-/// Intermediate viewpoints that are marked per turn.
+/// Number of marked intermediate viewpoints per turn.
 const BETWEEN: u32 = 7;
 
-/// Colour of what lies between two viewpoints.
+/// Colour of the line between two viewpoints.
 const BASELINE: Color = Color::rgb(110, 60, 160);
 
-/// * `ways`: curved rays and the corners of the part of the image that they draw.
+/// * `ways`: each branch of curved rays, with the corners of its part of the image.
 pub(super) fn draw(
     subject: &Subject<'_>,
     ways: &[(&CurvedRays, &[DVec2])],
@@ -34,7 +34,7 @@ fn way(subject: &Subject<'_>, camera: &CurvedRays, pixels: &[DVec2], overlay: &m
         let after = segment_color(2 * j as u32 + 2);
         overlay.points.push(point(turn.viewpoint, Symbol::Dot, 9.0, after, &format!("viewpoint {}", j + 1)));
         between(turn, overlay);
-        // From where the rays past the turn seem to come.
+        // Lines to the viewpoint from which the rays past the turn seem to come.
         for &corner in pixels {
             if let Some(p) = crossing(subject, inward(corner, pixels), &turn.b) {
                 overlay.over.push(line(vec![turn.viewpoint, p], after.with_alpha(110), 0.9));
@@ -58,7 +58,7 @@ fn way(subject: &Subject<'_>, camera: &CurvedRays, pixels: &[DVec2], overlay: &m
     }
 }
 
-/// The line of the viewpoints before and after a turn, and on it those from which the rays seem to come while they bend.
+/// Draws the line from the viewpoint before a turn to that after it, with the intermediate viewpoints of the bending rays.
 fn between(turn: &Turn, overlay: &mut Overlay) {
     let share = |k: u32| f64::from(k) / f64::from(BETWEEN + 1);
     let places: Vec<DVec3> = (1..=BETWEEN).filter_map(|k| turn.intermediate_viewpoint(share(k))).collect();
@@ -68,13 +68,13 @@ fn between(turn: &Turn, overlay: &mut Overlay) {
     overlay.points.extend(places.into_iter().map(|place| point(place, Symbol::Dot, 4.0, BASELINE, "")));
 }
 
-/// A corner moved a little into its part of the image: on a seam its ray would be the neighbour's.
+/// A corner moved slightly into its part of the image, since on a seam its ray would belong to the neighbour.
 fn inward(corner: DVec2, part: &[DVec2]) -> DVec2 {
     let middle = part.iter().sum::<DVec2>() / part.len() as f64;
     corner.lerp(middle, 1e-6)
 }
 
-/// Where the ray of a pixel passes a plane.
+/// Point where the ray of a pixel crosses a plane.
 fn crossing(subject: &Subject<'_>, pixel: DVec2, form: &LinearForm) -> Option<DVec3> {
     let ray = subject.view.ray(pixel);
     let at = |depth: f64| ray.at(depth).ok().map(|p| p.point);

@@ -1,4 +1,4 @@
-//! Where the straight camera would have what must be seen: a box or a dashed line there, and a leader to where it is now.
+//! Ghosts of required features at their straight image: a box or a dashed line there, and a leader to the bent image.
 
 use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_cpu::canvas::Canvas;
@@ -7,36 +7,36 @@ use serde::Serialize;
 
 /// Widths of rim and line, pixels of a picture 720 high.
 const WIDTHS: [f64; 2] = [4.0, 1.8];
-/// Rim and line.
+/// Colours of rim and line.
 pub(super) const COLORS: [Color; 2] = [Color::rgb(255, 255, 255), Color::rgb(20, 40, 150)];
-/// Length of dashes and gaps, in the same pixels.
+/// Length of dashes and gaps, pixels of a picture 720 high.
 const DASH: f64 = 7.0;
-/// Points of a layer that get leaders of their own, at most.
+/// Largest number of points of a layer with leaders of their own.
 const MOST_POINTS: usize = 32;
 
-/// Where a layer that must be seen is, and where it would be.
+/// Bent and straight position of a required layer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct GhostRecord {
     /// Id of the layer.
     pub layer: String,
-    /// Where the leader begins: the bent image of the middle of the layer, or of the place of a line that moved farthest, pixels.
+    /// Start of the leader: the bent image of the middle of the layer, or of the point of a line that moved farthest, pixels.
     pub bent_px: Option<[f64; 2]>,
-    /// Where it ends: the straight image of the same, pixels.
+    /// End of the leader: the straight image of the same point, pixels.
     pub straight_px: Option<[f64; 2]>,
-    /// How far apart they are, pixels.
+    /// Distance between them, pixels.
     pub shift_px: Option<f64>,
 }
 
-/// What is drawn for one layer.
+/// Drawing of one layer.
 struct Ghost {
     layer: String,
     /// Polylines in the straight picture, pixels.
     lines: Vec<Vec<DVec2>>,
-    /// Bent and straight image of a place, the record's first.
+    /// Bent and straight images of points, that of the record first.
     leaders: Vec<[Option<DVec2>; 2]>,
 }
 
-/// Draws them and says where they are.
+/// Draws the ghosts; returns their positions.
 pub(super) fn draw(canvas: &mut Canvas<'_>, scene: &Scene, bent: &View, straight: &View) -> Vec<GhostRecord> {
     let ghosts: Vec<Ghost> = scene.must_see().filter_map(|(_, layer)| ghost(layer, bent, straight)).collect();
     let (scale, size) = (super::scale(canvas), canvas.size());
@@ -47,7 +47,7 @@ pub(super) fn draw(canvas: &mut Canvas<'_>, scene: &Scene, bent: &View, straight
             }
             for leader in &ghost.leaders {
                 let [Some(from), Some(to)] = *leader else { continue };
-                // What did not move needs no leader.
+                // A point that did not move needs no leader.
                 if from.distance(to) > 4.0 * scale {
                     canvas.line(&[from, to], width, color);
                     canvas.disc(from, 0.5 * width + 2.0 * scale, color);
@@ -65,7 +65,7 @@ fn record(ghost: &Ghost) -> GhostRecord {
     GhostRecord { layer: ghost.layer.clone(), bent_px, straight_px, shift_px }
 }
 
-/// `None` for layers that are nowhere in space themselves.
+/// `None` for layers without an extent in space.
 fn ghost(layer: &Layer, bent: &View, straight: &View) -> Option<Ghost> {
     let image = |view: &View, p: DVec3| view.project(p).ok().map(|image| image.pixel);
     let both = |p: DVec3| [image(bent, p), image(straight, p)];
@@ -77,7 +77,7 @@ fn ghost(layer: &Layer, bent: &View, straight: &View) -> Option<Ghost> {
             let in_picture = |p: Option<DVec2>| p.is_some_and(|p| bent.pinhole().contains(p));
             let pairs = lines.iter().flatten().map(|&p| both(p)).filter(|[b, s]| in_picture(*b) && s.is_some());
             let shift = |[b, s]: &[Option<DVec2>; 2]| b.zip(*s).map_or(0.0, |(b, s)| b.distance(s));
-            // Rather a place whose leader ends in the picture.
+            // Prefers a point whose leader ends in the picture.
             let rank = |pair: &[Option<DVec2>; 2]| (in_picture(pair[1]), shift(pair));
             let farthest = pairs.max_by(|a, b| {
                 let (a, b) = (rank(a), rank(b));
@@ -100,7 +100,7 @@ fn ghost(layer: &Layer, bent: &View, straight: &View) -> Option<Ghost> {
     Some(Ghost { layer: layer.id.clone(), lines, leaders })
 }
 
-/// The box around what of a layer must be seen.
+/// Bounds of the required part of a layer.
 fn bounds(layer: &Layer) -> Aabb {
     let of_parts = |layer: &MeshLayer, is_wanted: &dyn Fn(u32) -> bool| {
         let mesh = &layer.mesh;
@@ -129,7 +129,7 @@ fn edges(b: &Aabb) -> Vec<[DVec3; 2]> {
     (0..3).flat_map(along).collect()
 }
 
-/// Images of a polyline, parted where it has none.
+/// Images of a polyline, split where points have no image.
 fn images(view: &View, line: &[DVec3]) -> Vec<Vec<DVec2>> {
     let pinhole = view.pinhole();
     let image = |p: &DVec3| view.project(*p).ok().filter(|i| i.depth >= pinhole.near).map(|i| i.pixel);
@@ -139,7 +139,7 @@ fn images(view: &View, line: &[DVec3]) -> Vec<Vec<DVec2>> {
 }
 
 /// Dashes of a polyline that lie in a picture of this size.
-/// * `length`: of dashes and gaps, pixels, > 0.
+/// * `length`: length of dashes and gaps, pixels, > 0.
 fn dashes(line: &[DVec2], length: f64, size: DVec2) -> Vec<[DVec2; 2]> {
     let (mut out, mut along) = (Vec::new(), 0.0);
     for pair in line.windows(2) {

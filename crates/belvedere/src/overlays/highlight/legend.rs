@@ -18,8 +18,8 @@ enum Sign {
     Line([Color; 2], bool),
 }
 
-/// Draws what fits.
-/// * `above`: room that is taken at the lower rim, pixels.
+/// Draws the entries that fit.
+/// * `above`: height at the lower rim that is already occupied, pixels.
 pub(super) fn draw(canvas: &mut Canvas<'_>, record: &HighlightRecord, above: f64) {
     let size = canvas.size();
     let bar = if record.marks.contains(&HighlightMark::Shift) { BAR } else { 0.0 };

@@ -1,8 +1,8 @@
-//! What the bend did to the picture: how far it moved what is seen, by which part of the chain, what the straight picture hides, and
-//! where what must be seen would be.
+//! Highlights of the bend: displacement of points in the picture, the part of the chain that moves them, points that the straight picture
+//! hides, and straight positions of required features.
 //!
-//! Source: the highlighting of displaced subsets proposed for curved rays; here for every chain of stages, for it is measured with the
-//! straight camera: of the point that a pixel shows it has another image, at a depth of its own.
+//! Source: the highlighting of displaced subsets proposed for curved rays; here for every chain of stages, since it is measured with the
+//! straight camera, in which the point that a pixel shows has another image and another depth.
 
 mod ghosts;
 mod legend;
@@ -27,46 +27,46 @@ use shift::{Parts, Straight, Survey};
 const PART_COLORS: [[u8; 3]; 7] =
     [[230, 159, 0], [86, 180, 233], [0, 158, 115], [204, 121, 167], [213, 94, 0], [0, 114, 178], [240, 228, 66]];
 
-/// How much of a part's colour a pixel has that it hardly moves, 0..=1: small moves are told apart too.
+/// Share of a part's colour in a pixel that it hardly moves, 0..=1, so that small displacements are visible too.
 const LEAST_TINT: f32 = 0.4;
 
-/// What the highlights of a picture say.
+/// Figures of the highlights of a picture.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct HighlightRecord {
-    /// What was drawn.
+    /// Marks that were drawn.
     pub marks: Vec<HighlightMark>,
     /// Distance at the upper end of the colours, pixels.
     pub ramp_px: f64,
-    /// Largest distance between the bent and the straight image of what a pixel shows, pixels; of points with a straight image.
+    /// Largest distance between the bent and the straight image of the point at a pixel, pixels; of points with a straight image.
     pub max_px: f64,
-    /// Its mean over such pixels.
+    /// Mean of that distance over these pixels.
     pub mean_px: f64,
-    /// Share of the pixels that show anything where the straight picture shows something nearer, 0..=1; null unless it was looked for.
+    /// Share of the pixels with a surface whose point the straight picture hides, 0..=1; null unless it was measured.
     pub revealed_share: Option<f64>,
-    /// Share where the point lies beside the straight picture, or behind its camera.
+    /// Share of those whose point lies outside the straight picture, or behind its camera.
     pub outside_share: Option<f64>,
     /// The parts of the chain, in order of application.
     pub parts: Vec<PartRecord>,
-    /// Where what must be seen is and would be.
+    /// Bent and straight positions of required features.
     pub ghosts: Vec<GhostRecord>,
 }
 
 /// A part of the chain: a stage, or a turn of curved rays.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PartRecord {
-    /// What it is called.
+    /// Name of the part.
     pub name: String,
-    /// Its colour, sRGB.
+    /// Colour of the part, sRGB.
     pub color: [u8; 3],
-    /// Share of the pixels that show anything which it moves by more than a pixel, 0..=1.
+    /// Share of the pixels with a surface that it moves by more than a pixel, 0..=1.
     pub share: f64,
-    /// Share that is drawn in its colour: its stage moved them farthest, and of the turns of curved rays it is the last that reaches them.
+    /// Share drawn in its colour: its stage moved them farthest, and it is the last turn of curved rays that reaches them.
     pub shown_share: f64,
-    /// How far it moves what is seen at most, pixels, from where the parts before it leave it.
+    /// Largest displacement by this part, pixels, from the image after the parts before it.
     pub max_px: f64,
 }
 
-/// The pictures that highlights are made of.
+/// Pictures without marks from which highlights are computed.
 pub(crate) struct Bare<'a> {
     /// Bent, without marks, with exact world positions.
     pub(crate) bent: &'a Frame,
@@ -91,7 +91,7 @@ pub(crate) fn paint(
     if wants(HighlightMark::Shift) || wants(HighlightMark::Stages) {
         let by_stage = wants(HighlightMark::Stages);
         for ((color, bare), moved) in frame.color.iter_mut().zip(&bare.bent.color).zip(moved) {
-            // A mark leaves no pixel as it is, but for one that it hardly touches.
+            // A mark changes every pixel, except those that it hardly touches.
             let Some(moved) = moved.filter(|_| color == bare) else { continue };
             let share = (f64::from(moved.px) / ramp_px).min(1.0);
             *color = match moved.part.and_then(|part| record.parts.get(usize::from(part))) {
@@ -112,12 +112,12 @@ pub(crate) fn paint(
     record
 }
 
-/// Draws the legend of what [`paint`] drew; `above`: so much room is taken at the lower rim, pixels.
+/// Draws the legend of [`paint`]; `above`: height at the lower rim that is already occupied, pixels.
 pub(crate) fn legend(canvas: &mut Canvas<'_>, record: &HighlightRecord, above: f64) {
     legend::draw(canvas, record, above);
 }
 
-/// The marks to draw and whether the heat map is drawn: what is asked for by the caller comes before what the scene says.
+/// The marks to draw, and whether the heat map is drawn; the caller's choice overrides the scene's.
 ///
 /// # Errors
 /// [`BelvedereError::Highlight`] if the caller asks for two ways to colour surfaces.
@@ -136,7 +136,7 @@ pub(crate) fn chosen(
     Ok((asked.to_vec(), asked_heatmap || (scene.heatmap && !asked.iter().any(colours))))
 }
 
-/// Which marks cannot be drawn together, in words.
+/// Conflict between marks, in words; `None` if they can be drawn together.
 pub(crate) fn conflict(marks: &[HighlightMark], heatmap: bool) -> Option<&'static str> {
     let wants = |mark| marks.contains(&mark);
     match (wants(HighlightMark::Shift), wants(HighlightMark::Stages), heatmap) {
@@ -172,14 +172,14 @@ fn record(parts: &Parts, survey: &Survey, marks: &[HighlightMark], ramp_px: f64)
     }
 }
 
-/// Grey where nothing moved, the colour of the part where it moved by the end of the ramp.
+/// Grey without displacement, the colour of the part at the end of the ramp.
 fn of_part(color: [u8; 3], part: [u8; 3], share: f32) -> [u8; 3] {
     let light = 255.0 * heat::light(color);
     let full = heat::tinted(color, part).map(f32::from);
     full.map(|full| (light + share * (full - light)).round() as u8)
 }
 
-/// Size of lines: 1 for a picture 720 high.
+/// Scale of line widths: 1 for a picture 720 high.
 fn scale(canvas: &Canvas<'_>) -> f64 {
     (canvas.size().y / 720.0).max(0.4)
 }

@@ -1,4 +1,4 @@
-//! The outline of what the straight camera does not show.
+//! Outline of the region that the straight camera does not show.
 
 use belvedere_core::DVec2;
 use belvedere_cpu::canvas::Canvas;
@@ -6,21 +6,21 @@ use belvedere_scene::Color;
 
 /// Widths of rim and line, pixels of a picture 720 high.
 const WIDTHS: [f64; 2] = [4.2, 2.0];
-/// Rim and line.
+/// Colours of rim and line.
 pub(super) const COLORS: [Color; 2] = [Color::rgb(255, 255, 255), Color::rgb(200, 0, 110)];
 
-/// Gaps up to twice this are closed, and specks up to twice the other left out, in the same pixels.
+/// Half widths of gaps that are closed and of specks that are removed, pixels of a picture 720 high.
 const CLOSED: f64 = 5.0;
 const OPENED: f64 = 1.5;
 
-/// The regions of a mask: gaps closed, then specks left out.
-/// * `close`, `open`: half the width of such gaps and specks, pixels.
+/// The mask with gaps closed and then specks removed (morphological closing and opening).
+/// * `close`, `open`: half widths of these gaps and specks, pixels.
 fn regions(mask: &[bool], width: usize, close: usize, open: usize) -> Vec<bool> {
     let closed = spread(&spread(mask, width, close, true), width, close, false);
     spread(&spread(&closed, width, open, false), width, open, true)
 }
 
-/// Every pixel becomes `value` within `reach` columns and rows of one that is; beyond the rim lies nothing.
+/// Sets every pixel to `value` within `reach` columns and rows of a pixel with that value (dilation or erosion).
 fn spread(mask: &[bool], width: usize, reach: usize, value: bool) -> Vec<bool> {
     let height = mask.len().checked_div(width).unwrap_or(0);
     let along = |mask: &[bool], lines: usize, length: usize, at: &dyn Fn(usize, usize) -> usize| {
@@ -42,7 +42,7 @@ fn spread(mask: &[bool], width: usize, reach: usize, value: bool) -> Vec<bool> {
     along(&rows, width, height, &|x, y| y * width + x)
 }
 
-/// Pixels of the mask that have a neighbour beside, above or below that is not in it.
+/// Pixels of the mask with a neighbour beside, above or below that is not in it.
 pub(crate) fn border(mask: &[bool], width: usize) -> Vec<usize> {
     let height = mask.len().checked_div(width).unwrap_or(0);
     let is_border = |&i: &usize| {

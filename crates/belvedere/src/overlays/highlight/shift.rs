@@ -1,4 +1,4 @@
-//! How far the bend moves what a pixel shows within the picture, which part of the chain moves it most, and whether the straight
+//! Displacement of the point at every pixel within the picture, the part of the chain that moves it most, and whether the straight
 //! camera shows it too.
 
 use belvedere_core::map::curved_rays::CurvedRays;
@@ -6,22 +6,22 @@ use belvedere_core::{DVec2, DVec3, Stage, View};
 use belvedere_scene::Frame;
 use rayon::prelude::*;
 
-/// Turns of curved rays are told apart up to so many: a longer chain is one part.
+/// Largest number of turns of curved rays that are distinguished; a longer chain is one part.
 const MOST_TURNS: usize = 24;
-/// Room for them beside the other stages.
+/// Largest number of parts, with the other stages.
 const MOST_PARTS: usize = 32;
 /// A turn reaches a point that it moves by more than this, pixels.
 const REACHES_PX: f64 = 1.0;
-/// What the straight camera sees must be nearer than a point by this share of its depth to hide it: depths of a picture are no better.
+/// Share of its depth by which a surface must be nearer than a point to hide it, the accuracy of depths in a picture.
 const NEARER: f64 = 1e-3;
-/// A point that moves by less than this, pixels, stays where it is.
+/// Displacement below which a point counts as at rest, pixels.
 const STILL_PX: f64 = 0.01;
 
 /// The parts of a chain of stages: every stage but the earth's curvature, and every turn of curved rays.
 pub(super) struct Parts {
-    /// What they are called, in order of application.
+    /// Names, in order of application.
     pub(super) names: Vec<String>,
-    /// Number of the stage that each belongs to.
+    /// Number of the stage of each part.
     stages: Vec<usize>,
     /// `views[k]` is the camera with the first k parts.
     views: Vec<View>,
@@ -34,7 +34,7 @@ impl Parts {
         for (i, stage) in stages.iter().enumerate() {
             let mut add = |name: String, last: Stage| {
                 let chain = stages[..i].iter().cloned().chain([last]).collect();
-                // The beginning of a chain is a chain.
+                // The beginning of a valid chain is valid.
                 if let Ok(view) = View::new(view.pinhole().clone(), chain) {
                     names.push(name);
                     numbers.push(i);
@@ -57,18 +57,18 @@ impl Parts {
         Self { names, stages: numbers, views }
     }
 
-    /// The camera without any part.
+    /// The camera without stages that bend.
     pub(super) fn straight(&self) -> &View {
         &self.views[0]
     }
 
-    /// How far each part moves `p` from where the parts before it leave it, pixels: infinite where they leave it without an image.
-    /// * `pixel`: where all of them leave it.
+    /// Displacement of `p` on the image by each part, pixels, from its image after the parts before; infinite where it had none.
+    /// * `pixel`: image after all parts.
     fn moves(&self, p: DVec3, pixel: DVec2) -> Moves {
         let image = |view: &View| view.project(p).ok().map(|image| image.pixel);
         let first = image(self.straight());
         let (mut moves, mut before) = (Moves { by: [0.0; MOST_PARTS], mover: None }, first);
-        // The start of the stage that a part belongs to, and the stage that moved farthest: how far, its parts.
+        // Image before the current stage; largest displacement by a stage so far, and the parts of that stage.
         let (mut start, mut most) = (first, (STILL_PX, 0..0));
         let far = |from: Option<DVec2>, to: DVec2| from.map_or(f64::INFINITY, |from| from.distance(to));
         for (part, view) in self.views[1..].iter().enumerate() {
@@ -86,46 +86,46 @@ impl Parts {
                 most = (far(start, end), begin..part + 1);
             }
         }
-        // Of the turns of a stage the last that reaches the point stands for it: so the stretches of the rays are told apart.
+        // The last turn of a stage that reaches the point stands for it, so that stretches of the rays are distinguished.
         let reaches = |part: &usize| moves.by[*part] > REACHES_PX;
         moves.mover = most.1.clone().rev().find(reaches).or(most.1.last());
         moves
     }
 }
 
-/// How far each part moves a point, and which of them stands for its move.
+/// Displacement of a point by each part, and the part that stands for it.
 struct Moves {
     by: [f64; MOST_PARTS],
     mover: Option<usize>,
 }
 
-/// What the straight camera makes of a point.
+/// Visibility of a point for the straight camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Straight {
-    /// It shows the point, or nobody asked.
+    /// The point is shown, or was not tested.
     Shown,
-    /// Something nearer hides the point.
+    /// A nearer surface hides the point.
     Hidden,
-    /// The point lies beside its picture, or behind it.
+    /// The point lies outside the picture or behind the camera.
     Outside,
 }
 
-/// What became of the point that a pixel shows.
+/// Displacement of the point at a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Moved {
     /// Distance from its straight image, pixels; infinite if it has none.
     pub(super) px: f32,
-    /// The part that stands for the move: of the stage that moved the point farthest; of the turns of curved rays the last that reaches it.
+    /// The part that stands for the displacement: of the stage that moved the point farthest; of turns of curved rays the last that reaches it.
     pub(super) part: Option<u8>,
-    /// What the straight camera makes of it.
+    /// Visibility for the straight camera.
     pub(super) straight: Straight,
 }
 
-/// What became of all pixels.
+/// Displacements of all pixels.
 pub(super) struct Survey {
-    /// Pixel by pixel; `None` where the picture shows nothing.
+    /// One entry per pixel; `None` where the picture shows no surface.
     pub(super) pixels: Vec<Option<Moved>>,
-    /// For each part how many pixels it reaches, and how far it moves them at most, pixels.
+    /// For each part the number of pixels that it reaches, and its largest displacement, pixels.
     pub(super) parts: Vec<(usize, f64)>,
 }
 
@@ -176,7 +176,7 @@ fn of_point(parts: &Parts, p: DVec3, pixel: DVec2, mover: Option<usize>, straigh
     Moved { px: image.pixel.distance(pixel) as f32, part, straight }
 }
 
-/// Whether all four pixels around an image are nearer than its depth: on a slope one of them is not.
+/// Whether all four pixels around an image are nearer than its depth; on a slope at least one is not.
 fn is_hidden(frame: &Frame, pixel: DVec2, depth: f64) -> bool {
     let corner = (pixel - 0.5).floor();
     let inside = |v: f64, end: usize| v.clamp(0.0, end.saturating_sub(1) as f64) as usize;

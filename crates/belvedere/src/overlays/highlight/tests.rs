@@ -1,4 +1,4 @@
-//! Laws of the highlights, on small scenes that are drawn.
+//! Laws of the highlights, tested on small drawn scenes.
 
 use super::shift::{Moved, Parts, Straight, survey};
 use super::*;
@@ -11,7 +11,7 @@ use belvedere_sight::{Obstacles, SightOptions};
 
 const SIZE: [u32; 2] = [160, 120];
 
-/// A wall 50 before the eye and a block 110 before it, half behind the wall.
+/// A wall 50 in front of the eye and a block 110 in front of it, half hidden by the wall.
 fn scene() -> Scene {
     let shape = |base: [f64; 3], size: [f64; 3]| BoxShape {
         base: DVec3::from_array(base),
@@ -23,7 +23,7 @@ fn scene() -> Scene {
     let mut scene = Scene::default().with_layer("wall", layer(shape([-4.0, 50.0, -12.0], [16.0, 3.0, 20.0])));
     scene = scene.with_layer("block", layer(shape([6.0, 110.0, -12.0], [24.0, 8.0, 30.0])));
     scene.layers[1].must_see = true;
-    // Beside the straight picture, in the bent one.
+    // Outside the straight picture, inside the bent one.
     scene = scene.with_layer("aside", layer(shape([-62.0, 116.0, -12.0], [12.0, 8.0, 30.0])));
     scene
 }
@@ -33,7 +33,7 @@ fn pinhole() -> Pinhole {
     Pinhole::look_at(DVec3::ZERO, DVec3::new(0.0, 100.0, -2.0), DVec3::Z, lens, SIZE, 1.0, None).unwrap()
 }
 
-/// Turns to viewpoints aside, at these distances.
+/// Turns to viewpoints at the side, at these distances.
 fn view(turns: &[(f64, f64)]) -> View {
     let turn = |&(aside, y): &(f64, f64)| TurnSpec {
         viewpoint: DVec3::new(aside, 0.0, 0.0),
@@ -101,7 +101,7 @@ fn distances_are_those_of_the_straight_image_and_nothing_moves_before_the_turn()
 
 #[test]
 fn the_last_turn_that_reaches_a_point_is_told_and_how_far_each_moves_it() {
-    // The first turn shifts a little before the wall, the second, behind it, to the other side.
+    // The first turn, in front of the wall, shifts the rays a little to one side; the second, behind the wall, to the other.
     let view = view(&[(2.0, 20.0), (-24.0, 70.0)]);
     let parts = Parts::of(&view);
     assert_eq!(parts.names, ["turn 1", "turn 2"]);
@@ -130,7 +130,7 @@ fn the_last_turn_that_reaches_a_point_is_told_and_how_far_each_moves_it() {
 
 #[test]
 fn the_stage_that_moves_a_point_farthest_is_told() {
-    // Everything lowered by 6, then a turn that moves what lies behind by little.
+    // Everything is lowered by 6, then a turn moves everything behind it a little.
     let delta = Grid::new(DVec2::new(-80.0, 160.0), DVec2::splat(20.0), 9, 9, vec![-6.0; 81]).unwrap();
     let lowered = TerrainDisocclusion::new(delta);
     let Some(Stage::CurvedRays(rays)) = view(&[(1.0, 70.0)]).stages().last().cloned() else { panic!("rays") };
@@ -163,7 +163,7 @@ fn what_is_revealed_is_what_straight_lines_of_sight_do_not_reach() {
             outside += 1;
             continue;
         }
-        // A little before the surface, which does not hide itself.
+        // A little in front of the surface, so that the surface does not hide itself.
         let before = p * (1.0 - 1e-3);
         let clear = obstacles.clearance(&straight, (before, 0.0), (image.pixel, image.depth * (1.0 - 1e-3)), &sight);
         count += 1;

@@ -1,4 +1,4 @@
-//! Frames into a film, by an ffmpeg program if there is one.
+//! Encodes frames as a film with an ffmpeg program, if there is one.
 
 use super::manifest::frame_name;
 use crate::BelvedereError;
@@ -8,18 +8,18 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// How the film was made, or why it was not.
+/// Result of encoding a film.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Film {
-    /// The output is a folder of frames.
+    /// Not asked for: the output is a folder of frames.
     Unwanted,
-    /// It is there.
+    /// The film was encoded.
     Made(PathBuf),
-    /// Why there is none; the frames are there.
+    /// The film could not be encoded; the frames exist.
     Missing {
-        /// What is wrong.
+        /// Why not.
         reason: String,
-        /// The command that makes it of the frames.
+        /// The command that encodes the frames.
         command: String,
     },
 }
@@ -28,7 +28,7 @@ pub enum Film {
 const ENCODERS: [&[&str]; 2] =
     [&["-c:v", "libx264", "-crf", "18", "-preset", "medium"], &["-c:v", "mpeg4", "-q:v", "2"]];
 
-/// Makes `out` from the frames of `folder`.
+/// Encodes the frames of `folder` as `out`.
 pub(super) fn make(
     out: &Path,
     folder: &Path,
@@ -44,7 +44,7 @@ pub(super) fn make(
         let mut ffmpeg = Command::new("ffmpeg");
         ffmpeg.args(["-nostdin", "-hide_banner", "-loglevel", "error", "-y", "-framerate", &fps.to_string()]);
         ffmpeg.args(["-start_number", "0", "-i"]).arg(&pattern).args(["-frames:v", &frames.to_string()]);
-        // Encoders want even sides.
+        // Encoders need even widths and heights.
         ffmpeg.args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2"]).args(encoder);
         ffmpeg.args(["-pix_fmt", "yuv420p", "-movflags", "+faststart", "-map_metadata", "-1"]);
         ffmpeg.args(["-fflags", "+bitexact", "-flags:v", "+bitexact"]).arg(&temporary);
@@ -81,7 +81,7 @@ enum Failure {
     Other(String),
 }
 
-/// Whether the program succeeded, and what it complained of.
+/// Runs the program; returns whether it succeeded, and its error messages.
 fn run(command: &mut Command, progress: &Progress) -> Result<(bool, String), Failure> {
     let started = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::piped()).spawn();
     let mut child = started.map_err(|e| match e.kind() {

@@ -1,4 +1,4 @@
-//! What a folder of frames holds, so that an interrupted animation can go on.
+//! The manifest of a folder of frames, by which an interrupted animation is resumed.
 
 use crate::camera_path::CameraPath;
 use crate::output;
@@ -23,15 +23,15 @@ pub struct Manifest {
     pub scene_sha256: String,
     /// Files that were read.
     pub inputs: Vec<InputFile>,
-    /// How the frames are drawn.
+    /// Settings of the frames.
     pub settings: Settings,
-    /// Number of frames that are there.
+    /// Number of finished frames.
     pub done: usize,
-    /// One entry per frame, `None` where it is not there yet.
+    /// One entry per frame, `None` for frames that are not finished.
     pub frames: Vec<Option<FrameRecord>>,
 }
 
-/// Everything that the bytes of the frames depend on, beside the scene.
+/// Settings on which the bytes of the frames depend, besides the scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// The animation with every default filled in.
@@ -44,13 +44,13 @@ pub struct Settings {
     pub samples: u32,
     /// Worst error of bent edges, pixels.
     pub tolerance_px: f64,
-    /// Worst error of terrain in less detail, pixels.
+    /// Worst error of terrain drawn with level of detail, pixels.
     pub lod_px: f64,
-    /// Who draws.
+    /// Name of the renderer.
     pub renderer: String,
-    /// Without the bends.
+    /// Whether the view is drawn without bends.
     pub straight: bool,
-    /// Straight beside bent.
+    /// Whether the straight picture is drawn beside the bent one.
     pub compare: bool,
 }
 
@@ -63,7 +63,7 @@ pub struct FrameRecord {
     pub sha256: String,
     /// The camera in numbers.
     pub view: ViewRecord,
-    /// How far things were moved; `None` for a straight picture.
+    /// Displacement of the points in the picture; `None` for a straight picture.
     pub displacement: Option<DisplacementReport>,
     /// Report of the terrain solver, if it ran.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -82,7 +82,7 @@ pub struct FrameTerrain {
     pub visible: f64,
     /// Visible share of the features in view.
     pub visible_dense: f64,
-    /// Share of them that nothing hides but ground nearer to them than the guard.
+    /// Share of them that is hidden only by ground nearer to them than the guard.
     #[serde(default)]
     pub hidden_in_guard: f64,
     /// Points that cannot be shown.
@@ -101,7 +101,7 @@ pub struct FrameTerrain {
 }
 
 impl FrameTerrain {
-    /// The figures of a report that do not differ from run to run.
+    /// The figures of a report that are the same in every run.
     pub(super) fn of(report: &TerrainReport) -> Self {
         Self {
             points: report.points,
@@ -124,7 +124,7 @@ pub fn frame_name(frame: usize) -> String {
 }
 
 impl Manifest {
-    /// The manifest of an animation of which no frame is there.
+    /// The manifest of an animation without finished frames.
     pub(super) fn new(session: &Session, path: &CameraPath, request: &PictureOptions) -> Result<Self, BelvedereError> {
         let document = session.resolved().map(|document| Document { animation: None, ..document.clone() });
         Ok(Self {
@@ -178,7 +178,7 @@ impl Manifest {
         if now != then {
             return Some("the camera's way or the way of drawing is another".into());
         }
-        // The scene file itself counts by what it means, not by its comments.
+        // The scene file is compared by its content, not by its comments.
         let read = |m: &Self| m.inputs.iter().skip(1).map(|i| (i.path.clone(), i.sha256.clone())).collect::<Vec<_>>();
         if let Some((_, (path, _))) = read(earlier).into_iter().zip(read(self)).find(|(a, b)| a.1 != b.1) {
             return Some(format!("{} has changed since", path.display()));
@@ -186,7 +186,7 @@ impl Manifest {
         (self.scene_sha256 != earlier.scene_sha256).then(|| "the scene has changed since".into())
     }
 
-    /// Takes over the frames of `earlier` whose files are still what they were.
+    /// Takes over the frames of `earlier` whose files are unchanged.
     pub(super) fn keep(&mut self, earlier: &Self, folder: &Path) {
         for (mine, theirs) in self.frames.iter_mut().zip(&earlier.frames) {
             *mine = theirs.clone().filter(|frame| frame.is_whole(folder));
@@ -194,7 +194,7 @@ impl Manifest {
         self.count();
     }
 
-    /// Notes a frame that was written.
+    /// Records a frame that was written.
     pub(super) fn put(&mut self, frame: usize, record: FrameRecord) {
         self.frames[frame] = Some(record);
         self.count();

@@ -19,30 +19,30 @@ use belvedere_scene::Instant;
 use belvedere_scene::Progress;
 use std::path::{Path, PathBuf};
 
-/// What to draw, and where to.
+/// Request for an animation.
 #[derive(Debug, Clone, Default)]
 pub struct AnimateRequest {
-    /// How the camera moves, where this differs from the scene's own `[animation]`. A sweep of zeros and a turntable
-    /// at 0 degrees per second stand for the scene's own or the default; so does a step of 0.
+    /// Motion of the camera where it differs from the scene's `[animation]`. A sweep of zeros, a turntable at 0 degrees per second, and
+    /// a step of 0 stand for the scene's own values or the defaults.
     pub animation: AnimationDoc,
     /// How each frame is drawn; buffers are not written.
     pub picture: PictureOptions,
     /// A film (`.mp4`), with its frames in the folder beside it, or a folder of frames.
     pub out: PathBuf,
-    /// Goes on with the frames that are there.
+    /// Resumes from existing frames.
     pub resume: bool,
-    /// Replaces frames and film that are there.
+    /// Replaces existing frames and films.
     pub overwrite: bool,
 }
 
-/// What was made.
+/// Result of an animation.
 #[derive(Debug, Clone)]
 pub struct Animation {
     /// The record of the frames.
     pub manifest: Manifest,
     /// Folder of the frames.
     pub folder: PathBuf,
-    /// Frames drawn by this call; the others were there.
+    /// Frames drawn by this call; the others existed.
     pub drawn: usize,
     /// The film.
     pub film: Film,
@@ -68,10 +68,10 @@ pub fn outputs(out: &Path) -> Result<(PathBuf, Option<PathBuf>), BelvedereError>
     }
 }
 
-/// Draws every frame that is not there yet, then the film.
+/// Draws all missing frames, then encodes the film.
 ///
-/// All views are resolved before the first frame is drawn, so that one that is impossible is known at once. Frames are written
-/// whole, the manifest after each of them; a cancelled animation is gone on with by `resume`, to the same bytes as an unbroken one.
+/// All views are resolved before the first frame is drawn, so that an impossible one is reported at once. Each frame is written
+/// atomically, followed by the manifest; a cancelled animation is resumed with `resume`, to the same bytes as an uninterrupted one.
 ///
 /// # Errors
 /// [`BelvedereError::Interrupted`] if cancelled, [`BelvedereError::Frame`] for a frame that cannot be drawn,
@@ -106,7 +106,7 @@ pub fn animate(session: &Session, request: &AnimateRequest, progress: &Progress)
     Ok(Animation { manifest, folder, drawn, film })
 }
 
-/// Decides what becomes of what the folder holds.
+/// Decides whether existing frames of the folder are kept, replaced or refused.
 fn claim(manifest: &mut Manifest, folder: &Path, request: &AnimateRequest) -> Result<(), BelvedereError> {
     let refuse =
         |reason: String, resumable| Err(BelvedereError::FramesThere { folder: folder.to_owned(), reason, resumable });
@@ -115,7 +115,7 @@ fn claim(manifest: &mut Manifest, folder: &Path, request: &AnimateRequest) -> Re
         return Err(BelvedereError::Output { path: folder.to_owned(), reason });
     }
     if request.overwrite && !request.resume {
-        // Frames of a longer animation before this one would end up in its film.
+        // Frames of a longer earlier animation would end up in this film.
         let earlier = Manifest::read(folder).ok().flatten().map_or(0, |m| m.frames.len());
         for frame in manifest.frames.len()..earlier {
             let _ = std::fs::remove_file(folder.join(frame_name(frame)));
@@ -147,7 +147,7 @@ fn check_all(session: &Session, path: &CameraPath, progress: &Progress) -> Resul
     Ok(())
 }
 
-/// Draws what the manifest lacks, in order; the number of frames drawn.
+/// Draws the missing frames in order; returns their number.
 fn draw_missing(
     session: &Session,
     path: &CameraPath,
@@ -157,8 +157,8 @@ fn draw_missing(
     progress: &Progress,
 ) -> Result<usize, BelvedereError> {
     let missing: Vec<usize> = (0..path.len()).filter(|&f| manifest.frames[f].is_none()).collect();
-    // What a solver remembers depends on every frame before: those that are there are solved again, not drawn.
-    // Straight frames need nothing solved, unless the camera follows a path that a constructor leads it along.
+    // The memory of a solver depends on all earlier frames: existing frames are solved again but not drawn.
+    // Straight frames need no solution, unless a constructor leads the camera along a path.
     let solved = !request.picture.straight || path.is_previewed();
     let solves = solved && (session.resolved().is_some_and(Document::solves_terrain) || session.tracks());
     let last = missing.last().map_or(0, |f| f + 1);

@@ -1,4 +1,4 @@
-//! The bends that keep a target in sight, planned over all frames of a film before the first is drawn.
+//! Bends of target tracking, planned over all frames of a film before the first is drawn.
 
 use crate::camera_path::CameraPath;
 use crate::resolve::constructor;
@@ -6,7 +6,7 @@ use crate::{BelvedereError, Session};
 use belvedere_construct::rays::{FilmPlanner, PlannedBend};
 use belvedere_scene::Progress;
 
-/// The bend of every frame: to the left and right where that shows the whole target throughout, else up and aslant as well.
+/// The bend of every frame: to the left and right where that shows the whole target throughout, else also up and diagonally.
 /// Empty without target tracking.
 pub(super) fn plan(
     session: &Session,

@@ -1,4 +1,4 @@
-//! `generalise`: a city in, its levels of abstraction out.
+//! `generalise`: levels of abstraction of a city.
 
 mod read;
 
@@ -20,17 +20,17 @@ use std::path::{Path, PathBuf};
 /// Longer side of the map, pixels, and its smallest pixel, metres.
 const MAP_PX: usize = 4096;
 const MAP_LEAST_M: f64 = 0.25;
-/// Ground around the buildings on the map, metres.
+/// Margin around the buildings on the map, metres.
 const MAP_MARGIN_M: f64 = 50.0;
 
-/// What is generalised.
+/// Request for levels of abstraction.
 #[derive(Debug, Clone, Default)]
 pub struct GeneraliseRequest {
     /// Buildings: CityJSON, CityGML, OSM PBF, or footprints as GeoJSON, shapefile or GeoPackage.
     pub city: PathBuf,
     /// Streets, railways, water: the same formats.
     pub roads: Vec<PathBuf>,
-    /// Measures.
+    /// Parameters of the generalisation.
     pub settings: GeneraliseSettings,
 }
 
@@ -40,14 +40,14 @@ pub struct GeneralisedCity {
     pub city: City,
     /// Code of its coordinate system, if it has one.
     pub epsg: Option<u32>,
-    /// The levels and their figures.
+    /// The levels and their report.
     pub generalised: Generalised,
-    /// What was odd in the files.
+    /// Warnings of reading the files.
     pub warnings: Vec<String>,
     inputs: Vec<InputFile>,
 }
 
-/// The report file.
+/// Contents of the report file.
 #[derive(Debug, Serialize)]
 struct Record<'a> {
     program: &'static str,
@@ -95,7 +95,7 @@ impl GeneralisedCity {
         })
     }
 
-    /// Levels that do not keep the volume, one sentence each.
+    /// Levels that do not preserve the volume, one sentence each.
     pub fn missed(&self) -> Vec<String> {
         let levels = self.generalised.report.levels.iter().filter(|l| !l.volume_kept);
         let text = |l: &LevelReport| {
@@ -104,7 +104,7 @@ impl GeneralisedCity {
         levels.map(text).collect()
     }
 
-    /// Blocks that do not keep the volume of their buildings or leave some of them out, one sentence for each reason.
+    /// Blocks that do not preserve the volume of their buildings or leave some of them out, one sentence for each reason.
     pub fn failing(&self) -> Vec<String> {
         self.generalised.report.levels.iter().flat_map(LevelReport::failing).collect()
     }

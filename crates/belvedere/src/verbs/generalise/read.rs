@@ -6,7 +6,7 @@ use belvedere_io::{CityFile, InputFile, IoError, Limits, load_city};
 use belvedere_scene::City;
 use std::path::{Path, PathBuf};
 
-/// A city in metres and where it is from.
+/// A city in metres and its origin.
 pub(super) struct Read {
     pub city: City,
     /// Code of the metric system; `None` for files without one.

@@ -1,4 +1,4 @@
-//! What is told of a file with a city.
+//! Description of a city file.
 
 use crate::BelvedereError;
 use belvedere_io::{Limits, load_city};
@@ -14,7 +14,7 @@ pub struct CityInfo {
     pub format: String,
     /// Buildings.
     pub buildings: usize,
-    /// Buildings that their attributes make landmarks.
+    /// Buildings that are landmarks by their attributes.
     pub landmarks: usize,
     /// Bridges, trees and other solids.
     pub structures: usize,
@@ -22,15 +22,15 @@ pub struct CityInfo {
     pub ways: usize,
     /// Pieces of land cover.
     pub areas: usize,
-    /// Where the heights of buildings are from.
+    /// Source of the heights of buildings.
     pub heights: String,
-    /// Levels of detail, rising.
+    /// Levels of detail, ascending.
     pub lods: Vec<String>,
-    /// Horizontal system; null if the file names none that is known.
+    /// Horizontal coordinate system; null if the file names no known one.
     pub crs: Option<String>,
-    /// What the file says of its system and heights.
+    /// Coordinate and height reference as named by the file.
     pub reference: String,
-    /// What was odd.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 

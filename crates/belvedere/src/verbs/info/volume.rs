@@ -1,4 +1,4 @@
-//! What a file of voxels holds.
+//! Description of a volume file.
 
 use crate::BelvedereError;
 use crate::resolve::volume::made;
@@ -6,7 +6,7 @@ use belvedere_io::{Number, VolumeRequest, load_volume};
 use serde::Serialize;
 use std::path::Path;
 
-/// Voxels.
+/// A volume.
 #[derive(Debug, Clone, Serialize)]
 pub struct VolumeInfo {
     /// The file.
@@ -20,21 +20,21 @@ pub struct VolumeInfo {
     pub dims: [usize; 3],
     /// Type of the samples in the file.
     pub samples: Number,
-    /// Distances between voxels along x, y, z.
+    /// Spacing of the voxels along x, y, z.
     pub spacing: [f64; 3],
     /// Least and greatest value.
     pub range: [f32; 2],
-    /// Smallest coordinates, the file's own.
+    /// Smallest coordinates, in the file's own system.
     pub min: [f64; 3],
     /// Largest coordinates.
     pub max: [f64; 3],
-    /// What was odd.
+    /// Warnings.
     pub warnings: Vec<String>,
 }
 
 impl VolumeInfo {
     /// # Errors
-    /// [`BelvedereError::Io`] with what is wrong with it.
+    /// [`BelvedereError::Io`] with the reason.
     pub(super) fn of(path: &Path) -> Result<Self, BelvedereError> {
         let loaded = load_volume(path, &VolumeRequest::default())?;
         let (format, array, samples) = (loaded.value.format, loaded.value.array.clone(), loaded.value.stored);

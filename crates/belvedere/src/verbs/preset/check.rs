@@ -1,4 +1,4 @@
-//! The verdict on a preset document.
+//! Usability of a preset document.
 
 use super::{DISTANCE, Shape, seen_at, shapes};
 use belvedere_core::map::spline::{EDGE_ON, check_presets};
@@ -8,27 +8,27 @@ use serde::Serialize;
 /// Answer of [`check`].
 #[derive(Debug, Clone, Serialize)]
 pub struct PresetCheck {
-    /// What the document is good for.
+    /// Usability of the document.
     pub verdict: Verdict,
-    /// The presets by rising viewing angle.
+    /// The presets by ascending viewing angle.
     pub presets: Vec<Shape>,
-    /// Ranges of viewing angles, degrees of 0..=90, at which no ground faces away from the eye.
+    /// Ranges of viewing angles within 0..=90 degrees at which all ground faces the eye.
     pub usable: Vec<Usable>,
-    /// Ranges at which the picture stands still while the camera tilts, degrees.
+    /// Ranges at which the picture does not change while the camera tilts, degrees.
     pub still: Vec<Usable>,
-    /// What will look bad.
+    /// Warnings about the appearance.
     pub warnings: Vec<String>,
 }
 
-/// What a valid document is good for.
+/// Usability of a valid document.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// At every viewing angle.
     Valid,
-    /// At some.
+    /// At some viewing angles.
     UsableInPart,
-    /// At none.
+    /// At no viewing angle.
     NotUsable,
 }
 
@@ -41,11 +41,11 @@ pub struct Usable {
     pub to_deg: f64,
 }
 
-/// Steps of the viewing angle that are looked at, per degree.
+/// Tested viewing angles per degree.
 const PER_DEGREE: u32 = 4;
 
-/// Whether a valid document is usable from the horizon to straight down, where it is not, and what will look bad, for data that reach
-/// no heights.
+/// Checks at which viewing angles from the horizon to straight down a valid document is usable, and how it looks, for data without
+/// heights.
 pub fn check(document: &PresetDocument) -> PresetCheck {
     let warnings = check_presets(document, DISTANCE, None).iter().map(ToString::to_string).collect();
     let faces = |phi: f64| seen_at(document, phi).is_some_and(|(_, bend)| bend.facing() > -EDGE_ON);
@@ -59,7 +59,7 @@ pub fn check(document: &PresetDocument) -> PresetCheck {
 }
 
 impl PresetCheck {
-    /// The verdict in words.
+    /// The usability in words.
     pub fn words(&self) -> String {
         match self.verdict {
             Verdict::Valid => "valid: usable at every viewing angle from 0 to 90 degrees".into(),
@@ -73,7 +73,7 @@ impl PresetCheck {
         }
     }
 
-    /// Where the picture stands still, in words; `None` where it never does.
+    /// Ranges at which the picture does not change, in words; `None` if there are none.
     pub fn still_words(&self) -> Option<String> {
         let all = listed(&self.still);
         (!self.still.is_empty())
@@ -86,7 +86,7 @@ fn listed(ranges: &[Usable]) -> String {
     words.join(", ")
 }
 
-/// The runs of angles that hold.
+/// Runs of viewing angles for which `holds` is true.
 fn ranges(holds: impl Fn(f64) -> bool) -> Vec<Usable> {
     let mut out: Vec<Usable> = Vec::new();
     let mut before = false;
@@ -103,7 +103,7 @@ fn ranges(holds: impl Fn(f64) -> bool) -> Vec<Usable> {
     out
 }
 
-/// Where pitching the camera changes nothing: in the camera's frame on plateaus, before the first and, without `follow`, after the last.
+/// Ranges in which tilting the camera has no effect: in the camera's frame plateaus, before the first preset and, without `follow`, after the last.
 fn still(document: &PresetDocument) -> Vec<Usable> {
     if document.frame == BendFrame::Plane {
         return Vec::new();

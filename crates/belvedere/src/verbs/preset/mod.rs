@@ -1,4 +1,4 @@
-//! `preset`: preset documents listed, read, changed, checked and plotted.
+//! `preset`: lists, reads, edits, checks and plots preset documents.
 
 mod check;
 mod plot;
@@ -19,20 +19,20 @@ use std::path::Path;
 
 /// Distance from the eye to the pivot in plots and checks, scene units: that of the figures in the documentation.
 const DISTANCE: f64 = 1000.0;
-/// Field of view of the camera that plots and checks stand in for, degrees.
+/// Vertical field of view of the camera of plots and checks, degrees.
 const FOV_Y_DEG: f64 = 50.0;
 
-/// Heights beyond do not count as limits: straight curves bend by rounding alone.
+/// Heights beyond this do not count as limits: straight curves bend only by rounding.
 const NO_LIMIT: f64 = 1e3 * DISTANCE;
 
-/// What a built-in document is, at its own viewing angle.
+/// A built-in document at its own viewing angle.
 #[derive(Debug, Clone, Serialize)]
 pub struct Listed {
     /// Name.
     pub name: &'static str,
     /// Other names.
     pub aliases: &'static [&'static str],
-    /// What is seen.
+    /// Description of the effect.
     pub effect: &'static str,
     /// Its presets.
     pub presets: Vec<Shape>,
@@ -51,13 +51,13 @@ pub struct Shape {
     pub length: f64,
     /// Smallest sine of the angle under which the ground is seen; it must be above 0.
     pub facing: f64,
-    /// Heights between which nothing folds at a distance of 1000 scene units from eye to pivot; null where there is no limit.
+    /// Heights within which nothing folds if the eye is 1000 scene units from the pivot; null where there is no limit.
     pub fold_heights: [Option<f64>; 2],
 }
 
 /// The document of a file, or a built-in one by name or alias.
 ///
-/// Names of built-in documents mean these whatever files and folders there are; `./demo` means a file of that name.
+/// A built-in name means the built-in document, even if a file or folder has the same name; `./demo` means the file.
 ///
 /// # Errors
 /// [`BelvedereError::Scene`], [`BelvedereError::Io`], [`BelvedereError::Preset`].
@@ -76,7 +76,7 @@ pub fn load(source: &str) -> Result<PresetDocument, BelvedereError> {
     Ok(document)
 }
 
-/// A document as a file of its name holds it: JSON for `.json`, else TOML.
+/// Text of a document for a file with this name: JSON for `.json`, else TOML.
 ///
 /// # Errors
 /// [`BelvedereError::Text`], which no document gives.
@@ -87,7 +87,7 @@ pub fn text(document: &PresetDocument, path: &Path) -> Result<String, BelvedereE
     toml::to_string(document).map_err(|e| BelvedereError::Text { what: "the preset document", reason: e.to_string() })
 }
 
-/// The document after operations, all of them or none, and what was done less far than asked.
+/// The document after all operations (all of them or none), and notes on values that were limited.
 ///
 /// # Errors
 /// [`BelvedereError::PresetEdit`].
@@ -128,7 +128,7 @@ impl Shape {
         let pivot = bend.coordinates(bend.pivot()).l;
         Self {
             name: name.to_owned(),
-            // No negative zero.
+            // Avoids a negative zero.
             phi: bend.resolved().phi_deg + 0.0,
             slopes_deg: [0.0, pivot, curve.length()].map(slope),
             length: curve.length(),
@@ -153,7 +153,7 @@ fn seen_from(document: &PresetDocument, phi_deg: f64, distance: f64) -> Option<(
     Some((bend.adapted_pinhole(&camera), bend))
 }
 
-/// The viewing angle of a scene's camera over its reference plane, degrees: to make a preset for it.
+/// The viewing angle of a scene's camera over its reference plane, degrees, for which a preset can be made.
 ///
 /// # Errors
 /// [`BelvedereError::Setting`] for scenes without a spline bend.

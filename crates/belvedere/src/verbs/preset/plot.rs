@@ -1,4 +1,4 @@
-//! Plots of presets: the deformation curve, what it is made of, and the eye that looks at it.
+//! Plots of presets: the deformation curve, its control points and sections, and the eye.
 
 use super::{Shape, seen_at};
 use belvedere_core::DVec2;
@@ -15,11 +15,11 @@ const PANEL: DVec2 = DVec2::new(720.0, 600.0);
 const COLUMNS: usize = 3;
 /// Panels of one plot at most.
 const MOST_PANELS: usize = 24;
-/// Room around the drawing of a panel, pixels: left and right, above, below.
+/// Margins of a panel's drawing, pixels: left and right, above, below.
 const MARGIN: [f64; 3] = [36.0, 92.0, 56.0];
-/// Pieces that a curve is drawn in.
+/// Number of pieces of a drawn curve.
 const PIECES: usize = 160;
-/// Length of the extensions that is drawn, curve units.
+/// Drawn length of the extensions, curve units.
 const EXTENSION: f64 = 0.45;
 /// Facing that is coloured as good: sine of 20 degrees.
 const WELL_SEEN: f64 = 0.34;
@@ -43,7 +43,7 @@ pub struct Plot {
     pub width: usize,
 }
 
-/// Draws every preset of a document, or what lies between them at one viewing angle, degrees.
+/// Draws every preset of a document, or the interpolated one at a viewing angle, degrees.
 pub fn plot(document: &PresetDocument, phi_deg: Option<f64>) -> Plot {
     let panels: Vec<(String, f64)> = match phi_deg {
         Some(phi) => vec![(String::new(), phi)],
@@ -64,7 +64,7 @@ pub fn plot(document: &PresetDocument, phi_deg: Option<f64>) -> Plot {
     Plot { pixels, width }
 }
 
-/// One preset on its part of the picture.
+/// Panel of one preset.
 struct Panel<'a> {
     corner: DVec2,
     bend: &'a SplineBend,
@@ -179,7 +179,7 @@ impl<'a> Panel<'a> {
         }
     }
 
-    /// Where sections pass into each other.
+    /// Draws the transitions between sections.
     fn transitions(&self, canvas: &mut Canvas<'_>) {
         let length = self.curve.length();
         for tag in self.bend.sections().tags() {
@@ -197,7 +197,7 @@ impl<'a> Panel<'a> {
         }
     }
 
-    /// Colour of the ground by how well the eye sees it: green well, yellow flat, red from behind.
+    /// Colour of the ground by its facing: green well visible, yellow at grazing angles, red from behind.
     fn seen(&self, l: f64) -> Color {
         let (p, tangent) = self.curve.at(l);
         let sine = tangent.perp().dot((self.eye - p).normalize_or_zero());
@@ -260,7 +260,7 @@ mod tests {
             assert_eq!(drawn.width, 720 * document.presets.len().min(3), "{}", builtin.name);
             let green = drawn.pixels.iter().filter(|[r, g, b]| g > r && i32::from(*g) > i32::from(*b) + 40).count();
             let red = drawn.pixels.iter().filter(|[r, g, b]| *r > 180 && *g < 60 && *b < 70).count();
-            // Level ground seen along itself is the one that shows no face.
+            // Level ground seen along itself is the only one that is seen edge-on.
             let edge_on = builtin.name == "identity";
             assert!((green > 300 && red < 50) != edge_on, "{}: {green} {red}", builtin.name);
             assert_eq!(plot(&document, Some(40.0)).width, 720);

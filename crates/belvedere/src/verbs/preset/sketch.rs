@@ -1,30 +1,30 @@
-//! A preset as a drawing can be made of it: the curve, its tags, the eye and what it sees.
+//! Data for drawing a preset: the curve, its tags, the eye and its field of view.
 
 use super::{DISTANCE, seen_from};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{DVec2, Projection};
 
-/// Pieces that the curve is sampled in.
+/// Number of pieces in which the curve is sampled.
 const PIECES: usize = 160;
-/// Length of the extensions that is sampled, curve units.
+/// Sampled length of the extensions, curve units.
 const EXTENSION: f64 = 0.45;
 
-/// What a preset looks like in its plane, curve units.
+/// A preset in its plane, curve units.
 #[derive(Debug, Clone)]
 pub struct Sketch {
     /// The curve, near to far, with its extensions.
     pub curve: Vec<SketchPoint>,
-    /// Its control points, where the pinned curve has them.
+    /// Its control points on the pinned curve.
     pub control: Vec<DVec2>,
-    /// How far the pin moved the curve from where the document has it.
+    /// Shift of the curve by the pin, from its position in the document.
     pub pinned_by: DVec2,
     /// Borders of the sections.
     pub tags: Vec<SketchTag>,
-    /// Where the eye is, and the directions of the lower and upper edge of the picture.
+    /// Position of the eye; `wedge` holds the directions of the lower and upper edge of the picture.
     pub eye: DVec2,
-    /// See `eye`.
+    /// Directions of the lower and upper edge of the picture.
     pub wedge: [DVec2; 2],
-    /// Least height below and above the curve at which it folds, curve units; infinite where it does not.
+    /// Least height below and above the curve at which space folds, curve units; infinite where it does not.
     pub fold_heights: [f64; 2],
     /// Viewing angle, degrees.
     pub phi_deg: f64,
@@ -33,7 +33,7 @@ pub struct Sketch {
 /// A point of the curve.
 #[derive(Debug, Clone, Copy)]
 pub struct SketchPoint {
-    /// Where.
+    /// Position.
     pub at: DVec2,
     /// Unit normal, up over level ground.
     pub normal: DVec2,
@@ -46,7 +46,7 @@ pub struct SketchPoint {
 /// A border between sections.
 #[derive(Debug, Clone, Copy)]
 pub struct SketchTag {
-    /// Where.
+    /// Position.
     pub at: DVec2,
     /// Unit normal there.
     pub normal: DVec2,
@@ -56,9 +56,9 @@ pub struct SketchTag {
     pub half_width: f64,
 }
 
-/// The drawing of what a document makes of a viewing angle, degrees; `None` if that is no valid bend.
+/// The sketch of a document at a viewing angle, degrees; `None` if it gives no valid bend there.
 ///
-/// * `distance`: of the eye from the pivot, scene units; counts for documents whose depths are scene units.
+/// * `distance`: distance of the eye from the pivot, scene units; used for documents whose depths are scene units.
 pub fn sketch(document: &PresetDocument, phi_deg: f64, distance: Option<f64>) -> Option<Sketch> {
     let (pinhole, bend) = seen_from(document, phi_deg, distance.unwrap_or(DISTANCE))?;
     let curve = bend.curve();
