@@ -136,7 +136,11 @@ fn what_files_leave_out_the_scene_may_say() {
 fn info_says_what_it_reads() {
     let place = Place::new();
     place.write("x.docx", "v 0 0 0");
-    assert!(place.fails(&["info", "x.docx"]).contains("features as GPX, GeoJSON, shapefile (.shp) or GeoPackage ("));
+    let said = place.fails(&["info", "x.docx"]);
+    assert!(
+        said.contains("features as GPX (.gpx), GeoJSON (.geojson, ") && said.contains("NRRD (.nrrd, .nhdr)"),
+        "{said}"
+    );
     assert!(place.fails(&["info", "none.docx"]).contains("No such file"));
 }
 
