@@ -6,7 +6,6 @@ mod bad_scenes;
 mod cities;
 mod constructors;
 mod curve_inset;
-mod exact;
 mod figures;
 mod generalise;
 mod geopackage;

@@ -1,38 +1,21 @@
 //! The rasteriser against the exact tracer on every ready scene, at the default tolerance, with and without level of detail.
 
-use super::Place;
-use std::path::Path;
+use belvedere::picture::{AuxBuffer, PictureOptions, RendererChoice, THRESHOLDS};
+use belvedere::scene::{Frame, RenderOptions};
+use belvedere::{OpenOptions, Session};
+use std::path::PathBuf;
 
-/// Depth and id of every pixel.
-struct Buffers {
-    width: usize,
-    depth: Vec<f32>,
-    id: Vec<u32>,
-}
-
-fn values(path: &Path) -> Vec<[u8; 4]> {
-    let bytes = super::read(path);
-    let header = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
-    bytes[header..].chunks_exact(4).map(|b| [b[0], b[1], b[2], b[3]]).collect()
-}
-
-/// * `options`: how it is drawn.
-fn draw(place: &Place, scene: &str, root: Option<&str>, renderer: &str, options: &[&str], size: [usize; 2]) -> Buffers {
-    let (out, text) = (format!("{renderer}.png"), format!("{}x{}", size[0], size[1]));
-    let mut args = vec!["render", scene, "-o", &out, "--renderer", renderer, "--size", &text, "--samples", "1"];
-    args.extend(options);
-    args.extend(["--aux", "depth,id", "--overwrite"]);
-    args.extend(root.iter().flat_map(|root| ["--allow-root", root]));
-    place.ok(&args);
-    Buffers {
-        width: size[0],
-        depth: values(&place.path(&format!("{renderer}.depth.npy"))).into_iter().map(f32::from_le_bytes).collect(),
-        id: values(&place.path(&format!("{renderer}.id.npy"))).into_iter().map(u32::from_le_bytes).collect(),
-    }
+/// A picture with one sample per pixel.
+///
+/// * `lod_px`: largest error of the level of detail, pixels.
+fn draw(session: &Session, renderer: RendererChoice, lod_px: f64) -> Frame {
+    let quality = RenderOptions { samples: 1, exposures: THRESHOLDS, lod_px, ..RenderOptions::default() };
+    let aux = vec![AuxBuffer::Depth, AuxBuffer::Id];
+    session.render(&PictureOptions { quality, aux, renderer, ..PictureOptions::default() }).expect("picture").frame
 }
 
 /// How far the depth of pixel `i`, relative to it, bends away from the plane through opposite neighbours: 0 on a flat face.
-fn crease(exact: &Buffers, i: usize) -> f64 {
+fn crease(exact: &Frame, i: usize) -> f64 {
     let nearness = |k: usize| f64::from(exact.depth[i]) / f64::from(exact.depth[k]);
     let (w, x) = (exact.width, i % exact.width);
     let steps = [(x > 0 && x + 1 < w).then_some(1), (i >= w && i + w < exact.id.len()).then_some(w)];
@@ -43,7 +26,7 @@ fn crease(exact: &Buffers, i: usize) -> f64 {
 ///
 /// A pixel lies on a silhouette if a neighbour has another id, or its depth jumps by more than 4 %. Bent edges are drawn within half a
 /// pixel: eaves and ridges of distant houses, which jump less, may be off by half of what the depth bends there.
-fn compare(exact: &Buffers, other: &Buffers) -> [usize; 3] {
+fn compare(exact: &Frame, other: &Frame) -> [usize; 3] {
     let (w, h) = (exact.width, exact.id.len() / exact.width);
     let [mut judged, mut ids, mut depths] = [0; 3];
     for i in 0..w * h {
@@ -64,7 +47,7 @@ fn compare(exact: &Buffers, other: &Buffers) -> [usize; 3] {
 
 #[test]
 fn every_ready_scene_is_drawn_as_the_tracer_sees_it() {
-    let root = belvedere_testkit::data("README.md").and_then(|p| Some(p.parent()?.to_str()?.to_owned()));
+    let root: Option<PathBuf> = belvedere_testkit::data("README.md").and_then(|p| Some(p.parent()?.to_owned()));
     let folder = belvedere_testkit::workspace_root().join("scenes");
     let mut faults = Vec::new();
     for entry in std::fs::read_dir(folder).expect("folder of scenes") {
@@ -78,16 +61,18 @@ fn every_ready_scene_is_drawn_as_the_tracer_sees_it() {
             continue;
         }
         let size = if name == "massif_curved_rays" { [1280, 720] } else { [320, 180] };
-        let place = Place::new();
-        let draw = |renderer: &str, options: &[&str]| {
-            draw(&place, path.to_str().expect("UTF-8"), root.as_deref(), renderer, options, size)
-        };
-        let exact = draw("exact", &[]);
-        for detail in [&["--lod", "0"][..], &[]] {
-            let [judged, ids, depths] = compare(&exact, &draw("cpu", detail));
+        let allow_roots = root.iter().cloned().collect();
+        let options = OpenOptions { image: Some(size.map(|n| n as u32)), allow_roots, ..OpenOptions::default() };
+        // Ground that makes way is solved once for all three pictures.
+        let session = Session::open(&path, &options).expect("session");
+        let exact = draw(&session, RendererChoice::Exact, 0.0);
+        for lod_px in [0.0, 0.5] {
+            let [judged, ids, depths] = compare(&exact, &draw(&session, RendererChoice::Cpu, lod_px));
             let few = |n: usize| n as f64 <= 1e-3 * judged as f64;
             if judged < size[0] * size[1] / 3 || !few(ids) || !few(depths) {
-                faults.push(format!("{name} {detail:?}: of {judged} pixels {ids} differ in id, {depths} in depth"));
+                faults.push(format!(
+                    "{name}, level of detail {lod_px} px: of {judged} pixels {ids} differ in id, {depths} in depth"
+                ));
             }
         }
     }
