@@ -96,9 +96,9 @@ fn the_naive_ground_shows_nearly_everything_and_smoothing_hides_some_of_it() {
         let u = case.naive(&settings);
         let naive = case.judge(&settings, [case.field.cols(), case.field.rows()], u.clone());
         let smooth = case.smooth(&settings, &u);
-        // The greedy pass clears nothing nearer than the guard.
+        // The greedy pass clears nothing nearer than the guard, and nodes, not facets: those hide a hundredth more.
         let [before, naive_seen, after] = [still, naive, smooth].map(|m| m.visible_dense + m.hidden_in_guard);
-        assert!(before < 0.8 && naive_seen > 0.9 && after < naive_seen, "{before} {naive_seen} {after}");
+        assert!(before < 0.8 && naive_seen > 0.88 && after < naive_seen, "{before} {naive_seen} {after}");
         assert!(after > before);
         assert_eq!(naive.raised_max_m, 0.0);
         // Points stand for the length.
