@@ -27,19 +27,14 @@ pub(crate) enum Hides {
     /// Only ground nearer to it than the guard, which rises by this height.
     InGuard(f64),
     /// Only the facets of the rasterised and written ground, not the ground that is traced, which is judged too.
-    Facets {
-        /// How far they rise over the line of sight, scene units.
-        over: f64,
-        /// Whether all of them lie nearer than the guard.
-        in_guard: bool,
-    },
+    Facets(f64),
 }
 
 impl Hides {
     /// Height by which that ground rises over the line of sight, scene units.
     pub(crate) fn over(self) -> f64 {
         match self {
-            Self::Ground(over) | Self::InGuard(over) | Self::Facets { over, .. } => over,
+            Self::Ground(over) | Self::InGuard(over) | Self::Facets(over) => over,
         }
     }
 }
@@ -76,8 +71,7 @@ pub(super) fn shares(points: &[ReferencePoint], verdicts: &[Verdict]) -> [f64; 2
         let [all, hidden, in_guard] = &mut sums[point.kind.of_feature()];
         *all += point.amount;
         *hidden += if verdict.hides().is_some() { point.amount } else { 0.0 };
-        let is_in_guard = matches!(verdict, Verdict::Hidden(Hides::InGuard(_) | Hides::Facets { in_guard: true, .. }));
-        *in_guard += if is_in_guard { point.amount } else { 0.0 };
+        *in_guard += if matches!(verdict, Verdict::Hidden(Hides::InGuard(_))) { point.amount } else { 0.0 };
     }
     let kinds = sums.into_iter().filter(|[all, ..]| *all > 0.0);
     kinds
@@ -185,7 +179,7 @@ impl<'a> Judge<'a> {
                 None => Verdict::NoGround,
                 Some(()) if !(near > TOUCH) => Verdict::Seen,
                 // Facets are judged first.
-                Some(()) if !(last > TOUCH) => Verdict::Hidden(Hides::Facets { over: near, in_guard: !(far > TOUCH) }),
+                Some(()) if !(last > TOUCH) => Verdict::Hidden(Hides::Facets(near)),
                 Some(()) if far > TOUCH => Verdict::Hidden(Hides::Ground(far)),
                 Some(()) => Verdict::Hidden(Hides::InGuard(near)),
             }

@@ -160,7 +160,7 @@ fn covered(c: &Context<'_>, judgement: &Judged, dense: &[ReferencePoint]) -> Vec
     let place = |&(i, hides): &(usize, Hides)| {
         let (p, over_m) = (&dense[i], hides.over());
         let at = c.field.scene_from_grid(p.grid).to_array();
-        let is_covered = over_m.is_finite() && !matches!(hides, Hides::Facets { .. });
+        let is_covered = over_m.is_finite() && !matches!(hides, Hides::Facets(_));
         is_covered.then_some(Covered { at, lift_m: p.lift, over_m })
     };
     judgement.dense.iter().filter_map(place).collect()
@@ -195,7 +195,7 @@ fn hidden(
     let mut runs = Runs::new(c.field, CHECK_CELLS * every as f64);
     for (i, hides) in &judgement.dense {
         let reason = match *hides {
-            Hides::Facets { over: over_m, .. } => UnresolvedReason::Facets { over_m },
+            Hides::Facets(over_m) => UnresolvedReason::Facets { over_m },
             // At a price `covered` names it.
             _ if c.settings.slack_price.is_some() => continue,
             Hides::Ground(over_m) | Hides::InGuard(over_m) if done.limited.is_some() && over_m.is_finite() => {
@@ -264,7 +264,7 @@ fn unresolved(c: &Context<'_>, done: &Outcome, shown: &Shown, (asked, judgement)
         let (i, over_m) = (asked[k], hides.over());
         if c.settings.slack_price.is_none() && !named.contains(&i) {
             let reason = match c.settings.mode {
-                _ if matches!(hides, Hides::Facets { .. }) => UnresolvedReason::Facets { over_m },
+                _ if matches!(hides, Hides::Facets(_)) => UnresolvedReason::Facets { over_m },
                 _ if over_m.is_infinite() => UnresolvedReason::NoLineOfSight,
                 SolverMode::Paper => UnresolvedReason::Smoothed { over_m },
                 _ if done.limited.is_some() => UnresolvedReason::Limits { over_m },
