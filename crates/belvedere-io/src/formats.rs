@@ -245,7 +245,7 @@ impl std::fmt::Display for Format {
 /// The formats that are read, by what they hold, in words.
 pub fn read_ones() -> String {
     let kinds = [
-        (Terrain, "terrain"),
+        (Terrain, "terrain and pictures"),
         (Features, "features"),
         (City, "cities"),
         (Mesh, "meshes"),

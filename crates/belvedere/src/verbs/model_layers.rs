@@ -2,6 +2,7 @@
 
 use crate::scene_file::{CityDoc, LayerDoc, MeshDoc, MoleculeDoc, VolumeDoc};
 use crate::{BelvedereError, OpenOptions};
+use belvedere_io::formats::{self, Reader};
 use belvedere_scene::Unit;
 use std::path::Path;
 
@@ -24,16 +25,19 @@ pub(super) fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, Belved
     let taken = |id: &str| others.iter().any(|l| l.id() == id);
     let id = (1..).map(|k| if k == 1 { stem.to_owned() } else { format!("{stem}-{k}") }).find(|id| !taken(id));
     let id = id.unwrap_or_default();
-    match file.rsplit('.').next().unwrap_or_default() {
+    // Names of cities that tell nothing else may hold them.
+    let is_city = file.ends_with(".jsonl") || file.ends_with(".gml");
+    let reader = formats::of_name(Path::new(file)).and_then(|format| format.reader);
+    match reader {
         _ if builtin && stem == "dna" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
         _ if builtin && (stem == "engine" || stem == "tube") => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
-        _ if file.ends_with(".city.json") || (builtin && stem == "town") => Ok(LayerDoc::City(CityDoc::of(id, name))),
+        _ if is_city || (builtin && stem == "town") => Ok(LayerDoc::City(CityDoc::of(id, name))),
         // Unknown names go on to the error that suggests the nearest one.
         _ if builtin && !matches!(stem, "massif" | "canyon" | "street") => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
-        "pdb" | "ent" | "cif" | "mmcif" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
-        "obj" | "ply" | "stl" | "gltf" | "glb" => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
-        "jsonl" | "gml" | "pbf" => Ok(LayerDoc::City(CityDoc::of(id, name))),
-        "vti" | "nrrd" | "nhdr" | "raw" => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
+        Some(Reader::Molecule) => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
+        Some(Reader::Mesh) => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
+        Some(Reader::City) => Ok(LayerDoc::City(CityDoc::of(id, name))),
+        Some(Reader::Volume) => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
         _ => Err(BelvedereError::Target(format!(
             "{name} is no model that can be looked into; give meshes (OBJ, PLY, STL, glTF), cities (CityJSON, CityGML, OSM PBF), molecules (PDB, mmCIF), volumes (VTI, NRRD, raw) or a scene file; for an elevation model give its features instead of --see"
         ))),
