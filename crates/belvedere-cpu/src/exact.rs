@@ -1,23 +1,23 @@
 //! The exact renderer: every sample follows its own curved ray to the first surface.
 //!
 //! It shares with the rasteriser the colours ([`crate::shade`]) and the lines and points drawn over the surfaces
-//! ([`crate::marks`]), and nothing that decides what is seen where: the reference that other renderers are judged by.
+//! ([`belvedere_composite`]), and nothing that decides what is seen where: the reference that other renderers are judged by.
 
-use crate::branches;
-use crate::buffers::Buffers;
-use crate::color::{Packed, Rgb};
-use crate::frame::{buffers, checked, finish};
+use crate::frame::checked;
 use crate::geometry::blocks::Blocks;
-use crate::geometry::pass::Pass;
-use crate::layers;
-use crate::marks::Marks;
+use crate::marks;
 use crate::raster::band::{BAND, sample_offsets};
 use crate::screen::{SUB, Screen};
-use crate::sections::{Exposure, Sections};
 use crate::shade::{LightCache, Shader};
 use crate::trace::beam::RowRays;
 use crate::trace::{Part, RayHit, Tracer};
 use crate::volume::{self, Way};
+use belvedere_composite::branches;
+use belvedere_composite::buffers::Buffers;
+use belvedere_composite::color::{Packed, Rgb};
+use belvedere_composite::finish::{buffers, finish};
+use belvedere_composite::layers;
+use belvedere_composite::sections::{Exposure, Sections};
 use belvedere_core::DVec2;
 use belvedere_scene::Instant;
 use belvedere_scene::{Frame, FrameStats, LayerKind, RenderError, RenderJob, Renderer};
@@ -59,7 +59,7 @@ impl Renderer for ExactRenderer {
     }
 
     fn render(&self, job: &RenderJob<'_>) -> Result<Frame, RenderError> {
-        checked(job, |job| branches::draw(job, |job| layers::draw(job, render)))
+        checked(job, |job| branches::draw(job, |job| layers::draw(job, render, marks::place_alone)))
     }
 }
 
@@ -79,9 +79,7 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     let seen = picture.trace()?;
     picture.color(&seen, &mut buffers)?;
     let samples = volume::compose(job, Way::Exact, &mut buffers)?;
-    let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
-    let passes = Pass::all(job.view);
-    let marks = Marks::new(job, &passes, &screen, tolerance_px, &buffers.depth);
+    let marks = marks::place_alone(job, &screen, &buffers.depth);
     job.progress.tick("lines", 0.0)?;
     finish(job, &marks, &screen, None, &mut buffers);
     job.progress.tick("lines", 1.0)?;

@@ -1,14 +1,9 @@
-//! Steps common to all renderers: checks of the options, and marks over the surfaces.
+//! Checks before a picture is drawn: options, threads, memory.
 
-use crate::buffers::Buffers;
-use crate::color::{self, Packed};
-use crate::marks::Marks;
 use crate::raster::band::BAND;
-use crate::screen::Screen;
 use crate::shade::ground_bytes;
-use crate::stylise::{self, Relief};
+use belvedere_composite::stylise::{self, Relief};
 use belvedere_scene::{Frame, LayerKind, RenderError, RenderJob};
-use rayon::prelude::*;
 
 /// Checks the options and runs `render` on the given number of threads.
 pub(crate) fn checked(
@@ -28,52 +23,6 @@ pub(crate) fn checked(
         // No thread can be started: the caller's threads are used.
         Err(_) => render(job),
     }
-}
-
-/// Buffers of a picture; every pixel is sky.
-pub(crate) fn buffers(job: &RenderJob<'_>) -> Buffers {
-    let stylised = stylise::is_on(job);
-    let buffers = Buffers::reuse(job, true, Vec::new(), Frame::default());
-    // Where only centres are known, edges between faces are found from world points.
-    let n = buffers.out.len();
-    let world = (job.options.aux.world || stylised).then(|| vec![[f64::NAN; 3]; n]);
-    Buffers { world, ..buffers }
-}
-
-/// Buffers in the memory of older ones; all pixels must be written.
-pub(crate) fn buffers_in(job: &RenderJob<'_>, color: Vec<Packed>, old: Frame) -> Buffers {
-    Buffers::reuse(job, Marks::are_in(job) || stylise::is_on(job), color, old)
-}
-
-/// Draws stylisation, lines and points over the surfaces, and encodes the colours.
-/// * `relief`: depths and faces of all samples, if they are known.
-pub(crate) fn finish(
-    job: &RenderJob<'_>,
-    marks: &Marks,
-    screen: &Screen,
-    relief: Option<Relief>,
-    buffers: &mut Buffers,
-) {
-    if stylise::is_on(job) {
-        stylise::apply(job, screen.width as usize, relief, buffers);
-    }
-    draw_marks(marks, screen, buffers);
-}
-
-/// Draws lines and points over the surfaces, and encodes the colours.
-pub(crate) fn draw_marks(marks: &Marks, screen: &Screen, buffers: &mut Buffers) {
-    let chunk = BAND * screen.width as usize;
-    let Buffers { depth, color, id, out, .. } = buffers;
-    let encoding = color::encoding();
-    out.par_chunks_mut(chunk).zip(color.par_chunks_mut(chunk)).zip(id.par_chunks_mut(chunk)).enumerate().for_each(
-        |(i, ((out, color), id))| {
-            marks.draw((i * BAND) as i32, screen, depth, color, id);
-            for (o, c) in out.iter_mut().zip(color.iter()) {
-                *o = c.encode(encoding);
-            }
-        },
-    );
-    marks.write_names(out, screen.width as usize);
 }
 
 /// Bytes of the image of a node of the ground; four times that of a vertex, for subdivided cells.

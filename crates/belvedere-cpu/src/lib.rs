@@ -10,31 +10,25 @@
 //!    number of threads changes a byte.
 //! 4. `shade`: samples become colours. The light on the ground is fixed to the map and remembered (`cache`) from frame to frame.
 //! 5. `volume`: light that rays gather in voxels, up to the surfaces, is laid over them.
-//! 6. `marks`: lines, outlines, points and names, by lines of sight through the surfaces themselves (`trace`).
+//! 6. [`belvedere_composite`]: stylisation, then lines, outlines, points and names, by lines of sight through the surfaces themselves
+//!    (`marks`, `trace`).
 //!
-//! Where styling sections show layers in part, samples choose by thresholds (`sections`), and exposures of a band are averaged.
-//! Where rays part, every branch is drawn so and the pictures are put together along the seams (`branches`).
+//! Where styling sections show layers in part, samples choose by thresholds, and exposures of a band are averaged. Where rays part,
+//! every branch is drawn so and the pictures are put together along the seams.
 
-mod branches;
-mod buffers;
 mod cache;
-pub mod canvas;
-mod color;
 mod exact;
 mod fast;
 mod frame;
 mod geometry;
-mod layers;
 mod marks;
 mod points;
 mod raster;
 mod rasteriser;
 mod resolve;
 mod screen;
-mod sections;
 mod shade;
 mod simd;
-mod stylise;
 mod trace;
 mod volume;
 

@@ -1,24 +1,25 @@
 //! The rasteriser: draws a frame from blocks of surfaces to marks.
 
-use crate::branches;
-use crate::buffers::Buffers;
 use crate::cache::{GroundCache, lock};
-use crate::color::Packed;
-use crate::frame::{buffers_in, checked, finish};
+use crate::frame::checked;
 use crate::geometry::blocks::Blocks;
 use crate::geometry::lod::Tree;
 use crate::geometry::pass::{BodyPasses, Pass};
-use crate::layers;
-use crate::marks::Marks;
+use crate::marks;
 use crate::raster::band::{BAND, Band, sample_offsets};
 use crate::resolve::relief::resolve_relief;
 use crate::resolve::{Colors, Rows, resolve};
 use crate::screen::Screen;
-use crate::sections::{Exposure, Sections};
 use crate::shade::pixel_center::PixelCenters;
 use crate::shade::{LightCache, Shader};
-use crate::stylise::Relief;
 use crate::volume::{self, Way};
+use belvedere_composite::branches;
+use belvedere_composite::buffers::Buffers;
+use belvedere_composite::color::Packed;
+use belvedere_composite::finish::{buffers_in, finish};
+use belvedere_composite::layers;
+use belvedere_composite::sections::{Exposure, Sections};
+use belvedere_composite::stylise::Relief;
 use belvedere_scene::Instant;
 use belvedere_scene::{Frame, FrameStats, RenderError, RenderJob, Renderer};
 use belvedere_sight::Carried;
@@ -67,7 +68,9 @@ impl Renderer for CpuRenderer {
     fn render_into(&self, job: &RenderJob<'_>, frame: &mut Frame) -> Result<(), RenderError> {
         let old = Mutex::new(std::mem::take(frame));
         *frame = checked(job, |job| {
-            branches::draw(job, |job| layers::draw(job, |job| self.draw(job, std::mem::take(&mut *lock(&old)))))
+            branches::draw(job, |job| {
+                layers::draw(job, |job| self.draw(job, std::mem::take(&mut *lock(&old))), marks::place_alone)
+            })
         })?;
         Ok(())
     }
@@ -114,8 +117,7 @@ impl CpuRenderer {
         surfaces.draw(sections.as_ref(), bands, &mut buffers, relief.as_mut())?;
         let samples = volume::compose(job, Way::Fast, &mut buffers)?;
         if buffers.open {
-            let tolerance_px = if job.options.tolerance_px > 0.01 { job.options.tolerance_px } else { 0.01 };
-            let marks = Marks::new(job, &passes, &screen, tolerance_px, &buffers.depth);
+            let marks = marks::place(job, &passes, &screen, &buffers.depth);
             job.progress.tick("lines", 0.0)?;
             finish(job, &marks, &screen, relief, &mut buffers);
             job.progress.tick("lines", 1.0)?;

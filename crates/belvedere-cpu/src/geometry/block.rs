@@ -3,7 +3,7 @@
 use crate::cache::lock;
 use crate::geometry::grid::{Nodes, ScreenExtent};
 use crate::screen::{Screen, ScreenVertex};
-use crate::sections::{Sections, Shown};
+use belvedere_composite::sections::{Sections, Shown};
 use belvedere_core::Aabb;
 use std::sync::Mutex;
 

@@ -3,7 +3,7 @@
 use crate::geometry::block::{Block, Counts, Job};
 use crate::geometry::pass::Pass;
 use crate::geometry::refine::Refiner;
-use crate::sections::Shown;
+use belvedere_composite::sections::Shown;
 use belvedere_core::{Aabb, DVec3};
 use belvedere_scene::{BoxLayer, BoxShape};
 use belvedere_sight::CarriedLayer;

@@ -3,8 +3,8 @@
 use crate::geometry::block::{Block, Counts, Job, SoupTriangle, SoupVertex};
 use crate::geometry::pass::Pass;
 use crate::geometry::refine::Refiner;
-use crate::screen::ScreenVertex;
-use crate::sections::Shown;
+use crate::screen::{ScreenVertex, Snap};
+use belvedere_composite::sections::Shown;
 use belvedere_core::{Aabb, DVec3, EdgePoint};
 use belvedere_scene::Mesh;
 use belvedere_sight::CarriedLayer;

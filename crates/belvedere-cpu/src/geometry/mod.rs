@@ -5,6 +5,7 @@ pub(crate) mod blocks;
 pub(crate) mod box_blocks;
 mod displace;
 pub(crate) mod grid;
+mod layer_show;
 pub(crate) mod locate;
 pub(crate) mod lod;
 mod mesh_blocks;

@@ -7,7 +7,7 @@ use crate::geometry::project::Projector;
 use crate::geometry::way::Way;
 use crate::points::Points;
 use crate::raster::cells::NODES;
-use crate::screen::{Row, Screen, ScreenVertex};
+use crate::screen::{Row, Screen, ScreenVertex, Snap};
 use belvedere_core::{Aabb, CurvedRays, DMat3, DVec2, DVec3, EdgePoint, Edges, Stage, View};
 use belvedere_scene::Heightfield;
 use belvedere_sight::Carried;

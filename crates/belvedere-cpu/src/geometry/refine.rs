@@ -2,7 +2,7 @@
 
 use crate::geometry::block::{SoupTriangle, SoupVertex};
 use crate::geometry::pass::Pass;
-use crate::screen::{PLANES, Screen, ScreenVertex};
+use crate::screen::{PLANES, Screen, ScreenVertex, Snap};
 use belvedere_core::DVec3;
 
 /// An edge is halved at most this often.

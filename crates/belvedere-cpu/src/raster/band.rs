@@ -3,8 +3,7 @@
 use crate::screen::SUB;
 use std::ops::Range;
 
-/// Rows of a band.
-pub(crate) const BAND: usize = 16;
+pub(crate) use belvedere_composite::finish::BAND;
 
 /// Samples of padding at the end of a row, which wide writes may touch.
 pub(crate) const SLACK: usize = 8;

@@ -2,12 +2,12 @@
 
 pub(crate) mod relief;
 
-use crate::color::Packed;
 use crate::raster::band::{Band, Part, SKY};
 use crate::screen::{SUB, Screen};
 use crate::shade::pixel_center::PixelCenters;
 use crate::shade::{Painted, Sample, Samples, Shader};
 use crate::simd::{self, Kernel};
+use belvedere_composite::color::Packed;
 use std::ops::Range;
 
 /// Rows of the picture that a band fills.

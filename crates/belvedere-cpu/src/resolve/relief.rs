@@ -2,7 +2,7 @@
 
 use crate::raster::band::{Band, SKY};
 use crate::shade::Shader;
-use crate::stylise::{Face, ReliefRows, SKY_NEAR};
+use belvedere_composite::stylise::{Face, ReliefRows, SKY_NEAR};
 
 /// Writes depth and face of the band's samples, without the centres if there are other samples.
 pub(crate) fn resolve_relief(band: &Band, shader: &Shader<'_>, rows: &mut ReliefRows<'_>) {

@@ -1,8 +1,8 @@
 //! Colour of meshes: matt like the boxes, the same from both sides.
 
-use crate::color::{Rgb, linear, smoothstep};
 use crate::geometry::block::DrawnTriangle;
 use crate::shade::relief::ReliefLight;
+use belvedere_composite::color::{Rgb, linear, smoothstep};
 use belvedere_core::DVec3;
 use belvedere_scene::{Light, MeshLayer, Relief};
 use glam::Vec3A;

@@ -1,8 +1,8 @@
 //! Colours of layers that are one surface, mixed by the weights of their representations.
 
-use crate::color::Rgb;
 use crate::raster::band::SKY;
 use crate::shade::{Painted, Sample, Samples, Shader};
+use belvedere_composite::color::Rgb;
 use belvedere_core::DVec3;
 
 /// Colour of a sample of several layers: the sum of their colours by share, and the layer of the greatest share.

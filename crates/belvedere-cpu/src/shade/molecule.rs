@@ -1,7 +1,7 @@
 //! Colour of molecules: soft light from behind the viewer's left shoulder, darker between atoms, inked where the surface turns away.
 
-use crate::color::{Rgb, linear, smoothstep};
 use crate::geometry::block::DrawnTriangle;
+use belvedere_composite::color::{Rgb, linear, smoothstep};
 use belvedere_core::{DVec3, View};
 use belvedere_scene::MeshLayer;
 

@@ -1,12 +1,12 @@
 //! Colours of many samples at once.
 
-use crate::color::Rgb;
 use crate::geometry::block::Geometry;
 use crate::geometry::blocks::{CELL_BITS, SOUP};
 use crate::raster::band::SKY;
 use crate::shade::ground::batch::Batch;
 use crate::shade::{LayerShade, Painted, Samples, Shader, SurfacePoint};
 use crate::simd::{self, Kernel};
+use belvedere_composite::color::Rgb;
 
 /// Number of leading primitives that belong to the block of the first one, or are sky.
 #[inline(always)]

@@ -1,7 +1,7 @@
 //! Samples and their colours.
 
-use crate::color::{self, Encoder, LANES, PIXELS, Packed, Rgb};
 use crate::simd::{self, Kernel};
+use belvedere_composite::color::{self, Encoder, LANES, PIXELS, Packed, Rgb};
 
 /// Samples of the picture: primitive, nearness, and fixed-point position on the image; slices of equal length.
 #[derive(Debug, Clone, Copy)]

@@ -1,7 +1,7 @@
 //! Relief light on terrain.
 
-use crate::color::{Rgb, linear};
 use crate::simd::nearest;
+use belvedere_composite::color::{Rgb, linear};
 use belvedere_scene::{Light, Relief};
 use glam::Vec3A;
 use std::sync::LazyLock;

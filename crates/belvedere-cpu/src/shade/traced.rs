@@ -1,9 +1,9 @@
 //! Colours of traced hits.
 
-use crate::color::Rgb;
 use crate::shade::ground::terrain::TerrainShade;
 use crate::shade::{LayerShade, Shaded, Shader};
 use crate::trace::{Part, RayHit};
+use belvedere_composite::color::Rgb;
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{CellTriangle, NodeState};
 

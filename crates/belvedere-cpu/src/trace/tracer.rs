@@ -1,9 +1,9 @@
 //! First hits of curved rays on the surfaces of a scene.
 
 use crate::screen::Screen;
-use crate::sections::{Exposure, Sections, Shown};
 use crate::trace::curve::{Curve, Span, Split};
 use crate::trace::root::root;
+use belvedere_composite::sections::{Exposure, Sections, Shown};
 use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::{CellTriangle, Heightfield, LayerKind, NodeState, Scene};
 use belvedere_sight::{Carried, GridLine, Lift, MeshTree, Obstacles, UprightBox};

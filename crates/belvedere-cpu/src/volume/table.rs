@@ -1,6 +1,6 @@
 //! Transfer functions tabulated: linear light and the opacity of one step, by value.
 
-use crate::color::{Rgb, linear_of};
+use belvedere_composite::color::{Rgb, linear_of};
 use belvedere_scene::volume::absorbed;
 use belvedere_scene::{TransferFunction, VolumeLayer};
 use glam::Vec3A;

@@ -58,15 +58,17 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
         &["belvedere-core", "belvedere-scene", "belvedere-sight"],
         &["geo", "glam", "rayon", "serde", "thiserror"],
     ),
+    ("belvedere-composite", &["belvedere-core", "belvedere-scene"], &["ab_glyph", "glam", "rayon"]),
     (
         "belvedere-cpu",
-        &["belvedere-core", "belvedere-scene", "belvedere-sight"],
-        &["ab_glyph", "glam", "pulp", "rayon", "thiserror", "tracing"],
+        &["belvedere-composite", "belvedere-core", "belvedere-scene", "belvedere-sight"],
+        &["glam", "pulp", "rayon", "thiserror", "tracing"],
     ),
     (
         "belvedere",
         &[
             "belvedere-builtin",
+            "belvedere-composite",
             "belvedere-construct",
             "belvedere-core",
             "belvedere-cpu",

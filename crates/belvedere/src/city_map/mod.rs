@@ -4,8 +4,8 @@ pub mod overview;
 mod plan;
 
 use crate::BelvedereError;
+use belvedere_composite::canvas::Canvas;
 use belvedere_core::DVec2;
-use belvedere_cpu::canvas::Canvas;
 use belvedere_io::raster::{Affine, Alpha, CrsKind, Photometric, Raster, RasterInfo, SampleType, Samples, SourceCrs};
 use belvedere_io::{atomic, geotiff, png};
 use belvedere_scene::Color;

@@ -1,8 +1,8 @@
 //! Plan drawings of a city and its levels side by side, shaded by height.
 
 use super::plan::Plan;
+use belvedere_composite::canvas::{Canvas, text_size};
 use belvedere_core::DVec2;
-use belvedere_cpu::canvas::{Canvas, text_size};
 use belvedere_scene::Color;
 use belvedere_scene::city::{Building, City};
 

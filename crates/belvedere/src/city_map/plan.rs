@@ -1,7 +1,7 @@
 //! Drawing in plan: from metres to pixels, and the order and colours of a map.
 
+use belvedere_composite::canvas::Canvas;
 use belvedere_core::DVec2;
-use belvedere_cpu::canvas::Canvas;
 use belvedere_scene::Color;
 use belvedere_scene::city::{City, LandCover, Polygon, Way, WayClass};
 

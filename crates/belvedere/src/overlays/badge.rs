@@ -1,8 +1,8 @@
 //! The mark of bent pictures, and titles under pairs.
 
 use super::{INK, PAPER, length_above};
+use belvedere_composite::canvas::{Canvas, text_size};
 use belvedere_core::DVec2;
-use belvedere_cpu::canvas::{Canvas, text_size};
 use belvedere_scene::{Color, Unit};
 
 /// The shortest words of the mark.

@@ -2,9 +2,9 @@
 //! part of the curve's plane that it sees.
 
 use super::{INK, PAPER};
+use belvedere_composite::canvas::{Canvas, text_size};
 use belvedere_core::map::spline::SplineBend;
 use belvedere_core::{DVec2, View};
-use belvedere_cpu::canvas::{Canvas, text_size};
 use belvedere_scene::Color;
 
 /// Ink of the curve, of its control points and of the tag points.

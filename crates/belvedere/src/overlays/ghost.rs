@@ -1,6 +1,6 @@
 //! Skyline, ridges and routes of the straight picture, drawn faintly over the bent one.
 
-use belvedere_cpu::canvas::Canvas;
+use belvedere_composite::canvas::Canvas;
 use belvedere_scene::{Color, Frame, LayerKind, Scene};
 
 /// Relative second difference of `1 / depth` beyond which a pixel is a ridge: it is 0 on planes.

@@ -2,8 +2,8 @@
 
 use super::{INK, PAPER, length};
 use crate::bodies::RigidLayers;
+use belvedere_composite::canvas::{Canvas, text_size};
 use belvedere_core::{DVec2, DVec3, View};
-use belvedere_cpu::canvas::{Canvas, text_size};
 use belvedere_scene::{Color, Frame};
 use rayon::prelude::*;
 

@@ -1,7 +1,7 @@
 //! A ring around the image of the target point.
 
+use belvedere_composite::canvas::Canvas;
 use belvedere_core::DVec2;
-use belvedere_cpu::canvas::Canvas;
 use belvedere_scene::{Color, Frame};
 
 /// Radius and widths of ring and rim, pixels of a picture 720 high.

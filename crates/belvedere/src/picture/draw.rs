@@ -10,8 +10,8 @@ use crate::overlays::{badge, camera, curve_inset, ghost, grid, heat, highlight, 
 use crate::record::{self, InputFile, ViewRecord};
 use crate::scene_file::HighlightMark;
 use crate::{BelvedereError, CameraPicture, Session};
+use belvedere_composite::canvas::Canvas;
 use belvedere_core::View;
-use belvedere_cpu::canvas::Canvas;
 use belvedere_scene::Instant;
 use belvedere_scene::{Aux, Frame, Progress, RenderJob, RenderOptions, Scene};
 

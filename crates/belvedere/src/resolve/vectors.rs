@@ -139,7 +139,7 @@ fn stand(loader: &mut Loader<'_>, index: usize, vectors: &mut Vectors) {
 
 /// Warning with the number of names with letters that the font lacks, and the first of them.
 pub(super) fn unset_names<'n>(names: impl Iterator<Item = &'n str>) -> Option<String> {
-    let unset: Vec<&str> = names.filter(|name| !belvedere_cpu::canvas::can_set(name)).collect();
+    let unset: Vec<&str> = names.filter(|name| !belvedere_composite::canvas::can_set(name)).collect();
     let first = unset.first()?;
     let count = unset.len();
     Some(format!(

@@ -4,12 +4,12 @@
 //! ground are kept: its lit colour, which most pixels use directly, and colour and light separately, for pixels where something
 //! lies over the ground. A node takes eight bytes in each; a pixel is a weighted sum of four nodes in 16-bit integers.
 
-use crate::color::Rgb;
 use crate::shade::ground::patch::{LightingInputs, Patch};
 use crate::shade::ground::tiles::{self, FourNodes, Node, Tile, Tiles};
 use crate::shade::ground::upsample::CoarseColors;
 use crate::shade::relief::ReliefLight;
 use crate::simd::{self, IntLanes, Kernel, LANES, Lanes, nearest};
+use belvedere_composite::color::Rgb;
 use belvedere_scene::{Light, Palette, Relief};
 use glam::Vec3A;
 

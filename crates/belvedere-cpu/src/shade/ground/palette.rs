@@ -1,8 +1,8 @@
 //! Hypsometric tints. The built-in ramps are ours: muted, lighter the higher for every kind of colour vision, so that they
 //! also read without colour.
 
-use crate::color::{Rgb, linear};
 use crate::simd::nearest;
+use belvedere_composite::color::{Rgb, linear};
 use belvedere_scene::{Palette, Ramp};
 
 /// Steps of the table by height.

@@ -1,8 +1,6 @@
 //! Terrain: its light, and the drapes and areas over it.
 
 use crate::cache::GroundCache;
-use crate::color::{Rgb, linear, smoothstep};
-use crate::sections::Sections;
 use crate::shade::footprint::{Footprint, LONGEST};
 use crate::shade::ground::displaced::{self, DisplacedLight};
 use crate::shade::ground::lit::{Lit, LitGround, LitKey};
@@ -16,6 +14,8 @@ use crate::shade::overlay::area::AreaMap;
 use crate::shade::overlay::drape::DrapeMap;
 use crate::shade::relief::ReliefLight;
 use crate::shade::{Shader, lod};
+use belvedere_composite::color::{Rgb, linear, smoothstep};
+use belvedere_composite::sections::Sections;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{AreaSurface, Heightfield, Light, RenderJob, Shading, TerrainLayer};
 use std::sync::Arc;

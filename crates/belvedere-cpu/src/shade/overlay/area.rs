@@ -1,6 +1,6 @@
 //! Areas on the ground: point-in-polygon test and distance from the border, by a grid of edges.
 
-use crate::color::{Rgb, linear};
+use belvedere_composite::color::{Rgb, linear};
 use belvedere_core::{DVec2, polygon};
 use belvedere_scene::{AreaLayer, AreaSurface};
 

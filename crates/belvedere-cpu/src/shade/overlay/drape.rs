@@ -1,7 +1,7 @@
 //! Georeferenced pictures on terrain, filtered.
 
-use crate::color::{Rgb, encode, linear};
 use crate::shade::footprint::Footprint;
+use belvedere_composite::color::{Rgb, encode, linear};
 use belvedere_core::DVec2;
 use belvedere_scene::Drape;
 use glam::Vec4;

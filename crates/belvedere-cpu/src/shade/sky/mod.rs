@@ -2,9 +2,9 @@
 
 mod row;
 
-use crate::color::{PIXELS, Rgb, linear, smoothstep};
 use crate::screen::SUB;
 use crate::simd::nearest;
+use belvedere_composite::color::{PIXELS, Rgb, linear, smoothstep};
 use belvedere_core::{Aabb, DVec3, Pinhole};
 use belvedere_scene::{Scene, Unit};
 

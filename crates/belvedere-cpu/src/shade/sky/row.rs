@@ -1,10 +1,10 @@
 //! Stores rows of sky directly as sRGB pixels.
 
-use crate::color::{Encoder, PIXELS};
 use crate::screen::SUB;
 use crate::shade::painted::interleave;
 use crate::shade::sky::{LANES, Sky, thresholds};
 use crate::simd::{self, Kernel};
+use belvedere_composite::color::{Encoder, PIXELS};
 
 impl Sky {
     /// Stores the sky of neighbouring pixels of a row, with the same result as [`Sky::paint`].
@@ -66,7 +66,7 @@ impl Kernel for Store<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::color::{self, encoding};
+    use belvedere_composite::color::{self, encoding};
     use belvedere_core::{Aabb, DVec3, Pinhole, Projection};
 
     #[test]

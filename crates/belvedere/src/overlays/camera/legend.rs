@@ -2,8 +2,8 @@
 
 use super::super::{INK, PAPER, length, round_below};
 use super::subject::CameraFigure;
+use belvedere_composite::canvas::{Canvas, text_size};
 use belvedere_core::{DVec2, DVec3};
-use belvedere_cpu::canvas::{Canvas, text_size};
 use belvedere_scene::Unit;
 
 const LETTERS_PX: f64 = 12.0;

@@ -1,7 +1,7 @@
 //! Ghosts of required features at their straight image: a box or a dashed line there, and a leader to the bent image.
 
+use belvedere_composite::canvas::Canvas;
 use belvedere_core::{Aabb, DVec2, DVec3, View};
-use belvedere_cpu::canvas::Canvas;
 use belvedere_scene::{Color, Layer, LayerKind, MeshLayer, Scene};
 use serde::Serialize;
 

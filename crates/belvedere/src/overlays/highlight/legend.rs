@@ -2,8 +2,8 @@
 
 use super::{HighlightMark, HighlightRecord, ghosts, heat, outline};
 use crate::overlays::{INK, PAPER};
+use belvedere_composite::canvas::{Canvas, text_size};
 use belvedere_core::DVec2;
-use belvedere_cpu::canvas::{Canvas, text_size};
 use belvedere_scene::Color;
 
 const LETTERS_PX: f64 = 12.0;

@@ -1,7 +1,7 @@
 //! Outline of the region that the straight camera does not show.
 
+use belvedere_composite::canvas::Canvas;
 use belvedere_core::DVec2;
-use belvedere_cpu::canvas::Canvas;
 use belvedere_scene::Color;
 
 /// Widths of rim and line, pixels of a picture 720 high.

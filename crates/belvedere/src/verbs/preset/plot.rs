@@ -1,12 +1,12 @@
 //! Plots of presets: the deformation curve, its control points and sections, and the eye.
 
 use super::{Shape, seen_at};
+use belvedere_composite::canvas::Canvas;
 use belvedere_core::DVec2;
 use belvedere_core::deformation::DeformationCurve;
 use belvedere_core::map::spline::SplineBend;
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{Pinhole, Projection};
-use belvedere_cpu::canvas::Canvas;
 use belvedere_scene::Color;
 
 /// Size of a panel, pixels.

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 const SEAM_PX: f64 = 2.0;
 
 /// Draws a job by `draw`, once per branch where rays part.
-pub(crate) fn draw(
+pub fn draw(
     job: &RenderJob<'_>,
     draw: impl Fn(&RenderJob<'_>) -> Result<Frame, RenderError>,
 ) -> Result<Frame, RenderError> {

@@ -1,6 +1,6 @@
 //! Lines draped on the ground and projected onto the image.
 
-use crate::geometry::pass::Pass;
+use crate::drawn::Pass;
 use crate::screen::Screen;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Heightfield, Scene};
@@ -130,7 +130,7 @@ struct Vertex {
 
 /// Images of a polyline in one pass: pieces without a gap, each of at least two points, straight to the tolerance.
 pub(crate) fn project(
-    pass: &Pass<'_>,
+    pass: &dyn Pass,
     screen: &Screen,
     points: &[LinePoint],
     tolerance_px: f64,
@@ -149,7 +149,7 @@ pub(crate) fn project(
 }
 
 struct Tracer<'a> {
-    pass: &'a Pass<'a>,
+    pass: &'a dyn Pass,
     screen: &'a Screen,
     tolerance_px: f64,
     pieces: Vec<Vec<PathPoint>>,

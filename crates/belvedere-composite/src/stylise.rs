@@ -20,13 +20,13 @@ const SIGMA: f32 = 0.01;
 const DARKEST: f32 = 0.35;
 
 /// Whether the job asks for stylisation.
-pub(crate) fn is_on(job: &RenderJob<'_>) -> bool {
+pub fn is_on(job: &RenderJob<'_>) -> bool {
     job.options.stylisation != Stylisation::default()
 }
 
 /// Input of the edges: depths and faces of the samples of every pixel, so that edges are as smooth as outlines.
 #[derive(Debug, Default)]
-pub(crate) struct Relief {
+pub struct Relief {
     /// Number of sample positions per pixel.
     places: usize,
     /// Nearness of the samples of each pixel in turn, row by row: 1 / depth, in parallel projection -depth.
@@ -36,17 +36,17 @@ pub(crate) struct Relief {
 
 /// Whether a sample shows a solid, and the unit normal of its face in 127ths where edges between faces are drawn, else 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) struct Face {
+pub struct Face {
     normal: [i8; 3],
     solid: bool,
 }
 
 /// Nearness of the sky.
-pub(crate) const SKY_NEAR: f32 = f32::NAN;
+pub const SKY_NEAR: f32 = f32::NAN;
 
 impl Face {
     /// A face of a solid, its normal towards the eye.
-    pub(crate) fn solid(normal: DVec3) -> Self {
+    pub fn solid(normal: DVec3) -> Self {
         let n = normal.normalize_or_zero();
         Self { normal: n.to_array().map(|v| (127.0 * v).round() as i8), solid: true }
     }
@@ -64,28 +64,32 @@ impl Face {
 }
 
 /// Part of a [`Relief`] that a band fills.
-pub(crate) struct ReliefRows<'r> {
-    pub(crate) places: usize,
-    pub(crate) near: &'r mut [f32],
-    pub(crate) face: &'r mut [Face],
+#[derive(Debug)]
+pub struct ReliefRows<'r> {
+    /// Number of sample positions per pixel.
+    pub places: usize,
+    /// Nearness of the samples of each pixel in turn, row by row: 1 / depth, in parallel projection -depth.
+    pub near: &'r mut [f32],
+    /// Faces of the samples.
+    pub face: &'r mut [Face],
 }
 
 impl Relief {
     /// Buffers for a picture whose edges are to be drawn; `None` if none are.
     /// * `places`: number of sample positions per pixel.
-    pub(crate) fn room(job: &RenderJob<'_>, places: usize) -> Option<Self> {
+    pub fn room(job: &RenderJob<'_>, places: usize) -> Option<Self> {
         let n = job.view.pinhole().image.map(|s| s as usize).iter().product::<usize>() * places;
         let wanted = job.options.stylisation.edges > 0.0;
         wanted.then(|| Self { places, near: vec![SKY_NEAR; n], face: vec![Face::default(); n] })
     }
 
     /// Bytes per pixel.
-    pub(crate) fn bytes(places: u64) -> u64 {
+    pub fn bytes(places: u64) -> u64 {
         places * (size_of::<f32>() + size_of::<Face>()) as u64
     }
 
     /// Bands of `pixels` pixels each.
-    pub(crate) fn bands(&mut self, pixels: usize) -> Vec<Option<ReliefRows<'_>>> {
+    pub fn bands(&mut self, pixels: usize) -> Vec<Option<ReliefRows<'_>>> {
         let (places, n) = (self.places, pixels * self.places);
         let rows = self.near.chunks_mut(n).zip(self.face.chunks_mut(n));
         rows.map(|(near, face)| Some(ReliefRows { places, near, face })).collect()
@@ -131,7 +135,7 @@ impl Relief {
 
 /// Draws edges and unsharp masking into the linear colours of surfaces.
 /// * `relief`: depths and faces of all samples, if they are known.
-pub(crate) fn apply(job: &RenderJob<'_>, width: usize, relief: Option<Relief>, buffers: &mut Buffers) {
+pub fn apply(job: &RenderJob<'_>, width: usize, relief: Option<Relief>, buffers: &mut Buffers) {
     let Stylisation { edges, unsharp } = job.options.stylisation;
     let ortho = job.view.pinhole().is_orthographic();
     let n = buffers.color.len();

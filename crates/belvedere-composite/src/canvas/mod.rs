@@ -13,7 +13,7 @@ use belvedere_scene::Color;
 ///
 /// ```
 /// use belvedere_core::DVec2;
-/// use belvedere_cpu::canvas::Canvas;
+/// use belvedere_composite::canvas::Canvas;
 /// use belvedere_scene::Color;
 /// let mut pixels = vec![[255u8; 3]; 60 * 20];
 /// let mut canvas = Canvas::new(&mut pixels, 60);

@@ -1,6 +1,6 @@
 //! Visible and hidden parts of a line, stable from frame to frame.
 
-use crate::geometry::pass::Pass;
+use crate::drawn::Pass;
 use crate::marks::line_of_sight::LineOfSight;
 use crate::marks::path::{LinePoint, PathPoint};
 use crate::screen::Screen;
@@ -112,7 +112,7 @@ impl Run {
 /// Judges the stations of a line: by the depth buffer where it is clear, else by lines of sight.
 #[derive(Clone, Copy)]
 pub(crate) struct LineVisibility<'a> {
-    pub(crate) pass: &'a Pass<'a>,
+    pub(crate) pass: &'a dyn Pass,
     pub(crate) screen: &'a Screen,
     pub(crate) map: DepthMap<'a>,
     pub(crate) sight: &'a LineOfSight<'a>,
@@ -301,21 +301,54 @@ fn on_image(a: DVec2, b: DVec2, map: DepthMap<'_>, margin: f64) -> Option<[f64; 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drawn::Sight;
     use crate::marks::path;
-    use belvedere_core::{DVec3, Pinhole, Projection, View};
+    use belvedere_core::{Aabb, DVec3, Pinhole, Projection};
     use belvedere_scene::Scene;
+
+    /// Nothing is displaced, and there is no surface.
+    #[derive(Debug)]
+    struct Empty;
+
+    impl Pass for Empty {
+        fn displace(&self, p: DVec3) -> Option<DVec3> {
+            Some(p)
+        }
+
+        fn margins(&self, _: DVec3) -> [f64; 2] {
+            [f64::INFINITY; 2]
+        }
+
+        fn edge_error_px(&self, _: DVec3, _: DVec3) -> f64 {
+            0.0
+        }
+
+        fn is_straight(&self) -> bool {
+            true
+        }
+
+        fn fills_in(&self, _: &Screen, _: &Aabb) -> bool {
+            false
+        }
+    }
+
+    impl Sight for Empty {
+        fn first_depth(&self, _: DVec2) -> Option<f64> {
+            Some(f64::INFINITY)
+        }
+    }
 
     #[test]
     fn shares_along_a_line_are_those_of_perspective() {
         let lens = Projection::Perspective { fov_y: 0.9 };
         let pinhole = Pinhole::look_at(DVec3::ZERO, DVec3::Y, DVec3::Z, lens, [320, 240], 1.0, None).unwrap();
-        let (scene, view) = (Scene::default(), View::straight(pinhole));
-        let (screen, passes, depth) = (Screen::new(view.pinhole()), Pass::all(&view), vec![f32::INFINITY; 320 * 240]);
-        let (sight, map) = (LineOfSight::new(&scene, &view, None), DepthMap { depth: &depth, width: 320, height: 240 });
-        let visibility = LineVisibility { pass: &passes[0], screen: &screen, map, sight: &sight, lift_m: 0.0 };
+        let (scene, screen, depth) = (Scene::default(), Screen::new(&pinhole), vec![f32::INFINITY; 320 * 240]);
+        let sight = LineOfSight { scene: &scene, sight: &Empty };
+        let map = DepthMap { depth: &depth, width: 320, height: 240 };
+        let visibility = LineVisibility { pass: &Empty, screen: &screen, map, sight: &sight, lift_m: 0.0 };
         // From near to forty times as far.
         let line = path::as_given(&[DVec3::new(-20.0, 50.0, -5.0), DVec3::new(600.0, 2000.0, -40.0)]);
-        let pieces = path::project(&passes[0], &screen, &line, 0.5);
+        let pieces = path::project(&Empty, &screen, &line, 0.5);
         let runs: Vec<Run> = pieces.iter().flat_map(|piece| visibility.runs(piece, 0.0)).collect();
         let stations: Vec<&Station> = runs.iter().flat_map(|run| &run.stations).collect();
         assert!(stations.len() > 50, "{}", stations.len());

@@ -1,7 +1,7 @@
 //! Translucent, flat, convex faces, in front of surfaces or faintly behind them.
 
 use crate::color::{Packed, Rgb, linear};
-use crate::geometry::pass::Pass;
+use crate::drawn::Pass;
 use crate::screen::Screen;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::OverlayFace;
@@ -16,7 +16,7 @@ pub(crate) struct Face {
     edges: Vec<(DVec2, f64)>,
     lo: DVec2,
     hi: DVec2,
-    /// Nearness (as of [`crate::screen::ScreenVertex::q`]) at pixel `p` is `q.x p.x + q.y p.y + q.z`.
+    /// Nearness (1 / depth, in parallel projection -depth) at pixel `p` is `q.x p.x + q.y p.y + q.z`.
     q: DVec3,
     color: Rgb,
     alpha: f32,
@@ -24,7 +24,7 @@ pub(crate) struct Face {
 
 impl Face {
     /// `None` if no part of it can be visible.
-    pub(crate) fn new(face: &OverlayFace, pass: &Pass<'_>, screen: &Screen) -> Option<Self> {
+    pub(crate) fn new(face: &OverlayFace, pass: &dyn Pass, screen: &Screen) -> Option<Self> {
         let corners: Vec<DVec3> =
             face.corners.iter().map(|&p| Some(screen.view_from(pass.displace(p)?))).collect::<Option<_>>()?;
         let corners = clipped(corners, screen);

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 /// Linear red, green, blue; 1 = white.
-pub(crate) type Rgb = glam::Vec3A;
+pub type Rgb = glam::Vec3A;
 
 /// Linear value of every 8-bit sRGB value.
 static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
@@ -14,7 +14,7 @@ static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
 });
 
 /// sRGB values by the square root of linear light.
-pub(crate) type Encoding = [u8; 4096];
+pub type Encoding = [u8; 4096];
 
 /// sRGB value of the square of `(i + 0.5) / 4096`.
 static ENCODED: LazyLock<Encoding> = LazyLock::new(|| {
@@ -31,24 +31,25 @@ static FIRST: LazyLock<[i32; 260]> =
 
 /// Encodes square roots of linear light as sRGB by tables.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Encoder {
+pub struct Encoder {
     encoded: &'static Encoding,
     first: &'static [i32; 260],
 }
 
 /// Values that are stored together.
-pub(crate) const LANES: usize = 32;
+pub const LANES: usize = 32;
 /// Pixels that are written together.
-pub(crate) const PIXELS: usize = 8 * LANES;
+pub const PIXELS: usize = 8 * LANES;
 
 impl Encoder {
-    pub(crate) fn new() -> Self {
+    /// The tables, made on first use.
+    pub fn new() -> Self {
         Self { encoded: &ENCODED, first: &FIRST }
     }
 
     /// sRGB values by square roots of linear light.
     #[inline(always)]
-    pub(crate) fn encode(self, roots: &[f32; LANES]) -> [u8; LANES] {
+    pub fn encode(self, roots: &[f32; LANES]) -> [u8; LANES] {
         let mut out = [0; LANES];
         for i in 0..LANES {
             out[i] = self.encoded[place(roots[i]) as usize & (self.encoded.len() - 1)];
@@ -58,7 +59,7 @@ impl Encoder {
 
     /// The same for values between `least` and `most`, fast where these differ by few steps.
     #[inline(always)]
-    pub(crate) fn encode_between(self, roots: &[f32; LANES], [least, most]: [f32; 2]) -> [u8; LANES] {
+    pub fn encode_between(self, roots: &[f32; LANES], [least, most]: [f32; 2]) -> [u8; LANES] {
         let mask = self.encoded.len() - 1;
         let (least, most) = (self.encoded[place(least) as usize & mask], self.encoded[place(most) as usize & mask]);
         if most.wrapping_sub(least) > 3 {
@@ -81,30 +82,33 @@ fn place(root: f32) -> i32 {
     i32::from(sixteen_bits(root) >> 4)
 }
 
-pub(crate) fn encoding() -> &'static Encoding {
+/// sRGB values by the upper 12 of the 16 bits of a square root.
+pub fn encoding() -> &'static Encoding {
     &ENCODED
 }
 
 /// sRGB to linear light.
-pub(crate) fn linear(rgb: [u8; 3]) -> Rgb {
+#[inline]
+pub fn linear(rgb: [u8; 3]) -> Rgb {
     let t = &*LINEAR;
     Rgb::new(t[rgb[0] as usize], t[rgb[1] as usize], t[rgb[2] as usize])
 }
 
 /// sRGB in 0..=1 to linear light.
-pub(crate) fn linear_of(rgb: [f32; 3]) -> Rgb {
+pub fn linear_of(rgb: [f32; 3]) -> Rgb {
     let of = |s: f32| if s <= 0.04045 { s / 12.92 } else { ((s + 0.055) / 1.055).powf(2.4) };
     Rgb::from_array(rgb.map(of))
 }
 
 /// Linear light to sRGB.
-pub(crate) fn encode(c: Rgb) -> [u8; 3] {
+#[inline]
+pub fn encode(c: Rgb) -> [u8; 3] {
     Packed::new(c).encode(encoding())
 }
 
 /// The nearest of the whole numbers to 65535 times a value in 0..=1.
 #[inline(always)]
-pub(crate) fn sixteen_bits(v: f32) -> u16 {
+pub fn sixteen_bits(v: f32) -> u16 {
     let v = v * 65535.0;
     // In this order NaN becomes 0.
     let v = if v > 0.0 { v } else { 0.0 };
@@ -115,33 +119,38 @@ pub(crate) fn sixteen_bits(v: f32) -> u16 {
 
 /// Linear light kept in 16 bits per channel, by square root so that dark tones keep their steps.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Packed([u16; 3]);
+pub struct Packed([u16; 3]);
 
 impl Packed {
-    pub(crate) fn new(c: Rgb) -> Self {
+    /// Keeps linear light; negative light counts as none, more than 1 as 1.
+    #[inline]
+    pub fn new(c: Rgb) -> Self {
         Self(c.to_array().map(|v| sixteen_bits(v.max(0.0).sqrt())))
     }
 
     /// From square roots of linear light.
     #[inline(always)]
-    pub(crate) fn of_roots(root: [u16; 3]) -> Self {
+    pub fn of_roots(root: [u16; 3]) -> Self {
         Self(root)
     }
 
     /// sRGB, as [`encode`] gives it.
     #[inline(always)]
-    pub(crate) fn encode(self, encoding: &Encoding) -> [u8; 3] {
+    pub fn encode(self, encoding: &Encoding) -> [u8; 3] {
         self.0.map(|v| encoding[usize::from(v >> 4)])
     }
 
-    pub(crate) fn rgb(self) -> Rgb {
+    /// Linear light.
+    #[inline]
+    pub fn rgb(self) -> Rgb {
         let [r, g, b] = self.0.map(|v| f32::from(v) / 65535.0);
         Rgb::new(r * r, g * g, b * b)
     }
 }
 
 /// 0 below `a`, 1 above `b`, smooth between; a step where they coincide.
-pub(crate) fn smoothstep(a: f32, b: f32, x: f32) -> f32 {
+#[inline]
+pub fn smoothstep(a: f32, b: f32, x: f32) -> f32 {
     let t = if b > a { ((x - a) / (b - a)).clamp(0.0, 1.0) } else { f32::from(u8::from(x >= a)) };
     t * t * (3.0 - 2.0 * t)
 }

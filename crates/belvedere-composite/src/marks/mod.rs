@@ -14,8 +14,8 @@ mod visibility;
 
 use crate::canvas::Canvas;
 use crate::color::{Packed, linear};
-use crate::geometry::pass::{InView, Pass};
-use crate::raster::band::BAND;
+use crate::drawn::{Drawn, Pass};
+use crate::finish::BAND;
 use crate::screen::Screen;
 use crate::sections::Sections;
 use belvedere_core::{Aabb, DVec2, DVec3};
@@ -37,8 +37,8 @@ const HIDDEN_WIDTH: f64 = 0.6;
 const SMALL_PX: f64 = 11.0;
 
 /// All marks of a frame, in the order of the layers.
-#[derive(Default)]
-pub(crate) struct Marks {
+#[derive(Debug, Default)]
+pub struct Marks {
     under: Vec<StrokeLayer>,
     faces: Vec<Face>,
     sheets: Vec<StrokeLayer>,
@@ -46,20 +46,15 @@ pub(crate) struct Marks {
 }
 
 impl Marks {
-    /// * `depth`: surfaces at the pixel centres.
-    pub(crate) fn new(
-        job: &RenderJob<'_>,
-        passes: &[Pass<'_>],
-        screen: &Screen,
-        tolerance_px: f64,
-        depth: &[f32],
-    ) -> Self {
+    /// Places all marks of a job over its drawn surfaces.
+    pub fn new(job: &RenderJob<'_>, drawn: &Drawn<'_>) -> Self {
         if !job.options.marks {
             return Self::default();
         }
+        let Drawn { passes, screen, tolerance_px, depth, sight } = *drawn;
         let map = DepthMap { depth, width: screen.width, height: screen.height };
         let sections = Sections::new(job);
-        let sight = LineOfSight::new(job.scene, job.view, sections.as_ref());
+        let sight = LineOfSight { scene: job.scene, sight };
         let builder = MarkBuilder {
             sections: sections.as_ref(),
             scene: job.scene,
@@ -93,12 +88,12 @@ impl Marks {
         let faces = overlay
             .faces
             .iter()
-            .flat_map(|f| passes.iter().take(job.view.records()).filter_map(|p| Face::new(f, p, screen)));
+            .flat_map(|f| passes.iter().take(job.view.records()).filter_map(|p| Face::new(f, *p, screen)));
         Self { under, faces: faces.collect(), sheets, labels: Labels::place(requests, 2.0 * screen.center) }
     }
 
     /// Whether the job may have any marks.
-    pub(crate) fn are_in(job: &RenderJob<'_>) -> bool {
+    pub fn are_in(job: &RenderJob<'_>) -> bool {
         let drawn = |kind: &LayerKind| {
             matches!(kind, LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) | LayerKind::Volume(_))
         };
@@ -106,7 +101,7 @@ impl Marks {
     }
 
     /// Draws the rows from `y0` on, one band; `depth` as in [`Marks::new`].
-    pub(crate) fn draw(&self, y0: i32, screen: &Screen, depth: &[f32], color: &mut [Packed], id: &mut [u32]) {
+    pub fn draw(&self, y0: i32, screen: &Screen, depth: &[f32], color: &mut [Packed], id: &mut [u32]) {
         let mut masks = ribbon::CoverageMasks::default();
         for sheet in &self.under {
             sheet.draw(&mut masks, y0, screen.width, color, id);
@@ -120,7 +115,7 @@ impl Marks {
     }
 
     /// Writes the names over the finished picture.
-    pub(crate) fn write_names(&self, pixels: &mut [[u8; 3]], width: usize) {
+    pub fn write_names(&self, pixels: &mut [[u8; 3]], width: usize) {
         self.labels.draw(&mut Canvas::new(pixels, width));
     }
 }
@@ -129,7 +124,7 @@ struct MarkBuilder<'a> {
     sections: Option<&'a Sections<'a>>,
     scene: &'a Scene,
     /// All passes of the view, the first ones of its records.
-    passes: &'a [Pass<'a>],
+    passes: &'a [&'a dyn Pass],
     records: usize,
     screen: &'a Screen,
     tolerance_px: f64,
@@ -158,10 +153,10 @@ struct Marker {
 impl<'a> MarkBuilder<'a> {
     /// The passes that draw the contents of some boxes, each image once: the records, or the segments where the records leave something
     /// out; segments part at the ends of the turns.
-    fn passes_for(&self, boxes: impl Iterator<Item = Aabb>) -> &'a [Pass<'a>] {
+    fn passes_for(&self, boxes: impl Iterator<Item = Aabb>) -> &'a [&'a dyn Pass] {
         let (records, segments) = self.passes.split_at(self.records.min(self.passes.len()));
         let mut boxes = boxes;
-        let left_out = |b: &Aabb| segments.iter().any(|s| s.is_left_out(b) && s.in_view(self.screen, b) != InView::No);
+        let left_out = |b: &Aabb| segments.iter().any(|s| s.fills_in(self.screen, b));
         if !segments.is_empty() && boxes.any(|b| left_out(&b)) { segments } else { records }
     }
 }
@@ -239,9 +234,14 @@ impl MarkBuilder<'_> {
         let mut runs = Vec::new();
         let pairs = line.windows(2).map(|pair| Aabb::of([pair[0].p, pair[1].p]));
         for (i, pass) in self.passes_for(pairs).iter().enumerate() {
-            let judge =
-                LineVisibility { pass, screen: self.screen, map: self.map, sight: self.sight, lift_m: style.lift_m };
-            for piece in path::project(pass, self.screen, line, self.tolerance_px) {
+            let judge = LineVisibility {
+                pass: *pass,
+                screen: self.screen,
+                map: self.map,
+                sight: self.sight,
+                lift_m: style.lift_m,
+            };
+            for piece in path::project(*pass, self.screen, line, self.tolerance_px) {
                 runs.extend(judge.runs(&piece, reach).into_iter().map(|run| (i, run)));
             }
         }

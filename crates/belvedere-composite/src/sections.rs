@@ -6,7 +6,6 @@
 //!
 //! Layers that are one surface in different colours need no thresholds: the surface is drawn once, and its colours are mixed by weight.
 
-use crate::raster::thin::ThinShow;
 use belvedere_core::map::spline::SplineBend;
 use belvedere_core::sections::{MOST_REPRESENTATIONS, StylingSections};
 use belvedere_core::{Aabb, DVec3, SpaceMap, Strip, View};
@@ -14,7 +13,7 @@ use belvedere_scene::{Compositing, RenderJob, Scene};
 
 /// Visibility of the layers along the deformation curve.
 #[derive(Debug, Clone)]
-pub(crate) struct Sections<'a> {
+pub struct Sections<'a> {
     /// `None`: one representation everywhere.
     bend: Option<&'a SplineBend>,
     strip: Option<&'a Strip>,
@@ -32,22 +31,24 @@ pub(crate) struct Sections<'a> {
 
 /// Visible share of a layer or a part of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Shown {
+pub enum Shown {
+    /// No part.
     Nothing,
     /// Decided sample by sample.
     Partly,
+    /// The whole.
     Everything,
 }
 
 impl<'a> Sections<'a> {
     /// `None` for scenes without representations.
-    pub(crate) fn new(job: &RenderJob<'a>) -> Option<Self> {
+    pub fn new(job: &RenderJob<'a>) -> Option<Self> {
         let options = job.options;
         Self::of(job.scene, job.view, options.representation, options.compositing == Compositing::Single)
     }
 
     /// * `only`: see [`belvedere_scene::RenderOptions::representation`]; `single`: whether layers of one surface are drawn once.
-    pub(crate) fn of(scene: &Scene, view: &'a View, only: Option<usize>, single: bool) -> Option<Self> {
+    pub fn of(scene: &Scene, view: &'a View, only: Option<usize>, single: bool) -> Option<Self> {
         if scene.representations.is_empty() {
             return None;
         }
@@ -68,17 +69,17 @@ impl<'a> Sections<'a> {
     }
 
     /// Whether any layer is drawn together with others of the same surface.
-    pub(crate) fn has_one_surface(&self) -> bool {
+    pub fn has_one_surface(&self) -> bool {
         self.one_surface.iter().any(|layers| !layers.is_empty())
     }
 
     /// Layers whose colours are mixed on the surface of a layer, starting with itself; empty where only its own colour is shown.
-    pub(crate) fn mixed_on(&self, layer: usize) -> &[usize] {
+    pub fn mixed_on(&self, layer: usize) -> &[usize] {
         &self.one_surface[layer]
     }
 
     /// Shares, 0..=1, of the colours of [`Self::mixed_on`] at a point; they sum to 1.
-    pub(crate) fn mixture(&self, layer: usize, p: DVec3) -> impl Iterator<Item = f64> {
+    pub fn mixture(&self, layer: usize, p: DVec3) -> impl Iterator<Item = f64> {
         let intervals = self.table.intervals(&self.styling, self.parameter(p));
         let of = move |bits: u32| intervals.length_of(bits);
         let all = of(self.drawn_by[layer]);
@@ -89,22 +90,22 @@ impl<'a> Sections<'a> {
     }
 
     /// Number of representations that the sections name.
-    pub(crate) fn representations(&self) -> usize {
+    pub fn representations(&self) -> usize {
         self.styling.representations().len()
     }
 
     /// Weight of a representation at a position along the curve.
-    pub(crate) fn weight(&self, number: usize, parameter: f64) -> f64 {
+    pub fn weight(&self, number: usize, parameter: f64) -> f64 {
         self.table.intervals(&self.styling, parameter).length(number)
     }
 
     /// Visible share of a layer at most, anywhere along the curve.
-    pub(crate) fn of_layer(&self, layer: usize) -> Shown {
+    pub fn of_layer(&self, layer: usize) -> Shown {
         self.of_range(layer, [f64::NEG_INFINITY, f64::INFINITY])
     }
 
     /// Visible share of a part of a layer, by its undisplaced bounds.
-    pub(crate) fn of_part(&self, layer: usize, bounds: &Aabb) -> Shown {
+    pub fn of_part(&self, layer: usize, bounds: &Aabb) -> Shown {
         let Some(bend) = self.bend else { return self.of_layer(layer) };
         let unrolled = match self.strip {
             Some(strip) => strip.displaced_bounds(bounds),
@@ -134,23 +135,26 @@ impl<'a> Sections<'a> {
     }
 
     /// Position along the curve as a share of its length.
-    pub(crate) fn parameter(&self, p: DVec3) -> f64 {
+    #[inline]
+    pub fn parameter(&self, p: DVec3) -> f64 {
         self.bend.map_or(0.0, |bend| bend.section_parameter(self.strip.map_or(p, |strip| unrolled(strip, p))))
     }
 
     /// Whether a sample with a threshold shows the layer at a position along the curve.
-    pub(crate) fn shows(&self, layer: usize, parameter: f64, threshold: f64) -> bool {
+    #[inline]
+    pub fn shows(&self, layer: usize, parameter: f64, threshold: f64) -> bool {
         self.is_drawn_by(layer, self.intervals(parameter).holding(threshold))
     }
 
     /// Whether a representation draws the surface of a layer; a number out of range draws none.
     #[inline]
-    fn is_drawn_by(&self, layer: usize, number: usize) -> bool {
+    pub fn is_drawn_by(&self, layer: usize, number: usize) -> bool {
         self.drawn_by[layer].checked_shr(number as u32).is_some_and(|bits| bits & 1 == 1)
     }
 
     /// Intervals of thresholds at a position along the curve.
-    fn intervals(&self, parameter: f64) -> Intervals {
+    #[inline]
+    pub fn intervals(&self, parameter: f64) -> Intervals {
         match self.only {
             None => self.table.intervals(&self.styling, parameter),
             Some(number) if self.weight(number, parameter) > 0.0 => Intervals::of_one(number),
@@ -159,7 +163,7 @@ impl<'a> Sections<'a> {
     }
 
     /// Weight of the representations that show both `layer` and `on`, as a share, 0..=1, of those that show `on`, at a point.
-    pub(crate) fn share(&self, layer: usize, on: usize, p: DVec3) -> f64 {
+    pub fn share(&self, layer: usize, on: usize, p: DVec3) -> f64 {
         let (held, all) = (self.shown_by[layer] & self.shown_by[on], self.shown_by[on]);
         if held == all || held == 0 {
             return if held == 0 { 0.0 } else { 1.0 };
@@ -170,13 +174,13 @@ impl<'a> Sections<'a> {
     }
 
     /// Whether a layer casts shadows on another at a point: it does if both are shown together there.
-    pub(crate) fn throws(&self, layer: usize, onto: usize, p: DVec3) -> bool {
+    pub fn throws(&self, layer: usize, onto: usize, p: DVec3) -> bool {
         let (thrown, seen) = (self.shown_by[layer], self.shown_by[onto]);
         thrown & seen != 0 && (thrown & seen == seen || self.prevails(layer, p))
     }
 
     /// Whether a layer is shown at threshold 0.5 at a point, where its lines and points are then drawn.
-    pub(crate) fn prevails(&self, layer: usize, p: DVec3) -> bool {
+    pub fn prevails(&self, layer: usize, p: DVec3) -> bool {
         self.shows(layer, self.parameter(p), 0.5)
     }
 }
@@ -210,7 +214,8 @@ fn unrolled(strip: &Strip, p: DVec3) -> DVec3 {
 }
 
 /// Intervals of thresholds of the representations at one position along the curve.
-pub(crate) struct Intervals {
+#[derive(Debug)]
+pub struct Intervals {
     ends: [f64; MOST_REPRESENTATIONS],
     count: usize,
     /// Number of the first representation.
@@ -225,7 +230,7 @@ impl Intervals {
 
     /// Number of the representation that holds a threshold.
     #[inline]
-    fn holding(&self, threshold: f64) -> usize {
+    pub fn holding(&self, threshold: f64) -> usize {
         self.first + self.ends[..self.count - 1].iter().take_while(|end| threshold >= **end).count()
     }
 
@@ -238,27 +243,6 @@ impl Intervals {
     /// Total length of the intervals of several representations, given as bits.
     fn length_of(&self, numbers: u32) -> f64 {
         (0..self.count).filter(|number| numbers >> number & 1 == 1).map(|number| self.length(number)).sum()
-    }
-}
-
-/// Shows a layer sample by sample.
-pub(crate) struct LayerShow<'a> {
-    pub(crate) sections: &'a Sections<'a>,
-    pub(crate) exposure: &'a Exposure,
-    pub(crate) layer: usize,
-}
-
-impl ThinShow for LayerShow<'_> {
-    type At = Intervals;
-
-    #[inline]
-    fn at(&self, parameter: f64) -> Intervals {
-        self.sections.intervals(parameter)
-    }
-
-    #[inline]
-    fn shows(&self, at: &Intervals, sample: usize, [x, y]: [i32; 2]) -> bool {
-        self.sections.is_drawn_by(self.layer, at.holding(self.exposure.threshold(sample, x, y)))
     }
 }
 
@@ -314,7 +298,7 @@ impl Table {
 
 /// Thresholds of the samples of a pixel.
 #[derive(Debug, Clone)]
-pub(crate) struct Exposure {
+pub struct Exposure {
     /// Offset added to the dither for each sample, the centre first.
     phases: Vec<f64>,
     /// Number of distinct sample positions apart from the centre.
@@ -325,7 +309,7 @@ pub(crate) struct Exposure {
 impl Exposure {
     /// Repeats every sample apart from the centre (or the centre, if there are no others) `count` times with other thresholds.
     /// * `samples`: number of samples of a pixel, the centre included.
-    pub(crate) fn new(count: usize, samples: usize) -> Self {
+    pub fn new(count: usize, samples: usize) -> Self {
         let others = if count > 1 || samples > 1 { count.max(1) * (samples.max(2) - 1) } else { 0 };
         // Middles of equal parts of 0..1, which are no wider than the steps of the dither.
         let part = |i: usize| i as f64 / others as f64 + 0.5 / others.max(64) as f64;
@@ -334,13 +318,13 @@ impl Exposure {
     }
 
     /// Number of distinct sample positions apart from the centre.
-    pub(crate) fn places(&self) -> usize {
+    pub fn places(&self) -> usize {
         self.places
     }
 
     /// Offsets of all samples of all exposures.
     /// * `offsets`: offsets of the samples of one exposure.
-    pub(crate) fn offsets(&self, offsets: &[[i32; 2]]) -> Vec<[i32; 2]> {
+    pub fn offsets(&self, offsets: &[[i32; 2]]) -> Vec<[i32; 2]> {
         let own = offsets.len();
         (0..self.phases.len())
             .map(|s| if s == 0 || own == 1 { offsets[0] } else { offsets[1 + (s - 1) % (own - 1)] })
@@ -348,13 +332,13 @@ impl Exposure {
     }
 
     /// The threshold 0.5 everywhere: the representation with the greater weight is shown.
-    pub(crate) fn even() -> Self {
+    pub fn even() -> Self {
         Self { phases: vec![0.5], places: 1, dithered: false }
     }
 
     /// Threshold of a sample, 0..1.
     #[inline]
-    pub(crate) fn threshold(&self, sample: usize, x: i32, y: i32) -> f64 {
+    pub fn threshold(&self, sample: usize, x: i32, y: i32) -> f64 {
         if self.dithered { (dither(x, y) + self.phases[sample]).fract() } else { self.phases[0] }
     }
 }

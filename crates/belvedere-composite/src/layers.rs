@@ -6,8 +6,7 @@
 
 use crate::buffers::Buffers;
 use crate::color::{Packed, Rgb, encode, linear};
-use crate::frame::draw_marks;
-use crate::geometry::pass::Pass;
+use crate::finish::draw_marks;
 use crate::marks::Marks;
 use crate::screen::Screen;
 use crate::sections::Sections;
@@ -24,9 +23,11 @@ const LEAST: f64 = 1e-9;
 /// edges are drawn: edges then end where a representation ends, not where samples of others begin.
 ///
 /// Marks are drawn over the whole picture, except in the published method, which draws them with each representation.
-pub(crate) fn draw(
+/// * `marks`: places the marks of a job over the surfaces whose depths are given.
+pub fn draw(
     job: &RenderJob<'_>,
     draw: impl Fn(&RenderJob<'_>) -> Result<Frame, RenderError>,
+    marks: impl Fn(&RenderJob<'_>, &Screen, &[f32]) -> Marks,
 ) -> Result<Frame, RenderError> {
     let options = job.options;
     let published = options.compositing == Compositing::Layers;
@@ -49,16 +50,20 @@ pub(crate) fn draw(
     };
     let layers = (0..sections.representations()).map(alone).collect::<Result<Vec<_>, _>>()?;
     let frame = composite(&layers, &sections, options.aux.world);
-    Ok(if published { frame } else { with_marks(job, frame) })
+    Ok(if published { frame } else { with_marks(job, frame, marks) })
 }
 
 /// The picture with the lines, points and names of its job drawn over it.
-fn with_marks(job: &RenderJob<'_>, mut frame: Frame) -> Frame {
+fn with_marks(
+    job: &RenderJob<'_>,
+    mut frame: Frame,
+    marks: impl Fn(&RenderJob<'_>, &Screen, &[f32]) -> Marks,
+) -> Frame {
     if !Marks::are_in(job) {
         return frame;
     }
-    let (passes, screen) = (Pass::all(job.view), Screen::new(job.view.pinhole()));
-    let marks = Marks::new(job, &passes, &screen, job.options.tolerance_px.max(0.01), &frame.depth);
+    let screen = Screen::new(job.view.pinhole());
+    let marks = marks(job, &screen, &frame.depth);
     let color = frame.color.iter().map(|c| Packed::new(linear(*c))).collect();
     let (depth, id, out) = (frame.depth, frame.id, frame.color);
     let mut buffers = Buffers { open: true, color, depth, id, world: frame.world, out };

@@ -4,21 +4,25 @@ use crate::color::Packed;
 use belvedere_scene::{Frame, RenderJob};
 
 /// Pixel buffers of a frame that is being drawn.
-pub(crate) struct Buffers {
+#[derive(Debug)]
+pub struct Buffers {
     /// Whether lines, points or stylisation may be drawn over the surfaces.
-    pub(crate) open: bool,
+    pub open: bool,
     /// Colours of the surfaces while they are open, else empty.
-    pub(crate) color: Vec<Packed>,
-    pub(crate) depth: Vec<f32>,
-    pub(crate) id: Vec<u32>,
-    pub(crate) world: Option<Vec<[f64; 3]>>,
+    pub color: Vec<Packed>,
+    /// Depths of the pixel centres, scene units; infinite in the sky.
+    pub depth: Vec<f32>,
+    /// Layers, as in [`Frame::id`].
+    pub id: Vec<u32>,
+    /// World points, as in [`Frame::world`].
+    pub world: Option<Vec<[f64; 3]>>,
     /// The stored colours.
-    pub(crate) out: Vec<[u8; 3]>,
+    pub out: Vec<[u8; 3]>,
 }
 
 impl Buffers {
     /// Buffers of the size of the picture in the memory of older ones; all pixels must be written.
-    pub(crate) fn reuse(job: &RenderJob<'_>, open: bool, mut color: Vec<Packed>, old: Frame) -> Self {
+    pub fn reuse(job: &RenderJob<'_>, open: bool, mut color: Vec<Packed>, old: Frame) -> Self {
         let n = job.view.pinhole().image.map(|s| s as usize).iter().product();
         let Frame { color: mut out, mut depth, mut id, .. } = old;
         if open {

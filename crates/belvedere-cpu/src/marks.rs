@@ -1,0 +1,77 @@
+//! Marks over surfaces that were drawn by passes: lines of sight go through the exact tracer.
+
+use crate::geometry::pass::{InView, Pass};
+use crate::trace::Tracer;
+use belvedere_composite::drawn::{self, Drawn, Sight};
+use belvedere_composite::marks::Marks;
+use belvedere_composite::screen::Screen;
+use belvedere_composite::sections::{Exposure, Sections};
+use belvedere_core::{Aabb, DVec2, DVec3};
+use belvedere_scene::{LayerKind, RenderJob};
+use std::sync::OnceLock;
+
+/// Terrain with more nodes is not prepared for lines of sight in every frame.
+const MAX_NODES: usize = 64 << 20;
+
+/// The marks of a job.
+/// * `depth`: surfaces at the pixel centres.
+pub(crate) fn place(job: &RenderJob<'_>, passes: &[Pass<'_>], screen: &Screen, depth: &[f32]) -> Marks {
+    let passes: Vec<&dyn drawn::Pass> = passes.iter().map(|pass| pass as &dyn drawn::Pass).collect();
+    let sight = TracedSight { job, tracer: OnceLock::new() };
+    let tolerance_px = job.options.tolerance_px.max(0.01);
+    Marks::new(job, &Drawn { passes: &passes, screen, tolerance_px, depth, sight: &sight })
+}
+
+/// The same for surfaces that were not drawn by passes.
+pub(crate) fn place_alone(job: &RenderJob<'_>, screen: &Screen, depth: &[f32]) -> Marks {
+    place(job, &Pass::all(job.view), screen, depth)
+}
+
+/// Lines of sight through the exact tracer, which is prepared on first use.
+struct TracedSight<'j> {
+    job: &'j RenderJob<'j>,
+    tracer: OnceLock<Option<Tracer<'j>>>,
+}
+
+impl TracedSight<'_> {
+    fn tracer(&self) -> Option<&Tracer<'_>> {
+        self.tracer.get_or_init(|| prepared(self.job)).as_ref()
+    }
+}
+
+fn prepared<'a>(job: &RenderJob<'a>) -> Option<Tracer<'a>> {
+    let nodes = |kind: &LayerKind| match kind {
+        LayerKind::Terrain(t) => t.heightfield.cols() * t.heightfield.rows(),
+        _ => 0,
+    };
+    let nodes: usize = job.scene.layers.iter().map(|l| nodes(&l.kind)).sum();
+    (nodes <= MAX_NODES).then(|| Tracer::exposed(job.scene, job.view, Sections::new(job), Exposure::even()))
+}
+
+impl Sight for TracedSight<'_> {
+    fn first_depth(&self, pixel: DVec2) -> Option<f64> {
+        Some(self.tracer()?.first_hit(pixel).map_or(f64::INFINITY, |hit| hit.depth))
+    }
+}
+
+impl drawn::Pass for Pass<'_> {
+    fn displace(&self, p: DVec3) -> Option<DVec3> {
+        Pass::displace(self, p)
+    }
+
+    fn margins(&self, p: DVec3) -> [f64; 2] {
+        Pass::margins(self, p)
+    }
+
+    fn edge_error_px(&self, a: DVec3, b: DVec3) -> f64 {
+        Pass::edge_error_px(self, a, b)
+    }
+
+    fn is_straight(&self) -> bool {
+        Pass::is_straight(self)
+    }
+
+    fn fills_in(&self, screen: &Screen, bounds: &Aabb) -> bool {
+        self.is_left_out(bounds) && self.in_view(screen, bounds) != InView::No
+    }
+}
