@@ -2,7 +2,7 @@
 
 use crate::sheet::Pixels;
 use anyhow::{Result, anyhow};
-use belvedere::cpu::canvas;
+use belvedere::composite::canvas;
 pub(crate) use plotters::prelude::SeriesLabelPosition;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};

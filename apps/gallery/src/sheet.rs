@@ -1,8 +1,8 @@
 //! Pictures of one size in rows, each with a caption of two lines below it.
 
 use anyhow::Result;
+use belvedere::composite::canvas::Canvas;
 use belvedere::core::DVec2;
-use belvedere::cpu::canvas::Canvas;
 use belvedere::io::png::{self, Channels};
 use belvedere::scene::{Color, Frame};
 use std::path::Path;

@@ -41,12 +41,13 @@ pub const LANES: usize = 32;
 /// Pixels that are written together.
 pub const PIXELS: usize = 8 * LANES;
 
-impl Encoder {
-    /// The tables, made on first use.
-    pub fn new() -> Self {
+impl Default for Encoder {
+    fn default() -> Self {
         Self { encoded: &ENCODED, first: &FIRST }
     }
+}
 
+impl Encoder {
     /// sRGB values by square roots of linear light.
     #[inline(always)]
     pub fn encode(self, roots: &[f32; LANES]) -> [u8; LANES] {
@@ -161,7 +162,7 @@ mod tests {
 
     #[test]
     fn values_stored_together_are_those_stored_alone() {
-        let encoder = Encoder::new();
+        let encoder = Encoder::default();
         for from in (-20..1300).map(|k| k as f32 / 1255.0) {
             for step in [0.0, 1e-5, 2e-4, 3e-4, -4e-4, 2e-3, -0.02, f32::NAN] {
                 let roots: [f32; LANES] = std::array::from_fn(|i| from + step * i as f32);

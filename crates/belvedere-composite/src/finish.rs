@@ -3,13 +3,10 @@
 use crate::buffers::Buffers;
 use crate::color::{self, Packed};
 use crate::marks::Marks;
-use crate::screen::Screen;
+use crate::screen::{BAND, Screen};
 use crate::stylise::{self, Relief};
 use belvedere_scene::{Frame, RenderJob};
 use rayon::prelude::*;
-
-/// Image rows that are drawn together, a band.
-pub const BAND: usize = 16;
 
 /// Buffers of a picture; every pixel is sky.
 pub fn buffers(job: &RenderJob<'_>) -> Buffers {

@@ -5,6 +5,9 @@ use belvedere_core::{DVec2, DVec3, Pinhole};
 /// Vertices farther than this from the image centre are clipped, so that edge functions fit 64-bit integers.
 const GUARD_PX: f64 = 131_072.0;
 
+/// Image rows that are drawn together, a band.
+pub const BAND: usize = 16;
+
 /// Number of planes of [`Screen::clip_distances`].
 pub const PLANES: usize = 6;
 

@@ -49,6 +49,7 @@ mod targets;
 pub mod verbs;
 
 pub use belvedere_builtin as builtin;
+pub use belvedere_composite as composite;
 pub use belvedere_construct as construct;
 pub use belvedere_core as core;
 pub use belvedere_cpu as cpu;

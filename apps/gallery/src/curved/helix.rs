@@ -5,9 +5,9 @@ use crate::figure_set::{Facts, Figure};
 use crate::sheet::Panel;
 use anyhow::{Context, Result};
 use belvedere::Session;
+use belvedere::composite::canvas::Canvas;
 use belvedere::core::map::curved_rays::{Model, TurnSpec};
 use belvedere::core::{Aabb, DVec2, DVec3};
-use belvedere::cpu::canvas::Canvas;
 use belvedere::scene::{Color, LayerKind};
 
 const SCENE: &str = include_str!("../../../../scenes/dna.toml");

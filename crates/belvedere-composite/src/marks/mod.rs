@@ -15,8 +15,7 @@ mod visibility;
 use crate::canvas::Canvas;
 use crate::color::{Packed, linear};
 use crate::drawn::{Drawn, Pass};
-use crate::finish::BAND;
-use crate::screen::Screen;
+use crate::screen::{BAND, Screen};
 use crate::sections::Sections;
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{

@@ -103,7 +103,7 @@ impl Kernel for Encode<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let encoder = Encoder::new();
+        let encoder = Encoder::default();
         let mut planes = [[0; PIXELS]; 3];
         for (i, out) in self.out.chunks_mut(PIXELS).enumerate() {
             for (plane, root) in planes.iter_mut().zip(self.root) {

@@ -26,7 +26,7 @@ impl Kernel for Store<'_> {
     #[inline(always)]
     fn run(self) {
         let Self { sky, at: [x, y], out } = self;
-        let (encoder, rows) = (Encoder::new(), [y; LANES]);
+        let (encoder, rows) = (Encoder::default(), [y; LANES]);
         let (mut planes, threshold) = ([[0; PIXELS]; 3], thresholds(x, y));
         for (i, out) in out.chunks_mut(PIXELS).enumerate() {
             let points = sky.points(x + (i * PIXELS) as i32 * SUB, y);

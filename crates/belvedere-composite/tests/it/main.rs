@@ -1,0 +1,3 @@
+//! Laws of what follows the surfaces.
+
+mod other_renderer;
