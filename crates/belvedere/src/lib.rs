@@ -51,6 +51,7 @@ pub mod verbs;
 pub use belvedere_builtin as builtin;
 pub use belvedere_construct as construct;
 pub use belvedere_core as core;
+pub use belvedere_core::{Warning, WarningKind};
 pub use belvedere_cpu as cpu;
 pub use belvedere_disocclusion as disocclusion;
 pub use belvedere_io as io;
