@@ -6,7 +6,7 @@ use belvedere::core::presets::PresetDocument;
 use belvedere::core::presets::edit::{PresetChange, PresetOperation};
 use belvedere::io::png;
 use belvedere::verbs::preset::{self, Shape, Verdict};
-use belvedere::{Needs, Session, output};
+use belvedere::{Needs, Session, Warning, output};
 use clap::{Args, Subcommand};
 use serde_json::json;
 use std::fmt::Write;
@@ -114,7 +114,7 @@ pub(crate) fn preset(args: PresetArgs, context: &Context) -> anyhow::Result<Goal
     }
 }
 
-fn written(files: &[PathBuf], warnings: &[String], context: &Context) -> anyhow::Result<Goal> {
+fn written(files: &[PathBuf], warnings: &[Warning], context: &Context) -> anyhow::Result<Goal> {
     if context.common.json {
         context.print(&done("preset", files, warnings))?;
     }
@@ -184,7 +184,7 @@ fn set(
     let to = out.clone().unwrap_or_else(|| file.to_owned());
     // What is changed in place is meant to be replaced.
     output::write_text(&to, &preset::text(&document, &to)?, out.is_none() || context.common.overwrite)?;
-    let clamped = clamped.iter().map(ToString::to_string);
+    let clamped = clamped.iter().map(Warning::from);
     written(&[to], &clamped.chain(preset::check(&document).warnings).collect::<Vec<_>>(), context)
 }
 

@@ -2,7 +2,7 @@
 
 use crate::common_args::Common;
 use belvedere::scene::Progress;
-use belvedere::{BelvedereError, Needs, OpenOptions, Session};
+use belvedere::{BelvedereError, Needs, OpenOptions, Session, Warning};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -161,8 +161,8 @@ impl Context {
         }
     }
 
-    /// Prints each warning on standard error.
-    pub(crate) fn warn(&self, warnings: &[String]) {
+    /// Prints the text of each warning or missed goal on standard error.
+    pub(crate) fn warn(&self, warnings: &[impl std::fmt::Display]) {
         self.finish();
         if !self.common.quiet {
             for warning in warnings {
@@ -177,7 +177,7 @@ impl Context {
         verb: &str,
         out: Option<&Path>,
         text: &str,
-        warnings: &[String],
+        warnings: &[Warning],
     ) -> anyhow::Result<()> {
         match out {
             Some(path) => {
@@ -199,7 +199,7 @@ impl Context {
 }
 
 /// What `--json` prints for a verb that wrote files.
-pub(crate) fn done(verb: &str, outputs: &[PathBuf], warnings: &[String]) -> serde_json::Value {
+pub(crate) fn done(verb: &str, outputs: &[PathBuf], warnings: &[Warning]) -> serde_json::Value {
     let outputs: Vec<String> = outputs.iter().map(|p| p.display().to_string()).collect();
     serde_json::json!({ "verb": verb, "outputs": outputs, "warnings": warnings })
 }

@@ -21,6 +21,7 @@ pub mod presets;
 pub mod random;
 pub mod sections;
 pub mod view;
+mod warning;
 
 pub use bounds::Aabb;
 pub use camera::{ImageBox, Navigation, Pinhole, PinholeBuilder, PinholeError, Projection};
@@ -35,3 +36,4 @@ pub use map::terrain::TerrainDisocclusion;
 pub use map::{Displaced, SpaceMap, Stage};
 pub use miss::Miss;
 pub use view::{EdgePoint, Edges, Projected, RayPath, RayPoint, View, ViewError};
+pub use warning::{Warning, WarningKind};

@@ -7,6 +7,7 @@
 mod tables;
 mod wkt;
 
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Crs;
 use glam::DVec2;
 use proj4rs::Proj;
@@ -220,32 +221,37 @@ impl CoordinateSystem {
 
     /// Approximation in its datum shift, if there is one: one sentence for warnings. Positions in systems without a note
     /// agree with PROJ's own to 1e-6 m.
-    pub fn datum_note(&self) -> Option<String> {
+    pub fn datum_note(&self) -> Option<Warning> {
         if self.local {
             return None;
         }
         let value = |key: &str| self.proj_string.split(' ').find_map(|p| p.strip_prefix(key));
+        let inexact = |off_m: f64, what: &str| {
+            let warning = Warning::new(WarningKind::Inexact, format!("{self} {what}"));
+            Some(warning.about(self.to_string()).with("off_m", off_m))
+        };
+        let without_grid = || {
+            inexact(5.0, "is joined to WGS 84 by a Helmert shift without a grid: positions may be off by a few metres")
+        };
         if self.proj_string.contains(NAD27_SHIFT) {
-            return Some(format!(
-                "{self} is on NAD27, shifted by the mean of the conterminous United States (-8, 160, 176 m): positions may be off by about 10 m there, more elsewhere"
-            ));
+            return inexact(
+                10.0,
+                "is on NAD27, shifted by the mean of the conterminous United States (-8, 160, 176 m): positions may be off by about 10 m there, more elsewhere",
+            );
         }
         if let Some(shift) = value("+towgs84=") {
-            return (!is_small(shift)).then(|| {
-                format!(
-                    "{self} is joined to WGS 84 by a Helmert shift without a grid: positions may be off by a few metres"
-                )
-            });
+            return if is_small(shift) { None } else { without_grid() };
         }
         match value("+datum=") {
             Some("WGS84" | "NAD83") => None,
-            Some(_) => Some(format!(
-                "{self} is joined to WGS 84 by a Helmert shift without a grid: positions may be off by a few metres"
-            )),
+            Some(_) => without_grid(),
             None if value("+nadgrids=").is_some() => None,
-            None => Some(format!(
-                "the datum shift of {self} is unknown and taken as zero: positions may be off by some 100 m"
-            )),
+            None => {
+                let text = format!(
+                    "the datum shift of {self} is unknown and taken as zero: positions may be off by some 100 m"
+                );
+                Some(Warning::new(WarningKind::Inexact, text).about(self.to_string()).with("off_m", 100.0))
+            }
         }
     }
 }

@@ -5,6 +5,7 @@ use crate::formats::ends;
 use crate::packed::content;
 use crate::terrain::{Geometry, GridMap, Link, stated_system};
 use crate::{Affine, GeoTiff, InputFile, IoError, Limits, Loaded, Raster, SourceCrs, esri_ascii, fs, png};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Crs, Drape, Heightfield, Progress};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -72,10 +73,10 @@ pub fn load_drape(
     if system.is_none()
         && let Some(target) = &target
     {
-        warnings.push(format!(
-            "{}: no coordinate system is stated, so that of the scene ({target}) is assumed; set source_crs if that is wrong",
-            path.display()
-        ));
+        let text = format!(
+            "no coordinate system is stated, so that of the scene ({target}) is assumed; set source_crs if that is wrong"
+        );
+        warnings.push(Warning::new(WarningKind::Assumed, text).in_file(path));
         system = Some(target.clone());
     }
     if let (Some(system), Some(target)) = (&system, &target)
@@ -102,18 +103,19 @@ pub fn load_drape(
         reproject(path, &picture, system.as_ref(), target.as_ref(), heightfield, request.max_pixels)?
     };
     if drape.pixels.iter().all(|p| p[3] == 0) {
-        warnings.push(format!("{}: nothing but transparent pixels lies over the terrain", path.display()));
+        let text = "nothing but transparent pixels lies over the terrain";
+        warnings.push(Warning::new(WarningKind::Suspect, text).in_file(path));
     }
     Ok(Loaded::new(drape, warnings).with_file(source.input()?))
 }
 
-fn warn_about_reduction(path: &Path, picture: &Picture, full: Affine, warnings: &mut Vec<String>) {
+fn warn_about_reduction(path: &Path, picture: &Picture, full: Affine, warnings: &mut Vec<Warning>) {
     let factor = (picture.model_from_pixel.determinant() / full.determinant()).abs().sqrt();
     if factor > 1.01 {
-        warnings.push(format!(
-            "{}: the picture is used {factor:.1} times coarser than it is, to keep its pixels within the limit; raise max_pixels for more detail",
-            path.display()
-        ));
+        let text = format!(
+            "the picture is used {factor:.1} times coarser than it is, to keep its pixels within the limit; raise max_pixels for more detail"
+        );
+        warnings.push(Warning::new(WarningKind::Reduced, text).with("coarser", factor).in_file(path));
     }
 }
 
@@ -124,7 +126,7 @@ enum Source {
 }
 
 impl Source {
-    fn open(path: &Path, request: &DrapeRequest, warnings: &mut Vec<String>) -> Result<Self, IoError> {
+    fn open(path: &Path, request: &DrapeRequest, warnings: &mut Vec<Warning>) -> Result<Self, IoError> {
         let path = &content(path, request.limits.max_bytes, &|p| ends(p, &[".tif", ".tiff", ".png"]))?;
         let mut magic = [0u8; 8];
         let mut file = fs::File::open(path).map_err(|e| IoError::os(path, e))?;

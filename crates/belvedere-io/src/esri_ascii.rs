@@ -4,6 +4,7 @@
 //! `NODATA_value` (-9999 if missing); then the rows, the northernmost first. Source: ESRI, ASCII raster format.
 
 use crate::{Affine, InputFile, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs, fs};
+use belvedere_core::{Warning, WarningKind};
 use std::path::Path;
 
 /// Value of "no data" unless the header says otherwise.
@@ -60,12 +61,12 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
     }
     let mut warnings = Vec::new();
     if commas.is_some() {
-        warnings.push(format!("{}: its numbers have decimal commas; they are read as points", path.display()));
+        let text = "its numbers have decimal commas; they are read as points";
+        warnings.push(Warning::new(WarningKind::Repaired, text).in_file(path));
     }
     let extra = words.count();
-    if extra > 0 {
-        warnings.push(format!("{}: {extra} values after the {expected} of the grid are ignored", path.display()));
-    }
+    let after = format!("values after the {expected} of the grid are ignored");
+    warnings.extend(Warning::counted(WarningKind::Ignored, extra, &after).map(|w| w.in_file(path)));
     let mut info = RasterInfo::new(path, cols, rows, SampleType::F32);
     let left = if x_corner { x } else { x - dx / 2.0 };
     let bottom = if y_corner { y } else { y - dy / 2.0 };

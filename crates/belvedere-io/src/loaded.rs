@@ -1,6 +1,7 @@
 //! Result of a loader.
 
 use crate::InputFile;
+use belvedere_core::Warning;
 
 /// A value, the warnings of reading it, and the files that were read.
 #[derive(Debug, Clone, PartialEq)]
@@ -8,7 +9,7 @@ pub struct Loaded<T> {
     /// The value.
     pub value: T,
     /// One sentence each: the oddity, its measured value, and how it was handled.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     /// The files that were read for it, by the same reading.
     pub files: Vec<InputFile>,
 }
@@ -20,7 +21,7 @@ impl<T> Loaded<T> {
     }
 
     /// A value with warnings.
-    pub fn new(value: T, warnings: Vec<String>) -> Self {
+    pub fn new(value: T, warnings: Vec<Warning>) -> Self {
         Self { value, warnings, files: Vec::new() }
     }
 

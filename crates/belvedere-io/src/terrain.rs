@@ -14,6 +14,7 @@ mod source;
 
 use crate::crs::{CoordinateSystem, Transform, utm_epsg};
 use crate::{IoError, Limits, Loaded};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Crs, Heightfield, HeightfieldError, NodeState, Progress};
 use glam::DVec2;
 pub(crate) use grid_map::{Geometry, GridMap, Link};
@@ -183,8 +184,8 @@ fn in_scene(
     let void_share = void_samples as f64 / samples.max(1) as f64;
     let filled_share = heightfield.share_of(NodeState::Filled);
     if sea > 0 {
-        let what = "nodes without data at the edge of a low shore were taken for sea and stand at 0 m";
-        warnings.push(format!("{}: {sea} {what}; sea = false leaves them holes", first.display()));
+        let what = "nodes without data at the edge of a low shore were taken for sea and stand at 0 m; sea = false leaves them holes";
+        warnings.extend(Warning::counted(WarningKind::Assumed, sea, what).map(|w| w.in_file(first)));
     }
     let made_up = filled_share - sea as f64 / heightfield.states().len() as f64;
     if sea == 0 || open || made_up > 1e-12 {
@@ -206,7 +207,7 @@ fn in_scene(
     Ok(Loaded { value, warnings, files })
 }
 
-fn warn_about_voids(path: &Path, voids: usize, share: f64, filled: f64, left_open: usize, warnings: &mut Vec<String>) {
+fn warn_about_voids(path: &Path, voids: usize, share: f64, filled: f64, left_open: usize, warnings: &mut Vec<Warning>) {
     if voids == 0 {
         return;
     }
@@ -215,15 +216,17 @@ fn warn_about_voids(path: &Path, voids: usize, share: f64, filled: f64, left_ope
         1 => ", but for a large one, which stays open".to_owned(),
         n => format!(", but for {n} large ones, which stay open"),
     };
-    let fate = if filled > 0.0 {
-        format!("holes were filled, {:.2} % of the nodes{large}", 100.0 * filled)
+    let (kind, fate) = if filled > 0.0 {
+        (WarningKind::Repaired, format!("holes were filled, {:.2} % of the nodes{large}", 100.0 * filled))
     } else if left_open > 0 {
-        "they are too large to be filled and stay holes; take terrain with fewer holes".to_owned()
+        let fate = "they are too large to be filled and stay holes; take terrain with fewer holes";
+        (WarningKind::Ignored, fate.to_owned())
     } else {
-        "they stay holes; fill_voids = true closes them".to_owned()
+        (WarningKind::Ignored, "they stay holes; fill_voids = true closes them".to_owned())
     };
-    let percent = 100.0 * share;
-    warnings.push(format!("{}: {voids} samples ({percent:.2} %) hold no data: {fate}", path.display()));
+    let text = format!("{voids} samples ({:.2} %) hold no data: {fate}", 100.0 * share);
+    let warning = Warning::new(kind, text).with("count", voids as f64).with("share", share);
+    warnings.push(warning.with("filled_share", filled).with("left_open", left_open as f64).in_file(path));
 }
 
 /// States of the nodes after holes were closed.
@@ -275,7 +278,7 @@ struct Target {
 fn choose_target(
     sources: &[SourceGrid],
     request: &TerrainRequest,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
 ) -> Result<Target, IoError> {
     let local = Target { crs: Crs::Local, system: None };
     let first = &sources[0];
@@ -297,10 +300,8 @@ fn choose_target(
             let reason = "the file states no CRS that is understood; set its EPSG code (source_crs of its layer, or --source-crs)";
             return Err(IoError::format(&source.path, reason));
         }
-        warnings.push(format!(
-            "{}: no coordinate system is known, so the scene is local; source_crs of its layer, or --source-crs, places it on the earth",
-            source.path.display()
-        ));
+        let text = "no coordinate system is known, so the scene is local; source_crs of its layer, or --source-crs, places it on the earth";
+        warnings.push(Warning::new(WarningKind::Assumed, text).in_file(&source.path));
         return Ok(local);
     }
     let chosen = match request.crs {
@@ -363,16 +364,18 @@ fn auto_target(sources: &[SourceGrid]) -> Result<Target, IoError> {
     Ok(Target { crs: Crs::Epsg(code), system: Some(system) })
 }
 
-fn warn_about_mercator(sources: &[SourceGrid], target: &Target, warnings: &mut Vec<String>) {
+fn warn_about_mercator(sources: &[SourceGrid], target: &Target, warnings: &mut Vec<Warning>) {
     if target.crs != Crs::Epsg(3857) {
         return;
     }
     if let Some(Extent { bounds: [_, south, _, north], .. }) = extent(sources) {
         let lat = 0.5 * (south + north);
-        warnings.push(format!(
-            "the scene is in Web Mercator (EPSG:3857), whose metres are {:.2} times too long at latitude {lat:.1}: relief looks flatter than it is; set crs to the UTM zone for true proportions",
-            1.0 / lat.to_radians().cos()
-        ));
+        let stretch = 1.0 / lat.to_radians().cos();
+        let text = format!(
+            "the scene is in Web Mercator (EPSG:3857), whose metres are {stretch:.2} times too long at latitude {lat:.1}: relief looks flatter than it is; set crs to the UTM zone for true proportions"
+        );
+        let warning = Warning::new(WarningKind::Inexact, text).about("EPSG:3857").with("latitude_deg", lat);
+        warnings.push(warning.with("stretch", stretch));
     }
 }
 
@@ -405,7 +408,7 @@ fn onto_scene_grid(
     sources: &[SourceGrid],
     target: &Target,
     request: &TerrainRequest,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
     progress: &Progress,
 ) -> Result<(SceneGrid, Option<ResampleError>), IoError> {
     if let [source] = sources
@@ -418,13 +421,12 @@ fn onto_scene_grid(
     if let Some(e) = error
         && e.p99_m > request.max_error_p99_m.max(WARN_P99_M)
     {
-        warnings.push(format!(
-            "{}: resampling to the metric grid moves heights by {:.1} m rms, and by more than {:.1} m at 1 % of the samples (wanted: {:.1} m); a larger refine_to_nodes makes it finer",
-            sources[0].path.display(),
-            e.rms_m,
-            e.p99_m,
-            request.max_error_p99_m
-        ));
+        let text = format!(
+            "resampling to the metric grid moves heights by {:.1} m rms, and by more than {:.1} m at 1 % of the samples (wanted: {:.1} m); a larger refine_to_nodes makes it finer",
+            e.rms_m, e.p99_m, request.max_error_p99_m
+        );
+        let warning = Warning::new(WarningKind::Inexact, text).with("rms_m", e.rms_m).with("p99_m", e.p99_m);
+        warnings.push(warning.with("wanted_p99_m", request.max_error_p99_m).in_file(&sources[0].path));
     }
     Ok((grid, error))
 }

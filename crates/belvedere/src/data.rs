@@ -11,6 +11,7 @@ use crate::scene_file::{
 use crate::session::{Description, Loaded};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_core::View;
+use belvedere_core::Warning;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::load_vectors;
 use belvedere_io::{join_table, split_table};
@@ -55,7 +56,7 @@ pub struct DataFiles {
 /// Contents of the files.
 pub(crate) struct Data {
     pub(crate) scene: Arc<Scene>,
-    pub(crate) warnings: Vec<String>,
+    pub(crate) warnings: Vec<Warning>,
     /// Unchanged samples of the terrain's file, if they are to be kept.
     pub(crate) original: Option<OriginalTerrain>,
     /// Ids of the layers of rivers.

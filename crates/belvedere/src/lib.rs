@@ -52,6 +52,7 @@ pub use belvedere_builtin as builtin;
 pub use belvedere_composite as composite;
 pub use belvedere_construct as construct;
 pub use belvedere_core as core;
+pub use belvedere_core::{Warning, WarningKind};
 pub use belvedere_cpu as cpu;
 pub use belvedere_disocclusion as disocclusion;
 pub use belvedere_io as io;

@@ -10,6 +10,7 @@ use crate::resolve::{validate, view, wall};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{Document, OverlayDoc, SourceDocument, StageDoc};
 use crate::{BelvedereError, OpenOptions};
+use belvedere_core::Warning;
 use belvedere_core::{SpaceMap, View};
 use belvedere_cpu::CpuRenderer;
 use belvedere_disocclusion::{TerrainReport, TerrainSettings};
@@ -34,7 +35,7 @@ pub(crate) struct Loaded {
     pub(crate) motions: Option<Arc<Motions>>,
     pub(crate) areas: Vec<AreaRecord>,
     pub(crate) inputs: Vec<InputFile>,
-    pub(crate) warnings: Vec<String>,
+    pub(crate) warnings: Vec<Warning>,
 }
 
 /// Results of resolving a document over the loaded data.
@@ -48,7 +49,7 @@ pub(crate) struct Resolved {
     pub(crate) strip: Option<StripReport>,
     pub(crate) constructor: Option<ConstructorReport>,
     pub(crate) inputs: Vec<InputFile>,
-    pub(crate) warnings: Vec<String>,
+    pub(crate) warnings: Vec<Warning>,
     pub(crate) description: Option<Description>,
 }
 
@@ -257,10 +258,11 @@ impl Session {
         self.resolved.description.as_ref().is_some_and(|d| constructor::tracks(&d.source))
     }
 
-    /// Warnings of loading and then of resolving: one sentence each.
-    pub fn warnings(&self) -> Vec<String> {
+    /// Warnings of loading and then of resolving, each text once.
+    pub fn warnings(&self) -> Vec<Warning> {
         let mut all = self.loaded.warnings.clone();
-        all.extend(self.resolved.warnings.iter().filter(|w| !self.loaded.warnings.contains(w)).cloned());
+        let known = |text: &str| self.loaded.warnings.iter().any(|w| w.text() == text);
+        all.extend(self.resolved.warnings.iter().filter(|w| !known(w.text())).cloned());
         all
     }
 

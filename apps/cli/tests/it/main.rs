@@ -28,6 +28,7 @@ mod strip;
 mod stylisation;
 mod terrain;
 mod time_limit;
+mod typed_warnings;
 mod volume_targets;
 mod volumes;
 #[cfg(target_os = "linux")]

@@ -4,6 +4,7 @@ use super::eyes::EyeRow;
 use super::sweeps::Trial;
 use super::timing::{PAPER_CELLS, PAPER_SOLVE, Timing};
 use crate::html::{self, escape};
+use belvedere::Warning;
 use belvedere::disocclusion::{SolverMode, TerrainReport};
 use serde::Serialize;
 use std::fmt::Write;
@@ -19,7 +20,7 @@ pub(crate) struct AreaRecord {
     pub(crate) eta: Vec<Trial>,
     pub(crate) eyes: Vec<EyeRow>,
     pub(crate) timing: Timing,
-    pub(crate) warnings: Vec<String>,
+    pub(crate) warnings: Vec<Warning>,
 }
 
 /// What a picture shows, by the ending of its name.

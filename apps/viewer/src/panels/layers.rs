@@ -2,6 +2,7 @@
 
 use super::percent;
 use crate::model::Model;
+use belvedere::Warning;
 use belvedere::scene::Hidden;
 use belvedere::scene_file::{LayerDoc, PaletteDoc, PaletteName};
 use eframe::egui::{CollapsingHeader, Color32, ComboBox, DragValue, Ui};
@@ -23,13 +24,14 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
         ui.separator();
         one(ui, model, index, layer);
     }
-    if let Some(shown) = &model.shown
-        && !shown.session.warnings().is_empty()
-    {
+    let mut warnings = model.shown.as_ref().map_or_else(Vec::new, |shown| shown.session.warnings());
+    if !warnings.is_empty() {
+        warnings.sort_by_key(Warning::kind);
         ui.separator();
-        CollapsingHeader::new(format!("Warnings ({})", shown.session.warnings().len())).show(ui, |ui| {
-            for warning in shown.session.warnings() {
-                ui.label(warning);
+        CollapsingHeader::new(format!("Warnings ({})", warnings.len())).show(ui, |ui| {
+            for alike in warnings.chunk_by(|a, b| a.kind() == b.kind()) {
+                ui.weak(alike[0].kind().name());
+                alike.iter().for_each(|warning| drop(ui.label(warning.text())));
             }
         });
     }

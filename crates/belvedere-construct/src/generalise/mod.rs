@@ -28,6 +28,7 @@ pub use report::{BlockReport, FailingCell, GeneraliseReport, LevelReport};
 pub use settings::{GeneraliseSettings, half_width_m, is_main};
 
 use belvedere_core::DVec2;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Instant;
 use belvedere_scene::Progress;
 use belvedere_scene::city::City;
@@ -95,27 +96,30 @@ pub fn generalise(
 }
 
 /// Adds notes on levels whose buildings lie in one cell, or in green cells alone.
-fn notes_of(mut notes: Vec<String>, levels: [&Level; 2]) -> Vec<String> {
+fn notes_of(mut notes: Vec<Warning>, levels: [&Level; 2]) -> Vec<Warning> {
     for level in levels {
         let inhabited: Vec<&Cell> = level.cells.iter().filter(|c| !c.buildings.is_empty()).collect();
         if let [only] = inhabited[..] {
             let held = only.buildings.len();
-            notes.push(format!("{}: all buildings but landmarks ({held}) lie in one cell, {}", level.name, only.name));
+            let text = format!("{}: all buildings but landmarks ({held}) lie in one cell, {}", level.name, only.name);
+            notes.push(Warning::new(WarningKind::Suspect, text).about(level.name).with("buildings", held as f64));
         }
         if !inhabited.is_empty() && inhabited.iter().all(|c| c.kind == CellKind::Green) {
-            notes.push(format!(
+            let text = format!(
                 "{}: every cell is hardly built and drawn as green ground, blocks follow their buildings",
                 level.name
-            ));
+            );
+            notes.push(Warning::new(WarningKind::Suspect, text).about(level.name));
         }
         if level.cells.is_empty() {
-            notes.push(format!("{}: streets cover all settled ground, every building keeps its shape", level.name));
+            let text = format!("{}: streets cover all settled ground, every building keeps its shape", level.name);
+            notes.push(Warning::new(WarningKind::Fallback, text).about(level.name));
         }
     }
     notes
 }
 
-fn input<'a>(city: &'a City, notes: &mut Vec<String>) -> Result<Input<'a>, GeneraliseError> {
+fn input<'a>(city: &'a City, notes: &mut Vec<Warning>) -> Result<Input<'a>, GeneraliseError> {
     let lands: Vec<shapes::Land> = city.buildings.par_iter().map(|b| shapes::land_of(&b.footprint)).collect();
     let (mut input, mut bad_heights) =
         (Input { city, places: Vec::new(), lands: Vec::new(), volumes: Vec::new() }, 0usize);
@@ -131,9 +135,8 @@ fn input<'a>(city: &'a City, notes: &mut Vec<String>) -> Result<Input<'a>, Gener
         input.lands.push(land);
         input.volumes.push(Volume { area_m2, height_m, tagged: building.landmark });
     }
-    if bad_heights > 0 {
-        notes.push(format!("{bad_heights} buildings have no usable height and are taken as 9 m high"));
-    }
+    let taken = "buildings have no usable height and are taken as 9 m high";
+    notes.extend(Warning::counted(WarningKind::Assumed, bad_heights, taken));
     let points = city.buildings.iter().flat_map(|b| &b.footprint).flat_map(|p| &p.outer).copied();
     let [low, high] = index::bounds(points.filter(|p| p.is_finite())).unwrap_or([DVec2::ZERO; 2]);
     let [width, height] = (high - low).to_array();

@@ -1,5 +1,6 @@
 //! Report of a generalisation.
 
+use belvedere_core::{Warning, WarningKind};
 use serde::Serialize;
 
 /// Figures of a generalisation.
@@ -15,8 +16,8 @@ pub struct GeneraliseReport {
     pub triangles: usize,
     /// The levels, finest first.
     pub levels: Vec<LevelReport>,
-    /// Oddities and assumptions, one sentence each.
-    pub notes: Vec<String>,
+    /// Oddities and assumptions; the subject of those of one level is its name.
+    pub notes: Vec<Warning>,
     /// Time, seconds.
     pub seconds: f64,
 }
@@ -69,7 +70,7 @@ const MOST_NAMES: usize = 5;
 
 impl LevelReport {
     /// Which cells fail, one sentence for each reason.
-    pub fn failing(&self) -> Vec<String> {
+    pub fn failing(&self) -> Vec<Warning> {
         let mut reasons: Vec<&str> = self.cells_failing.iter().map(|c| c.reason).collect();
         reasons.sort_unstable();
         reasons.dedup();
@@ -82,7 +83,8 @@ impl LevelReport {
             let more = of.len().saturating_sub(MOST_NAMES);
             let names = of.iter().take(MOST_NAMES).map(one).collect::<Vec<_>>().join(", ");
             let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-            format!("{}: {reason} in {names}{more}", self.name)
+            let text = format!("{}: {reason} in {names}{more}", self.name);
+            Warning::new(WarningKind::Inexact, text).about(self.name).with("cells", of.len() as f64)
         };
         reasons.into_iter().map(text).collect()
     }

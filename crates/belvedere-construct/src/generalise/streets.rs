@@ -3,6 +3,7 @@
 use super::settings::{GeneraliseSettings, half_width_m, is_main};
 use super::shapes::{Land, along, by_place, common, grown, land_of, shrunk, union};
 use super::strokes::longest_strokes;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::city::{City, LandCover, Way, WayClass};
 use geo::LineString;
 use rayon::prelude::*;
@@ -16,7 +17,7 @@ pub(super) struct Dividers {
 }
 
 /// The dividers of both levels: all streets, and main streets. The second lies in the first.
-pub(super) fn dividers(city: &City, settings: &GeneraliseSettings, notes: &mut Vec<String>) -> [Dividers; 2] {
+pub(super) fn dividers(city: &City, settings: &GeneraliseSettings, notes: &mut Vec<Warning>) -> [Dividers; 2] {
     let divides = |way: &Way| {
         half_width_m(way.class).is_some() && way.points.len() >= 2 && way.points.iter().all(|p| p.is_finite())
     };
@@ -30,15 +31,16 @@ pub(super) fn dividers(city: &City, settings: &GeneraliseSettings, notes: &mut V
     if !main.iter().any(is_street) && wide.0.is_empty() && all.iter().any(is_street) {
         let streets: Vec<usize> = all.iter().copied().filter(is_street).collect();
         let chosen = longest_strokes(&city.ways, &streets);
-        notes.push(format!(
-            "no street is of a main class: the longest runs of streets, {} of {} pieces, divide the blocks of loa2",
-            chosen.len(),
-            streets.len()
-        ));
+        let (count, of) = (chosen.len(), streets.len());
+        let text = format!(
+            "no street is of a main class: the longest runs of streets, {count} of {of} pieces, divide the blocks of loa2"
+        );
+        notes.push(Warning::new(WarningKind::Assumed, text).with("count", count as f64).with("of", of as f64));
         main.extend(chosen);
     }
     if all.is_empty() && road.0.is_empty() {
-        notes.push("the city has no streets: every group of buildings is one cell".to_owned());
+        let text = "the city has no streets: every group of buildings is one cell";
+        notes.push(Warning::new(WarningKind::Assumed, text));
     }
     let lines = |ways: &[usize]| along_ways(&city.ways, ways);
     let [water, rail] = others;

@@ -18,6 +18,7 @@ use crate::ConstructError;
 use crate::sample::SampledFeature;
 use crate::samples::{judged_samples, sample_features};
 use belvedere_core::View;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Light, Progress, Renderer, Scene};
 use belvedere_sight::{Obstacles, SightOptions};
 use image::Sight;
@@ -107,15 +108,17 @@ pub(crate) fn sight_options(scene: &Scene, options: &MeasureOptions) -> SightOpt
     SightOptions { chord_m: options.chord_m, cap_m: options.cap_m, guard_m: options.guard_m.unwrap_or(1.5 * cell) }
 }
 
-fn warnings(obstacles: &Obstacles<'_>, view: &View, features: &[SampledFeature]) -> Vec<String> {
+fn warnings(obstacles: &Obstacles<'_>, view: &View, features: &[SampledFeature]) -> Vec<Warning> {
     let mut out = Vec::new();
     if let Some(height) = obstacles.above_ground(view.pinhole().eye)
         && height < 0.0
     {
-        out.push(format!("the eye lies {:.1} m under ground; nothing can be seen from there", -height));
+        let text = format!("the eye lies {:.1} m under ground; nothing can be seen from there", -height);
+        out.push(Warning::new(WarningKind::Hidden, text).about("camera").with("depth_m", -height));
     }
     for f in features.iter().filter(|f| f.samples.is_empty()) {
-        out.push(format!("feature {} of layer {} has no point to judge", f.feature, f.layer_id));
+        let text = format!("feature {} of layer {} has no point to judge", f.feature, f.layer_id);
+        out.push(Warning::new(WarningKind::Ignored, text).about(f.layer_id.clone()).with("feature", f.feature as f64));
     }
     out
 }

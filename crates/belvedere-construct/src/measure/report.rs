@@ -3,6 +3,7 @@
 use super::bend::{BendMeasure, displacement};
 use super::image::SampleImage;
 use crate::sample::{Amount, SampledFeature};
+use belvedere_core::Warning;
 use serde::Serialize;
 
 /// Everything [`super::measure`] found.
@@ -25,7 +26,7 @@ pub struct Measures {
     /// Displacement, distortion and folds by the bend.
     pub bend: BendMeasure,
     /// Oddities, one sentence each.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// Visibility of one feature in two pictures.
@@ -110,7 +111,7 @@ pub(super) fn summarise(
     bent: &[Vec<SampleImage>],
     near_miss: f64,
     bend: BendMeasure,
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
 ) -> Measures {
     let all: Vec<usize> = (0..features.len()).collect();
     let one = |members: &[usize]| summarise_group(features, straight, bent, members, near_miss);

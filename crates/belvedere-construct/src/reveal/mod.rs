@@ -19,6 +19,7 @@ use crate::sample::SampledFeature;
 use crate::samples::{default_spacing, sample_features};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{DVec3, EarthCurvature, Stage, View};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Progress, Scene};
 use evaluate::Evaluator;
 use eyes::Eye;
@@ -83,7 +84,7 @@ pub struct RevealReport {
     /// Bends evaluated.
     pub bends_tried: usize,
     /// Oddities, one sentence each.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// Chooses a view (unless `base` gives one) and a spline bend that show more of the layers that must be seen.
@@ -309,10 +310,9 @@ fn finish(
     }
     let mut warnings = Vec::new();
     if bent.covered < 0.8 {
-        warnings.push(format!(
-            "the ground of the data fills {:.0} % of the picture below the skyline",
-            100.0 * bent.covered
-        ));
+        let text =
+            format!("the ground of the data fills {:.0} % of the picture below the skyline", 100.0 * bent.covered);
+        warnings.push(Warning::new(WarningKind::Suspect, text).with("share", bent.covered));
     }
     let report = RevealReport {
         total: counts.total,

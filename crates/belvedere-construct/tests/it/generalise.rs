@@ -105,7 +105,7 @@ fn a_town_of_blocks() {
     assert_eq!([fine.cells - fine.green_cells, coarse.cells - coarse.green_cells], [64, 4]);
     assert_eq!([fine.landmarks, coarse.landmarks], [2, 2], "a tower and a tagged building");
     assert!(fine.volume_kept && coarse.volume_kept && (fine.volume_share - 1.0).abs() < 0.01, "{}", fine.volume_share);
-    assert_eq!(made.report.notes, Vec::<String>::new());
+    assert_eq!(made.report.notes, []);
     let block = &made.levels[0].city.buildings[0];
     assert!((7.0..11.0).contains(&block.height_m), "the mean without the landmarks, not {}", block.height_m);
 }
@@ -173,11 +173,15 @@ fn odd_cities_become_something_sensible_and_it_is_said() {
     check_laws(&houses(6), &without_streets);
     assert_eq!(without_streets.levels[0].blocks.len(), 1);
     assert!(
-        without_streets.report.notes.iter().any(|n| n.contains("no streets")),
+        without_streets.report.notes.iter().any(|n| n.text().contains("no streets")),
         "{:?}",
         without_streets.report.notes
     );
-    assert!(without_streets.report.notes.iter().any(|n| n.contains("one cell")), "{:?}", without_streets.report.notes);
+    assert!(
+        without_streets.report.notes.iter().any(|n| n.text().contains("one cell")),
+        "{:?}",
+        without_streets.report.notes
+    );
 
     let mut paved = houses(3);
     let outer = rectangle(DVec2::ZERO, DVec2::splat(500.0), 0.0);
@@ -185,7 +189,7 @@ fn odd_cities_become_something_sensible_and_it_is_said() {
     paved.areas.push(CityArea { name: String::new(), cover: LandCover::Road, polygons });
     let made = done(&paved);
     assert_eq!(made.levels[0].city.buildings.len(), 3, "streets everywhere: every building stays");
-    assert!(made.report.notes.iter().any(|n| n.contains("keeps its shape")), "{:?}", made.report.notes);
+    assert!(made.report.notes.iter().any(|n| n.text().contains("keeps its shape")), "{:?}", made.report.notes);
 
     let mut damaged = houses(4);
     damaged.buildings[0].footprint[0].outer[2] = DVec2::new(f64::NAN, 0.0);
@@ -199,8 +203,12 @@ fn odd_cities_become_something_sensible_and_it_is_said() {
     let made = done(&damaged);
     assert_eq!(made.report.without_area, 2);
     assert!((made.report.volume_m3 - (9.0 * 14.0 * 14.0 + 9.0 * 7.0 * 14.0)).abs() < 1.0, "{}", made.report.volume_m3);
-    assert!(made.report.notes.iter().any(|n| n.contains("no usable height")), "{:?}", made.report.notes);
-    assert!(made.report.notes.iter().any(|n| n.contains("every cell is hardly built")), "{:?}", made.report.notes);
+    assert!(made.report.notes.iter().any(|n| n.text().contains("no usable height")), "{:?}", made.report.notes);
+    assert!(
+        made.report.notes.iter().any(|n| n.text().contains("every cell is hardly built")),
+        "{:?}",
+        made.report.notes
+    );
 }
 
 #[test]

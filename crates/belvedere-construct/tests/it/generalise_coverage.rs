@@ -173,7 +173,7 @@ fn buildings_over_each_other_are_told_by_name() {
     assert_eq!(failing.len(), 1, "{failing:?}");
     let said = made.report.levels[0].failing();
     assert!(
-        said.len() == 1 && said[0].contains(&failing[0].cell) && said[0].contains("50 % of the volume"),
+        said.len() == 1 && said[0].text().contains(&failing[0].cell) && said[0].text().contains("50 % of the volume"),
         "{said:?}"
     );
     assert!(failing[0].reason == "buildings overlap each other" && failing[0].cell.starts_with("loa1-"), "{failing:?}");

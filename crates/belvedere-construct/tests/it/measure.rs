@@ -75,7 +75,7 @@ fn degenerate_features_have_defined_answers() {
     };
     let empty = with(Vec::new());
     assert_eq!(empty.lines.as_ref().unwrap().straight.sight.share, None);
-    assert!(empty.warnings[0].contains("no point to judge"), "{:?}", empty.warnings);
+    assert!(empty.warnings[0].text().contains("no point to judge"), "{:?}", empty.warnings);
     let one = with(vec![DVec3::new(700.0, 700.0, 0.0)]);
     assert_eq!(one.lines.unwrap().total, 0.0);
     let outside = with(vec![DVec3::new(-9000.0, -9000.0, 0.0), DVec3::new(-9500.0, -9000.0, 0.0)]);
@@ -95,7 +95,7 @@ fn an_eye_under_ground_sees_nothing_and_says_why() {
     pinhole.eye = DVec3::new(800.0, 200.0, 900.0);
     let m = run(&scene, &View::straight(pinhole), None).unwrap();
     assert_eq!(m.lines.unwrap().straight.sight.visible, 0.0);
-    assert!(m.warnings[0].contains("under ground"), "{:?}", m.warnings);
+    assert!(m.warnings[0].text().contains("under ground"), "{:?}", m.warnings);
 }
 
 #[test]

@@ -6,6 +6,7 @@ use super::plan::{self, Repairs};
 use super::reference::Reference;
 use super::{CityFile, IoError, Loaded};
 use crate::Limits;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Building, City, CityArea, CityFace, HeightSource, LandCover, Structure, StructureKind};
 use glam::{DVec3, Vec2};
 use std::collections::{BTreeMap, BTreeSet};
@@ -94,22 +95,20 @@ impl<'l> Collector<'l> {
             return Err(fail(format!("{format} holds no geometry that is read; choose another file")));
         }
         city.buildings.sort_by(|a, b| a.id.cmp(&b.id));
-        let mut warnings: Vec<String> = reference.warning.into_iter().chain(repairs.warnings()).collect();
-        if unread > 0 {
-            warnings.push(format!(
-                "{unread} geometries cannot be read; their objects are drawn at another level of detail"
-            ));
-        }
-        if without_faces > 0 {
-            warnings.push(format!("{without_faces} objects have no geometry that is read and were left out"));
-        }
+        let mut warnings: Vec<Warning> = reference.warning.into_iter().chain(repairs.warnings()).collect();
+        let unread_words = "geometries cannot be read; their objects are drawn at another level of detail";
+        warnings.extend(Warning::counted(WarningKind::Fallback, unread, unread_words));
+        let without_words = "objects have no geometry that is read and were left out";
+        warnings.extend(Warning::counted(WarningKind::Ignored, without_faces, without_words));
         if !left_out.is_empty() {
             let kinds: Vec<String> = left_out.iter().map(|(kind, count)| format!("{count} {kind}")).collect();
-            warnings.push(format!("of kinds that are not drawn: {}", kinds.join(", ")));
+            let text = format!("of kinds that are not drawn: {}", kinds.join(", "));
+            let count = left_out.values().sum::<usize>() as f64;
+            warnings.push(Warning::new(WarningKind::Ignored, text).with("count", count));
         }
         let (files, said) = pictures.load(&mut city, path, limits);
         warnings.extend(said);
-        let warnings = warnings.into_iter().map(|w| format!("{}: {w}", path.display())).collect();
+        let warnings = warnings.into_iter().map(|w| w.in_file(path)).collect();
         let (crs, reference) = (reference.crs, reference.said);
         Ok(Loaded {
             files,

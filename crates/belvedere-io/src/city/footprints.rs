@@ -4,6 +4,7 @@ use super::attributes::{self, Attributes};
 use super::plan::{self, Repairs};
 use super::{CityFile, IoError, Loaded};
 use crate::vector::{Geometry, VectorFeature, Vectors, Vertex};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Building, City, CityArea, LandCover, Polygon, Way, WayClass};
 use std::collections::BTreeMap;
 
@@ -67,12 +68,12 @@ pub(super) fn city(vectors: Vectors) -> Result<Loaded<CityFile>, IoError> {
             ),
         ));
     }
-    let say = |count: usize, what: &str| (count > 0).then(|| format!("{count} {what}"));
+    let say = |count: usize, what: &str| Warning::counted(WarningKind::Ignored, count, what);
     let warnings = repairs
         .warnings()
         .chain(say(unknown, "features that are neither buildings, ways nor land cover were left out"))
         .chain(say(points, "points were left out"))
-        .map(|w| format!("{}: {w}", path.display()));
+        .map(|w| w.in_file(&path));
     let (warnings, reference) = (warnings.collect(), vectors.crs.name().to_owned());
     let format = vectors.format.to_owned();
     let crs = Some(vectors.crs).filter(|crs| !crs.is_local());

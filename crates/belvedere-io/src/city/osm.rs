@@ -7,6 +7,7 @@ use super::plan::{self, Repairs};
 use super::{CityFile, IoError, Loaded};
 use crate::crs::CoordinateSystem;
 use belvedere_core::polygon::{doubled_area, is_inside};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{City, CityArea, Polygon, Way, WayClass};
 use glam::DVec2;
 use osmpbf::{Element, ElementReader, RelMemberType};
@@ -73,14 +74,14 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<CityFile>, IoErro
         );
         return Err(IoError::format(path, reason));
     }
-    let say = |count: usize, what: &str| (count > 0).then(|| format!("{count} {what}"));
+    let say = |count: usize, what: &str| Warning::counted(WarningKind::Ignored, count, what);
     let warnings = repairs
         .warnings()
         .chain(say(lost.nodes, "vertices of ways are not in the file; their ways are cut there"))
         .chain(say(lost.polygons, "polygons with vertices that are not in the file were left out"))
         .chain(say(lost.underground, "buildings and ways that lie underground were left out"))
         .chain(say(lost.relations, "multipolygons do not close in the file and were left out"))
-        .map(|w| format!("{}: {w}", path.display()))
+        .map(|w| w.in_file(path))
         .collect();
     let crs = CoordinateSystem::wgs84().map_err(|e| IoError::format(path, e.to_string()))?;
     let (format, reference) = ("OSM PBF".into(), crs.name().to_owned());

@@ -2,6 +2,7 @@
 
 use crate::mesh::{neighbour, picture};
 use crate::{InputFile, Limits};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{City, CityFace, FacePicture, Texture, Wrap};
 use glam::Vec2;
 use std::collections::{BTreeMap, HashMap};
@@ -54,7 +55,7 @@ impl PictureList {
 
     /// Reads the pictures that the faces of a city wear; faces whose picture cannot be read get none. Returns the files read
     /// and warnings about missing ones.
-    pub(super) fn load(self, city: &mut City, path: &Path, limits: &Limits) -> (Vec<InputFile>, Vec<String>) {
+    pub(super) fn load(self, city: &mut City, path: &Path, limits: &Limits) -> (Vec<InputFile>, Vec<Warning>) {
         let (mut files, mut warnings, mut room) = (Vec::new(), Vec::new(), limits.max_bytes);
         let (mut read, mut missing) = (HashMap::<u32, Option<u32>>::new(), BTreeMap::<String, (String, usize)>::new());
         let mut bare = 0;
@@ -88,16 +89,17 @@ impl PictureList {
             let told: Vec<String> = missing.iter().take(TOLD).map(|(name, (e, _))| format!("{name:?}: {e}")).collect();
             let more =
                 if missing.len() > TOLD { format!(", and {} more", missing.len() - TOLD) } else { String::new() };
-            warnings.push(format!(
+            let text = format!(
                 "{} of {} pictures cannot be read and {bare} faces go without ({}{more})",
                 missing.len(),
                 read.len(),
                 told.join("; ")
-            ));
+            );
+            let warning = Warning::new(WarningKind::Ignored, text).with("pictures", missing.len() as f64);
+            warnings.push(warning.with("faces", f64::from(bare)));
         }
-        if self.odd > 0 {
-            warnings.push(format!("{} faces go without their picture: its places do not fit their vertices", self.odd));
-        }
+        let odd = "faces go without their picture: its places do not fit their vertices";
+        warnings.extend(Warning::counted(WarningKind::Ignored, self.odd, odd));
         (files, warnings)
     }
 }

@@ -1,6 +1,7 @@
 //! Rings in plan, and the plan of solids.
 
 use belvedere_core::polygon::{doubled_area, is_inside};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{CityFace, HeightSource, Polygon, Surface};
 use glam::{DVec2, DVec3};
 
@@ -29,16 +30,17 @@ pub(super) struct Repairs {
 }
 
 impl Repairs {
-    pub(super) fn warnings(&self) -> impl Iterator<Item = String> {
-        let of = |count: usize, what: &str| (count > 0).then(|| format!("{count} {what}"));
+    pub(super) fn warnings(&self) -> impl Iterator<Item = Warning> {
+        use WarningKind::{Ignored, Repaired, Suspect};
+        let of = Warning::counted;
         [
-            of(self.short_rings, "rings of fewer than 3 different vertices were dropped"),
-            of(self.flat_rings, "rings without area were dropped"),
-            of(self.crossing, "footprints cross themselves; their outlines are drawn as they are"),
-            of(self.holes, "holes that are not within their outline were dropped"),
-            of(self.far, "polygons with coordinates beyond 1e8 were dropped; correct their system"),
-            of(self.heights, "heights that are no numbers of metres in 0..2000 were not believed"),
-            of(self.tall, "buildings are higher than 2000 m by their shape; check the unit of their heights"),
+            of(Ignored, self.short_rings, "rings of fewer than 3 different vertices were dropped"),
+            of(Ignored, self.flat_rings, "rings without area were dropped"),
+            of(Suspect, self.crossing, "footprints cross themselves; their outlines are drawn as they are"),
+            of(Ignored, self.holes, "holes that are not within their outline were dropped"),
+            of(Ignored, self.far, "polygons with coordinates beyond 1e8 were dropped; correct their system"),
+            of(Repaired, self.heights, "heights that are no numbers of metres in 0..2000 were not believed"),
+            of(Suspect, self.tall, "buildings are higher than 2000 m by their shape; check the unit of their heights"),
         ]
         .into_iter()
         .flatten()

@@ -1,6 +1,7 @@
 //! Names of coordinate systems in city models.
 
 use crate::crs::CoordinateSystem;
+use belvedere_core::{Warning, WarningKind};
 
 /// Compound systems and their horizontal parts.
 const COMPOUND: [(u32, u32); 9] = [
@@ -23,7 +24,7 @@ pub(super) struct Reference {
     /// `EPSG:n`, or the name in the file, possibly empty.
     pub(super) said: String,
     /// Why the system is not known, if one is named.
-    pub(super) warning: Option<String>,
+    pub(super) warning: Option<Warning>,
     /// Whether latitudes come first, as the name demands.
     pub(super) north_first: bool,
 }
@@ -32,10 +33,13 @@ impl Reference {
     /// * `name`: such as `EPSG:25833`, `urn:ogc:def:crs:EPSG::25832`, `urn:ogc:def:crs,crs:EPSG:6.12:3068,crs:EPSG:6.12:5783`,
     ///   `https://www.opengis.net/def/crs/EPSG/0/7415` or `urn:adv:crs:ETRS89_UTM32*DE_DHHN92_NH`; possibly empty.
     pub(super) fn of(name: &str) -> Self {
-        let unknown = |warning| Self { crs: None, said: name.to_owned(), warning, north_first: false };
+        let unknown = |why: Option<String>| {
+            let warning = why.map(|why| Warning::new(WarningKind::Assumed, why));
+            Self { crs: None, said: name.to_owned(), warning, north_first: false }
+        };
         let Some(code) = code(name) else {
-            let warning = (!name.is_empty()).then(|| format!("its system \"{name}\" is not known; set crs"));
-            return unknown(warning);
+            let why = (!name.is_empty()).then(|| format!("its system \"{name}\" is not known; set crs"));
+            return unknown(why);
         };
         let flat = COMPOUND.iter().find(|(compound, _)| *compound == code).map_or(code, |(_, flat)| *flat);
         match CoordinateSystem::from_epsg(flat) {

@@ -4,6 +4,7 @@
 
 use super::ifd::{Container, Ifd, tag};
 use crate::raster::{Affine, CrsKind, RasterInfo, SourceCrs};
+use belvedere_core::{Warning, WarningKind};
 use std::collections::BTreeMap;
 
 /// Value of a GeoKey.
@@ -86,7 +87,7 @@ mod key {
 }
 
 /// Fills the georeference of `info` from the tags; returns warnings.
-pub(super) fn georeference(container: &Container, ifd: &Ifd, info: &mut RasterInfo) -> Result<Vec<String>, String> {
+pub(super) fn georeference(container: &Container, ifd: &Ifd, info: &mut RasterInfo) -> Result<Vec<Warning>, String> {
     let keys = Keys::read(container, ifd)?;
     let mut warnings = Vec::new();
     info.pixel_is_point = keys.code(key::RASTER_TYPE) == Some(2);
@@ -112,7 +113,8 @@ pub(super) fn georeference(container: &Container, ifd: &Ifd, info: &mut RasterIn
     info.vertical_unit_said = keys.code(key::VERTICAL_UNIT).is_some() || info.vertical_epsg.is_some();
     info.vertical_unit_m = match (keys.code(key::VERTICAL_UNIT), info.vertical_epsg) {
         (Some(code), _) => unit_m(code).unwrap_or_else(|| {
-            warnings.push(format!("unit of heights (EPSG:{code}) is not known, metres are assumed"));
+            let text = format!("unit of heights (EPSG:{code}) is not known, metres are assumed");
+            warnings.push(Warning::new(WarningKind::Assumed, text).with("epsg", f64::from(code)));
             1.0
         }),
         (None, Some(6360)) => US_FOOT_M,
@@ -137,21 +139,23 @@ fn unit_m(code: u32) -> Option<f64> {
     })
 }
 
-fn transform(container: &Container, ifd: &Ifd, warnings: &mut Vec<String>) -> Result<Option<Affine>, String> {
+fn transform(container: &Container, ifd: &Ifd, warnings: &mut Vec<Warning>) -> Result<Option<Affine>, String> {
     let scale = container.floats(ifd, tag::PIXEL_SCALE)?.unwrap_or_default();
     let ties = container.floats(ifd, tag::TIEPOINT)?.unwrap_or_default();
     let matrix = container.floats(ifd, tag::TRANSFORMATION)?.unwrap_or_default();
     let found = match (&scale[..], &ties[..], &matrix[..]) {
         (&[sx, sy, ..], &[i, j, _, x, y, _, ..], _) if sx != 0.0 && sy != 0.0 => {
             if sy < 0.0 {
-                warnings.push(format!("pixel height is stored as {sy:e}; rows are taken to run southwards as usual"));
+                let text = format!("pixel height is stored as {sy:e}; rows are taken to run southwards as usual");
+                warnings.push(Warning::new(WarningKind::Repaired, text).with("pixel_height", sy));
             }
             Affine([sx, 0.0, x - i * sx, 0.0, -sy.abs(), y + j * sy.abs()])
         }
         (_, _, &[a, b, _, c, d, e, _, f, ..]) => Affine([a, b, c, d, e, f]),
         (_, ties, _) if ties.len() >= 18 => fit(ties)?,
         (_, ties, _) if ties.len() >= 6 => {
-            warnings.push("has a tie point but no pixel size; it is not georeferenced".to_owned());
+            let text = "has a tie point but no pixel size; it is not georeferenced";
+            warnings.push(Warning::new(WarningKind::Ignored, text));
             return Ok(None);
         }
         _ => return Ok(None),

@@ -1,6 +1,7 @@
 //! Header, image file directories and tag values of classic TIFF and BigTIFF, in both byte orders.
 
 use super::source::Source;
+use belvedere_core::{Warning, WarningKind};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Tag numbers (TIFF 6.0, GeoTIFF 1.1 and GDAL's private ones).
@@ -102,7 +103,7 @@ impl Container {
     }
 
     /// All directories of the main chain, in order, and a warning if the chain had to be cut.
-    pub(super) fn directories(&self) -> Result<(Vec<Ifd>, Option<String>), String> {
+    pub(super) fn directories(&self) -> Result<(Vec<Ifd>, Option<Warning>), String> {
         let mut seen = BTreeSet::new();
         let mut found = Vec::new();
         let mut at = self.first;
@@ -113,7 +114,8 @@ impl Container {
                 ));
             }
             if found.len() == MAX_DIRECTORIES {
-                return Ok((found, Some(format!("more than {MAX_DIRECTORIES} directories, the rest is ignored"))));
+                let text = format!("more than {MAX_DIRECTORIES} directories, the rest is ignored");
+                return Ok((found, Some(Warning::new(WarningKind::Ignored, text))));
             }
             match self.directory(at) {
                 Ok(ifd) => {
@@ -121,7 +123,7 @@ impl Container {
                     found.push(ifd);
                 }
                 Err(reason) if found.is_empty() => return Err(reason),
-                Err(reason) => return Ok((found, Some(reason))),
+                Err(reason) => return Ok((found, Some(Warning::new(WarningKind::Ignored, reason)))),
             }
         }
         if found.is_empty() { Err("holds no image directory".to_owned()) } else { Ok((found, None)) }

@@ -4,6 +4,7 @@ use super::geokeys::{FOOT_M, US_FOOT_M};
 use super::ifd::{Container, Ifd, tag};
 use super::layout::Layout;
 use crate::raster::{Alpha, Photometric, RasterInfo};
+use belvedere_core::{Warning, WarningKind};
 
 /// Fills colours, alpha, no data and scaling of `info`; returns warnings.
 pub(super) fn meaning(
@@ -11,7 +12,7 @@ pub(super) fn meaning(
     ifd: &Ifd,
     layout: &Layout,
     info: &mut RasterInfo,
-) -> Result<Vec<String>, String> {
+) -> Result<Vec<Warning>, String> {
     let mut warnings = Vec::new();
     let extra = container.uints(ifd, tag::EXTRA_SAMPLES)?.unwrap_or_default();
     let first_extra = info.bands.saturating_sub(extra.len());
@@ -28,7 +29,8 @@ pub(super) fn meaning(
         0 => Photometric::GrayInverted,
         2 | 6 if info.bands >= 3 => Photometric::Rgb([0, 1, 2]),
         2 | 6 => {
-            warnings.push(format!("is said to be RGB but has {} bands; shown as grey", info.bands));
+            let text = format!("is said to be RGB but has {} bands; shown as grey", info.bands);
+            warnings.push(Warning::new(WarningKind::Repaired, text).with("bands", info.bands as f64));
             Photometric::Gray
         }
         3 => Photometric::Palette(palette(container, ifd, layout)?),
@@ -38,7 +40,10 @@ pub(super) fn meaning(
         match text.trim().parse::<f64>() {
             Ok(value) => info.nodata = Some(value),
             Err(_) if text.trim().is_empty() => {}
-            Err(_) => warnings.push(format!("no-data value \"{}\" is not a number; it is ignored", text.trim())),
+            Err(_) => {
+                let text = format!("no-data value \"{}\" is not a number; it is ignored", text.trim());
+                warnings.push(Warning::new(WarningKind::Ignored, text));
+            }
         }
     }
     if let Some(xml) = container.text(ifd, tag::GDAL_METADATA)? {
@@ -62,7 +67,7 @@ fn palette(container: &Container, ifd: &Ifd, layout: &Layout) -> Result<Vec<[u8;
 }
 
 /// Scale, offset, unit and colours as GDAL writes them.
-fn gdal_metadata(xml: &str, info: &mut RasterInfo, warnings: &mut Vec<String>) {
+fn gdal_metadata(xml: &str, info: &mut RasterInfo, warnings: &mut Vec<Warning>) {
     let mut scaling = vec![[1.0, 0.0]; info.bands];
     let mut colors = [None; 3];
     for item in xml.split("<Item ").skip(1) {
@@ -86,7 +91,10 @@ fn gdal_metadata(xml: &str, info: &mut RasterInfo, warnings: &mut Vec<String>) {
                 }
                 "" => {}
                 "m" | "metre" | "meter" | "metres" | "meters" => info.vertical_unit_said = true,
-                other => warnings.push(format!("unit of the values is \"{other}\"; metres are assumed")),
+                other => {
+                    let text = format!("unit of the values is \"{other}\"; metres are assumed");
+                    warnings.push(Warning::new(WarningKind::Assumed, text));
+                }
             },
             Some("colorinterp") => {
                 if let Some(k) = ["Red", "Green", "Blue"].iter().position(|&name| name == text) {

@@ -16,6 +16,7 @@ pub use write::write_geotiff;
 
 use crate::raster::{Limits, Raster, RasterInfo, SampleType, Samples};
 use crate::{InputFile, IoError, Loaded};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Progress;
 use ifd::{Container, Ifd, tag};
 use layout::Layout;
@@ -64,7 +65,7 @@ impl GeoTiff {
     fn parse(path: &Path, source: Source, limits: Limits) -> Result<Loaded<Self>, String> {
         let container = Container::new(source)?;
         let (directories, cut) = container.directories()?;
-        let mut warnings: Vec<String> = cut.into_iter().collect();
+        let mut warnings: Vec<Warning> = cut.into_iter().collect();
         let (first, others) = directories.split_first().ok_or("holds no image directory")?;
         let layout = Layout::new(&container, first)?;
         let mut info = RasterInfo::new(path, layout.width, layout.height, layout.stored.sample_type());
@@ -76,7 +77,7 @@ impl GeoTiff {
         warnings.extend(lost);
         add_levels(&container, others.iter().chain(&subs), &mut levels, &mut warnings)?;
         info.overviews = levels.iter().skip(1).map(|l| [l.layout.width, l.layout.height]).collect();
-        let warnings = warnings.into_iter().map(|w| format!("{}: {w}", path.display())).collect();
+        let warnings = warnings.into_iter().map(|w| w.in_file(path)).collect();
         Ok(Loaded::new(Self { container, info, limits, levels }, warnings))
     }
 
@@ -186,13 +187,13 @@ impl GeoTiff {
 }
 
 /// Directories that the first one points to, and warnings about those that cannot be read.
-fn sub_directories(container: &Container, first: &Ifd) -> Result<(Vec<Ifd>, Vec<String>), String> {
+fn sub_directories(container: &Container, first: &Ifd) -> Result<(Vec<Ifd>, Vec<Warning>), String> {
     const MOST: usize = 64;
     let (mut found, mut warnings) = (Vec::new(), Vec::new());
     for at in container.uints(first, tag::SUB_IFDS)?.unwrap_or_default().into_iter().take(MOST) {
         match container.directory(at) {
             Ok(ifd) => found.push(ifd),
-            Err(reason) => warnings.push(format!("an overview is ignored: {reason}")),
+            Err(reason) => warnings.push(no_overview(&reason)),
         }
     }
     Ok((found, warnings))
@@ -203,7 +204,7 @@ fn add_levels<'a>(
     container: &Container,
     others: impl Iterator<Item = &'a Ifd>,
     levels: &mut Vec<Level>,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
 ) -> Result<(), String> {
     let mut masks = Vec::new();
     let mut pages = 0;
@@ -217,7 +218,7 @@ fn add_levels<'a>(
             Ok(layout) => layout,
             Err(reason) if kind & 4 != 0 => return Err(format!("mask: {reason}")),
             Err(reason) => {
-                warnings.push(format!("an overview is ignored: {reason}"));
+                warnings.push(no_overview(&reason));
                 continue;
             }
         };
@@ -229,7 +230,7 @@ fn add_levels<'a>(
         if image == Some((layout.bands, layout.stored)) {
             levels.push(Level { layout, mask: None });
         } else {
-            warnings.push("an overview is ignored: its bands differ from those of the image".to_owned());
+            warnings.push(no_overview("its bands differ from those of the image"));
         }
     }
     if let Some((_, overviews)) = levels.split_first_mut() {
@@ -241,11 +242,16 @@ fn add_levels<'a>(
         let level = levels.iter_mut().find(|l| [l.layout.width, l.layout.height] == size && l.mask.is_none());
         match level {
             Some(level) if usable => level.mask = Some(mask),
-            _ => warnings.push(format!("a mask of {} x {} pixels fits no level; it is ignored", size[0], size[1])),
+            _ => {
+                let text = format!("a mask of {} x {} pixels fits no level; it is ignored", size[0], size[1]);
+                warnings.push(Warning::new(WarningKind::Ignored, text));
+            }
         }
     }
-    if pages > 0 {
-        warnings.push(format!("{pages} further pages are ignored"));
-    }
+    warnings.extend(Warning::counted(WarningKind::Ignored, pages, "further pages are ignored"));
     Ok(())
+}
+
+fn no_overview(reason: &str) -> Warning {
+    Warning::new(WarningKind::Ignored, format!("an overview is ignored: {reason}"))
 }

@@ -9,6 +9,7 @@ use super::{MeshFile, color};
 use crate::base64;
 use crate::fs::beside;
 use crate::{InputFile, IoError, Limits, Loaded};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Color, MeshColors, Texturing};
 use glam::{DMat4, DVec3, Vec2};
 use gltf::accessor::{DataType, Dimensions};
@@ -73,12 +74,9 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
         MeshColors::Layer
     };
     let mut warnings = pictures.warnings;
-    if see_through > 0 {
-        warnings.push(format!("{}: {see_through} parts are see-through; they are drawn opaque", path.display()));
-    }
-    if skipped > 0 {
-        warnings.push(format!("{}: {skipped} parts that are no plain triangles are left out", path.display()));
-    }
+    let opaque = Warning::counted(WarningKind::Fallback, see_through, "parts are see-through; they are drawn opaque");
+    let left_out = Warning::counted(WarningKind::Ignored, skipped, "parts that are no plain triangles are left out");
+    warnings.extend(opaque.into_iter().chain(left_out).map(|w| w.in_file(path)));
     Ok(Loaded { value: out, warnings, files })
 }
 

@@ -4,6 +4,7 @@ use super::gltf_check::decoded;
 use super::{neighbour, picture};
 use crate::base64;
 use crate::{InputFile, Limits};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Texture, Wrap};
 use gltf::image::Source;
 use gltf::texture::WrappingMode;
@@ -21,7 +22,7 @@ pub(super) struct Pictures<'p> {
     pub(super) textures: Vec<Arc<Texture>>,
     pub(super) files: Vec<InputFile>,
     /// One sentence each.
-    pub(super) warnings: Vec<String>,
+    pub(super) warnings: Vec<Warning>,
 }
 
 impl<'p> Pictures<'p> {
@@ -42,7 +43,8 @@ impl<'p> Pictures<'p> {
             }
             Err(e) => {
                 let path = self.path.unwrap_or(Path::new(""));
-                self.warnings.push(format!("{}: picture {}: {e}; it is left out", path.display(), texture.index()));
+                let text = format!("picture {}: {e}; it is left out", texture.index());
+                self.warnings.push(Warning::new(WarningKind::Ignored, text).in_file(path));
                 None
             }
         };

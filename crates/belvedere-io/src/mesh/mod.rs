@@ -13,6 +13,7 @@ use crate::formats::Reader;
 use crate::fs::beside;
 use crate::packed::content;
 use crate::{InputFile, IoError, Limits, Loaded, fs};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Color, MeshColors, Texturing};
 use glam::DVec3;
 use std::path::Path;
@@ -68,11 +69,8 @@ pub fn load_mesh(path: &Path, limits: &Limits) -> Result<Loaded<MeshFile>, IoErr
     if mesh.triangles.is_empty() {
         return Err(IoError::format(path, "no triangle of the mesh has finite vertices only; repair it"));
     }
-    if odd > 0 {
-        loaded
-            .warnings
-            .push(format!("{}: {odd} triangles with a vertex that is not finite are left out", path.display()));
-    }
+    let odd = Warning::counted(WarningKind::Ignored, odd, "triangles with a vertex that is not finite are left out");
+    loaded.warnings.extend(odd.map(|w| w.in_file(path)));
     Ok(loaded)
 }
 

@@ -2,6 +2,7 @@
 
 use super::{MeshFile, color, neighbour, obj_text, picture};
 use crate::{InputFile, IoError, Limits, Loaded};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Color, MeshColors, Texture, Texturing};
 use glam::{DVec3, Vec2};
 use std::collections::HashMap;
@@ -25,13 +26,14 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
         .map_err(|e| IoError::format(path, format!("{e}; it is damaged or no OBJ file")))?;
     let mut warnings = Vec::new();
     if let Err(e) = &materials {
-        warnings.push(format!("{}: its materials cannot be read ({e}), the layer's colour is used", path.display()));
+        let text = format!("its materials cannot be read ({e}), the layer's colour is used");
+        warnings.push(Warning::new(WarningKind::Fallback, text).in_file(path));
     }
     let odd = odd.into_inner();
     if let Some(first) = odd.first() {
         let count = odd.len();
-        warnings
-            .push(format!("{}: {count} lines of its materials are not read, the first is {first:?}", path.display()));
+        let text = format!("{count} lines of its materials are not read, the first is {first:?}");
+        warnings.push(Warning::new(WarningKind::Ignored, text).with("count", count as f64).in_file(path));
     }
     let mut materials = Materials::new(path, materials.unwrap_or_default(), limits);
     let mut builder = Builder::default();
@@ -53,7 +55,7 @@ struct Materials<'p> {
     known: HashMap<String, Option<u32>>,
     textures: Vec<Arc<Texture>>,
     files: Vec<InputFile>,
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
 }
 
 impl<'p> Materials<'p> {
@@ -93,7 +95,8 @@ impl<'p> Materials<'p> {
                 Some(self.textures.len() as u32 - 1)
             }
             Err(e) => {
-                self.warnings.push(format!("{}: picture {name:?}: {e}; it is left out", self.path.display()));
+                let text = format!("picture {name:?}: {e}; it is left out");
+                self.warnings.push(Warning::new(WarningKind::Ignored, text).in_file(self.path));
                 None
             }
         }

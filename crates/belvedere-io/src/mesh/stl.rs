@@ -2,6 +2,7 @@
 
 use super::MeshFile;
 use crate::{IoError, Limits, Loaded};
+use belvedere_core::{Warning, WarningKind};
 use glam::DVec3;
 use std::path::Path;
 
@@ -30,11 +31,9 @@ pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshF
                 "it declares {declared} triangles and has room for {whole}; it is truncated or no STL file, get it again"
             )));
         }
-        warnings.push(format!(
-            "{}: {} bytes after the {declared} triangles are ignored",
-            path.display(),
-            bytes.len() - HEAD - declared * TRIANGLE
-        ));
+        let rest = bytes.len() - HEAD - declared * TRIANGLE;
+        let text = format!("{rest} bytes after the {declared} triangles are ignored");
+        warnings.push(Warning::new(WarningKind::Ignored, text).with("bytes", rest as f64).in_file(path));
         binary(&bytes[HEAD..HEAD + declared * TRIANGLE])
     };
     Ok(Loaded::new(joined(&triangles), warnings))

@@ -42,9 +42,9 @@ pub fn load_molecule(path: &Path, limits: &Limits) -> Result<Loaded<MoleculeFile
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
     let is_cif = name.contains(".cif") || name.contains(".mmcif");
     let (format, read) = if is_cif { ("mmCIF", mmcif::read(&text)) } else { ("PDB", pdb::read(&text)) };
-    let (molecule, mut found) = read.and_then(sites::Sites::finish).map_err(bad)?;
-    found.warnings.iter_mut().for_each(|w| *w = format!("{}: {w}", path.display()));
+    let (molecule, found) = read.and_then(sites::Sites::finish).map_err(bad)?;
+    let warnings = found.warnings.into_iter().map(|w| w.in_file(path)).collect();
     let (models, alternates, named_bonds) = (found.models, found.alternates, found.named_bonds);
     let value = MoleculeFile { format, molecule, models, alternates, named_bonds };
-    Ok(Loaded::new(value, found.warnings).with_file(file))
+    Ok(Loaded::new(value, warnings).with_file(file))
 }

@@ -3,6 +3,7 @@
 //! Format: wwPDB, version 3.3, and its variants by simulation programs: no chains, no elements, numbers that overflow their columns.
 
 use super::sites::{Site, Sites};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::molecule::{Element, Residue};
 use glam::DVec3;
 
@@ -29,12 +30,10 @@ pub(super) fn read(text: &str) -> Result<Sites, String> {
         }
     }
     out.models = out.models.max(1);
-    if guessed > 0 {
-        out.warnings.push(format!("{guessed} atoms name no element; it is taken from their names"));
-    }
-    if renumbered > 0 {
-        out.warnings.push(format!("{renumbered} atoms have no readable number; they are counted instead"));
-    }
+    let from_names = "atoms name no element; it is taken from their names";
+    out.warnings.extend(Warning::counted(WarningKind::Assumed, guessed, from_names));
+    let counted = "atoms have no readable number; they are counted instead";
+    out.warnings.extend(Warning::counted(WarningKind::Repaired, renumbered, counted));
     Ok(out)
 }
 

@@ -1,5 +1,6 @@
 //! Assembles a molecule from the atom lines of a file: residues, alternate locations, models.
 
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Molecule;
 use belvedere_scene::molecule::{Atom, Element, Residue};
 use glam::DVec3;
@@ -25,7 +26,7 @@ pub(super) struct Sites {
     pub(super) bonds: Vec<[i64; 2]>,
     pub(super) models: usize,
     /// One sentence each.
-    pub(super) warnings: Vec<String>,
+    pub(super) warnings: Vec<Warning>,
 }
 
 /// Figures and warnings of the assembly.
@@ -34,7 +35,7 @@ pub(super) struct Found {
     pub(super) models: usize,
     pub(super) alternates: usize,
     pub(super) named_bonds: usize,
-    pub(super) warnings: Vec<String>,
+    pub(super) warnings: Vec<Warning>,
 }
 
 impl Sites {
@@ -45,13 +46,13 @@ impl Sites {
             return Err("it holds no atom; a file of coordinates is needed".into());
         }
         if models > 1 {
-            warnings.push(format!("it holds {models} models; the first is taken"));
+            let text = format!("it holds {models} models; the first is taken");
+            warnings.push(Warning::new(WarningKind::Ignored, text).with("models", models as f64));
         }
         let keep = likeliest(&sites);
         let alternates = keep.iter().filter(|k| !**k).count();
-        if alternates > 0 {
-            warnings.push(format!("{alternates} atoms at alternate locations are left out; the likeliest stay"));
-        }
+        let left_out = "atoms at alternate locations are left out; the likeliest stay";
+        warnings.extend(Warning::counted(WarningKind::Ignored, alternates, left_out));
         let (mut atoms, mut residues): (Vec<Atom>, Vec<Residue>) = (Vec::new(), Vec::new());
         for (site, _) in sites.into_iter().zip(keep).filter(|(_, keep)| *keep) {
             if residues.last() != Some(&site.residue) {
@@ -64,7 +65,8 @@ impl Sites {
         let unknown = atoms.iter().filter(|a| a.element == Element::UNKNOWN).count();
         if unknown > 0 {
             let first = atoms.iter().find(|a| a.element == Element::UNKNOWN).map_or("", |a| a.name.as_str());
-            warnings.push(format!("{unknown} atoms are of no element (such as {first:?}); they are not drawn"));
+            let what = format!("atoms are of no element (such as {first:?}); they are not drawn");
+            warnings.extend(Warning::counted(WarningKind::Ignored, unknown, &what));
         }
         let number: HashMap<i64, u32> = atoms.iter().enumerate().map(|(i, a)| (a.serial, i as u32)).collect();
         // Serial numbers given twice cannot name atoms.
@@ -75,7 +77,8 @@ impl Sites {
         named.sort_unstable();
         named.dedup();
         if !unique && !bonds.is_empty() {
-            warnings.push("atoms share numbers, so the bonds that it names cannot be told; distances tell them".into());
+            let text = "atoms share numbers, so the bonds that it names cannot be told; distances tell them";
+            warnings.push(Warning::new(WarningKind::Fallback, text));
         }
         let molecule = Molecule::bonded(atoms, residues, &named).map_err(|e| e.to_string())?;
         Ok((molecule, Found { models, alternates, named_bonds: named.len(), warnings }))

@@ -7,6 +7,7 @@
 use super::colors::{channel, from_hsv, hex, named};
 use super::{at_line, shown};
 use crate::Loaded;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Color, Ramp, RampHeight, RampStop};
 
 /// Parts that a slice with colours between hues is cut into.
@@ -64,7 +65,8 @@ pub fn read(text: &str) -> Result<Loaded<Ramp>, String> {
         return Err("it holds no slice of the form \"z0 colour z1 colour\"; give a colour palette table".into());
     }
     if slices.windows(2).any(|w| w[0][1].0 > w[1][0].0) {
-        warnings.push("its slices overlap or fall; colours are taken in the order of their heights".to_owned());
+        let text = "its slices overlap or fall; colours are taken in the order of their heights";
+        warnings.push(Warning::new(WarningKind::Repaired, text));
     }
     let height = header.heights(&slices);
     for slice in &slices {

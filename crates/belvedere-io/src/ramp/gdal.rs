@@ -7,6 +7,7 @@
 use super::colors::{channel, hex, named};
 use super::{at_line, shown};
 use crate::Loaded;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Color, Ramp, RampHeight, RampStop};
 
 /// Reads the text of a file.
@@ -29,7 +30,8 @@ pub fn read(text: &str) -> Result<Loaded<Ramp>, String> {
             // Voids are not painted.
             w if w.eq_ignore_ascii_case("nv") => {}
             w if w.eq_ignore_ascii_case("default") => {
-                warnings.push(at_line(i + 1, "\"default\" is ignored: every height has a colour here"));
+                let text = at_line(i + 1, "\"default\" is ignored: every height has a colour here");
+                warnings.push(Warning::new(WarningKind::Ignored, text).with("line", (i + 1) as f64));
             }
             w => ramp.stops.push(RampStop { height: height(w).map_err(|e| at_line(i + 1, e))?, color }),
         }

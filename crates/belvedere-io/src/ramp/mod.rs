@@ -30,9 +30,7 @@ pub fn load_ramp(path: &Path) -> Result<Loaded<Ramp>, IoError> {
     let is_cpt = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("cpt"));
     let read = if is_cpt { cpt::read(text) } else { gdal::read(text) };
     let mut loaded = read.map_err(bad)?;
-    for w in &mut loaded.warnings {
-        *w = format!("{}: {w}", path.display());
-    }
+    loaded.warnings = loaded.warnings.into_iter().map(|w| w.in_file(path)).collect();
     Ok(loaded.with_file(InputFile::of(path, &bytes)))
 }
 

@@ -5,6 +5,7 @@ use super::{LoadedTerrain, TerrainRequest};
 use crate::crs::{CoordinateSystem, Transform};
 use crate::raster::{Affine, CrsKind, Raster, RasterInfo, SampleType, Samples, SourceCrs};
 use crate::{IoError, Loaded};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Crs, Heightfield, NodeState, Progress};
 use glam::DVec2;
 use rayon::prelude::*;
@@ -201,13 +202,11 @@ impl OriginalTerrain {
     }
 
     /// One sentence about parts of the georeference that cannot be written, if there are any.
-    pub fn georeference_note(&self) -> Option<String> {
+    pub fn georeference_note(&self) -> Option<Warning> {
         let system = self.source.system.as_ref()?;
         system.epsg().is_none().then(|| {
-            format!(
-                "{}: its coordinate system {system} has no EPSG code, so written rasters carry none",
-                self.source.path.display()
-            )
+            let text = format!("its coordinate system {system} has no EPSG code, so written rasters carry none");
+            Warning::new(WarningKind::Ignored, text).in_file(&self.source.path)
         })
     }
 }

@@ -1,5 +1,6 @@
 //! Values that mean "no data" by custom, in files that do not declare them.
 
+use belvedere_core::{Warning, WarningKind};
 use rayon::prelude::*;
 
 /// Customary no-data values, in the file's unit of height.
@@ -15,7 +16,7 @@ const GAP_SHARE: f32 = 0.2;
 ///
 /// * `heights`: metres, NaN = void.
 /// * `unit`: metres per unit of the file's heights.
-pub(super) fn void(heights: &mut [f32], unit: f32) -> Option<String> {
+pub(super) fn void(heights: &mut [f32], unit: f32) -> Option<Warning> {
     let mut said = Vec::new();
     let mut count = 0;
     // One at a time, the outermost first: otherwise one such value could be the near neighbour of another.
@@ -38,9 +39,10 @@ pub(super) fn void(heights: &mut [f32], unit: f32) -> Option<String> {
         return None;
     }
     let values = said.join(" and ");
-    Some(format!(
-        "{count} samples of {values}, far from all other heights, are taken as voids though the file does not declare them; nodata of its layer, or --nodata, says otherwise"
-    ))
+    let what = format!(
+        "samples of {values}, far from all other heights, are taken as voids though the file does not declare them; nodata of its layer, or --nodata, says otherwise"
+    );
+    Warning::counted(WarningKind::Assumed, count, &what)
 }
 
 /// The lowest or the highest height, if it is a customary value far from the next one; in metres and as stored.
@@ -87,7 +89,7 @@ fn insert(out: &mut [f32; 4], h: f32) {
 mod tests {
     use super::*;
 
-    fn voids(mut heights: Vec<f32>, unit: f32) -> (usize, Option<String>) {
+    fn voids(mut heights: Vec<f32>, unit: f32) -> (usize, Option<Warning>) {
         let said = void(&mut heights, unit);
         (heights.iter().filter(|h| h.is_nan()).count(), said)
     }
@@ -102,7 +104,7 @@ mod tests {
         for value in [-9999.0, -32768.0, -32767.0, -99999.0, -999.0, 9999.0, 32767.0, 65535.0] {
             let (count, said) = voids(hills(200.0, 1900.0, &[value; 3]), 1.0);
             assert_eq!(count, 3, "{value}");
-            assert!(said.is_some_and(|s| s.contains(&format!("3 samples of {value},"))), "{value}");
+            assert!(said.is_some_and(|s| s.text().contains(&format!("3 samples of {value},"))), "{value}");
         }
         let (count, said) = voids(hills(200.0, 1900.0, &[-9999.0, 65535.0, -32768.0]), 1.0);
         assert_eq!(count, 3, "{said:?}");

@@ -8,6 +8,7 @@ use crate::packed::content;
 use crate::{
     Affine, GeoTiff, IoError, Limits, Loaded, Photometric, Raster, RasterInfo, Samples, SourceCrs, esri_ascii, hgt,
 };
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Progress;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -138,39 +139,39 @@ fn read_one(
     check_shape(&raster.info)?;
     let bands = raster.info.bands - usize::from(raster.info.alpha.band().is_some());
     if bands > 1 {
-        warnings.push(format!("{}: it has {bands} bands; the first is taken as height", path.display()));
+        let text = format!("it has {bands} bands; the first is taken as height");
+        warnings.push(Warning::new(WarningKind::Ignored, text).with("bands", bands as f64).in_file(path));
     }
     let mut heights = heights(&raster);
     let absurd = void_absurd(&mut heights);
-    if absurd > 0 {
-        warnings.push(format!(
-            "{}: {absurd} samples beyond +-{MAX_HEIGHT_M:.0} m are taken as voids; nodata of its layer, or --nodata, says what they are if the file does not",
-            path.display()
-        ));
-    }
+    let beyond = format!(
+        "samples beyond +-{MAX_HEIGHT_M:.0} m are taken as voids; nodata of its layer, or --nodata, says what they are if the file does not"
+    );
+    warnings.extend(Warning::counted(WarningKind::Repaired, absurd, &beyond).map(|w| w.in_file(path)));
     if request.nodata.is_none() && raster.info.scaling.is_empty() {
         let unit = raster.info.vertical_unit_m as f32;
-        warnings.extend(sentinels::void(&mut heights, unit).map(|said| format!("{}: {said}", path.display())));
+        warnings.extend(sentinels::void(&mut heights, unit).map(|said| said.in_file(path)));
     }
     let (cols, rows) = (raster.info.width, raster.info.height);
     let voids = heights.iter().filter(|h| h.is_nan()).count();
     let samples = heights.len();
     let system = system_of(&raster.info, request, &mut warnings)?;
     if request.vertical_unit_m.is_none() {
-        warnings.extend(unit_unsaid(&raster.info, system.as_ref()).map(|said| format!("{}: {said}", path.display())));
+        warnings.extend(unit_unsaid(&raster.info, system.as_ref()).map(|said| said.in_file(path)));
     }
     warn_about_frame(path, &heights, cols, rows, &mut warnings);
     let to_model = raster.info.pixel_to_model.unwrap_or(Affine([1.0, 0.0, 0.0, 0.0, -1.0, rows as f64]));
     let model_from_index = to_model.after_scale_and_shift(1.0, 1.0, 0.5, 0.5);
     if raster.info.pixel_to_model.is_none() {
-        warnings.push(format!("{}: it has no georeference; one pixel counts as one metre", path.display()));
+        let text = "it has no georeference; one pixel counts as one metre";
+        warnings.push(Warning::new(WarningKind::Assumed, text).in_file(path));
     }
     let grid = SourceGrid { path: path.to_owned(), cols, rows, heights, model_from_index, system, samples, voids };
     Ok(Loaded { value: within(grid, budget, factor, &mut warnings), warnings, files })
 }
 
 /// A source of at most `budget` nodes; `factor`: ratio of its spacing to that of the file.
-pub(super) fn within(mut grid: SourceGrid, budget: usize, factor: f64, warnings: &mut Vec<String>) -> SourceGrid {
+pub(super) fn within(mut grid: SourceGrid, budget: usize, factor: f64, warnings: &mut Vec<Warning>) -> SourceGrid {
     let mut thinned = factor;
     if let Some(k) = thinning(grid.cols, grid.rows, budget) {
         (grid.heights, grid.cols, grid.rows) = thin(&grid.heights, grid.cols, grid.rows, k);
@@ -178,10 +179,11 @@ pub(super) fn within(mut grid: SourceGrid, budget: usize, factor: f64, warnings:
         thinned *= k as f64;
     }
     if thinned > 1.0 {
-        warnings.push(format!(
-            "{}: only about every {thinned:.0}th sample along each side is used, to keep at most {budget} nodes",
-            grid.path.display()
-        ));
+        let text =
+            format!("only about every {thinned:.0}th sample along each side is used, to keep at most {budget} nodes");
+        let warning =
+            Warning::new(WarningKind::Reduced, text).with("every", thinned).with("budget_nodes", budget as f64);
+        warnings.push(warning.in_file(&grid.path));
     }
     grid
 }
@@ -270,7 +272,7 @@ fn heights(raster: &Raster) -> Vec<f32> {
 }
 
 /// A warning if the unit of heights is not stated, so that metres are taken, and the plane has another unit.
-fn unit_unsaid(info: &RasterInfo, system: Option<&CoordinateSystem>) -> Option<String> {
+fn unit_unsaid(info: &RasterInfo, system: Option<&CoordinateSystem>) -> Option<Warning> {
     let plane = info.linear_unit_m.or_else(|| system?.metres_per_unit())?;
     if info.vertical_unit_said || (plane - 1.0).abs() < 1e-6 {
         return None;
@@ -280,9 +282,10 @@ fn unit_unsaid(info: &RasterInfo, system: Option<&CoordinateSystem>) -> Option<S
         u if (u - 0.3048).abs() < 1e-9 => ("feet".to_owned(), "ft"),
         u => (format!("units of {u} m"), "ft"),
     };
-    Some(format!(
+    let text = format!(
         "its plane counts in {unit} and nothing says in which unit heights are, so they count as metres; if they are feet the relief is 3.28 times too high: vertical_unit = \"{option}\" of its layer, or --vertical-unit {option}, settles it (\"m\" confirms metres)"
-    ))
+    );
+    Some(Warning::new(WarningKind::Assumed, text).with("plane_unit_m", plane))
 }
 
 /// Makes samples beyond the largest height void; returns their number.
@@ -303,7 +306,7 @@ fn void_absurd(heights: &mut [f32]) -> usize {
 fn system_of(
     info: &RasterInfo,
     request: &TerrainRequest,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
 ) -> Result<Option<CoordinateSystem>, IoError> {
     stated_system(info, request.source_crs, request.crs == CrsChoice::Local, warnings)
 }
@@ -314,7 +317,7 @@ pub(crate) fn stated_system(
     info: &RasterInfo,
     source_crs: Option<u32>,
     local: bool,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
 ) -> Result<Option<CoordinateSystem>, IoError> {
     let failed = |e: crate::crs::CrsError| {
         IoError::format(
@@ -339,10 +342,8 @@ pub(crate) fn stated_system(
             Err(IoError::format(&info.path, reason))
         }
         SourceCrs::Unknown if !local && looks_geographic(info, &to_model) => {
-            warnings.push(format!(
-                "{}: no coordinate system is stated and the coordinates look like degrees, so EPSG:4326 is assumed; source_crs of its layer, or --source-crs, says otherwise",
-                info.path.display()
-            ));
+            let text = "no coordinate system is stated and the coordinates look like degrees, so EPSG:4326 is assumed; source_crs of its layer, or --source-crs, says otherwise";
+            warnings.push(Warning::new(WarningKind::Assumed, text).in_file(&info.path));
             CoordinateSystem::from_epsg(4326).map(Some).map_err(failed)
         }
         SourceCrs::Unknown => Ok(None),
@@ -357,7 +358,7 @@ fn looks_geographic(info: &RasterInfo, to_model: &Affine) -> bool {
 }
 
 /// Warns about a frame of one value around the data: it may be voids that the file does not declare, or sea, so the heights stay.
-fn warn_about_frame(path: &Path, heights: &[f32], cols: usize, rows: usize, warnings: &mut Vec<String>) {
+fn warn_about_frame(path: &Path, heights: &[f32], cols: usize, rows: usize, warnings: &mut Vec<Warning>) {
     let border = |i: usize| {
         let (c, r) = (i % cols, i / cols);
         c == 0 || r == 0 || c == cols - 1 || r == rows - 1
@@ -396,11 +397,12 @@ fn warn_about_frame(path: &Path, heights: &[f32], cols: usize, rows: usize, warn
     }
     let share = count as f64 / heights.len() as f64;
     if share >= FRAME_SHARE && count < heights.len() {
-        warnings.push(format!(
-            "{}: {count} samples ({:.1} %) at the edge are all exactly {value}: sea, or voids that the file does not declare; nodata = {value} of its layer, or --nodata {value}, makes them voids",
-            path.display(),
+        let text = format!(
+            "{count} samples ({:.1} %) at the edge are all exactly {value}: sea, or voids that the file does not declare; nodata = {value} of its layer, or --nodata {value}, makes them voids",
             100.0 * share
-        ));
+        );
+        let warning = Warning::new(WarningKind::Suspect, text).with("count", count as f64).with("share", share);
+        warnings.push(warning.with("height_m", f64::from(value)).in_file(path));
     }
 }
 
@@ -445,7 +447,11 @@ fn thin(heights: &[f32], cols: usize, rows: usize, k: usize) -> (Vec<f32>, usize
 
 /// Joins sources that lie on one lattice (tiles with shared or touching edges) into one, so that no seam is left.
 /// The first source wins where several have data. Others are returned as they are.
-pub(super) fn merge_aligned(sources: Vec<SourceGrid>, max_nodes: usize, warnings: &mut Vec<String>) -> Vec<SourceGrid> {
+pub(super) fn merge_aligned(
+    sources: Vec<SourceGrid>,
+    max_nodes: usize,
+    warnings: &mut Vec<Warning>,
+) -> Vec<SourceGrid> {
     if sources.len() < 2 {
         return sources;
     }
@@ -482,10 +488,11 @@ pub(super) fn merge_aligned(sources: Vec<SourceGrid>, max_nodes: usize, warnings
     }
     let first = &sources[0];
     if differing > 0 {
-        warnings.push(format!(
-            "{}: it differs from the sources after it at {differing} shared samples, by up to {largest:.1} m; the first source wins",
-            first.path.display()
-        ));
+        let text = format!(
+            "it differs from the sources after it at {differing} shared samples, by up to {largest:.1} m; the first source wins"
+        );
+        let warning = Warning::new(WarningKind::Repaired, text).with("count", differing as f64);
+        warnings.push(warning.with("largest_m", f64::from(largest)).in_file(&first.path));
     }
     let merged = SourceGrid {
         path: first.path.clone(),

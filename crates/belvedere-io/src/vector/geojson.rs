@@ -3,6 +3,7 @@
 use super::{Geometry, VectorFeature, Vectors, Vertex, certainly_not_degrees, name_of, not_degrees, shorten, vertex};
 use crate::crs::{CoordinateSystem, CrsError};
 use crate::{IoError, Loaded};
+use belvedere_core::{Warning, WarningKind};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -32,9 +33,7 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
     }
     let mut warnings = Vec::new();
     let mut warn = |count: usize, what: &str| {
-        if count > 0 {
-            warnings.push(format!("{}: {count} {what}", path.display()));
-        }
+        warnings.extend(Warning::counted(WarningKind::Ignored, count, what).map(|w| w.in_file(path)));
     };
     warn(reader.without_geometry, "features without geometry were dropped");
     warn(reader.null_members, "members that are null where a feature, geometry or position is needed were dropped");

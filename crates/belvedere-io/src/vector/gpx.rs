@@ -4,6 +4,7 @@ use super::phantom::{self, Phantoms, Recorded};
 use super::{Geometry, VectorFeature, Vectors, Vertex, shorten, vertex};
 use crate::crs::CoordinateSystem;
 use crate::{IoError, Loaded};
+use belvedere_core::{Warning, WarningKind};
 use quick_xml::Reader;
 use quick_xml::escape::resolve_predefined_entity;
 use quick_xml::events::{BytesStart, Event};
@@ -54,17 +55,23 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
         ));
     }
     let mut warnings = Vec::new();
-    let mut warn = |count: usize, what: &str| {
-        if count > 0 {
-            warnings.push(format!("{}: {count} {what}", path.display()));
-        }
+    let mut warn = |kind: WarningKind, count: usize, what: &str| {
+        warnings.extend(Warning::counted(kind, count, what).map(|w| w.in_file(path)));
     };
-    warn(parser.dropped_points, "points without a valid latitude and longitude were dropped");
-    warn(parser.empty_segments, "segments without points were dropped");
-    warn(parser.single_points, "tracks, segments or routes of a single point were dropped, a line needs 2");
-    warn(parser.one_position, "tracks, segments or routes of one position only were dropped, a line needs 2");
-    warn(parser.joined, "segments of a single point each were joined to lines");
-    warnings.extend(parser.phantoms.say().map(|found| format!("{}: {found}", path.display())));
+    warn(WarningKind::Ignored, parser.dropped_points, "points without a valid latitude and longitude were dropped");
+    warn(WarningKind::Ignored, parser.empty_segments, "segments without points were dropped");
+    warn(
+        WarningKind::Ignored,
+        parser.single_points,
+        "tracks, segments or routes of a single point were dropped, a line needs 2",
+    );
+    warn(
+        WarningKind::Ignored,
+        parser.one_position,
+        "tracks, segments or routes of one position only were dropped, a line needs 2",
+    );
+    warn(WarningKind::Repaired, parser.joined, "segments of a single point each were joined to lines");
+    warnings.extend(parser.phantoms.say().map(|found| found.in_file(path)));
     let crs = CoordinateSystem::wgs84().map_err(|e| IoError::format(path, e.to_string()))?;
     let value = Vectors {
         path: path.into(),

@@ -125,7 +125,7 @@ pub fn load_vectors(path: &Path) -> Result<Loaded<Vectors>, IoError> {
     let mut loaded = load_known(&path).map_err(explain)?;
     let mut found = Phantoms::default();
     phantom::drop_zeros(&mut loaded.value, &mut found);
-    loaded.warnings.extend(found.say().map(|said| format!("{}: {said}", path.display())));
+    loaded.warnings.extend(found.say().map(|said| said.in_file(&path)));
     if loaded.value.features.is_empty() {
         return Err(IoError::format(&path, "holds nothing but positions at exactly 0, 0; choose another file"));
     }
@@ -165,7 +165,7 @@ fn load_known(path: &Path) -> Result<Loaded<Vectors>, IoError> {
     }
     let mut warnings = Vec::new();
     let text = text::text_of(&bytes, &mut warnings);
-    warnings.iter_mut().for_each(|w| *w = format!("{}: {w}", path.display()));
+    let mut warnings: Vec<_> = warnings.into_iter().map(|w| w.in_file(path)).collect();
     let loaded = match text.trim_start().chars().next() {
         Some('<') => gpx::load(path, &text)?,
         Some('{' | '[' | '\u{1e}') => geojson::load(path, &text)?,

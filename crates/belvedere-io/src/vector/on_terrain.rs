@@ -4,6 +4,7 @@ use super::{Geometry, VectorFeature, Vectors, Vertex};
 use crate::crs::{CoordinateSystem, CrsError, Transform};
 use crate::{IoError, Loaded};
 use belvedere_core::polygon::doubled_area;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{AreaFeature, Crs, Heightfield, LineFeature, PointFeature, drape_polyline};
 use glam::{DVec2, DVec3};
 
@@ -63,12 +64,14 @@ pub fn lines_on_terrain(
     }
     let [length, outside] = lengths;
     if outside > 1e-3 * length {
-        reprojection.warn(format!(
+        let text = format!(
             "{:.1} of {:.1} km ({:.0} %) lie outside the terrain or over its voids and were cut off, {lines_lost} of {lines_seen} lines wholly",
             outside / 1000.0,
             length / 1000.0,
             100.0 * outside / length
-        ));
+        );
+        let warning = Warning::new(WarningKind::Ignored, text).with("outside_m", outside).with("length_m", length);
+        reprojection.warn(warning.with("lines", lines_lost as f64).with("of", lines_seen as f64));
     }
     Ok(reprojection.done(features))
 }
@@ -123,7 +126,8 @@ pub fn areas_on_terrain(
         return Err(reprojection.all_outside("areas"));
     }
     if outside + broken > 0 {
-        reprojection.warn(format!("{} of {seen} areas lie outside the terrain and were dropped", outside + broken));
+        let text = format!("{} of {seen} areas lie outside the terrain and were dropped", outside + broken);
+        reprojection.lost(text, outside + broken, seen);
     }
     Ok(reprojection.done(features))
 }
@@ -160,10 +164,9 @@ pub fn points_on_terrain(
         return Err(reprojection.all_outside("points"));
     }
     if features.len() < seen {
-        reprojection.warn(format!(
-            "{} of {seen} points lie outside the terrain or on its voids and were dropped",
-            seen - features.len()
-        ));
+        let lost = seen - features.len();
+        let text = format!("{lost} of {seen} points lie outside the terrain or on its voids and were dropped");
+        reprojection.lost(text, lost, seen);
     }
     Ok(reprojection.done(features))
 }
@@ -219,7 +222,7 @@ struct Reprojection<'a> {
     /// Box around the terrain in the source's system: only positions inside are projected.
     near: Option<[DVec2; 2]>,
     extent: Option<[DVec2; 2]>,
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
 }
 
 impl<'a> Reprojection<'a> {
@@ -245,7 +248,8 @@ impl<'a> Reprojection<'a> {
         };
         match CoordinateSystem::from_scene(scene_crs) {
             Err(CrsError::Local) if !vectors.crs.is_geographic() || reprojection.could_be_local() => {
-                reprojection.warn("coordinates are taken as they are, for the scene has no coordinate system".into());
+                let text = "coordinates are taken as they are, for the scene has no coordinate system";
+                reprojection.warn(Warning::new(WarningKind::Assumed, text));
             }
             Err(CrsError::Local) => {
                 return Err(vectors.fail("is in longitude and latitude, but the scene has no coordinate system; state that of the terrain: source_crs of its layer, or --source-crs"));
@@ -274,8 +278,13 @@ impl<'a> Reprojection<'a> {
         !self.vectors.crs_stated && meets
     }
 
-    fn warn(&mut self, text: String) {
-        self.warnings.push(format!("{}: {text}", self.vectors.path.display()));
+    fn warn(&mut self, warning: Warning) {
+        self.warnings.push(warning.in_file(&self.vectors.path));
+    }
+
+    /// Warns of `count` features of `of` that were dropped.
+    fn lost(&mut self, text: String, count: usize, of: usize) {
+        self.warn(Warning::new(WarningKind::Ignored, text).with("count", count as f64).with("of", of as f64));
     }
 
     fn done<T>(self, value: T) -> Loaded<T> {

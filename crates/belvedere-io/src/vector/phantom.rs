@@ -2,6 +2,7 @@
 //! recorded tracks.
 
 use super::{Geometry, Vectors, Vertex};
+use belvedere_core::{Warning, WarningKind};
 use glam::DVec2;
 
 /// Mean radius of the earth, metres.
@@ -37,7 +38,7 @@ pub(super) struct Phantoms {
 
 impl Phantoms {
     /// One sentence, if anything was found.
-    pub(super) fn say(&self) -> Option<String> {
+    pub(super) fn say(&self) -> Option<Warning> {
         let zeros = format!(
             "{} positions at exactly 0, 0, far from everything else, were dropped, and lines were split there",
             self.zeros
@@ -47,12 +48,14 @@ impl Phantoms {
             self.jumps,
             self.longest_m / 1000.0
         );
-        match (self.zeros, self.jumps) {
-            (0, 0) => None,
-            (_, 0) => Some(zeros),
-            (0, _) => Some(jumps),
-            _ => Some(format!("{zeros}; {jumps}")),
-        }
+        let text = match (self.zeros, self.jumps) {
+            (0, 0) => return None,
+            (_, 0) => zeros,
+            (0, _) => jumps,
+            _ => format!("{zeros}; {jumps}"),
+        };
+        let warning = Warning::new(WarningKind::Repaired, text).with("zeros", self.zeros as f64);
+        Some(warning.with("jumps", self.jumps as f64).with("longest_jump_m", self.longest_m))
     }
 }
 

@@ -6,6 +6,7 @@ use super::{
 };
 use crate::crs::CoordinateSystem;
 use crate::{IoError, Loaded, fs};
+use belvedere_core::{Warning, WarningKind};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -23,17 +24,17 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError
     let table = match sidecar(path, "dbf") {
         Some(p) => {
             read_dbf(&fs::read(&p).map_err(|e| IoError::os(&p, e))?, code_page.as_deref()).unwrap_or_else(|reason| {
-                warnings.push(format!("{}: {reason}; features stay without names", p.display()));
+                let text = format!("{}: {reason}; features stay without names", p.display());
+                warnings.push(Warning::new(WarningKind::Ignored, text));
                 Vec::new()
             })
         }
         None => Vec::new(),
     };
     if !table.is_empty() && table.len() != count {
-        warnings.push(format!(
-            "the table (.dbf) has {} rows for {count} shapes; names may belong to other shapes",
-            table.len()
-        ));
+        let rows = table.len();
+        let text = format!("the table (.dbf) has {rows} rows for {count} shapes; names may belong to other shapes");
+        warnings.push(Warning::new(WarningKind::Suspect, text).with("rows", rows as f64).with("shapes", count as f64));
     }
     let mut table = table.into_iter();
     let mut features = Vec::new();
@@ -47,10 +48,12 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError
         return Err(fail(format!("shapefile holds {count} shapes, none with a usable position; choose another file")));
     }
     if features.len() < count {
-        warnings.push(format!("{} of {count} shapes are empty and were dropped", count - features.len()));
+        let lost = count - features.len();
+        let text = format!("{lost} of {count} shapes are empty and were dropped");
+        warnings.push(Warning::new(WarningKind::Ignored, text).with("count", lost as f64).with("of", count as f64));
     }
     let (crs, crs_stated) = system_of(path, &features, &mut warnings)?;
-    let warnings = warnings.into_iter().map(|w| format!("{}: {w}", path.display())).collect();
+    let warnings = warnings.into_iter().map(|w| w.in_file(path)).collect();
     let value = Vectors { path: path.into(), format: "shapefile", layer: String::new(), crs, crs_stated, features };
     Ok(Loaded::new(value, warnings))
 }
@@ -67,7 +70,7 @@ fn sidecar(path: &Path, extension: &str) -> Option<PathBuf> {
 fn system_of(
     path: &Path,
     features: &[VectorFeature],
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
 ) -> Result<(CoordinateSystem, bool), IoError> {
     let bad = not_degrees(features);
     if let Some(prj) = sidecar(path, "prj") {
@@ -90,7 +93,8 @@ fn system_of(
         }
         return Ok((CoordinateSystem::local(), false));
     }
-    warnings.push("has no .prj file; taken as longitude and latitude on WGS 84".into());
+    let text = "has no .prj file; taken as longitude and latitude on WGS 84";
+    warnings.push(Warning::new(WarningKind::Assumed, text));
     CoordinateSystem::wgs84().map(|crs| (crs, false)).map_err(|e| IoError::format(path, e.to_string()))
 }
 
@@ -132,7 +136,7 @@ fn read_index(bytes: &[u8]) -> Option<Vec<usize>> {
 fn read_shapes(
     bytes: &[u8],
     index: Option<&[usize]>,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
 ) -> Result<Vec<Option<Geometry>>, String> {
     let file = Bytes(bytes);
     let stated = file.be_i32(24).map(|words| i64::from(words) * 2);
@@ -148,7 +152,9 @@ fn read_shapes(
     }
     let end = stated.and_then(|n| usize::try_from(n).ok()).filter(|n| *n >= 100).unwrap_or(bytes.len());
     if end < bytes.len() {
-        warnings.push(format!("{} bytes after the end stated in the header were ignored", bytes.len() - end));
+        let rest = bytes.len() - end;
+        let text = format!("{rest} bytes after the end stated in the header were ignored");
+        warnings.push(Warning::new(WarningKind::Ignored, text).with("bytes", rest as f64));
     }
     let mut odd = 0usize;
     let shapes = match in_order(bytes, end, &mut odd) {
@@ -165,11 +171,8 @@ fn read_shapes(
             }
         }
     };
-    if odd > 0 {
-        warnings.push(format!(
-            "{odd} parts with too few points, of one position only or with positions that are not finite were dropped"
-        ));
-    }
+    let parts = "parts with too few points, of one position only or with positions that are not finite were dropped";
+    warnings.extend(Warning::counted(WarningKind::Ignored, odd, parts));
     Ok(shapes)
 }
 

@@ -1,5 +1,6 @@
 //! Text of files in whatever encoding they declare.
 
+use belvedere_core::{Warning, WarningKind};
 use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
 /// Number of first bytes in which an XML declaration is searched.
@@ -7,7 +8,7 @@ const HEAD: usize = 200;
 
 /// The text of a file: by its byte order mark, else as its XML declaration says, else UTF-8, else Windows-1252 (which holds Latin-1)
 /// with a warning.
-pub(super) fn text_of(bytes: &[u8], warnings: &mut Vec<String>) -> String {
+pub(super) fn text_of(bytes: &[u8], warnings: &mut Vec<Warning>) -> String {
     if let Some((encoding, mark)) = Encoding::for_bom(bytes) {
         return encoding.decode_without_bom_handling(&bytes[mark..]).0.into_owned();
     }
@@ -23,19 +24,24 @@ pub(super) fn text_of(bytes: &[u8], warnings: &mut Vec<String>) -> String {
             Some(encoding) if encoding != UTF_8 && encoding != UTF_16LE && encoding != UTF_16BE => {
                 let (text, _, odd) = encoding.decode(bytes);
                 if odd {
-                    warnings.push(format!("text is not wholly {label}, as it declares; names may look odd"));
+                    let text = format!("text is not wholly {label}, as it declares; names may look odd");
+                    warnings.push(Warning::new(WarningKind::Suspect, text));
                 }
                 return text.into_owned();
             }
             Some(_) => {}
-            None => warnings.push(format!("text declares the encoding {label:.40}, which is not known")),
+            None => {
+                let text = format!("text declares the encoding {label:.40}, which is not known");
+                warnings.push(Warning::new(WarningKind::Assumed, text));
+            }
         }
     }
     match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
         Err(e) => {
             let at = e.valid_up_to();
-            warnings.push(format!("text is not UTF-8 (byte {at}); read as Windows-1252, so names may look odd"));
+            let text = format!("text is not UTF-8 (byte {at}); read as Windows-1252, so names may look odd");
+            warnings.push(Warning::new(WarningKind::Assumed, text).with("at_byte", at as f64));
             WINDOWS_1252.decode_without_bom_handling(bytes).0.into_owned()
         }
     }
@@ -120,7 +126,7 @@ mod tests {
             assert!(!lost, "{label}");
             let mut warnings = Vec::new();
             assert_eq!(text_of(&bytes, &mut warnings), text, "{label}");
-            assert_eq!(warnings, Vec::<String>::new(), "{label}");
+            assert_eq!(warnings, Vec::<Warning>::new(), "{label}");
         }
     }
 
@@ -142,10 +148,10 @@ mod tests {
     fn what_declares_nothing_or_something_unknown_is_said() {
         let mut warnings = Vec::new();
         assert_eq!(text_of(b"{\"a\":\"T\xe4l\"}", &mut warnings), "{\"a\":\"Täl\"}");
-        assert!(warnings[0].contains("Windows-1252"), "{warnings:?}");
+        assert!(warnings[0].text().contains("Windows-1252"), "{warnings:?}");
         warnings.clear();
         assert_eq!(text_of(b"<?xml encoding=\"klingon\"?><gpx/>", &mut warnings), "<?xml encoding=\"klingon\"?><gpx/>");
-        assert!(warnings[0].contains("klingon"), "{warnings:?}");
+        assert!(warnings[0].text().contains("klingon"), "{warnings:?}");
     }
 
     #[test]

@@ -13,6 +13,7 @@ pub use raw::RawLayout;
 use crate::formats::Reader;
 use crate::packed::content;
 use crate::{InputFile, IoError, Limits, Loaded, fs};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::VoxelValues;
 use flate2::read::MultiGzDecoder;
 use glam::{DMat3, DVec3};
@@ -134,18 +135,9 @@ fn gunzip(packed: &[u8], expected: usize) -> Result<Vec<u8>, String> {
 }
 
 /// Warnings about values that were changed.
-fn odd_values(path: &Path, changed: &number::Changed) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if changed.not_finite > 0 {
-        warnings.push(format!(
-            "{}: {} values that are no finite number became the least value, {}",
-            path.display(),
-            changed.not_finite,
-            changed.least
-        ));
-    }
-    if changed.rounded > 0 {
-        warnings.push(format!("{}: {} values were rounded to 24 bits", path.display(), changed.rounded));
-    }
-    warnings
+fn odd_values(path: &Path, changed: &number::Changed) -> Vec<Warning> {
+    let least = format!("values that are no finite number became the least value, {}", changed.least);
+    let not_finite = Warning::counted(WarningKind::Repaired, changed.not_finite, &least);
+    let rounded = Warning::counted(WarningKind::Inexact, changed.rounded, "values were rounded to 24 bits");
+    not_finite.into_iter().chain(rounded).map(|w| w.in_file(path)).collect()
 }

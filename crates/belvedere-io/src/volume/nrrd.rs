@@ -3,6 +3,7 @@
 use super::{ByteOrder, Number, Source, VolumeFile, gunzip, odd_values};
 use crate::fs::beside;
 use crate::{InputFile, IoError, Loaded, fs};
+use belvedere_core::{Warning, WarningKind};
 use glam::{DMat3, DVec3};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -137,7 +138,7 @@ impl Header {
             }
         };
         let file = VolumeFile { format: "NRRD", array: None, stored: number, dims, axes, origin, values };
-        let said = warnings.into_iter().map(|w| format!("{}: {w}", source.path.display()));
+        let said = warnings.into_iter().map(|w| w.in_file(source.path));
         Ok(Loaded::new(file, said.chain(odd_values(source.path, &changed)).collect()))
     }
 
@@ -216,7 +217,7 @@ impl Header {
 
 /// Signs that take coordinates of a space to left, posterior, superior, the directions of DICOM, so that a body has the same position in
 /// every file and is never mirrored, for any directions that a file names. Other spaces stay as they are.
-fn to_lps(space: &str, warnings: &mut Vec<String>) -> DVec3 {
+fn to_lps(space: &str, warnings: &mut Vec<Warning>) -> DVec3 {
     let name = space.trim().to_lowercase();
     let long: Vec<&str> = name.split('-').collect();
     let letters: Vec<char> = match long.as_slice() {
@@ -234,7 +235,8 @@ fn to_lps(space: &str, warnings: &mut Vec<String>) -> DVec3 {
         (None, "3d-left-handed" | "3d-left-handed-time") => DVec3::new(1.0, -1.0, 1.0),
         (None, "scanner-xyz" | "scanner-xyz-time" | "3d-right-handed" | "3d-right-handed-time") => DVec3::ONE,
         _ => {
-            warnings.push(format!("its space {space:.40?} is not known; coordinates stay as they are"));
+            let text = format!("its space {space:.40?} is not known; coordinates stay as they are");
+            warnings.push(Warning::new(WarningKind::Assumed, text));
             DVec3::ONE
         }
     }

@@ -33,8 +33,8 @@ fn judge(folder: &Folder, name: &str, about: &str, content: &str, want: &Want) {
             assert!(text.contains(';') && text.len() < 600, "{about}: says what to do: {text}");
         }
         (Warning(words), Ok(loaded)) => {
-            let said = loaded.warnings.join("\n");
-            assert!(said.contains(words) && loaded.warnings.iter().all(|w| w.contains(name)), "{about}: {said}");
+            let said = loaded.warnings.iter().map(|w| w.text()).collect::<Vec<_>>().join("\n");
+            assert!(said.contains(words) && loaded.warnings.iter().all(|w| w.text().contains(name)), "{about}: {said}");
             assert!(is_finite(&loaded.value.city), "{about}");
         }
         (Fine, Ok(loaded)) => {

@@ -105,7 +105,7 @@ fn broken_models_are_one_clear_error_or_a_counted_repair() {
     let loaded = load(&city).unwrap();
     assert_eq!(loaded.value.city.buildings[0].faces.len(), 5);
     assert!(
-        loaded.warnings[0].contains("1 rings of fewer than 3 different vertices were dropped"),
+        loaded.warnings[0].text().contains("1 rings of fewer than 3 different vertices were dropped"),
         "{:?}",
         loaded.warnings
     );
@@ -170,5 +170,5 @@ fn map_features_are_buildings_ways_and_land_cover() {
     assert_eq!((b.name.as_str(), b.height_m, b.height_source), ("Mill", 13.0, HeightSource::Levels));
     assert_eq!(city.ways.iter().map(|w| w.class).collect::<Vec<_>>(), [WayClass::Primary, WayClass::Rail]);
     assert_eq!(city.areas.iter().map(|a| a.cover).collect::<Vec<_>>(), [LandCover::Water, LandCover::Green]);
-    assert!(loaded.warnings.iter().any(|w| w.contains("2 features that are neither")), "{:?}", loaded.warnings);
+    assert!(loaded.warnings.iter().any(|w| w.text().contains("2 features that are neither")), "{:?}", loaded.warnings);
 }

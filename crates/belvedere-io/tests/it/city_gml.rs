@@ -135,7 +135,7 @@ fn what_is_no_building_is_kept_too() {
     assert_eq!(kinds, [StructureKind::Bridge, StructureKind::Vegetation]);
     let top = city.structures[1].faces[0].rings[0][2];
     assert_eq!(top.to_array(), [100.0, 200.0, 11.0], "a shape stands at its place, in its size");
-    assert!(loaded.warnings.iter().any(|w| w.contains("1 TINRelief")), "{:?}", loaded.warnings);
+    assert!(loaded.warnings.iter().any(|w| w.text().contains("1 TINRelief")), "{:?}", loaded.warnings);
 }
 
 #[test]
@@ -183,7 +183,7 @@ fn broken_documents_end_in_one_sentence() {
     let deep = format!("{HEAD}{}", "<a>".repeat(5000));
     assert!(load_text(&deep, None).unwrap_err().contains("deeper than 200"));
     let flat = load_text(&whole.replace(WALL, "0 0 5 20 0 5 0 0 5"), None).unwrap();
-    assert!(flat.warnings.iter().any(|w| w.contains("1 rings")), "{:?}", flat.warnings);
+    assert!(flat.warnings.iter().any(|w| w.text().contains("1 rings")), "{:?}", flat.warnings);
 }
 
 #[test]
@@ -218,7 +218,7 @@ fn cycles_of_references_end() {
         ))
     };
     let loaded = load(&[shell("g", a), shell("h", c), house()].concat()).unwrap();
-    assert!(loaded.warnings.iter().any(|w| w.contains("2 objects have no geometry")), "{:?}", loaded.warnings);
+    assert!(loaded.warnings.iter().any(|w| w.text().contains("2 objects have no geometry")), "{:?}", loaded.warnings);
 }
 
 #[test]

@@ -184,7 +184,7 @@ fn ways_and_multipolygons_become_a_city() {
     assert_eq!(classes, [(WayClass::Primary, 3), (street, 2), (street, 2), (WayClass::Waterway, 2)]);
     assert_eq!(city.areas.iter().map(|a| a.cover).collect::<Vec<_>>(), [LandCover::Forest]);
     for want in ["1 vertices of ways are not in the file", "1 multipolygons do not close"] {
-        assert!(warnings.iter().any(|w| w.contains(want)), "{want}: {warnings:?}");
+        assert!(warnings.iter().any(|w| w.text().contains(want)), "{want}: {warnings:?}");
     }
 }
 
@@ -244,7 +244,7 @@ fn parts_float_stand_on_each_other_and_hide_underground() {
     let block = find("way/9").expect("there");
     assert!(block.faces.is_empty() && (block.height_m - 19.9644).abs() < 1e-9);
     assert_eq!(value.city.ways.len(), 1, "the passage");
-    assert!(warnings.iter().any(|w| w.contains("2 buildings and ways that lie underground")), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w.text().contains("2 buildings and ways that lie underground")), "{warnings:?}");
 }
 
 #[test]
@@ -291,7 +291,7 @@ fn andorra_is_a_town_among_mountains() {
     assert!((89..131).contains(&count(WayClass::Waterway)), "{}", count(WayClass::Waterway));
     assert!(streets > 1000, "{streets} streets");
     assert_eq!(warnings.len(), 2, "{warnings:?}");
-    assert!(warnings[0].contains("lie underground"), "{warnings:?}");
+    assert!(warnings[0].text().contains("lie underground"), "{warnings:?}");
     assert!(city.areas.iter().any(|a| a.cover == LandCover::Water));
     let all = city.buildings.iter().flat_map(|b| &b.footprint).flat_map(|p| &p.outer);
     assert!(all.clone().all(|p| (1.0..2.0).contains(&p.x) && (42.0..43.0).contains(&p.y)));

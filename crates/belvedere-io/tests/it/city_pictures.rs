@@ -104,7 +104,7 @@ fn walls_of_both_formats_wear_their_picture_upright() {
     let json = city_json("looks/wall.png", json!([[0, 0, 1, 2, 3]])).to_string();
     for (name, text) in [("town.city.json", json), ("town.gml", city_gml("looks/wall.png"))] {
         let loaded = load(name, &text);
-        assert!(loaded.warnings.iter().all(|w| !w.contains("picture")), "{name}: {:?}", loaded.warnings);
+        assert!(loaded.warnings.iter().all(|w| !w.text().contains("picture")), "{name}: {:?}", loaded.warnings);
         assert!(loaded.files.iter().any(|f| f.path.ends_with("looks/wall.png")), "{name}: the picture is an input");
         let mesh = mesh(&loaded.value);
         for (x, z, want) in [(2.5, 7.5, RED), (7.5, 7.5, GREEN), (2.5, 2.5, BLUE), (7.5, 2.5, WHITE)] {
@@ -132,7 +132,7 @@ fn pictures_that_are_amiss_leave_plain_faces_and_a_word() {
         (outside, "1 of 1 pictures cannot be read and 1 faces go without"),
     ] {
         let loaded = load("town.city.json", &model.to_string());
-        assert!(loaded.warnings.iter().any(|w| w.contains(word)), "{word}: {:?}", loaded.warnings);
+        assert!(loaded.warnings.iter().any(|w| w.text().contains(word)), "{word}: {:?}", loaded.warnings);
         assert_eq!(color(&mesh(&loaded.value), DVec3::new(2.5, 0.0, 7.5)), plain, "{word}");
     }
 }

@@ -1,6 +1,7 @@
 //! Pictures draped over terrain are at the right position.
 
 use crate::atomic::Folder;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_io::crs::Transform;
 use belvedere_io::png::{self, Channels};
 use belvedere_io::{DrapeRequest, GeoTiff, Limits, TerrainRequest, load_drape, load_terrain};
@@ -22,7 +23,7 @@ fn terrain(name: &str) -> Option<(Crs, Heightfield)> {
     Some((loaded.crs, loaded.heightfield))
 }
 
-fn drape(path: &Path, crs: Crs, h: &Heightfield, request: &DrapeRequest) -> Result<(Drape, Vec<String>), String> {
+fn drape(path: &Path, crs: Crs, h: &Heightfield, request: &DrapeRequest) -> Result<(Drape, Vec<Warning>), String> {
     let loaded = load_drape(path, crs, h, request, &Progress::silent());
     loaded.map(|l| (l.value, l.warnings)).map_err(|e| e.to_string())
 }
@@ -97,7 +98,7 @@ fn pictures_in_the_scene_crs_are_taken_as_they_are() {
         assert_eq!(d.pixels[3 * 20 + 4], [64, 3, 7, 255]);
     }
     let (_, warnings) = drape(&path, Crs::Epsg(32631), &h, &DrapeRequest::default()).unwrap();
-    assert!(warnings.iter().any(|w| w.contains("that of the scene")), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w.text().contains("that of the scene")), "{warnings:?}");
     // only what the terrain needs is kept
     let (d, _) = drape(&path, Crs::Epsg(32631), &flat(1040.0, 2060.0, 1060.0, 2080.0), &request).unwrap();
     assert!(d.width <= 8 && d.height <= 8, "{} x {}", d.width, d.height);
@@ -134,14 +135,16 @@ fn large_pictures_are_reduced_and_said_so() {
     let request = DrapeRequest { max_pixels: 1_000_000, ..Default::default() };
     let (d, warnings) = drape(&path, Crs::Epsg(26712), &h, &request).unwrap();
     assert!(d.pixels.len() <= 1_000_000 && d.pixels.len() > 500_000, "{}", d.pixels.len());
-    assert!(warnings.iter().any(|w| w.contains("times coarser")), "{warnings:?}");
+    let said = warnings.iter().find(|w| w.kind() == WarningKind::Reduced).unwrap();
+    assert!(said.text().contains("times coarser") && said.figure("coarser").is_some_and(|f| f > 2.0), "{said:?}");
     let corner = pixel_of(&d, DVec2::new(387000.0, 3999000.0));
     assert!(corner.x > -1.0 && corner.x < 3.0 && corner.y > -1.0 && corner.y < 3.0, "{corner}");
     assert!(d.pixels.iter().any(|p| *p != d.pixels[0]));
     // and in the neighbouring datum's UTM zone
     let (d, warnings) = drape(&path, Crs::Epsg(32612), &h, &request).unwrap();
     assert!(d.pixels.len() <= 1_010_000, "{}", d.pixels.len());
-    assert!(warnings.iter().any(|w| w.contains("NAD27")), "{warnings:?}");
+    let said = warnings.iter().find(|w| w.kind() == WarningKind::Inexact).unwrap();
+    assert!(said.text().contains("NAD27") && said.figure("off_m") == Some(10.0), "{said:?}");
 }
 
 #[test]

@@ -167,7 +167,7 @@ fn a_real_package_says_what_the_geojson_made_of_it_says() {
     }
     let all = load(&path).unwrap();
     assert_eq!(all.value.features.len(), 144 + 35 + 407 + 144);
-    assert!(all.warnings.len() == 1 && all.warnings[0].contains("?table=buildings"), "{:?}", all.warnings);
+    assert!(all.warnings.len() == 1 && all.warnings[0].text().contains("?table=buildings"), "{:?}", all.warnings);
     assert!(load(&at(&path, "dtm")).unwrap_err().contains("it has buildings, plots, streets, tessellation"));
     assert_eq!(std::fs::read(&path).unwrap(), before);
     let folder = std::fs::read_dir(path.parent().unwrap()).unwrap();
@@ -260,7 +260,7 @@ fn every_field_odd() {
         "1 lines of fewer than 2 points",
         "1 polygon rings of fewer than 3 points",
     ] {
-        assert!(warnings.iter().any(|w| w.contains(said)), "{said}: {warnings:?}");
+        assert!(warnings.iter().any(|w| w.text().contains(said)), "{said}: {warnings:?}");
     }
     assert_eq!(warnings.len(), 5);
 }
@@ -279,10 +279,10 @@ fn tables_in_several_systems_come_to_that_of_the_first() {
     assert_eq!((value.crs.epsg(), value.features.len()), (Some(32633), 2));
     let want = Transform::new(&degrees, &utm).unwrap().forward_one(glam::DVec2::new(15.0, 49.6)).unwrap();
     assert!((value.features[1].geometry.vertices().next().unwrap().xy - want).length() < 1e-6);
-    assert!(warnings.iter().any(|w| w.contains("taken to EPSG:32633")), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w.text().contains("taken to EPSG:32633")), "{warnings:?}");
     // Undefined degrees give a warning; an undefined plane is an error.
     let one = |srs_id: i64| Package::new().table("a", srs_id).row("a", line([1.0, 2.0, 3.0, 4.0], srs_id as i32), "");
-    assert!(one(0).load().unwrap().warnings[0].contains("taken as WGS 84"));
+    assert!(one(0).load().unwrap().warnings[0].text().contains("taken as WGS 84"));
     for (srs_id, said) in [(-1, "undefined plane"), (77, "does not list"), (100_002, "is in \"lost\"")] {
         let text = one(srs_id).load().unwrap_err();
         assert!(text.contains(said) && text.contains("-a_srs"), "{text}");
@@ -371,10 +371,10 @@ fn a_log_beside_the_file_is_spoken_of_and_files_in_that_mode_are_read() {
         Package::new().table("t", 4326).row("t", Some(geometry(4326, 0, true, &LE.point(1, &[1.0, 2.0]))), "x").bytes();
     (bytes[18], bytes[19]) = (2, 2);
     std::fs::write(&path, &bytes).unwrap();
-    assert_eq!(load(&path).unwrap().warnings, Vec::<String>::new());
+    assert_eq!(load(&path).unwrap().warnings, []);
     std::fs::write(dir.path().join("a.gpkg-wal"), b"log").unwrap();
     let loaded = load(&path).unwrap();
-    assert!(loaded.warnings[0].contains("a.gpkg-wal (3 bytes)"), "{:?}", loaded.warnings);
+    assert!(loaded.warnings[0].text().contains("a.gpkg-wal (3 bytes)"), "{:?}", loaded.warnings);
     assert_eq!(std::fs::read(&path).unwrap(), bytes);
     assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 2);
     // The format is recognised by the content, not by the name.

@@ -174,7 +174,7 @@ fn written_files_come_back() {
         let raster = Raster { samples: samples(kind, 701 * 203 * bands), info, mask: None };
         write_geotiff(&path, &raster, true).unwrap();
         let back = GeoTiff::open(&path, Limits::default()).unwrap();
-        assert_eq!(back.warnings, Vec::<String>::new());
+        assert_eq!(back.warnings, []);
         assert_eq!(back.value.read(0, &Progress::silent()).unwrap(), raster);
     }
     std::fs::remove_dir_all(&folder).unwrap();
@@ -317,7 +317,7 @@ fn headers_that_lie() {
         assert!(error.contains(wanted), "{error} does not say {wanted}");
     }
     let lost = open(&PLAIN.image([4, 3], 1, 8, &[7; 12], &[(330, 4, vec![999_999])])).unwrap();
-    assert!(lost.warnings.iter().any(|w| w.contains("an overview is ignored")), "{:?}", lost.warnings);
+    assert!(lost.warnings.iter().any(|w| w.text().contains("an overview is ignored")), "{:?}", lost.warnings);
     let looped = PLAIN.file(&base, &[0; 64], 8);
     assert!(survive(&looped, "loop").unwrap_err().contains("loop"));
     let nowhere = [b"II\x2a\0".as_slice(), &[255; 4]].concat();

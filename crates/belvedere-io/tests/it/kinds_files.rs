@@ -95,7 +95,7 @@ fn obj_lines_go_on_and_materials_may_be_odd_or_missing() {
         loaded.value.colors,
         belvedere_scene::MeshColors::PerTriangle(vec![belvedere_scene::Color::rgb(128, 128, 128)])
     );
-    assert!(loaded.warnings.iter().any(|w| w.contains("2 lines of its materials")), "{:?}", loaded.warnings);
+    assert!(loaded.warnings.iter().any(|w| w.text().contains("2 lines of its materials")), "{:?}", loaded.warnings);
 }
 
 /// A tetrahedron whose corners are stored as integers of a type.
@@ -197,7 +197,7 @@ fn volumes_of_one_body_stand_at_one_place() {
     }
     let odd =
         folder.file("b.nrrd", b"NRRD0004\ntype: uint8\ndimension: 3\nspace: XYZ\nsizes: 1 1 1\nencoding: raw\n\n\0");
-    assert!(load_volume(&odd, &VolumeRequest::default()).unwrap().warnings[0].contains("XYZ"));
+    assert!(load_volume(&odd, &VolumeRequest::default()).unwrap().warnings[0].text().contains("XYZ"));
 }
 
 #[test]
@@ -224,14 +224,14 @@ fn sequences_nulls_and_positions_at_nowhere_in_geojson() {
     );
     let loaded = load_vectors(&folder.file("n.geojson", nulls.as_bytes())).unwrap();
     assert_eq!((loaded.value.features.len(), loaded.value.vertex_count()), (2, 4));
-    let said = loaded.warnings.join("\n");
+    let said = loaded.warnings.iter().map(|w| w.text()).collect::<Vec<_>>().join("\n");
     assert!(said.contains("2 features without geometry") && said.contains("4 members that are null"), "{said}");
     let zeros = r#"{"type":"GeometryCollection","geometries":[{"type":"LineString","coordinates":[[11.4,46.9],[11.401,46.9],[0,0],[11.402,46.9],[11.403,46.9]]},{"type":"MultiPoint","coordinates":[[11.4,46.9],[0,0]]},{"type":"Polygon","coordinates":[[[11.4,46.9],[11.41,46.9],[0,0],[11.41,46.91],[11.4,46.9]]]}]}"#;
     let loaded = load_vectors(&folder.file("z.geojson", zeros.as_bytes())).unwrap();
     let sizes: Vec<usize> = loaded.value.features.iter().map(|f| f.geometry.vertices().count()).collect();
     assert_eq!(sizes, [4, 1, 3]);
     assert!(matches!(&loaded.value.features[0].geometry, Geometry::Lines(l) if l.len() == 2));
-    assert!(loaded.warnings[0].contains("3 positions at exactly 0, 0"), "{:?}", loaded.warnings);
+    assert!(loaded.warnings[0].text().contains("3 positions at exactly 0, 0"), "{:?}", loaded.warnings);
     let one = r#"{"type":"LineString","coordinates":[[11.4,46.9],[11.4,46.9],[11.4,46.9]]}"#;
     assert!(
         load_vectors(&folder.file("o.geojson", one.as_bytes())).unwrap_err().to_string().contains("one position only")
@@ -245,7 +245,7 @@ fn a_segment_per_point_is_a_line() {
     let text = format!("<gpx><trk>{}</trk></gpx>", (1..=5).map(segment).collect::<String>());
     let loaded = load_vectors(&folder.file("a.gpx", text.as_bytes())).unwrap();
     assert_eq!((loaded.value.features.len(), loaded.value.vertex_count()), (1, 5));
-    assert!(loaded.warnings[0].contains("5 segments of a single point"), "{:?}", loaded.warnings);
+    assert!(loaded.warnings[0].text().contains("5 segments of a single point"), "{:?}", loaded.warnings);
 }
 
 /// Records with gaps between them, in any order, are found at the offsets in the index.
@@ -317,11 +317,11 @@ fn grids_with_commas_customary_voids_and_feet() {
     let want = load(&grid(&folder, "a.asc", point, ""), &usual).value.heightfield;
     let comma = load(&grid(&folder, "b.asc", |v| format!("{v:.2}").replace('.', ","), ""), &usual);
     assert_eq!(comma.value.heightfield.heights(), want.heights());
-    assert!(comma.warnings.iter().any(|w| w.contains("decimal commas")), "{:?}", comma.warnings);
+    assert!(comma.warnings.iter().any(|w| w.text().contains("decimal commas")), "{:?}", comma.warnings);
     for odd in ["-32768", "-99999", "-32767.0", "9999", "-3.4028235e38"] {
         let found = load(&grid(&folder, "c.asc", point, odd), &usual);
         assert_eq!(found.value.void_samples, 7, "{odd}: {:?}", found.warnings);
-        assert!(found.warnings.iter().any(|w| w.contains("taken as voids")), "{odd}: {:?}", found.warnings);
+        assert!(found.warnings.iter().any(|w| w.text().contains("taken as voids")), "{odd}: {:?}", found.warnings);
     }
     // a given no-data value takes precedence
     let said = TerrainRequest { nodata: Some(-1.0), ..usual.clone() };
@@ -330,10 +330,10 @@ fn grids_with_commas_customary_voids_and_feet() {
     folder.file("f.prj", feet.as_bytes());
     let path = grid(&folder, "f.asc", point, "");
     let silent = load(&path, &usual);
-    let said = silent.warnings.iter().find(|w| w.contains("US survey feet")).expect("said");
-    assert!(said.contains("3.28 times") && said.contains("--vertical-unit us-ft"), "{said}");
+    let said = silent.warnings.iter().find(|w| w.text().contains("US survey feet")).expect("said");
+    assert!(said.text().contains("3.28 times") && said.text().contains("--vertical-unit us-ft"), "{said}");
     let settled = load(&path, &TerrainRequest { vertical_unit_m: Some(0.3048), ..usual });
-    assert!(!settled.warnings.iter().any(|w| w.contains("feet")), "{:?}", settled.warnings);
+    assert!(!settled.warnings.iter().any(|w| w.text().contains("feet")), "{:?}", settled.warnings);
     let top = |t: &belvedere_io::LoadedTerrain| t.heightfield.z_range()[1];
     assert!((top(&settled.value) / top(&silent.value) - 0.3048).abs() < 1e-3);
 }

@@ -105,7 +105,7 @@ fn models_locations_hetero_groups_and_named_bonds() {
     assert_eq!(m.atoms()[1].position, DVec3::new(11.7, 6.1, -5.2));
     assert_eq!(m.bonds(), [[0, 1], [0, 3], [1, 2]]);
     assert!(m.residues()[1].hetero && m.residues()[2].is_water());
-    let said = loaded.warnings.join("\n");
+    let said = loaded.warnings.iter().map(|w| w.text()).collect::<Vec<_>>().join("\n");
     for part in ["2 models; the first is taken", "1 atoms at alternate locations", "1 atoms name no element"] {
         assert!(said.contains(part), "{said}");
     }

@@ -54,7 +54,7 @@ fn ascii_grids_of_all_dialects() {
     assert_eq!([a.sample_f64(0, 2, 1), a.sample_f64(0, 1, 1)], [Some(6.5), None]);
     assert_eq!(a.info.crs, SourceCrs::Unknown);
     let (_, warnings) = read(&format!("{corner} 7 8")).unwrap();
-    assert!(warnings[0].contains("2 values"), "{warnings:?}");
+    assert!(warnings[0].text().contains("2 values"), "{warnings:?}");
     fs::write(path.with_extension("prj"), "GEOGCS[\"x\"]").unwrap();
     assert_eq!(read(corner).unwrap().0.info.crs, SourceCrs::Wkt("GEOGCS[\"x\"]".into()));
 }

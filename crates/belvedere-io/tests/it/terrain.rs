@@ -2,6 +2,7 @@
 
 use crate::atomic::Folder;
 use crate::tiff_writer::PLAIN;
+use belvedere_core::Warning;
 use belvedere_io::crs::Transform;
 use belvedere_io::geotiff::write_geotiff;
 use belvedere_io::{
@@ -16,7 +17,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-fn load(paths: &[PathBuf], request: &TerrainRequest) -> Result<(LoadedTerrain, Vec<String>), IoError> {
+fn load(paths: &[PathBuf], request: &TerrainRequest) -> Result<(LoadedTerrain, Vec<Warning>), IoError> {
     load_terrain(paths, request, &Progress::silent()).map(|l| (l.value, l.warnings))
 }
 
@@ -90,7 +91,7 @@ fn projected_rasters_are_used_exactly() {
 fn web_mercator_is_said_to_be_too_long() {
     let Some(path) = data("grand_canyon/grandcanyon_dem_3857.tif") else { return };
     let (_, warnings) = load(std::slice::from_ref(&path), &TerrainRequest::default()).unwrap();
-    assert!(warnings.iter().any(|w| w.contains("1.24 times too long")), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w.text().contains("1.24 times too long")), "{warnings:?}");
     let request = TerrainRequest { crs: CrsChoice::Epsg(32612), max_error_p99_m: f64::INFINITY, ..Default::default() };
     let (utm, warnings) = load(&[path], &request).unwrap();
     assert!(warnings.is_empty(), "{warnings:?}");
@@ -142,7 +143,7 @@ fn resampled_nodes_are_bilinear_and_voids_do_not_leak() {
     let (terrain, warnings) = load(&[path], &request).unwrap();
     assert_eq!(terrain.crs, Crs::Epsg(32631));
     assert_eq!(terrain.void_samples, 7652);
-    assert!(warnings.iter().any(|w| w.contains("7652")), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w.text().contains("7652")), "{warnings:?}");
     let to_lon_lat = Transform::between_epsg(32631, 4326).unwrap();
     let h = &terrain.heightfield;
     let (mut measured, mut holes) = (0, 0);
@@ -321,7 +322,7 @@ fn the_first_source_wins_and_the_second_closes_its_holes() {
     assert_eq!(h.node(4, 4).unwrap().z, 1.0);
     assert_eq!(h.node(5, 5).unwrap().z, 2.0);
     assert_eq!(h.node(12, 0).unwrap().z, 2.0);
-    assert!(warnings.iter().any(|w| w.contains("69 shared samples")), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w.text().contains("69 shared samples")), "{warnings:?}");
 }
 
 #[test]
@@ -352,7 +353,10 @@ fn two_systems_of_one_place_agree() {
 fn an_undeclared_frame_is_told_not_guessed() {
     let Some(path) = data("swellendam/srtm_41_19_4326.tif") else { return };
     let (as_is, warnings) = load(std::slice::from_ref(&path), &TerrainRequest::default()).unwrap();
-    assert!(warnings.iter().any(|w| w.contains("106658 samples") && w.contains("nodata = 0")), "{warnings:?}");
+    assert!(
+        warnings.iter().any(|w| w.text().contains("106658 samples") && w.text().contains("nodata = 0")),
+        "{warnings:?}"
+    );
     assert_eq!(as_is.void_samples, 0);
     let (told, _) = load(&[path], &TerrainRequest { nodata: Some(0.0), ..Default::default() }).unwrap();
     assert!(told.void_samples >= 106_658, "{}", told.void_samples);
@@ -455,7 +459,7 @@ fn absurd_grids_are_refused_or_cleaned() {
     let (terrain, warnings) =
         load(std::slice::from_ref(&path), &TerrainRequest { source_crs: Some(32631), ..Default::default() }).unwrap();
     assert_eq!((terrain.void_samples, terrain.heightfield.z_range()), (5, [5.0, 5.0]));
-    assert!(warnings.iter().any(|w| w.contains("5 samples beyond")), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w.text().contains("5 samples beyond")), "{warnings:?}");
     write_asc(&path, 5, 5, 5e5, 5e6, 30.0, &|_, _| -9999.0);
     let error = load(&[path], &TerrainRequest::default()).unwrap_err().to_string();
     assert!(error.contains("no data at all"), "{error}");
@@ -495,7 +499,7 @@ fn too_large_terrain_is_thinned_out_and_said_so() {
     let (terrain, warnings) = load(&[path], &TerrainRequest { max_nodes: 100_000, ..Default::default() }).unwrap();
     let h = &terrain.heightfield;
     assert!(h.cols() * h.rows() <= 100_000 && h.cols() * h.rows() > 50_000, "{} x {}", h.cols(), h.rows());
-    assert!(warnings.iter().any(|w| w.contains("th sample")), "{warnings:?}");
+    assert!(warnings.iter().any(|w| w.text().contains("th sample")), "{warnings:?}");
     let z = h.height_at(DVec2::new(390500.0, 4712000.0)).unwrap();
     assert!((z - 2312.0).abs() < 150.0, "{z}");
 }
@@ -586,7 +590,7 @@ fn only_coordinates_that_can_be_degrees_are_taken_for_degrees() {
     ] {
         write_asc(&path, 40, 40, x, y, step, &|c, r| (c + r) as f64);
         let warned = match load(std::slice::from_ref(&path), &TerrainRequest::default()) {
-            Ok((_, warnings)) => warnings.iter().any(|w| w.contains("look like degrees")),
+            Ok((_, warnings)) => warnings.iter().any(|w| w.text().contains("look like degrees")),
             Err(e) => panic!("{x} {y} {step}: {e}"),
         };
         assert_eq!(warned, degrees, "{x} {y} {step}");

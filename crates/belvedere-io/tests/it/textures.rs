@@ -169,7 +169,11 @@ fn pictures_that_cannot_be_read_leave_the_colour_with_a_word() {
         let mtl = format!("newmtl paper\nKd 0.5 0 0\nmap_Kd {name}\n");
         std::fs::write(folder.path().join("m.mtl"), mtl).expect("written");
         let loaded = load(&folder.path().join("s.obj"));
-        assert!(loaded.warnings.len() == 1 && loaded.warnings[0].contains(said), "{name}: {:?}", loaded.warnings);
+        assert!(
+            loaded.warnings.len() == 1 && loaded.warnings[0].text().contains(said),
+            "{name}: {:?}",
+            loaded.warnings
+        );
         assert!(loaded.value.texturing.is_none());
         assert_eq!(loaded.value.colors, MeshColors::PerTriangle(vec![Color::rgb(128, 0, 0); 2]));
     }

@@ -255,7 +255,7 @@ fn values_that_are_no_numbers_become_the_least_with_a_warning() {
     let path = folder.file("n_2x2x2_float32.raw", &raw);
     let loaded = load_volume(&path, &VolumeRequest::default()).expect("it is read");
     assert_eq!(loaded.value.values, VoxelValues::F32(vec![1.5, -2.0, -2.0, -2.0, 4.0, 5.0, 6.0, 7.0]));
-    assert!(loaded.warnings[0].contains("2 values that are no finite number"), "{:?}", loaded.warnings);
+    assert!(loaded.warnings[0].text().contains("2 values that are no finite number"), "{:?}", loaded.warnings);
 }
 
 #[test]

@@ -12,6 +12,7 @@ use crate::resolve::StripReport;
 use crate::resolve::constructor::ConstructorReport;
 use crate::scene_file::{Document, Inset};
 use belvedere_core::View;
+use belvedere_core::Warning;
 use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::{Crs, Frame, FrameStats, Heightfield, Layer, LayerKind, NodeState, Scene, Unit};
 use serde::Serialize;
@@ -155,7 +156,7 @@ pub struct Sidecar {
     /// Files that were read.
     pub inputs: Vec<InputFile>,
     /// Warnings.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     /// Counts of the renderer.
     pub stats: FrameStats,
     /// Wall time of drawing, milliseconds.

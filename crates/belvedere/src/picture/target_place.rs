@@ -1,6 +1,7 @@
 //! A target point: its position in the scene and in the voxels of volumes.
 
 use belvedere_core::DVec3;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{LayerKind, Scene, Unit, VolumeLayer};
 use serde::Serialize;
 use std::fmt;
@@ -61,9 +62,11 @@ impl TargetPlace {
     }
 
     /// Warning about the position, if there is any.
-    pub(crate) fn warning(&self) -> Option<String> {
+    pub(crate) fn warning(&self) -> Option<Warning> {
         self.outside.then(|| {
-            "the point lies outside everything in the scene; give scene coordinates, `info` tells their range".into()
+            let text =
+                "the point lies outside everything in the scene; give scene coordinates, `info` tells their range";
+            Warning::new(WarningKind::Suspect, text).about("target")
         })
     }
 

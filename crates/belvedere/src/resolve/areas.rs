@@ -6,6 +6,7 @@ use super::{builtin, vectors};
 use crate::BelvedereError;
 use crate::record::AreaRecord;
 use crate::scene_file::{AreaDoc, AreaStyleDoc, LayerDoc, Paths, SurfaceDoc};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_io::vector::AreaKind;
 use belvedere_scene::{AreaLayer, AreaSurface, Color, LayerKind, Scene};
 
@@ -33,7 +34,7 @@ pub(super) fn layer(
     let stated = stated(loader, style);
     if stated.is_none() && found.surface == AreaSurface::Outline {
         let remark = format!("{}: drawn as outlines; surface says what they are", found.why);
-        loader.note(index, vec![remark]);
+        loader.note(index, [Warning::new(WarningKind::Assumed, remark)]);
     }
     let AreaKind { surface, why } = stated.unwrap_or(found);
     loader.areas.push(AreaRecord { layer: doc.id.clone(), kind: surface.name(), areas: features.len(), why });

@@ -10,6 +10,7 @@ use crate::city_blocks;
 use crate::scene_file::{CityDoc, LayerDoc, Paths};
 use belvedere_construct::generalise::{GeneraliseSettings, generalise};
 use belvedere_core::DVec2;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_io::city::{CityColors, plate_extent, reproject};
 use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::{CityFile, load_city};
@@ -103,18 +104,14 @@ pub(super) fn layer(
         if let (Some(from), Crs::Epsg(_)) = (stated.as_ref().or(file.crs.as_ref()), ground.crs) {
             let to = CoordinateSystem::from_scene(ground.crs).map_err(|e| loader.fail(index, "crs", e))?;
             let lost = reproject(&mut part, from, &to).map_err(|e| loader.fail(index, "crs", e))?;
-            if lost > 0 {
-                loader.note(
-                    index,
-                    vec![format!("{lost} shapes lie outside the domain of {} and are left out", to.name())],
-                );
-            }
+            let what = format!("shapes lie outside the domain of {} and are left out", to.name());
+            loader.note(index, Warning::counted(WarningKind::Ignored, lost, &what));
         } else if let (true, Crs::Epsg(_)) = (file.format != BUILT_IN, ground.crs) {
             let (path, scene) = (file.path.display(), ground.crs);
             let said = format!(
                 "{path}: names no system that is known and is taken as in {scene}, as the scene is; set crs if it is not"
             );
-            loader.note(index, vec![said]);
+            loader.note(index, [Warning::new(WarningKind::Assumed, said)]);
         }
         renumber(&mut part, city.pictures.len() as u32);
         city.pictures.extend(part.pictures);
@@ -134,7 +131,7 @@ pub(super) fn layer(
     }
     if let Some(terrain) = terrain {
         let lost = leave_out_beyond(&mut city, terrain).map_err(|e| loader.fail(index, "source", e))?;
-        loader.note(index, lost.into_iter().chain(remarks(&city, terrain)).collect());
+        loader.note(index, lost.into_iter().chain(remarks(&city, terrain)));
     }
     compact(&city).map_err(|e| loader.fail(index, "source", e))?;
     // Part 0 is the space between buildings; bridges and trees follow the buildings.
@@ -168,13 +165,13 @@ fn abstraction(
         let blocks = level.city.buildings.iter_mut().take(level.blocks.len());
         blocks.for_each(|b| b.faces.retain(|f| f.surface != Surface::Ground));
     }
-    let notes = found.report.notes.into_iter().filter(|n| n.starts_with(level.name)).collect();
-    loader.note(index, notes);
+    loader.note(index, found.report.notes.into_iter().filter(|note| note.subject() == Some(level.name)));
     let failing = found.report.levels.iter().filter(|l| l.name == level.name).flat_map(|l| l.failing());
-    loader.note(index, failing.collect());
+    loader.note(index, failing);
     let missed = found.report.levels.iter().find(|l| l.name == level.name && !l.volume_kept);
     if let Some(missed) = missed {
-        loader.note(index, vec![format!("{} keeps {:.0} % of the volume", missed.name, 100.0 * missed.volume_share)]);
+        let text = format!("{} keeps {:.0} % of the volume", missed.name, 100.0 * missed.volume_share);
+        loader.note(index, [Warning::new(WarningKind::Inexact, text).with("volume_share", missed.volume_share)]);
     }
     // Areas of the city stay on the ground, with green cells over them.
     let areas = city.areas.iter().cloned().chain(level.city.areas).collect();
@@ -189,20 +186,22 @@ fn renumber(city: &mut City, first: u32) {
 }
 
 /// Number of buildings without a known height, in words.
-fn without_height(city: &City) -> Vec<String> {
+fn without_height(city: &City) -> Option<Warning> {
     let (all, assumed) =
         (city.buildings.len(), city.buildings.iter().filter(|b| b.height_source == HeightSource::Assumed).count());
     let height = city.buildings.iter().find(|b| b.height_source == HeightSource::Assumed).map(|b| b.height_m);
     height.map(|height| {
-        format!("{assumed} of {all} buildings have no height and are drawn {height} m high; give them an attribute height or levels")
-    }).into_iter().collect()
+        let text = format!("{assumed} of {all} buildings have no height and are drawn {height} m high; give them an attribute height or levels");
+        let warning = Warning::new(WarningKind::Assumed, text).with("count", assumed as f64).with("of", all as f64);
+        warning.with("height_m", height)
+    })
 }
 
 /// Removes buildings that have neither a ground height of their own nor terrain under them; returns a warning.
 ///
 /// # Errors
 /// If no building is left.
-fn leave_out_beyond(city: &mut City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> Result<Option<String>, String> {
+fn leave_out_beyond(city: &mut City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> Result<Option<Warning>, String> {
     let under =
         |b: &belvedere_scene::Building| b.footprint.iter().flat_map(|p| &p.outer).any(|xy| terrain(*xy).is_some());
     let before = city.buildings.len();
@@ -213,7 +212,10 @@ fn leave_out_beyond(city: &mut City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> 
             "none of its {before} buildings lies on the terrain; check the systems of both, and whether latitudes come before longitudes"
         ));
     }
-    Ok((lost > 0).then(|| format!("{lost} of {before} buildings lie outside the terrain and are left out")))
+    Ok((lost > 0).then(|| {
+        let text = format!("{lost} of {before} buildings lie outside the terrain and are left out");
+        Warning::new(WarningKind::Ignored, text).with("count", lost as f64).with("of", before as f64)
+    }))
 }
 
 /// Refuses cities wider than the limit, in which some coordinates must be wrong.
@@ -230,7 +232,7 @@ fn compact(city: &City) -> Result<(), String> {
 }
 
 /// Warnings about differences from the terrain.
-fn remarks(city: &City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> Vec<String> {
+fn remarks(city: &City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> Vec<Warning> {
     let offset = |b: &belvedere_scene::Building| Some(b.base_m? - terrain(*b.footprint.first()?.outer.first()?)?);
     let mut offsets: Vec<f64> = city.buildings.iter().filter_map(offset).collect();
     let mut out = Vec::new();
@@ -238,18 +240,19 @@ fn remarks(city: &City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> Vec<String> {
         let middle = offsets.len() / 2;
         let median = *offsets.select_nth_unstable_by(middle, f64::total_cmp).1;
         if median.abs() > NOTED_M {
-            out.push(format!(
+            let text = format!(
                 "its buildings stand {:.1} m {} the terrain (median of {}); set height_offset_m = {:.1} if the datums differ",
                 median.abs(),
                 if median > 0.0 { "above" } else { "below" },
                 offsets.len(),
                 -median
-            ));
+            );
+            let warning = Warning::new(WarningKind::Suspect, text).with("median_m", median);
+            out.push(warning.with("count", offsets.len() as f64));
         }
     }
-    if !city.areas.is_empty() {
-        out.push(format!("{} areas of land cover are not drawn on terrain; use layers of kind area", city.areas.len()));
-    }
+    let undrawn = "areas of land cover are not drawn on terrain; use layers of kind area";
+    out.extend(Warning::counted(WarningKind::Ignored, city.areas.len(), undrawn));
     out
 }
 

@@ -15,6 +15,7 @@ use belvedere_construct::rays::{
     auto_probe, track_target,
 };
 use belvedere_core::{EarthCurvature, Stage, View};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_io::InputFile;
 use belvedere_scene::{LayerKind, Scene};
 use serde::{Deserialize, Serialize};
@@ -38,14 +39,16 @@ pub enum ConstructorReport {
 const SHORT: f64 = 0.95;
 
 /// Warning about a preview that follows less of the path than asked for.
-pub(super) fn remark(report: Option<&ConstructorReport>) -> Option<String> {
+pub(super) fn remark(report: Option<&ConstructorReport>) -> Option<Warning> {
     let Some(ConstructorReport::PathPreview(PathReport { preview, .. })) = report else { return None };
     let PreviewReport { position_m, reach_m, wanted_m, .. } = *preview;
     (reach_m < SHORT * wanted_m).then(|| {
-        format!(
+        let text = format!(
             "constructor: from {position_m:.1} the preview follows {reach_m:.1} of the {wanted_m:.1} asked for: no more turns fit into \
              the picture; give a shorter preview_m or a narrower lens"
-        )
+        );
+        let warning = Warning::new(WarningKind::Limited, text).about("constructor").with("position_m", position_m);
+        warning.with("reach_m", reach_m).with("wanted_m", wanted_m)
     })
 }
 
@@ -139,7 +142,7 @@ pub(super) fn construct(
     scene: &Scene,
     base: View,
     solving: &mut Solving<'_>,
-    (inputs, warnings): (&mut Vec<InputFile>, &mut Vec<String>),
+    (inputs, warnings): (&mut Vec<InputFile>, &mut Vec<Warning>),
 ) -> Result<(View, Option<ConstructorReport>), BelvedereError> {
     let Some(doc) = stated(source) else { return Ok((base, None)) };
     if doc.kind == ConstructorKind::PathPreview {
@@ -321,7 +324,7 @@ mod tests {
             ConstructorReport::PathPreview(PathReport { preview, centreline: None, walls: Vec::new() })
         };
         let said = remark(Some(&report(120.0))).expect("a warning");
-        assert!(said.contains("120.0 of the 200.0"), "{said}");
+        assert!(said.text().contains("120.0 of the 200.0"), "{said}");
         assert!(remark(Some(&report(200.0))).is_none() && remark(None).is_none());
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::scene_file::EarthDoc;
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Stage};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_io::crs::{CoordinateSystem, Transform, gaussian_radius_m};
 use belvedere_scene::{Crs, Heightfield, Scene};
 
@@ -15,24 +16,26 @@ pub(crate) fn epsg(text: &str) -> Option<u32> {
 }
 
 /// Radius of the earth at the middle of a scene, metres.
-pub(crate) fn earth_radius(scene: &Scene, warnings: &mut Vec<String>) -> f64 {
+pub(crate) fn earth_radius(scene: &Scene, warnings: &mut Vec<Warning>) -> f64 {
     radius_at(&Ground::of(scene), scene.bounds().center().truncate(), warnings)
 }
 
 /// The stage of an earth shape seen from `eye`.
-pub(crate) fn earth(shape: EarthDoc, ground: &Ground<'_>, eye: DVec3, warnings: &mut Vec<String>) -> Option<Stage> {
+pub(crate) fn earth(shape: EarthDoc, ground: &Ground<'_>, eye: DVec3, warnings: &mut Vec<Warning>) -> Option<Stage> {
     (shape == EarthDoc::Curved).then(|| {
         let (radius, refraction) = (radius_at(ground, eye.truncate(), warnings), EarthCurvature::REFRACTION);
         Stage::EarthCurvature(EarthCurvature { eye, radius, refraction })
     })
 }
 
-fn radius_at(ground: &Ground<'_>, xy: DVec2, warnings: &mut Vec<String>) -> f64 {
+fn radius_at(ground: &Ground<'_>, xy: DVec2, warnings: &mut Vec<Warning>) -> f64 {
     let radius = ground.lon_lat(xy).map(|lon_lat| gaussian_radius_m(lon_lat.y));
     radius.unwrap_or_else(|| {
-        warnings.push(format!(
+        let text = format!(
             "earth = \"curved\" in a scene without georeference: the mean radius {MEAN_EARTH_RADIUS_M} m is used"
-        ));
+        );
+        let warning = Warning::new(WarningKind::Assumed, text).about("earth");
+        warnings.push(warning.with("radius_m", MEAN_EARTH_RADIUS_M));
         MEAN_EARTH_RADIUS_M
     })
 }

@@ -12,6 +12,7 @@ use crate::scene_file::{
 use crate::{BelvedereError, Needs, OpenOptions};
 use belvedere_builtin::{RouteCost, least_cost_route, valley_route};
 use belvedere_core::DVec2;
+use belvedere_core::Warning;
 use belvedere_io::DrapeRequest;
 use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::terrain::OriginalTerrain;
@@ -55,7 +56,7 @@ pub(crate) struct LoadedLayers {
     pub(crate) layers: Vec<Layer>,
     pub(crate) crs: Crs,
     pub(crate) inputs: Vec<InputFile>,
-    pub(crate) warnings: Vec<String>,
+    pub(crate) warnings: Vec<Warning>,
     /// Surfaces found for the areas.
     pub(crate) areas: Vec<AreaRecord>,
     pub(crate) original: Option<OriginalTerrain>,
@@ -262,7 +263,7 @@ fn line(
     let style = &doc.style;
     if style.labels {
         let said = vectors::unset_names(features.iter().map(|f| f.name.as_str()));
-        loader.note(index, said.into_iter().collect());
+        loader.note(index, said);
     }
     Ok(LayerKind::Line(LineLayer {
         features,
@@ -326,7 +327,7 @@ fn point(
     let style = &doc.style;
     if style.labels {
         let said = vectors::unset_names(features.iter().map(|f| f.name.as_str()));
-        loader.note(index, said.into_iter().collect());
+        loader.note(index, said);
     }
     Ok(LayerKind::Point(PointLayer {
         features,

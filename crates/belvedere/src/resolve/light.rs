@@ -4,6 +4,7 @@ use super::ground::Ground;
 use crate::BelvedereError;
 use crate::scene_file::{LightDoc, SourceDocument};
 use belvedere_core::DVec3;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Light;
 
 /// The light, and warnings.
@@ -11,7 +12,7 @@ pub(crate) fn resolve(
     source: &SourceDocument,
     ground: &Ground<'_>,
     eye: DVec3,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
 ) -> Result<Light, BelvedereError> {
     let default = Light::default();
     let Some(doc) = &source.document.light else { return Ok(default) };
@@ -39,7 +40,7 @@ fn from_time(
     eye: DVec3,
     doc: &LightDoc,
     time: &str,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
 ) -> Result<Light, BelvedereError> {
     let fail = |reason: String| source.error(&["light", "time"], reason);
     if doc.azimuth_deg.is_some() || doc.altitude_deg.is_some() {
@@ -53,10 +54,11 @@ fn from_time(
     })?;
     let [azimuth_deg, altitude_deg] = sun_position_deg(days, eye.x, eye.y);
     if altitude_deg <= 0.0 {
-        warnings.push(format!(
+        let text = format!(
             "the sun stands {:.1} degrees below the horizon at {time}; the ground is lit by the sky alone",
             -altitude_deg
-        ));
+        );
+        warnings.push(Warning::new(WarningKind::Suspect, text).about("light").with("altitude_deg", altitude_deg));
     }
     Ok(Light { azimuth: azimuth_deg.to_radians(), altitude: altitude_deg.to_radians(), shadows: doc.shadows })
 }

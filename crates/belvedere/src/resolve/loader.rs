@@ -6,6 +6,7 @@ use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{LayerDoc, Origin, Paths};
 use crate::{BelvedereError, OpenOptions};
+use belvedere_core::Warning;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
 use belvedere_io::{CityFile, InputFile, Loaded};
@@ -21,7 +22,7 @@ pub(super) struct Loader<'a> {
     pub(super) options: &'a OpenOptions,
     pub(super) builtins: builtin::Builtins,
     pub(super) inputs: Vec<InputFile>,
-    pub(super) warnings: Vec<String>,
+    pub(super) warnings: Vec<Warning>,
     /// Surfaces found for areas.
     pub(super) areas: Vec<AreaRecord>,
     /// Vector files that were read already.
@@ -77,10 +78,10 @@ impl Loader<'_> {
         loaded.value
     }
 
-    /// Keeps warnings with the number of their layer.
-    pub(super) fn note(&mut self, index: usize, warnings: Vec<String>) {
+    /// Keeps warnings, about their layer, whose id stands first.
+    pub(super) fn note(&mut self, index: usize, warnings: impl IntoIterator<Item = Warning>) {
         let id = self.layers.get(index).map_or("", LayerDoc::id);
-        self.warnings.extend(warnings.into_iter().map(|w| format!("layer \"{id}\": {w}")));
+        self.warnings.extend(warnings.into_iter().map(|w| w.placed(format_args!("layer \"{id}\"")).about(id)));
     }
 
     pub(super) fn color(&self, index: usize, text: &str) -> Result<Color, BelvedereError> {

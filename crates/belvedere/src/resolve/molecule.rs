@@ -7,6 +7,7 @@ use super::mesh::turn;
 use crate::BelvedereError;
 use crate::scene_file::{MoleculeDoc, TransformDoc};
 use belvedere_core::DVec3;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_io::load_molecule;
 use belvedere_scene::molecule::{ModelTransform, MoleculeColor, Paint, Selection};
 use belvedere_scene::{LayerKind, Molecule, MoleculeLayer, MoleculeStyle};
@@ -26,7 +27,8 @@ pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &MoleculeDoc) ->
                 let note = format!(
                     "{left_out} atoms of water are not drawn; style.selection = \"all\" draws them, \"not water\" says that this is meant"
                 );
-                loader.note(index, vec![note]);
+                let warning = Warning::new(WarningKind::Ignored, note).with("count", left_out as f64);
+                loader.note(index, [warning]);
             }
         }
     }

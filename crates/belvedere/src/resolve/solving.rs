@@ -4,6 +4,7 @@ use super::wall::WallReport;
 use crate::scene_file::ConstructorDoc;
 use belvedere_construct::centreline::CentrelineReport;
 use belvedere_construct::rays::{PathPreview, ProbeMemory, TrackingMemory};
+use belvedere_core::Warning;
 use belvedere_disocclusion::TerrainMemory;
 use belvedere_io::InputFile;
 use belvedere_scene::Progress;
@@ -41,7 +42,7 @@ pub(crate) struct Prepared {
     pub(super) file: Option<InputFile>,
     pub(super) centreline: Option<CentrelineReport>,
     pub(super) walls: Vec<WallReport>,
-    pub(super) warnings: Vec<String>,
+    pub(super) warnings: Vec<Warning>,
     pub(super) preview: PathPreview,
 }
 

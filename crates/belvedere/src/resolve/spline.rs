@@ -4,6 +4,7 @@ use super::context::{StageContext, plane};
 use crate::BelvedereError;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, PlaneDoc, PresetsDoc, SplineStageDoc, StageDoc, Table};
+use belvedere_core::Warning;
 use belvedere_core::map::spline::default_pivot;
 use belvedere_core::presets::{BUILTIN_NAMES, PresetDocument};
 use belvedere_core::{DVec3, SplineBend};
@@ -26,7 +27,7 @@ pub(super) fn spline(
     context: &StageContext<'_>,
     doc: &SplineStageDoc,
     inputs: &mut Vec<InputFile>,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
     at: Table<'_>,
 ) -> Result<(SplineBend, StageDoc), BelvedereError> {
     let presets = presets(context.roots, &doc.presets, inputs, at)?;
@@ -36,8 +37,7 @@ pub(super) fn spline(
     let bend = SplineBend::new(pinhole, &presets, &plane, pivot).map_err(|e| at.error(&["presets"], e))?;
     let heights = heights(context).map(|range| range.map(|z| z - height)).filter(|_| plane.normal() == DVec3::Z);
     let distance = bend.resolved().distance;
-    warnings
-        .extend(belvedere_core::map::spline::check_presets(&presets, distance, heights).iter().map(|w| w.to_string()));
+    warnings.extend(belvedere_core::map::spline::check_presets(&presets, distance, heights).iter().map(Warning::from));
     let document = StageDoc::SplineBend(SplineStageDoc {
         presets: PresetsDoc::Inline(Box::new(presets)),
         pivot: Some(pivot.to_array()),

@@ -7,6 +7,7 @@ use super::strip::StripReport;
 use super::terrain;
 use crate::BelvedereError;
 use crate::scene_file::{Document, StageDoc, Table, TerrainStageDoc};
+use belvedere_core::Warning;
 use belvedere_core::{DVec3, Pinhole, Stage, TerrainDisocclusion, View};
 use belvedere_disocclusion::TerrainReport;
 use belvedere_io::InputFile;
@@ -38,7 +39,7 @@ pub(super) fn resolve(
     context: &StageContext<'_>,
     solving: Option<&mut Solving<'_>>,
     inputs: &mut Vec<InputFile>,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
 ) -> Result<ResolvedStages, BelvedereError> {
     let pinhole = context.camera.pinhole.clone();
     let mut out = ResolvedStages { stages: Vec::new(), pinhole, documents: Vec::new(), terrain: None, strip: None };

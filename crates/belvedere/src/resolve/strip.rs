@@ -6,6 +6,7 @@ use crate::scene_file::{self, StageDoc, StripStageDoc, Table};
 use belvedere_core::map::spline::default_pivot;
 use belvedere_core::map::strip::{SmoothedRoute, Strip, StripError};
 use belvedere_core::{DVec2, Stage};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::LayerKind;
 use serde::Serialize;
 
@@ -33,7 +34,7 @@ pub struct StripReport {
 pub(super) fn resolve(
     context: &StageContext<'_>,
     doc: &StripStageDoc,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
     at: Table<'_>,
 ) -> Result<(Stage, StageDoc, StripReport), BelvedereError> {
     let (points, named) = route(context, doc, at)?;
@@ -54,11 +55,13 @@ pub(super) fn resolve(
         smoothed_off_at: route.off_at.to_array(),
     };
     if route.off > half_width {
-        warnings.push(format!(
+        let text = format!(
             "stage strip: the route itself leaves the strip: at ({:.1}, {:.1}) it is {:.1} from the smoothed route, the half width is {half_width:.1}; \
              what lies outside is not drawn: take a narrower strip, which needs less smoothing, or a route with fewer turns",
             route.off_at.x, route.off_at.y, route.off
-        ));
+        );
+        let warning = Warning::new(WarningKind::Hidden, text).about("strip").with("off_m", route.off);
+        warnings.push(warning.with("half_width_m", half_width));
     }
     let share = doc.share.unwrap_or(1.0);
     let strip = Strip::new(route.curve, half_width, share, anchor).map_err(fail)?;

@@ -5,6 +5,7 @@ use super::solving::Solving;
 use crate::BelvedereError;
 use crate::scene_file::{DetailDoc, PointDoc, SolverMode as ModeDoc, SourceDocument, StageDoc, Table, TerrainStageDoc};
 use belvedere_core::{DVec3, Pinhole, Stage, View};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_disocclusion::DisocclusionError;
 use belvedere_disocclusion::report::{FeatureCost, Spike, Taken};
 use belvedere_disocclusion::rivers::RIVER_TOLERANCE_M;
@@ -134,7 +135,7 @@ pub(super) fn adjust(
     camera: &mut ResolvedCamera,
     earth: Vec<Stage>,
     solving: &mut Solving<'_>,
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
 ) -> Result<(), BelvedereError> {
     let wanted = source.document.stage.iter().enumerate().find_map(|(i, stage)| match stage {
         StageDoc::TerrainDisocclusion(doc) if doc.delta.is_none() => Some((i, doc, doc.adjust_viewpoint?)),
@@ -161,10 +162,12 @@ pub(super) fn adjust(
     camera.pinhole = Pinhole::look_at(found.eye, target, up, from.projection, from.image, from.near, from.far)
         .map_err(|e| fail("adjust_viewpoint", e.to_string()))?;
     camera.document.eye = PointDoc::Scene(found.eye.to_array());
-    warnings.push(format!(
+    let text = format!(
         "terrain_disocclusion: adjust_viewpoint moved the eye by {:.0} m; the energy of the ground's displacement falls from {:.3e} to {:.3e}",
         found.moved_m, found.energy[0], found.energy[1]
-    ));
+    );
+    let warning = of_solver(WarningKind::Moved, text).with("moved_m", found.moved_m);
+    warnings.push(warning.with("energy_before", found.energy[0]).with("energy", found.energy[1]));
     Ok(())
 }
 
@@ -177,8 +180,13 @@ const IMPLAUSIBLE_DEG: f64 = 5.0;
 /// Largest number of spikes that a warning names.
 const SPIKES_NAMED: usize = 3;
 
+/// A warning about the stage.
+fn of_solver(kind: WarningKind, text: String) -> Warning {
+    Warning::new(kind, text).about("terrain_disocclusion")
+}
+
 /// Warnings about a solution: one sentence each.
-pub(crate) fn remarks(solved: &Solved, scene: &Scene) -> Vec<String> {
+pub(crate) fn remarks(solved: &Solved, scene: &Scene) -> Vec<Warning> {
     let report = &solved.report;
     let mut out = Vec::new();
     let points: usize = report.unresolved.iter().map(|r| r.points).sum();
@@ -190,13 +198,14 @@ pub(crate) fn remarks(solved: &Solved, scene: &Scene) -> Vec<String> {
             .collect();
         why.sort();
         why.dedup();
-        out.push(format!(
+        let text = format!(
             "terrain_disocclusion: {points} points cannot be shown ({}); the report names them",
             why.join(", ")
-        ));
+        );
+        out.push(of_solver(WarningKind::Hidden, text).with("points", points as f64));
     }
     if report.out_of_time {
-        out.push(format!(
+        let text = format!(
             "terrain_disocclusion: the solver was out of time and ended with the best ground it had{}; give it more time",
             match report.taken {
                 Some(Taken::Unmoved) => ", that which did not move".into(),
@@ -205,17 +214,24 @@ pub(crate) fn remarks(solved: &Solved, scene: &Scene) -> Vec<String> {
                 Some(Taken::SinglePass) => ", that of the greedy and the smooth pass".into(),
                 Some(Taken::Unfinished) | None => String::new(),
             }
-        ));
+        );
+        out.push(of_solver(WarningKind::Limited, text));
     }
     let hidden = 1.0 - report.metrics.visible_dense;
     if hidden > WORTH_SAYING && report.parameters.mode != SolverMode::Paper {
-        out.push(format!(
+        let text = format!(
             "terrain_disocclusion: {:.1} % of what is in view stays hidden, by {:.1} m of ground at most; the report names the parts \
              under {}",
             100.0 * hidden,
             report.metrics.hidden_worst_m,
-            if report.parameters.slack_price.is_some() { "`covered` and `hidden`" } else { "`unresolved` and `hidden`" }
-        ));
+            if report.parameters.slack_price.is_some() {
+                "`covered` and `hidden`"
+            } else {
+                "`unresolved` and `hidden`"
+            }
+        );
+        let warning = of_solver(WarningKind::Hidden, text).with("hidden_share", hidden);
+        out.push(warning.with("hidden_worst_m", report.metrics.hidden_worst_m));
     }
     out.extend(held(report));
     out.extend(confined(report));
@@ -228,7 +244,7 @@ pub(crate) fn remarks(solved: &Solved, scene: &Scene) -> Vec<String> {
 }
 
 /// Warning that samples of the elevation model stand apart from all their neighbours.
-fn spiky(spikes: &[Spike]) -> Option<String> {
+fn spiky(spikes: &[Spike]) -> Option<Warning> {
     let place = |s: &Spike| {
         let (by, side) = ((s.height_m - s.taken_m).abs(), if s.height_m > s.taken_m { "above" } else { "below" });
         format!("{by:.0} m {side} at {:.0},{:.0} ({:.0} m)", s.at[0], s.at[1], s.height_m)
@@ -237,51 +253,56 @@ fn spiky(spikes: &[Spike]) -> Option<String> {
     let more = if spikes.len() > SPIKES_NAMED { ", and more in the report" } else { "" };
     let samples = if spikes.len() == 1 { "1 sample stands".into() } else { format!("{} samples stand", spikes.len()) };
     (!spikes.is_empty()).then(|| {
-        format!(
+        let text = format!(
             "terrain_disocclusion: {samples} far from all neighbours, as spikes do that are faults of the elevation model: {}{more}; the ground \
              does not make way for them, and they may hide something; set them to no data, or smooth them, in the elevation model",
             places.join(", ")
-        )
+        );
+        of_solver(WarningKind::Suspect, text).with("samples", spikes.len() as f64)
     })
 }
 
 /// Warning that limits of depth or slope keep something hidden.
-fn held(report: &TerrainReport) -> Option<String> {
+fn held(report: &TerrainReport) -> Option<Warning> {
     let limits = report.limited?;
     let hidden = 1.0 - report.metrics.visible_dense;
     (hidden > 0.0 && !report.guaranteed).then(|| {
-        format!(
+        let text = format!(
             "terrain_disocclusion: not all can be shown on ground that looks like ground, no lower than {:.0} m and no steeper than {:.0} \
              degrees: {:.2} % of what is in view stays hidden, which the report names; look from higher up or elsewhere, or lift the \
              limits (--no-limits, limits = false)",
             limits.floor_m,
             limits.steepest_deg,
             100.0 * hidden
-        )
+        );
+        let warning = of_solver(WarningKind::Limited, text).with("hidden_share", hidden);
+        warning.with("floor_m", limits.floor_m).with("steepest_deg", limits.steepest_deg)
     })
 }
 
 /// Warnings that rivers keep something hidden, or still run uphill.
-fn confined(report: &TerrainReport) -> Option<String> {
+fn confined(report: &TerrainReport) -> Option<Warning> {
     let hidden = 1.0 - report.metrics.visible_dense;
     if let Some(worst) =
         report.rivers.iter().map(|r| r.excess_m).max_by(f64::total_cmp).filter(|m| *m > RIVER_TOLERANCE_M)
     {
-        return Some(format!(
+        let text = format!(
             "terrain_disocclusion: a river runs uphill by {worst:.1} m more than on the elevation model; the report names it"
-        ));
+        );
+        return Some(of_solver(WarningKind::Suspect, text).with("uphill_m", worst));
     }
     (!report.rivers.is_empty() && hidden > 0.0 && !report.guaranteed).then(|| {
-        format!(
+        let text = format!(
             "terrain_disocclusion: {:.2} % of what is in view stays hidden where no river may run uphill; leave rivers out, or look from \
              higher up or elsewhere",
             100.0 * hidden
-        )
+        );
+        of_solver(WarningKind::Limited, text).with("hidden_share", hidden)
     })
 }
 
 /// Warning that the displaced ground looks implausible, with the feature that needs it.
-fn implausible(report: &TerrainReport, scene: &Scene) -> Option<String> {
+fn implausible(report: &TerrainReport, scene: &Scene) -> Option<Warning> {
     let m = &report.metrics;
     let relief = scene.terrain().map_or(0.0, |t| t.z_range()[1] - t.z_range()[0]);
     let mut what = Vec::new();
@@ -308,22 +329,25 @@ fn implausible(report: &TerrainReport, scene: &Scene) -> Option<String> {
     };
     let costly: Vec<String> = report.costliest.iter().map(name).collect();
     let most = if costly.is_empty() { String::new() } else { format!("; most of it for {}", costly.join(", ")) };
-    Some(format!(
+    let text = format!(
         "terrain_disocclusion: {}{most}; look from higher up or elsewhere (adjust_viewpoint = 0.5 lets the eye move), or leave some out",
         what.join(", and ")
-    ))
+    );
+    let warning = of_solver(WarningKind::Moved, text).with("sunk_below_m", m.sunk_below_m).with("relief_m", relief);
+    Some(warning.with("steepest_deg", m.steepest_deg).with("steepest_before_deg", m.steepest_before_deg))
 }
 
 /// Warning that there was nothing to solve, with the reason.
-fn nothing_asked(ahead_m: Option<f64>) -> String {
+fn nothing_asked(ahead_m: Option<f64>) -> Warning {
     let (limit, remedy) = match ahead_m {
         Some(m) => {
             (format!(" up to ahead_m = {m} m along their path from the eye"), "give a longer ahead_m or another view")
         }
         None => (String::new(), "give another view"),
     };
-    format!(
+    let text = format!(
         "terrain_disocclusion: nothing was asked for: no part of the features lies on the ground in the picture{limit}; the ground \
          stays as it is and nothing is guaranteed; {remedy}"
-    )
+    );
+    of_solver(WarningKind::Suspect, text)
 }

@@ -4,6 +4,7 @@ use super::ground::Ground;
 use super::loader::Loader;
 use crate::BelvedereError;
 use crate::scene_file::{LayerDoc, Paths};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_io::vector::{
     AreaKind, Geometry, Vectors, area_kind, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain,
 };
@@ -61,7 +62,7 @@ pub(crate) fn kinds_of(vectors: &Vectors) -> Vec<FeatureKind> {
 }
 
 /// Warning about features of a file that no layer of the scene draws, if there are any.
-fn left_out(loader: &Loader<'_>, index: usize, file: &str, vectors: &Vectors) -> Option<String> {
+fn left_out(loader: &Loader<'_>, index: usize, file: &str, vectors: &Vectors) -> Option<Warning> {
     // Outlines of areas are also lines.
     let drawn = |layer: &LayerDoc, kind: FeatureKind| match layer {
         LayerDoc::Line(l) => l.source.as_ref().is_some_and(|s| names(s, file)) && kind != FeatureKind::Points,
@@ -75,17 +76,18 @@ fn left_out(loader: &Loader<'_>, index: usize, file: &str, vectors: &Vectors) ->
         return None; // The warning is given once.
     }
     let count = |kind: FeatureKind| vectors.features.iter().filter(|f| kind.is(&f.geometry)).count();
-    let lost: Vec<String> = kinds_of(vectors)
-        .into_iter()
-        .filter(|kind| !loader.layers.iter().any(|l| drawn(l, *kind)))
-        .map(|kind| format!("{} features that are {}", count(kind), kind.plural()))
-        .collect();
+    let undrawn_kinds: Vec<FeatureKind> =
+        kinds_of(vectors).into_iter().filter(|kind| !loader.layers.iter().any(|l| drawn(l, *kind))).collect();
+    let undrawn: usize = undrawn_kinds.iter().map(|kind| count(*kind)).sum();
+    let lost: Vec<String> =
+        undrawn_kinds.into_iter().map(|kind| format!("{} features that are {}", count(kind), kind.plural())).collect();
     (!lost.is_empty()).then(|| {
         let path = vectors.path.display();
-        format!(
+        let text = format!(
             "{path}: {} are drawn by no layer; add layers of kind line, area or point of the same file",
             lost.join(" and ")
-        )
+        );
+        Warning::new(WarningKind::Ignored, text).with("count", undrawn as f64)
     })
 }
 
@@ -112,7 +114,7 @@ fn all<T>(
         });
         let vectors = known.map_or_else(|| load_vectors(&file), Ok)?;
         let mut vectors = loader.take(index, vectors);
-        loader.note(index, left_out(loader, index, name, &vectors).into_iter().collect());
+        loader.note(index, left_out(loader, index, name, &vectors));
         inspect(&vectors);
         stand(loader, index, &mut vectors);
         let found = on_terrain(&vectors, ground.crs, ground.terrain)?;
@@ -133,18 +135,20 @@ fn stand(loader: &mut Loader<'_>, index: usize, vectors: &mut Vectors) {
     if count > 0 {
         let path = vectors.path.display();
         let note = format!("{path}: {count} positions without height lie at {floor:.1} m, the ground of the city");
-        loader.note(index, vec![note]);
+        let warning = Warning::new(WarningKind::Assumed, note).with("count", f64::from(count));
+        loader.note(index, [warning.with("height_m", floor)]);
     }
 }
 
 /// Warning with the number of names with letters that the font lacks, and the first of them.
-pub(super) fn unset_names<'n>(names: impl Iterator<Item = &'n str>) -> Option<String> {
+pub(super) fn unset_names<'n>(names: impl Iterator<Item = &'n str>) -> Option<Warning> {
     let unset: Vec<&str> = names.filter(|name| !belvedere_composite::canvas::can_set(name)).collect();
     let first = unset.first()?;
     let count = unset.len();
-    Some(format!(
-        "{count} names have letters that are not set (Latin, Greek and Cyrillic are), the first is \"{first}\"; they are left out or incomplete"
-    ))
+    let what = format!(
+        "names have letters that are not set (Latin, Greek and Cyrillic are), the first is \"{first}\"; they are left out or incomplete"
+    );
+    Warning::counted(WarningKind::Ignored, count, &what)
 }
 
 /// Lines of files, draped.
@@ -190,6 +194,6 @@ mod tests {
     fn names_in_scripts_that_are_not_set_are_counted() {
         assert_eq!(unset_names(["Tälchen", "Эльбрус", "Όλυμπος", "", "a b"].into_iter()), None);
         let said = unset_names(["Fuji", "富士山", "עין גדי"].into_iter()).expect("said");
-        assert!(said.starts_with("2 names") && said.contains("富士山"), "{said}");
+        assert!(said.text().starts_with("2 names") && said.text().contains("富士山"), "{said}");
     }
 }

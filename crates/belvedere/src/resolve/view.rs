@@ -9,6 +9,7 @@ use crate::BelvedereError;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{Document, SourceDocument};
 use belvedere_core::View;
+use belvedere_core::Warning;
 use belvedere_disocclusion::TerrainReport;
 use belvedere_io::InputFile;
 use belvedere_scene::{Light, Scene};
@@ -26,7 +27,7 @@ pub(crate) struct ResolvedView {
     /// Report of the constructor of curved rays, if there is one.
     pub(crate) constructor: Option<ConstructorReport>,
     pub(crate) inputs: Vec<InputFile>,
-    pub(crate) warnings: Vec<String>,
+    pub(crate) warnings: Vec<Warning>,
 }
 
 /// Resolves camera, stages and light over a scene. Without `solving` an intent of terrain disocclusion is left out.

@@ -5,6 +5,7 @@ use crate::scene_file::{LayerDoc, SourceDocument, VolumeDoc};
 use belvedere_construct::ConstructError;
 use belvedere_construct::rays::{Wall, find_wall, share_inside};
 use belvedere_core::DVec3;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::volume::WALL;
 use belvedere_scene::{LayerKind, Scene, TransferFunction};
 use serde::{Deserialize, Serialize};
@@ -48,7 +49,7 @@ pub(super) fn around(
     source: &SourceDocument,
     scene: &Scene,
     path: &[DVec3],
-) -> Result<(Vec<WallReport>, Vec<String>), BelvedereError> {
+) -> Result<(Vec<WallReport>, Vec<Warning>), BelvedereError> {
     let (mut walls, mut warnings) = (Vec::new(), Vec::new());
     for (index, doc) in volumes(source) {
         let is_asked = doc.transfer == WALL;
@@ -61,7 +62,8 @@ pub(super) fn around(
         match find_wall(&volume.volume, path) {
             Ok(wall) => walls.push(WallReport { layer: doc.id.clone(), wall }),
             Err(e @ (ConstructError::NoWall { .. } | ConstructError::PathOutside)) if !is_asked => {
-                warnings.push(format!("layer \"{}\": {e}; it is drawn with transfer \"{AUTO}\"", doc.id));
+                let text = format!("layer \"{}\": {e}; it is drawn with transfer \"{AUTO}\"", doc.id);
+                warnings.push(Warning::new(WarningKind::Fallback, text).about(&doc.id));
             }
             Err(e) => return Err(fail(source, index, &e.to_string())),
         }

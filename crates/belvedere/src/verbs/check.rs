@@ -2,6 +2,7 @@
 
 use crate::scene_file::StageDoc;
 use crate::{BelvedereError, Session};
+use belvedere_core::Warning;
 use belvedere_scene::{Bodies, LayerKind};
 use serde::Serialize;
 
@@ -17,7 +18,7 @@ pub struct CheckReport {
     /// Stages in order of application.
     pub stages: Vec<&'static str>,
     /// Warnings.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// One checked layer.

@@ -12,6 +12,7 @@ use crate::resolve::terrain as intent;
 use crate::scene_file::{self, CameraDoc, EarthDoc, StageDoc, TerrainStageDoc};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, TerrainDisocclusion, View};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_disocclusion::report::RiverReport;
 use belvedere_disocclusion::{Solved, TerrainMemory, TerrainReport, TerrainSolver, ViewpointOptions};
 use belvedere_io::IoError;
@@ -130,7 +131,7 @@ struct Record {
     guaranteed: bool,
     layers: Vec<String>,
     inputs: Vec<InputFile>,
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
 }
 
 /// Output files.
@@ -263,15 +264,17 @@ fn taller(view: &View) -> Result<View, BelvedereError> {
 }
 
 /// Warning that resampling hides features that the solution shows.
-fn resampled_away(share: f64, solved: &Solved) -> Option<String> {
+fn resampled_away(share: f64, solved: &Solved) -> Option<Warning> {
     let lost = solved.report.metrics.visible_dense - share;
     (lost > 1.0 - KEPT_SHARE).then(|| {
-        format!(
+        let text = format!(
             "written on the grid of the input, the heights show {:.2} % of what is in view, {:.2} % less than the ground that was solved \
              on, for its samples are others; --grid scene writes the latter",
             100.0 * share,
             100.0 * lost
-        )
+        );
+        let warning = Warning::new(WarningKind::Hidden, text).about("terrain_disocclusion");
+        warning.with("visible_share", share).with("lost_share", lost)
     })
 }
 
@@ -321,7 +324,7 @@ impl LevelCamera {
         solver: &TerrainSolver,
         scene: &Scene,
         progress: &Progress,
-    ) -> Result<Option<(DVec3, String)>, BelvedereError> {
+    ) -> Result<Option<(DVec3, Warning)>, BelvedereError> {
         // At 1 the eye stays where it is.
         let Some(slider) = slider.filter(|slider| *slider < 1.0) else { return Ok(None) };
         let target = self.target.extend(self.eye.z);
@@ -337,7 +340,8 @@ impl LevelCamera {
                 "adjust_viewpoint moved the eye by {:.0} m, to {x:.1},{y:.1},{z:.1} in {}: from there less ground has to move",
                 found.moved_m, scene.crs
             );
-            (found.eye, said)
+            let warning = Warning::new(WarningKind::Moved, said).about("camera");
+            (found.eye, warning.with("moved_m", found.moved_m))
         }))
     }
 

@@ -11,6 +11,7 @@ use crate::BelvedereError;
 use crate::resolve::builtin;
 use crate::scene_file::VerticalUnit;
 use belvedere_core::DVec2;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_io::formats::{self, Reader};
 use belvedere_io::terrain::{TerrainRequest, load_original};
 use belvedere_io::vector::{Geometry, Vectors, load_vectors};
@@ -29,7 +30,7 @@ pub enum FileInfo {
     Terrain(TerrainInfo),
     /// A picture.
     Picture(PictureInfo),
-    /// A raster that is not usable as terrain; the last warning gives the reason.
+    /// A raster that is not usable as terrain; a warning of kind [`WarningKind::Fallback`] gives the reason.
     Raster(PictureInfo),
     /// Lines, areas or points.
     Features(FeatureInfo),
@@ -84,7 +85,7 @@ pub struct MeshInfo {
     /// Largest coordinates.
     pub max: [f64; 3],
     /// Warnings.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// Terrain: the file, and the ground that a scene gets from it.
@@ -113,7 +114,7 @@ pub struct TerrainInfo {
     /// The ground of a scene.
     pub scene: GroundInfo,
     /// Warnings.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// The ground that a scene gets from a file.
@@ -160,7 +161,7 @@ pub struct PictureInfo {
     /// Model coordinates of the corners: top left, top right, bottom right, bottom left.
     pub corners: Option<[[f64; 2]; 4]>,
     /// Warnings.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// Lines, areas, points.
@@ -189,7 +190,7 @@ pub struct FeatureInfo {
     /// Smallest x, y and largest x, y in the file's system.
     pub extent: Option<[DVec2; 2]>,
     /// Warnings.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// A property of features.
@@ -335,7 +336,8 @@ fn geotiff(path: &Path, name: &str, request: &TerrainRequest, progress: &Progres
     match terrain(path, request, progress) {
         // Readable, but not usable as ground of a scene.
         Err(reason) if !reason.is_cancelled() && file.read(0, progress).is_ok() => {
-            let warnings = picture.warnings.iter().cloned().chain([reason.to_string()]).collect();
+            let unusable = Warning::new(WarningKind::Fallback, reason.to_string()).about(name);
+            let warnings = picture.warnings.iter().cloned().chain([unusable]).collect();
             Ok(FileInfo::Raster(PictureInfo { warnings, ..picture }))
         }
         answer => answer,

@@ -4,6 +4,7 @@ use crate::{BelvedereError, RendererChoice, Session};
 pub use belvedere_construct::MeasureOptions;
 use belvedere_construct::Measures;
 use belvedere_construct::measure::{FeatureMeasure, Visibility};
+use belvedere_core::Warning;
 use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::Progress;
 use serde::Serialize;
@@ -30,7 +31,7 @@ pub struct MeasureReport {
     #[serde(flatten)]
     pub measures: Measures,
     /// Warnings of opening the scene.
-    pub scene_warnings: Vec<String>,
+    pub scene_warnings: Vec<Warning>,
 }
 
 /// Largest difference between two measures of one picture of ground for which the judge's figure is reported.

@@ -1,6 +1,7 @@
 //! Description of a molecule file.
 
 use crate::BelvedereError;
+use belvedere_core::Warning;
 use belvedere_io::{Limits, load_molecule};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -36,7 +37,7 @@ pub struct MoleculeInfo {
     /// Largest coordinates, angstrom.
     pub max: [f64; 3],
     /// Warnings.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// Reads and describes a molecule file.

@@ -17,6 +17,7 @@ use belvedere_construct::rays::{AroundOptions, Target, bend_around};
 use belvedere_construct::{
     Goal, RevealMemory, RevealOptions, RevealReport, Revealed, default_spacing, sample_features,
 };
+use belvedere_core::Warning;
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::TerrainReport;
 use belvedere_io::png::{self, Channels};
@@ -162,7 +163,7 @@ struct ReportFile<'a> {
     crs: String,
     terrain: Option<TerrainRecord>,
     inputs: &'a [crate::record::InputFile],
-    scene_warnings: &'a [String],
+    scene_warnings: &'a [Warning],
 }
 
 /// Chooses a view (unless given) and a bend, and draws both pictures.

@@ -11,6 +11,7 @@ use crate::targets::{self, target};
 use crate::verbs::reveal::{RevealFiles, Viewpoint};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::rays::{AroundOptions, BendReport, Sidestep, Target, bend_around};
+use belvedere_core::Warning;
 use belvedere_core::{Aabb, DVec3, Pinhole, Projection, View};
 use belvedere_io::png::{self, Channels};
 use belvedere_scene::molecule::Selection;
@@ -237,7 +238,7 @@ struct TargetReport<'a> {
     report: BendReport,
     view: &'a crate::record::ViewRecord,
     inputs: &'a [crate::record::InputFile],
-    warnings: Vec<String>,
+    warnings: Vec<Warning>,
 }
 
 impl TargetAnswer {
@@ -280,8 +281,8 @@ impl TargetAnswer {
     }
 
     /// Warnings.
-    pub fn warnings(&self) -> Vec<String> {
-        self.session.warnings().iter().cloned().chain(self.place.as_ref().and_then(TargetPlace::warning)).collect()
+    pub fn warnings(&self) -> Vec<Warning> {
+        self.session.warnings().into_iter().chain(self.place.as_ref().and_then(TargetPlace::warning)).collect()
     }
 
     /// Goals that were missed, one sentence each.

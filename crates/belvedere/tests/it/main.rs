@@ -5,6 +5,7 @@ mod examples;
 mod names;
 mod sessions;
 mod sweeps;
+mod typed_warnings;
 mod walls;
 mod warnings;
 mod written_lakes;

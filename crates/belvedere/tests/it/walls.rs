@@ -82,7 +82,10 @@ fn walls_of_no_path_are_refused_and_paths_without_a_wall_are_said() {
     assert!(error.contains("layer \"tube\"") && error.contains("path_preview"), "{error}");
     let session = open(folder.path(), &(SCENE.to_owned() + PREVIEW)).unwrap();
     let warnings = session.warnings();
-    assert!(warnings.iter().any(|w| w.contains("no wall lies around the path") && w.contains("auto")), "{warnings:?}");
+    assert!(
+        warnings.iter().any(|w| w.text().contains("no wall lies around the path") && w.text().contains("auto")),
+        "{warnings:?}"
+    );
     assert_eq!(transfer(&session).name(), "auto");
     let error = open(folder.path(), &(with("wall") + PREVIEW)).unwrap_err().to_string();
     assert!(error.contains("no wall lies around the path"), "{error}");

@@ -6,7 +6,7 @@ use belvedere::scene_file::AnimationDoc;
 use belvedere::verbs::animate::{AnimateRequest, animate};
 use belvedere::verbs::disocclude::{DisoccludeRequest, disocclude};
 use belvedere::verbs::reveal::{RevealFiles, RevealRequest, Technique, Viewpoint, reveal};
-use belvedere::{DataFiles, OpenOptions, PictureOptions, Session};
+use belvedere::{DataFiles, OpenOptions, PictureOptions, Session, Warning};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -37,8 +37,9 @@ fn data(folder: &Path) -> DataFiles {
 }
 
 /// Warnings of the solver, in order.
-fn solved(warnings: impl IntoIterator<Item = String>) -> Vec<String> {
-    let mut out: Vec<String> = warnings.into_iter().filter(|w| w.starts_with("terrain_disocclusion")).collect();
+fn solved(warnings: impl IntoIterator<Item = Warning>) -> Vec<String> {
+    let of_solver = warnings.into_iter().filter(|w| w.subject() == Some("terrain_disocclusion"));
+    let mut out: Vec<String> = of_solver.map(|w| w.to_string()).collect();
     out.sort();
     out
 }

@@ -2,7 +2,7 @@
 
 use super::{ReferencePlane, SplineBend};
 use crate::presets::PresetDocument;
-use crate::{Pinhole, Projection};
+use crate::{Pinhole, Projection, Warning, WarningKind};
 use glam::DVec3;
 
 /// A warning about a valid preset document. `preset` is the name in quotes, or the position from 1.
@@ -71,6 +71,32 @@ pub enum PresetWarning {
         /// Highest data, scene units.
         data_max: f64,
     },
+}
+
+impl From<&PresetWarning> for Warning {
+    fn from(said: &PresetWarning) -> Self {
+        let of = |kind| Self::new(kind, said.to_string());
+        match said {
+            PresetWarning::PlateausOverlap { first, plateaus, gap, .. } => {
+                of(WarningKind::Limited).about(first).with("plateaus_deg", *plateaus).with("gap_deg", *gap)
+            }
+            PresetWarning::ManySections { preset, sections } => {
+                of(WarningKind::Suspect).about(preset).with("sections", *sections as f64)
+            }
+            PresetWarning::WideTransition { preset, number, width, section } => {
+                let tag = of(WarningKind::Suspect).about(preset).with("tag", *number as f64);
+                tag.with("width_share", *width).with("section_share", *section)
+            }
+            PresetWarning::FacesAway { phi_deg, facing } => {
+                of(WarningKind::Hidden).about("spline_bend").with("phi_deg", *phi_deg).with("facing", *facing)
+            }
+            PresetWarning::Folds { phi_deg, fold_min, fold_max, data_min, data_max } => {
+                let folds = of(WarningKind::Hidden).about("spline_bend").with("phi_deg", *phi_deg);
+                let folds = folds.with("fold_min", *fold_min).with("fold_max", *fold_max);
+                folds.with("data_min", *data_min).with("data_max", *data_max)
+            }
+        }
+    }
 }
 
 /// Facing, a sine, that counts as 0: ground that is seen edge-on does not face away, such as level ground from an eye on it.

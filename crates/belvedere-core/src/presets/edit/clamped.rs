@@ -4,6 +4,7 @@ use super::sections::nearest_share;
 use super::{EditError, PresetChange, PresetOperation};
 use crate::deformation::DeformationCurve;
 use crate::presets::{Preset, PresetDocument};
+use crate::{Warning, WarningKind};
 use glam::DVec2;
 
 /// A value that was clamped by neighbouring tags, in shares of the curve's length.
@@ -20,6 +21,13 @@ pub struct Clamped {
     pub got: f64,
     /// Reason for the clamping.
     pub why: &'static str,
+}
+
+impl From<&Clamped> for Warning {
+    fn from(said: &Clamped) -> Self {
+        let warning = Self::new(WarningKind::Limited, said.to_string()).about(&said.preset);
+        warning.with("asked_share", said.asked).with("got_share", said.got)
+    }
 }
 
 /// Differences below this are rounding.

@@ -2,6 +2,7 @@
 
 use super::{Geometry, vertex};
 use crate::vector::Vertex;
+use belvedere_core::{Warning, WarningKind};
 use geo_traits::{
     CoordTrait, Dimensions, GeometryCollectionTrait, GeometryTrait, GeometryType, LineStringTrait,
     MultiLineStringTrait, MultiPointTrait, MultiPolygonTrait, PointTrait, PolygonTrait,
@@ -19,17 +20,21 @@ pub(super) struct Odd {
 
 impl Odd {
     /// One sentence for each kind of oddity that occurred.
-    pub(super) fn warnings(&self, table: &str) -> impl Iterator<Item = String> {
-        let of = |count: usize, what: &str| (count > 0).then(|| format!("table \"{table}\": {count} {what}"));
+    pub(super) fn warnings(&self, table: &str) -> impl Iterator<Item = Warning> {
+        use WarningKind::{Ignored, Repaired};
+        let of = |kind: WarningKind, count: usize, what: &str| {
+            Warning::counted(kind, count, what).map(|w| w.placed(format_args!("table \"{table}\"")))
+        };
         [
-            of(self.without_geometry, "features without geometry were dropped"),
+            of(Ignored, self.without_geometry, "features without geometry were dropped"),
             of(
+                Repaired,
                 self.other_system,
                 "features name another coordinate system than their table; that of the table was taken",
             ),
-            of(self.not_finite, "points, lines and rings with positions that are not finite were dropped"),
-            of(self.short_lines, "lines of fewer than 2 points were dropped"),
-            of(self.short_rings, "polygon rings of fewer than 3 points were dropped"),
+            of(Ignored, self.not_finite, "points, lines and rings with positions that are not finite were dropped"),
+            of(Ignored, self.short_lines, "lines of fewer than 2 points were dropped"),
+            of(Ignored, self.short_rings, "polygon rings of fewer than 3 points were dropped"),
         ]
         .into_iter()
         .flatten()

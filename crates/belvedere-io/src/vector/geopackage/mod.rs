@@ -8,6 +8,7 @@ mod database;
 use super::{Geometry, VectorFeature, Vectors, name_of, not_degrees, shorten, vertex};
 use crate::crs::{CoordinateSystem, CrsError, Transform};
 use crate::{IoError, Loaded, fs};
+use belvedere_core::{Warning, WarningKind};
 use blob::Odd;
 use database::{Database, Table, Value};
 use std::collections::BTreeMap;
@@ -34,16 +35,12 @@ pub(super) fn load(path: &Path, table: Option<&str>, bytes: Vec<u8>) -> Result<L
         let common = crs.get_or_insert_with(|| own.clone());
         if own != *common {
             let lost = reproject(&mut read, &own, common).map_err(|e| fail(e.to_string()))?;
-            warnings.push(format!(
-                "table \"{}\" is in {own} and was taken to {common}, the system of the first",
-                table.name
-            ));
-            if lost > 0 {
-                warnings.push(format!(
-                    "{lost} features of table \"{}\" lie outside the domain of {common} and were dropped",
-                    table.name
-                ));
-            }
+            let text =
+                format!("table \"{}\" is in {own} and was taken to {common}, the system of the first", table.name);
+            warnings.push(Warning::new(WarningKind::Repaired, text));
+            let what =
+                format!("features of table \"{}\" lie outside the domain of {common} and were dropped", table.name);
+            warnings.extend(Warning::counted(WarningKind::Ignored, lost, &what));
         }
         counts.push(format!("\"{}\" ({})", table.name, read.len()));
         features.extend(read);
@@ -54,14 +51,14 @@ pub(super) fn load(path: &Path, table: Option<&str>, bytes: Vec<u8>) -> Result<L
     };
     if tables.len() > 1 {
         let (count, names, first) = (tables.len(), counts.join(", "), &tables[0].name);
-        warnings
-            .push(format!("all {count} tables were read: {names}; put ?table={first} behind the name for one of them"));
+        let text = format!("all {count} tables were read: {names}; put ?table={first} behind the name for one of them");
+        warnings.push(Warning::new(WarningKind::Assumed, text).with("tables", count as f64));
     }
     let layer = match tables.as_slice() {
         [one] => shorten(&one.identifier),
         _ => String::new(),
     };
-    let warnings = warnings.into_iter().map(|w| format!("{}: {w}", path.display())).collect();
+    let warnings = warnings.into_iter().map(|w| w.in_file(path)).collect();
     Ok(Loaded::new(
         Vectors { path: path.into(), format: "GeoPackage", layer, crs, crs_stated: true, features },
         warnings,
@@ -69,7 +66,7 @@ pub(super) fn load(path: &Path, table: Option<&str>, bytes: Vec<u8>) -> Result<L
 }
 
 /// Whether a write-ahead log beside the file holds changes that are not yet in it.
-fn unwritten(path: &Path) -> Vec<String> {
+fn unwritten(path: &Path) -> Vec<Warning> {
     let beside = |ending: &str| {
         let mut name = path.as_os_str().to_owned();
         name.push(ending);
@@ -77,7 +74,8 @@ fn unwritten(path: &Path) -> Vec<String> {
         (bytes > 0).then(|| {
             let name = PathBuf::from(name);
             let name = name.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-            format!("{name} ({bytes} bytes) holds changes that are not in the file yet and were not read; close the program that edits it")
+            let text = format!("{name} ({bytes} bytes) holds changes that are not in the file yet and were not read; close the program that edits it");
+            Warning::new(WarningKind::Ignored, text).with("bytes", bytes as f64)
         })
     };
     ["-wal", "-journal"].into_iter().filter_map(beside).collect()
@@ -132,13 +130,14 @@ fn system_of(
     database: &Database,
     table: &Table,
     features: &[VectorFeature],
-    warnings: &mut Vec<String>,
+    warnings: &mut Vec<Warning>,
 ) -> Result<CoordinateSystem, String> {
     let name = &table.name;
     let crs = match table.srs_id {
         -1 => return Err(format!("table \"{name}\" is in an undefined plane (srs_id -1); {REMEDY}")),
         0 => {
-            warnings.push(format!("table \"{name}\" is in undefined degrees (srs_id 0), taken as WGS 84"));
+            let text = format!("table \"{name}\" is in undefined degrees (srs_id 0), taken as WGS 84");
+            warnings.push(Warning::new(WarningKind::Assumed, text));
             CoordinateSystem::wgs84().map_err(|e| e.to_string())?
         }
         id => listed_system(database, id).map_err(|e| format!("table \"{name}\" is in {e}; {REMEDY}"))?,

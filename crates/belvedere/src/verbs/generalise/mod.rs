@@ -10,6 +10,7 @@ use crate::{BelvedereError, output};
 pub use belvedere_construct::generalise::GeneraliseSettings;
 use belvedere_construct::generalise::{GeneraliseReport, Generalised, LevelReport};
 use belvedere_core::DVec2;
+use belvedere_core::Warning;
 use belvedere_io::city_write::{BlockFigures, write_city_json};
 use belvedere_io::png;
 use belvedere_scene::Progress;
@@ -43,7 +44,7 @@ pub struct GeneralisedCity {
     /// The levels and their report.
     pub generalised: Generalised,
     /// Warnings of reading the files.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
     inputs: Vec<InputFile>,
 }
 
@@ -55,7 +56,7 @@ struct Record<'a> {
     inputs: &'a [InputFile],
     #[serde(flatten)]
     report: &'a GeneraliseReport,
-    warnings: &'a [String],
+    warnings: &'a [Warning],
 }
 
 /// Reads a city and generalises it.
@@ -105,7 +106,7 @@ impl GeneralisedCity {
     }
 
     /// Blocks that do not preserve the volume of their buildings or leave some of them out, one sentence for each reason.
-    pub fn failing(&self) -> Vec<String> {
+    pub fn failing(&self) -> Vec<Warning> {
         self.generalised.report.levels.iter().flat_map(LevelReport::failing).collect()
     }
 

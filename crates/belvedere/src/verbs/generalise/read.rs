@@ -1,6 +1,7 @@
 //! Cities and streets from files, in metres.
 
 use crate::BelvedereError;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_io::city::reproject;
 use belvedere_io::{CityFile, InputFile, IoError, Limits, load_city};
 use belvedere_scene::City;
@@ -12,7 +13,7 @@ pub(super) struct Read {
     /// Code of the metric system; `None` for files without one.
     pub epsg: Option<u32>,
     pub inputs: Vec<InputFile>,
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// Reads the buildings, land cover and streets of `city`, and land cover and streets of `roads`.
@@ -31,10 +32,8 @@ pub(super) fn read(city: &Path, roads: &[PathBuf]) -> Result<Read, BelvedereErro
     let place = |out: &mut Read, file: &mut CityFile| -> Result<(), BelvedereError> {
         let (Some(from), Some(to)) = (&file.crs, &target) else { return Ok(()) };
         let lost = reproject(&mut file.city, from, to)?;
-        if lost > 0 {
-            let path = file.path.display();
-            out.warnings.push(format!("{path}: {lost} shapes lie outside the domain of {to} and are left out"));
-        }
+        let what = format!("shapes lie outside the domain of {to} and are left out");
+        out.warnings.extend(Warning::counted(WarningKind::Ignored, lost, &what).map(|w| w.in_file(&file.path)));
         Ok(())
     };
     place(&mut out, &mut first)?;
@@ -43,10 +42,8 @@ pub(super) fn read(city: &Path, roads: &[PathBuf]) -> Result<Read, BelvedereErro
         let mut more = out.load(path)?;
         place(&mut out, &mut more)?;
         let buildings = more.city.buildings.len();
-        if buildings > 0 {
-            let path = path.display();
-            out.warnings.push(format!("{path}: {buildings} buildings are left out; those of the first file are taken"));
-        }
+        let what = "buildings are left out; those of the first file are taken";
+        out.warnings.extend(Warning::counted(WarningKind::Ignored, buildings, what).map(|w| w.in_file(path)));
         out.city.ways.extend(more.city.ways);
         out.city.areas.extend(more.city.areas);
     }

@@ -1,6 +1,7 @@
 //! Description of a city file.
 
 use crate::BelvedereError;
+use belvedere_core::Warning;
 use belvedere_io::{Limits, load_city};
 use serde::Serialize;
 use std::path::Path;
@@ -31,7 +32,7 @@ pub struct CityInfo {
     /// Coordinate and height reference as named by the file.
     pub reference: String,
     /// Warnings.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 impl CityInfo {

@@ -2,6 +2,7 @@
 
 use crate::BelvedereError;
 use crate::resolve::volume::made;
+use belvedere_core::Warning;
 use belvedere_io::{Number, VolumeRequest, load_volume};
 use serde::Serialize;
 use std::path::Path;
@@ -29,7 +30,7 @@ pub struct VolumeInfo {
     /// Largest coordinates.
     pub max: [f64; 3],
     /// Warnings.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 impl VolumeInfo {

@@ -1,6 +1,7 @@
 //! Usability of a preset document.
 
 use super::{DISTANCE, Shape, seen_at, shapes};
+use belvedere_core::Warning;
 use belvedere_core::map::spline::{EDGE_ON, check_presets};
 use belvedere_core::presets::{BendFrame, PresetDocument};
 use serde::Serialize;
@@ -17,7 +18,7 @@ pub struct PresetCheck {
     /// Ranges at which the picture does not change while the camera tilts, degrees.
     pub still: Vec<Usable>,
     /// Warnings about the appearance.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// Usability of a valid document.
@@ -47,7 +48,7 @@ const PER_DEGREE: u32 = 4;
 /// Checks at which viewing angles from the horizon to straight down a valid document is usable, and how it looks, for data without
 /// heights.
 pub fn check(document: &PresetDocument) -> PresetCheck {
-    let warnings = check_presets(document, DISTANCE, None).iter().map(ToString::to_string).collect();
+    let warnings = check_presets(document, DISTANCE, None).iter().map(Warning::from).collect();
     let faces = |phi: f64| seen_at(document, phi).is_some_and(|(_, bend)| bend.facing() > -EDGE_ON);
     let usable = ranges(faces);
     let verdict = match usable.as_slice() {
