@@ -4,7 +4,7 @@ use crate::city::GeneraliseArgs;
 use crate::common_args::Common;
 use crate::draw_args::DrawArgs;
 use crate::ground_args::{GroundArgs, InfoArgs};
-use crate::kinds::{AreaStyleKind, RendererKind, TechniqueKind};
+use crate::kinds::{self, RendererKind, TechniqueKind};
 use crate::pack::PackArgs;
 use crate::parse::{
     Outside, parse_eye, parse_fallback, parse_highlight, parse_outside, parse_place, parse_size, parse_spacing,
@@ -12,7 +12,7 @@ use crate::parse::{
 };
 use crate::preset::PresetArgs;
 use belvedere::RendererChoice;
-use belvedere::scene_file::HighlightMark;
+use belvedere::scene_file::{HighlightMark, SurfaceDoc};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -218,8 +218,8 @@ pub(crate) struct RevealArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "see")]
     pub(crate) rivers: Vec<PathBuf>,
     /// Style of areas, instead of the one that their properties and names give
-    #[arg(long, value_enum, value_name = "STYLE")]
-    pub(crate) area_style: Option<AreaStyleKind>,
+    #[arg(long, value_parser = kinds::surface(), value_name = "STYLE")]
+    pub(crate) area_style: Option<SurfaceDoc>,
     /// Technique that bends the picture; by default a spline, with --see curved rays
     #[arg(long, value_enum)]
     pub(crate) technique: Option<TechniqueKind>,
@@ -295,8 +295,8 @@ pub(crate) struct DisoccludeArgs {
     #[arg(long)]
     pub(crate) fill_voids: bool,
     /// Style of areas in the picture, instead of the one that their properties and names give
-    #[arg(long, value_enum, value_name = "STYLE")]
-    pub(crate) area_style: Option<AreaStyleKind>,
+    #[arg(long, value_parser = kinds::surface(), value_name = "STYLE")]
+    pub(crate) area_style: Option<SurfaceDoc>,
     /// Lower the ground with the distance, as on a sphere, with refraction
     #[arg(long)]
     pub(crate) curved_earth: bool,
@@ -376,8 +376,8 @@ pub(crate) struct RenderArgs {
     #[arg(long)]
     pub(crate) no_sea: bool,
     /// Style of the areas of all layers, instead of the scene's; auto = the one that properties and names give
-    #[arg(long, value_enum, value_name = "STYLE")]
-    pub(crate) area_style: Option<AreaStyleKind>,
+    #[arg(long, value_parser = kinds::surface(), value_name = "STYLE")]
+    pub(crate) area_style: Option<SurfaceDoc>,
 }
 
 /// What makes no sense for pictures of the camera.
