@@ -7,8 +7,8 @@ use crate::ground_args::{GroundArgs, InfoArgs};
 use crate::kinds::{self, RendererKind, TechniqueKind};
 use crate::pack::PackArgs;
 use crate::parse::{
-    Outside, parse_eye, parse_fallback, parse_highlight, parse_outside, parse_place, parse_size, parse_spacing,
-    parse_sweep,
+    Outside, parse_eye, parse_fallback, parse_highlight, parse_outside, parse_place, parse_scale, parse_size,
+    parse_spacing, parse_sweep,
 };
 use crate::preset::PresetArgs;
 use belvedere::RendererChoice;
@@ -98,6 +98,9 @@ pub(crate) struct FiguresArgs {
     /// Folder for the pictures
     #[arg(short, long, value_name = "DIR", default_value = "belvedere-figures")]
     pub(crate) out: PathBuf,
+    /// Factor of the width and height of the pictures of curved, spline and compare, in 0.1..=1: smaller drafts are drawn sooner
+    #[arg(long, default_value = "1", value_parser = parse_scale)]
+    pub(crate) scale: f64,
 }
 
 /// Figures of one paper.

@@ -358,13 +358,13 @@ fn draw_figures(args: &FiguresArgs, context: &Context) -> anyhow::Result<Goal> {
         written.extend(belvedere_gallery::guide_figures(&args.out, &options, overwrite)?);
     }
     if args.what.0.contains(&FigureKind::Curved) {
-        written.extend(belvedere_gallery::curved_figures(&args.out, &options, overwrite)?);
+        written.extend(belvedere_gallery::curved_figures(&args.out, &options, args.scale, overwrite)?);
     }
     if args.what.0.contains(&FigureKind::Spline) {
-        written.extend(belvedere_gallery::spline_figures(&args.out, &options, overwrite)?);
+        written.extend(belvedere_gallery::spline_figures(&args.out, &options, args.scale, overwrite)?);
     }
     if args.what.0.contains(&FigureKind::Compare) {
-        written.extend(belvedere_gallery::compare_figures(&args.out, &options, overwrite)?);
+        written.extend(belvedere_gallery::compare_figures(&args.out, &options, args.scale, overwrite)?);
     }
     if args.what.0.contains(&FigureKind::Terrain) {
         written.extend(belvedere_gallery::terrain_figures(&args.out, &args.scenes, &options, overwrite)?);
