@@ -63,9 +63,7 @@ pub(crate) fn processor() -> String {
 
 /// The value that `share` of all values do not exceed; 0 without values.
 pub fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let last = values.len().saturating_sub(1);
-    values.get((last as f64 * share).ceil() as usize).copied().unwrap_or(0.0)
+    belvedere::core::quantile::quantile(&mut values, share, belvedere::core::quantile::Rank::Upper)
 }
 
 /// Middle value; 0 without values.

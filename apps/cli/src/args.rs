@@ -4,15 +4,15 @@ use crate::city::GeneraliseArgs;
 use crate::common_args::Common;
 use crate::draw_args::DrawArgs;
 use crate::ground_args::{GroundArgs, InfoArgs};
-use crate::kinds::{AreaStyleKind, RendererKind, TechniqueKind};
+use crate::kinds::{self, RendererKind, TechniqueKind};
 use crate::pack::PackArgs;
 use crate::parse::{
-    Outside, parse_eye, parse_fallback, parse_highlight, parse_outside, parse_place, parse_size, parse_spacing,
-    parse_sweep,
+    Outside, parse_eye, parse_fallback, parse_highlight, parse_outside, parse_place, parse_scale, parse_size,
+    parse_spacing, parse_sweep,
 };
 use crate::preset::PresetArgs;
 use belvedere::RendererChoice;
-use belvedere::scene_file::HighlightMark;
+use belvedere::scene_file::{HighlightMark, SurfaceDoc};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -98,6 +98,9 @@ pub(crate) struct FiguresArgs {
     /// Folder for the pictures
     #[arg(short, long, value_name = "DIR", default_value = "belvedere-figures")]
     pub(crate) out: PathBuf,
+    /// Factor of the width and height of the pictures of curved, spline and compare, in 0.1..=1: smaller drafts are drawn sooner
+    #[arg(long, default_value = "1", value_parser = parse_scale)]
+    pub(crate) scale: f64,
 }
 
 /// Figures of one paper.
@@ -218,8 +221,8 @@ pub(crate) struct RevealArgs {
     #[arg(long, value_name = "FILE", conflicts_with = "see")]
     pub(crate) rivers: Vec<PathBuf>,
     /// Style of areas, instead of the one that their properties and names give
-    #[arg(long, value_enum, value_name = "STYLE")]
-    pub(crate) area_style: Option<AreaStyleKind>,
+    #[arg(long, value_parser = kinds::surface(), value_name = "STYLE")]
+    pub(crate) area_style: Option<SurfaceDoc>,
     /// Technique that bends the picture; by default a spline, with --see curved rays
     #[arg(long, value_enum)]
     pub(crate) technique: Option<TechniqueKind>,
@@ -295,8 +298,8 @@ pub(crate) struct DisoccludeArgs {
     #[arg(long)]
     pub(crate) fill_voids: bool,
     /// Style of areas in the picture, instead of the one that their properties and names give
-    #[arg(long, value_enum, value_name = "STYLE")]
-    pub(crate) area_style: Option<AreaStyleKind>,
+    #[arg(long, value_parser = kinds::surface(), value_name = "STYLE")]
+    pub(crate) area_style: Option<SurfaceDoc>,
     /// Lower the ground with the distance, as on a sphere, with refraction
     #[arg(long)]
     pub(crate) curved_earth: bool,
@@ -376,8 +379,8 @@ pub(crate) struct RenderArgs {
     #[arg(long)]
     pub(crate) no_sea: bool,
     /// Style of the areas of all layers, instead of the scene's; auto = the one that properties and names give
-    #[arg(long, value_enum, value_name = "STYLE")]
-    pub(crate) area_style: Option<AreaStyleKind>,
+    #[arg(long, value_parser = kinds::surface(), value_name = "STYLE")]
+    pub(crate) area_style: Option<SurfaceDoc>,
 }
 
 /// What makes no sense for pictures of the camera.

@@ -1,8 +1,9 @@
 //! Choices among named kinds.
 
-use belvedere::scene_file::SurfaceDoc;
+use belvedere::scene_file::{SurfaceDoc, choices};
 use belvedere::verbs::reveal::Technique;
 use clap::ValueEnum;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 /// What bends a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -32,37 +33,11 @@ impl From<TechniqueKind> for Technique {
     }
 }
 
-/// What areas are drawn as.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum AreaStyleKind {
-    /// The style that properties and names give, else outline
-    Auto,
-    /// A line and a light, transparent fill
-    Outline,
-    /// A grey fill
-    Plain,
-    /// Water: flat, with a shore line
-    Water,
-    /// Forest
-    Forest,
-    /// Ice
-    Glacier,
-    /// A line and a light green, transparent fill
-    Park,
-}
-
-impl From<AreaStyleKind> for SurfaceDoc {
-    fn from(kind: AreaStyleKind) -> Self {
-        match kind {
-            AreaStyleKind::Auto => Self::Auto,
-            AreaStyleKind::Outline => Self::Outline,
-            AreaStyleKind::Plain => Self::Plain,
-            AreaStyleKind::Water => Self::Water,
-            AreaStyleKind::Forest => Self::Forest,
-            AreaStyleKind::Glacier => Self::Glacier,
-            AreaStyleKind::Park => Self::Park,
-        }
-    }
+/// Parser of the surface of areas: names and help texts are those of the schema.
+pub(crate) fn surface() -> impl TypedValueParser<Value = SurfaceDoc> {
+    let value = |(name, says): (String, String)| PossibleValue::new(name).help(says.trim_end_matches('.').to_owned());
+    PossibleValuesParser::new(choices::<SurfaceDoc>().into_iter().map(value))
+        .try_map(|name| serde_json::from_value(name.into()))
 }
 
 /// Renderers of this version.

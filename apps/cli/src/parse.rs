@@ -78,6 +78,11 @@ pub(crate) fn parse_spacing(text: &str) -> Result<f64, String> {
     text.trim().parse().ok().filter(|v: &f64| *v > 0.0 && v.is_finite()).ok_or("give a length greater than 0".into())
 }
 
+/// Parses a factor in 0.1..=1.
+pub(crate) fn parse_scale(text: &str) -> Result<f64, String> {
+    text.trim().parse().ok().filter(|v| (0.1..=1.0).contains(v)).ok_or("give a factor in 0.1..=1, such as 0.5".into())
+}
+
 /// Parses `auto`, or the six numbers of eye and target.
 pub(crate) fn parse_outside(text: &str) -> Result<Outside, String> {
     if text.trim() == "auto" {

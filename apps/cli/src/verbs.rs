@@ -122,7 +122,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     let palette = args.palette.as_deref().map(PaletteDoc::of);
     // A straight picture does not need the ground solved.
     let unsolved = request.straight;
-    let (area_style, sea) = (args.area_style.map(Into::into), args.no_sea.then_some(false));
+    let (area_style, sea) = (args.area_style, args.no_sea.then_some(false));
     let options =
         OpenOptions { palette, area_style, sea, unsolved, ..context.options(Needs::Everything, args.draw.size) };
     let session = Session::from_document(source, &options)?;
@@ -171,7 +171,7 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
             features: args.features.iter().map(|path| named(path)).collect(),
             rivers: args.rivers.iter().map(|path| named(path)).collect(),
             crs: args.crs,
-            area_style: args.area_style.map(Into::into),
+            area_style: args.area_style,
             source_crs: args.ground.source_crs,
             nodata: args.ground.nodata,
             vertical_unit: args.ground.vertical_unit.map(Into::into),
@@ -309,7 +309,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
             keep_voids: args.keep_voids,
             palette: PaletteDoc::of(&args.palette),
             no_sea: args.no_sea,
-            area_style: args.area_style.map(Into::into),
+            area_style: args.area_style,
             source_crs: args.ground.source_crs,
             nodata: args.ground.nodata,
             vertical_unit: args.ground.vertical_unit.map(Into::into),
@@ -358,13 +358,13 @@ fn draw_figures(args: &FiguresArgs, context: &Context) -> anyhow::Result<Goal> {
         written.extend(belvedere_gallery::guide_figures(&args.out, &options, overwrite)?);
     }
     if args.what.0.contains(&FigureKind::Curved) {
-        written.extend(belvedere_gallery::curved_figures(&args.out, &options, overwrite)?);
+        written.extend(belvedere_gallery::curved_figures(&args.out, &options, args.scale, overwrite)?);
     }
     if args.what.0.contains(&FigureKind::Spline) {
-        written.extend(belvedere_gallery::spline_figures(&args.out, &options, overwrite)?);
+        written.extend(belvedere_gallery::spline_figures(&args.out, &options, args.scale, overwrite)?);
     }
     if args.what.0.contains(&FigureKind::Compare) {
-        written.extend(belvedere_gallery::compare_figures(&args.out, &options, overwrite)?);
+        written.extend(belvedere_gallery::compare_figures(&args.out, &options, args.scale, overwrite)?);
     }
     if args.what.0.contains(&FigureKind::Terrain) {
         written.extend(belvedere_gallery::terrain_figures(&args.out, &args.scenes, &options, overwrite)?);

@@ -45,13 +45,15 @@ struct Row {
 
 /// Draws the comparison into `folder`, which is made if need be: `compare.png`, `compare.json` and `compare.html`. Returns the files.
 ///
+/// * `scale`: factor of the width and height of the pictures, in (0, 1].
+///
 /// # Errors
 /// A file that exists if `overwrite` is false; those of drawing a scene.
-pub fn figures(folder: &Path, options: &OpenOptions, overwrite: bool) -> Result<Vec<PathBuf>> {
+pub fn figures(folder: &Path, options: &OpenOptions, scale: f64, overwrite: bool) -> Result<Vec<PathBuf>> {
     std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     let paths = ["compare.png", "compare.json", "compare.html"].map(|name| folder.join(name));
     paths.iter().try_for_each(|path| output::check(path, &[], overwrite))?;
-    let easel = Easel::new(options);
+    let easel = Easel::new(options, scale);
     let sessions = sessions(&easel)?;
     let reference = easel.draw(&sessions[0].1)?;
     let (mut panels, mut rows) = (Vec::new(), Vec::new());

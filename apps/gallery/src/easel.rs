@@ -19,15 +19,23 @@ const RAY_POINTS: usize = 320;
 
 pub(crate) struct Easel<'a> {
     options: &'a OpenOptions,
+    scale: f64,
 }
 
 impl<'a> Easel<'a> {
-    pub(crate) fn new(options: &'a OpenOptions) -> Self {
-        Self { options }
+    /// * `scale`: factor of the width and height of all pictures, in (0, 1].
+    pub(crate) fn new(options: &'a OpenOptions, scale: f64) -> Self {
+        Self { options, scale }
     }
 
-    /// A scene as its text says, in pictures of `image` pixels.
+    /// Factor of the width and height of all pictures.
+    pub(crate) fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// A scene as its text says, in pictures of `image` pixels times the scale.
     pub(crate) fn open(&self, text: &str, image: [u32; 2]) -> Result<Session> {
+        let image = image.map(|n| (f64::from(n) * self.scale).round().max(1.0) as u32);
         let options = OpenOptions { image: Some(image), ..self.options.clone() };
         Ok(Session::from_text(Path::new("figure.toml"), text, &options)?)
     }

@@ -71,16 +71,24 @@ impl FigureSet<'_> {
     /// Draws the figures into `folder`, which is made if need be: `SET_NAME.png`, `SET.json` with the captions, and
     /// `SET.html`. Returns the files.
     ///
+    /// * `scale`: factor of the width and height of the pictures, in (0, 1].
+    ///
     /// # Errors
     /// A file that exists if `overwrite` is false; those of drawing a scene.
-    pub(crate) fn draw(&self, folder: &Path, options: &OpenOptions, overwrite: bool) -> Result<Vec<PathBuf>> {
+    pub(crate) fn draw(
+        &self,
+        folder: &Path,
+        options: &OpenOptions,
+        scale: f64,
+        overwrite: bool,
+    ) -> Result<Vec<PathBuf>> {
         std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
         let picture = |entry: &Entry| format!("{}_{}.png", self.name, entry.name);
         let [page, record] = ["html", "json"].map(|ending| folder.join(format!("{}.{ending}", self.name)));
         for path in self.entries.iter().map(|e| folder.join(picture(e))).chain([page.clone(), record.clone()]) {
             output::check(&path, &[], overwrite)?;
         }
-        let easel = Easel::new(options);
+        let easel = Easel::new(options, scale);
         let (mut written, mut records) = (Vec::new(), Vec::new());
         for (k, entry) in self.entries.iter().enumerate() {
             options.progress.tick(&format!("figures {}", self.name), k as f64 / self.entries.len() as f64)?;

@@ -44,7 +44,7 @@ const SET: FigureSet<'_> = FigureSet {
 /// # Errors
 /// A file that exists if `overwrite` is false; the errors of drawing a scene.
 pub fn figures(folder: &Path, options: &OpenOptions, overwrite: bool) -> Result<Vec<PathBuf>> {
-    SET.draw(folder, options, overwrite)
+    SET.draw(folder, options, 1.0, overwrite)
 }
 
 fn curved_rays(easel: &Easel<'_>) -> Result<Figure> {

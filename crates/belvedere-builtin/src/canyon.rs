@@ -4,7 +4,7 @@ use super::noise::Noise;
 use super::viewpoint::{Viewpoint, best_viewpoint};
 use super::{BuiltinError, SuggestedCamera, ground_layer, line_layer};
 use belvedere_core::DVec2;
-use belvedere_scene::{Crs, Heightfield, LineFeature, NodeState, Palette, Scene, Unit, drape_polyline};
+use belvedere_scene::{Crs, Heightfield, LineFeature, NodeState, PaletteName, Scene, Unit, drape_polyline};
 use rayon::prelude::*;
 
 /// Nodes per side and their distance, metres.
@@ -64,8 +64,10 @@ pub fn canyon(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
     let points = drape_polyline(&terrain, &river).parts.into_iter().max_by_key(Vec::len).unwrap_or_default();
     let Viewpoint { eye, look_at } = best_viewpoint(&terrain, &[], &points, &[0.02, 0.04, 0.065], 0.28);
     let title = format!("Canyon {seed}: a river between its walls");
-    let layers =
-        vec![ground_layer(terrain, Palette::Desert), line_layer("river", LineFeature { name: "River".into(), points })];
+    let layers = vec![
+        ground_layer(terrain, PaletteName::Desert.into()),
+        line_layer("river", LineFeature { name: "River".into(), points }),
+    ];
     let camera = SuggestedCamera { title: title.clone(), eye, look_at, fov_y: 45f64.to_radians() };
     Ok((Scene { title, crs: Crs::Local, unit: Unit::Metre, layers, ..Scene::default() }, camera))
 }

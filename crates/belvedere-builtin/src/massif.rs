@@ -9,7 +9,7 @@ use crate::route::{RouteCost, RouteError, Window, route_in};
 use belvedere_core::DVec2;
 use belvedere_scene::{
     AreaFeature, AreaLayer, AreaSurface, Color, Crs, Heightfield, HeightfieldError, Hidden, Layer, LayerKind,
-    LineFeature, NodeState, Palette, Scene, Unit, drape_polyline,
+    LineFeature, NodeState, PaletteName, Scene, Unit, drape_polyline,
 };
 
 /// Side of the massif, metres.
@@ -42,7 +42,7 @@ pub fn massif(seed: u64, size: usize) -> Result<(Scene, SuggestedCamera), Builti
     let Viewpoint { eye, look_at } = best_viewpoint(&terrain, &[], &points, &[0.02, 0.04, 0.065], 0.28);
     let title = format!("Massif {seed}: a trail over the pass");
     let camera = SuggestedCamera { title: title.clone(), eye, look_at, fov_y: 45f64.to_radians() };
-    let mut layers = vec![ground_layer(terrain, Palette::Alpine)];
+    let mut layers = vec![ground_layer(terrain, PaletteName::Alpine.into())];
     if let Some(lake) = lake {
         layers.push(lake_layer(lake));
     }

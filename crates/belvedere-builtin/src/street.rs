@@ -6,7 +6,7 @@ use super::{BuiltinError, SuggestedCamera, ground_layer, line_layer};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{
     AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Color, Crs, Heightfield, Hidden, Layer, LayerKind,
-    LineFeature, NodeState, Palette, Scene, Unit, drape_polyline,
+    LineFeature, NodeState, PaletteName, Scene, Unit, drape_polyline,
 };
 
 /// Blocks per side.
@@ -77,7 +77,7 @@ pub fn street(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
     let Viewpoint { eye, look_at } = best_viewpoint(&terrain, &towers, &points, &[0.12, 0.16, 0.2, 0.25], 0.42);
     let title = format!("Town {seed}: a route between the towers");
     let layers = vec![
-        ground_layer(terrain, Palette::Plain),
+        ground_layer(terrain, PaletteName::Plain.into()),
         area_layer("blocks", blocks, Color::rgb(222, 217, 207)),
         area_layer("parks", parks, Color::rgb(146, 178, 120)),
         Layer { id: "towers".into(), must_see: false, kind: LayerKind::Boxes(BoxLayer::new(towers)) },

@@ -7,6 +7,7 @@ pub mod centreline;
 mod distance;
 mod error;
 pub mod flight;
+mod frontier;
 pub mod generalise;
 mod large_forms;
 pub mod measure;

@@ -18,6 +18,7 @@ pub mod map;
 mod miss;
 pub mod polygon;
 pub mod presets;
+pub mod quantile;
 pub mod random;
 pub mod sections;
 pub mod view;

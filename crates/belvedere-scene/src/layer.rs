@@ -31,24 +31,57 @@ pub enum Shading {
     Deformed,
 }
 
-/// Hypsometric tint.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub enum Palette {
-    /// Chosen by the height range of the terrain.
+/// Built-in tints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum PaletteName {
+    /// Chosen by the range of heights.
     #[default]
     Auto,
     /// Green valleys, brown slopes, white summits.
     Alpine,
-    /// Sand and rust, for deserts and canyons.
+    /// Sand and rust.
     Desert,
-    /// Rock and ice, for high mountains.
+    /// Rock and ice.
     Glacial,
-    /// Blue to yellow in even steps of lightness: the palette that is read most reliably.
+    /// Blue to yellow in even steps of lightness: the one that is read most safely.
     Clear,
     /// One light grey.
     Plain,
+}
+
+impl PaletteName {
+    /// All of them, as files write them.
+    pub const ALL: [(&'static str, Self); 6] = [
+        ("auto", Self::Auto),
+        ("alpine", Self::Alpine),
+        ("desert", Self::Desert),
+        ("glacial", Self::Glacial),
+        ("clear", Self::Clear),
+        ("plain", Self::Plain),
+    ];
+}
+
+/// Hypsometric tint.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Palette {
+    /// A built-in one.
+    Named(PaletteName),
     /// A colour ramp given by the user.
     Ramp(Arc<Ramp>),
+}
+
+impl Default for Palette {
+    fn default() -> Self {
+        PaletteName::default().into()
+    }
+}
+
+impl From<PaletteName> for Palette {
+    fn from(name: PaletteName) -> Self {
+        Self::Named(name)
+    }
 }
 
 /// A georeferenced picture draped over terrain.

@@ -38,7 +38,7 @@ pub use frame::{Aux, Compositing, Frame, FrameStats, RenderError, RenderJob, Ren
 pub use heightfield::{Heightfield, HeightfieldError, NodeState, States};
 pub use layer::{
     AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Drape, Layer, LayerKind, LineFeature, LineLayer, Palette,
-    PointFeature, PointLayer, Relief, Shading, TerrainLayer,
+    PaletteName, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
 };
 pub use light::Light;
 pub use mark::{DistanceMarkers, Hidden, PointStyle, Symbol};

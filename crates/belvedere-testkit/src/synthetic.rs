@@ -2,7 +2,7 @@
 
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, View};
 use belvedere_scene::{
-    Color, Frame, FrameStats, Heightfield, Hidden, Layer, LayerKind, LineFeature, LineLayer, NodeState, Palette,
+    Color, Frame, FrameStats, Heightfield, Hidden, Layer, LayerKind, LineFeature, LineLayer, NodeState, PaletteName,
     PointFeature, PointLayer, Relief, RenderError, RenderJob, Renderer, Scene, TerrainLayer,
 };
 use rayon::prelude::*;
@@ -36,7 +36,7 @@ pub fn terrain_layer(heightfield: Heightfield) -> Layer {
         relief: Relief::Swiss,
         shading: None,
         exaggeration: 1.0,
-        palette: Palette::Auto,
+        palette: PaletteName::Auto.into(),
     });
     Layer { id: "ground".into(), must_see: false, kind }
 }

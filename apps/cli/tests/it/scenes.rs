@@ -23,6 +23,9 @@ fn every_ready_scene_opens() {
         let place = Place::new();
         if text.contains("builtin:") {
             place.ok(&["check", scene]);
+        } else if text.contains("terrain_disocclusion") {
+            // Minutes of solving: `terrain::andorra_is_shown_with_a_progressive_bend_and_terrain` opens one, and the facade's comparison
+            // of its renderers opens all on a coarser grid.
         } else if let Some(readme) = belvedere_testkit::data("README.md") {
             let root = readme.parent().and_then(|p| p.to_str()).expect("folder");
             place.ok(&["check", scene, "--allow-root", root]);

@@ -31,7 +31,7 @@ const PAPER: [Combination; 3] = [
 pub(super) fn table(easel: &Easel<'_>) -> Result<Figure> {
     let mut panels = Vec::new();
     for row in &PAPER {
-        let text = scene(row);
+        let text = scene(row, easel.scale());
         let (triangles, times) = measured(&easel.open(&text, IMAGE)?)?;
         let levels: Vec<String> = row.levels.iter().map(u32::to_string).collect();
         let note = format!(
@@ -47,8 +47,10 @@ pub(super) fn table(easel: &Easel<'_>) -> Result<Figure> {
 }
 
 /// A town with a section for each level, bent progressively.
-fn scene(row: &Combination) -> String {
-    let size = row.town_m;
+///
+/// * `scale`: factor of the width of the town.
+fn scene(row: &Combination, scale: f64) -> String {
+    let size = (row.town_m * scale).round();
     let named = |level: &u32| format!("loa{level} = [\"level{level}\"]\n");
     let layer = |level: &u32| {
         format!(

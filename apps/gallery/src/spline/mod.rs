@@ -93,9 +93,11 @@ const FIGURES: [Entry; 10] = [
 
 /// Draws the figures of multi-perspective views into `folder`: sheets, a page and a record. Returns the files.
 ///
+/// * `scale`: factor of the width and height of the pictures, in (0, 1]; measured times are those of such pictures.
+///
 /// # Errors
 /// A file that exists if `overwrite` is false; the errors of drawing a scene.
-pub fn figures(folder: &Path, options: &OpenOptions, overwrite: bool) -> Result<Vec<PathBuf>> {
+pub fn figures(folder: &Path, options: &OpenOptions, scale: f64, overwrite: bool) -> Result<Vec<PathBuf>> {
     let set = FigureSet {
         name: "spline",
         title: "Space on a curve",
@@ -105,5 +107,5 @@ pub fn figures(folder: &Path, options: &OpenOptions, overwrite: bool) -> Result<
         comment: "space is bent unless a panel says straight; not to scale, not for navigation",
         entries: &FIGURES,
     };
-    set.draw(folder, options, overwrite)
+    set.draw(folder, options, scale, overwrite)
 }

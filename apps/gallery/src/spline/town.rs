@@ -36,7 +36,7 @@ pub(super) fn from(session: &Session, phi_deg: f64, distance: f64) -> Result<Ses
     let pinhole = session.view().pinhole();
     let (sin, cos) = phi_deg.to_radians().sin_cos();
     let (eye, up) = (distance * DVec3::new(-0.14 * cos, -0.99 * cos, sin), DVec3::new(0.14 * sin, 0.99 * sin, cos));
-    let camera = Pinhole::look_at(eye, DVec3::ZERO, up, pinhole.projection, TILE, 1.0, None)?;
+    let camera = Pinhole::look_at(eye, DVec3::ZERO, up, pinhole.projection, pinhole.image, 1.0, None)?;
     Ok(session.clone().with_view(View::straight(camera)))
 }
 

@@ -2,7 +2,7 @@
 
 use super::area::Area;
 use belvedere::disocclusion::internals::NO_CELL;
-use belvedere::scene::{Drape, LayerKind, Palette, Scene};
+use belvedere::scene::{Drape, LayerKind, PaletteName, Scene};
 
 /// Opacity of the colours over the relief.
 const ALPHA: u8 = 215;
@@ -24,7 +24,7 @@ pub(crate) fn painted(area: &Area) -> Scene {
     for layer in &mut scene.layers {
         if let LayerKind::Terrain(terrain) = &mut layer.kind {
             terrain.drapes = vec![drape.clone()];
-            terrain.palette = Palette::Plain;
+            terrain.palette = PaletteName::Plain.into();
         }
     }
     scene

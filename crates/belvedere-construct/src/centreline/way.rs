@@ -2,8 +2,7 @@
 //!
 //! Source: Dijkstra 1959. A step costs its length over the clearance in it, so that the path keeps to the middle.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use crate::frontier::{Frontier, NEIGHBOURS, step};
 
 /// Voxels that a path may use.
 pub(super) struct Cells<'c> {
@@ -15,42 +14,27 @@ pub(super) struct Cells<'c> {
     pub(super) clearance: &'c [f32],
 }
 
-/// The 26 steps to neighbours.
-fn steps() -> Vec<[i64; 3]> {
-    let all = (0..27i64).map(|i| [i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1]);
-    all.filter(|s| *s != [0; 3]).collect()
-}
-
 impl Cells<'_> {
     /// Numbers of the voxels of the cheapest path, both ends included; `None` if there is no path. Of equally cheap paths always the same.
     ///
     /// A diagonal step needs all voxels beside it that share its faces, so that walls one voxel thick are tight.
     pub(super) fn cheapest(&self, from: usize, to: usize) -> Option<Vec<usize>> {
         let [nx, ny, nz] = self.dims;
-        let steps = steps();
-        let lengths: Vec<f32> = steps
-            .iter()
-            .map(|s| (0..3).map(|a| (s[a] as f64 * self.spacing[a]).powi(2)).sum::<f64>().sqrt() as f32)
-            .collect();
-        let mut cost = vec![f32::INFINITY; self.clearance.len()];
+        let steps: [[isize; 3]; NEIGHBOURS] = std::array::from_fn(step);
+        let lengths = steps.map(|s| (0..3).map(|a| (s[a] as f64 * self.spacing[a]).powi(2)).sum::<f64>().sqrt() as f32);
+        let mut frontier = Frontier::new(self.clearance.len());
         let mut came_by = vec![u8::MAX; self.clearance.len()];
-        let mut open = BinaryHeap::new();
-        cost[from] = 0.0;
-        // Costs are not negative: their bits are in the order of the numbers.
-        open.push(Reverse((0u32, from)));
-        while let Some(Reverse((bits, at))) = open.pop() {
+        frontier.offer(from, 0.0);
+        while let Some((at, cost)) = frontier.take() {
             if at == to {
                 break;
             }
-            if f32::from_bits(bits) > cost[at] {
-                continue;
-            }
-            let here = [at % nx, at / nx % ny, at / nx / ny].map(|v| v as i64);
-            let offset = |s: [i64; 3]| -> Option<usize> {
-                let q: [i64; 3] = std::array::from_fn(|a| here[a] + s[a]);
+            let here = [at % nx, at / nx % ny, at / nx / ny].map(|v| v as isize);
+            let offset = |s: [isize; 3]| -> Option<usize> {
+                let q: [isize; 3] = std::array::from_fn(|a| here[a] + s[a]);
                 let within = q[0] >= 0 && q[1] >= 0 && q[2] >= 0;
-                let within = within && q[0] < nx as i64 && q[1] < ny as i64 && q[2] < nz as i64;
-                let next = (q[2] * ny as i64 + q[1]) * nx as i64 + q[0];
+                let within = within && q[0] < nx as isize && q[1] < ny as isize && q[2] < nz as isize;
+                let next = (q[2] * ny as isize + q[1]) * nx as isize + q[0];
                 within.then_some(next as usize).filter(|i| self.clearance[*i] > 0.0)
             };
             for (k, step) in steps.iter().enumerate() {
@@ -64,21 +48,19 @@ impl Cells<'_> {
                     continue;
                 }
                 let price = 2.0 * lengths[k] / (self.clearance[at] + self.clearance[next]);
-                let sum = f32::from_bits(bits) + price;
-                if sum < cost[next] {
-                    (cost[next], came_by[next]) = (sum, k as u8);
-                    open.push(Reverse((sum.to_bits(), next)));
+                if frontier.offer(next, cost + price) {
+                    came_by[next] = k as u8;
                 }
             }
         }
-        if cost[to] == f32::INFINITY {
+        if frontier.cost(to) == f32::INFINITY {
             return None;
         }
         let mut way = vec![to];
-        let mut at = to as i64;
+        let mut at = to as isize;
         while at as usize != from {
             let [x, y, z] = steps[usize::from(came_by[at as usize])];
-            at -= (z * ny as i64 + y) * nx as i64 + x;
+            at -= (z * ny as isize + y) * nx as isize + x;
             way.push(at as usize);
         }
         way.reverse();

@@ -3,6 +3,7 @@
 use crate::measure::bend::{facing, nodes};
 use crate::sample::{Sample, SampledFeature};
 use belvedere_core::map::spline::ReferencePlane;
+use belvedere_core::quantile::{Rank, quantile};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Heightfield, Scene};
 use belvedere_sight::{Obstacles, SightOptions};
@@ -83,10 +84,9 @@ impl<'a> Evaluator<'a> {
                 seen += sample.amount;
             }
         }
-        rows.sort_by(f64::total_cmp);
-        distances.sort_by(f64::total_cmp);
         let height_angle = 2.0 * (0.5 * f64::from(pinhole.image[1]) / pinhole.scale_px()).atan();
-        let depth_ratio = quantile(&distances, 0.97) / quantile(&distances, 0.03).max(1e-9);
+        let depth_ratio =
+            quantile(&mut distances, 0.97, Rank::Nearest) / quantile(&mut distances, 0.03, Rank::Nearest).max(1e-9);
         let skyline = self.skyline(view);
         let [width, height] = pinhole.image.map(f64::from);
         Evaluation {
@@ -94,7 +94,7 @@ impl<'a> Evaluator<'a> {
             in_margin: if all > 0.0 { inner / all } else { 0.0 },
             visible: if framed > 0.0 { seen / framed } else { 0.0 },
             attainable: (0.8 * height_angle).atan2(depth_ratio.ln().max(0.0)),
-            spread: (quantile(&rows, 0.95) - quantile(&rows, 0.05)) / height,
+            spread: (quantile(&mut rows, 0.95, Rank::Nearest) - quantile(&mut rows, 0.05, Rank::Nearest)) / height,
             drawn: drawn * pinhole.scale_px() / width,
             covered: self.covered(view, skyline),
             skyline,
@@ -175,11 +175,6 @@ impl<'a> Evaluator<'a> {
         }
         (if squeeze.is_finite() { squeeze } else { 1.0 }, faced)
     }
-}
-
-/// Value below which the share `q` of sorted `values` lies; 0 without values.
-pub(crate) fn quantile(values: &[f64], q: f64) -> f64 {
-    values.get((q * (values.len().max(1) - 1) as f64).round() as usize).copied().unwrap_or(0.0)
 }
 
 /// About `count` samples that stand for all: runs of neighbours are merged into their middle one.

@@ -1,8 +1,9 @@
 //! Search for the bend that shows most of the features in a natural picture: a coarse lattice, then ever smaller steps.
 
-use super::evaluate::{Evaluation, Evaluator, quantile};
+use super::evaluate::{Evaluation, Evaluator};
 use super::options::RevealOptions;
 use super::shape::{BendShape, BuiltBend};
+use belvedere_core::quantile::{Rank, quantile};
 use belvedere_core::{Projection, View};
 use belvedere_scene::Progress;
 use rayon::prelude::*;
@@ -88,8 +89,7 @@ impl<'a, 'b> BendSearch<'a, 'b> {
             .filter(|s| base.pinhole().project(s.p_world).is_ok_and(|(px, _)| pinhole.contains(px)))
             .map(|s| (s.p_world - pinhole.eye).dot(heading))
             .collect();
-        along.sort_by(f64::total_cmp);
-        let at = |q: f64| quantile(&along, q).max(1.0);
+        let mut at = |share: f64| quantile(&mut along, share, Rank::Nearest).max(1.0);
         let half_fov = match pinhole.projection {
             Projection::Perspective { fov_y } => 0.5 * fov_y,
             Projection::Orthographic { .. } => 0.4,

@@ -62,48 +62,12 @@ fn levelled_case() -> MapCase<Relief> {
     MapCase::new("levelled", region(), |_| levelled(0.9)).continuity(Continuity::C1)
 }
 
-mod laws {
-    use belvedere_testkit::laws::*;
-
-    #[test]
-    fn round_trips() {
-        map_round_trips(&super::case());
-        map_round_trips(&super::levelled_case());
-    }
-
-    #[test]
-    fn keeps_orientation() {
-        map_keeps_orientation(&super::case());
-        map_keeps_orientation(&super::levelled_case());
-    }
-
-    #[test]
-    fn is_identity_at_zero_strength() {
-        map_is_identity_at_zero_strength(&super::case());
-    }
-
-    #[test]
-    fn has_its_continuity() {
-        map_has_its_continuity(&super::case());
-    }
-
-    #[test]
-    fn never_gives_nan() {
-        map_never_gives_nan(&super::case());
-        map_never_gives_nan(&super::levelled_case());
-    }
-
-    #[test]
-    fn jacobian_matches_differences() {
-        map_jacobian_matches_differences(&super::case());
-        map_jacobian_matches_differences(&super::levelled_case());
-    }
-
-    #[test]
-    fn moves_with_its_parameters() {
-        map_moves_with_its_parameters(&super::case());
-    }
-}
+belvedere_testkit::space_map_laws!(laws, super::case());
+belvedere_testkit::space_map_laws!(
+    laws_of_levelling,
+    super::levelled_case(),
+    [round_trips, keeps_orientation, jacobian_matches_differences, never_gives_nan]
+);
 
 #[test]
 fn edge_bound_is_never_below_the_sampled_truth() {

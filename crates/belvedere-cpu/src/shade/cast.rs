@@ -139,7 +139,7 @@ impl<'a> Casters<'a> {
 mod tests {
     use super::*;
     use belvedere_scene::{
-        BoxLayer, BoxShape, Color, Heightfield, Layer, Mesh, MeshColors, MeshLayer, Palette, Relief, TerrainLayer,
+        BoxLayer, BoxShape, Color, Heightfield, Layer, Mesh, MeshColors, MeshLayer, PaletteName, Relief, TerrainLayer,
     };
 
     /// Sun in the west, 45 degrees high.
@@ -198,7 +198,7 @@ mod tests {
             relief: Relief::Sun,
             shading: None,
             exaggeration: 1.0,
-            palette: Palette::Plain,
+            palette: PaletteName::Plain.into(),
         };
         let scene = |ground: bool| {
             let ground = ground.then(|| layer(LayerKind::Terrain(terrain.clone())));

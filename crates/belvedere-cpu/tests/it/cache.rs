@@ -5,8 +5,8 @@ use belvedere_core::grid::Grid;
 use belvedere_core::{DVec2, DVec3, Pinhole, Stage, TerrainDisocclusion, View};
 use belvedere_cpu::CpuRenderer;
 use belvedere_scene::{
-    Drape, Frame, Heightfield, LayerKind, Light, Palette, Progress, Relief, RenderJob, RenderOptions, Renderer, Scene,
-    Shading, TerrainLayer,
+    Drape, Frame, Heightfield, LayerKind, Light, PaletteName, Progress, Relief, RenderJob, RenderOptions, Renderer,
+    Scene, Shading, TerrainLayer,
 };
 use std::sync::Arc;
 
@@ -58,7 +58,7 @@ fn a_renderer_tells_apart_everything_that_its_pictures_depend_on() {
     let placed = |corner: DVec2, spacing: f64| {
         Heightfield::measured(corner, DVec2::splat(spacing), 301, 301, ground.heights().to_vec()).expect("well formed")
     };
-    let base = TerrainLayer { relief: Relief::Sun, palette: Palette::Alpine, ..terrain(ground.clone()) };
+    let base = TerrainLayer { relief: Relief::Sun, palette: PaletteName::Alpine.into(), ..terrain(ground.clone()) };
     let corner = ground.north_west();
     let [drape, moved_drape] = [0.0, 0.4].map(|by| Drape {
         pixels: (0..64).map(|i| [(i * 4) as u8, 90, 30, 255]).collect(),
@@ -77,7 +77,7 @@ fn a_renderer_tells_apart_everything_that_its_pictures_depend_on() {
         ("altitude", base.clone(), Light { altitude: 0.9, ..sun }),
         ("shadows", base.clone(), Light { shadows: false, ..sun }),
         ("relief", TerrainLayer { relief: Relief::Swiss, ..base.clone() }, sun),
-        ("palette", TerrainLayer { palette: Palette::Desert, ..base.clone() }, sun),
+        ("palette", TerrainLayer { palette: PaletteName::Desert.into(), ..base.clone() }, sun),
         ("exaggeration", TerrainLayer { exaggeration: 2.0, ..base.clone() }, sun),
         ("shading", TerrainLayer { shading: Some(Shading::Map), ..base.clone() }, sun),
         ("drape", TerrainLayer { drapes: vec![drape], ..base.clone() }, sun),

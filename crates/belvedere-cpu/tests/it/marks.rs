@@ -4,7 +4,7 @@ use crate::support::{layer, line, options, pinhole, render, scene, terrain};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{
     Color, DistanceMarkers, Frame, Heightfield, Hidden, LayerKind, NodeState, Overlay, OverlayFace, OverlayLine,
-    OverlayPoint, Palette, PointFeature, PointLayer, PointStyle, Relief, RenderOptions, Scene, Symbol,
+    OverlayPoint, PaletteName, PointFeature, PointLayer, PointStyle, Relief, RenderOptions, Scene, Symbol,
 };
 
 const WIDTH_PX: f64 = 4.0;
@@ -25,7 +25,7 @@ fn ridge() -> Heightfield {
 
 fn ground(hf: &Heightfield) -> LayerKind {
     let mut ground = terrain(hf.clone());
-    (ground.relief, ground.palette) = (Relief::None, Palette::Plain);
+    (ground.relief, ground.palette) = (Relief::None, PaletteName::Plain.into());
     LayerKind::Terrain(ground)
 }
 

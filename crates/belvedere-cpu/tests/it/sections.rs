@@ -7,7 +7,7 @@ use belvedere_core::presets::PresetDocument;
 use belvedere_core::sections::TagPoint;
 use belvedere_core::{DVec3, Stage, View};
 use belvedere_scene::{
-    BoxLayer, BoxShape, Color, Compositing, Frame, LayerKind, Mesh, MeshColors, MeshLayer, Palette, RenderOptions,
+    BoxLayer, BoxShape, Color, Compositing, Frame, LayerKind, Mesh, MeshColors, MeshLayer, PaletteName, RenderOptions,
     Representation, Scene, Stylisation,
 };
 
@@ -21,7 +21,7 @@ fn representation(id: &str, layers: &[&str]) -> Representation {
 fn land() -> Scene {
     let relief = terrain(hills(129, 25.0, 120.0, 11));
     let mut plan = relief.clone();
-    (plan.palette, plan.relief) = (Palette::Plain, belvedere_scene::Relief::None);
+    (plan.palette, plan.relief) = (PaletteName::Plain.into(), belvedere_scene::Relief::None);
     let boxes = (0..49)
         .map(|i| {
             let base = DVec3::new(f64::from(i % 7 - 3) * 220.0, f64::from(i / 7 - 3) * 220.0, -40.0);

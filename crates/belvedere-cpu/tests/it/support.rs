@@ -4,8 +4,8 @@ pub(crate) use belvedere_core::random::Random;
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_cpu::CpuRenderer;
 use belvedere_scene::{
-    Color, Frame, Heightfield, Hidden, Layer, LayerKind, Light, LineFeature, LineLayer, NodeState, Palette, Progress,
-    Relief, RenderJob, RenderOptions, Renderer, Scene, TerrainLayer,
+    Color, Frame, Heightfield, Hidden, Layer, LayerKind, Light, LineFeature, LineLayer, NodeState, PaletteName,
+    Progress, Relief, RenderJob, RenderOptions, Renderer, Scene, TerrainLayer,
 };
 use std::f64::consts::TAU;
 
@@ -16,7 +16,7 @@ pub(crate) fn terrain(heightfield: Heightfield) -> TerrainLayer {
         relief: Relief::Swiss,
         shading: None,
         exaggeration: 1.0,
-        palette: Palette::Auto,
+        palette: PaletteName::Auto.into(),
     }
 }
 

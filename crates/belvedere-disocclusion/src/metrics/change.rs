@@ -3,6 +3,7 @@
 use super::super::{Cells, Field, NO_CELL};
 use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
+use belvedere_core::quantile::{Rank, quantile};
 use rayon::prelude::*;
 
 pub(super) struct Size {
@@ -41,15 +42,6 @@ pub(super) fn size(field: &Field, u: &[f64]) -> Size {
         max: solid().fold(0.0, |m, u| m.max(u.abs())),
         raised: solid().fold(0.0, f64::max),
     }
-}
-
-/// Value below which `share` of the values lie; 0 without values.
-fn quantile(values: &mut [f64], share: f64) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let k = ((values.len() - 1) as f64 * share) as usize;
-    *values.select_nth_unstable_by(k, f64::total_cmp).1
 }
 
 /// Depth of the lowest displaced node below the lowest undisplaced one, scene units; 0 if it is not lower.
@@ -95,7 +87,7 @@ pub(super) fn normals(field: &Field, u: &[f64]) -> Normals {
     };
     let mut angles: Vec<f64> = (0..h.len()).into_par_iter().with_min_len(4096).filter_map(angle).collect();
     let mean = angles.iter().sum::<f64>() / angles.len().max(1) as f64;
-    Normals { mean, p95: quantile(&mut angles, 0.95) }
+    Normals { mean, p95: quantile(&mut angles, 0.95, Rank::Lower) }
 }
 
 /// Differences of displacement between neighbours along the lines of the grid, both with data.
@@ -121,5 +113,5 @@ pub(super) fn steps(field: &Field, cells: Option<&Cells>, u: &[f64]) -> Steps {
             }
         }
     }
-    Steps { border: (edges > 0).then(|| border / edges as f64), p999: quantile(&mut all, 0.999) }
+    Steps { border: (edges > 0).then(|| border / edges as f64), p999: quantile(&mut all, 0.999, Rank::Lower) }
 }

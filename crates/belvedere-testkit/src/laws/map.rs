@@ -13,6 +13,15 @@ pub struct Joint {
     pub across: DVec3,
 }
 
+/// Rotations with which a map moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Turns {
+    Any,
+    /// About the vertical only.
+    Upright,
+    None,
+}
+
 type Maker<M> = Box<dyn Fn(&Similarity) -> M>;
 type Inside<M> = Box<dyn Fn(&M, DVec3) -> bool>;
 
@@ -25,7 +34,7 @@ pub struct MapCase<M> {
     region: Aabb,
     joints: Vec<Joint>,
     continuity: Continuity,
-    upright: bool,
+    turns: Turns,
     round_trip: f64,
     least_share: f64,
     samples: usize,
@@ -46,7 +55,7 @@ impl<M: SpaceMap> MapCase<M> {
             region,
             joints: Vec::new(),
             continuity: Continuity::C1,
-            upright: false,
+            turns: Turns::Any,
             round_trip: 1e-12,
             least_share: 1.0,
             samples: 2000,
@@ -68,7 +77,13 @@ impl<M: SpaceMap> MapCase<M> {
 
     /// States that the map depends on the vertical, so that it moves with rotations about the vertical only.
     pub fn upright(mut self) -> Self {
-        self.upright = true;
+        self.turns = Turns::Upright;
+        self
+    }
+
+    /// States that the map lies along the axes, so that it moves with shift and scale only.
+    pub fn unturned(mut self) -> Self {
+        self.turns = Turns::None;
         self
     }
 
@@ -307,7 +322,10 @@ pub fn map_moves_with_its_parameters<M: SpaceMap>(case: &MapCase<M>) {
     let (map, mut random) = (case.map(), Random::new(case.seed));
     let points = case.points_in_domain(&map);
     for _ in 0..8 {
-        let s = Similarity::random(&mut random, 3.0 * case.diagonal(), case.upright);
+        let mut s = Similarity::random(&mut random, 3.0 * case.diagonal(), case.turns == Turns::Upright);
+        if case.turns == Turns::None {
+            s.rotation = Similarity::IDENTITY.rotation;
+        }
         let moved = (case.make)(&s);
         let tolerance = 1e3 * f64::EPSILON * (s.length(case.size()) + s.translation.length());
         for &p in points.iter().take(200) {

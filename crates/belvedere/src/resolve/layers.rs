@@ -198,16 +198,7 @@ fn terrain(
 /// A palette by name or from its file.
 fn palette(loader: &mut Loader<'_>, index: usize, doc: &PaletteDoc) -> Result<Palette, BelvedereError> {
     let name = match doc {
-        PaletteDoc::Named(name) => {
-            return Ok(match name {
-                PaletteName::Auto => Palette::Auto,
-                PaletteName::Alpine => Palette::Alpine,
-                PaletteName::Desert => Palette::Desert,
-                PaletteName::Glacial => Palette::Glacial,
-                PaletteName::Clear => Palette::Clear,
-                PaletteName::Plain => Palette::Plain,
-            });
-        }
+        PaletteDoc::Named(name) => return Ok((*name).into()),
         PaletteDoc::File(name) => name,
     };
     let fail = |e: &dyn std::fmt::Display| {

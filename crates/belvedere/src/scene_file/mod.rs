@@ -1,5 +1,6 @@
 //! Scene files: TOML or JSON to a [`Document`], with mistakes named by file, line and nearest valid key.
 
+mod choices;
 mod city;
 mod common;
 mod de;
@@ -22,6 +23,7 @@ mod stylisation;
 mod toml_tree;
 mod volume;
 
+pub use choices::choices;
 pub use city::{CityDoc, CityStyleDoc};
 pub use common::{Paths, PlaneDoc, TransformDoc};
 pub(crate) use doc_error::{DocError, suggestion};

@@ -1,6 +1,7 @@
 //! Tints of terrain.
 
 use crate::BelvedereError;
+pub use belvedere_scene::PaletteName;
 use schemars::JsonSchema;
 use serde::de::Deserializer;
 use serde::{Deserialize, Serialize};
@@ -49,35 +50,4 @@ impl<'de> Deserialize<'de> for PaletteDoc {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         String::deserialize(deserializer).map(|text| Self::of(&text))
     }
-}
-
-/// Built-in tints.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum PaletteName {
-    /// Chosen by the range of heights.
-    #[default]
-    Auto,
-    /// Green valleys, brown slopes, white summits.
-    Alpine,
-    /// Sand and rust.
-    Desert,
-    /// Rock and ice.
-    Glacial,
-    /// Blue to yellow in even steps of lightness: the one that is read most safely.
-    Clear,
-    /// One light grey.
-    Plain,
-}
-
-impl PaletteName {
-    /// All of them, as files write them.
-    pub const ALL: [(&'static str, Self); 6] = [
-        ("auto", Self::Auto),
-        ("alpine", Self::Alpine),
-        ("desert", Self::Desert),
-        ("glacial", Self::Glacial),
-        ("clear", Self::Clear),
-        ("plain", Self::Plain),
-    ];
 }

@@ -3,13 +3,10 @@
 //! Source: Dijkstra 1959, on cells that know in which direction the path to them arrives, so that turning has a price.
 
 use super::voxels::Voxels;
+use crate::frontier::{Frontier, NEIGHBOURS, step};
 use belvedere_core::DVec3;
 use belvedere_scene::{Cancelled, Progress};
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
 
-/// Directions from a cell to its neighbours.
-const DIRECTIONS: usize = 26;
 /// A step turns from the one before by at most this angle, cosine: 60 degrees.
 const LEAST_COSINE: f64 = 0.499;
 /// Marks cells that are reached straight from the eye.
@@ -34,7 +31,7 @@ pub(super) struct Price {
 pub(super) struct Ways<'a> {
     voxels: &'a Voxels,
     eye: DVec3,
-    cost: Vec<f32>,
+    frontier: Frontier,
     length: Vec<f32>,
     /// Number of the direction of arrival.
     arrival: Vec<u8>,
@@ -52,24 +49,20 @@ impl<'a> Ways<'a> {
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
         let cells = voxels.len();
-        let (cost, length) = (vec![f32::INFINITY; cells], vec![f32::INFINITY; cells]);
-        let mut ways = Self { voxels, eye, cost, length, arrival: vec![UNREACHED; cells] };
-        let mut open = BinaryHeap::new();
+        let (frontier, length) = (Frontier::new(cells), vec![f32::INFINITY; cells]);
+        let mut ways = Self { voxels, eye, frontier, length, arrival: vec![UNREACHED; cells] };
         for &cell in seen {
             let length = voxels.center(cell).distance(eye);
             let room = voxels.clearance(cell);
             if room > 0.0 && room >= price.clearance_per_length * length && length <= price.longest {
                 let cost = length as f32;
-                (ways.cost[cell], ways.length[cell], ways.arrival[cell]) = (cost, cost, FROM_EYE);
-                open.push(Open { cost, cell });
+                ways.frontier.offer(cell, cost);
+                (ways.length[cell], ways.arrival[cell]) = (cost, FROM_EYE);
             }
         }
-        let units: [DVec3; DIRECTIONS] = std::array::from_fn(|d| unit(step(d)));
+        let units: [DVec3; NEIGHBOURS] = std::array::from_fn(|d| unit(step(d)));
         let mut done = 0usize;
-        while let Some(Open { cost, cell }) = open.pop() {
-            if cost > ways.cost[cell] {
-                continue;
-            }
+        while let Some((cell, cost)) = ways.frontier.take() {
             done += 1;
             if done.is_multiple_of(1 << 14) {
                 progress.tick("looking for ways round what hides", done as f64 / cells as f64)?;
@@ -79,7 +72,7 @@ impl<'a> Ways<'a> {
                 let cosine = u.dot(arrival);
                 if cosine > LEAST_COSINE {
                     let turned = price.per_radian * cosine.min(1.0).acos();
-                    ways.step(cell, direction, f64::from(cost) + turned, price, &mut open);
+                    ways.step(cell, direction, f64::from(cost) + turned, price);
                 }
             }
         }
@@ -87,7 +80,7 @@ impl<'a> Ways<'a> {
     }
 
     /// Tries a step from a cell, the path to which costs `cost`.
-    fn step(&mut self, from: usize, direction: usize, cost: f64, price: &Price, open: &mut BinaryHeap<Open>) {
+    fn step(&mut self, from: usize, direction: usize, cost: f64, price: &Price) {
         let by = step(direction);
         let Some(cell) = self.voxels.neighbour(from, by) else { return };
         let way = self.voxels.cell() * DVec3::from_array(by.map(|v| v as f64)).length();
@@ -95,10 +88,8 @@ impl<'a> Ways<'a> {
         if room <= 0.0 || room < price.clearance_per_length * length || length > price.longest {
             return;
         }
-        let cost = (cost + way * (1.0 + price.tight / room)) as f32;
-        if cost < self.cost[cell] {
-            (self.cost[cell], self.length[cell], self.arrival[cell]) = (cost, length as f32, direction as u8);
-            open.push(Open { cost, cell });
+        if self.frontier.offer(cell, (cost + way * (1.0 + price.tight / room)) as f32) {
+            (self.length[cell], self.arrival[cell]) = (length as f32, direction as u8);
         }
     }
 
@@ -109,7 +100,7 @@ impl<'a> Ways<'a> {
 
     /// Cost of the cheapest path to a cell.
     pub(super) fn cost(&self, cell: usize) -> f64 {
-        f64::from(self.cost[cell])
+        f64::from(self.frontier.cost(cell))
     }
 
     /// Unit direction in which the cheapest path arrives at a cell.
@@ -133,34 +124,6 @@ impl<'a> Ways<'a> {
         points.reverse();
         points
     }
-}
-
-/// A cell whose neighbours are not tested yet; the cheapest comes first, and of equals the first.
-#[derive(Debug, PartialEq)]
-struct Open {
-    cost: f32,
-    cell: usize,
-}
-
-impl Eq for Open {}
-
-impl Ord for Open {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.cost.total_cmp(&self.cost).then(other.cell.cmp(&self.cell))
-    }
-}
-
-impl PartialOrd for Open {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-/// Cells from one to its neighbour, by the number of the direction.
-fn step(direction: usize) -> [isize; 3] {
-    // 13 would be no step at all.
-    let k = (direction + usize::from(direction >= 13)) as isize;
-    [k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1]
 }
 
 fn unit(step: [isize; 3]) -> DVec3 {
@@ -219,11 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn directions_are_all_neighbours_and_cancelling_ends_the_search() {
-        let mut steps: Vec<[isize; 3]> = (0..DIRECTIONS).map(step).collect();
-        steps.sort_unstable();
-        steps.dedup();
-        assert!(steps.len() == 26 && !steps.contains(&[0; 3]));
+    fn cancelling_ends_the_search() {
         let (voxels, progress) = (voxels(), Progress::silent());
         progress.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
         let seen: Vec<usize> = (0..voxels.len()).filter(|c| voxels.center(*c).y < 10.0).collect();

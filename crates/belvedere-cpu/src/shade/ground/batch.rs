@@ -362,7 +362,8 @@ mod tests {
     use crate::shade::LightCache;
     use belvedere_core::{DVec3, Pinhole, Projection, View};
     use belvedere_scene::{
-        Heightfield, Layer, LayerKind, Light, Palette, Progress, Relief, RenderJob, RenderOptions, Scene, TerrainLayer,
+        Heightfield, Layer, LayerKind, Light, PaletteName, Progress, Relief, RenderJob, RenderOptions, Scene,
+        TerrainLayer,
     };
 
     fn hills() -> Scene {
@@ -376,7 +377,7 @@ mod tests {
             relief: Relief::Swiss,
             shading: None,
             exaggeration: 1.0,
-            palette: Palette::Alpine,
+            palette: PaletteName::Alpine.into(),
         };
         let layer = Layer { id: "ground".into(), must_see: false, kind: LayerKind::Terrain(terrain) };
         Scene { layers: vec![layer], ..Scene::default() }

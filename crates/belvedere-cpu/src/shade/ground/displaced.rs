@@ -153,7 +153,7 @@ mod tests {
     use crate::shade::relief::ReliefLight;
     use belvedere_core::grid::Grid;
     use belvedere_core::{DVec2, SpaceMap};
-    use belvedere_scene::{Light, Palette, Relief};
+    use belvedere_scene::{Light, PaletteName, Relief};
 
     fn hills(cols: usize, rows: usize) -> Heightfield {
         let h = |i: usize| 900.0 + 300.0 * ((i % cols) as f32 * 0.07).sin() * ((i / cols) as f32 * 0.05).cos();
@@ -189,8 +189,12 @@ mod tests {
     #[test]
     fn only_tiles_around_what_moved_on_are_made_again() {
         let (hf, cache) = (Arc::new(hills(1100, 1100)), GroundCache::default());
-        let key =
-            LitKey { relief: Relief::Swiss, light: Light::default(), palette: Palette::Alpine, exaggeration: 1.0 };
+        let key = LitKey {
+            relief: Relief::Swiss,
+            light: Light::default(),
+            palette: PaletteName::Alpine.into(),
+            exaggeration: 1.0,
+        };
         let tint = Tint::new(&key.palette, hf.z_range());
         let relief = ReliefLight::new(key.relief, &key.light);
         let frame = |depth: f32| {

@@ -320,7 +320,7 @@ mod tests {
     use crate::shade::ground::surface::{MipPyramid, Surface};
     use crate::shade::ground::tiles::CELL;
     use belvedere_core::DVec2;
-    use belvedere_scene::{Heightfield, Light, NodeState, Palette, Relief};
+    use belvedere_scene::{Heightfield, Light, NodeState, Palette, PaletteName, Relief};
     use std::sync::Arc;
 
     fn hills(cols: usize, rows: usize) -> Heightfield {
@@ -363,7 +363,7 @@ mod tests {
     #[test]
     fn interpolated_light_is_that_of_the_interpolated_ground() {
         let hf = hills(150, 131);
-        with_inputs(&hf, &Palette::Alpine, Relief::Swiss, |ground, m| {
+        with_inputs(&hf, &PaletteName::Alpine.into(), Relief::Swiss, |ground, m| {
             let mut row = Planes::new(150);
             let (mut worst, mut sum, mut n) = (0.0f32, 0.0, 0.0);
             for r in 1..129 {
@@ -400,7 +400,7 @@ mod tests {
         let sunken = hf.heights().iter().enumerate().map(|(i, h)| h - bowl(i)).collect();
         let (map, moved) = (Surface::of_map(&hf), Surface::lifted(&hf, Arc::new(sunken)));
         let (map_means, moved_means) = (MipPyramid::new(&map), MipPyramid::new(&moved));
-        let tint = Tint::new(&Palette::Alpine, hf.z_range());
+        let tint = Tint::new(&PaletteName::Alpine.into(), hf.z_range());
         let light = ReliefLight::new(Relief::Swiss, &Light::default());
         let inputs = |surface, means, map| LightingInputs {
             surface,
@@ -429,7 +429,7 @@ mod tests {
     #[test]
     fn weights_are_whole_and_sum_up_everywhere() {
         let hf = hills(70, 70);
-        with_inputs(&hf, &Palette::Plain, Relief::None, |ground, m| {
+        with_inputs(&hf, &PaletteName::Plain.into(), Relief::None, |ground, m| {
             let (want, color) = (ground.sample([0, 0], 0, m), ground.color([0, 0], 0, m));
             for i in 0..20_000i32 {
                 let at = [i * 7919 % (69 * CELL + 1), i * 104_729 % (69 * CELL + 1)];
@@ -446,7 +446,7 @@ mod tests {
     #[test]
     fn averages_match_the_mean_of_what_they_stand_for() {
         let hf = hills(257, 257);
-        with_inputs(&hf, &Palette::Alpine, Relief::Swiss, |ground, m| {
+        with_inputs(&hf, &PaletteName::Alpine.into(), Relief::Swiss, |ground, m| {
             // A point at the middle of a node of level 5, against the mean over its 32 x 32 nodes.
             let (c, r, side) = (96, 64, 32i32);
             let mut mean = [0.0f32; 8];
@@ -468,7 +468,7 @@ mod tests {
     #[test]
     fn levels_pass_into_each_other() {
         let hf = hills(150, 131);
-        with_inputs(&hf, &Palette::Alpine, Relief::Swiss, |ground, m| {
+        with_inputs(&hf, &PaletteName::Alpine.into(), Relief::Swiss, |ground, m| {
             let (mut worst, mut sum, mut n) = (0.0f32, 0.0, 0.0);
             for i in 0..20_000i32 {
                 let at = [i * 7919 % (149 * CELL), i * 104_729 % (130 * CELL)];

@@ -3,7 +3,7 @@
 
 use crate::simd::nearest;
 use belvedere_composite::color::{Rgb, linear};
-use belvedere_scene::{Palette, Ramp};
+use belvedere_scene::{Palette, PaletteName, Ramp};
 
 /// Steps of the table by height.
 const STEPS: usize = 1024;
@@ -78,20 +78,19 @@ impl Tint {
         let span = (top - bottom).max(1e-3);
         let palette = match palette {
             // Ground that is high everywhere is rock and ice; other ground is green in its valleys.
-            Palette::Auto if top > 5000.0 => &Palette::Glacial,
-            Palette::Auto => &Palette::Alpine,
+            Palette::Named(PaletteName::Auto) if top > 5000.0 => &Palette::Named(PaletteName::Glacial),
             p => p,
         };
         let built_in = |stops: Stops| (0..STEPS).map(|i| ramp_at(stops, i as f32 / (STEPS - 1) as f32)).collect();
         let (ramp, rock, rock_slope, snow_m): (Vec<Rgb>, _, _, _) = match palette {
-            Palette::Desert => (built_in(DESERT), [148, 98, 72], [0.7, 1.6], NEVER),
-            Palette::Glacial => {
+            Palette::Named(PaletteName::Desert) => (built_in(DESERT), [148, 98, 72], [0.7, 1.6], NEVER),
+            Palette::Named(PaletteName::Glacial) => {
                 (built_in(GLACIAL), [112, 106, 102], [0.6, 1.15], [bottom + 0.42 * span, bottom + 0.62 * span])
             }
-            Palette::Clear => (built_in(CLEAR), GREY, NEVER, NEVER),
-            Palette::Plain => (built_in(PLAIN), GREY, NEVER, NEVER),
+            Palette::Named(PaletteName::Clear) => (built_in(CLEAR), GREY, NEVER, NEVER),
+            Palette::Named(PaletteName::Plain) => (built_in(PLAIN), GREY, NEVER, NEVER),
             Palette::Ramp(ramp) => (from_ramp(ramp, z_range_m), GREY, NEVER, NEVER),
-            Palette::Alpine | Palette::Auto => {
+            Palette::Named(PaletteName::Alpine | PaletteName::Auto) => {
                 let line = (bottom + 0.70 * span).max(2450.0);
                 (built_in(ALPINE), [156, 149, 137], [0.66, 1.3], [line, line + 0.14 * span.max(300.0)])
             }
@@ -192,9 +191,6 @@ mod tests {
     use belvedere_scene::{Color, RampHeight, RampStop};
     use std::sync::Arc;
 
-    const BUILT_IN: [Palette; 6] =
-        [Palette::Auto, Palette::Alpine, Palette::Desert, Palette::Glacial, Palette::Clear, Palette::Plain];
-
     /// Simulations of dichromatic vision in linear RGB (Machado, Oliveira, Fernandes 2009, severity 1).
     const PROTAN: [[f32; 3]; 3] =
         [[0.152_286, 1.052_583, -0.204_868], [0.114_503, 0.786_281, 0.099_216], [-0.003_882, -0.048_116, 1.051_998]];
@@ -235,9 +231,9 @@ mod tests {
 
     #[test]
     fn every_palette_tells_snow_from_ground_even_where_there_is_none() {
-        for palette in &BUILT_IN {
+        for palette in PaletteName::ALL.map(|(_, name)| Palette::Named(name)) {
             for range in [[0.0, 4000.0], [12.0, 12.0]] {
-                let tint = Tint::new(palette, range);
+                let tint = Tint::new(&palette, range);
                 let snow = tint.snow_m.at(range[0] as f32);
                 assert!(snow == 0.0, "{palette:?}: {snow} of the lowest ground is snow");
             }
@@ -246,7 +242,7 @@ mod tests {
 
     #[test]
     fn snow_slides_off_steep_ground() {
-        let tint = Tint::new(&Palette::Alpine, [1000.0, 4800.0]);
+        let tint = Tint::new(&PaletteName::Alpine.into(), [1000.0, 4800.0]);
         let snow = |steep: f32| tint.color(4800.0, steep);
         assert!((snow(0.3) - tint.snow).abs().max_element() < 0.02, "gentle: {}", snow(0.3));
         for steep in [1.4, 3.0, 50.0] {
@@ -256,9 +252,9 @@ mod tests {
 
     #[test]
     fn every_palette_has_colours_at_every_height() {
-        for palette in &BUILT_IN {
+        for palette in PaletteName::ALL.map(|(_, name)| Palette::Named(name)) {
             for range in [[0.0, 0.0], [-400.0, 9000.0], [300.0, 3100.0], [1e6, 1e6 + 1e-6]] {
-                let tint = Tint::new(palette, range);
+                let tint = Tint::new(&palette, range);
                 for z in [range[0], 0.5 * (range[0] + range[1]), range[1], -1e9, 1e9] {
                     for steep in [0.0, 0.9, 50.0] {
                         let c = tint.color(z as f32, steep);
