@@ -11,6 +11,8 @@ use crate::resolve::ground::earth_radius;
 use crate::resolve::terrain as intent;
 use crate::scene_file::{self, CameraDoc, EarthDoc, StageDoc, TerrainStageDoc};
 use crate::{BelvedereError, OpenOptions, Session};
+use belvedere_construct::measure::{Shares, percent};
+use belvedere_construct::reveal::shortfall;
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, TerrainDisocclusion, View};
 use belvedere_disocclusion::report::RiverReport;
 use belvedere_disocclusion::{Solved, TerrainMemory, TerrainReport, TerrainSolver, ViewpointOptions};
@@ -246,7 +248,7 @@ fn written_share(
             terrain.heightfield = Arc::new(read.heightfield.clone());
         }
     }
-    let (measures, _) = in_time::measured(&scene, &taller(straight)?, &options.progress)?;
+    let measures = in_time::judged(&scene, &taller(straight)?, &options.progress)?.measures;
     let kinds = [measures.lines.as_ref(), measures.areas.as_ref(), measures.points.as_ref()];
     let shares = kinds.into_iter().flatten().filter_map(|kind| kind.straight.sight.share);
     Ok(shares.min_by(f64::total_cmp))
@@ -368,30 +370,34 @@ impl Disoccluded {
                 r.points
             ));
         }
-        let length = self.visible();
-        if length < VISIBLE_LENGTH {
-            out.push(format!(
-                "{:.2} % of what is in view is visible, {:.1} % were wanted",
-                100.0 * length,
-                100.0 * VISIBLE_LENGTH
-            ));
+        let [_, after] = self.shares();
+        if after.visible < VISIBLE_LENGTH {
+            out.push(shortfall(after, VISIBLE_LENGTH));
         }
         out
     }
 
     /// Visible share of the features in view on the heights as they are written, 0..=1.
-    pub fn visible(&self) -> f64 {
+    pub fn visible_in_view(&self) -> f64 {
         let solved = self.report().metrics.visible_dense;
         self.record.visible_written.map_or(solved, |written| written.min(solved))
     }
 
-    /// One sentence: visible shares before and after, and the displacement.
-    pub fn summary(&self) -> String {
+    /// Shares of the whole features before, and after on the heights as they are written.
+    pub fn shares(&self) -> [Shares; 2] {
         let r = self.report();
+        let kept = (self.visible_in_view() / r.metrics.visible_dense.max(f64::MIN_POSITIVE)).min(1.0);
+        [r.visible_whole_before, r.visible_whole * kept].map(|visible| Shares { visible, in_frame: r.in_view })
+    }
+
+    /// One sentence: visible shares of the whole features before and after, the share in view, and the displacement.
+    pub fn summary(&self) -> String {
+        let (r, [before, after]) = (self.report(), self.shares());
         format!(
-            "visible of the features in view: {:.1} % before, {:.1} % after; all the ground, in the picture or not, moved by {:.1} m rms, {:.1} m at most",
-            100.0 * r.visible_dense_before,
-            100.0 * self.visible(),
+            "visible of the features: {} before, {} after, {} of them in view; all the ground, in the picture or not, moved by {:.1} m rms, {:.1} m at most",
+            percent(before.visible),
+            percent(after.visible),
+            percent(after.in_frame),
             r.metrics.rms_m,
             r.metrics.max_m
         )
