@@ -220,7 +220,7 @@ fn headline_report_and_measure_give_the_same_shares_of_the_whole() {
         assert!(visible <= in_frame, "{technique}: {visible} of {in_frame}");
         assert_eq!(in_frame < 0.9, view.contains(&"14"), "{technique}: {in_frame}");
         for share in ["visible_straight", "in_frame_straight", "visible_bent", "in_frame_bent"] {
-            let words = format!("{:.0}", 100.0 * of(&report[share]) - 0.5);
+            let words = format!("{:.1} %", 100.0 * of(&report[share]));
             assert!(said.contains(&words), "{technique}: {share} {words} in {said}");
         }
     }

@@ -553,7 +553,7 @@ fn shares_of_disocclusion_are_of_the_whole_way_and_looking_away_shows_nothing() 
     let place = place(|r, c| Some(hills(r, c)));
     let run = |look: &str, fov: &str, more: &[&str]| {
         let args = ["disocclude", "dem.asc", "way.geojson", "-o", "out.tif", "--report", "r.json", "--overwrite"];
-        let view = ["--eye", "8.022,46.002,1500", "--look", look, "--fov", fov, "--no-limits"];
+        let view = ["--eye", "8.022,46.002,1500", "--look", look, "--fov", fov, "--no-limits", "--grid", "scene"];
         let out = place.run(&[&args[..], &view, more].concat());
         let report: serde_json::Value = serde_json::from_slice(&super::read(&place.path("r.json"))).expect("JSON");
         let shares = ["visible_whole_before", "visible_whole", "in_view"].map(|key| number(&report[key]));

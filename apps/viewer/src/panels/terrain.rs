@@ -126,9 +126,8 @@ fn shares(ui: &mut Ui, model: &mut Model) {
         ("surfaces", &measures.surfaces),
     ] {
         if let Some(of) = of {
-            let [before, after] = [&of.straight, &of.bent].map(|side| {
-                format!("{} ({} in the frame)", percent(side.visible_share), percent(side.in_frame_share))
-            });
+            let [before, after] = [&of.straight, &of.bent]
+                .map(|side| format!("{} ({} in the frame)", percent(side.visible_share), percent(side.in_frame_share)));
             ui.label(format!("{name}: {before} visible straight, {after} bent"));
         }
     }

@@ -125,6 +125,8 @@ struct Record {
     /// Visible share of the features in view on the written heights, if they are resampled.
     #[serde(skip_serializing_if = "Option::is_none")]
     visible_written: Option<f64>,
+    /// The report's visible share of the whole features, on the heights as they are written.
+    visible_whole: f64,
     /// Reports of rivers on the written heights, if they are resampled.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     rivers_written: Vec<RiverReport>,
@@ -219,6 +221,7 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
         earth: if request.curved_earth { "curved" } else { "flat" },
         grid: request.grid,
         visible_written,
+        visible_whole: visible_whole(&solved.report, visible_written),
         rivers_written,
         guaranteed: solved.report.guaranteed && visible_written.is_none_or(|share| share >= KEPT_SHARE),
         layers: session.scene().layers.iter().map(|l| l.id.clone()).collect(),
@@ -262,6 +265,13 @@ fn taller(view: &View) -> Result<View, BelvedereError> {
     let projection = Projection::Perspective { fov_y: 2.0 * (f64::from(TALLER) * (0.5 * fov_y).tan()).atan() };
     let taller = Pinhole { image: [width, TALLER * height], projection, ..pinhole.clone() };
     Ok(View::new(taller, view.stages().to_vec())?)
+}
+
+/// Visible share of the whole features on written heights, which show `written` of what is in view.
+fn visible_whole(report: &TerrainReport, written: Option<f64>) -> f64 {
+    let solved = report.metrics.visible_dense;
+    let kept = written.map_or(1.0, |written| (written / solved.max(f64::MIN_POSITIVE)).min(1.0));
+    report.visible_whole * kept
 }
 
 /// Warning that resampling hides features that the solution shows.
@@ -377,17 +387,10 @@ impl Disoccluded {
         out
     }
 
-    /// Visible share of the features in view on the heights as they are written, 0..=1.
-    pub fn visible_in_view(&self) -> f64 {
-        let solved = self.report().metrics.visible_dense;
-        self.record.visible_written.map_or(solved, |written| written.min(solved))
-    }
-
     /// Shares of the whole features before, and after on the heights as they are written.
     pub fn shares(&self) -> [Shares; 2] {
         let r = self.report();
-        let kept = (self.visible_in_view() / r.metrics.visible_dense.max(f64::MIN_POSITIVE)).min(1.0);
-        [r.visible_whole_before, r.visible_whole * kept].map(|visible| Shares { visible, in_frame: r.in_view })
+        [r.visible_whole_before, self.record.visible_whole].map(|visible| Shares { visible, in_frame: r.in_view })
     }
 
     /// One sentence: visible shares of the whole features before and after, the share in view, and the displacement.
