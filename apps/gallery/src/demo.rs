@@ -2,6 +2,7 @@
 
 use crate::html::{self, escape};
 use anyhow::{Context, Result};
+use belvedere::construct::measure::Visibility;
 use belvedere::construct::{self, MeasureOptions, Measures};
 use belvedere::picture;
 use belvedere::{CameraPicture, OpenOptions, PictureOptions, Session, Sidecar, output, scene_file};
@@ -109,11 +110,16 @@ fn section(scene: &DemoScene, sidecar: &Sidecar, measures: &Measures) -> String 
     let DemoScene { name, sentence, .. } = *scene;
     let (mut straight, mut bent) = ("straight".to_owned(), "bent".to_owned());
     if let Some(line) = &measures.lines {
-        let share = |s: Option<f64>| {
-            s.map_or(String::new(), |s| format!(": {:.0} % of the route in the picture is visible", 100.0 * s))
+        let share = |s: &Visibility| match (s.visible_share, s.in_frame_share) {
+            (Some(seen), Some(inside)) => format!(
+                ": {:.0} % of the route is visible, {:.0} % of it lies in the picture",
+                100.0 * seen,
+                100.0 * inside
+            ),
+            _ => String::new(),
         };
-        straight += &share(line.straight.sight.share);
-        bent += &share(line.bent.sight.share);
+        straight += &share(&line.straight);
+        bent += &share(&line.bent);
     }
     let moved = sidecar.displacement.map_or(String::new(), |d| {
         format!(

@@ -183,13 +183,45 @@ fn what_a_revealing_picture_still_hides_is_listed() {
 #[test]
 fn a_missed_goal_is_a_result_and_exit_1_only_when_strict() {
     let place = place(|_, _| false);
-    // From straight above nothing is hidden, so there is nothing to gain.
     let args = ["reveal", "dem.asc", "way.geojson", "-o", "out.png", "--size", "64x48", "--overwrite", "--json"];
-    let above = ["--eye", "8.03,46.04,9000", "--look", "8.03,46.041,1000"];
-    let relaxed = place.run(&[&args[..], &above].concat());
-    let strict = place.run(&[&args[..], &above, &["--strict"]].concat());
+    // The upper half of the way, seen from above: all of it that is in the frame, but not all of the way.
+    let half = ["--eye", "8.04,46.05,2500", "--look", "8.04,46.051,1000", "--fov", "60"];
+    let relaxed = place.run(&[&args[..], &half].concat());
+    let strict = place.run(&[&args[..], &half, &["--strict"]].concat());
     let code = |out: &std::process::Output| out.status.code();
     assert_eq!((code(&relaxed), code(&strict)), (Some(0), Some(1)), "{}", String::from_utf8_lossy(&strict.stderr));
     let result: serde_json::Value = serde_json::from_slice(&strict.stdout).expect("JSON on standard output");
     assert_eq!(result["report"]["goal"]["result"], "missed", "{result}");
+    let share = |key: &str| result["shares"][key].as_f64().expect("a share");
+    assert!(share("in_frame_bent") < 0.7 && share("visible_bent") <= share("in_frame_bent"), "{result}");
+    let reason = result["report"]["goal"]["reasons"][0].as_str().expect("a reason").to_owned();
+    assert!(reason.contains("lies in the frame"), "{reason}");
+}
+
+#[test]
+fn headline_report_and_measure_give_the_same_shares_of_the_whole() {
+    let place = place(|_, _| false);
+    let full = ["--eye", "8.03,46.002,1900", "--look", "8.03,46.035"];
+    let part = ["--eye", "8.03,46.002,1900", "--look", "8.03,46.035", "--fov", "14"];
+    for (view, technique) in [(full, "spline"), (full, "terrain"), (full, "curved_rays")]
+        .map(|(view, technique)| (view.to_vec(), technique))
+        .into_iter()
+        .chain([(part.to_vec(), "spline"), (part.to_vec(), "terrain")])
+    {
+        let args = ["reveal", "dem.asc", "way.geojson", "-o", "out.png", "--size", "96x72", "--overwrite"];
+        let more = ["--report", "r.json", "--scene", "r.toml", "--technique", technique];
+        let said = place.ok(&[&args[..], &view, &more].concat());
+        let report: serde_json::Value = serde_json::from_slice(&super::read(&place.path("r.json"))).expect("JSON");
+        let measured = place.json(&["measure", "r.toml", "--json"]);
+        let of = |value: &serde_json::Value| value.as_f64().expect("a share");
+        let [visible, in_frame] = ["visible_bent", "in_frame_bent"].map(|key| of(&report[key]));
+        assert_eq!([visible, in_frame], ["visible", "in_frame"].map(|key| of(&measured[key])), "{technique}");
+        assert_eq!([visible, in_frame], ["visible", "in_frame"].map(|key| of(&report["bent"][key])), "{technique}");
+        assert!(visible <= in_frame, "{technique}: {visible} of {in_frame}");
+        assert_eq!(in_frame < 0.9, view.contains(&"14"), "{technique}: {in_frame}");
+        for share in ["visible_straight", "in_frame_straight", "visible_bent", "in_frame_bent"] {
+            let words = format!("{:.1} %", 100.0 * of(&report[share]));
+            assert!(said.contains(&words), "{technique}: {share} {words} in {said}");
+        }
+    }
 }

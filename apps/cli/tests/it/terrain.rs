@@ -547,3 +547,24 @@ fn straight_films_solve_nothing() {
     assert!(solved("bent", &[]));
     assert!(!solved("straight", &["--straight"]));
 }
+
+#[test]
+fn shares_of_disocclusion_are_of_the_whole_way_and_looking_away_shows_nothing() {
+    let place = place(|r, c| Some(hills(r, c)));
+    let run = |look: &str, fov: &str, more: &[&str]| {
+        let args = ["disocclude", "dem.asc", "way.geojson", "-o", "out.tif", "--report", "r.json", "--overwrite"];
+        let view = ["--eye", "8.022,46.002,1500", "--look", look, "--fov", fov, "--no-limits", "--grid", "scene"];
+        let out = place.run(&[&args[..], &view, more].concat());
+        let report: serde_json::Value = serde_json::from_slice(&super::read(&place.path("r.json"))).expect("JSON");
+        let shares = ["visible_whole_before", "visible_whole", "in_view"].map(|key| number(&report[key]));
+        (shares, String::from_utf8_lossy(&out.stdout).into_owned(), out.status.code())
+    };
+    let (shares, said, code) = run("8.022,45.99", "60", &["--strict"]);
+    assert_eq!((shares, code), ([0.0; 3], Some(1)), "{said}");
+    assert!(said.contains("0.0 % before, 0.0 % after, 0.0 % of them in view"), "{said}");
+    let ([before, after, inside], said, code) = run("8.024,46.03", "90", &["--strict"]);
+    assert!(before < after && after > 0.99 && inside > 0.999 && code == Some(0), "{before} {after} {inside} {said}");
+    // A narrow picture that holds a part of the way.
+    let ([_, after, inside], said, code) = run("8.032,46.034", "8", &["--strict"]);
+    assert!(after <= inside && (0.02..0.8).contains(&inside) && code == Some(1), "{after} {inside} {said}");
+}

@@ -42,8 +42,8 @@ fn one(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDoc) {
     ui.horizontal(|ui| {
         ui.strong(id);
         ui.weak(layer.kind());
-        if let Some(share) = visible(model, id) {
-            ui.label(format!("{} visible", percent(Some(share))));
+        if let Some([seen, in_frame]) = shares(model, id) {
+            ui.label(format!("{} visible, {} in the frame", percent(Some(seen)), percent(Some(in_frame))));
         }
     });
     if !matches!(layer, LayerDoc::Terrain(_)) {
@@ -62,13 +62,14 @@ fn one(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDoc) {
     CollapsingHeader::new(format!("Style of {id}")).show(ui, |ui| style(ui, model, index, layer));
 }
 
-/// Share of a layer's features that the picture shows.
-fn visible(model: &Model, id: &str) -> Option<f64> {
+/// Shares of a layer's whole features that the picture shows, and that it holds.
+fn shares(model: &Model, id: &str) -> Option<[f64; 2]> {
     let judged = model.judged.as_ref()?;
-    let of_layer: Vec<_> = judged.measures.features.iter().filter(|f| f.layer == id).collect();
-    let in_frame: f64 = of_layer.iter().map(|f| f.bent.in_frame).sum();
-    let seen: f64 = of_layer.iter().filter_map(|f| Some(f.bent.sight.share? * f.bent.in_frame)).sum();
-    (in_frame > 0.0).then(|| seen / in_frame)
+    let of_layer = || judged.measures.features.iter().filter(|f| f.layer == id);
+    let total: f64 = of_layer().map(|f| f.total).sum();
+    let seen: f64 = of_layer().map(|f| f.bent.sight.visible).sum();
+    let in_frame: f64 = of_layer().map(|f| f.bent.in_frame).sum();
+    (total > 0.0).then(|| [seen, in_frame].map(|amount| amount / total))
 }
 
 fn style(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDoc) {

@@ -126,12 +126,14 @@ fn shares(ui: &mut Ui, model: &mut Model) {
         ("surfaces", &measures.surfaces),
     ] {
         if let Some(of) = of {
-            let [before, after] = [&of.straight, &of.bent].map(|side| percent(side.sight.share));
+            let [before, after] = [&of.straight, &of.bent]
+                .map(|side| format!("{} ({} in the frame)", percent(side.visible_share), percent(side.in_frame_share)));
             ui.label(format!("{name}: {before} visible straight, {after} bent"));
         }
     }
-    if let Some(moved) = model.shown.as_ref().and_then(|shown| shown.displacement) {
-        ui.label(format!("What is in the picture was moved by up to {:.0} m.", moved.max_m));
+    if let Some((shown, moved)) = model.shown.as_ref().and_then(|shown| Some((shown, shown.displacement?))) {
+        let most = moved.most(shown.session.scene().unit);
+        ui.label(format!("What is in the picture was moved by up to {most}."));
     }
     if judged.hidden.is_empty() {
         ui.label("Nothing in the picture that must be seen is hidden.");

@@ -65,7 +65,12 @@ pub fn hidden(
     progress.tick("what stays hidden", 0.0)?;
     let features = samples(scene, options);
     let images = image::all(&Sight::new(scene, view), view, &features, &sight_options(scene, options));
-    Ok(features.iter().zip(&images).flat_map(|(feature, images)| runs(feature, images)).collect())
+    Ok(all(&features, &images))
+}
+
+/// The hidden parts of all features.
+pub(super) fn all(features: &[SampledFeature], images: &[Vec<SampleImage>]) -> Vec<HiddenRun> {
+    features.iter().zip(images).flat_map(|(feature, images)| runs(feature, images)).collect()
 }
 
 fn runs(feature: &SampledFeature, images: &[SampleImage]) -> Vec<HiddenRun> {

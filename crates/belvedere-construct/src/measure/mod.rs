@@ -8,11 +8,13 @@ mod hidden;
 mod image;
 mod pinpoint;
 mod report;
+mod shares;
 mod surface;
 
 pub use bend::BendMeasure;
 pub use hidden::{HiddenReason, HiddenRun, hidden};
 pub use report::{Clearance, FeatureMeasure, Measures, MethodShare, Visibility};
+pub use shares::{Shares, percent};
 
 use crate::ConstructError;
 use crate::sample::SampledFeature;
@@ -63,6 +65,20 @@ pub fn measure(
     options: &MeasureOptions,
     progress: &Progress,
 ) -> Result<Measures, ConstructError> {
+    measure_and_hidden(scene, view, renderer, options, progress).map(|(measures, _)| measures)
+}
+
+/// As [`measure`], with the parts that `view` hides, as [`hidden`] lists them.
+///
+/// # Errors
+/// Those of [`measure`].
+pub fn measure_and_hidden(
+    scene: &Scene,
+    view: &View,
+    renderer: Option<&dyn Renderer>,
+    options: &MeasureOptions,
+    progress: &Progress,
+) -> Result<(Measures, Vec<HiddenRun>), ConstructError> {
     if scene.must_see().next().is_none() {
         return Err(ConstructError::NothingToSee { layers: scene.layers.len() });
     }
@@ -92,7 +108,8 @@ pub fn measure(
     progress.tick("distortion and folds", 0.9)?;
     let bend = bend::measure_bend(&sight.obstacles, scene, view, &straight_view, &features);
     let warnings = warnings(&sight.obstacles, view, &features);
-    Ok(report::summarise(&features, &straight, &bent, options.near_miss_m, bend, warnings))
+    let hidden = hidden::all(&features, &bent);
+    Ok((report::summarise(&features, &straight, &bent, options.near_miss_m, bend, warnings), hidden))
 }
 
 /// Samples by which shares are judged.

@@ -64,6 +64,10 @@ pub struct FeatureMeasure {
 pub struct Visibility {
     /// Length, area or count inside the image.
     pub in_frame: f64,
+    /// Share of the whole feature inside the image, 0..=1; `None` if it has no amount.
+    pub in_frame_share: Option<f64>,
+    /// Visible share of the whole feature by line of sight, 0..=1: what lies outside the image is not visible. `None` if it has no amount.
+    pub visible_share: Option<f64>,
     /// Visible amount by line of sight along the ray.
     pub sight: MethodShare,
     /// Visible amount by the depth buffer; `None` without a renderer.
@@ -179,6 +183,7 @@ fn visibility(rows: &[(f64, SampleImage)], near_miss: f64) -> Visibility {
         None => j.clearance.is_some_and(|c| c.abs() >= near_miss),
     };
     let in_frame = sum(&|_| true);
+    let total: f64 = rows.iter().map(|(amount, _)| amount).sum();
     let clear_cut = sum(&sharp);
     let method = |seen: &dyn Fn(&SampleImage) -> bool| MethodShare {
         visible: sum(seen),
@@ -196,6 +201,8 @@ fn visibility(rows: &[(f64, SampleImage)], near_miss: f64) -> Visibility {
     let missed = sum(&|j| j.in_buffer.is_some_and(|b| b.missed));
     Visibility {
         in_frame,
+        in_frame_share: ratio(in_frame, total),
+        visible_share: ratio(sight.visible, total),
         sight,
         buffer,
         difference,

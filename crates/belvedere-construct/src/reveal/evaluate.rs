@@ -1,5 +1,6 @@
 //! Evaluation of a candidate picture: the share of the features that it shows, and how well it fills the image.
 
+use crate::measure::Shares;
 use crate::measure::bend::{facing, nodes};
 use crate::sample::{Sample, SampledFeature};
 use belvedere_core::map::spline::ReferencePlane;
@@ -16,8 +17,10 @@ pub struct Evaluation {
     pub in_frame: f64,
     /// Share inside the image and at least 4 % of its width or height away from its border.
     pub in_margin: f64,
-    /// Visible share of what is inside the image, 0..=1; 0 if nothing is.
+    /// Visible share of the whole features, 0..=`in_frame`.
     pub visible: f64,
+    /// Visible share of what is inside the image, 0..=1; 0 if nothing is.
+    pub visible_in_frame: f64,
     /// Angle under which flat ground would be seen if the features in the image filled four fifths of its height, from the nearest to
     /// the farthest, radians: the best that a bend can reach from this eye (a logarithmic spiral, ours).
     pub attainable: f64,
@@ -29,6 +32,20 @@ pub struct Evaluation {
     pub covered: f64,
     /// Mean position of the upper edge of the ground, share of the image height from the top; 1 = no ground in the image.
     pub skyline: f64,
+}
+
+impl Evaluation {
+    /// Shares of the whole features.
+    pub fn shares(&self) -> Shares {
+        Shares { visible: self.visible, in_frame: self.in_frame }
+    }
+
+    /// The same with the shares that the measure found, which has more samples.
+    #[must_use]
+    pub fn judged(self, Shares { visible, in_frame }: Shares) -> Self {
+        let visible_in_frame = if in_frame > 0.0 { (visible / in_frame).min(1.0) } else { 0.0 };
+        Self { visible, in_frame, visible_in_frame, ..self }
+    }
 }
 
 /// A scene prepared for evaluating many views.
@@ -92,7 +109,8 @@ impl<'a> Evaluator<'a> {
         Evaluation {
             in_frame: if all > 0.0 { framed / all } else { 0.0 },
             in_margin: if all > 0.0 { inner / all } else { 0.0 },
-            visible: if framed > 0.0 { seen / framed } else { 0.0 },
+            visible: if all > 0.0 { seen / all } else { 0.0 },
+            visible_in_frame: if framed > 0.0 { seen / framed } else { 0.0 },
             attainable: (0.8 * height_angle).atan2(depth_ratio.ln().max(0.0)),
             spread: (quantile(&mut rows, 0.95, Rank::Nearest) - quantile(&mut rows, 0.05, Rank::Nearest)) / height,
             drawn: drawn * pinhole.scale_px() / width,

@@ -15,6 +15,7 @@ pub use options::RevealOptions;
 pub use shape::BendShape;
 
 use crate::ConstructError;
+use crate::measure::{Shares, percent};
 use crate::sample::SampledFeature;
 use crate::samples::{default_spacing, sample_features};
 use belvedere_core::presets::PresetDocument;
@@ -43,6 +44,50 @@ pub enum Goal {
     Missed(Vec<String>),
 }
 
+impl Goal {
+    /// Whether the shares of the whole features reach the goals.
+    ///
+    /// * `straight`, `bent`: shares in either picture. The gain is demanded only where the straight picture leaves room for it.
+    pub fn of([straight, bent]: [Shares; 2], options: &RevealOptions) -> Self {
+        let mut missed = Vec::new();
+        if bent.visible < options.goal_share {
+            missed.push(shortfall(bent, options.goal_share));
+        }
+        if let Some(gain) = gain([straight, bent])
+            && gain < options.goal_gain
+            && options.goal_gain * straight.visible <= 1.0
+        {
+            missed.push(format!(
+                "{gain:.2} times the share of the straight picture is visible, {:.2} times were wanted",
+                options.goal_gain
+            ));
+        }
+        if bent.in_frame < KEPT_IN_FRAME * straight.in_frame {
+            let kept = 100.0 * bent.in_frame / straight.in_frame;
+            missed.push(format!("only {kept:.0} % of what the straight picture holds stays in it"));
+        }
+        if missed.is_empty() { Self::Reached } else { Self::Missed(missed) }
+    }
+}
+
+/// Share of what the straight picture holds that the bent one must hold.
+const KEPT_IN_FRAME: f64 = 0.9;
+
+/// A sentence about a visible share of the whole features that is less than wanted.
+pub fn shortfall(shares: Shares, wanted: f64) -> String {
+    format!(
+        "{} of all that must be seen is visible and {} lies in the frame, {:.0} % were wanted",
+        percent(shares.visible),
+        percent(shares.in_frame),
+        100.0 * wanted
+    )
+}
+
+/// Visible share bent over visible share straight; `None` if the straight picture shows nothing.
+pub fn gain([straight, bent]: [Shares; 2]) -> Option<f64> {
+    (straight.visible > 0.0).then(|| bent.visible / straight.visible)
+}
+
 /// A view and a bend, and what they achieve.
 #[derive(Debug, Clone)]
 pub struct Revealed {
@@ -69,7 +114,7 @@ pub struct RevealReport {
     pub straight: Evaluation,
     /// The picture with it.
     pub bent: Evaluation,
-    /// Visible share bent over visible share straight; `None` if the straight picture shows nothing.
+    /// Visible share of the whole features bent over that straight; `None` if the straight picture shows nothing.
     pub gain: Option<f64>,
     /// Whether the goals were reached.
     pub goal: Goal,
@@ -223,7 +268,7 @@ fn promising_views(
 /// Score of a straight picture: it should look natural, hold the features, and hide many of them.
 fn straight_score(a: &Evaluation, heading_deg: f64, options: &RevealOptions) -> f64 {
     let most = 0.85 * (options.goal_share / options.goal_gain).min(0.6);
-    let hidden = 3.0 * (a.visible - most).max(0.0) + 1.5 * (0.25 - a.visible).max(0.0);
+    let hidden = 3.0 * (a.visible_in_frame - most).max(0.0) + 1.5 * (0.25 - a.visible_in_frame).max(0.0);
     // Light comes from the north-west: looking north shows the shaded side of the relief as readers of maps know it.
     let north = 0.15 * heading_deg.to_radians().cos();
     let sky = (0.08 - a.skyline).max(0.0) + (a.skyline - 0.25).max(0.0);
@@ -286,28 +331,6 @@ fn finish(
 ) -> Revealed {
     let straight = evaluator.evaluate(base, 1);
     let bent = evaluator.evaluate(&best.built.view, 1);
-    let gain = (straight.visible > 0.0).then(|| bent.visible / straight.visible);
-    let mut missed = Vec::new();
-    if bent.visible < options.goal_share {
-        missed.push(format!(
-            "{:.0} % of what is in the picture is visible, {:.0} % were wanted",
-            100.0 * bent.visible,
-            100.0 * options.goal_share
-        ));
-    }
-    if gain.is_some_and(|g| g < options.goal_gain) {
-        let gain = gain.unwrap_or(0.0);
-        missed.push(format!(
-            "{gain:.2} times the share of the straight picture, {:.2} times were wanted",
-            options.goal_gain
-        ));
-    }
-    if bent.in_frame < 0.9 * straight.in_frame {
-        missed.push(format!(
-            "only {:.0} % of what the straight picture holds stays in it",
-            100.0 * bent.in_frame / straight.in_frame
-        ));
-    }
     let mut warnings = Vec::new();
     if bent.covered < 0.8 {
         let text =
@@ -318,8 +341,8 @@ fn finish(
         total: counts.total,
         straight,
         bent,
-        gain,
-        goal: if missed.is_empty() { Goal::Reached } else { Goal::Missed(missed) },
+        gain: gain([straight.shares(), bent.shares()]),
+        goal: Goal::of([straight.shares(), bent.shares()], options),
         shape: best.shape,
         facing: best.facing,
         squeeze: best.squeeze,

@@ -9,7 +9,7 @@ pub struct RevealOptions {
     pub fov_y: f64,
     /// Earth's radius (scene units) if the ground is to fall away with the distance; used when no view is given.
     pub earth_radius: Option<f64>,
-    /// Visible share of the in-frame length to reach, 0..=1.
+    /// Visible share of the whole features to reach, 0..=1.
     pub goal_share: f64,
     /// The bent picture is to show at least this many times the share of the straight one.
     pub goal_gain: f64,

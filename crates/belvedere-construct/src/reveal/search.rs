@@ -115,10 +115,10 @@ impl<'a, 'b> BendSearch<'a, 'b> {
     fn score(&self, shape: &BendShape, a: &Evaluation, squeeze: f64, facing: f64) -> f64 {
         let lost =
             (self.scales.straight_in_frame * 0.97 - a.in_frame).max(0.0) / self.scales.straight_in_frame.max(1e-9);
-        let gain = a.visible / self.straight.visible.max(0.05);
+        let gain = a.visible_in_frame / self.straight.visible_in_frame.max(0.05);
         // The goals first, then as much as possible, then how natural it looks.
-        let goals = 8.0 * (0.79 - a.visible).max(0.0)
-            + (0.88 - a.visible).max(0.0)
+        let goals = 8.0 * (0.79 - a.visible_in_frame).max(0.0)
+            + (0.88 - a.visible_in_frame).max(0.0)
             + 2.0 * (1.6 - gain).max(0.0)
             + 6.0 * lost
             + 30.0 * (lost - 0.04).max(0.0);
@@ -128,7 +128,7 @@ impl<'a, 'b> BendSearch<'a, 'b> {
         let kink = (shape.middle - shape.far).abs() * self.scales.features[1] / (shape.fall[1] - shape.fall[0]);
         let fill = (0.45 - a.spread).max(0.0) + 2.0 * (a.spread - 0.85).max(0.0);
         // Above nine tenths a gentler bend is worth more than the last bit.
-        0.5 * a.visible + 0.5 * a.visible.min(0.9)
+        0.5 * a.visible_in_frame + 0.5 * a.visible_in_frame.min(0.9)
             - goals
             - 0.12 * bend
             - 3.0 * sky

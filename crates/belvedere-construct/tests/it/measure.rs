@@ -116,3 +116,47 @@ fn cancelling_stops_the_measure() {
     let result = measure(&scene, &view, None, &MeasureOptions::default(), &progress);
     assert!(matches!(result, Err(ConstructError::Cancelled(_))));
 }
+
+#[test]
+fn shares_are_of_whole_features_wherever_they_lie() {
+    let base = scene(48, 3);
+    let bounds = base.bounds();
+    let pinhole = camera(&base, 4000.0, [480, 270]);
+    let middle = bounds.center();
+    // A line along the direction of view: part in the picture, part before its lower border, part behind the eye, part beside the ground.
+    let ahead = pinhole.forward.truncate().normalize();
+    let along = |t: f64| (middle.truncate() + t * ahead).extend(0.0);
+    let half = 0.5 * (bounds.max - bounds.min).truncate().length();
+    for (from, to) in [(-3.0, 0.4), (-0.2, 0.2), (-6.0, -3.0), (0.1, 5.0)] {
+        let mut long = base.clone();
+        long.layers[1] = line_layer("long", vec![along(from * half), along(to * half)]);
+        let view = View::straight(pinhole.clone());
+        let m = run(&long, &view, None).unwrap();
+        let ([straight, bent], line) = (m.shares().unwrap(), m.lines.unwrap());
+        assert_eq!(straight, bent, "no bend, no difference");
+        assert!((straight.in_frame - line.straight.in_frame / line.total).abs() < 1e-12);
+        assert!((straight.visible - line.straight.sight.visible / line.total).abs() < 1e-12);
+        assert!(straight.visible <= straight.in_frame && straight.in_frame <= 1.0, "{straight:?}");
+        assert_eq!(line.straight.in_frame_share, Some(straight.in_frame));
+        assert_eq!(line.straight.visible_share, Some(straight.visible));
+        // The same points, projected one by one.
+        let steps = 4000;
+        let inside = (0..steps).filter(|i| {
+            let p = along(half * (from + (to - from) * (f64::from(*i) + 0.5) / f64::from(steps)));
+            let on_ground = long.terrain().unwrap().surface_at(p.truncate()).unwrap_or(0.0);
+            let image = view.project(p.truncate().extend(on_ground));
+            image.is_ok_and(|i| i.depth >= pinhole.near && pinhole.contains(i.pixel))
+        });
+        let expected = inside.count() as f64 / f64::from(steps);
+        assert!((straight.in_frame - expected).abs() < 0.02, "{from}..{to}: {straight:?}, {expected} by projection");
+    }
+    // Nothing in the frame: nothing is visible, and that is said with a number.
+    let away = belvedere_core::Pinhole { forward: -pinhole.forward, right: -pinhole.right, ..pinhole.clone() };
+    let [nothing, _] = run(&base, &View::straight(away), None).unwrap().shares().unwrap();
+    assert_eq!((nothing.visible, nothing.in_frame), (0.0, 0.0));
+    // Of two kinds the least counts: a point outside the picture is not seen.
+    let mut two = base.clone();
+    two.layers.push(point_layer("behind", along(-3.0 * half)));
+    let [both, _] = run(&two, &View::straight(pinhole), None).unwrap().shares().unwrap();
+    assert_eq!((both.visible, both.in_frame), (0.0, 0.0));
+}

@@ -64,6 +64,36 @@ pub(crate) fn share_seen(points: &[ReferencePoint], verdicts: &[Verdict]) -> f64
     shares(points, verdicts)[0]
 }
 
+/// Amounts of lines, areas and points that points stand for.
+pub(crate) fn amounts(points: &[ReferencePoint]) -> [f64; KINDS] {
+    let mut sums = [0.0; KINDS];
+    points.iter().for_each(|point| sums[point.kind.of_feature()] += point.amount);
+    sums
+}
+
+/// Shares of the whole features that `points` show and stand for: visible, and in view; the least of lines, areas and points. 0 where
+/// nothing is in view, 1 without features.
+///
+/// * `points`: those in view; each stands for itself and, in sums, for all of `in_view`.
+/// * `judged`: amounts of the points from which `points` were taken; `in_view`, `whole`: amounts of all points in view, and of all points.
+pub(crate) fn shares_of_whole(
+    (points, verdicts): (&[ReferencePoint], &[Verdict]),
+    [judged, in_view, whole]: [[f64; KINDS]; 3],
+) -> [f64; 2] {
+    let mut sums = [[0.0; 2]; KINDS];
+    for (point, verdict) in points.iter().zip(verdicts).filter(|(_, v)| **v != Verdict::NoGround) {
+        let [seen, all] = &mut sums[point.kind.of_feature()];
+        *all += point.amount;
+        *seen += if verdict.hides().is_none() { point.amount } else { 0.0 };
+    }
+    let kinds = (0..KINDS).filter(|k| whole[*k] > 0.0);
+    let of = |k: usize| {
+        let stands_for = if judged[k] > 0.0 { in_view[k] / judged[k] } else { 0.0 };
+        sums[k].map(|amount| (stands_for * amount / whole[k]).clamp(0.0, 1.0))
+    };
+    kinds.map(of).fold([1.0; 2], |least, kind| [least[0].min(kind[0]), least[1].min(kind[1])])
+}
+
 /// See [`share_seen`]; also the share of the same kind that only ground inside the guard hides.
 pub(super) fn shares(points: &[ReferencePoint], verdicts: &[Verdict]) -> [f64; 2] {
     let mut sums = [[0.0; 3]; KINDS];

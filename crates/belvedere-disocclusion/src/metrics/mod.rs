@@ -3,7 +3,7 @@
 mod change;
 mod judge;
 
-pub(super) use judge::{Hides, Judge, Verdict, share_seen, still};
+pub(super) use judge::{Hides, Judge, Verdict, amounts, share_seen, shares_of_whole, still};
 
 use judge::shares;
 
@@ -94,6 +94,8 @@ pub(super) struct Judged {
     pub(super) points: Vec<(usize, Hides)>,
     /// Dense points that are hidden, by their index.
     pub(super) dense: Vec<(usize, Hides)>,
+    /// Verdicts on all dense points.
+    pub(super) of_dense: Vec<Verdict>,
 }
 
 /// As [`terrain_metrics`], and which points are hidden.
@@ -106,7 +108,7 @@ pub(super) fn judged(of: &Deformation<'_>) -> Judged {
         all.iter().enumerate().filter_map(|(i, verdict)| Some((i, verdict.hides()?))).collect()
     };
     let metrics = figures(of, &u, &points, &dense);
-    Judged { metrics, points: hidden(&points), dense: hidden(&dense) }
+    Judged { metrics, points: hidden(&points), dense: hidden(&dense), of_dense: dense }
 }
 
 fn figures(of: &Deformation<'_>, u: &[f64], points: &[Verdict], dense: &[Verdict]) -> TerrainMetrics {

@@ -236,6 +236,11 @@ impl Prepared {
         inside.into_iter().chain(near).map(|i| self.check[i]).collect()
     }
 
+    /// All points by which the result is judged, in view or not.
+    pub(super) fn all_dense(&self) -> &[ReferencePoint] {
+        &self.check
+    }
+
     /// The points by which the result is judged as candidates, whose ids follow those of all others.
     pub(super) fn check_in_view(&self, in_view: &super::PointsInView<'_>) -> Vec<Candidate> {
         let first = self.dense.len() + self.points.len();

@@ -35,6 +35,13 @@ pub struct TerrainReport {
     pub visible_before: f64,
     /// [`TerrainMetrics::visible_dense`] without the displacement.
     pub visible_dense_before: f64,
+    /// Share of the whole features on the ground that is in view, 0..=1, by the dense points: the least of lines by length, areas by area
+    /// and points by number. 1 without features.
+    pub in_view: f64,
+    /// Visible share of the whole features, 0..=`in_view`: what is not in view is not visible.
+    pub visible_whole: f64,
+    /// `visible_whole` without the displacement.
+    pub visible_whole_before: f64,
     /// The greedy pass; `None` in mode qp.
     pub greedy: Option<GreedyCounters>,
     /// The quadratic program; `None` in mode paper.

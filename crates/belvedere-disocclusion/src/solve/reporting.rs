@@ -1,6 +1,6 @@
 //! Builds the report of an outcome.
 
-use super::super::metrics::{Hides, Judge, Judged, judged, share_seen, still};
+use super::super::metrics::{Hides, Judge, Judged, amounts, judged, share_seen, shares_of_whole, still};
 use super::super::visibility_qp::{Reason, SolvedRow, Unresolved};
 use super::super::{
     Deformation, Field, ReferencePoint, SolverMode, TerrainSettings, Unusable, UnusableReason, stated_spacing,
@@ -78,6 +78,7 @@ pub(super) fn report(
     let still = still(field)?;
     let undisplaced = Judge::faceted(field, &still, &*in_view.sight);
     let few = !c.traced || done.stopped || too_many(c.progress, &undisplaced, &all, guard);
+    let in_view_amounts = amounts(&all);
     let (may_show, every) = sampled(all, few);
     let dense = shown.of(field, &may_show);
     let of = Deformation {
@@ -95,10 +96,14 @@ pub(super) fn report(
     let metrics = judgement.metrics;
     let undisplaced = undisplaced.prepared(dense.len());
     let shown_before = Shown::before(c.base, c.in_plan)?;
+    let whole = [amounts(&may_show), in_view_amounts, amounts(prepared.all_dense())];
     let before = |points: &[ReferencePoint]| {
         let points = shown_before.of(field, points);
-        share_seen(&points, &undisplaced.judge(&points, guard))
+        let verdicts = undisplaced.judge(&points, guard);
+        (share_seen(&points, &verdicts), shares_of_whole((&points, &verdicts), whole))
     };
+    let (visible_dense_before, [visible_whole_before, _]) = before(&may_show);
+    let [visible_whole, in_view_share] = shares_of_whole((&dense, &judgement.of_dense), whole);
     let named = unresolved(c, done, &shown, (&asked, &judgement));
     let hidden = hidden(c, done, &judgement, (&dense, every));
     let guards = c.settings.mode != SolverMode::Paper;
@@ -122,8 +127,11 @@ pub(super) fn report(
         asked: in_view.candidates.len(),
         metrics,
         judged_every: every,
-        visible_before: before(&in_view.points.iter().map(|&i| prepared.points[i]).collect::<Vec<_>>()),
-        visible_dense_before: before(&may_show),
+        visible_before: before(&in_view.points.iter().map(|&i| prepared.points[i]).collect::<Vec<_>>()).0,
+        visible_dense_before,
+        in_view: in_view_share,
+        visible_whole,
+        visible_whole_before,
         greedy: done.greedy,
         qp: done.qp,
         costliest: costliest(prepared, &done.rows),

@@ -1,6 +1,6 @@
 //! The mark of bent pictures, and titles under pairs.
 
-use super::{INK, PAPER, length_above};
+use super::{INK, PAPER, length_above, number_above};
 use belvedere_composite::canvas::{Canvas, text_size};
 use belvedere_core::DVec2;
 use belvedere_scene::{Color, Unit};
@@ -36,8 +36,8 @@ pub(crate) fn words(width: usize, moved: f64, unit: Unit) -> String {
 pub(crate) fn moved(moved: f64, unit: Unit) -> String {
     match unit {
         Unit::Metre => length_above(moved),
-        Unit::Angstrom => format!("{moved:.1} angstrom"),
-        Unit::Voxel => format!("{moved:.1} voxels"),
+        Unit::Angstrom => number_above(moved) + " angstrom",
+        Unit::Voxel => number_above(moved) + " voxels",
     }
 }
 
@@ -93,7 +93,9 @@ mod tests {
         assert_eq!(said(1280, 0.0), "bent view: moved by up to 0 m");
         assert_eq!(said(200, 341.2), "bent by up to 342 m");
         assert_eq!(said(160, 12_345.6), "bent view");
-        assert_eq!(words(1280, 3.04, Unit::Angstrom), "bent view: moved by up to 3.0 angstrom");
+        assert_eq!(words(1280, 3.04, Unit::Angstrom), "bent view: moved by up to 3.1 angstrom");
+        assert_eq!(moved(0.004, Unit::Voxel), "0.1 voxels", "what moves is never said to rest");
+        assert_eq!(moved(184.3, Unit::Angstrom), "185 angstrom");
         for width in [160, 200, 320, 640] {
             assert!(text_size(LETTERS_PX, &said(width, 99_999.0)).width + BESIDE + 2.0 * MARGIN <= width as f64);
         }

@@ -37,12 +37,17 @@ fn length(value: f64) -> String {
 
 /// A length rounded up, as a bound: metres to three digits, tenths below 10 m.
 fn length_above(metres: f64) -> String {
-    if !(metres > 0.0 && metres.is_finite()) {
-        return "0 m".into();
+    if metres > 0.0 && metres.is_finite() { number_above(metres) + " m" } else { "0 m".into() }
+}
+
+/// A number rounded up to a tenth, above 10 to three digits; 0 unless it is positive and finite.
+fn number_above(value: f64) -> String {
+    if !(value > 0.0 && value.is_finite()) {
+        return "0".into();
     }
-    let step = if metres < 10.0 { 0.1 } else { 10f64.powf((metres.log10().floor() - 2.0).max(0.0)) };
-    let up = (metres / step - 1e-9).ceil() * step;
-    if metres < 10.0 { format!("{up:.1} m") } else { format!("{up:.0} m") }
+    let step = if value < 10.0 { 0.1 } else { 10f64.powf((value.log10().floor() - 2.0).max(0.0)) };
+    let up = (value / step - 1e-9).ceil() * step;
+    if value < 10.0 { format!("{up:.1}") } else { format!("{up:.0}") }
 }
 
 #[cfg(test)]

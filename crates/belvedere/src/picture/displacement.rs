@@ -1,20 +1,21 @@
 //! Displacement of the points in a picture.
 
 use crate::bodies::RigidLayers;
+use crate::overlays::badge;
 use belvedere_core::{DVec2, DVec3, View};
-use belvedere_scene::Frame;
+use belvedere_scene::{Frame, Unit};
 use serde::{Deserialize, Serialize};
 
-/// Displacement of the points in a picture against the same camera without bends, sampled every few pixels. Ground outside the picture
-/// may have moved farther.
+/// Displacement of the points in a picture against the same camera without bends, at some thousand of the pixels that show a surface, or
+/// at all of them where they are fewer. Ground outside the picture may have moved farther.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct DisplacementReport {
     /// Largest displacement, scene units; refined pixel by pixel around the largest samples.
     pub max_m: f64,
     /// Root mean square displacement, scene units.
     pub rms_m: f64,
-    /// Largest distance between the bent and the straight image of a point, pixels. Points whose straight image lies more than one picture
-    /// beside the picture do not count, since beside the eye images lie arbitrarily far.
+    /// Largest distance between the bent and the straight image of a point, pixels, of points that lie in both pictures: beside the eye
+    /// images lie arbitrarily far, and behind it there are none.
     pub max_px: f64,
     /// Root mean square of that distance, pixels.
     pub rms_px: f64,
@@ -24,8 +25,19 @@ pub struct DisplacementReport {
     pub samples: usize,
 }
 
+impl DisplacementReport {
+    /// The largest displacement in words, rounded up.
+    ///
+    /// * `unit`: unit of the scene.
+    pub fn most(&self, unit: Unit) -> String {
+        badge::moved(self.max_m, unit)
+    }
+}
+
 /// Number of samples around which every pixel is measured.
 const LARGEST: usize = 24;
+/// Samples, at least, where as many pixels show a surface.
+const SAMPLES: usize = 8000;
 
 /// Displacement of the point at a pixel.
 struct Moved {
@@ -35,13 +47,18 @@ struct Moved {
     folded: bool,
 }
 
-/// Distance from a pixel to the straight image of its point, pixels; `None` if that lies more than one picture beside the picture.
+/// Distance from a pixel to the straight image of its point, pixels; `None` if that lies outside the picture.
 fn distance_px(straight: &View, point: DVec3, pixel: DVec2) -> Option<f64> {
     let image = straight.project(point).ok()?;
-    let size = DVec2::from(straight.pinhole().image.map(f64::from));
-    let near =
-        image.depth >= straight.pinhole().near && image.pixel.cmpge(-size).all() && image.pixel.cmple(2.0 * size).all();
-    near.then(|| image.pixel.distance(pixel))
+    let pinhole = straight.pinhole();
+    let in_range = image.depth >= pinhole.near && pinhole.far.is_none_or(|far| image.depth <= far);
+    (in_range && pinhole.contains(image.pixel)).then(|| image.pixel.distance(pixel))
+}
+
+/// Distance between neighbouring samples, pixels: 1 where few pixels show a surface, as thin or distant things do.
+fn step(frame: &Frame) -> usize {
+    let shown = frame.depth.iter().filter(|depth| depth.is_finite()).count();
+    ((shown as f64 / SAMPLES as f64).sqrt().floor() as usize).max(1)
 }
 
 fn at_pixel(
@@ -70,7 +87,7 @@ fn at_pixel(
 /// * `frame`: needs world points if it shows rigid layers.
 pub(super) fn measure(view: &View, rigid: &RigidLayers, frame: &Frame) -> DisplacementReport {
     let straight = view.straightened();
-    let step = (frame.width.max(frame.height) / 128).max(1);
+    let step = step(frame);
     let rows = (step / 2..frame.height).step_by(step);
     let pixels = rows.flat_map(|row| (step / 2..frame.width).step_by(step).map(move |col| [col, row]));
     let mut all: Vec<Moved> = pixels.filter_map(|at| at_pixel((view, &straight), rigid, frame, at)).collect();
@@ -94,4 +111,60 @@ pub(super) fn measure(view: &View, rigid: &RigidLayers, frame: &Frame) -> Displa
         }
     }
     report
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_core::grid::Grid;
+    use belvedere_core::{Pinhole, Projection, Stage, TerrainDisocclusion};
+
+    const SIZE: [u32; 2] = [200, 120];
+
+    /// A view in which everything is raised by `by`.
+    fn raised(by: f64) -> View {
+        let lens = Projection::Perspective { fov_y: 1.0 };
+        let pinhole = Pinhole::look_at(DVec3::ZERO, DVec3::Y, DVec3::Z, lens, SIZE, 0.01, None).unwrap();
+        let grid = Grid::new(DVec2::splat(-500.0), DVec2::splat(1000.0), 2, 2, vec![by; 4]).unwrap();
+        View::new(pinhole, vec![Stage::TerrainDisocclusion(TerrainDisocclusion::new(grid))]).unwrap()
+    }
+
+    /// A picture of sky in which pixels show a surface at a depth.
+    fn frame(surfaces: &[([usize; 2], f32)]) -> Frame {
+        let [width, height] = SIZE.map(|n| n as usize);
+        let mut depth = vec![f32::INFINITY; width * height];
+        let mut id = vec![0; width * height];
+        for ([col, row], at) in surfaces {
+            (depth[row * width + col], id[row * width + col]) = (*at, 1);
+        }
+        Frame { width, height, color: vec![[0; 3]; width * height], depth, id, ..Frame::default() }
+    }
+
+    #[test]
+    fn a_single_pixel_is_enough_and_its_size_is_said_in_every_unit() {
+        for at in [[0, 0], [3, 7], [101, 59], [199, 119]] {
+            let found = measure(&raised(2.5), &RigidLayers::default(), &frame(&[(at, 40.0)]));
+            assert_eq!(found.samples, 1, "{at:?}");
+            assert!((found.max_m - 2.5).abs() < 1e-9 && (found.rms_m - 2.5).abs() < 1e-9, "{found:?}");
+            let said = [Unit::Metre, Unit::Angstrom, Unit::Voxel].map(|unit| found.most(unit));
+            assert_eq!(said, ["2.5 m", "2.5 angstrom", "2.5 voxels"]);
+        }
+        let small = measure(&raised(0.003), &RigidLayers::default(), &frame(&[([100, 60], 40.0)]));
+        assert_eq!(small.most(Unit::Angstrom), "0.1 angstrom");
+        let sky = measure(&raised(2.5), &RigidLayers::default(), &frame(&[]));
+        assert_eq!((sky.samples, sky.max_m, sky.max_px), (0, 0.0, 0.0));
+    }
+
+    #[test]
+    fn pixels_are_of_points_in_both_pictures_and_never_beside_the_eye() {
+        // Far away 2 m are few pixels; nearer than 1 m the straight image lies below the picture, up to right below the eye.
+        for near in [1.5, 1.0, 0.3, 0.05, 0.011] {
+            let found = measure(&raised(2.0), &RigidLayers::default(), &frame(&[([100, 60], near), ([100, 50], 80.0)]));
+            let diagonal = f64::from(SIZE[0]).hypot(f64::from(SIZE[1]));
+            assert!(found.max_px <= diagonal && found.rms_px <= found.max_px, "{near}: {found:?}");
+            let scale = raised(2.0).pinhole().scale_px();
+            assert!((found.max_px - 2.0 * scale / 80.0).abs() < 1e-6, "only the far point lies in both: {found:?}");
+            assert!((found.max_m - 2.0).abs() < 1e-9, "both are moved: {found:?}");
+        }
+    }
 }

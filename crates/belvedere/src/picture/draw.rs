@@ -13,7 +13,7 @@ use crate::{BelvedereError, CameraPicture, Session};
 use belvedere_composite::canvas::Canvas;
 use belvedere_core::View;
 use belvedere_scene::Instant;
-use belvedere_scene::{Aux, Frame, Progress, RenderJob, RenderOptions, Scene};
+use belvedere_scene::{Aux, Frame, Progress, RenderJob, RenderOptions, Scene, Unit};
 
 impl Session {
     /// Draws the session's view, or its camera.
@@ -45,7 +45,7 @@ pub(crate) fn draw(
     let sidecar = Sidecar {
         program: format!("belvedere {}", crate::VERSION),
         renderer: request.renderer.of(session).name(),
-        note: displacement.map(|d| note(&view, &d)),
+        note: displacement.map(|d| note(&view, &d, session.scene().unit)),
         stages: view.stages().iter().map(|s| s.name()).collect(),
         overlay,
         displacement,
@@ -198,12 +198,12 @@ pub(crate) fn draw_camera(
     Ok(Drawn { view: figure.view, frame, straight: None, overlay, displacement, fallback: None })
 }
 
-fn note(view: &View, d: &DisplacementReport) -> String {
+fn note(view: &View, d: &DisplacementReport, unit: Unit) -> String {
     let names: Vec<&str> = view.stages().iter().map(|s| s.name()).filter(|n| *n != "earth").collect();
     format!(
-        "bent view ({}): what is shown is displaced by up to {:.1} scene units ({:.0} px); not to scale, not for navigation",
+        "bent view ({}): what is shown is displaced by up to {} ({:.0} px); not to scale, not for navigation",
         names.join(", "),
-        d.max_m,
+        d.most(unit),
         d.max_px
     )
 }

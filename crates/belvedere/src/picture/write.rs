@@ -103,8 +103,7 @@ impl Picture {
     fn bent_title(&self) -> String {
         match self.sidecar.displacement {
             Some(d) => {
-                let moved = badge::moved(d.max_m, self.unit);
-                format!("bent: what is seen moved by up to {moved}, {:.0} px", d.max_px)
+                format!("bent: what is seen moved by up to {}, {:.0} px", d.most(self.unit), d.max_px)
             }
             None => "the same camera".into(),
         }

@@ -11,6 +11,8 @@ use crate::resolve::ground::earth_radius;
 use crate::resolve::terrain as intent;
 use crate::scene_file::{self, CameraDoc, EarthDoc, StageDoc, TerrainStageDoc};
 use crate::{BelvedereError, OpenOptions, Session};
+use belvedere_construct::measure::{Shares, percent};
+use belvedere_construct::reveal::shortfall;
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, TerrainDisocclusion, View};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_disocclusion::report::RiverReport;
@@ -124,6 +126,8 @@ struct Record {
     /// Visible share of the features in view on the written heights, if they are resampled.
     #[serde(skip_serializing_if = "Option::is_none")]
     visible_written: Option<f64>,
+    /// The report's visible share of the whole features, on the heights as they are written.
+    visible_whole: f64,
     /// Reports of rivers on the written heights, if they are resampled.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     rivers_written: Vec<RiverReport>,
@@ -218,6 +222,7 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
         earth: if request.curved_earth { "curved" } else { "flat" },
         grid: request.grid,
         visible_written,
+        visible_whole: visible_whole(&solved.report, visible_written),
         rivers_written,
         guaranteed: solved.report.guaranteed && visible_written.is_none_or(|share| share >= KEPT_SHARE),
         layers: session.scene().layers.iter().map(|l| l.id.clone()).collect(),
@@ -247,7 +252,7 @@ fn written_share(
             terrain.heightfield = Arc::new(read.heightfield.clone());
         }
     }
-    let (measures, _) = in_time::measured(&scene, &taller(straight)?, &options.progress)?;
+    let measures = in_time::judged(&scene, &taller(straight)?, &options.progress)?.measures;
     let kinds = [measures.lines.as_ref(), measures.areas.as_ref(), measures.points.as_ref()];
     let shares = kinds.into_iter().flatten().filter_map(|kind| kind.straight.sight.share);
     Ok(shares.min_by(f64::total_cmp))
@@ -261,6 +266,13 @@ fn taller(view: &View) -> Result<View, BelvedereError> {
     let projection = Projection::Perspective { fov_y: 2.0 * (f64::from(TALLER) * (0.5 * fov_y).tan()).atan() };
     let taller = Pinhole { image: [width, TALLER * height], projection, ..pinhole.clone() };
     Ok(View::new(taller, view.stages().to_vec())?)
+}
+
+/// Visible share of the whole features on written heights, which show `written` of what is in view.
+fn visible_whole(report: &TerrainReport, written: Option<f64>) -> f64 {
+    let solved = report.metrics.visible_dense;
+    let kept = written.map_or(1.0, |written| (written / solved.max(f64::MIN_POSITIVE)).min(1.0));
+    report.visible_whole * kept
 }
 
 /// Warning that resampling hides features that the solution shows.
@@ -372,30 +384,27 @@ impl Disoccluded {
                 r.points
             ));
         }
-        let length = self.visible();
-        if length < VISIBLE_LENGTH {
-            out.push(format!(
-                "{:.2} % of what is in view is visible, {:.1} % were wanted",
-                100.0 * length,
-                100.0 * VISIBLE_LENGTH
-            ));
+        let [_, after] = self.shares();
+        if after.visible < VISIBLE_LENGTH {
+            out.push(shortfall(after, VISIBLE_LENGTH));
         }
         out
     }
 
-    /// Visible share of the features in view on the heights as they are written, 0..=1.
-    pub fn visible(&self) -> f64 {
-        let solved = self.report().metrics.visible_dense;
-        self.record.visible_written.map_or(solved, |written| written.min(solved))
+    /// Shares of the whole features before, and after on the heights as they are written.
+    pub fn shares(&self) -> [Shares; 2] {
+        let r = self.report();
+        [r.visible_whole_before, self.record.visible_whole].map(|visible| Shares { visible, in_frame: r.in_view })
     }
 
-    /// One sentence: visible shares before and after, and the displacement.
+    /// One sentence: visible shares of the whole features before and after, the share in view, and the displacement.
     pub fn summary(&self) -> String {
-        let r = self.report();
+        let (r, [before, after]) = (self.report(), self.shares());
         format!(
-            "visible of the features in view: {:.1} % before, {:.1} % after; all the ground, in the picture or not, moved by {:.1} m rms, {:.1} m at most",
-            100.0 * r.visible_dense_before,
-            100.0 * self.visible(),
+            "visible of the features: {} before, {} after, {} of them in view; all the ground, in the picture or not, moved by {:.1} m rms, {:.1} m at most",
+            percent(before.visible),
+            percent(after.visible),
+            percent(after.in_frame),
             r.metrics.rms_m,
             r.metrics.max_m
         )

@@ -3,7 +3,7 @@
 use crate::{BelvedereError, RendererChoice, Session};
 pub use belvedere_construct::MeasureOptions;
 use belvedere_construct::Measures;
-use belvedere_construct::measure::{FeatureMeasure, Visibility};
+use belvedere_construct::measure::Shares;
 use belvedere_core::Warning;
 use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::Progress;
@@ -23,10 +23,12 @@ pub struct MeasureReport {
     /// Report of the solver of terrain disocclusion; `None` if it did not run.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub terrain: Option<TerrainReport>,
-    /// Visible share of the required features in the picture, 0..=1: by the judge of terrain disocclusion where it judged all its points
-    /// and only the ground hides, else by lines of sight. The least of the shares of lines (by length), areas (by area), surfaces, and points
-    /// (by number). `None` if no part of them is in the picture.
+    /// Visible share of the whole required features, 0..=1: by the judge of terrain disocclusion where it judged all its points and only the
+    /// ground hides, else by lines of sight. The least of the shares of lines (by length), areas (by area), surfaces, and points (by number);
+    /// what lies outside the picture is not visible. `None` without any of them.
     pub visible: Option<f64>,
+    /// Share of the whole required features inside the picture, likewise.
+    pub in_frame: Option<f64>,
     /// The measures.
     #[serde(flatten)]
     pub measures: Measures,
@@ -37,17 +39,17 @@ pub struct MeasureReport {
 /// Largest difference between two measures of one picture of ground for which the judge's figure is reported.
 const ONE_FIGURE: f64 = 0.005;
 
-/// Visible shares straight and bent: one figure for each picture, see [`MeasureReport::visible`].
-pub(super) fn shares(measures: &Measures, terrain: Option<&TerrainReport>) -> [Option<f64>; 2] {
-    let kinds = [&measures.lines, &measures.areas, &measures.points, &measures.surfaces];
-    let least = |of: fn(&FeatureMeasure) -> &Visibility| {
-        kinds.into_iter().flatten().filter_map(|kind| of(kind).sight.share).min_by(f64::total_cmp)
-    };
-    let [straight, bent] = [least(|m| &m.straight), least(|m| &m.bent)];
+/// Shares of the whole features straight and bent: one figure for each picture, see [`MeasureReport::visible`].
+pub(super) fn shares(measures: &Measures, terrain: Option<&TerrainReport>) -> Option<[Shares; 2]> {
+    let [straight, mut bent] = measures.shares()?;
     let judged = terrain.filter(|t| t.judged_every == 1).map(|t| t.metrics.visible_dense);
     // The judge knows the ground alone: where other layers hide, or a surface is required, lines of sight give less.
-    let bent = bent.map(|share| judged.filter(|judged| (judged - share).abs() <= ONE_FIGURE).unwrap_or(share));
-    [straight, bent]
+    if let (Some(share), Some(judged)) = (bent.visible_in_frame(), judged)
+        && (judged - share).abs() <= ONE_FIGURE
+    {
+        bent.visible = judged * bent.in_frame;
+    }
+    Some([straight, bent])
 }
 
 /// Visible share of every required feature, straight and bent, by lines of sight and by depth buffers drawn by `renderer`.
@@ -63,12 +65,14 @@ pub fn measure(
     session.check_drawable()?;
     let renderer = renderer.of(session);
     let measures = belvedere_construct::measure(session.scene(), session.view(), Some(renderer), options, progress)?;
+    let shares = shares(&measures, session.terrain_report());
     Ok(MeasureReport {
         scene: session.name(),
         crs: session.scene().crs.to_string(),
         stages: session.stage_names(),
         renderer: renderer.name(),
-        visible: shares(&measures, session.terrain_report())[1],
+        visible: shares.map(|[_, bent]| bent.visible),
+        in_frame: shares.map(|[_, bent]| bent.in_frame),
         terrain: session.terrain_report().cloned(),
         measures,
         scene_warnings: session.warnings(),

@@ -12,7 +12,7 @@ use crate::scene_file::{
     CameraDoc, Document, EarthDoc, PlaneDoc, PresetsDoc, SplineStageDoc, StageDoc, TerrainStageDoc,
 };
 use crate::{BelvedereError, OpenOptions, Session};
-use belvedere_construct::measure::HiddenRun;
+use belvedere_construct::measure::{HiddenRun, Shares};
 use belvedere_construct::rays::{AroundOptions, Target, bend_around};
 use belvedere_construct::{
     Goal, RevealMemory, RevealOptions, RevealReport, Revealed, default_spacing, sample_features,
@@ -102,23 +102,49 @@ const FIRST_TRY: f64 = 0.6;
 pub struct Tried {
     /// The technique.
     pub technique: Technique,
-    /// Visible share of the features in its picture.
-    pub visible: Option<f64>,
+    /// Visible share of the whole features in its picture.
+    pub visible: f64,
+    /// Share of the whole features inside its picture.
+    pub in_frame: f64,
     /// Wall time, seconds.
     pub seconds: f64,
     /// Whether its time limit ended it early.
     pub out_of_time: bool,
 }
 
-/// Visibility in the finished picture, by lines of sight through its whole chain of stages.
+/// Shares of the whole features in both pictures, by lines of sight through the whole chain of stages.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct FinalShares {
-    /// Technique of the finished picture.
+    /// Technique of the bent picture.
     pub technique: Technique,
-    /// Visible share of the features in the straight picture.
-    pub visible_straight: Option<f64>,
-    /// Visible share of the features in the bent picture.
-    pub visible_bent: Option<f64>,
+    /// Visible share in the straight picture, 0..=1.
+    pub visible_straight: f64,
+    /// Visible share in the bent picture.
+    pub visible_bent: f64,
+    /// Share inside the straight picture, hidden or not.
+    pub in_frame_straight: f64,
+    /// Share inside the bent picture, hidden or not.
+    pub in_frame_bent: f64,
+}
+
+impl FinalShares {
+    fn of(technique: Technique, [straight, bent]: [Shares; 2]) -> Self {
+        Self {
+            technique,
+            visible_straight: straight.visible,
+            visible_bent: bent.visible,
+            in_frame_straight: straight.in_frame,
+            in_frame_bent: bent.in_frame,
+        }
+    }
+
+    /// Shares in the straight and in the bent picture.
+    pub fn both(&self) -> [Shares; 2] {
+        [
+            Shares { visible: self.visible_straight, in_frame: self.in_frame_straight },
+            Shares { visible: self.visible_bent, in_frame: self.in_frame_bent },
+        ]
+    }
 }
 
 /// Result of `reveal`: a session that shows the features, its picture beside the straight one, and reports.
@@ -130,26 +156,25 @@ pub struct RevealAnswer {
     pub picture: Picture,
     /// Report of the search for a view and a spline.
     pub report: RevealReport,
-    /// Visibility under terrain disocclusion.
-    pub shares: Option<FinalShares>,
+    /// Shares of the whole features in both pictures.
+    pub shares: FinalShares,
     /// Tried techniques, if the choice was automatic.
     pub tried: Vec<Tried>,
     /// Hidden stretches of the features in the picture.
     pub hidden: Vec<HiddenRun>,
     /// Factor of the sample spacing for the shares and `hidden`: 1, or more if time was short.
     pub measured_every: u32,
-    missed: Vec<String>,
 }
 
 /// Contents of the report file.
 #[derive(Debug, Clone, Serialize)]
 struct ReportFile<'a> {
     program: String,
-    /// Report of the spline; left out if only the ground moves.
+    /// Report of the search; its shares, gain and goal are those of the finished picture.
     #[serde(flatten)]
-    report: Option<&'a RevealReport>,
+    report: &'a RevealReport,
     #[serde(flatten)]
-    shares: Option<FinalShares>,
+    shares: FinalShares,
     #[serde(skip_serializing_if = "Option::is_none")]
     disocclusion: Option<&'a TerrainReport>,
     /// Tried techniques.
@@ -207,16 +232,16 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
         Technique::Both => &[Technique::Both],
         Technique::Terrain => &[Technique::Terrain],
     };
-    let mut missed = match &found.report.goal {
-        Goal::Reached => Vec::new(),
-        Goal::Missed(reasons) => reasons.clone(),
-    };
     let is_auto = request.technique == Technique::Auto;
     let progress = &options.progress.clone().limited_unless_stated(TRY_FOR);
-    let (spline, mut shares, mut tried, mut measured_every) = (session.clone(), None, Vec::new(), 1);
-    let mut most = if is_auto { found.report.bent.visible } else { f64::NEG_INFINITY };
+    let (spline, mut tried, mut best) = (session.clone(), Vec::new(), None);
+    if candidates.is_empty() || is_auto {
+        let judged = judged(&session, Technique::Spline, &options.progress)?;
+        tried.push(judged.tried(Technique::Spline, searched.elapsed(), false));
+        best = Some((session, judged));
+    }
     for &technique in candidates {
-        if is_auto && most >= ENOUGH {
+        if is_auto && best.as_ref().is_some_and(|(_, judged)| judged.shares.visible_bent >= ENOUGH) {
             break;
         }
         let began = Instant::now();
@@ -228,33 +253,22 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
                 &if is_auto { progress.part(FIRST_TRY) } else { options.progress.clone() },
             )?,
         };
-        let (reached, every) = final_shares(&next, technique, &options.progress)?;
-        measured_every = every.max(measured_every);
+        let judged = judged(&next, technique, &options.progress)?;
         let out_of_time = next.terrain_report().is_some_and(|r| r.out_of_time);
-        let (visible, seconds) = (reached.visible_bent, began.elapsed().as_secs_f64());
-        tried.push(Tried { technique, visible, seconds, out_of_time });
-        if visible.unwrap_or(1.0) > most {
-            most = visible.unwrap_or(1.0);
-            missed = visible.filter(|v| *v < ENOUGH).map(shortfall).into_iter().collect();
-            (session, shares) = (next, Some(reached));
+        tried.push(judged.tried(technique, began.elapsed(), out_of_time));
+        let most = |(_, best): &(Session, Judgement)| best.shares.visible_bent;
+        if best.as_ref().is_none_or(|best| judged.shares.visible_bent > most(best)) {
+            best = Some((next, judged));
         }
     }
-    if is_auto {
-        let (technique, visible) = (Technique::Spline, Some(found.report.bent.visible));
-        let seconds = searched.elapsed().as_secs_f64() - tried.iter().map(|t: &Tried| t.seconds).sum::<f64>();
-        tried.insert(0, Tried { technique, visible, seconds, out_of_time: false });
-    } else {
+    if !is_auto {
         tried.clear();
     }
-    if candidates.is_empty() && options.progress.is_limited() {
-        measured_every = in_time::measured(session.scene(), session.view(), &options.progress)?.1;
-    }
-    let hidden = belvedere_construct::measure::hidden(
-        session.scene(),
-        session.view(),
-        &in_time::options(session.scene(), measured_every),
-        &options.progress,
-    )?;
+    let Some((mut session, Judgement { shares, hidden, every, warnings })) = best else {
+        return Err(BelvedereError::NoFeatures);
+    };
+    session.loaded.warnings.extend(warnings);
+    let report = judged_report(found.report, &shares, &search);
     let pair = PictureOptions {
         compare: true,
         straight: false,
@@ -262,11 +276,23 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
         ..request.picture.clone()
     };
     let picture = session.render(&pair)?;
-    Ok(RevealAnswer { session, picture, report: found.report, shares, tried, hidden, measured_every, missed })
+    Ok(RevealAnswer { session, picture, report, shares, tried, hidden, measured_every: every })
 }
 
-fn shortfall(visible: f64) -> String {
-    format!("{:.1} % of what is in the picture is visible, {:.0} % were wanted", 100.0 * visible, 100.0 * ENOUGH)
+/// The report of the search with the shares, gain and goal of the finished picture.
+fn judged_report(report: RevealReport, shares: &FinalShares, search: &RevealOptions) -> RevealReport {
+    let [straight, bent] = shares.both();
+    let goals = match shares.technique {
+        Technique::Spline => *search,
+        _ => RevealOptions { goal_share: ENOUGH, goal_gain: 0.0, ..*search },
+    };
+    RevealReport {
+        straight: report.straight.judged(straight),
+        bent: report.bent.judged(bent),
+        gain: belvedere_construct::reveal::gain([straight, bent]),
+        goal: Goal::of([straight, bent], &goals),
+        ..report
+    }
 }
 
 /// The session with terrain disocclusion, with the spline or in its place.
@@ -303,39 +329,41 @@ fn around_what_hides(session: &Session, straight: &View, progress: &Progress) ->
     session.with_document(document, None)
 }
 
-/// Measures the whole chain of stages; also returns the factor of the sample spacing.
-fn final_shares(
-    session: &Session,
-    technique: Technique,
-    progress: &Progress,
-) -> Result<(FinalShares, u32), BelvedereError> {
-    let (measures, every) = in_time::measured(session.scene(), session.view(), progress)?;
-    let [visible_straight, visible_bent] = super::measure::shares(&measures, session.terrain_report());
-    let shares = FinalShares { technique, visible_straight, visible_bent };
-    Ok((shares, every))
+/// Judgement of a finished picture.
+struct Judgement {
+    shares: FinalShares,
+    hidden: Vec<HiddenRun>,
+    every: u32,
+    warnings: Vec<Warning>,
+}
+
+impl Judgement {
+    fn tried(&self, technique: Technique, took: Duration, out_of_time: bool) -> Tried {
+        let FinalShares { visible_bent: visible, in_frame_bent: in_frame, .. } = self.shares;
+        Tried { technique, visible, in_frame, seconds: took.as_secs_f64(), out_of_time }
+    }
+}
+
+/// Measures the whole chain of stages.
+fn judged(session: &Session, technique: Technique, progress: &Progress) -> Result<Judgement, BelvedereError> {
+    let in_time::Judged { measures, hidden, every } = in_time::judged(session.scene(), session.view(), progress)?;
+    let shares = super::measure::shares(&measures, session.terrain_report()).unwrap_or_default();
+    Ok(Judgement { shares: FinalShares::of(technique, shares), hidden, every, warnings: measures.warnings })
 }
 
 impl RevealAnswer {
     /// Goals that were missed, one sentence each.
     pub fn missed(&self) -> &[String] {
-        &self.missed
+        match &self.report.goal {
+            Goal::Reached => &[],
+            Goal::Missed(reasons) => reasons,
+        }
     }
 
-    /// One sentence: visible share straight and bent.
+    /// One sentence: shares of the whole features that are visible, and that lie in the frame, straight and bent.
     pub fn summary(&self) -> String {
-        if let Some(FinalShares { visible_straight: Some(straight), visible_bent: Some(bent), .. }) = self.shares {
-            return format!(
-                "visible in the straight picture: {:.1} %, in the bent one: {:.1} %",
-                100.0 * straight,
-                100.0 * bent
-            );
-        }
-        let percent = |a: &belvedere_construct::reveal::Evaluation| 100.0 * a.visible;
-        format!(
-            "visible in the straight picture: {:.1} %, in the bent one: {:.1} %",
-            percent(&self.report.straight),
-            percent(&self.report.bent)
-        )
+        let [straight, bent] = self.shares.both();
+        format!("visible in the straight picture: {straight}, in the bent one: {bent}")
     }
 
     /// Writes the bent picture with its record, the pair (`OUT.pair.png`), and the other files asked for.
@@ -365,7 +393,7 @@ impl RevealAnswer {
             let sidecar = &self.picture.sidecar;
             let report = ReportFile {
                 program: sidecar.program.clone(),
-                report: Some(&self.report).filter(|_| !self.shares.is_some_and(|s| s.technique == Technique::Terrain)),
+                report: &self.report,
                 shares: self.shares,
                 disocclusion: self.session.terrain_report(),
                 tried: &self.tried,

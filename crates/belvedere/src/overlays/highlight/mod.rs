@@ -37,7 +37,7 @@ pub struct HighlightRecord {
     pub marks: Vec<HighlightMark>,
     /// Distance at the upper end of the colours, pixels.
     pub ramp_px: f64,
-    /// Largest distance between the bent and the straight image of the point at a pixel, pixels; of points with a straight image.
+    /// Largest distance between the bent and the straight image of the point at a pixel, pixels; of points in both pictures.
     pub max_px: f64,
     /// Mean of that distance over these pixels.
     pub mean_px: f64,
@@ -62,7 +62,7 @@ pub struct PartRecord {
     pub share: f64,
     /// Share drawn in its colour: its stage moved them farthest, and it is the last turn of curved rays that reaches them.
     pub shown_share: f64,
-    /// Largest displacement by this part, pixels, from the image after the parts before it.
+    /// Largest displacement by this part, pixels, from the image after the parts before it; of points in the bent and the straight picture.
     pub max_px: f64,
 }
 
@@ -150,7 +150,7 @@ pub(crate) fn conflict(marks: &[HighlightMark], heatmap: bool) -> Option<&'stati
 fn record(parts: &Parts, survey: &Survey, marks: &[HighlightMark], ramp_px: f64) -> HighlightRecord {
     let seen = || survey.pixels.iter().flatten();
     let share = |count: usize| count as f64 / seen().count().max(1) as f64;
-    let distances = || seen().map(|m| f64::from(m.px)).filter(|px| px.is_finite());
+    let distances = || seen().filter(|m| m.in_both).map(|m| f64::from(m.px));
     let with = |straight: Straight| share(seen().filter(|m| m.straight == straight).count());
     let many = parts.names.len() > PART_COLORS.len();
     let part = |(k, name): (usize, &String)| {

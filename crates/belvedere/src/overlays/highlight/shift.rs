@@ -119,13 +119,16 @@ pub(super) struct Moved {
     pub(super) part: Option<u8>,
     /// Visibility for the straight camera.
     pub(super) straight: Straight,
+    /// Whether the straight picture holds the point, hidden or not.
+    pub(super) in_both: bool,
 }
 
 /// Displacements of all pixels.
 pub(super) struct Survey {
     /// One entry per pixel; `None` where the picture shows no surface.
     pub(super) pixels: Vec<Option<Moved>>,
-    /// For each part the number of pixels that it reaches, and its largest displacement, pixels.
+    /// For each part the number of pixels that it reaches, and its largest displacement of a point that lies in the straight picture too,
+    /// pixels.
     pub(super) parts: Vec<(usize, f64)>,
 }
 
@@ -146,10 +149,12 @@ pub(super) fn survey(parts: &Parts, bare: &Frame, straight: Option<&Frame>) -> S
             }
             let pixel = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
             let moves = parts.moves(p, pixel);
+            let moved = of_point(parts, p, pixel, moves.mover, straight);
             for (sum, by) in reached.iter_mut().zip(moves.by) {
-                *sum = joined(*sum, (usize::from(by > REACHES_PX), if by.is_finite() { by } else { 0.0 }));
+                let far = if by.is_finite() && moved.in_both { by } else { 0.0 };
+                *sum = joined(*sum, (usize::from(by > REACHES_PX), far));
             }
-            *out = Some(of_point(parts, p, pixel, moves.mover, straight));
+            *out = Some(moved);
         }
         reached
     };
@@ -166,14 +171,16 @@ fn joined(a: (usize, f64), b: (usize, f64)) -> (usize, f64) {
 fn of_point(parts: &Parts, p: DVec3, pixel: DVec2, mover: Option<usize>, straight: Option<&Frame>) -> Moved {
     let part = mover.and_then(|part| u8::try_from(part).ok());
     let Ok(image) = parts.straight().project(p) else {
-        return Moved { px: f32::INFINITY, part, straight: Straight::Outside };
+        return Moved { px: f32::INFINITY, part, straight: Straight::Outside, in_both: false };
     };
+    let pinhole = parts.straight().pinhole();
+    let in_both = image.depth >= pinhole.near && pinhole.contains(image.pixel);
     let straight = match straight {
-        Some(_) if !parts.straight().pinhole().contains(image.pixel) => Straight::Outside,
+        Some(_) if !in_both => Straight::Outside,
         Some(frame) if is_hidden(frame, image.pixel, image.depth) => Straight::Hidden,
         _ => Straight::Shown,
     };
-    Moved { px: image.pixel.distance(pixel) as f32, part, straight }
+    Moved { px: image.pixel.distance(pixel) as f32, part, straight, in_both }
 }
 
 /// Whether all four pixels around an image are nearer than its depth; on a slope at least one is not.
