@@ -1,9 +1,9 @@
-//! Arguments that say of files of heights what they do not say themselves, and those of `info`.
+//! Arguments that say of files what they do not say themselves, and those of `info`.
 
 use belvedere::scene_file::VerticalUnit;
 use clap::{Args, ValueEnum};
 
-/// What the files of terrain do not say.
+/// What files do not say.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct GroundArgs {
     /// Coordinate system of the terrain's file, instead of the stated one
@@ -15,6 +15,9 @@ pub(crate) struct GroundArgs {
     /// Unit of the terrain's heights, instead of the stated one
     #[arg(long, value_enum, value_name = "UNIT")]
     pub(crate) vertical_unit: Option<UnitKind>,
+    /// Property that holds the names of features, instead of the one that looks most like a name
+    #[arg(long, value_name = "PROPERTY")]
+    pub(crate) name_field: Option<String>,
 }
 
 /// Units of heights.

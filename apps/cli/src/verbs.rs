@@ -175,6 +175,7 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
             source_crs: args.ground.source_crs,
             nodata: args.ground.nodata,
             vertical_unit: args.ground.vertical_unit.map(Into::into),
+            name_field: args.ground.name_field,
             ..DataFiles::default()
         },
         fill_voids: args.fill_voids,
@@ -313,6 +314,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
             source_crs: args.ground.source_crs,
             nodata: args.ground.nodata,
             vertical_unit: args.ground.vertical_unit.map(Into::into),
+            name_field: args.ground.name_field,
         },
         viewpoint,
         fov_y_deg: args.fov,
@@ -401,6 +403,7 @@ fn describe(args: &InfoArgs, context: &Context) -> anyhow::Result<Goal> {
         source_crs: args.ground.source_crs.clone(),
         nodata: args.ground.nodata,
         vertical_unit: args.ground.vertical_unit.map(Into::into),
+        name_field: args.ground.name_field.clone(),
         max_bytes: context.common.max_mem,
     };
     let (mut files, mut bad) = (Vec::new(), Vec::new());

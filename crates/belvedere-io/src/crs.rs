@@ -4,8 +4,11 @@
 //! Longitudes and latitudes are degrees. Datum shifts are Helmert shifts (three or seven parameters); grid shifts are not
 //! applied, see [`CoordinateSystem::datum_note`].
 
+mod arc_info;
 mod tables;
 mod wkt;
+
+pub(crate) use wkt::code_of_parameters;
 
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Crs;
@@ -113,6 +116,11 @@ impl CoordinateSystem {
         wkt::parse(text)
     }
 
+    /// The plane of a system of another body than the Earth; it fits only scenes without georeference.
+    fn of_other_body(name: &str) -> Self {
+        Self { name: name.to_owned(), ..Self::local() }
+    }
+
     /// The plane of a file that states no system; it fits only scenes without georeference.
     pub fn local() -> Self {
         let proj = Proj::from_proj_string("+proj=eqc +ellps=WGS84 +units=m").unwrap_or_else(|_| unreachable!());
@@ -120,13 +128,27 @@ impl CoordinateSystem {
         Self { name, epsg: None, local: true, proj_string: "local".to_owned(), proj: Arc::new(proj) }
     }
 
-    /// A system by its name: `EPSG:25832`, `urn:ogc:def:crs:EPSG::25832`, `ESRI:102100`, a bare number, well-known text, or the name that
-    /// texts give it.
+    /// A system by its name: `EPSG:25832`, `urn:ogc:def:crs:EPSG::25832`, `ESRI:102100`, a bare number, well-known text, the name that
+    /// texts give it, a PROJ string, which may follow a name, or the lines of an old `.prj` file of ARC/INFO.
     ///
     /// # Errors
     /// [`CrsError::Text`], [`CrsError::Unsupported`], [`CrsError::UnknownCode`].
     pub fn from_text(text: &str) -> Result<Self, CrsError> {
-        let text = text.trim();
+        let text = text.trim().trim_start_matches('\u{feff}');
+        let keyword = text.split_once(['[', '(']).map(|(word, _)| word.trim());
+        if keyword.is_some_and(|w| !w.is_empty() && w.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')) {
+            return Self::from_wkt(text);
+        }
+        if text.starts_with("proj=") {
+            return Self::from_proj_string("the PROJ string of the file", &with_signs(text));
+        }
+        if let Some(at) = text.find("+proj=") {
+            let name = Some(text[..at].trim()).filter(|n| !n.is_empty()).unwrap_or("the PROJ string of the file");
+            return Self::from_proj_string(name, &text[at..]);
+        }
+        if let Some(system) = arc_info::parse(text) {
+            return system;
+        }
         if text.contains(['[', '(']) {
             return Self::from_wkt(text);
         }
@@ -245,7 +267,7 @@ impl CoordinateSystem {
         match value("+datum=") {
             Some("WGS84" | "NAD83") => None,
             Some(_) => without_grid(),
-            None if value("+nadgrids=").is_some() => None,
+            None if value("+nadgrids=").is_some() || self.is_on_modern_ellipsoid() => None,
             None => {
                 let text = format!(
                     "the datum shift of {self} is unknown and taken as zero: positions may be off by some 100 m"
@@ -254,6 +276,28 @@ impl CoordinateSystem {
             }
         }
     }
+}
+
+impl CoordinateSystem {
+    /// Whether its ellipsoid is that of satellite positioning (GRS 80, WGS 84, CGCS 2000): datums on it that name no shift agree with
+    /// WGS 84 within about two metres. Those that do not (GGRS87, Israel 1993) have their shifts in the tables.
+    fn is_on_modern_ellipsoid(&self) -> bool {
+        let value = |key: &str| self.proj_string.split(' ').find_map(|p| p.strip_prefix(key));
+        let number = |key: &str| value(key).and_then(|v| v.parse::<f64>().ok());
+        matches!(value("+ellps="), Some("GRS80" | "WGS84"))
+            || (number("+a=") == Some(6_378_137.0) && number("+rf=").is_some_and(|rf| (298.257..298.258).contains(&rf)))
+    }
+}
+
+/// Whether a radius, metres, is one of the Earth.
+pub(crate) fn is_of_earth(radius_m: f64) -> bool {
+    (6.2e6..6.5e6).contains(&radius_m)
+}
+
+/// A PROJ string whose parts all begin with `+`.
+fn with_signs(text: &str) -> String {
+    let sign = |part: &str| if part.starts_with('+') { part.to_owned() } else { format!("+{part}") };
+    text.split_whitespace().map(sign).collect::<Vec<_>>().join(" ")
 }
 
 /// Whether a Helmert shift moves positions by a few metres at most.

@@ -3,6 +3,10 @@
 //! Header: `ncols`, `nrows`, `xllcorner` or `xllcenter`, `yllcorner` or `yllcenter`, `cellsize` (or `dx`, `dy`),
 //! `NODATA_value` (-9999 if missing); then the rows, the northernmost first. Source: ESRI, ASCII raster format.
 
+mod numbers;
+
+use crate::fs::sidecar;
+use crate::vector::text::text_of;
 use crate::{Affine, InputFile, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs, fs};
 use belvedere_core::{Warning, WarningKind};
 use std::path::Path;
@@ -22,6 +26,8 @@ struct Header {
     dx: Option<f64>,
     dy: Option<f64>,
     nodata: Option<f64>,
+    /// What stands for no data where that is no number.
+    nodata_word: Option<Vec<u8>>,
 }
 
 /// Reads a grid. The coordinate system is that of the `.prj` file of the same name, else unknown.
@@ -34,9 +40,7 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     limits.check(length).map_err(bad)?;
     let (bytes, file) = InputFile::read(path)?;
-    let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
-    let commas = text.contains(&b',').then(|| with_points(text));
-    let text = commas.as_deref().unwrap_or(text);
+    let (text, odd_numbers) = numbers::plain(&bytes);
     let mut words = text.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty()).peekable();
     let header = header(&mut words).map_err(bad)?;
     let missing = |what: &str| bad(format!("the header lacks {what}; it is no ESRI ASCII grid or is damaged"));
@@ -53,17 +57,15 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
     }
     let mut values = Vec::with_capacity(expected);
     for word in words.by_ref().take(expected) {
-        let parsed = std::str::from_utf8(word).ok().and_then(|w| w.parse::<f32>().ok());
+        let is_void = header.nodata_word.as_deref() == Some(word) || numbers::is_no_number(word);
+        let parsed = if is_void { Some(f32::NAN) } else { numbers::parse(word) };
         values.push(parsed.ok_or_else(|| bad(not_a_number(word, values.len(), cols)))?);
     }
     if values.len() < expected {
         return Err(bad(too_few(cols, rows, values.len())));
     }
     let mut warnings = Vec::new();
-    if commas.is_some() {
-        let text = "its numbers have decimal commas; they are read as points";
-        warnings.push(Warning::new(WarningKind::Repaired, text).in_file(path));
-    }
+    warnings.extend(odd_numbers.map(|said| Warning::new(WarningKind::Repaired, said).in_file(path)));
     let extra = words.count();
     let after = format!("values after the {expected} of the grid are ignored");
     warnings.extend(Warning::counted(WarningKind::Ignored, extra, &after).map(|w| w.in_file(path)));
@@ -74,13 +76,6 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
     info.nodata = Some(header.nodata.unwrap_or(DEFAULT_NODATA));
     info.crs = prj_beside(path)?;
     Ok(Loaded::new(Raster { info, samples: Samples::F32(values), mask: None }, warnings).with_file(file))
-}
-
-/// Numbers with decimal commas, as some locales write them, with points. Commas between numbers stay what they are, and are no numbers.
-fn with_points(text: &[u8]) -> Vec<u8> {
-    let digit = |at: Option<usize>| at.and_then(|at| text.get(at)).is_some_and(u8::is_ascii_digit);
-    let decimal = |at: usize| text[at] == b',' && (digit(at.checked_sub(1)) || digit(Some(at + 1)));
-    (0..text.len()).map(|at| if decimal(at) { b'.' } else { text[at] }).collect()
 }
 
 fn too_few(cols: usize, rows: usize, found: usize) -> String {
@@ -106,7 +101,12 @@ fn header<'a>(words: &mut std::iter::Peekable<impl Iterator<Item = &'a [u8]>>) -
         }
         let key = String::from_utf8_lossy(word).to_ascii_lowercase();
         words.next();
-        let value = words.next().and_then(|w| std::str::from_utf8(w).ok()).and_then(|w| w.parse::<f64>().ok());
+        let word = words.next();
+        let value = word.and_then(|w| std::str::from_utf8(w).ok()).and_then(|w| w.parse::<f64>().ok());
+        if value.is_none() && matches!(key.as_str(), "nodata_value" | "nodata") {
+            out.nodata_word = word.map(<[u8]>::to_vec);
+            continue;
+        }
         let value = value
             .ok_or_else(|| format!("the header's {key:.20} has no number; it is damaged or no ESRI ASCII grid"))?;
         let finite =
@@ -141,15 +141,10 @@ fn header<'a>(words: &mut std::iter::Peekable<impl Iterator<Item = &'a [u8]>>) -
 
 /// Coordinate system of the `.prj` file beside `path`, if there is one.
 pub(crate) fn prj_beside(path: &Path) -> Result<SourceCrs, IoError> {
-    for extension in ["prj", "PRJ"] {
-        let prj = path.with_extension(extension);
-        match fs::metadata(&prj) {
-            Ok(m) if m.is_file() && m.len() < 1 << 20 => {
-                let text = fs::read(&prj).map_err(|e| IoError::os(&prj, e))?;
-                return Ok(SourceCrs::Wkt(String::from_utf8_lossy(&text).trim().to_owned()));
-            }
-            _ => {}
-        }
-    }
-    Ok(SourceCrs::Unknown)
+    let Some(prj) = sidecar(path, "prj").filter(|p| fs::metadata(p).is_ok_and(|m| m.len() < 1 << 20)) else {
+        return Ok(SourceCrs::Unknown);
+    };
+    let text = text_of(&fs::read(&prj).map_err(|e| IoError::os(&prj, e))?, &mut Vec::new());
+    let text = text.trim();
+    Ok(if text.is_empty() { SourceCrs::Unknown } else { SourceCrs::Wkt(text.to_owned()) })
 }

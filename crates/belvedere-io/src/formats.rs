@@ -1,9 +1,10 @@
 //! The table of formats: name, marks in content and file name, and loader.
 
+use crate::vector::text::text_of;
 use quick_xml::{Reader as XmlReader, events::Event};
 use std::path::Path;
 
-use Mark::{At, Json, Record, Root, Word};
+use Mark::{At, Both, First, Json, Record, Root, Word};
 use Reader::{City, Features, Mesh, Molecule, Terrain, Volume};
 
 /// The loader that reads a format.
@@ -44,6 +45,10 @@ pub struct Format {
 enum Mark {
     /// Bytes at an offset.
     At(usize, &'static [u8]),
+    /// Bytes at two offsets.
+    Both([(usize, &'static [u8]); 2]),
+    /// The first word of a text, in any case.
+    First(&'static str),
     /// A word among the first of a text.
     Word(&'static str),
     /// The local name of the root of an XML document.
@@ -66,6 +71,8 @@ const RASTER: &str = "a raster";
 const CLOUD: &str = "a cloud of points";
 const GRIDS: &str = "grids of science";
 const MESH_OR_GRID: &str = "a mesh or grid of science";
+const TILES: &str = "tiles of a map";
+const SIDE: &str = "a part of a shapefile";
 const PACKED: &str = "packed files";
 const WATCH: &str = "the track of a watch";
 const UNPLACED: &str = "a picture that says not where it lies";
@@ -79,6 +86,7 @@ const AS_GLTF: &str = "turn it into glTF or OBJ";
 const AS_PLY: &str = "ParaView turns it into PLY or OBJ";
 const AS_GPX: &str = "GPSBabel turns it into GPX";
 const PLACED: &str = "gdal_translate -a_srs -a_ullr makes it a GeoTIFF";
+const WHOLE: &str = "give the .shp file beside it";
 const UNPACK: &str = "unpack it, or pack it as ZIP or gzip";
 
 #[cfg(feature = "geopackage")]
@@ -113,10 +121,42 @@ pub const FORMATS: &[Format] = &[
     unread("E57", CLOUD, &[".e57"], &[At(0, b"ASTM-E57")], AS_DEM),
     unread("FlatGeobuf", FEATURES, &[".fgb"], &[At(0, b"fgb\x03")], AS_GEOJSON),
     unread("HDF5 or netCDF-4", GRIDS, &[".h5", ".hdf5", ".nc4"], &[At(0, b"\x89HDF\r\n\x1a\n")], AS_GEOTIFF),
-    unread("netCDF", GRIDS, &[".nc"], &[At(0, b"CDF\x01"), At(0, b"CDF\x02")], AS_GEOTIFF),
+    unread("netCDF", GRIDS, &[".nc"], &[At(0, b"CDF\x01"), At(0, b"CDF\x02"), At(0, b"CDF\x05")], AS_GEOTIFF),
     unread("GRIB", GRIDS, &[".grib", ".grib2", ".grb"], &[At(0, b"GRIB")], AS_GEOTIFF),
     unread("IFC or STEP", "a model of construction", &[".ifc", ".step", ".stp"], &[At(0, b"ISO-10303-21")], AS_GLTF),
-    unread("FBX", TRIANGLES, &[".fbx"], &[At(0, b"Kaydara FBX Binary")], AS_GLTF),
+    unread("FBX", TRIANGLES, &[".fbx"], &[At(0, b"Kaydara FBX Binary"), First("; FBX")], AS_GLTF),
+    unread(
+        "3D Studio",
+        TRIANGLES,
+        &[".3ds"],
+        &[Both([(0, b"MM"), (6, b"\x02\0")]), Both([(0, b"MM"), (6, b"\x3d\x3d")])],
+        AS_GLTF,
+    ),
+    unread("Rhino 3DM", TRIANGLES, &[".3dm"], &[At(0, b"3D Geometry File Format")], AS_GLTF),
+    unread("SketchUp", TRIANGLES, &[".skp"], &[At(0, b"\xff\xfe\xff\x0eS\0k\0e\0t\0c\0h\0U\0p\0")], AS_GLTF),
+    unread("Alembic", TRIANGLES, &[".abc"], &[At(0, b"Ogawa")], AS_GLTF),
+    unread(
+        "3D Tiles",
+        CITY,
+        &[".b3dm", ".i3dm", ".cmpt"],
+        &[At(0, b"b3dm"), At(0, b"i3dm"), At(0, b"cmpt"), Json("\"geometricError\":")],
+        "give the city model behind it, as CityJSON or glTF",
+    ),
+    unread("DWG", "a drawing", &[".dwg"], &[At(0, b"AC10")], AS_GEOJSON),
+    unread(
+        "Git LFS pointer",
+        "the place of a file that was not fetched",
+        &[],
+        &[First("version https://git-lfs")],
+        "git lfs pull fetches the file itself",
+    ),
+    unread(
+        "HTML",
+        "a page of the web, perhaps of a failed download",
+        &[".html", ".htm"],
+        &[First("<!doctype html"), First("<html")],
+        "get the file itself again",
+    ),
     unread("7-Zip", PACKED, &[".7z"], &[At(0, b"7z\xbc\xaf")], UNPACK),
     unread("RAR", PACKED, &[".rar"], &[At(0, b"Rar!")], UNPACK),
     unread(
@@ -134,7 +174,31 @@ pub const FORMATS: &[Format] = &[
     unread("PDF", "pages", &[".pdf"], &[At(0, b"%PDF")], "give the data behind it"),
     unread("PNG", UNPLACED, &[".png"], &[At(0, b"\x89PNG\r\n")], PLACED),
     unread("JPEG", UNPLACED, &[".jpg", ".jpeg"], &[At(0, b"\xff\xd8\xff")], PLACED),
-    unread("JPEG 2000", "a picture", &[".jp2"], &[At(0, b"\0\0\0\x0cjP  ")], AS_GEOTIFF),
+    unread(
+        "JPEG 2000",
+        "a picture",
+        &[".jp2", ".j2k", ".jpx"],
+        &[At(0, b"\0\0\0\x0cjP  "), At(0, b"\xff\x4f\xff\x51")],
+        AS_GEOTIFF,
+    ),
+    unread("GIF", UNPLACED, &[".gif"], &[At(0, b"GIF8")], PLACED),
+    unread("WebP", UNPLACED, &[".webp"], &[Both([(0, b"RIFF"), (8, b"WEBP")])], PLACED),
+    unread("Windows bitmap", UNPLACED, &[".bmp"], &[Both([(0, b"BM"), (6, b"\0\0\0\0")])], PLACED),
+    unread("OpenEXR", UNPLACED, &[".exr"], &[At(0, b"\x76\x2f\x31\x01")], PLACED),
+    unread("MrSID", "a picture", &[".sid"], &[At(0, b"msid")], AS_GEOTIFF),
+    unread("ECW", "a picture", &[".ecw"], &[], AS_GEOTIFF),
+    unread("NITF", "a picture", &[".ntf", ".nitf"], &[At(0, b"NITF0")], AS_GEOTIFF),
+    unread("Surfer grid", RASTER, &[], &[At(0, b"DSBB"), At(0, b"DSRB"), At(0, b"DSAA")], AS_GEOTIFF),
+    unread("MRC", VOXELS, &[".mrc", ".map"], &[At(208, b"MAP ")], AS_NRRD),
+    unread("Arrow", "a table", &[".arrow", ".feather"], &[At(0, b"ARROW1")], AS_GEOJSON),
+    unread("PMTiles", TILES, &[".pmtiles"], &[At(0, b"PMTiles")], AS_GEOJSON),
+    unread(
+        "MBTiles",
+        TILES,
+        &[".mbtiles"],
+        &[At(68, b"MPBX")],
+        "gdal_translate turns tiles of pictures into GeoTIFF, ogr2ogr those of features into GeoJSON",
+    ),
     unread("DICOM", VOXELS, &[".dcm"], &[At(128, b"DICM")], AS_NRRD),
     Format {
         name: "GeoPackage",
@@ -159,12 +223,18 @@ pub const FORMATS: &[Format] = &[
     unread("KML", FEATURES, &[".kml"], &[Root("kml")], AS_GEOJSON),
     unread("COLLADA", TRIANGLES, &[".dae"], &[Root("COLLADA")], AS_GLTF),
     unread("GML", FEATURES, &[".gml"], &[Word("http://www.opengis.net/gml")], AS_GEOJSON),
-    unread("USD", TRIANGLES, &[".usd", ".usda", ".usdc", ".usdz"], &[Word("#usda")], AS_GLTF),
+    unread("USD", TRIANGLES, &[".usd", ".usda", ".usdc", ".usdz"], &[Word("#usda"), At(0, b"PXR-USDC")], AS_GLTF),
     unread(
         "DXF",
         "a drawing",
         &[".dxf"],
-        &[Word("SECTION\r\n  2\r\nHEADER"), Word("SECTION\n  2\nHEADER")],
+        &[
+            Word("SECTION\r\n  2\r\nHEADER"),
+            Word("SECTION\n  2\nHEADER"),
+            Word("SECTION\n2\nHEADER"),
+            Word("SECTION\r\n2\r\nHEADER"),
+            At(0, b"AutoCAD Binary DXF"),
+        ],
         AS_GEOJSON,
     ),
     // Recognised by their names.
@@ -180,31 +250,45 @@ pub const FORMATS: &[Format] = &[
     read(Mesh, "glTF", TRIANGLES, &[".gltf", ".glb"], &[]),
     read(Volume, "NRRD", VOXELS, &[".nrrd", ".nhdr"], &[]),
     read(Volume, "raw samples", VOXELS, &[".raw", ".raw.gz"], &[]),
-    unread("NIfTI", VOXELS, &[".nii", ".nii.gz"], &[], AS_NRRD),
-    unread("OpenVDB", VOXELS, &[".vdb"], &[], "turn it into NRRD"),
+    unread("NIfTI", VOXELS, &[".nii", ".nii.gz"], &[At(344, b"n+1\0"), At(344, b"ni1\0")], AS_NRRD),
+    unread("OpenVDB", VOXELS, &[".vdb"], &[At(0, b" BDV\0")], "turn it into NRRD"),
     unread("BinaryCIF", ATOMS, &[".bcif"], &[], AS_PDB),
     unread("MMTF", ATOMS, &[".mmtf"], &[], AS_PDB),
     unread("SDF", ATOMS, &[".sdf"], &[], AS_PDB),
     unread("Mol2", ATOMS, &[".mol2"], &[], AS_PDB),
     unread("GROMACS coordinates", ATOMS, &[".gro"], &[], AS_PDB),
     unread("KMZ", FEATURES, &[".kmz"], &[], AS_GEOJSON),
-    unread("FIT", WATCH, &[".fit"], &[], AS_GPX),
-    unread("TCX", WATCH, &[".tcx"], &[], AS_GPX),
-    unread("DWG", "a drawing", &[".dwg"], &[], AS_GEOJSON),
+    unread("FIT", WATCH, &[".fit"], &[At(8, b".FIT")], AS_GPX),
+    unread("TCX", WATCH, &[".tcx"], &[Root("TrainingCenterDatabase")], AS_GPX),
+    unread("IGC", WATCH, &[".igc"], &[], AS_GPX),
+    unread("NMEA", WATCH, &[".nmea"], &[First("$GP"), First("$GN")], AS_GPX),
     unread("MapInfo", FEATURES, &[".tab", ".mif"], &[], AS_GEOJSON),
     unread("3MF", TRIANGLES, &[".3mf"], &[], AS_GLTF),
-    unread("Blender", TRIANGLES, &[".blend"], &[], "export it as glTF"),
+    unread("Blender", TRIANGLES, &[".blend"], &[At(0, b"BLENDER")], "export it as glTF"),
     unread("ArcInfo export", "map features or a grid", &[".e00"], &[], AS_GEOJSON),
     unread("XYZ", "lines of coordinates", &[".xyz"], &[], AS_DEM),
     unread("USGS DEM", RASTER, &[".dem"], &[], AS_GEOTIFF),
-    unread("DTED", RASTER, &[".dt0", ".dt1", ".dt2"], &[], AS_GEOTIFF),
+    unread("DTED", RASTER, &[".dt0", ".dt1", ".dt2"], &[At(0, b"UHL1")], AS_GEOTIFF),
     unread("ESRI BIL", RASTER, &[".bil"], &[], AS_GEOTIFF),
     unread("ESRI float grid", RASTER, &[".flt"], &[], AS_GEOTIFF),
     unread("ArcInfo grid", RASTER, &[".adf"], &[], AS_GEOTIFF),
-    unread("Erdas Imagine", RASTER, &[".img"], &[], AS_GEOTIFF),
+    unread("Erdas Imagine", RASTER, &[".img"], &[At(0, b"EHFA_HEADER_TAG")], AS_GEOTIFF),
+    unread("GDAL virtual raster", RASTER, &[".vrt"], &[Root("VRTDataset")], AS_GEOTIFF),
+    unread("PCD", CLOUD, &[".pcd"], &[First("# .PCD")], AS_DEM),
+    unread(
+        "o5m",
+        "a map of OpenStreetMap",
+        &[".o5m"],
+        &[At(0, b"\xff\xe0\x04o5m2")],
+        "osmconvert turns it into .osm.pbf",
+    ),
+    unread("shapefile's index", SIDE, &[".shx"], &[], WHOLE),
+    unread("shapefile's table", SIDE, &[".dbf"], &[], WHOLE),
+    unread("SVG", "a drawing", &[".svg"], &[Root("svg")], "give the data behind it"),
     unread("a table", "rows of text", &[".csv"], &[], "ogr2ogr or QGIS turn its coordinates into GeoJSON"),
     unread("well-known text", FEATURES, &[".wkt"], &[], AS_GEOJSON),
-    unread("TopoJSON", FEATURES, &[".topojson"], &[], AS_GEOJSON),
+    unread("TopoJSON", FEATURES, &[".topojson"], &[Json("\"type\":\"Topology\"")], AS_GEOJSON),
+    unread("ESRI JSON", FEATURES, &[], &[Json("\"geometryType\":\"esri")], AS_GEOJSON),
 ];
 
 impl Reader {
@@ -278,21 +362,79 @@ pub fn of_name(path: &Path) -> Option<&'static Format> {
 
 /// The format of a file by its first bytes, at most 64 KiB of them.
 pub fn of_content(head: &[u8]) -> Option<&'static Format> {
-    // Text has no zeros; after the header VTK and others go on in binary.
-    let text = String::from_utf8_lossy(&head[..head.iter().position(|b| *b == 0).unwrap_or(head.len())]);
-    let text = text.trim_start_matches('\u{feff}').trim_start();
-    let object: Option<String> = text.starts_with('{').then(|| text.chars().filter(|c| !c.is_whitespace()).collect());
-    let root = text.starts_with('<').then(|| xml_root(text)).flatten();
-    let fits = |mark: &Mark| match mark {
-        At(offset, bytes) => head.get(*offset..).is_some_and(|rest| rest.starts_with(bytes)),
-        Json(member) => object.as_ref().is_some_and(|dense| dense.contains(member)),
-        Root(name) => root.as_deref() == Some(name),
-        Word(word) => object.is_none() && text.contains(word),
-        Record(records) => {
-            object.is_none() && text.lines().any(|line| line.len() > 53 && records.iter().any(|r| line.starts_with(r)))
-        }
-    };
-    FORMATS.iter().find(|format| format.marks.iter().any(fits))
+    let head = Head::of(head);
+    FORMATS.iter().find(|format| head.fits(format.marks))
+}
+
+/// First bytes of a file, and what they are as text.
+struct Head<'h> {
+    bytes: &'h [u8],
+    text: String,
+    /// The text without white space, if it is a JSON object.
+    object: Option<String>,
+    /// Name of the root, if it is XML.
+    root: Option<String>,
+}
+
+impl<'h> Head<'h> {
+    fn of(bytes: &'h [u8]) -> Self {
+        // Text of two or four bytes has zeros, other text has none; after the header VTK and others go on in binary.
+        let is_wide = matches!(
+            bytes,
+            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [0, 1..=255, ..] | [1..=255, 0, ..] | [0, 0, 0xfe, 0xff, ..]
+        );
+        let text = if is_wide {
+            text_of(bytes, &mut Vec::new()).into()
+        } else {
+            String::from_utf8_lossy(&bytes[..bytes.iter().position(|b| *b == 0).unwrap_or(bytes.len())])
+        };
+        let text = text.trim_start_matches('\u{feff}').trim_start().to_owned();
+        let object = text.starts_with('{').then(|| text.chars().filter(|c| !c.is_whitespace()).collect());
+        let root = text.starts_with('<').then(|| xml_root(&text)).flatten();
+        Self { bytes, text, object, root }
+    }
+
+    /// Whether one of these marks is there.
+    fn fits(&self, marks: &[Mark]) -> bool {
+        let Self { bytes, text, object, root } = self;
+        let at = |offset: usize, mark: &[u8]| bytes.get(offset..).is_some_and(|rest| rest.starts_with(mark));
+        marks.iter().any(|mark| match mark {
+            At(offset, mark) => at(*offset, mark),
+            Both(places) => places.iter().all(|(offset, mark)| at(*offset, mark)),
+            First(word) => text.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word)),
+            Json(member) => object.as_ref().is_some_and(|dense| dense.contains(member)),
+            Root(name) => root.as_deref() == Some(name),
+            Word(word) => object.is_none() && text.contains(word),
+            Record(records) => {
+                let is_record = |line: &str| line.len() > 53 && records.iter().any(|r| line.starts_with(r));
+                object.is_none() && text.lines().any(is_record)
+            }
+        })
+    }
+}
+
+/// Marks of formats that are read, for files whose names do not tell.
+const READABLE: &[(&str, &[Mark])] = &[
+    ("GeoTIFF", &[At(0, b"II*\0"), At(0, b"MM\0*"), At(0, b"II+\0"), At(0, b"MM\0+")]),
+    ("ESRI ASCII", &[First("ncols"), First("nrows"), First("cellsize"), First("xllc")]),
+    ("GPX", &[Root("gpx")]),
+    ("GeoJSON", &[Json("\"type\":\"FeatureCollection\""), Json("\"type\":\"Feature\"")]),
+    ("shapefile", &[At(0, b"\0\0\x27\x0a")]),
+    ("NRRD", &[At(0, b"NRRD000")]),
+    ("glTF", &[At(0, b"glTF"), Json("\"asset\":{")]),
+    ("PLY", &[First("ply\n"), First("ply\r")]),
+    ("STL", &[First("solid "), First("solid\t"), First("solid\n"), First("solid\r")]),
+    ("OBJ", &[First("mtllib "), First("v ")]),
+];
+
+/// The format of a file that is read, by its first bytes alone; `None` if they do not tell, or tell one that is not read.
+pub fn readable_content(head: &[u8]) -> Option<&'static Format> {
+    if let Some(known) = of_content(head) {
+        return Some(known).filter(|format| format.reader.is_some());
+    }
+    let head = Head::of(head);
+    let (name, _) = READABLE.iter().find(|(_, marks)| head.fits(marks))?;
+    FORMATS.iter().find(|format| format.name == *name)
 }
 
 /// Local name of the first element of an XML document that may be cut off.
@@ -333,6 +475,24 @@ mod tests {
             assert_eq!(of(head), Some(format), "{}", String::from_utf8_lossy(head));
         }
         assert_eq!(of(&package), Some("GeoPackage"));
+        let at = |offset: usize, mark: &[u8]| [vec![0; offset], mark.to_vec(), vec![0; 20]].concat();
+        for (head, format) in [
+            (at(0, b"CDF\x05"), "netCDF"),
+            (at(0, b"AC1027"), "DWG"),
+            (b"999\ncomment\n0\nSECTION\n2\nHEADER\n".to_vec(), "DXF"),
+            (at(0, b"MM\x40\0\0\0\x02\0\x0a"), "3D Studio"),
+            (b"; FBX 7.3.0 project file\n".to_vec(), "FBX"),
+            (at(0, b"\xff\x4f\xff\x51"), "JPEG 2000"),
+            ([at(0, b"SQLite format 3\0"), at(32, b"MPBX")].concat(), "MBTiles"),
+            (at(344, b"n+1\0"), "NIfTI"),
+            (b"<!DOCTYPE html>\n<html><body>404</body></html>".to_vec(), "HTML"),
+            (b"version https://git-lfs.github.com/spec/v1\noid sha256:1\n".to_vec(), "Git LFS pointer"),
+            (b"{ \"type\" : \"Topology\", \"arcs\": [] }".to_vec(), "TopoJSON"),
+            (b"{\"geometryType\":\"esriGeometryPolyline\",\"features\":[]}".to_vec(), "ESRI JSON"),
+            (b"RIFF\x10\0\0\0WEBPVP8 ".to_vec(), "WebP"),
+        ] {
+            assert_eq!(of(&head), Some(format), "{}", String::from_utf8_lossy(&head));
+        }
         for read in [
             &b"<?xml version=\"1.0\"?><gpx version=\"1.1\"><trk/></gpx>"[..],
             b"{\"type\":\"FeatureCollection\",\"name\":\"CityJSON\",\"about\":\"CityModel\",\"features\":[]}",
@@ -344,6 +504,29 @@ mod tests {
             b"",
         ] {
             assert_eq!(of(read), None, "{}", String::from_utf8_lossy(read));
+        }
+    }
+
+    #[test]
+    fn contents_tell_what_is_read_without_a_name() {
+        let of = |head: &[u8]| readable_content(head).map(|format| format.name);
+        for (head, format) in [
+            (&b"\n<?xml version=\"1.0\"?><gpx version=\"1.1\">"[..], "GPX"),
+            (b"{ \"type\": \"FeatureCollection\", \"features\": []", "GeoJSON"),
+            (b"NCOLS 4\r\nNROWS 4\r\n", "ESRI ASCII"),
+            (b"MM\0*\0\0\0\x08", "GeoTIFF"),
+            (b"glTF\x02\0\0\0", "glTF"),
+            (b"ply\nformat ascii 1.0\n", "PLY"),
+            (b"solid x\nfacet normal 0 0 1\n", "STL"),
+            (b"NRRD0004\ntype: uint8\n", "NRRD"),
+            (b"{\"type\":\"CityJSON\"}", "CityJSON"),
+        ] {
+            assert_eq!(of(head), Some(format), "{}", String::from_utf8_lossy(head));
+        }
+        let wide: Vec<u8> = "<?xml version=\"1.0\"?><gpx/>".encode_utf16().flat_map(u16::to_le_bytes).collect();
+        assert_eq!(of(&wide), Some("GPX"));
+        for other in [&b"<kml/>"[..], b"hello", b"", b"MM\x40\0\0\0\x02\0", b"{\"a\":1}"] {
+            assert_eq!(of(other), None, "{}", String::from_utf8_lossy(other));
         }
     }
 

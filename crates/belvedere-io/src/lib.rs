@@ -38,7 +38,7 @@ pub use molecule::{MoleculeFile, load_molecule};
 pub use packed::inside;
 pub use ramp::load_ramp;
 pub use raster::{Affine, Alpha, CrsKind, Limits, Photometric, Raster, RasterInfo, SampleType, Samples, SourceCrs};
-pub use recognise::{Recognised, recognise};
+pub use recognise::{Recognised, readable, recognise};
 pub use table::{join_table, split_table};
 pub use terrain::{CrsChoice, LoadedTerrain, ResampleError, TerrainRequest, load_terrain};
 pub use vector::{

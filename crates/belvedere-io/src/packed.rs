@@ -1,6 +1,6 @@
 //! Names of archives: they stand for the one file inside that a loader reads.
 
-use crate::formats::{self, ends};
+use crate::formats::{self, Reader, ends};
 use crate::fs::{names_in, unpacked_size};
 use crate::{IoError, Limits};
 use std::path::{Path, PathBuf};
@@ -71,13 +71,27 @@ fn listed<'a>(names: impl ExactSizeIterator<Item = &'a String>) -> String {
     text
 }
 
-/// The file that a name stands for, for any loader.
+/// As [`content`], for one loader: a file that it reads by name comes before those that it may read.
+///
+/// # Errors
+/// As [`content`].
+pub(crate) fn content_for(path: &Path, most: u64, reader: Reader) -> Result<PathBuf, IoError> {
+    content(path, most, &|p| reader.reads(p)).or_else(|_| content(path, most, &|p| reader.may_read(p)))
+}
+
+/// The file that a name stands for, for any loader. Files whose names tell a format that is read come before others, and pictures, which
+/// may belong to a model, last.
 ///
 /// # Errors
 /// As those of loaders for archives: no file that is read, or several.
 pub fn inside(path: &Path) -> Result<PathBuf, IoError> {
-    content(path, Limits::default().max_bytes, &|p| {
-        let is_read = formats::of_name(p).is_some_and(|format| format.reader.is_some()) && !ends(p, &[".txt"]);
-        is_read || ends(p, &[".json", ".jsonl", ".gml", ".png"])
-    })
+    let most = Limits::default().max_bytes;
+    let is_read = |p: &Path| formats::of_name(p).is_some_and(|format| format.reader.is_some()) && !ends(p, &[".txt"]);
+    let may_be = |p: &Path| is_read(p) || ends(p, &[".json", ".jsonl", ".gml"]);
+    let picture = |p: &Path| may_be(p) || ends(p, &[".png", ".txt", ".xml"]);
+    let error = match content(path, most, &is_read) {
+        Ok(found) => return Ok(found),
+        Err(error) => error,
+    };
+    content(path, most, &may_be).or_else(|_| content(path, most, &picture)).map_err(|_| error)
 }

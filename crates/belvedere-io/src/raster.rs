@@ -50,6 +50,8 @@ pub enum SourceCrs {
     Wkt(String),
     /// By parameters or a name without an EPSG code; the text says what the file gives and what is missing.
     UserDefined(String),
+    /// The name of a system of another body than the Earth.
+    OtherBody(String),
     /// The file states none.
     #[default]
     Unknown,
@@ -61,6 +63,7 @@ impl std::fmt::Display for SourceCrs {
             Self::Epsg(code) => write!(f, "EPSG:{code}"),
             Self::Wkt(text) => write!(f, "{}", text.chars().take(80).collect::<String>()),
             Self::UserDefined(text) => write!(f, "{text}"),
+            Self::OtherBody(name) => write!(f, "{name}, of another body than the Earth"),
             Self::Unknown => write!(f, "unknown"),
         }
     }

@@ -47,9 +47,36 @@ fn head(path: &Path) -> Result<Vec<u8>, IoError> {
     Ok(head)
 }
 
-/// Replaces the error of a loader if the file is of a known format that no loader reads.
+/// The format of a file that a loader reads: by its name, or by its first bytes where the name tells none.
+///
+/// # Errors
+/// [`IoError::Os`].
+pub fn readable(path: &Path) -> Result<Option<&'static Format>, IoError> {
+    let (path, _) = split_table(path);
+    match formats::of_name(path).filter(|format| format.reader.is_some()) {
+        Some(format) => Ok(Some(format)),
+        None => Ok(formats::readable_content(&head(path)?)),
+    }
+}
+
+/// The ending, in lower case, by which a loader reads a file: that of its name, or of the format of its first bytes where the name
+/// tells no format that is read.
+pub(crate) fn ending(path: &Path) -> String {
+    let own = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    if formats::of_name(path).is_some_and(|format| format.reader.is_some()) {
+        return own;
+    }
+    let known = readable(path).ok().flatten();
+    known.map_or(own, |format| format.endings[0].trim_start_matches('.').to_owned())
+}
+
+/// Replaces the error of a loader if the file is of a known format that no loader reads, whatever its name.
 pub(crate) fn explain(error: IoError) -> IoError {
     let IoError::Format { path, .. } = &error else { return error };
+    let unread = of_content(path).ok().flatten().filter(|format| format.reader.is_none());
+    if let Some(format) = unread {
+        return IoError::format(path, Recognised { format, is_broken: false }.reason());
+    }
     match recognise(path) {
         Ok(Some(known)) => IoError::format(path, known.reason()),
         _ => error,

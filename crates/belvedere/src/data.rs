@@ -51,6 +51,8 @@ pub struct DataFiles {
     pub nodata: Option<f64>,
     /// Unit of the terrain's heights, instead of what its file says.
     pub vertical_unit: Option<VerticalUnit>,
+    /// Property that holds the names of features, instead of the one that looks most like a name.
+    pub name_field: Option<String>,
 }
 
 /// Contents of the files.
@@ -99,7 +101,15 @@ impl DataFiles {
             for (k, kind) in kinds.into_iter().enumerate() {
                 let id =
                     if k == 0 { format!("features{}", i + 1) } else { format!("features{}-{}", i + 1, kind.plural()) };
-                layers.push(feature_layer(id, Paths::One(source.clone()), kind));
+                let mut layer = feature_layer(id, Paths::One(source.clone()), kind);
+                if let LayerDoc::Line(LineDoc { name_field, .. })
+                | LayerDoc::Area(AreaDoc { name_field, .. })
+                | LayerDoc::Point(PointLayerDoc { name_field, .. }) = &mut layer
+                    && !source.starts_with("builtin:")
+                {
+                    name_field.clone_from(&self.name_field);
+                }
+                layers.push(layer);
             }
         }
         let mut rivers = Vec::new();
@@ -177,16 +187,25 @@ pub(crate) fn features_of(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, 
 /// A layer of rivers: drawn, but not a required feature.
 fn river_layer(id: String, source: Paths) -> LineDoc {
     let style = LineStyleDoc { color: RIVER_COLOR.into(), width_px: 2.0, ..LineStyleDoc::default() };
-    LineDoc { id, source: Some(source), route: None, must_see: false, style }
+    LineDoc { id, source: Some(source), route: None, name_field: None, must_see: false, style }
 }
 
 fn feature_layer(id: String, source: Paths, kind: FeatureKind) -> LayerDoc {
-    let must_see = true;
+    let (must_see, name_field) = (true, None);
     match kind {
-        FeatureKind::Lines => {
-            LayerDoc::Line(LineDoc { id, source: Some(source), route: None, must_see, style: LineStyleDoc::default() })
+        FeatureKind::Lines => LayerDoc::Line(LineDoc {
+            id,
+            source: Some(source),
+            route: None,
+            name_field,
+            must_see,
+            style: LineStyleDoc::default(),
+        }),
+        FeatureKind::Areas => {
+            LayerDoc::Area(AreaDoc { id, source, name_field, must_see, style: AreaStyleDoc::default() })
         }
-        FeatureKind::Areas => LayerDoc::Area(AreaDoc { id, source, must_see, style: AreaStyleDoc::default() }),
-        FeatureKind::Points => LayerDoc::Point(PointLayerDoc { id, source, must_see, style: PointStyleDoc::default() }),
+        FeatureKind::Points => {
+            LayerDoc::Point(PointLayerDoc { id, source, name_field, must_see, style: PointStyleDoc::default() })
+        }
     }
 }

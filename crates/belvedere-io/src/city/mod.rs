@@ -26,11 +26,13 @@ pub use surface::{CityColors, CityGround, plate_extent, surface};
 
 use crate::crs::CoordinateSystem;
 use crate::formats::Reader;
-use crate::packed::content;
+use crate::packed::content_for;
 use crate::table::split_table;
 use crate::vector::load_vectors;
+use crate::vector::text::text_of;
 use crate::{InputFile, IoError, Limits, Loaded, fs, recognise};
 use belvedere_scene::City;
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// A city as read from a file.
@@ -66,8 +68,8 @@ pub fn load_city(path: &Path, lod: Option<&str>, limits: &Limits) -> Result<Load
         let (bytes, file) = InputFile::read(path)?;
         let loaded = match model {
             Model::OsmPbf => osm::load(path, &bytes)?,
-            Model::CityJson => cityjson::load(path, text(path, &bytes)?, lod, limits)?,
-            Model::CityGml => citygml::load(path, text(path, &bytes)?, lod, limits)?,
+            Model::CityJson => cityjson::load(path, &text(path, &bytes)?, lod, limits)?,
+            Model::CityGml => citygml::load(path, &text(path, &bytes)?, lod, limits)?,
         };
         return Ok(loaded.with_file(file));
     }
@@ -77,9 +79,17 @@ pub fn load_city(path: &Path, lod: Option<&str>, limits: &Limits) -> Result<Load
     Ok(Loaded { files, ..loaded })
 }
 
-fn text<'b>(path: &Path, bytes: &'b [u8]) -> Result<&'b str, IoError> {
-    std::str::from_utf8(bytes)
-        .map_err(|e| IoError::format(path, format!("is no UTF-8 text from byte {} on; it is damaged", e.valid_up_to())))
+/// The text of a model in the encoding that it declares.
+fn text<'b>(path: &Path, bytes: &'b [u8]) -> Result<Cow<'b, str>, IoError> {
+    if let Ok(text) = std::str::from_utf8(bytes) {
+        return Ok(text.trim_start_matches('\u{feff}').into());
+    }
+    let mut doubts = Vec::new();
+    let text = text_of(bytes, &mut doubts);
+    match doubts.first() {
+        None => Ok(text.into()),
+        Some(doubt) => Err(IoError::format(path, format!("{doubt}; it is damaged"))),
+    }
 }
 
 /// Formats that hold only cities.
@@ -100,11 +110,7 @@ pub fn is_city(path: &Path) -> Result<bool, IoError> {
 
 /// The city or map inside an archive, or the file itself.
 fn meant(path: &Path, limits: &Limits) -> Result<PathBuf, IoError> {
-    if split_table(path).1.is_some() {
-        Ok(path.to_owned())
-    } else {
-        content(path, limits.max_bytes, &|p| Reader::City.may_read(p))
-    }
+    if split_table(path).1.is_some() { Ok(path.to_owned()) } else { content_for(path, limits.max_bytes, Reader::City) }
 }
 
 fn model(path: &Path) -> Result<Option<Model>, IoError> {

@@ -1,9 +1,11 @@
 //! Well-known text of coordinate systems, OGC 1 and 2 and ESRI.
 
-use super::{CoordinateSystem, CrsError, tables};
+use super::{CoordinateSystem, CrsError, is_of_earth, tables};
 use std::fmt::Write;
 
 mod register;
+
+pub(crate) use register::code_of_parameters;
 
 /// Deepest nesting accepted.
 const MAX_DEPTH: usize = 32;
@@ -121,6 +123,9 @@ pub(super) fn parse(text: &str) -> Result<CoordinateSystem, CrsError> {
         "" => "the system of the file",
         name => name,
     };
+    if axis(horizontal).is_some_and(|a| !is_of_earth(a)) {
+        return Ok(CoordinateSystem::of_other_body(name));
+    }
     if let Some(extension) = horizontal.child(&["EXTENSION"])
         && extension.name().eq_ignore_ascii_case("PROJ4")
         && let Some(proj) = extension.texts.get(1)
@@ -151,6 +156,17 @@ fn find(node: &Node) -> Option<&Node> {
         return Some(node);
     }
     node.children.iter().find_map(find)
+}
+
+/// Semi-major axis of the spheroid of a system, metres.
+fn axis(system: &Node) -> Option<f64> {
+    let geographic = if system.is(&PROJECTED) { system.child(&GEOGRAPHIC)? } else { system };
+    let datum = geographic.child(&["DATUM", "GEODETICDATUM", "TRF", "ENSEMBLE"])?;
+    let spheroid = datum.child(&["SPHEROID", "ELLIPSOID"])?;
+    Some(
+        spheroid.numbers.first()?
+            * spheroid.child(&["LENGTHUNIT", "UNIT"]).and_then(|u| u.numbers.first()).unwrap_or(&1.0),
+    )
 }
 
 /// EPSG codes of names that texts without codes use, mostly ESRI's.
@@ -264,7 +280,7 @@ fn projection(system: &Node, angle_rad: f64) -> Result<String, CrsError> {
     let method = method.ok_or_else(|| text_error("it has no EPSG code and no PROJECTION element of WKT 1"))?;
     let plain = plain(method);
     let proj = match plain.as_str() {
-        "transversemercator" | "gausskruger" => "tmerc",
+        "transversemercator" | "gausskruger" | "transversemercatorsouthorientated" => "tmerc",
         "lambertconformalconic" | "lambertconformalconic1sp" | "lambertconformalconic2sp" => "lcc",
         "albers" | "albersconicequalarea" => "aea",
         "mercator" | "mercator1sp" | "mercator2sp" => "merc",
@@ -277,13 +293,23 @@ fn projection(system: &Node, angle_rad: f64) -> Result<String, CrsError> {
         "cylindricalequalarea" => "cea",
         "cassini" | "cassinisoldner" => "cass",
         "sinusoidal" => "sinu",
+        "mollweide" => "moll",
+        "robinson" => "robin",
+        "equidistantconic" => "eqdc",
+        "millercylindrical" => "mill",
+        "orthographic" => "ortho",
+        "gnomonic" => "gnom",
         "polyconic" => "poly",
         "krovak" => "krovak",
         "swissobliquecylindrical" | "swissobliquemercator" => "somerc",
-        "hotineobliquemercatorazimuthcenter" | "obliquemercator" | "hotineobliquemercatorvariantb" => "omerc",
-        "hotineobliquemercator" | "hotineobliquemercatorazimuthnaturalorigin" | "hotineobliquemercatorvarianta" => {
-            "omerc"
-        }
+        "hotineobliquemercatorazimuthcenter"
+        | "obliquemercator"
+        | "hotineobliquemercatorvariantb"
+        | "rectifiedskeworthomorphiccenter" => "omerc",
+        "rectifiedskeworthomorphicnaturalorigin"
+        | "hotineobliquemercator"
+        | "hotineobliquemercatorazimuthnaturalorigin"
+        | "hotineobliquemercatorvarianta" => "omerc",
         _ => {
             let name = system.name().to_owned();
             return Err(CrsError::Unsupported {
@@ -305,6 +331,9 @@ fn projection(system: &Node, angle_rad: f64) -> Result<String, CrsError> {
         return Err(CrsError::Unsupported { name, reason });
     }
     let mut out = format!("+proj={proj}");
+    if plain == "transversemercatorsouthorientated" {
+        out.push_str(" +axis=wsu");
+    }
     for parameter in system.children.iter().filter(|c| c.is(&["PARAMETER"])) {
         let Some(&value) = parameter.numbers.first() else { continue };
         push(&mut out, &proj_parameter(proj, &plain, parameter.name(), value, angle_rad, unit(system).unwrap_or(1.0)));

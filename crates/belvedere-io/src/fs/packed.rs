@@ -200,6 +200,20 @@ fn innermost(outer: &Path, path: &Path, deeper: usize) -> Option<(PathBuf, Strin
     Some((archive.to_owned(), names.join("/")))
 }
 
+/// The error of a ZIP: whether it is damaged, or packed by a method or with a password that is not known here.
+fn of_zip(archive: &Path, e: zip::result::ZipError) -> io::Error {
+    use zip::result::ZipError::{CompressionMethodNotSupported, InvalidPassword, UnsupportedArchive};
+    let reason = match e {
+        UnsupportedArchive(reason) => reason.trim_end_matches('.').to_lowercase(),
+        CompressionMethodNotSupported(method) => format!("packed by method {method}"),
+        InvalidPassword => "a password is needed".into(),
+        e => return damaged(archive, e),
+    };
+    let name = archive.file_name().unwrap_or_default().to_string_lossy();
+    let text = format!("the archive {name} cannot be unpacked here ({reason}); unpack it, or pack it as a usual ZIP");
+    io::Error::new(io::ErrorKind::InvalidData, text)
+}
+
 fn damaged(archive: &Path, e: impl std::fmt::Display) -> io::Error {
     let name = archive.file_name().unwrap_or_default().to_string_lossy();
     io::Error::new(io::ErrorKind::InvalidData, format!("the archive {name} cannot be unpacked ({e}); get it again"))
@@ -246,7 +260,7 @@ fn unpack(archive: &Path, entry: &str) -> io::Result<Vec<u8>> {
         let mut zip = zip::ZipArchive::new(Cursor::new(packed)).map_err(|e| damaged(archive, e))?;
         let found = zip.by_name(entry).map_err(|e| match e {
             zip::result::ZipError::FileNotFound => missing(archive, entry),
-            e => damaged(archive, e),
+            e => of_zip(archive, e),
         })?;
         let stated = found.size().min(MOST_BYTES);
         found.take(stated + 1).read_to_end(&mut out).map_err(|e| damaged(archive, e))?;
@@ -275,7 +289,7 @@ pub(crate) fn unpacked_size(archive: &Path, entry: &str, most: u64) -> io::Resul
         return io::copy(&mut { reader }, &mut io::sink()).map_err(|e| damaged(archive, e));
     }
     let mut zip = zip::ZipArchive::new(Cursor::new(packed)).map_err(|e| damaged(archive, e))?;
-    zip.by_name(entry).map(|found| found.size()).map_err(|e| damaged(archive, e))
+    zip.by_name(entry).map(|found| found.size()).map_err(|e| of_zip(archive, e))
 }
 
 /// Names of the files in an archive, without those of file managers; `None` if the file is not a ZIP or gzip.

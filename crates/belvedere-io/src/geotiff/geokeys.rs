@@ -2,7 +2,10 @@
 //!
 //! Source: OGC GeoTIFF 1.1 (19-008r4), sections 7 and B.
 
+mod parameters;
+
 use super::ifd::{Container, Ifd, tag};
+use crate::crs::is_of_earth;
 use crate::raster::{Affine, CrsKind, RasterInfo, SourceCrs};
 use belvedere_core::{Warning, WarningKind};
 use std::collections::BTreeMap;
@@ -76,6 +79,7 @@ mod key {
     pub(super) const CITATION: u64 = 1026;
     pub(super) const GEODETIC_CRS: u64 = 2048;
     pub(super) const GEODETIC_CITATION: u64 = 2049;
+    pub(super) const SEMI_MAJOR_AXIS: u64 = 2057;
     pub(super) const PROJECTED_CRS: u64 = 3072;
     pub(super) const PROJECTED_CITATION: u64 = 3073;
     pub(super) const PROJECTION: u64 = 3074;
@@ -225,6 +229,12 @@ fn crs(keys: &Keys, kind: CrsKind) -> SourceCrs {
     }
     let name = citations.iter().flatten().next().copied().unwrap_or("unnamed");
     let name: String = name.chars().take(80).collect();
+    if keys.double(key::SEMI_MAJOR_AXIS).is_some_and(|a| !is_of_earth(a)) {
+        return SourceCrs::OtherBody(name);
+    }
+    if let Some(system) = parameters::system(keys, kind, &name) {
+        return system;
+    }
     let method = keys.code(key::PROJECTION_METHOD).map_or(String::new(), |m| format!(", projection method {m}"));
     let what = match kind {
         CrsKind::Projected => "projected",

@@ -47,7 +47,7 @@ impl GeoTiff {
     /// [`IoError`] if it cannot be read, is not a TIFF, is damaged, or uses what is not supported.
     pub fn open(path: &Path, limits: Limits) -> Result<Loaded<Self>, IoError> {
         let source = Source::open(path).map_err(|e| IoError::os(path, e))?;
-        Self::new(path.to_path_buf(), source, limits)
+        Self::new(path.to_path_buf(), source, limits).map_err(crate::recognise::explain)
     }
 
     /// As [`Self::open`] from the bytes of a file; `path` only names it in messages.

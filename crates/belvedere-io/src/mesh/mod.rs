@@ -48,7 +48,7 @@ type Read = fn(&Path, &[u8], &Limits) -> Result<Loaded<MeshFile>, IoError>;
 /// [`IoError::Os`]; [`IoError::Format`] for a file that is damaged, too large for `limits`, or has no triangle.
 pub fn load_mesh(path: &Path, limits: &Limits) -> Result<Loaded<MeshFile>, IoError> {
     let path = &content(path, limits.max_bytes, &|p| Reader::Mesh.reads(p))?;
-    let ending = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let ending = crate::recognise::ending(path);
     let read: Read = match ending.as_str() {
         "obj" => obj::read,
         "ply" => ply::read,
@@ -57,7 +57,8 @@ pub fn load_mesh(path: &Path, limits: &Limits) -> Result<Loaded<MeshFile>, IoErr
         _ => return Err(IoError::format(path, "it is no mesh that this version reads: OBJ, PLY, STL, glTF or GLB")),
     };
     let bytes = read_bytes(path, limits)?;
-    let mut loaded = read(path, &bytes, limits)?.with_file(InputFile::of(path, &bytes));
+    let mut loaded =
+        read(path, &bytes, limits).map_err(crate::recognise::explain)?.with_file(InputFile::of(path, &bytes));
     let mesh = &mut loaded.value;
     if mesh.triangles.is_empty() {
         return Err(IoError::format(

@@ -1,6 +1,7 @@
 //! STL, text and binary.
 
 use super::MeshFile;
+use crate::vector::text::text_of;
 use crate::{IoError, Limits, Loaded};
 use belvedere_core::{Warning, WarningKind};
 use glam::DVec3;
@@ -12,9 +13,19 @@ const TRIANGLE: usize = 50;
 /// Bytes of a text in which its first facet is looked for; names of solids may be long.
 const TEXT_HEAD: usize = 4096;
 
+/// Numbers of triangles that stand for an unknown one.
+const UNCOUNTED: [usize; 2] = [0, u32::MAX as usize];
+
 type Triangle = [[f32; 3]; 3];
 
+/// The text of a file in UTF-16, by its byte order mark.
+fn wide(bytes: &[u8]) -> Option<Vec<u8>> {
+    matches!(bytes, [0xff, 0xfe, _, 0, ..] | [0xfe, 0xff, 0, ..]).then(|| text_of(bytes, &mut Vec::new()).into_bytes())
+}
+
 pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshFile>, IoError> {
+    let decoded = wide(bytes);
+    let bytes = decoded.as_deref().unwrap_or(bytes);
     let bad = |reason: String| IoError::format(path, reason);
     // Many binary files begin with the word that marks text: the size tells.
     let declared = bytes.get(80..HEAD).and_then(|b| b.try_into().ok()).map_or(0, |b| u32::from_le_bytes(b) as usize);
@@ -25,7 +36,16 @@ pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshF
     } else if is_text(bytes) {
         text(bytes).map_err(bad)?
     } else {
-        let whole = bytes.len().saturating_sub(HEAD) / TRIANGLE;
+        let room = bytes.len().saturating_sub(HEAD);
+        let whole = room / TRIANGLE;
+        let uncounted = whole > 0 && room.is_multiple_of(TRIANGLE) && UNCOUNTED.contains(&declared);
+        if uncounted {
+            let text = format!(
+                "it states {declared} triangles, as programs do that do not know the number beforehand; the {whole} in it are read"
+            );
+            warnings.push(Warning::new(WarningKind::Repaired, text).with("triangles", whole as f64).in_file(path));
+            return Ok(Loaded::new(joined(&binary(&bytes[HEAD..])), warnings));
+        }
         if whole == 0 || whole < declared {
             return Err(bad(format!(
                 "it declares {declared} triangles and has room for {whole}; it is truncated or no STL file, get it again"
@@ -39,9 +59,14 @@ pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshF
     Ok(Loaded::new(joined(&triangles), warnings))
 }
 
-/// Whether a file that is not as long as its binary header says is text: "solid" first, in any case, and a facet or the end soon after.
+/// Whether a file that is not as long as its binary header says is text: "solid" first, in any case and perhaps after comments, and a
+/// facet or the end soon after.
 fn is_text(bytes: &[u8]) -> bool {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    let mut bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
+    while let Some(comment) = bytes.strip_prefix(b"#").or_else(|| bytes.strip_prefix(b"//")) {
+        let end = comment.iter().position(|b| matches!(b, b'\n' | b'\r')).unwrap_or(comment.len());
+        bytes = comment[end..].trim_ascii_start();
+    }
     let head = bytes[..bytes.len().min(TEXT_HEAD)].to_ascii_lowercase();
     let holds = |word: &[u8]| head.windows(word.len()).any(|w| w == word);
     head.starts_with(b"solid") && !head.contains(&0) && (holds(b"facet") || holds(b"endsolid"))
@@ -55,11 +80,11 @@ fn text(bytes: &[u8]) -> Result<Vec<Triangle>, String> {
         // Some writers put a whole facet on one line.
         while let Some(word) = words.next() {
             let is = |name: &[u8]| word.eq_ignore_ascii_case(name);
-            if is(b"solid") || is(b"endsolid") {
+            if is(b"solid") || is(b"endsolid") || word.starts_with(b"#") || word.starts_with(b"//") {
                 break;
             }
             if is(b"vertex") {
-                let mut number = || std::str::from_utf8(words.next()?).ok()?.parse::<f32>().ok();
+                let mut number = || number(std::str::from_utf8(words.next()?).ok()?);
                 let corner = [number(), number(), number()];
                 let [Some(x), Some(y), Some(z)] = corner else {
                     return Err(format!("the vertex on line {} has no three numbers; it is damaged", k + 1));
@@ -75,6 +100,11 @@ fn text(bytes: &[u8]) -> Result<Vec<Triangle>, String> {
         }
     }
     if corners.is_empty() { Ok(out) } else { Err("it ends inside a facet; it is cut off, get it again".into()) }
+}
+
+/// A number, with a decimal point or comma.
+fn number(word: &str) -> Option<f32> {
+    word.parse().ok().or_else(|| word.replacen(',', ".", 1).parse().ok())
 }
 
 fn binary(bytes: &[u8]) -> Vec<Triangle> {

@@ -40,7 +40,7 @@ pub fn load_molecule(path: &Path, limits: &Limits) -> Result<Loaded<MoleculeFile
     let (bytes, file) = InputFile::read(path)?;
     let text = String::from_utf8_lossy(&bytes);
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let is_cif = name.contains(".cif") || name.contains(".mmcif");
+    let is_cif = name.contains(".cif") || name.contains(".mmcif") || crate::recognise::ending(path) == "cif";
     let (format, read) = if is_cif { ("mmCIF", mmcif::read(&text)) } else { ("PDB", pdb::read(&text)) };
     let (molecule, found) = read.and_then(sites::Sites::finish).map_err(bad)?;
     let warnings = found.warnings.into_iter().map(|w| w.in_file(path)).collect();

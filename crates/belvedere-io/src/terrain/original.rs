@@ -31,7 +31,8 @@ pub fn load_original(
     progress: &Progress,
 ) -> Result<Loaded<OriginalTerrain>, IoError> {
     let whole = TerrainRequest { max_nodes: usize::MAX, ..request.clone() };
-    let Loaded { value: mut sources, warnings, files } = source::read_all(&[path.to_owned()], &whole, progress)?;
+    let Loaded { value: mut sources, warnings, files } =
+        source::read_all(&[path.to_owned()], &whole, progress).map_err(crate::recognise::explain)?;
     let source = sources.pop().ok_or_else(|| IoError::format(path, "holds no raster; give an elevation model"))?;
     Ok(Loaded { value: OriginalTerrain { source }, warnings, files })
 }

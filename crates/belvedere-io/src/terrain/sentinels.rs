@@ -4,10 +4,15 @@ use belvedere_core::{Warning, WarningKind};
 use rayon::prelude::*;
 
 /// Customary no-data values, in the file's unit of height.
-const CUSTOMARY: [f32; 16] = [
-    -9999.0, -99999.0, -999.0, -9998.0, -9999.9, -999.9, -32768.0, -32767.0, -32766.0, -10000.0, 9999.0, 99999.0,
-    32767.0, 32768.0, 65535.0, 65534.0,
+const CUSTOMARY: [f32; 23] = [
+    -9999.0, -99999.0, -999.0, -9998.0, -9999.9, -999.9, -32768.0, -32767.0, -32766.0, -10000.0, -9990.0, -8888.0, 0.0,
+    -1.0, -99.0, 8888.0, 9999.0, 9999.9, 99999.0, 32767.0, 32768.0, 65535.0, 65534.0,
 ];
+/// Those that may well be heights: they count only where the other heights are the most and differ by as much as this, metres.
+const MILD: [f32; 3] = [0.0, -1.0, -99.0];
+const MILD_RELIEF_M: f32 = 20.0;
+/// Heights of the ground and of the floor of the sea, metres: any value beyond that is far from all others is a custom of its own.
+const OF_GROUND_M: std::ops::Range<f32> = -11_500.0..9_000.0;
 /// Least gap between such a value and all other heights: metres, and share of the relief; with a smaller gap it is a height.
 const GAP_M: f32 = 400.0;
 const GAP_SHARE: f32 = 0.2;
@@ -48,12 +53,22 @@ pub(super) fn void(heights: &mut [f32], unit: f32) -> Option<Warning> {
 /// The lowest or the highest height, if it is a customary value far from the next one; in metres and as stored.
 fn apart(heights: &[f32], unit: f32) -> Option<(f32, f32)> {
     let [low, next_low, next_high, high] = outermost(heights)?;
-    let customary = |value: f32| CUSTOMARY.into_iter().find(|c| c * unit == value);
+    let customary = |value: f32| {
+        let stored = CUSTOMARY.into_iter().find(|c| c * unit == value);
+        stored.or_else(|| (!OF_GROUND_M.contains(&value)).then_some(value / unit))
+    };
     let alone = |value: f32, next: f32, inner: f32| {
         let stored = customary(value)?;
+        if MILD.contains(&stored) && (inner < MILD_RELIEF_M || 2 * count_of(heights, value) > heights.len()) {
+            return None;
+        }
         ((value - next).abs() >= GAP_M.max(GAP_SHARE * inner)).then_some((value, stored))
     };
     alone(low, next_low, high - next_low).or_else(|| alone(high, next_high, next_high - low))
+}
+
+fn count_of(heights: &[f32], value: f32) -> usize {
+    heights.par_iter().with_min_len(1 << 16).filter(|h| **h == value).count()
 }
 
 /// Lowest, next to lowest, next to highest and highest of at least two different heights.
@@ -111,6 +126,9 @@ mod tests {
         // in feet
         assert_eq!(voids(hills(200.0, 1900.0, &[-9999.0 * 0.3048]), 0.3048).0, 1);
         assert_eq!(voids(hills(100.0, 100.0, &[-9999.0]), 1.0).0, 1, "flat ground");
+        for value in [-88888.0, 50000.0, -12345.0, 12345.0, 0.0, -1.0, -9990.0, 9999.9] {
+            assert_eq!(voids(hills(800.0, 1900.0, &[value; 2]), 1.0).0, 2, "{value}");
+        }
     }
 
     #[test]
@@ -121,5 +139,11 @@ mod tests {
         assert_eq!(voids(hills(0.0, 8849.0, &[9999.0]), 1.0), (0, None), "no gap of a fifth of the relief");
         assert_eq!(voids(vec![-9999.0; 40], 1.0), (0, None), "nothing else");
         assert_eq!(voids(hills(200.0, 1900.0, &[-5000.0]), 1.0), (0, None), "no custom");
+        assert_eq!(voids(hills(200.0, 1900.0, &[0.0, -1.0]), 1.0), (0, None), "the sea");
+        let plane = |high: &dyn Fn(usize) -> f32| (0..1000).map(|k| if k % 10 < 6 { 0.0 } else { high(k) }).collect();
+        assert_eq!(voids(plane(&|_| 1000.0), 1.0), (0, None), "walls on a plane");
+        assert_eq!(voids(plane(&|k| 800.0 + k as f32), 1.0), (0, None), "more plane than hills");
+        assert_eq!(voids(hills(900.0, 900.0, &[0.0; 9]), 1.0), (0, None), "two levels");
+        assert_eq!(voids(hills(-8000.0, 21200.0, &[]), 1.0), (0, None), "Mars");
     }
 }

@@ -198,7 +198,7 @@ fn read_raster(
     let mut magic = [0u8; 4];
     let mut file = File::open(path).map_err(|e| IoError::os(path, e))?;
     let got = file.read(&mut magic).map_err(|e| IoError::os(path, e))?;
-    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let extension = crate::recognise::ending(path);
     let magic = &magic[..got];
     if matches!(magic, b"II*\0" | b"MM\0*" | b"II+\0" | b"MM\0+") {
         return read_tiff(path, request, budget, progress);
@@ -333,7 +333,19 @@ pub(crate) fn stated_system(
     }
     match &info.crs {
         SourceCrs::Epsg(code) => CoordinateSystem::from_epsg(*code).map(Some).map_err(failed),
-        SourceCrs::Wkt(text) => CoordinateSystem::from_wkt(text).map(Some).map_err(failed),
+        SourceCrs::Wkt(text) => {
+            let system = CoordinateSystem::from_text(text).map_err(failed)?;
+            if system.is_local() && !local {
+                warnings.push(of_another_body(&info.path, system.name()));
+            }
+            Ok((!system.is_local()).then_some(system))
+        }
+        SourceCrs::OtherBody(name) => {
+            if !local {
+                warnings.push(of_another_body(&info.path, name));
+            }
+            Ok(None)
+        }
         SourceCrs::UserDefined(_) if local => Ok(None),
         SourceCrs::UserDefined(text) => {
             let reason = format!(
@@ -348,6 +360,11 @@ pub(crate) fn stated_system(
         }
         SourceCrs::Unknown => Ok(None),
     }
+}
+
+fn of_another_body(path: &Path, name: &str) -> Warning {
+    let text = format!("its system {name} is of another body than the Earth, so the scene is local");
+    Warning::new(WarningKind::Assumed, text).in_file(path)
 }
 
 /// Whether coordinates can only be degrees: in the range of longitude and latitude, with steps finer than any metric grid.

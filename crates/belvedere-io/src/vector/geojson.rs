@@ -64,12 +64,48 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
 fn records(text: &str) -> Result<Vec<Value>, String> {
     let broken = |e: serde_json::Error| format!("is no valid JSON ({e}); it is damaged or cut off");
     let text = if text.contains('\u{1e}') { text.replace('\u{1e}', " ").into() } else { std::borrow::Cow::from(text) };
-    let records: Result<Vec<Value>, _> = serde_json::Deserializer::from_str(&text).into_iter().collect();
-    let mut records = records.map_err(broken)?;
+    let parse = |text: &str| serde_json::Deserializer::from_str(text).into_iter().collect::<Result<Vec<Value>, _>>();
+    // Some programs write numbers that are none as NaN and Infinity, which JSON does not have.
+    let mut records = match parse(&text) {
+        Err(e) => parse(&without_odd_numbers(&text)).map_err(|_| broken(e))?,
+        Ok(records) => records,
+    };
     if let [Value::Array(list)] = records.as_mut_slice() {
         records = std::mem::take(list);
     }
     if records.is_empty() { Err("holds no JSON value; it is empty or cut off".into()) } else { Ok(records) }
+}
+
+/// The text with `NaN` and `Infinity` outside of strings as null.
+fn without_odd_numbers(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for (k, part) in strings_apart(text).into_iter().enumerate() {
+        if k % 2 == 1 {
+            out.push_str(part);
+        } else {
+            out.push_str(&part.replace("-Infinity", "null").replace("Infinity", "null").replace("NaN", "null"));
+        }
+    }
+    out
+}
+
+/// Parts of a JSON text, in turn outside and inside of strings; quotes belong to the strings.
+fn strings_apart(text: &str) -> Vec<&str> {
+    let (mut parts, mut from, mut inside, mut escaped) = (Vec::new(), 0, false, false);
+    for (at, byte) in text.bytes().enumerate() {
+        match byte {
+            _ if escaped => escaped = false,
+            b'\\' if inside => escaped = true,
+            b'"' => {
+                let end = at + usize::from(inside);
+                parts.push(&text[from..end]);
+                (from, inside) = (end, !inside);
+            }
+            _ => {}
+        }
+    }
+    parts.push(&text[from..]);
+    parts
 }
 
 /// The system, and whether the file states one.
@@ -79,7 +115,10 @@ fn system_of(records: &[Value]) -> Result<(CoordinateSystem, bool), String> {
         return Ok((default()?, false));
     };
     let properties = crs.get("properties");
-    let name = properties.and_then(|p| p.get("name")).and_then(Value::as_str).or_else(|| crs.as_str());
+    let text = |key: &str| properties.and_then(|p| p.get(key)).and_then(Value::as_str);
+    // Links to registers end in the code.
+    let link = || text("href").map(|h| h.trim_end_matches('/')).filter(|h| h.ends_with(|c: char| c.is_ascii_digit()));
+    let name = text("name").or_else(|| crs.as_str()).or_else(link);
     let code = properties.and_then(|p| p.get("code"));
     let code = code.and_then(|c| c.as_u64().map(|n| n.to_string()).or_else(|| c.as_str().map(str::to_owned)));
     match (name, code) {
@@ -122,7 +161,8 @@ impl Reader {
                 }
             }
         }
-        match feature.get("geometry").filter(|g| !g.is_null()) {
+        let is_nothing = |g: &Value| g.is_null() || g.as_object().is_some_and(serde_json::Map::is_empty);
+        match feature.get("geometry").filter(|g| !is_nothing(g)) {
             Some(geometry) => self.read_geometry(geometry, &properties, 0),
             None => {
                 self.without_geometry += 1;
@@ -238,7 +278,9 @@ fn array(v: &Value) -> Result<&Vec<Value>, String> {
 }
 
 fn position(v: &Value) -> Result<Vertex, String> {
-    let numbers: Option<Vec<f64>> = v.as_array().map(|a| a.iter().map_while(Value::as_f64).collect());
+    // Some programs write coordinates as texts.
+    let number = |v: &Value| v.as_f64().or_else(|| v.as_str()?.trim().parse().ok());
+    let numbers: Option<Vec<f64>> = v.as_array().map(|a| a.iter().map_while(number).collect());
     match numbers.as_deref() {
         Some([x, y, rest @ ..]) => vertex(*x, *y, rest.first().copied()),
         _ => None,

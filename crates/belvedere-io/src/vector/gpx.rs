@@ -13,6 +13,8 @@ use std::path::Path;
 
 /// Deepest nesting accepted.
 const MAX_DEPTH: usize = 200;
+/// Least number of consecutive tracks of one point each that are one line.
+const LEAST_ALONE: usize = 3;
 
 /// State of the parser: the open elements and their content.
 #[derive(Default)]
@@ -33,8 +35,12 @@ struct Parser {
     single_points: usize,
     /// Lines of equal points.
     one_position: usize,
-    /// Segments of one point each that were joined.
+    /// Segments, tracks and routes of one point each that were joined.
     joined: usize,
+    /// Points of the last tracks or routes, each the only one of its own.
+    alone: Vec<Recorded>,
+    /// Name and properties of the first of them.
+    alone_as: (String, BTreeMap<String, String>),
     phantoms: Phantoms,
     elements: [usize; 3],
 }
@@ -70,7 +76,11 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
         parser.one_position,
         "tracks, segments or routes of one position only were dropped, a line needs 2",
     );
-    warn(WarningKind::Repaired, parser.joined, "segments of a single point each were joined to lines");
+    warn(
+        WarningKind::Repaired,
+        parser.joined,
+        "segments, tracks or routes of a single point each were joined to lines",
+    );
     warnings.extend(parser.phantoms.say().map(|found| found.in_file(path)));
     let crs = CoordinateSystem::wgs84().map_err(|e| IoError::format(path, e.to_string()))?;
     let value = Vectors {
@@ -123,6 +133,7 @@ impl Parser {
                 _ => {}
             }
         }
+        self.end_alone();
         match self.open.last() {
             Some(open) => Err(format!("ends inside <{open}>; the file is cut off, get it again")),
             None if root_seen => Ok(()),
@@ -147,8 +158,8 @@ impl Parser {
             }
             if matches!(name.as_str(), "trkpt" | "rtept" | "wpt") {
                 let degrees = |key: &str| {
-                    let value = e.attributes().flatten().find(|a| a.key.local_name().as_ref() == key)?;
-                    value.value.trim().parse::<f64>().ok()
+                    let is = |name: &str| name.eq_ignore_ascii_case(key);
+                    number(&e.attributes().flatten().find(|a| is(a.key.local_name().as_ref()))?.value)
                 };
                 let position = degrees("lon").zip(degrees("lat")).and_then(|(lon, lat)| vertex(lon, lat, None));
                 let on_earth = |v: &Vertex| v.xy.y.abs() <= 90.0 && v.xy.x.abs() <= 360.0;
@@ -172,7 +183,7 @@ impl Parser {
         match (name.as_str(), parent) {
             ("ele", "trkpt" | "rtept" | "wpt") => {
                 if let Some(Some((v, _))) = &mut self.point {
-                    v.z = text.parse().ok().filter(|z: &f64| z.is_finite());
+                    v.z = number(&text).filter(|z| z.is_finite());
                 }
             }
             ("time", "trkpt") => {
@@ -189,7 +200,12 @@ impl Parser {
                 let segment = std::mem::take(&mut self.points);
                 self.segments.push(segment);
             }
-            ("trk", _) => self.finish("track"),
+            ("trk", _) => {
+                // Points that stand outside of segments.
+                let loose = std::mem::take(&mut self.points);
+                self.segments.extend((!loose.is_empty()).then_some(loose));
+                self.finish("track");
+            }
             ("rte", _) => {
                 let route = std::mem::take(&mut self.points);
                 self.segments.push(route);
@@ -230,6 +246,15 @@ impl Parser {
             single = segment.len() == 1;
             lines.push(segment);
         }
+        let only = matches!(lines.as_slice(), [line] if line.len() == 1);
+        if only {
+            if self.alone.is_empty() {
+                self.alone_as = (self.name.clone(), self.properties.clone());
+            }
+            self.alone.extend(lines.iter().flatten());
+        } else {
+            self.end_alone();
+        }
         let mut kept = Vec::new();
         for line in lines {
             if line.is_empty() {
@@ -242,6 +267,7 @@ impl Parser {
                 let run: Vec<Vertex> = run.into_iter().map(|(v, _)| v).collect();
                 match run.as_slice() {
                     [_] if parted => {} // counted as a jump
+                    [_] if only => {}   // kept in `alone`
                     [_] => self.single_points += 1,
                     [first, rest @ ..] if rest.iter().all(|v| v.xy == first.xy) => self.one_position += 1,
                     _ => kept.push(run),
@@ -250,6 +276,25 @@ impl Parser {
         }
         if !kept.is_empty() {
             self.push(kind, Geometry::Lines(kept));
+        }
+    }
+
+    /// Tracks or routes of one point each, which some programs write for every position, as one line; two or fewer are dropped.
+    fn end_alone(&mut self) {
+        let points = std::mem::take(&mut self.alone);
+        if points.len() < LEAST_ALONE {
+            self.single_points += points.len();
+            return;
+        }
+        self.joined += points.len();
+        let runs = phantom::runs(&points, &mut self.phantoms);
+        let lines = runs.into_iter().map(|run| run.into_iter().map(|(v, _)| v).collect::<Vec<Vertex>>());
+        let lines: Vec<_> = lines.filter(|run| run.iter().any(|v| v.xy != run[0].xy)).collect();
+        if !lines.is_empty() {
+            let own = (std::mem::take(&mut self.name), std::mem::take(&mut self.properties));
+            (self.name, self.properties) = std::mem::take(&mut self.alone_as);
+            self.push("track", Geometry::Lines(lines));
+            (self.name, self.properties) = own;
         }
     }
 
@@ -280,6 +325,12 @@ fn seconds(text: &str) -> Option<f64> {
     let (y, m) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
     let days = 365 * y + y.div_euclid(4) - y.div_euclid(100) + y.div_euclid(400) + (153 * m + 2) / 5 + day;
     fine.then(|| 86_400.0 * (days - 719_469) as f64 + 3600.0 * hours + 60.0 * minutes + seconds)
+}
+
+/// A number, with a decimal point or comma.
+fn number(text: &str) -> Option<f64> {
+    let text = text.trim();
+    text.parse().ok().or_else(|| text.replacen(',', ".", 1).parse().ok())
 }
 
 fn other_root(root: &str) -> String {

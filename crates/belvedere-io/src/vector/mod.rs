@@ -5,18 +5,20 @@ mod geojson;
 #[cfg(feature = "geopackage")]
 mod geopackage;
 mod gpx;
+mod names;
 mod on_terrain;
 mod phantom;
 mod rings;
 mod shapefile;
-mod text;
+pub(crate) mod text;
 
 pub use area_kind::{AreaKind, area_kind};
+pub use names::name_field;
 pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
 
 use crate::crs::CoordinateSystem;
 use crate::formats::Reader;
-use crate::packed::content;
+use crate::packed::content_for;
 use crate::recognise::explain;
 use crate::table::split_table;
 use crate::{InputFile, IoError, Loaded, fs};
@@ -105,6 +107,26 @@ impl Vectors {
         all.fold(None, |e: Option<[DVec2; 2]>, v| Some(e.map_or([v.xy; 2], |[lo, hi]| [lo.min(v.xy), hi.max(v.xy)])))
     }
 
+    /// Takes the names of features from one of their properties; features without it have no name.
+    ///
+    /// # Errors
+    /// A sentence, if no feature has it.
+    pub fn name_by(&mut self, field: &str) -> Result<(), String> {
+        let has = |key: &str| self.features.iter().any(|f| f.properties.contains_key(key));
+        let keys = || self.features.iter().flat_map(|f| f.properties.keys());
+        let same = || keys().find(|key| key.to_lowercase() == field.to_lowercase()).cloned();
+        let Some(found) = has(field).then(|| field.to_owned()).or_else(same) else {
+            let known: std::collections::BTreeSet<&String> = keys().collect();
+            let known: Vec<&str> = known.into_iter().take(20).map(String::as_str).collect();
+            let known = if known.is_empty() { "have none".into() } else { format!("have {}", known.join(", ")) };
+            return Err(format!("no feature has the property \"{field}\"; they {known}"));
+        };
+        for feature in &mut self.features {
+            feature.name = feature.properties.get(&found).cloned().unwrap_or_default();
+        }
+        Ok(())
+    }
+
     /// Number of vertices.
     pub fn vertex_count(&self) -> usize {
         self.features.iter().map(|f| f.geometry.vertices().count()).sum()
@@ -120,11 +142,14 @@ impl Vectors {
 pub fn load_vectors(path: &Path) -> Result<Loaded<Vectors>, IoError> {
     let path = match split_table(path) {
         (_, Some(_)) => path.to_owned(),
-        (file, None) => content(file, MAX_BYTES, &|p| Reader::Features.may_read(p))?,
+        (file, None) => content_for(file, MAX_BYTES, Reader::Features)?,
     };
     let mut loaded = load_known(&path).map_err(explain)?;
     let mut found = Phantoms::default();
     phantom::drop_zeros(&mut loaded.value, &mut found);
+    if loaded.value.format != "GPX" {
+        phantom::drop_excursions(&mut loaded.value, &mut found);
+    }
     loaded.warnings.extend(found.say().map(|said| said.in_file(&path)));
     if loaded.value.features.is_empty() {
         return Err(IoError::format(&path, "holds nothing but positions at exactly 0, 0; choose another file"));
@@ -195,45 +220,6 @@ fn not_degrees(features: &[VectorFeature]) -> Option<String> {
 /// Whether some number is too large to be a mistaken degree, so that the file has another unit.
 fn certainly_not_degrees(features: &[VectorFeature]) -> bool {
     features.iter().flat_map(|f| f.geometry.vertices()).any(|v| v.xy.abs().max_element() > 360.0)
-}
-
-/// Usual fields of names, the best first.
-const NAME_FIELDS: [&str; 24] = [
-    "name",
-    "name:en",
-    "name_en",
-    "int_name",
-    "ref",
-    "title",
-    "label",
-    "nom",
-    "nombre",
-    "nome",
-    "namn",
-    "navn",
-    "naam",
-    "nazwa",
-    "nazev",
-    "nimi",
-    "bezeichnun",
-    "bezeichnung",
-    "toponym",
-    "fullname",
-    "full_name",
-    "gnis_name",
-    "geo_name",
-    "lakename",
-];
-
-/// The field that names features among these, if any: one of those that are usual, in any spelling, else the first that ends
-/// in "name" and is not the name of a file, layer or user.
-pub fn name_field<'k>(keys: impl Iterator<Item = &'k str> + Clone) -> Option<&'k str> {
-    let usual = NAME_FIELDS.iter().find_map(|field| keys.clone().find(|k| k.eq_ignore_ascii_case(field)));
-    let ends_so = |k: &&str| {
-        let key = k.to_ascii_lowercase();
-        key.ends_with("name") && !["file", "layer", "user", "table"].iter().any(|w| key.contains(w))
-    };
-    usual.or_else(|| keys.clone().find(ends_so))
 }
 
 /// The name among properties, see [`name_field`]; empty if there is none.

@@ -451,8 +451,23 @@ impl<'a> Reprojection<'a> {
             let b = t.bounds();
             format!(", the terrain's is x {:.0}..{:.0}, y {:.0}..{:.0}", b.min.x, b.max.x, b.min.y, b.max.y)
         });
-        self.vectors.fail(format!(
-            "lies wholly outside the terrain or over its voids: {what}: {theirs}{ours}; take data that overlap"
-        ))
+        let advice = if self.swapped_meet() {
+            "with x and y exchanged they lie on it, so their axes are swapped; exchange them, as with ogr2ogr -swapxy"
+        } else {
+            "take data that overlap"
+        };
+        self.vectors
+            .fail(format!("lies wholly outside the terrain or over its voids: {what}: {theirs}{ours}; {advice}"))
+    }
+
+    /// Whether some position would lie on the terrain if x and y were exchanged.
+    fn swapped_meet(&self) -> bool {
+        let Some(bounds) = self.terrain.map(Heightfield::bounds) else { return false };
+        let on_terrain = |v: &Vertex| {
+            let swapped = DVec2::new(v.xy.y, v.xy.x);
+            let place = self.transform.as_ref().map_or(Some(swapped), |t| t.forward_one(swapped));
+            place.is_some_and(|p| p.cmpge(bounds.min.truncate()).all() && p.cmple(bounds.max.truncate()).all())
+        };
+        self.vectors.features.iter().flat_map(|f| f.geometry.vertices()).take(10_000).any(on_terrain)
     }
 }

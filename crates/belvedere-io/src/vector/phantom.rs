@@ -24,6 +24,8 @@ const FAR_STEPS: f64 = 50.0;
 /// Without times: least distance of a false excursion, metres, and its most vertices.
 const AWAY_M: f64 = 1_000.0;
 const AWAY_VERTICES: usize = 3;
+/// Least vertices of a line in which excursions are looked for.
+const LEAST_OF_LINE: usize = 10;
 
 /// Numbers of phantom positions and jumps.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
@@ -145,6 +147,49 @@ fn mark_excursions(track: &[Recorded], steps: &[f64], step: f64, speeds: &[Optio
     }
 }
 
+/// Splits lines in longitude and latitude that are no recorded tracks at false excursions: a few vertices far away, after which the line
+/// goes on where it was. Other long pieces stay: ferries, borders, drawn lines.
+pub(super) fn drop_excursions(vectors: &mut Vectors, found: &mut Phantoms) {
+    if vectors.crs.is_local() || !vectors.crs.is_geographic() {
+        return;
+    }
+    for feature in &mut vectors.features {
+        if let Geometry::Lines(lines) = &mut feature.geometry
+            && lines.iter().any(|line| line.len() >= LEAST_OF_LINE)
+        {
+            let runs = lines.iter().flat_map(|line| without_excursions(line, found));
+            *lines = runs.filter(|run| run.len() >= 2).collect();
+        }
+    }
+    vectors.features.retain(|f| f.geometry.vertices().next().is_some());
+}
+
+fn without_excursions(line: &[Vertex], found: &mut Phantoms) -> Vec<Vec<Vertex>> {
+    let steps: Vec<f64> = line.windows(2).map(|w| metres(w[0].xy, w[1].xy)).collect();
+    let step = median(steps.iter().copied().filter(|s| *s > 0.0).collect());
+    let away = |k: usize| steps[k] > FAR_M.max(FAR_STEPS * step);
+    let mut out = vec![Vec::new()];
+    let mut until = 0;
+    for (k, vertex) in line.iter().enumerate() {
+        if k > 0 && k > until && away(k - 1) {
+            let back = (k..steps.len().min(k + AWAY_VERTICES)).find(|j| away(*j));
+            let returns = |j: &usize| metres(line[k - 1].xy, line[j + 1].xy) < 0.25 * steps[k - 1].min(steps[*j]);
+            if let Some(j) = back.filter(returns) {
+                found.jumps += 2;
+                found.longest_m = found.longest_m.max(steps[k - 1]).max(steps[j]);
+                until = j;
+                out.push(Vec::new());
+            }
+        }
+        if (k > until || until == 0)
+            && let Some(run) = out.last_mut()
+        {
+            run.push(*vertex);
+        }
+    }
+    out
+}
+
 /// Drops positions at exactly 0, 0 from everything in a file, splitting lines there. Files in unknown systems stay as they are.
 pub(super) fn drop_zeros(vectors: &mut Vectors, found: &mut Phantoms) {
     let near = match (vectors.crs.is_local(), vectors.crs.metres_per_unit()) {
@@ -247,6 +292,39 @@ mod tests {
         let mut track = walk(None);
         track[60..62].iter_mut().for_each(|(v, _)| v.xy.y += 0.02);
         assert_eq!(lengths(&track).0, [60, 2, 138]);
+    }
+
+    #[test]
+    fn lines_that_are_no_tracks_lose_excursions_alone() {
+        let line = |odd: &dyn Fn(&mut Vec<Vertex>)| {
+            let mut vertices: Vec<Vertex> = walk(None).into_iter().map(|(v, _)| v).collect();
+            odd(&mut vertices);
+            let mut found = Phantoms::default();
+            let runs = without_excursions(&vertices, &mut found);
+            (runs.iter().map(Vec::len).collect::<Vec<_>>(), found.jumps)
+        };
+        assert_eq!(line(&|_| ()), (vec![200], 0));
+        assert_eq!(line(&|l| l[60].xy.x += 0.5), (vec![60, 139], 2));
+        assert_eq!(line(&|l| l[60..63].iter_mut().for_each(|v| v.xy.y += 0.2)), (vec![60, 137], 2));
+        // a ferry, the end of a line, a long detour
+        assert_eq!(line(&|l| l[120..].iter_mut().for_each(|v| v.xy.y += 0.3)), (vec![200], 0));
+        assert_eq!(line(&|l| l[199].xy.y += 0.3), (vec![200], 0));
+        assert_eq!(line(&|l| l[60..80].iter_mut().for_each(|v| v.xy.y += 0.2)), (vec![200], 0));
+        let short: Vec<Vertex> = [0.0, 1.0, 0.01].map(|x| at(11.0 + x, 46.9, None).0).to_vec();
+        let mut vectors = Vectors {
+            path: "l".into(),
+            format: "GeoJSON",
+            layer: String::new(),
+            crs: crate::crs::CoordinateSystem::wgs84().expect("known"),
+            crs_stated: true,
+            features: vec![super::super::VectorFeature {
+                name: String::new(),
+                properties: Default::default(),
+                geometry: Geometry::Lines(vec![short]),
+            }],
+        };
+        drop_excursions(&mut vectors, &mut Phantoms::default());
+        assert_eq!(vectors.vertex_count(), 3, "drawn with few vertices");
     }
 
     #[test]

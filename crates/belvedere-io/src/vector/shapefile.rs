@@ -1,10 +1,11 @@
 //! ESRI shapefiles: points, multipoints, polylines and polygons, with Z and M, names from the .dbf, system from the .prj.
 
-use super::text::table_encoding;
+use super::text::{table_encoding, text_of};
 use super::{
     Geometry, VectorFeature, Vectors, Vertex, certainly_not_degrees, name_of, not_degrees, rings, shorten, vertex,
 };
 use crate::crs::CoordinateSystem;
+use crate::fs::sidecar;
 use crate::{IoError, Loaded, fs};
 use belvedere_core::{Warning, WarningKind};
 use std::collections::BTreeMap;
@@ -58,14 +59,6 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError
     Ok(Loaded::new(value, warnings))
 }
 
-/// The file beside `path` with another extension, in small or capital letters.
-fn sidecar(path: &Path, extension: &str) -> Option<PathBuf> {
-    [extension.to_owned(), extension.to_ascii_uppercase()]
-        .iter()
-        .map(|e| path.with_extension(e))
-        .find(|p| fs::metadata(p).is_ok_and(|m| m.is_file()))
-}
-
 /// The system, and whether a .prj states it.
 fn system_of(
     path: &Path,
@@ -73,10 +66,10 @@ fn system_of(
     warnings: &mut Vec<Warning>,
 ) -> Result<(CoordinateSystem, bool), IoError> {
     let bad = not_degrees(features);
-    if let Some(prj) = sidecar(path, "prj") {
-        let text = fs::read(&prj).map_err(|e| IoError::os(&prj, e))?;
-        let crs = CoordinateSystem::from_wkt(&String::from_utf8_lossy(&text))
-            .map_err(|e| IoError::format(&prj, e.to_string()))?;
+    let text = |prj: &PathBuf| fs::read(prj).map(|b| text_of(&b, &mut Vec::new())).map_err(|e| IoError::os(prj, e));
+    let stated = sidecar(path, "prj").map(|prj| text(&prj).map(|text| (prj, text))).transpose()?;
+    if let Some((prj, text)) = stated.filter(|(_, text)| !text.trim().is_empty()) {
+        let crs = CoordinateSystem::from_text(&text).map_err(|e| IoError::format(&prj, e.to_string()))?;
         return match bad.filter(|_| crs.is_geographic()) {
             Some(reason) => {
                 Err(IoError::format(path, format!("{reason}, but the .prj says {crs}; correct one of them")))

@@ -8,7 +8,10 @@ const HEAD: usize = 200;
 
 /// The text of a file: by its byte order mark, else as its XML declaration says, else UTF-8, else Windows-1252 (which holds Latin-1)
 /// with a warning.
-pub(super) fn text_of(bytes: &[u8], warnings: &mut Vec<Warning>) -> String {
+pub(crate) fn text_of(bytes: &[u8], warnings: &mut Vec<Warning>) -> String {
+    if let Some(text) = four_bytes(bytes) {
+        return text;
+    }
     if let Some((encoding, mark)) = Encoding::for_bom(bytes) {
         return encoding.decode_without_bom_handling(&bytes[mark..]).0.into_owned();
     }
@@ -45,6 +48,17 @@ pub(super) fn text_of(bytes: &[u8], warnings: &mut Vec<Warning>) -> String {
             WINDOWS_1252.decode_without_bom_handling(bytes).0.into_owned()
         }
     }
+}
+
+/// Text in UTF-32, by its byte order mark.
+fn four_bytes(bytes: &[u8]) -> Option<String> {
+    let unit: fn([u8; 4]) -> u32 = match bytes {
+        [0xff, 0xfe, 0, 0, ..] => u32::from_le_bytes,
+        [0, 0, 0xfe, 0xff, ..] => u32::from_be_bytes,
+        _ => return None,
+    };
+    let units = bytes[4..].as_chunks::<4>().0.iter();
+    Some(units.map(|b| char::from_u32(unit(*b)).unwrap_or(char::REPLACEMENT_CHARACTER)).collect())
 }
 
 /// The encoding that an XML declaration names.
@@ -141,6 +155,17 @@ mod tests {
                 assert_eq!(text_of(&bytes, &mut warnings), text);
                 assert!(warnings.is_empty());
             }
+        }
+    }
+
+    #[test]
+    fn text_of_four_bytes_is_read() {
+        let text = "<gpx>Tälchen 富士山</gpx>";
+        for (mark, unit) in
+            [([0xff, 0xfe, 0, 0], u32::to_le_bytes as fn(u32) -> [u8; 4]), ([0, 0, 0xfe, 0xff], u32::to_be_bytes)]
+        {
+            let bytes: Vec<u8> = mark.into_iter().chain(text.chars().flat_map(|c| unit(u32::from(c)))).collect();
+            assert_eq!(text_of(&bytes, &mut Vec::new()), text);
         }
     }
 

@@ -65,6 +65,7 @@ pub struct VolumeRequest {
 pub fn load_volume(path: &Path, request: &VolumeRequest) -> Result<Loaded<VolumeFile>, IoError> {
     let path = &content(path, request.limits.max_bytes, &|p| Reader::Volume.reads(p))?;
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let is_nrrd = crate::recognise::ending(path) == "nrrd";
     let format = |reason: String| IoError::format(path, reason);
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     request.limits.check(length).map_err(|reason| format(reason.replace("raster", "volume")))?;
@@ -72,7 +73,7 @@ pub fn load_volume(path: &Path, request: &VolumeRequest) -> Result<Loaded<Volume
     let source = Source { path, bytes: &bytes, request };
     let loaded = match () {
         () if name.ends_with(".vti") => vti::read(&source).map_err(format)?,
-        () if name.ends_with(".nrrd") || name.ends_with(".nhdr") => nrrd::read(&source)?,
+        () if is_nrrd || name.ends_with(".nhdr") => nrrd::read(&source)?,
         () if name.ends_with(".raw") || name.ends_with(".raw.gz") => raw::read(&source).map_err(format)?,
         () => {
             let reason = "it is no volume that this version reads: VTK XML ImageData (.vti), NRRD (.nrrd, .nhdr) or raw samples (.raw, .raw.gz)";

@@ -15,6 +15,7 @@ mod geotiff_made;
 mod kinds_crs;
 mod kinds_files;
 mod kinds_packed;
+mod kinds_seeded;
 mod meshes;
 mod molecules;
 mod open_exr;

@@ -91,6 +91,16 @@ fn left_out(loader: &Loader<'_>, index: usize, file: &str, vectors: &Vectors) ->
     })
 }
 
+/// The property that a layer takes names from, if it says one.
+fn name_field(layer: &LayerDoc) -> Option<&str> {
+    match layer {
+        LayerDoc::Line(l) => l.name_field.as_deref(),
+        LayerDoc::Area(l) => l.name_field.as_deref(),
+        LayerDoc::Point(l) => l.name_field.as_deref(),
+        _ => None,
+    }
+}
+
 fn names(paths: &Paths, file: &str) -> bool {
     paths.as_slice().iter().any(|name| name == file)
 }
@@ -116,6 +126,9 @@ fn all<T>(
         let mut vectors = loader.take(index, vectors);
         loader.note(index, left_out(loader, index, name, &vectors));
         inspect(&vectors);
+        if let Some(field) = loader.layers.get(index).and_then(name_field) {
+            vectors.name_by(field).map_err(|reason| loader.fail(index, "name_field", reason))?;
+        }
         stand(loader, index, &mut vectors);
         let found = on_terrain(&vectors, ground.crs, ground.terrain)?;
         features.extend(loader.take(index, found));

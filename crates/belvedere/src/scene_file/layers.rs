@@ -229,6 +229,9 @@ pub struct LineDoc {
     /// A generated route along the valleys instead of a file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub route: Option<RouteDoc>,
+    /// Property that holds the names of features; by default the one that looks most like a name, which `info` tells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name_field: Option<String>,
     /// Whether constructors and measures work for it.
     #[serde(default)]
     pub must_see: bool,
@@ -340,6 +343,9 @@ pub struct AreaDoc {
     pub id: String,
     /// A file, several, or `builtin:NAME` for the areas of a built-in scene.
     pub source: Paths,
+    /// Property that holds the names of features; by default the one that looks most like a name, which `info` tells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name_field: Option<String>,
     /// Whether constructors and measures work for it.
     #[serde(default)]
     pub must_see: bool,
@@ -407,6 +413,9 @@ pub struct PointLayerDoc {
     pub id: String,
     /// A file, or several.
     pub source: Paths,
+    /// Property that holds the names of features; by default the one that looks most like a name, which `info` tells.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name_field: Option<String>,
     /// Whether constructors and measures work for it.
     #[serde(default)]
     pub must_see: bool,

@@ -141,6 +141,8 @@ pub struct InfoRequest {
     pub nodata: Option<f64>,
     /// Unit of heights.
     pub vertical_unit: Option<VerticalUnit>,
+    /// Property that holds the names of features.
+    pub name_field: Option<String>,
     /// Most bytes of decoded samples; 4 GiB if left out.
     pub max_bytes: Option<u64>,
 }
@@ -267,11 +269,13 @@ pub fn describe_as(name: &str, request: &InfoRequest, progress: &Progress) -> Re
         (whole, None) => belvedere_io::inside(whole)?,
     };
     let (path, name) = (meant.as_path(), meant.display().to_string());
+    let name_field = request.name_field.clone();
     let request = request.terrain(path)?;
     if belvedere_io::city::is_city(path)? {
         return CityInfo::of(path).map(FileInfo::City);
     }
-    if let Some(known) = belvedere_io::recognise(path)? {
+    let readable = belvedere_io::readable(path)?;
+    if let Some(known) = belvedere_io::recognise(path)?.filter(|known| known.is_broken || readable.is_none()) {
         if known.is_broken {
             return Err(belvedere_io::IoError::format(path, known.reason()).into());
         }
@@ -283,8 +287,9 @@ pub fn describe_as(name: &str, request: &InfoRequest, progress: &Progress) -> Re
     match [Reader::Features, Reader::Mesh, Reader::Molecule, Reader::Volume, Reader::Terrain]
         .into_iter()
         .find(|reader| reader.may_read(plain))
+        .or(readable.and_then(|format| format.reader))
     {
-        Some(Reader::Features) => return features(path),
+        Some(Reader::Features) => return features(path, name_field.as_deref()),
         Some(Reader::Mesh) => return mesh(path),
         Some(Reader::Molecule) => return super::molecule_info::describe(path).map(FileInfo::Molecule),
         Some(Reader::Volume) => return Ok(FileInfo::Volume(VolumeInfo::of(path)?)),
@@ -294,8 +299,7 @@ pub fn describe_as(name: &str, request: &InfoRequest, progress: &Progress) -> Re
             return Err(belvedere_io::IoError::format(path, reason).into());
         }
     }
-    let is_tiff = plain.extension().is_some_and(|e| ["tif", "tiff"].iter().any(|t| e.eq_ignore_ascii_case(t)));
-    if is_tiff {
+    if readable.is_some_and(|format| format.name == "GeoTIFF") {
         return geotiff(path, &name, &request, progress);
     }
     terrain(path, &request, progress)
@@ -395,8 +399,12 @@ fn properties(vectors: &Vectors) -> Vec<PropertyInfo> {
     list
 }
 
-fn features(path: &Path) -> Result<FileInfo, BelvedereError> {
-    let loaded = load_vectors(path)?;
+fn features(path: &Path, name_field: Option<&str>) -> Result<FileInfo, BelvedereError> {
+    let mut loaded = load_vectors(path)?;
+    if let Some(field) = name_field {
+        let failed = |reason| belvedere_io::IoError::format(path, reason);
+        loaded.value.name_by(field).map_err(failed)?;
+    }
     let vectors = &loaded.value;
     let count = |wanted: fn(&Geometry) -> bool| vectors.features.iter().filter(|f| wanted(&f.geometry)).count();
     let all = properties(vectors);
@@ -407,7 +415,9 @@ fn features(path: &Path) -> Result<FileInfo, BelvedereError> {
         lines: count(|g| matches!(g, Geometry::Lines(_))),
         areas: count(|g| matches!(g, Geometry::Polygons(_))),
         points: count(|g| matches!(g, Geometry::Points(_))),
-        name_field: belvedere_io::vector::name_field(all.iter().map(|p| p.name.as_str())).map(str::to_owned),
+        name_field: name_field
+            .or_else(|| belvedere_io::vector::name_field(all.iter().map(|p| p.name.as_str())))
+            .map(str::to_owned),
         named: vectors.features.iter().filter(|f| !f.name.is_empty()).count(),
         properties: all,
         vertices: vectors.vertex_count(),

@@ -27,7 +27,11 @@ pub(super) fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, Belved
     let id = id.unwrap_or_default();
     // Names of cities that tell nothing else may hold them.
     let is_city = file.ends_with(".jsonl") || file.ends_with(".gml");
-    let reader = formats::of_name(Path::new(file)).and_then(|format| format.reader);
+    let by_name = formats::of_name(Path::new(file)).and_then(|format| format.reader);
+    // Archives and names that tell nothing.
+    let by_content =
+        || belvedere_io::inside(path).and_then(|p| belvedere_io::readable(&p)).ok().flatten().and_then(|f| f.reader);
+    let reader = if builtin { by_name } else { by_name.or_else(by_content) };
     match reader {
         _ if builtin && stem == "dna" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
         _ if builtin && (stem == "engine" || stem == "tube") => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),

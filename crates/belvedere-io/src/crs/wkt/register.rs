@@ -30,6 +30,11 @@ pub(super) fn code_of(system: &Node, proj_string: &str) -> Option<u32> {
     if !system.is(&PROJECTED) {
         return Some(base);
     }
+    code_of_parameters(base, proj_string)
+}
+
+/// EPSG code of the projected system on a geographic one that has the projection of a PROJ string.
+pub(crate) fn code_of_parameters(base: u32, proj_string: &str) -> Option<u32> {
     let wanted = Parameters::of(proj_string);
     tables::projected_on(base)
         .find(|code| tables::definition(*code).is_ok_and(|text| Parameters::of(&text).same(&wanted)))
@@ -57,7 +62,7 @@ struct Parameters {
 impl Parameters {
     fn of(text: &str) -> Self {
         let (mut method, mut numbers) = (String::new(), BTreeMap::new());
-        let mut south = false;
+        let (mut south, mut axes) = (false, "");
         for part in text.split_whitespace().map(|p| p.trim_start_matches('+')) {
             let (key, value) = part.split_once('=').unwrap_or((part, ""));
             let key = match key {
@@ -80,6 +85,10 @@ impl Parameters {
                     south = true;
                     continue;
                 }
+                "axis" => {
+                    axes = value;
+                    continue;
+                }
                 "lat_0" | "lat_1" | "lat_2" | "lat_ts" | "lon_0" | "lonc" | "alpha" | "gamma" | "k" | "x_0" | "y_0"
                 | "zone" | "to_meter" => key,
                 "no_uoff" => {
@@ -94,6 +103,9 @@ impl Parameters {
         }
         let mut out = Self { method, numbers };
         out.simplify(south);
+        if axes != "enu" {
+            out.method.push_str(axes); // such as wsu
+        }
         out
     }
 
