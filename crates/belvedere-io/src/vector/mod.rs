@@ -12,6 +12,7 @@ mod shapefile;
 mod text;
 
 pub use area_kind::{AreaKind, area_kind};
+pub use gpx::track_times;
 pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
 
 use crate::crs::CoordinateSystem;
