@@ -403,13 +403,13 @@ pub(crate) struct AnimateArgs {
     /// Film, made by the ffmpeg program, with its frames in the folder OUT.frames; or a folder for the frames alone
     #[arg(short, long, value_name = "OUT.mp4|DIR")]
     pub(crate) out: PathBuf,
-    /// Number of frames; by default the scene's, else 250 or as many as the path needs
+    /// Number of frames; by default the scene's, else 250 or as many as the path needs. Without --speed the speed follows
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) frames: Option<u32>,
     /// Frames per second; by default the scene's, else 25
     #[arg(long, value_name = "F", allow_negative_numbers = true)]
     pub(crate) fps: Option<f64>,
-    /// Follow the route of this line layer, behind and above a walker
+    /// Follow the route of this line layer, behind and above a walker; the eye stays above the drawn ground
     #[arg(long, value_name = "LAYER", group = "way")]
     pub(crate) along: Option<String>,
     /// Ground speed along the route, metres per second of film; by default the whole route in all frames
@@ -421,6 +421,15 @@ pub(crate) struct AnimateArgs {
     /// Turn once around the point looked at, or as the scene says
     #[arg(long, group = "way")]
     pub(crate) turntable: bool,
+    /// Mark the walker, along a route; he is seen through ground that hides him
+    #[arg(long)]
+    pub(crate) marker: bool,
+    /// Write the time at the walker, along a route, where a GPX file gives times
+    #[arg(long)]
+    pub(crate) clock: bool,
+    /// Draw a strip with the heights of the route and the walker's place
+    #[arg(long)]
+    pub(crate) profile: bool,
     /// Keep the frames that exist and draw the rest
     #[arg(long)]
     pub(crate) resume: bool,

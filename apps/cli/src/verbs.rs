@@ -211,6 +211,9 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
         frames: args.frames,
         fps: args.fps,
         speed_mps: args.speed,
+        marker: args.marker.then_some(true),
+        clock: args.clock.then_some(true),
+        profile: args.profile.then_some(true),
         ..AnimationDoc::default()
     };
     let request =
@@ -220,6 +223,7 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
     let session = Session::open(&args.scene, &options)?;
     let made = animate::animate(&session, &request, &context.progress)?;
     context.finish();
+    let warnings = [session.warnings(), made.warnings.clone()].concat();
     let mut outputs = vec![made.folder.clone()];
     let missing = match &made.film {
         Film::Made(path) => {
@@ -232,13 +236,13 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
         Film::Unwanted => None,
     };
     if context.common.json {
-        let mut result = done("animate", &outputs, &session.warnings());
+        let mut result = done("animate", &outputs, &warnings);
         result["frames"] = serde_json::json!(made.manifest.frames.len());
         result["drawn"] = serde_json::json!(made.drawn);
         result["fps"] = serde_json::json!(made.manifest.settings.fps);
         context.print(&result)?;
     }
-    context.warn(&session.warnings());
+    context.warn(&warnings);
     context.warn(missing.as_slice());
     Ok(if missing.is_some() { Goal::Missed } else { Goal::Reached })
 }

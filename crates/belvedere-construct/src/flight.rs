@@ -20,6 +20,14 @@ impl FlightOptions {
         let scale = (length_m / 10_000.0).clamp(0.01, 1.0);
         Self { behind_m: 800.0 * scale, above_m: 500.0 * scale, ahead_m: 1500.0 * scale }
     }
+
+    /// The same over ground of cells of `cell_m`: the eye stays far enough away that cells look small, 8 cells behind the walker,
+    /// 5 above and 12 ahead at least, and no farther behind than a quarter of `extent_m`, the shorter side of the ground.
+    pub fn over_cells(self, cell_m: f64, extent_m: f64) -> Self {
+        let least = (8.0 * cell_m).min(0.25 * extent_m);
+        let scale = if least > 0.0 { (least / self.behind_m).max(1.0) } else { 1.0 };
+        Self { behind_m: scale * self.behind_m, above_m: scale * self.above_m, ahead_m: scale * self.ahead_m }
+    }
 }
 
 /// A flight that is not possible.
@@ -48,6 +56,11 @@ pub enum FlightError {
 
 /// Most steps in which a route is tabulated.
 const MOST_STEPS: f64 = 40_000.0;
+/// Places on the line of sight to the walker that the eye looks over, as shares of the distance from the walker to the eye.
+const SIGHT: [f64; 8] = [0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
+/// Height over the ground at which the line of sight passes there, and most that the eye rises for it, in units of `above_m`.
+const OVER: f64 = 0.05;
+const MOST_RISE: f64 = 1.0;
 
 /// Eye and target for every distance walked. Both are C1 in the distance: piecewise cubic through a fine table.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,6 +69,7 @@ pub struct Flight {
     step: f64,
     eye: Vec<DVec3>,
     target: Vec<DVec3>,
+    walker: Vec<DVec3>,
 }
 
 impl Flight {
@@ -64,6 +78,7 @@ impl Flight {
     /// The route is smoothed over about `behind_m`; the heading is that from the eye's side of the walker to the far side,
     /// unwrapped and smoothed again, so that hairpins turn the camera gently. The eye's height is a sliding maximum of the
     /// ground around it and under the walker, smoothed by a kernel no wider than the maximum: it stays at least `above_m` over both.
+    /// Where ground between hides the walker the eye rises, by at most `above_m`.
     ///
     /// # Errors
     /// Every [`FlightError`].
@@ -93,13 +108,24 @@ impl Flight {
         let ground = Ground { terrain, reach: behind / 8.0 };
         let walker: Vec<f64> = ground.filled(&smoothed, Ground::at);
         let around: Vec<f64> = ground.filled(&eyes, Ground::highest_around);
-        let needed: Vec<f64> = walker.iter().zip(&around).map(|(a, b)| a.max(*b) + options.above_m).collect();
+        let over = OVER * options.above_m;
+        let needed = (0..table.len).map(|i| {
+            let least = walker[i].max(around[i]) + options.above_m;
+            // Eyes from which the line of sight to the walker passes over the ground between.
+            let rise = |t: f64| {
+                let between = ground.at(smoothed[i].lerp(eyes[i], t)).unwrap_or(f64::NEG_INFINITY);
+                walker[i] + (between + over - walker[i]) / t
+            };
+            SIGHT.into_iter().map(rise).fold(least, f64::max).min(least + MOST_RISE * options.above_m)
+        });
+        let needed: Vec<f64> = needed.collect();
         let window = nodes(0.75 * behind);
         let height = smooth(&sliding_max(&needed, 3 * (window / 3)), window / 3);
         let level = smooth(&walker, nodes(behind / 3.0));
         let eye = table.cut(|i| eyes[i].extend(height[i]));
         let target = table.cut(|i| (smoothed[i] + options.ahead_m * direction(i)).extend(level[i]));
-        Ok(Self { length_m, step, eye, target })
+        let walker = table.cut(|i| smoothed[i].extend(level[i]));
+        Ok(Self { length_m, step, eye, target, walker })
     }
 
     /// Length of the route, scene units.
@@ -109,8 +135,17 @@ impl Flight {
 
     /// Eye and point looked at when the walker has come `walked_m` along the route (held at its ends).
     pub fn at(&self, walked_m: f64) -> (DVec3, DVec3) {
-        let t = (walked_m.clamp(0.0, self.length_m) / self.step).max(0.0);
+        let t = self.node(walked_m);
         (cubic(&self.eye, t), cubic(&self.target, t))
+    }
+
+    /// The walker on the ground, smoothed as the camera follows it: near to the route, not on it in sharp turns.
+    pub fn walker(&self, walked_m: f64) -> DVec3 {
+        cubic(&self.walker, self.node(walked_m))
+    }
+
+    fn node(&self, walked_m: f64) -> f64 {
+        (walked_m.clamp(0.0, self.length_m) / self.step).max(0.0)
     }
 }
 

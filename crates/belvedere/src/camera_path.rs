@@ -1,5 +1,6 @@
 //! Cameras of the frames of an animation.
 
+use crate::film::{Adjustment, Following, FollowingBends, RouteLine};
 use crate::resolve::constructor;
 use crate::resolve::solving::Memory;
 use crate::resolve::solving::Solving;
@@ -42,8 +43,10 @@ pub(crate) struct CameraPath {
     poses: Vec<Pose>,
     /// Position on the path of a preview in every frame; empty if there is none.
     positions: Vec<f64>,
-    /// Point that the camera turns about; `None` where the pivot of a spline moves with the camera.
+    /// Point that the camera turns about; `None` where bends move with the camera.
     pivot: Option<DVec3>,
+    /// The walker, along a route.
+    pub(crate) following: Option<Following>,
     /// Frames per second.
     pub(crate) fps: f64,
     /// The animation with every default filled in.
@@ -60,10 +63,23 @@ fn merged(scene: &Document, given: &AnimationDoc) -> AnimationDoc {
         doc.sweep = given.sweep.clone().map(|s| if s.phi_deg[0] != s.phi_deg[1] { s } else { sweep.unwrap_or(s) });
         doc.turntable = given.turntable.clone().map(|t| if t.deg_per_s != 0.0 { t } else { turntable.unwrap_or(t) });
     }
-    doc.frames = given.frames.or(doc.frames);
     doc.fps = given.fps.or(doc.fps);
-    doc.speed_mps = given.speed_mps.or(doc.speed_mps);
+    // A stated number of frames takes the place of the scene's speed, and a stated speed that of its number of frames.
+    (doc.frames, doc.speed_mps) = match (given.frames, given.speed_mps) {
+        (None, None) => (doc.frames, doc.speed_mps),
+        stated => stated,
+    };
+    doc.marker = given.marker.or(doc.marker);
+    doc.clock = given.clock.or(doc.clock);
+    doc.profile = given.profile.or(doc.profile);
     doc
+}
+
+impl Pose {
+    /// A camera whose place a walker decides.
+    fn of_walker(fov_y_deg: f64) -> Self {
+        Self { eye: DVec3::ZERO, look_at: DVec3::ZERO, up: DVec3::Z, fov_y_deg, turn: 0.0 }
+    }
 }
 
 impl Session {
@@ -150,8 +166,10 @@ impl CameraPath {
             Some(length) => walk(length, start_m, &mut animation).map_err(BelvedereError::Animation)?,
             None => Vec::new(),
         };
+        let mut following = None;
         let (poses, pivot) = if let Some(layer) = animation.along.clone() {
-            (along(session, scene, &layer, &mut animation)?, None)
+            let walker = following.insert(along(session, scene, &layer, &mut animation)?);
+            (vec![Pose::of_walker(scene.camera.fov_y_deg); walker.walked.len()], None)
         } else if let Some(file) = animation.camera.clone() {
             (through_cameras(scene, &roots.resolve(&file)?, &mut animation)?, Some(DVec3::ZERO))
         } else if !moves_camera {
@@ -164,12 +182,17 @@ impl CameraPath {
             };
             (poses, Some(pivot))
         };
-        Ok(Self { base: scene.clone(), poses, positions, pivot, fps, animation })
+        Ok(Self { base: scene.clone(), poses, positions, pivot, following, fps, animation })
     }
 
     /// Number of frames.
     pub(crate) fn len(&self) -> usize {
         self.poses.len()
+    }
+
+    /// Whether the scene has stages, which bend its pictures.
+    pub(crate) fn has_stages(&self) -> bool {
+        !self.base.stage.is_empty()
     }
 
     /// Whether the constructor of a path preview places the camera.
@@ -195,10 +218,25 @@ impl CameraPath {
         })
     }
 
+    /// The session in a frame without what has to be solved, in a picture of another size, wherever its eye lies.
+    ///
+    /// # Errors
+    /// Those of the stages.
+    pub(crate) fn sketch(&self, session: &Session, frame: usize, image: [u32; 2]) -> Result<Session, BelvedereError> {
+        let mut document = self.document(frame);
+        document.camera.image = image;
+        session.at_time(frame as f64 / self.fps).with_document(document, None)
+    }
+
     /// The resolved scene of a frame.
     fn document(&self, frame: usize) -> Document {
-        let pose = &self.poses[frame];
+        let mut pose = self.poses[frame];
         let mut document = self.base.clone();
+        if let Some(following) = &self.following {
+            let camera = following.camera(frame);
+            (pose.eye, pose.look_at) = (camera.eye, camera.look_at);
+            following.bends.apply(&mut document.stage, &camera, following.adjustments[frame].share);
+        }
         document.camera = CameraDoc {
             eye: PointDoc::Scene(pose.eye.to_array()),
             look_at: Some(PointDoc::Scene(pose.look_at.to_array())),
@@ -212,14 +250,10 @@ impl CameraPath {
             constructor.position_m = Some(*position);
         }
         for stage in &mut document.stage {
-            match (stage, self.pivot) {
-                (StageDoc::SplineBend(spline), None) => spline.pivot = None,
-                // The anchor moves with the camera.
-                (StageDoc::Strip(strip), None) => strip.anchor = None,
-                (StageDoc::CurvedRays(rays), Some(pivot)) if pose.turn != 0.0 => {
-                    turn_rays(rays, pivot, DQuat::from_rotation_z(pose.turn));
-                }
-                _ => {}
+            if let (StageDoc::CurvedRays(rays), Some(pivot)) = (stage, self.pivot)
+                && pose.turn != 0.0
+            {
+                turn_rays(rays, pivot, DQuat::from_rotation_z(pose.turn));
             }
         }
         document
@@ -231,24 +265,27 @@ fn along(
     scene: &Document,
     id: &str,
     animation: &mut AnimationDoc,
-) -> Result<Vec<Pose>, BelvedereError> {
+) -> Result<Following, BelvedereError> {
     let fail = |reason: String| BelvedereError::Animation(format!("along \"{id}\": {reason}"));
-    let route = route(session.scene(), id)?;
-    let length = route.windows(2).map(|w| w[0].distance(w[1])).sum();
-    let usual = FlightOptions::for_length(length);
+    let route = RouteLine::new(&route(session.scene(), id)?);
+    let terrain = session.scene().terrain();
+    let usual = FlightOptions::for_length(route.length());
+    let usual = terrain.map_or(usual, |t| {
+        let size = t.spacing() * DVec2::new((t.cols() - 1) as f64, (t.rows() - 1) as f64);
+        usual.over_cells(t.spacing().max_element(), size.min_element())
+    });
+    let stated_target = animation.ahead_m.is_some();
     let options = FlightOptions {
         behind_m: *animation.behind_m.get_or_insert(usual.behind_m),
         above_m: *animation.above_m.get_or_insert(usual.above_m),
         ahead_m: *animation.ahead_m.get_or_insert(usual.ahead_m),
     };
-    let flight = Flight::along(&route, session.scene().terrain(), &options).map_err(|e| fail(e.to_string()))?;
-    let positions = walk(flight.length_m(), 0.0, animation).map_err(fail)?;
-    let fov_y_deg = scene.camera.fov_y_deg;
-    let pose = |walked: f64| {
-        let (eye, look_at) = flight.at(walked);
-        Pose { eye, look_at, up: DVec3::Z, fov_y_deg, turn: 0.0 }
-    };
-    Ok(positions.into_iter().map(pose).collect())
+    let flight = Flight::along(&route.plan(), terrain, &options).map_err(|e| fail(e.to_string()))?;
+    let walked = walk(flight.length_m(), 0.0, animation).map_err(fail)?;
+    let fov_y = scene.camera.fov_y_deg.to_radians();
+    let adjustments = vec![Adjustment::NONE; walked.len()];
+    let bends = FollowingBends::of(session.view(), scene);
+    Ok(Following { route, flight, walked, stated_target, fov_y, bends, adjustments })
 }
 
 /// Positions on a route of a given length, one per frame, evenly spaced by the speed or by the number of frames.
@@ -318,7 +355,7 @@ fn checked(frames: u32) -> Result<u32, BelvedereError> {
 }
 
 /// The longest line of a layer, joined with other lines that continue it.
-fn route(scene: &Scene, id: &str) -> Result<Vec<DVec2>, BelvedereError> {
+fn route(scene: &Scene, id: &str) -> Result<Vec<DVec3>, BelvedereError> {
     let lines = |kind: &LayerKind| matches!(kind, LayerKind::Line(_));
     let known: Vec<&str> = scene.layers.iter().filter(|l| lines(&l.kind)).map(|l| l.id.as_str()).collect();
     let layer = scene.layers.iter().find(|l| l.id == id);
@@ -327,7 +364,7 @@ fn route(scene: &Scene, id: &str) -> Result<Vec<DVec2>, BelvedereError> {
         return Err(BelvedereError::Animation(format!("along: \"{id}\" is no line layer of the scene; {hint}")));
     };
     let gap = scene.terrain().map_or(1.0, |t| 20.0 * t.spacing().max_element());
-    Ok(layer.longest_chain(gap).iter().map(|p| p.truncate()).collect())
+    Ok(layer.longest_chain(gap))
 }
 
 /// One camera of a file.

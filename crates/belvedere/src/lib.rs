@@ -35,6 +35,7 @@ mod data;
 pub mod editor;
 mod error;
 pub mod fallback;
+mod film;
 mod open;
 mod options;
 pub mod output;

@@ -5,6 +5,7 @@ use super::{Geometry, VectorFeature, Vectors, Vertex, shorten, vertex};
 use crate::crs::CoordinateSystem;
 use crate::{IoError, Loaded};
 use belvedere_core::{Warning, WarningKind};
+use glam::DVec2;
 use quick_xml::Reader;
 use quick_xml::escape::resolve_predefined_entity;
 use quick_xml::events::{BytesStart, Event};
@@ -43,6 +44,18 @@ struct Parser {
     alone_as: (String, BTreeMap<String, String>),
     phantoms: Phantoms,
     elements: [usize; 3],
+    /// Longitude, latitude and time of every point of a track that has a time.
+    timed: Vec<(DVec2, f64)>,
+}
+
+/// Longitude and latitude, degrees, and time, seconds from 1970 on, of the points of all tracks that have a time, in the order of the file.
+///
+/// # Errors
+/// One sentence for text that is no GPX.
+pub fn track_times(text: &str) -> Result<Vec<(DVec2, f64)>, String> {
+    let mut parser = Parser::default();
+    parser.read(text)?;
+    Ok(parser.timed)
 }
 
 pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> {
@@ -235,6 +248,7 @@ impl Parser {
         let mut lines: Vec<Vec<Recorded>> = Vec::new();
         let mut single = false;
         for segment in std::mem::take(&mut self.segments) {
+            self.timed.extend(segment.iter().filter_map(|(v, time)| Some((v.xy, (*time)?))));
             if segment.len() == 1 && single {
                 self.joined += 1;
                 if let Some(line) = lines.last_mut() {

@@ -13,6 +13,7 @@ mod shapefile;
 pub(crate) mod text;
 
 pub use area_kind::{AreaKind, area_kind};
+pub use gpx::track_times;
 pub use names::name_field;
 pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
 

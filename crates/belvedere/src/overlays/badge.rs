@@ -5,8 +5,8 @@ use belvedere_composite::canvas::{Canvas, text_size};
 use belvedere_core::DVec2;
 use belvedere_scene::{Color, Unit};
 
-/// The shortest words of the mark.
-const WORDS: &str = "bent view";
+/// The shortest words of the mark, and those of all frames of a film: figures would change from frame to frame.
+pub(crate) const WORDS: &str = "bent view";
 /// Smallest picture that the mark fits into, pixels.
 const SMALLEST: [f64; 2] = [160.0, 90.0];
 const LETTERS_PX: f64 = 12.0;

@@ -15,7 +15,7 @@ use belvedere_scene::Color;
 /// Ink of texts and of the lines of legends.
 pub(crate) const INK: Color = Color::rgb(38, 44, 54);
 /// Background of legends.
-const PAPER: Color = Color { r: 255, g: 255, b: 255, a: 224 };
+pub(crate) const PAPER: Color = Color { r: 255, g: 255, b: 255, a: 224 };
 
 /// The next round number (1, 2 or 5 times a power of ten) at or below `value`; 0 if there is none.
 fn round_below(value: f64) -> f64 {

@@ -145,9 +145,11 @@ pub(crate) fn draw_view(
         ghost::draw(&mut frame, straight, scene);
     }
     let displacement = view.is_bent().then(|| displacement::measure(&view, &rigid, &frame));
-    let mark = displacement
-        .filter(|_| wanted.mark && !request.no_mark && badge::fits(frame.width, frame.height))
-        .map(|moved| badge::words(frame.width, moved.max_m, scene.unit));
+    let mark = match displacement {
+        _ if !wanted.mark || request.no_mark || !badge::fits(frame.width, frame.height) => None,
+        _ if request.steady_mark => Some(badge::WORDS.to_owned()),
+        moved => moved.map(|moved| badge::words(frame.width, moved.max_m, scene.unit)),
+    };
     let mut canvas = Canvas::new(&mut frame.color, frame.width);
     if let Some(most) = heatmap_max {
         heat::legend(&mut canvas, most);

@@ -35,6 +35,8 @@ pub struct PictureOptions {
     pub highlight: Vec<HighlightMark>,
     /// Draws no mark on bent pictures, even if the scene does not ask for that.
     pub no_mark: bool,
+    /// Draws the mark without figures and also where nothing is bent, as frames of a film do.
+    pub steady_mark: bool,
     /// Draws a picture of the camera instead of the picture that it takes.
     pub camera: Option<CameraPicture>,
     /// Progress and cancellation.
@@ -57,6 +59,7 @@ impl Default for PictureOptions {
             ghost: false,
             highlight: Vec::new(),
             no_mark: false,
+            steady_mark: false,
             camera: None,
             progress: Progress::default(),
         }

@@ -261,6 +261,10 @@ pub(crate) fn animation(doc: &AnimationDoc, may_rest: bool) -> Result<(), Compla
     if let Some(v) = doc.start_m.filter(|v| !(*v >= 0.0 && v.is_finite())) {
         return Err(("start_m", format!("start_m is {v}, it must be 0 or more")));
     }
+    let over = [("marker", doc.marker), ("clock", doc.clock), ("profile", doc.profile)];
+    if let Some((key, _)) = over.into_iter().find(|(_, flag)| *flag == Some(true) && doc.along.is_none()) {
+        return Err((key, format!("{key} follows a walker along a route; give along, the id of a line layer")));
+    }
     if let Some(t) = doc.turntable.as_ref().filter(|t| t.deg_per_s == 0.0 || !t.deg_per_s.is_finite()) {
         return Err(("turntable", format!("deg_per_s is {}, it must not be 0", t.deg_per_s)));
     }

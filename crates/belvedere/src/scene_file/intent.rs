@@ -152,15 +152,27 @@ pub struct AnimationDoc {
     /// Along a route: distance from its start at which the film begins, metres.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start_m: Option<f64>,
-    /// Along a route: distance of the eye behind the walker, metres; 800 by default, less for routes below 10 km.
+    /// Along a route: distance of the eye behind the walker, metres; 800 by default, less for routes below 10 km, at least 8 cells of
+    /// the terrain.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub behind_m: Option<f64>,
-    /// Along a route: height of the eye over the ground below it and under the walker, metres; 500 by default, less for routes below 10 km.
+    /// Along a route: height of the eye over the ground below it and under the walker, metres; 500 by default, less for routes below 10 km,
+    /// at least 5 cells of the terrain. Frames that need more to see the ground from above get more.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub above_m: Option<f64>,
-    /// Along a route: distance of the target ahead of the walker, metres; 1500 by default, less for routes below 10 km.
+    /// Along a route: distance of the target ahead of the walker, metres; by default the camera tilts so that the walker lies in the lower
+    /// third of the picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ahead_m: Option<f64>,
+    /// Along a route: a mark at the walker, seen through where ground hides it; `false` by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub marker: Option<bool>,
+    /// Along a route: the time at the walker, where a GPX file gives times; `false` by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clock: Option<bool>,
+    /// Along a route: a strip with the heights of the route and the walker's place; `false` by default.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub profile: Option<bool>,
 }
 
 /// Sweep of the viewing angle.

@@ -2,6 +2,7 @@
 
 mod exact;
 mod examples;
+mod films;
 mod names;
 mod sessions;
 mod sweeps;

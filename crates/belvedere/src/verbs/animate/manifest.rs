@@ -1,5 +1,6 @@
 //! The manifest of a folder of frames, by which an interrupted animation is resumed.
 
+use super::overlay::MarkerRecord;
 use crate::camera_path::CameraPath;
 use crate::output;
 use crate::picture::{DisplacementReport, PictureOptions};
@@ -65,12 +66,42 @@ pub struct FrameRecord {
     pub view: ViewRecord,
     /// Displacement of the points in the picture; `None` for a straight picture.
     pub displacement: Option<DisplacementReport>,
+    /// The ground around the eye; `None` without terrain.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ground: Option<FrameGround>,
+    /// The mark at the walker, if it is asked for and he is in the picture.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub marker: Option<MarkerRecord>,
     /// Report of the terrain solver, if it ran.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub terrain: Option<FrameTerrain>,
     /// Report of the constructor of curved rays, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub constructor: Option<ConstructorReport>,
+}
+
+/// How a frame sees the drawn ground.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FrameGround {
+    /// Height of the eye over the highest drawn ground within `needed_m` of it in plan, scene units; `None` where no ground is drawn there.
+    pub clearance_m: Option<f64>,
+    /// Least clearance, scene units: the distance to a corner of the near plane, and a quarter of a cell.
+    pub needed_m: f64,
+    /// Height by which the eye was lifted from its path, scene units.
+    pub lifted_m: f64,
+    /// Share of the strength of spline bends and curved rays that the frame carries, 0..=1.
+    pub bend_share: f64,
+    /// Pixels of ground that were judged.
+    pub pixels: usize,
+    /// Those of them that show its lower side.
+    pub from_below: usize,
+}
+
+impl FrameGround {
+    /// Whether the frame shows the ground from above.
+    pub fn is_clear(&self) -> bool {
+        self.from_below == 0 && self.clearance_m.is_none_or(|c| c >= self.needed_m)
+    }
 }
 
 /// The terrain of one frame.

@@ -1,22 +1,27 @@
 //! `animate`: numbered frames of a moving camera, and a film of them.
 
+mod clock;
 mod film;
 mod manifest;
+mod overlay;
+mod plan;
 mod tracking;
 
 pub use film::Film;
-pub use manifest::{FrameRecord, FrameTerrain, Manifest, Settings, frame_name};
+pub use manifest::{FrameGround, FrameRecord, FrameTerrain, Manifest, Settings, frame_name};
+pub use overlay::MarkerRecord;
 
 use crate::camera_path::CameraPath;
+use crate::film::{Adjustment, DrawnGround};
 use crate::output;
 use crate::picture::{self, PictureOptions};
 use crate::record::ViewRecord;
-use crate::resolve::solving::Memory;
-use crate::resolve::solving::Solving;
+use crate::resolve::solving::{Memory, Solving};
 use crate::scene_file::{AnimationDoc, Document};
 use crate::{BelvedereError, Session};
-use belvedere_scene::Instant;
-use belvedere_scene::Progress;
+use belvedere_core::{Warning, WarningKind};
+use belvedere_scene::{Instant, Progress};
+use overlay::FilmOverlay;
 use std::path::{Path, PathBuf};
 
 /// Request for an animation.
@@ -46,6 +51,8 @@ pub struct Animation {
     pub drawn: usize,
     /// The film.
     pub film: Film,
+    /// Warnings about the film.
+    pub warnings: Vec<Warning>,
 }
 
 /// The folder of the frames of an output, and the film if it names one.
@@ -81,9 +88,12 @@ pub fn animate(session: &Session, request: &AnimateRequest, progress: &Progress)
     if let Some(film) = &film {
         output::check(film, &session.input_paths(), request.overwrite || request.resume)?;
     }
-    let path = CameraPath::new(session, &request.animation)?;
+    let mut path = CameraPath::new(session, &request.animation)?;
     let mut manifest = Manifest::new(session, &path, &request.picture)?;
     claim(&mut manifest, &folder, request)?;
+    if manifest.done < path.len() {
+        plan::plan(session, &mut path, request.picture.straight, progress)?;
+    }
     check_all(session, &path, progress)?;
     std::fs::create_dir_all(&folder).map_err(|e| belvedere_io::IoError::os(&folder, e))?;
     let interrupted = |manifest: &Manifest| BelvedereError::Interrupted {
@@ -92,10 +102,19 @@ pub fn animate(session: &Session, request: &AnimateRequest, progress: &Progress)
         folder: folder.clone(),
     };
     manifest.write(&folder)?;
-    let drawn = match draw_missing(session, &path, &mut manifest, &folder, request, progress) {
+    let (overlay, mut warnings) = match &path.following {
+        Some(following) => {
+            let (overlay, warnings) = FilmOverlay::new(session, following, &path.animation);
+            (Some(overlay), warnings)
+        }
+        None => (None, Vec::new()),
+    };
+    let drawing = Drawing { session, overlay, folder: &folder, request, progress };
+    let drawn = match drawing.missing(&mut path, &mut manifest) {
         Err(e) if e.is_cancelled() => return Err(interrupted(&manifest)),
         drawn => drawn?,
     };
+    warnings.extend(seen_from_below(&manifest));
     let film = match film {
         None => Film::Unwanted,
         Some(out) => match film::make(&out, &folder, path.len(), path.fps, progress) {
@@ -103,7 +122,7 @@ pub fn animate(session: &Session, request: &AnimateRequest, progress: &Progress)
             film => film?,
         },
     };
-    Ok(Animation { manifest, folder, drawn, film })
+    Ok(Animation { manifest, folder, drawn, film, warnings })
 }
 
 /// Decides whether existing frames of the folder are kept, replaced or refused.
@@ -147,51 +166,159 @@ fn check_all(session: &Session, path: &CameraPath, progress: &Progress) -> Resul
     Ok(())
 }
 
-/// Draws the missing frames in order; returns their number.
-fn draw_missing(
-    session: &Session,
-    path: &CameraPath,
-    manifest: &mut Manifest,
-    folder: &Path,
-    request: &AnimateRequest,
-    progress: &Progress,
-) -> Result<usize, BelvedereError> {
-    let missing: Vec<usize> = (0..path.len()).filter(|&f| manifest.frames[f].is_none()).collect();
-    // The memory of a solver depends on all earlier frames: existing frames are solved again but not drawn.
-    // Straight frames need no solution, unless a constructor leads the camera along a path.
-    let solved = !request.picture.straight || path.is_previewed();
-    let solves = solved && (session.resolved().is_some_and(Document::solves_terrain) || session.tracks());
-    let last = missing.last().map_or(0, |f| f + 1);
-    let work: Vec<usize> = if solves { (0..last).collect() } else { missing.clone() };
-    let quiet = progress.unheard();
-    let mut memory = Memory::default();
-    let bends = if work.is_empty() { Vec::new() } else { tracking::plan(session, path, progress)? };
-    let started = Instant::now();
-    for (step, &frame) in work.iter().enumerate() {
-        let share = manifest.done as f64 / path.len() as f64;
-        progress.tick(&remaining(frame, path.len(), step, work.len(), started), share)?;
-        memory.tracking.follow(bends.get(frame).copied());
-        let mut solving = Solving { memory: &mut memory, time_step_s: Some(1.0 / path.fps), progress: &quiet };
-        let session = path.session(session, frame, solved.then_some(&mut solving))?;
-        if manifest.frames[frame].is_some() {
-            continue;
+/// Warning that frames show the ground from below.
+fn seen_from_below(manifest: &Manifest) -> Option<Warning> {
+    let frames: Vec<usize> = manifest
+        .frames
+        .iter()
+        .enumerate()
+        .filter_map(|(i, f)| f.as_ref()?.ground.filter(|g| !g.is_clear()).map(|_| i))
+        .collect();
+    let first = frames.first()?;
+    let (below, all) = (frames.len(), manifest.frames.len());
+    let text = format!(
+        "{below} of {all} frames, the first of them frame {first}, lie under the drawn ground or show it from below; lift the camera, or take a weaker bend"
+    );
+    Some(Warning::new(WarningKind::Suspect, text).with("frames", below as f64))
+}
+
+/// Most tries of a frame whose ground has to be solved before it is known.
+const TRIES: usize = 8;
+/// Lift of a frame that shows the ground from below without a bend, as a share of the height of the eye over the walker.
+const LIFT: f64 = 0.25;
+
+/// What every frame is drawn with.
+struct Drawing<'a> {
+    session: &'a Session,
+    overlay: Option<FilmOverlay>,
+    folder: &'a Path,
+    request: &'a AnimateRequest,
+    progress: &'a Progress,
+}
+
+/// A frame that is drawn, and the ground that it shows.
+struct DrawnFrame {
+    session: Session,
+    picture: picture::Picture,
+    ground: Option<FrameGround>,
+}
+
+impl Drawing<'_> {
+    /// Draws the missing frames in order; returns their number.
+    fn missing(&self, path: &mut CameraPath, manifest: &mut Manifest) -> Result<usize, BelvedereError> {
+        let (session, progress, straight) = (self.session, self.progress, self.request.picture.straight);
+        let missing: Vec<usize> = (0..path.len()).filter(|&f| manifest.frames[f].is_none()).collect();
+        // The memory of a solver depends on all earlier frames: existing frames are solved again but not drawn.
+        // Straight frames need no solution, unless a constructor leads the camera along a path.
+        let solved = !straight || path.is_previewed();
+        let solves = solved && (session.resolved().is_some_and(Document::solves_terrain) || session.tracks());
+        let last = missing.last().map_or(0, |f| f + 1);
+        let work: Vec<usize> = if solves { (0..last).collect() } else { missing.clone() };
+        let mut memory = Memory::default();
+        let bends = if work.is_empty() { Vec::new() } else { tracking::plan(session, path, progress)? };
+        let started = Instant::now();
+        for (step, &frame) in work.iter().enumerate() {
+            let share = manifest.done as f64 / path.len() as f64;
+            progress.tick(&remaining(frame, path.len(), step, work.len(), started), share)?;
+            memory.tracking.follow(bends.get(frame).copied());
+            let known = manifest.frames[frame].as_ref().map(|f| f.ground);
+            if let (Some(Some(ground)), Some(following)) = (known, &mut path.following) {
+                following.adjustments[frame] = Adjustment { lift: ground.lifted_m, share: ground.bend_share };
+            }
+            if known.is_some() {
+                self.resolved(path, frame, solved, &mut memory)?;
+                continue;
+            }
+            let drawn = self.frame(path, frame, solved, (&mut memory, manifest))?;
+            let record = self.write(path, frame, drawn)?;
+            manifest.put(frame, record);
+            manifest.write(self.folder)?;
         }
-        let picture = picture::draw(&session, &request.picture, manifest.inputs.clone(), &quiet)?;
+        Ok(missing.len())
+    }
+
+    fn resolved(
+        &self,
+        path: &CameraPath,
+        frame: usize,
+        solved: bool,
+        memory: &mut Memory,
+    ) -> Result<Session, BelvedereError> {
+        let quiet = self.progress.unheard();
+        let mut solving = Solving { memory, time_step_s: Some(1.0 / path.fps), progress: &quiet };
+        path.session(self.session, frame, solved.then_some(&mut solving))
+    }
+
+    /// Draws a frame; along a route again with less bend, or from higher up, while it shows the ground from below.
+    fn frame(
+        &self,
+        path: &mut CameraPath,
+        frame: usize,
+        solved: bool,
+        (memory, manifest): (&mut Memory, &Manifest),
+    ) -> Result<DrawnFrame, BelvedereError> {
+        let quiet = self.progress.unheard();
+        let before = memory.clone();
+        let mut tries = 0;
+        loop {
+            let session = self.resolved(path, frame, solved, memory)?;
+            let steady_mark = path.has_stages() && !self.request.picture.straight;
+            let options = PictureOptions { steady_mark, ..self.request.picture.clone() };
+            let picture = picture::draw(&session, &options, manifest.inputs.clone(), &quiet)?;
+            let adjusted = path.following.as_ref().map_or(Adjustment::NONE, |f| f.adjustments[frame]);
+            let ground = DrawnGround::of(session.scene(), &picture.view).map(|ground| {
+                let [pixels, from_below] = ground.from_below(&picture.frame);
+                FrameGround {
+                    clearance_m: ground.clearance(),
+                    needed_m: ground.needed(),
+                    lifted_m: adjusted.lift,
+                    bend_share: adjusted.share,
+                    pixels,
+                    from_below,
+                }
+            });
+            tries += 1;
+            let (Some(lacking), Some(following)) =
+                (ground.filter(|g| !g.is_clear() && tries < TRIES), &mut path.following)
+            else {
+                return Ok(DrawnFrame { session, picture, ground });
+            };
+            let camera = following.camera(frame);
+            let short = lacking.clearance_m.map_or(0.0, |c| lacking.needed_m - c);
+            following.adjustments[frame] = match () {
+                () if short > 0.0 => Adjustment { lift: adjusted.lift + 1.05 * short, ..adjusted },
+                () if adjusted.share > 0.0 => Adjustment { share: (adjusted.share - 0.34).max(0.0), ..adjusted },
+                () => Adjustment { lift: adjusted.lift + LIFT * (camera.eye.z - camera.walker.z).abs(), ..adjusted },
+            };
+            *memory = before.clone();
+        }
+    }
+
+    /// Draws the overlays over a frame and writes it.
+    fn write(&self, path: &CameraPath, frame: usize, drawn: DrawnFrame) -> Result<FrameRecord, BelvedereError> {
+        let DrawnFrame { session, mut picture, ground } = drawn;
+        let mark = picture.sidecar.overlay.mark;
+        let marker = match (&self.overlay, &path.following) {
+            (Some(overlay), Some(following)) => {
+                let view = picture.view.clone();
+                overlay.draw(&mut picture.frame, (session.scene(), &view), (following, frame), mark)
+            }
+            _ => None,
+        };
         let file = frame_name(frame);
-        let out = folder.join(&file);
+        let out = self.folder.join(&file);
         picture.write_png(&out, true)?;
-        let record = FrameRecord {
+        Ok(FrameRecord {
             sha256: belvedere_io::sha256_of_file(&out)?,
             file,
             view: ViewRecord::of(session.view()),
             displacement: picture.sidecar.displacement,
+            ground,
+            marker,
             terrain: session.terrain_report().map(FrameTerrain::of),
             constructor: session.constructor_report().cloned(),
-        };
-        manifest.put(frame, record);
-        manifest.write(folder)?;
+        })
     }
-    Ok(missing.len())
 }
 
 /// `frame 12 of 250, 3 min left`.
