@@ -6,8 +6,8 @@ use belvedere_core::{DVec2, DVec3, Pinhole, Projection};
 
 /// Eyes are tried in this many directions.
 const DIRECTIONS: usize = 24;
-/// Pitches as shares of half the field of view: the horizon stays in the upper part of the picture.
-const PITCHES: [f64; 4] = [0.65, 0.8, 0.9, 1.0];
+/// Pitches as shares of half the field of view: up to 0.9 the horizon lies in the picture, from steeper ones a bend brings it there.
+const PITCHES: [f64; 4] = [0.65, 0.82, 1.0, 1.35];
 /// Distances as shares of the one from which all features fit into the picture.
 const DISTANCES: [f64; 4] = [1.0, 1.25, 0.8, 0.6];
 /// Share of the half width and of the half height of the picture that the features take up where they fit.

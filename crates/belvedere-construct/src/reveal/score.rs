@@ -5,15 +5,15 @@ use super::evaluate::Evaluation;
 /// Score of a picture by its composition, whatever it hides: the whole of the features in it, large, on ground of the data that its cells
 /// can carry, under a horizon.
 pub(super) fn composition(a: &Evaluation) -> f64 {
-    let sky = (0.10 - a.skyline).max(0.0) + (a.skyline - 0.20).max(0.0);
+    let sky = 4.0 * (0.08 - a.skyline).max(0.0) + 2.0 * (a.skyline - 0.20).max(0.0);
     let fill = (0.45 - a.spread).max(0.0) + 2.0 * (a.spread - 0.85).max(0.0);
     let outside = 4.0 * (1.0 - a.in_frame) + 6.0 * (0.97 - a.in_frame).max(0.0);
     0.25 * (a.drawn / 0.8).min(1.0) + 0.3 * (a.width / 0.7).min(1.0)
         - outside
         - 1.0 * (a.in_frame - a.in_margin)
-        - 3.0 * (1.0 - a.covered)
-        - 2.0 * sky
-        - 0.3 * fill
+        - 4.0 * (1.0 - a.covered)
+        - sky
+        - 0.5 * fill
         - 0.03 * (a.coarse_px - 8.0).clamp(0.0, 40.0)
 }
 

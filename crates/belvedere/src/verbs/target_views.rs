@@ -10,8 +10,8 @@ use rayon::prelude::*;
 /// on ground, and of others.
 const HEADINGS: [f64; 12] = [30.0, 330.0, 60.0, 300.0, 0.0, 90.0, 270.0, 120.0, 240.0, 150.0, 210.0, 180.0];
 const PITCHES: [[f64; 2]; 2] = [[20.0, 35.0], [8.0, 30.0]];
-/// Views for which bends are searched.
-const KEPT: usize = 3;
+/// Views for which bends are searched, at most.
+const KEPT: usize = 8;
 /// Visible share that a heading of the list must gain over an earlier one.
 const WORTH: f64 = 0.03;
 /// Share of half the picture's width and height that the model takes up.
