@@ -223,6 +223,13 @@ pub(crate) struct RevealArgs {
     /// Style of areas, instead of the one that their properties and names give
     #[arg(long, value_parser = kinds::surface(), value_name = "STYLE")]
     pub(crate) area_style: Option<SurfaceDoc>,
+    /// Write a sheet of up to N pictures from different sides to OUT.png instead of one, with the shares of each and the command that
+    /// makes it
+    #[arg(long, value_name = "N", conflicts_with_all = ["see", "eye", "look"])]
+    pub(crate) drafts: Option<usize>,
+    /// Axis that points upwards in the picture, with --see: x, y, z, -x, -y or -z
+    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = crate::parse::axis, requires = "see")]
+    pub(crate) up: Option<[f64; 3]>,
     /// Technique that bends the picture; by default a spline, with --see curved rays
     #[arg(long, value_enum)]
     pub(crate) technique: Option<TechniqueKind>,

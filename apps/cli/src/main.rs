@@ -5,6 +5,7 @@
 mod args;
 mod city;
 mod common_args;
+mod drafts;
 mod draw_args;
 mod goal;
 mod ground_args;

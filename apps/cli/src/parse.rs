@@ -121,3 +121,13 @@ pub(crate) fn parse_bytes(text: &str) -> Result<u64, String> {
         _ => Err("give a size of at least 1MiB, such as 800MiB or 2GiB".into()),
     }
 }
+
+/// An axis such as `-y` as a unit vector.
+pub(crate) fn axis(text: &str) -> Result<[f64; 3], String> {
+    let (sign, name) = text.strip_prefix('-').map_or((1.0, text.trim_start_matches('+')), |name| (-1.0, name));
+    let index = ["x", "y", "z"].iter().position(|axis| name.eq_ignore_ascii_case(axis));
+    let index = index.ok_or_else(|| format!("{text:?} is no axis; give x, y, z, -x, -y or -z"))?;
+    let mut out = [0.0; 3];
+    out[index] = sign;
+    Ok(out)
+}

@@ -299,6 +299,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
             transfer: args.transfer,
             viewpoint,
             fov_y_deg: args.fov,
+            up: args.up.map(belvedere::core::DVec3::from_array),
             image: args.size,
             ..TargetRequest::default()
         };
@@ -329,6 +330,9 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
         ..RevealRequest::default()
     };
     quality(&mut request.picture);
+    if let Some(count) = args.drafts {
+        return crate::drafts::drafts(&request, count, &out.out, context);
+    }
     let answer = reveal::reveal(&request, &context.options(Needs::Everything, None))?;
     let written = answer.write(&out, context.common.overwrite)?;
     if context.common.json {

@@ -225,3 +225,51 @@ fn headline_report_and_measure_give_the_same_shares_of_the_whole() {
         }
     }
 }
+
+/// A gentle slope that hides nothing, and a way over it.
+fn slope() -> Place {
+    let place = place(|_, _| false);
+    place.write("dem.asc", &ranges(|_, _| false, 1000.0, 0.0));
+    place
+}
+
+#[test]
+fn where_nothing_is_hidden_the_answer_is_the_straight_picture_and_a_word() {
+    let place = slope();
+    let args = ["reveal", "dem.asc", "way.geojson", "-o", "out.png", "--size", "160x90", "--overwrite", "--strict"];
+    for technique in ["spline", "terrain", "both", "curved_rays", "auto"] {
+        let said =
+            place.ok(&[&args[..], &["--report", "r.json", "--scene", "r.toml", "--technique", technique]].concat());
+        assert!(said.contains("so nothing is bent"), "{technique}: {said}");
+        let report: serde_json::Value = serde_json::from_slice(&super::read(&place.path("r.json"))).expect("JSON");
+        assert!(report["technique"].is_null() && report["displacement"].is_null(), "{technique}: {report}");
+        let share = |key: &str| report[key].as_f64().expect("a share");
+        assert!(share("in_frame_bent") > 0.95 && share("visible_bent") > 0.995 * share("in_frame_bent"), "{technique}");
+        let scene = String::from_utf8(super::read(&place.path("r.toml"))).expect("UTF-8");
+        assert!(!scene.contains("[[stage]]"), "{technique}: {scene}");
+    }
+}
+
+#[test]
+fn drafts_come_with_their_shares_and_the_command_that_makes_each() {
+    let place = place(|_, _| false);
+    let args = ["reveal", "dem.asc", "way.geojson", "-o", "sheet.png", "--size", "160x90", "--drafts", "3"];
+    let said = place.ok(&args);
+    let lines: Vec<&str> = said.lines().collect();
+    assert!((2..=3).contains(&lines.len()), "{said}");
+    assert!(super::read(&place.path("sheet.png")).len() > 1000);
+    for line in &lines {
+        let (words, command) = line.split_once("belvedere ").expect("a command");
+        assert!(words.contains("% in the frame"), "{line}");
+        let mut again: Vec<&str> = command.split_whitespace().collect();
+        let out = again.iter().position(|a| *a == "-o").expect("an output");
+        again[out + 1] = "one.png";
+        let result = place.json(&[&again[..], &["--overwrite", "--json"]].concat());
+        let visible = result["shares"]["visible_bent"].as_f64().expect("a share");
+        let stated = words.split("visible ").nth(1).and_then(|w| w.split(' ').next()).expect("a share");
+        let stated: f64 = stated.parse().expect("a number");
+        assert!((stated - 100.0 * visible).abs() < 0.11, "{line}: {visible}");
+    }
+    let line = place.fails(&[&args[..7], &["--drafts", "0", "--overwrite"]].concat());
+    assert!(line.contains("give 1 to 24"), "{line}");
+}

@@ -46,10 +46,14 @@ pub struct BendFound {
 /// Figures of a [`BendFound`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BendReport {
-    /// Share of the target that straight rays show.
+    /// Share of the whole target that straight rays show.
     pub visible_straight: f64,
-    /// Share of the target that the bent view shows.
+    /// Share of the whole target that the bent view shows.
     pub visible: f64,
+    /// Share of the target that lies in the straight picture, hidden or not.
+    pub in_frame_straight: f64,
+    /// Share of the target that lies in the bent picture.
+    pub in_frame: f64,
     /// Light of the target that comes through volumes along straight rays, 0..=1; from 0.5 on it counts as seen.
     pub light_straight: f64,
     /// Most light that any bend that was tried lets through.
@@ -93,6 +97,8 @@ pub fn bend_around(
     let mut report = BendReport {
         visible_straight,
         visible: visible_straight,
+        in_frame_straight: sight.in_frame(base),
+        in_frame: sight.in_frame(base),
         light_straight,
         light_best: light_straight,
         motion: 0.0,
@@ -135,9 +141,12 @@ pub fn bend_around(
             }
         }
     }
-    let bent = best.filter(|b| b.share > straight && b.score() > straight);
+    // The margin around the target decides among bends, but not whether the picture is worse than the straight one.
+    let worth = |b: &Candidate| b.share > straight && b.score() > straight;
+    let bent = best.filter(|b| worth(b) && sight.share(&b.view, 0.0) > visible_straight);
     if let Some(best) = &bent {
         (report.visible, report.motion) = (sight.share(&best.view, 0.0), best.motion);
+        report.in_frame = sight.in_frame(&best.view);
     }
     Ok(BendFound { bent: bent.map(|b| (b.view, b.sidestep)), report })
 }

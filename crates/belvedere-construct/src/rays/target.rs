@@ -205,6 +205,16 @@ impl<'a> TargetSight<'a> {
         Shown { share: seen as f64 / count, light: sum / count }
     }
 
+    /// Share of the target's points that are in the picture, hidden or not, 0..=1.
+    pub fn in_frame(&self, view: &View) -> f64 {
+        let pinhole = view.pinhole();
+        let inside = self.target.points.iter().filter(|p| {
+            let in_range = |depth: f64| depth >= pinhole.near && pinhole.far.is_none_or(|far| depth <= far);
+            view.project(**p).is_ok_and(|image| in_range(image.depth) && pinhole.contains(image.pixel))
+        });
+        inside.count() as f64 / self.target.points.len().max(1) as f64
+    }
+
     /// Light that comes from a point.
     fn light(&self, view: &View, (p, radius): (DVec3, f64), grow_px: f64) -> f64 {
         let p = self.grown(view, p, grow_px);

@@ -32,6 +32,11 @@ pub struct Evaluation {
     pub covered: f64,
     /// Mean position of the upper edge of the ground, share of the image height from the top; 1 = no ground in the image.
     pub skyline: f64,
+    /// Horizontal extent of the middle 98 % of the features in the image, share of the image width.
+    pub width: f64,
+    /// Mean size of a grid cell at the lower border of the image, pixels; 0 without ground there. Ground that is magnified much more than 8
+    /// times looks smeared.
+    pub coarse_px: f64,
 }
 
 impl Evaluation {
@@ -82,7 +87,7 @@ impl<'a> Evaluator<'a> {
         let pinhole = view.pinhole();
         let (mut all, mut framed, mut inner, mut seen, mut drawn) = (0.0, 0.0, 0.0, 0.0, 0.0);
         let centre = pinhole.center_px();
-        let (mut rows, mut distances): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+        let [mut rows, mut columns, mut distances]: [Vec<f64>; 3] = Default::default();
         for sample in self.samples.iter().step_by(stride.max(1)) {
             all += sample.amount;
             let Ok(image) = view.project(sample.p_world) else { continue };
@@ -94,6 +99,7 @@ impl<'a> Evaluator<'a> {
                 inner += sample.amount;
             }
             rows.push(image.pixel.y);
+            columns.push(image.pixel.x);
             distances.push((sample.p_world - pinhole.eye).length());
             drawn += sample.amount / image.depth;
             let at = (image.pixel, image.depth);
@@ -105,6 +111,7 @@ impl<'a> Evaluator<'a> {
         let depth_ratio =
             quantile(&mut distances, 0.97, Rank::Nearest) / quantile(&mut distances, 0.03, Rank::Nearest).max(1e-9);
         let skyline = self.skyline(view);
+        let (covered, coarse_px) = self.covered(view, skyline);
         let [width, height] = pinhole.image.map(f64::from);
         Evaluation {
             in_frame: if all > 0.0 { framed / all } else { 0.0 },
@@ -114,8 +121,10 @@ impl<'a> Evaluator<'a> {
             attainable: (0.8 * height_angle).atan2(depth_ratio.ln().max(0.0)),
             spread: (quantile(&mut rows, 0.95, Rank::Nearest) - quantile(&mut rows, 0.05, Rank::Nearest)) / height,
             drawn: drawn * pinhole.scale_px() / width,
-            covered: self.covered(view, skyline),
+            covered,
             skyline,
+            width: (quantile(&mut columns, 0.99, Rank::Nearest) - quantile(&mut columns, 0.01, Rank::Nearest)) / width,
+            coarse_px,
         }
     }
 
@@ -135,26 +144,32 @@ impl<'a> Evaluator<'a> {
         top.iter().sum::<f64>() / (COLUMNS as f64 * height)
     }
 
-    /// Share of a grid of rays below the skyline that come down on the ground of the data from above.
-    fn covered(&self, view: &View, skyline: f64) -> f64 {
+    /// Share of a grid of rays below the skyline that come down on the ground of the data from above, and the size of its cells in the lowest
+    /// row, pixels.
+    fn covered(&self, view: &View, skyline: f64) -> (f64, f64) {
         let [width, height] = view.pinhole().image.map(f64::from);
         let top = skyline.clamp(0.0, 0.9);
         let (mut hit, mut all) = (0.0, 0.0);
+        let (mut lowest, mut cells_px) = (0.0f64, 0.0);
         // The lower the row, the nearer and the more conspicuous a missing corner of the ground.
         for (part, weight) in [(0.05, 0.5), (0.15, 0.7), (0.3, 1.0), (0.6, 1.5), (0.985, 2.0)] {
             for column in [0.005, 0.12, 0.24, 0.38, 0.5, 0.62, 0.76, 0.88, 0.995] {
                 let pixel = DVec2::new(column * width, (top + (1.0 - top) * part) * height);
                 all += weight;
-                if self.meets_data(view, pixel) {
-                    hit += weight;
+                let Some(distance) = self.meets_data(view, pixel) else { continue };
+                hit += weight;
+                if part > 0.9 {
+                    lowest += 1.0;
+                    cells_px += view.pinhole().scale_px() * self.cell / distance.max(self.cell);
                 }
             }
         }
-        hit / all
+        (hit / all, if lowest > 0.0 { cells_px / lowest } else { 0.0 })
     }
 
-    /// Whether the ray comes down on the terrain; one that passes its rim below the ground shows the void under it.
-    fn meets_data(&self, view: &View, pixel: DVec2) -> bool {
+    /// Distance from the eye at which the ray comes down on the terrain; `None` if it does not: one that passes its rim below the ground shows
+    /// the void under it.
+    fn meets_data(&self, view: &View, pixel: DVec2) -> Option<f64> {
         let ray = view.ray(pixel);
         let bounds = self.heightfield.bounds();
         let reach = 4.0 * (bounds.max - bounds.min).length() + (view.pinhole().eye - bounds.center()).length();
@@ -162,13 +177,15 @@ impl<'a> Evaluator<'a> {
         while depth < reach {
             if let Ok(at) = ray.at(depth) {
                 match self.heightfield.surface_at(at.point.truncate()) {
-                    Some(ground) if at.point.z < ground => return over_data,
+                    Some(ground) if at.point.z < ground => {
+                        return over_data.then(|| at.point.distance(view.pinhole().eye));
+                    }
                     ground => over_data = ground.is_some(),
                 }
             }
             depth *= 1.08;
         }
-        false
+        None
     }
 
     /// Smallest factor by which the bend squeezes lengths over the terrain inside the image (0 = fold), and the

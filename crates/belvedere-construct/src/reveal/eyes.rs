@@ -1,4 +1,4 @@
-//! Candidate cameras around the features.
+//! Candidate cameras around the features: each holds all of them, as large as its picture allows, or the middle of them larger.
 
 use super::evaluate::Evaluator;
 use super::options::RevealOptions;
@@ -6,12 +6,14 @@ use belvedere_core::{DVec2, DVec3, Pinhole, Projection};
 
 /// Eyes are tried in this many directions.
 const DIRECTIONS: usize = 24;
-/// Pitches as shares of half the field of view: the horizon stays in the upper part of the picture.
-const PITCHES: [f64; 4] = [0.5, 0.65, 0.8, 1.0];
-/// Distances as shares of the one from which all features fit in the width.
-const DISTANCES: [f64; 4] = [1.12, 0.85, 0.62, 0.45];
-/// Middle shares of the features that the picture is centred on: all of them, or the denser half.
-const CORES: [f64; 2] = [0.98, 0.6];
+/// Pitches as shares of half the field of view: up to 0.9 the horizon lies in the picture, from steeper ones a bend brings it there.
+const PITCHES: [f64; 4] = [0.65, 0.82, 1.0, 1.35];
+/// Distances as shares of the one from which all features fit into the picture.
+const DISTANCES: [f64; 4] = [1.0, 1.25, 0.8, 0.6];
+/// Share of the half width and of the half height of the picture that the features take up where they fit.
+const FITTED: DVec2 = DVec2::new(0.88, 0.72);
+/// Most pixels that a grid cell among the features may take up: ground that is magnified more looks smeared.
+const MOST_PER_CELL_PX: f64 = 8.0;
 
 /// A camera to be evaluated, and its heading.
 #[derive(Debug, Clone)]
@@ -23,20 +25,18 @@ pub(crate) struct Eye {
 
 /// All cameras worth evaluating: eyes in a ring of directions, at several distances and pitches.
 pub(crate) fn candidates(evaluator: &Evaluator<'_>, options: &RevealOptions) -> Vec<Eye> {
-    let points: Vec<(DVec2, f64)> = evaluator.samples.iter().map(|s| (s.p_world.truncate(), s.p_world.z)).collect();
+    let points: Vec<DVec3> = evaluator.samples.iter().map(|s| s.p_world).collect();
     let mut out = Vec::new();
     for direction in 0..DIRECTIONS {
         let heading = std::f64::consts::TAU * direction as f64 / DIRECTIONS as f64;
-        let forward = DVec2::new(heading.sin(), heading.cos());
-        let right = DVec2::new(forward.y, -forward.x);
-        for core in CORES {
-            let Some(extent) = Extent::of(&points, forward, right, core) else { continue };
-            for fov_y in [options.fov_y, 0.75 * options.fov_y] {
-                for pitch in PITCHES.map(|p| p * 0.5 * fov_y) {
-                    for share in DISTANCES {
-                        let eye = camera(evaluator, options, &extent, [forward, right], (fov_y, pitch, share));
-                        out.extend(eye.map(|pinhole| Eye { pinhole, heading_deg: heading.to_degrees() }));
-                    }
+        let ahead = DVec3::new(heading.sin(), heading.cos(), 0.0);
+        for fov_y in [options.fov_y, 0.75 * options.fov_y] {
+            for pitch in PITCHES.map(|p| p * 0.5 * fov_y) {
+                let forward = pitch.cos() * ahead - pitch.sin() * DVec3::Z;
+                let Some(fit) = Fit::of(&points, forward, fov_y, options.image) else { continue };
+                for share in DISTANCES {
+                    let eye = camera(evaluator, options, &fit, (fov_y, share));
+                    out.extend(eye.map(|pinhole| Eye { pinhole, heading_deg: heading.to_degrees() }));
                 }
             }
         }
@@ -44,54 +44,56 @@ pub(crate) fn candidates(evaluator: &Evaluator<'_>, options: &RevealOptions) -> 
     out
 }
 
-/// Extents of the features along and across a heading.
-struct Extent {
-    center: DVec2,
-    z: f64,
-    half_width: f64,
-    half_depth: f64,
+/// The nearest eye from which all points lie in the middle of the picture.
+struct Fit {
+    eye: DVec3,
+    forward: DVec3,
+    /// Distance from the eye to the middle of the points along `forward`.
+    distance: f64,
 }
 
-impl Extent {
-    fn of(points: &[(DVec2, f64)], forward: DVec2, right: DVec2, core: f64) -> Option<Self> {
-        let range = |axis: DVec2| {
-            let mut along: Vec<f64> = points.iter().map(|p| p.0.dot(axis)).collect();
-            along.sort_by(f64::total_cmp);
-            let last = along.len().checked_sub(1)? as f64;
-            let at = |q: f64| along[(q * last).round() as usize];
-            Some((at(0.5 - 0.5 * core), at(0.5 + 0.5 * core)))
-        };
-        let ((f0, f1), (r0, r1)) = (range(forward)?, range(right)?);
-        let mut heights: Vec<f64> = points.iter().map(|p| p.1).collect();
-        heights.sort_by(f64::total_cmp);
-        Some(Self {
-            center: 0.5 * (f0 + f1) * forward + 0.5 * (r0 + r1) * right,
-            z: heights[heights.len() / 2],
-            half_width: 0.5 * (r1 - r0),
-            half_depth: 0.5 * (f1 - f0),
-        })
+impl Fit {
+    /// In the axes of the camera every border of the picture is a plane through the eye, so that each pair of opposite borders bounds how
+    /// far ahead the eye may be; the nearer bound holds.
+    fn of(points: &[DVec3], forward: DVec3, fov_y: f64, image: [u32; 2]) -> Option<Self> {
+        let [width, height] = image.map(f64::from);
+        let right = forward.cross(DVec3::Z).normalize();
+        let up = right.cross(forward);
+        let tangent = FITTED * (0.5 * fov_y).tan() * DVec2::new(width / height, 1.0);
+        let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let mut depths: Vec<f64> = Vec::with_capacity(points.len());
+        for p in points {
+            let (aside, z) = (DVec2::new(p.dot(right), p.dot(up)), p.dot(forward));
+            most = most.max(aside - tangent * z);
+            least = least.min(aside + tangent * z);
+            depths.push(z);
+        }
+        depths.sort_by(f64::total_cmp);
+        let middle = *depths.get(depths.len() / 2)?;
+        let aside = 0.5 * (least + most);
+        let z = (0.5 * (least - most) / tangent).min_element().min(*depths.first()?);
+        let eye = aside.x * right + aside.y * up + z * forward;
+        (eye.is_finite()).then_some(Self { eye, forward, distance: middle - z })
     }
 }
 
-/// A camera that looks at the middle of the extent, if its eye lies near the terrain and clear of it.
+/// A camera at a share of the fitted distance, if its eye lies near the terrain and clear of it.
 fn camera(
     evaluator: &Evaluator<'_>,
     options: &RevealOptions,
-    extent: &Extent,
-    [forward, _right]: [DVec2; 2],
-    (fov_y, pitch, share): (f64, f64, f64),
+    fit: &Fit,
+    (fov_y, share): (f64, f64),
 ) -> Option<Pinhole> {
-    let [width, height] = options.image.map(f64::from);
-    let half_tan_x = (0.5 * fov_y).tan() * width / height;
     let cell = evaluator.heightfield.spacing().max_element();
-    // Wide enough for the width, and far enough that the depth of the features fits between the eye and the horizon.
-    let wide = extent.half_width / half_tan_x + 0.4 * extent.half_depth;
-    let distance = share * wide.max(1.5 * extent.half_depth).max(30.0 * cell);
-    let target = extent.center.extend(extent.z);
-    let eye = target - distance * pitch.cos() * forward.extend(0.0) + DVec3::Z * distance * pitch.sin();
     let bounds = evaluator.heightfield.bounds();
+    let extent = (bounds.max - bounds.min).truncate().max_element();
+    let scale = 0.5 * f64::from(options.image[1]) / (0.5 * fov_y).tan();
+    // Small features are looked at from where the grid still carries the picture.
+    let least = (scale * cell / MOST_PER_CELL_PX).min(0.6 * extent).max(30.0 * cell);
+    let distance = (share * fit.distance).max(least);
+    let eye = fit.eye - (distance - fit.distance) * fit.forward;
     let outside = (eye - eye.clamp(bounds.min, bounds.max)).truncate().length();
-    if outside > 0.5 * (bounds.max - bounds.min).truncate().max_element() {
+    if outside > 0.5 * extent {
         return None;
     }
     let clearance = evaluator.obstacles.above_ground(eye).unwrap_or(f64::INFINITY);
@@ -100,5 +102,41 @@ fn camera(
         return None;
     }
     let projection = Projection::Perspective { fov_y };
-    Pinhole::look_at(eye, target, DVec3::Z, projection, options.image, 1.0, None).ok()
+    Pinhole::look_at(eye, eye + distance * fit.forward, DVec3::Z, projection, options.image, 1.0, None).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_fit_is_the_nearest_eye_that_holds_every_point() {
+        let mut seed = 1u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 40) as f64 / f64::from(1u32 << 24)
+        };
+        for case in 0..60 {
+            let size = DVec3::new(1.0 + 9000.0 * random(), 1.0 + 9000.0 * random(), 2000.0 * random());
+            let middle = DVec3::new(5e5, 5e6, 1000.0);
+            let points: Vec<DVec3> =
+                (0..40).map(|_| middle + size * (DVec3::new(random(), random(), random()) - 0.5)).collect();
+            let (heading, pitch, fov_y) = (6.3 * random(), 0.1 + 0.4 * random(), 0.4 + 0.6 * random());
+            let ahead = DVec3::new(heading.sin(), heading.cos(), 0.0);
+            let forward = pitch.cos() * ahead - pitch.sin() * DVec3::Z;
+            let fit = Fit::of(&points, forward, fov_y, [1280, 720]).unwrap();
+            let lens = Projection::Perspective { fov_y };
+            let look =
+                |eye: DVec3| Pinhole::look_at(eye, eye + forward, DVec3::Z, lens, [1280, 720], 0.1, None).unwrap();
+            let outermost = |camera: &Pinhole| {
+                let off = points.iter().map(|p| {
+                    let pixel = camera.project(*p).unwrap().0;
+                    ((pixel - camera.center_px()) / camera.center_px()).abs() / FITTED
+                });
+                off.map(|o| o.max_element()).fold(0.0, f64::max)
+            };
+            let most = outermost(&look(fit.eye));
+            assert!((most - 1.0).abs() < 1e-6, "case {case}: the outermost point lies at {most} of the margin");
+        }
+    }
 }

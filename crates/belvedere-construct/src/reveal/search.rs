@@ -2,6 +2,7 @@
 
 use super::evaluate::{Evaluation, Evaluator};
 use super::options::RevealOptions;
+use super::score::{composition, shown};
 use super::shape::{BendShape, BuiltBend};
 use belvedere_core::quantile::{Rank, quantile};
 use belvedere_core::{Projection, View};
@@ -16,6 +17,9 @@ pub(crate) struct Candidate {
     pub(crate) facing: f64,
     pub(crate) score: f64,
 }
+
+/// Score that any bend costs: a straight picture that shows as much is better.
+const BENT: f64 = 0.05;
 
 /// Distances and angles that the free parameters of a shape are multiples of.
 struct Scales {
@@ -115,27 +119,17 @@ impl<'a, 'b> BendSearch<'a, 'b> {
     fn score(&self, shape: &BendShape, a: &Evaluation, squeeze: f64, facing: f64) -> f64 {
         let lost =
             (self.scales.straight_in_frame * 0.97 - a.in_frame).max(0.0) / self.scales.straight_in_frame.max(1e-9);
-        let gain = a.visible_in_frame / self.straight.visible_in_frame.max(0.05);
-        // The goals first, then as much as possible, then how natural it looks.
-        let goals = 8.0 * (0.79 - a.visible_in_frame).max(0.0)
-            + (0.88 - a.visible_in_frame).max(0.0)
-            + 2.0 * (1.6 - gain).max(0.0)
-            + 6.0 * lost
-            + 30.0 * (lost - 0.04).max(0.0);
         let bend = (shape.middle - self.scales.pitch).abs() + 0.3 * (shape.middle - shape.near).abs();
-        let sky = (0.10 - a.skyline).max(0.0) + (a.skyline - 0.20).max(0.0);
         // Turning per distance: ground that tips over a kink looks broken.
         let kink = (shape.middle - shape.far).abs() * self.scales.features[1] / (shape.fall[1] - shape.fall[0]);
-        let fill = (0.45 - a.spread).max(0.0) + 2.0 * (a.spread - 0.85).max(0.0);
-        // Above nine tenths a gentler bend is worth more than the last bit.
-        0.5 * a.visible_in_frame + 0.5 * a.visible_in_frame.min(0.9)
-            - goals
-            - 0.12 * bend
-            - 3.0 * sky
-            - 0.3 * fill
-            - 3.0 * (1.0 - a.covered)
-            - 1.0 * (a.in_frame - a.in_margin)
-            - 0.04 * (kink - 1.0).max(0.0)
+        let more = a.visible - self.straight.visible;
+        shown(a) + composition(a)
+            - 6.0 * lost
+            - 30.0 * (lost - 0.04).max(0.0)
+            - BENT
+            - 0.2 * bend
+            - 2.0 * (0.05 - more).max(0.0)
+            - 0.06 * (kink - 1.0).max(0.0)
             - 0.6 * (0.6 - squeeze).max(0.0)
             - 4.0 * (0.03 - facing).max(0.0)
     }

@@ -3,6 +3,7 @@
 pub mod animate;
 pub mod check;
 pub mod disocclude;
+pub mod drafts;
 pub mod generalise;
 mod in_time;
 pub mod info;
@@ -16,4 +17,5 @@ pub mod points;
 pub mod preset;
 pub mod reveal;
 pub mod reveal_target;
+mod target_views;
 mod written_rivers;

@@ -1,7 +1,7 @@
 //! `reveal`: draws a picture of terrain in which routes and other features are visible.
 
 use super::in_time;
-use crate::data::DataFiles;
+use crate::data::{Data, DataFiles};
 use crate::output::{self, document_toml, pretty};
 use crate::picture::{DisplacementReport, Picture, PictureOptions, TerrainRecord};
 use crate::resolve::ground::{Ground, earth_radius};
@@ -85,6 +85,15 @@ pub enum Technique {
 /// Visible share from which on the ground is not moved.
 const ENOUGH: f64 = 0.99;
 
+/// Share of what is in the frame from which on nothing counts as hidden, and nothing is bent.
+const NOTHING_HIDDEN: f64 = 0.995;
+
+/// The same where a technique is asked for that shows all.
+const ALL_SHOWN: f64 = 0.9999;
+
+/// Share of the whole features that a bend must show in addition, or the straight picture is the answer.
+const LEAST_GAIN: f64 = 0.001;
+
 /// Largest number of samples of the features by which curved rays are chosen.
 const SAMPLES_TO_BEND_FOR: usize = 150;
 
@@ -115,8 +124,8 @@ pub struct Tried {
 /// Shares of the whole features in both pictures, by lines of sight through the whole chain of stages.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct FinalShares {
-    /// Technique of the bent picture.
-    pub technique: Technique,
+    /// Technique that bends the picture; `None` if it is straight, because nothing is hidden or no bend shows more.
+    pub technique: Option<Technique>,
     /// Visible share in the straight picture, 0..=1.
     pub visible_straight: f64,
     /// Visible share in the bent picture.
@@ -128,7 +137,7 @@ pub struct FinalShares {
 }
 
 impl FinalShares {
-    fn of(technique: Technique, [straight, bent]: [Shares; 2]) -> Self {
+    fn of(technique: Option<Technique>, [straight, bent]: [Shares; 2]) -> Self {
         Self {
             technique,
             visible_straight: straight.visible,
@@ -191,40 +200,33 @@ struct ReportFile<'a> {
     scene_warnings: &'a [Warning],
 }
 
-/// Chooses a view (unless given) and a bend, and draws both pictures.
+/// Chooses a view (unless given) and a bend, and draws both pictures. Where nothing is hidden, or no bend shows more, both are straight.
 ///
 /// # Errors
 /// [`BelvedereError::FieldOfView`], [`BelvedereError::Position`], [`BelvedereError::Construct`] if no view is possible, else as
 /// [`Session::open`] and [`Session::render`].
 pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAnswer, BelvedereError> {
-    let fov_y_deg = request.fov_y_deg.unwrap_or(FOV_Y_DEG);
-    if !(fov_y_deg > 0.0 && fov_y_deg < 180.0) {
-        return Err(BelvedereError::FieldOfView { deg: fov_y_deg });
-    }
     if !request.data.rivers.is_empty() && matches!(request.technique, Technique::Spline | Technique::CurvedRays) {
         let reason =
             "rivers are kept from running uphill where the ground moves; ask for technique terrain, both or auto";
         return Err(BelvedereError::Setting(reason.into()));
     }
+    check_fov(request)?;
     let mut data = request.data.load(false, options)?;
     let rivers = std::mem::take(&mut data.rivers);
     let base = base_view(request, &data.scene)?;
-    let search = RevealOptions {
-        image: request.image.unwrap_or(IMAGE),
-        fov_y: fov_y_deg.to_radians(),
-        earth_radius: request.curved_earth.then(|| earth_radius(&data.scene, &mut data.warnings)),
-        ..RevealOptions::default()
-    };
+    let search = search_options(request, &mut data)?;
     let mut memory = RevealMemory::default();
     let searched = Instant::now();
     let searching = options.progress.part(if request.technique == Technique::Spline { SEARCH_ALONE } else { SEARCH });
     let found = belvedere_construct::reveal(&data.scene, base.as_ref(), &search, &mut memory, &searching)?;
     let pinhole = found.straight.pinhole();
-    let ahead = (found.pivot - pinhole.eye).length().max(1.0);
+    let middle = found.bend.as_ref().map_or_else(|| middle(&data.scene), |bend| bend.pivot);
+    let ahead = (middle - pinhole.eye).length().max(1.0);
     let camera = CameraDoc::of(pinhole, pinhole.eye + ahead * pinhole.forward);
     let earth = if request.curved_earth { EarthDoc::Curved } else { EarthDoc::Flat };
-    let mut session = data.session(found.view.clone(), camera, vec![spline_stage(&found)], earth);
-    session.loaded.warnings.extend(found.report.warnings.iter().cloned());
+    let mut spline = data.session(found.view.clone(), camera, spline_stage(&found).into_iter().collect(), earth);
+    spline.loaded.warnings.extend(found.report.warnings.iter().cloned());
     let candidates: &[Technique] = match request.technique {
         Technique::Spline => &[],
         Technique::CurvedRays => &[Technique::CurvedRays],
@@ -234,14 +236,18 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     };
     let is_auto = request.technique == Technique::Auto;
     let progress = &options.progress.clone().limited_unless_stated(TRY_FOR);
-    let (spline, mut tried, mut best) = (session.clone(), Vec::new(), None);
-    if candidates.is_empty() || is_auto {
-        let judged = judged(&session, Technique::Spline, &options.progress)?;
-        tried.push(judged.tried(Technique::Spline, searched.elapsed(), false));
-        best = Some((session, judged));
+    let by_spline = found.bend.is_some() && (candidates.is_empty() || is_auto);
+    let first = if by_spline { spline.clone() } else { straightened(&spline)? };
+    let mut best = Answer::of(first, by_spline.then_some(Technique::Spline), &options.progress)?;
+    let straight = best.shares.both()[0];
+    let mut tried = vec![best.tried(Technique::Spline, searched.elapsed())];
+    if best.shares.visible_bent < straight.visible + LEAST_GAIN && best.shares.technique.is_some() {
+        best = Answer::of(straightened(&spline)?, None, &options.progress)?;
     }
     for &technique in candidates {
-        if is_auto && best.as_ref().is_some_and(|(_, judged)| judged.shares.visible_bent >= ENOUGH) {
+        // Where nothing is hidden nothing is bent.
+        let shown = if is_auto { NOTHING_HIDDEN } else { ALL_SHOWN };
+        if straight.visible >= shown * straight.in_frame || is_auto && best.shares.visible_bent >= ENOUGH {
             break;
         }
         let began = Instant::now();
@@ -253,22 +259,18 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
                 &if is_auto { progress.part(FIRST_TRY) } else { options.progress.clone() },
             )?,
         };
-        let judged = judged(&next, technique, &options.progress)?;
-        let out_of_time = next.terrain_report().is_some_and(|r| r.out_of_time);
-        tried.push(judged.tried(technique, began.elapsed(), out_of_time));
-        let most = |(_, best): &(Session, Judgement)| best.shares.visible_bent;
-        if best.as_ref().is_none_or(|best| judged.shares.visible_bent > most(best)) {
-            best = Some((next, judged));
+        let next = Answer::of(next, Some(technique), &options.progress)?;
+        tried.push(next.tried(technique, began.elapsed()));
+        if next.shares.visible_bent >= best.shares.visible_bent + LEAST_GAIN {
+            best = next;
         }
     }
     if !is_auto {
         tried.clear();
     }
-    let Some((mut session, Judgement { shares, hidden, every, warnings })) = best else {
-        return Err(BelvedereError::NoFeatures);
-    };
+    let Answer { mut session, shares, hidden, every, warnings } = best;
     session.loaded.warnings.extend(warnings);
-    let report = judged_report(found.report, &shares, &search);
+    let report = judged_report(found.report, &shares, (&search, request.technique));
     let pair = PictureOptions {
         compare: true,
         straight: false,
@@ -279,10 +281,30 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     Ok(RevealAnswer { session, picture, report, shares, tried, hidden, measured_every: every })
 }
 
+/// The full vertical field of view, degrees.
+fn check_fov(request: &RevealRequest) -> Result<f64, BelvedereError> {
+    let deg = request.fov_y_deg.unwrap_or(FOV_Y_DEG);
+    if deg > 0.0 && deg < 180.0 { Ok(deg) } else { Err(BelvedereError::FieldOfView { deg }) }
+}
+
+/// Options of the search that a request asks for.
+pub(super) fn search_options(request: &RevealRequest, data: &mut Data) -> Result<RevealOptions, BelvedereError> {
+    Ok(RevealOptions {
+        image: request.image.unwrap_or(IMAGE),
+        fov_y: check_fov(request)?.to_radians(),
+        earth_radius: request.curved_earth.then(|| earth_radius(&data.scene, &mut data.warnings)),
+        ..RevealOptions::default()
+    })
+}
+
 /// The report of the search with the shares, gain and goal of the finished picture.
-fn judged_report(report: RevealReport, shares: &FinalShares, search: &RevealOptions) -> RevealReport {
+fn judged_report(
+    report: RevealReport,
+    shares: &FinalShares,
+    (search, asked): (&RevealOptions, Technique),
+) -> RevealReport {
     let [straight, bent] = shares.both();
-    let goals = match shares.technique {
+    let goals = match shares.technique.unwrap_or(asked) {
         Technique::Spline => *search,
         _ => RevealOptions { goal_share: ENOUGH, goal_gain: 0.0, ..*search },
     };
@@ -293,6 +315,19 @@ fn judged_report(report: RevealReport, shares: &FinalShares, search: &RevealOpti
         goal: Goal::of([straight, bent], &goals),
         ..report
     }
+}
+
+/// The middle of the features that must be seen.
+fn middle(scene: &Scene) -> DVec3 {
+    let bounds = scene.must_see().map(|(_, layer)| layer.bounds()).filter(|b| !b.is_empty());
+    bounds.reduce(|a, b| a.union(b)).unwrap_or_else(|| scene.bounds()).center()
+}
+
+/// The session without stages that bend.
+fn straightened(session: &Session) -> Result<Session, BelvedereError> {
+    let Some(mut document) = session.resolved().cloned() else { return Ok(session.clone()) };
+    document.stage.clear();
+    session.with_document(document, None)
 }
 
 /// The session with terrain disocclusion, with the spline or in its place.
@@ -329,26 +364,29 @@ fn around_what_hides(session: &Session, straight: &View, progress: &Progress) ->
     session.with_document(document, None)
 }
 
-/// Judgement of a finished picture.
-struct Judgement {
+/// A finished picture, judged.
+struct Answer {
+    session: Session,
     shares: FinalShares,
     hidden: Vec<HiddenRun>,
     every: u32,
     warnings: Vec<Warning>,
 }
 
-impl Judgement {
-    fn tried(&self, technique: Technique, took: Duration, out_of_time: bool) -> Tried {
+impl Answer {
+    /// Measures the whole chain of stages.
+    fn of(session: Session, technique: Option<Technique>, progress: &Progress) -> Result<Self, BelvedereError> {
+        let in_time::Judged { measures, hidden, every } = in_time::judged(session.scene(), session.view(), progress)?;
+        let shares = super::measure::shares(&measures, session.terrain_report()).unwrap_or_default();
+        let technique = technique.filter(|_| session.view().is_bent());
+        Ok(Self { session, shares: FinalShares::of(technique, shares), hidden, every, warnings: measures.warnings })
+    }
+
+    fn tried(&self, technique: Technique, took: Duration) -> Tried {
         let FinalShares { visible_bent: visible, in_frame_bent: in_frame, .. } = self.shares;
+        let out_of_time = self.session.terrain_report().is_some_and(|r| r.out_of_time);
         Tried { technique, visible, in_frame, seconds: took.as_secs_f64(), out_of_time }
     }
-}
-
-/// Measures the whole chain of stages.
-fn judged(session: &Session, technique: Technique, progress: &Progress) -> Result<Judgement, BelvedereError> {
-    let in_time::Judged { measures, hidden, every } = in_time::judged(session.scene(), session.view(), progress)?;
-    let shares = super::measure::shares(&measures, session.terrain_report()).unwrap_or_default();
-    Ok(Judgement { shares: FinalShares::of(technique, shares), hidden, every, warnings: measures.warnings })
 }
 
 impl RevealAnswer {
@@ -363,7 +401,15 @@ impl RevealAnswer {
     /// One sentence: shares of the whole features that are visible, and that lie in the frame, straight and bent.
     pub fn summary(&self) -> String {
         let [straight, bent] = self.shares.both();
-        format!("visible in the straight picture: {straight}, in the bent one: {bent}")
+        if self.shares.technique.is_some() {
+            return format!("visible in the straight picture: {straight}, in the bent one: {bent}");
+        }
+        let reason = if straight.visible >= NOTHING_HIDDEN * straight.in_frame {
+            "what is in the frame is not hidden, so nothing is bent"
+        } else {
+            "no bend that was tried shows more"
+        };
+        format!("visible in the straight picture: {straight}; {reason}")
     }
 
     /// Writes the bent picture with its record, the pair (`OUT.pair.png`), and the other files asked for.
@@ -446,13 +492,14 @@ impl RevealFiles {
     }
 }
 
-/// The found spline as a stage of a document.
-fn spline_stage(found: &Revealed) -> StageDoc {
-    StageDoc::SplineBend(SplineStageDoc {
-        presets: PresetsDoc::Inline(Box::new(found.document.clone())),
-        pivot: Some(found.pivot.to_array()),
+/// The found spline as a stage of a document; `None` if the picture is straight.
+fn spline_stage(found: &Revealed) -> Option<StageDoc> {
+    let bend = found.bend.as_ref()?;
+    Some(StageDoc::SplineBend(SplineStageDoc {
+        presets: PresetsDoc::Inline(Box::new(bend.document.clone())),
+        pivot: Some(bend.pivot.to_array()),
         plane: Some(PlaneDoc { normal: [0.0, 0.0, 1.0], height_m: Some(found.plane_height) }),
-    })
+    }))
 }
 
 /// The view of the given camera, if there is one.

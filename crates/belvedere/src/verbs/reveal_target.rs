@@ -1,6 +1,7 @@
 //! `reveal --see`: draws a picture in which one target in models is visible, by rays that bend around its occluders.
 
 use super::model_layers::{layer, set_transfer, unit_of};
+use super::target_views;
 use crate::output::{self, document_toml, pretty};
 use crate::picture::{Picture, PictureOptions, TargetPlace};
 use crate::resolve::rays::sidestep_stage;
@@ -10,12 +11,11 @@ use crate::scene_file::{
 use crate::targets::{self, target};
 use crate::verbs::reveal::{RevealFiles, Viewpoint};
 use crate::{BelvedereError, OpenOptions, Session};
-use belvedere_construct::rays::{AroundOptions, BendReport, Sidestep, Target, bend_around};
-use belvedere_core::Warning;
-use belvedere_core::{Aabb, DVec3, Pinhole, Projection, View};
+use belvedere_construct::rays::{AroundOptions, BendReport, Sidestep, Target, TargetSight, bend_around};
+use belvedere_core::{DVec3, Pinhole, Projection, View, Warning};
 use belvedere_io::png::{self, Channels};
+use belvedere_scene::LayerKind;
 use belvedere_scene::molecule::Selection;
-use belvedere_scene::{Layer, LayerKind, Scene, Unit};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -23,11 +23,10 @@ use std::path::{Path, PathBuf};
 const IMAGE: [u32; 2] = [1280, 720];
 /// Full vertical field of view unless given, degrees.
 const FOV_Y_DEG: f64 = 30.0;
-/// Headings of the views that are tried if none is given, degrees clockwise from north, and their pitch, degrees.
-const HEADINGS: [f64; 8] = [30.0, 330.0, 75.0, 285.0, 120.0, 240.0, 165.0, 195.0];
-const PITCH: [f64; 2] = [20.0, 8.0];
-/// Visible share from which on a view is good enough.
+/// Visible share from which on a view is good enough; and after so many views.
 const ENOUGH: f64 = 0.99;
+const VIEWS_AT_LEAST: usize = 3;
+const MUCH: f64 = 0.8;
 
 /// Target to show, and the view.
 #[derive(Debug, Clone, Default)]
@@ -43,6 +42,8 @@ pub struct TargetRequest {
     pub viewpoint: Option<Viewpoint>,
     /// Full vertical field of view, degrees.
     pub fov_y_deg: Option<f64>,
+    /// Direction that is up in the picture, a unit vector; z if left out. Not for scene files, which state their own.
+    pub up: Option<DVec3>,
     /// Picture size, pixels.
     pub image: Option<[u32; 2]>,
     /// Fallbacks if no bend shows the target: `transparency`, `cutaway` or `explosion`, alone or as `LAYER:KIND`.
@@ -78,24 +79,44 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
     let session = open(request, options)?;
     let target = target(session.scene(), &request.see)?;
     let place = targets::point(&request.see).map(|p| TargetPlace::of(session.scene(), p));
-    let views = views(&session, request, fov_y_deg)?;
+    let up = request.up.unwrap_or(DVec3::Z);
+    let (views, free) = match given(&session, request, fov_y_deg, up)? {
+        Some(view) => (vec![view], false),
+        None => {
+            let image = request.image.unwrap_or(IMAGE);
+            (target_views::around(session.scene(), &target, up, (image, fov_y_deg.to_radians()))?, true)
+        }
+    };
     let around = AroundOptions::default();
     let mut best: Option<(View, Option<Sidestep>, BendReport)> = None;
     let (mut tried, mut light_best) = (0, 0.0f64);
-    for view in views {
+    for (k, view) in views.into_iter().enumerate() {
         let found = bend_around(session.scene(), &view, &target, &around, &options.progress)?;
         (tried, light_best) = (tried + found.report.tried, light_best.max(found.report.light_best));
         let score = |r: &BendReport| r.visible - 0.1 * r.motion;
         if best.as_ref().is_none_or(|(.., b)| score(&found.report) > score(b) + 0.02) {
             best = Some((view, found.bent.map(|(_, sidestep)| sidestep), found.report));
         }
-        if best.as_ref().is_some_and(|(.., b)| b.visible >= ENOUGH) {
+        // Where much is seen, later views, which show less without a bend, seldom show more with one.
+        let enough = if k + 1 < VIEWS_AT_LEAST { ENOUGH } else { MUCH };
+        if best.as_ref().is_some_and(|(.., b)| b.visible >= enough) {
             break;
         }
     }
-    let Some((view, sidestep, report)) = best else {
+    let Some((mut view, sidestep, mut report)) = best else {
         return Err(BelvedereError::Target("there is no view to look from".into()));
     };
+    if let Some(sidestep) = sidestep.as_ref().filter(|_| free)
+        && let Some(moved) = target_views::reframed(session.scene(), &view, sidestep, &target)
+    {
+        let sight = TargetSight::new(session.scene(), &target);
+        let bent = sidestep.view(&moved).map_err(belvedere_construct::ConstructError::from)?;
+        report.visible = sight.share(&bent, 0.0);
+        report.in_frame = sight.in_frame(&bent);
+        report.visible_straight = sight.share(&moved, 0.0);
+        report.in_frame_straight = sight.in_frame(&moved);
+        view = moved;
+    }
     let report = BendReport { tried, light_best, ..report };
     let mut document = document(&session, &view, sidestep.as_ref(), &target)?;
     if report.visible < ENOUGH && !request.fallback.is_empty() {
@@ -157,53 +178,28 @@ fn open(request: &TargetRequest, options: &OpenOptions) -> Result<Session, Belve
     Session::from_document(SourceDocument::new(document), &options)
 }
 
-/// The views to try: the given one, the scene file's, or several from all around.
-fn views(session: &Session, request: &TargetRequest, fov_y_deg: f64) -> Result<Vec<View>, BelvedereError> {
-    let scene = session.scene();
+/// The view that is given by the request or the scene file.
+fn given(
+    session: &Session,
+    request: &TargetRequest,
+    fov_y_deg: f64,
+    up: DVec3,
+) -> Result<Option<View>, BelvedereError> {
     let is_scene_file = session.path().is_some();
     let own = session.view().pinhole();
     let image = request.image.unwrap_or(if is_scene_file { own.image } else { IMAGE });
     let lens = Projection::Perspective { fov_y: fov_y_deg.to_radians() };
     if let Some(Viewpoint { eye, target: [x, y], target_height }) = request.viewpoint {
-        let bounds = scene.bounds();
+        let bounds = session.scene().bounds();
         let look = DVec3::new(x, y, target_height.unwrap_or(bounds.center().z));
         let eye = DVec3::from_array(eye);
         let near = 1e-3 * (look - eye).length();
-        return Ok(vec![View::straight(Pinhole::look_at(eye, look, DVec3::Z, lens, image, near, None)?)]);
+        return Ok(Some(View::straight(Pinhole::look_at(eye, look, up, lens, image, near, None)?)));
     }
-    if is_scene_file {
-        return Ok(vec![session.view().straightened()]);
+    if is_scene_file && request.up.is_some() {
+        return Err(BelvedereError::Target("a scene file states what is up in camera.up; leave --up out".into()));
     }
-    around(&visible_bounds(scene), image, lens, PITCH[usize::from(scene.unit != Unit::Metre)])
-}
-
-/// Bounds of the visible layers of a scene.
-fn visible_bounds(scene: &Scene) -> Aabb {
-    let of = |l: &Layer| match &l.kind {
-        LayerKind::Volume(v) => v.visible_bounds(),
-        _ => l.bounds(),
-    };
-    let visible = scene.layers.iter().map(of).filter(|b| !b.is_empty()).reduce(|a, b| a.union(b));
-    visible.unwrap_or_else(|| scene.bounds())
-}
-
-/// Views from all around that show the whole box.
-fn around(bounds: &Aabb, image: [u32; 2], lens: Projection, pitch_deg: f64) -> Result<Vec<View>, BelvedereError> {
-    let (center, radius) = (bounds.center(), 0.5 * (bounds.max - bounds.min).length().max(1e-6));
-    let half = match lens {
-        Projection::Perspective { fov_y } => 0.5 * fov_y,
-        Projection::Orthographic { .. } => 0.2,
-    };
-    let narrow = if image[0] < image[1] { f64::from(image[0]) / f64::from(image[1]) } else { 1.0 };
-    let distance = 1.02 * radius / (half.tan() * narrow).atan().sin();
-    let view = |heading: &f64| {
-        let ((sin, cos), (down, ahead)) = (heading.to_radians().sin_cos(), pitch_deg.to_radians().sin_cos());
-        let forward = DVec3::new(sin * ahead, cos * ahead, -down);
-        // Rays may bend long before they reach the model.
-        let near = 0.02 * distance;
-        Ok(View::straight(Pinhole::look_at(center - distance * forward, center, DVec3::Z, lens, image, near, None)?))
-    };
-    HEADINGS.iter().map(view).collect()
+    Ok(is_scene_file.then(|| session.view().straightened()))
 }
 
 /// The document of the session with the found view.
@@ -218,7 +214,8 @@ fn document(
     };
     let pinhole = view.pinhole();
     let ahead = (target.center() - pinhole.eye).dot(pinhole.forward).max(pinhole.near);
-    let up = if pinhole.forward.cross(DVec3::Z).length() > 1e-3 { [0.0, 0.0, 1.0] } else { (-pinhole.down).to_array() };
+    let level = pinhole.right.z.abs() < 1e-9 && pinhole.down.z < -1e-3;
+    let up = if level { [0.0, 0.0, 1.0] } else { (-pinhole.down).to_array() };
     let mut document = resolved.clone();
     document.camera = CameraDoc { up, ..CameraDoc::of(pinhole, pinhole.eye + ahead * pinhole.forward) };
     document.constructor = None;
@@ -251,6 +248,11 @@ impl TargetAnswer {
 
     fn shares(&self) -> String {
         let BendReport { visible_straight, visible, light_straight, light_best, tried, .. } = self.report;
+        let of = |visible: f64, in_frame: f64| match in_frame < 1.0 {
+            true => format!("{:.0} % ({:.0} % in the frame)", 100.0 * visible, 100.0 * in_frame),
+            false => format!("{:.0} %", 100.0 * visible),
+        };
+        let straight = of(visible_straight, self.report.in_frame_straight);
         if tried > 0 && visible < ENOUGH && visible <= visible_straight {
             let percent = |share: f64| format!("{:.0} %", 100.0 * share);
             let light = match self.has_volumes() {
@@ -261,19 +263,12 @@ impl TargetAnswer {
                 ),
                 false => String::new(),
             };
-            return format!(
-                "no bend of {tried} shows more than the straight picture, {}{light}",
-                percent(visible_straight)
-            );
+            return format!("no bend of {tried} shows more than the straight picture, {straight}{light}");
         }
         if tried == 0 || visible <= visible_straight {
-            return format!("visible without any bend: {:.0} %", 100.0 * visible_straight);
+            return format!("visible without any bend: {straight}");
         }
-        format!(
-            "visible in the straight picture: {:.0} %, in the bent one: {:.0} %",
-            100.0 * visible_straight,
-            100.0 * visible
-        )
+        format!("visible in the straight picture: {straight}, in the bent one: {}", of(visible, self.report.in_frame))
     }
 
     fn has_volumes(&self) -> bool {

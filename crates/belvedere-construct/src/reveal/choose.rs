@@ -1,0 +1,179 @@
+//! Choice of a view: a picture is judged by what it shows and how, bent only where something is hidden.
+
+use super::evaluate::{Evaluation, Evaluator};
+use super::eyes::Eye;
+use super::options::RevealOptions;
+use super::score::{composition, shown};
+use super::search::{BendSearch, Candidate, SearchStart, stride_for};
+use crate::ConstructError;
+use belvedere_core::{EarthCurvature, Stage, View};
+use belvedere_scene::Progress;
+use rayon::prelude::*;
+
+/// Share of what lies in the frame from which on nothing counts as hidden, and nothing is bent.
+pub(super) const NOTHING_HIDDEN: f64 = 0.995;
+/// Views kept for the search of a bend.
+pub(super) const VIEWS_KEPT: usize = 10;
+/// Views whose bend is improved before one is chosen.
+const VIEWS_REFINED: usize = 3;
+/// Eyes that are evaluated even where time is up.
+const EYES_AT_LEAST: usize = 24;
+/// Views within this angle of each other are alike, degrees; so many of them are kept.
+const ALIKE_DEG: f64 = 20.0;
+const MOST_ALIKE: usize = 2;
+
+/// A camera whose straight picture was evaluated.
+#[derive(Debug, Clone)]
+pub(crate) struct Base {
+    pub(crate) view: View,
+    pub(crate) straight: Evaluation,
+    /// Heading in degrees clockwise from north.
+    pub(crate) heading_deg: f64,
+}
+
+/// The chosen camera with its bend, if bending pays.
+pub(crate) struct Choice {
+    pub(crate) base: usize,
+    /// The bend, and where its search begins again; `None` if the straight picture is the best.
+    pub(crate) bend: Option<SearchStart>,
+    pub(crate) score: f64,
+}
+
+/// Score of a heading: light comes from the north-west, and looking north shows the shaded side of the relief as readers of maps know it.
+fn north(heading_deg: f64) -> f64 {
+    0.15 * heading_deg.to_radians().cos()
+}
+
+/// Score of a straight picture as a start: composition, what it shows already, and how far a bend can show the rest.
+fn promise(a: &Evaluation, heading_deg: f64) -> f64 {
+    let hidden = 1.0 - a.visible_in_frame;
+    composition(a) + north(heading_deg) + 0.8 * a.visible_in_frame - 2.0 * hidden * (0.8 - a.attainable).max(0.0)
+}
+
+/// Evaluates every eye by its straight picture and keeps the most promising, not many from nearly the same direction.
+pub(super) fn promising(
+    evaluator: &Evaluator<'_>,
+    eyes: Vec<Eye>,
+    options: &RevealOptions,
+    most: usize,
+    progress: &Progress,
+) -> Result<Vec<Base>, ConstructError> {
+    progress.tick("looking from all around", 0.1)?;
+    let tried = eyes.len();
+    let stride = 2 * stride_for(evaluator.samples.len(), options);
+    let mut evaluated: Vec<(f64, Base)> = eyes
+        .into_par_iter()
+        .enumerate()
+        .filter_map(|(i, eye)| {
+            // When time is up, the other eyes are left out, but not the most promising ones.
+            if i >= EYES_AT_LEAST && progress.should_end() {
+                return None;
+            }
+            let stages = options.earth_radius.map(|radius| {
+                let refraction = EarthCurvature::REFRACTION;
+                Stage::EarthCurvature(EarthCurvature { eye: eye.pinhole.eye, radius, refraction })
+            });
+            let view = View::new(eye.pinhole.clone(), stages.into_iter().collect()).ok()?;
+            let straight = evaluator.evaluate(&view, stride);
+            let heading_deg = eye.heading_deg;
+            Some((promise(&straight, heading_deg), Base { view, straight, heading_deg }))
+        })
+        .collect();
+    evaluated.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut kept: Vec<Base> = Vec::new();
+    for (_, base) in evaluated {
+        let apart = |k: &&Base| {
+            let turn = (k.heading_deg - base.heading_deg).rem_euclid(360.0);
+            turn.min(360.0 - turn) < ALIKE_DEG
+        };
+        if base.straight.in_frame > 0.05 && kept.iter().filter(apart).count() < MOST_ALIKE && kept.len() < most {
+            kept.push(base);
+        }
+    }
+    if kept.is_empty() {
+        return Err(ConstructError::NoView { tried });
+    }
+    Ok(kept)
+}
+
+/// Score of the straight picture as the answer.
+fn score_straight(base: &Base) -> f64 {
+    composition(&base.straight) + shown(&base.straight) + north(base.heading_deg)
+}
+
+/// The best of all pictures, straight and bent; with the number of bends tried.
+pub(super) fn best_of_all(
+    evaluator: &Evaluator<'_>,
+    bases: &[Base],
+    options: &RevealOptions,
+    remembered: Option<&SearchStart>,
+    progress: &Progress,
+) -> Result<(Choice, usize), ConstructError> {
+    let stride = stride_for(evaluator.samples.len(), options);
+    let (mut bent, mut tried): (Vec<(Choice, SearchStart)>, usize) = (Vec::new(), 0);
+    let straight = bases.iter().enumerate().map(|(i, base)| (i, score_straight(base)));
+    let mut best = straight.fold(None, |best: Option<Choice>, (base, score)| match best {
+        Some(best) if best.score >= score => Some(best),
+        _ => Some(Choice { base, bend: None, score }),
+    });
+    for (index, base) in bases.iter().enumerate() {
+        progress.tick("bending the picture", 0.3 + 0.3 * index as f64 / bases.len() as f64)?;
+        // No bend of it can be worth more than all of the features in the same composition.
+        let at_best = composition(&base.straight) + 3.0 + 1.0 + north(base.heading_deg);
+        let hides = base.straight.visible_in_frame < NOTHING_HIDDEN;
+        if !hides || best.as_ref().is_some_and(|best| best.score >= at_best) {
+            continue;
+        }
+        let mut search = BendSearch::new(evaluator, &base.view, base.straight, stride);
+        let remembered = remembered.and_then(|start| search.refine(start, 0, progress));
+        let found = search.coarse().into_iter().chain(remembered).max_by(|a, b| a.1.score.total_cmp(&b.1.score));
+        bent.extend(found.map(|(start, t)| {
+            (Choice { base: index, bend: Some(start), score: t.score + north(base.heading_deg) }, start)
+        }));
+        tried += search.tried;
+        if progress.should_end() {
+            break;
+        }
+    }
+    bent.sort_by(|a, b| b.0.score.total_cmp(&a.0.score));
+    bent.truncate(VIEWS_REFINED);
+    for (i, (mut chosen, start)) in bent.into_iter().enumerate() {
+        if !progress.should_end() {
+            progress.tick("bending the picture", 0.6 + 0.2 * i as f64 / VIEWS_REFINED as f64)?;
+            let base = &bases[chosen.base];
+            let mut search = BendSearch::new(evaluator, &base.view, base.straight, stride);
+            if let Some((start, better)) = search.refine(&start, 3, progress) {
+                let score = better.score + north(base.heading_deg);
+                chosen = Choice { bend: Some(start), score, ..chosen };
+            }
+            tried += search.tried;
+        }
+        if best.as_ref().is_none_or(|best| chosen.score > best.score) {
+            best = Some(chosen);
+        }
+    }
+    best.map(|b| (b, tried)).ok_or(ConstructError::NoView { tried: bases.len() })
+}
+
+/// Whether a bend shows so much more of the whole features than the straight picture that it is worth bending.
+pub(super) fn pays(straight: &Evaluation, bent: &Evaluation) -> bool {
+    bent.visible >= straight.visible + LEAST_GAIN
+}
+
+/// Share of the whole features that a bend must show in addition.
+const LEAST_GAIN: f64 = 0.005;
+
+/// The candidate of a bend at its camera, evaluated.
+pub(super) fn candidate(
+    evaluator: &Evaluator<'_>,
+    base: &Base,
+    start: &SearchStart,
+    rounds: usize,
+    options: &RevealOptions,
+    progress: &Progress,
+) -> (Option<(SearchStart, Candidate)>, usize) {
+    let stride = stride_for(evaluator.samples.len(), options);
+    let mut search = BendSearch::new(evaluator, &base.view, base.straight, stride);
+    let found = search.refine(start, rounds, progress);
+    (found, search.tried)
+}

@@ -1,0 +1,69 @@
+//! Scores of pictures: composition, and what they show.
+
+use super::evaluate::Evaluation;
+
+/// Score of a picture by its composition, whatever it hides: the whole of the features in it, large, on ground of the data that its cells
+/// can carry, under a horizon.
+pub(super) fn composition(a: &Evaluation) -> f64 {
+    let sky = 4.0 * (0.08 - a.skyline).max(0.0) + 2.0 * (a.skyline - 0.20).max(0.0);
+    let fill = (0.45 - a.spread).max(0.0) + 2.0 * (a.spread - 0.85).max(0.0);
+    let outside = 4.0 * (1.0 - a.in_frame) + 6.0 * (0.97 - a.in_frame).max(0.0);
+    0.25 * (a.drawn / 0.8).min(1.0) + 0.3 * (a.width / 0.7).min(1.0)
+        - outside
+        - 1.0 * (a.in_frame - a.in_margin)
+        - 4.0 * (1.0 - a.covered)
+        - sky
+        - 0.5 * fill
+        - 0.03 * (a.coarse_px - 8.0).clamp(0.0, 40.0)
+}
+
+/// Score of what a picture shows: of the whole features, and most of all not less than four fifths of what it holds.
+pub(super) fn shown(a: &Evaluation) -> f64 {
+    3.0 * a.visible - 4.0 * (0.8 - a.visible_in_frame).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: Evaluation = Evaluation {
+        in_frame: 1.0,
+        in_margin: 1.0,
+        visible: 1.0,
+        visible_in_frame: 1.0,
+        attainable: 1.0,
+        spread: 0.5,
+        drawn: 1.0,
+        covered: 1.0,
+        skyline: 0.15,
+        width: 0.8,
+        coarse_px: 4.0,
+    };
+
+    #[test]
+    fn the_whole_feature_in_the_frame_outweighs_everything_else_about_a_composition() {
+        let all = composition(&GOOD);
+        let part = Evaluation { in_frame: 0.6, in_margin: 0.6, ..GOOD };
+        let poor =
+            Evaluation { spread: 0.2, drawn: 0.3, width: 0.4, covered: 0.8, skyline: 0.3, coarse_px: 25.0, ..GOOD };
+        assert!(all > composition(&poor) && composition(&poor) > composition(&part));
+        let worse = [
+            Evaluation { coarse_px: 30.0, ..GOOD },
+            Evaluation { skyline: 0.0, ..GOOD },
+            Evaluation { covered: 0.9, ..GOOD },
+            Evaluation { drawn: 0.2, ..GOOD },
+            Evaluation { width: 0.3, ..GOOD },
+            Evaluation { in_frame: 0.95, in_margin: 0.95, ..GOOD },
+        ];
+        assert!(worse.iter().all(|w| composition(w) < all), "{:?}", worse.map(|w| composition(&w)));
+    }
+
+    #[test]
+    fn what_is_hidden_never_gains() {
+        for step in 0..100 {
+            let (less, more) = (0.01 * f64::from(step), 0.01 * f64::from(step + 1));
+            let of = |visible: f64| shown(&Evaluation { visible, visible_in_frame: visible, ..GOOD });
+            assert!(of(less) < of(more), "{less}");
+        }
+    }
+}
