@@ -17,7 +17,7 @@ fn run(scene: &Scene, view: &View, renderer: Option<&dyn Renderer>) -> Result<Me
 fn line_of_sight_and_depth_buffer_agree_within_one_percent() {
     for (seed, height) in [(1, 500.0), (5, 300.0)] {
         let scene = scene(48, seed);
-        let pinhole = camera(&scene, height, [800, 450]);
+        let pinhole = camera(&scene, height, [640, 360]);
         for view in [View::straight(pinhole.clone()), on_a_small_planet(pinhole.clone(), 15_000.0)] {
             let m = run(&scene, &view, Some(&Marcher { fault: 1.0 })).unwrap();
             let lines = m.lines.unwrap();
@@ -33,7 +33,7 @@ fn line_of_sight_and_depth_buffer_agree_within_one_percent() {
 #[test]
 fn a_depth_buffer_one_percent_off_is_found_out() {
     let scene = scene(48, 1);
-    let view = View::straight(camera(&scene, 500.0, [480, 270]));
+    let view = View::straight(camera(&scene, 500.0, [320, 180]));
     let judge = |fault| run(&scene, &view, Some(&Marcher { fault })).unwrap();
     let (nearer, farther) = (judge(0.99), judge(1.01));
     assert!(nearer.largest_difference.unwrap() > 0.1, "ground 1 % too near went unnoticed: {:#?}", nearer.lines);
@@ -67,7 +67,7 @@ fn amounts_add_up() {
 #[test]
 fn degenerate_features_have_defined_answers() {
     let base = scene(32, 1);
-    let view = View::straight(camera(&base, 500.0, [480, 270]));
+    let view = View::straight(camera(&base, 500.0, [160, 90]));
     let with = |points: Vec<DVec3>| {
         let mut s = base.clone();
         s.layers[1] = line_layer("odd", points);
