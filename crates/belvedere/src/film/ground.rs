@@ -8,10 +8,11 @@ const CELLS: f64 = 0.25;
 /// Places around the point below the eye that the ground is taken from.
 const RINGS: usize = 4;
 const DIRECTIONS: usize = 12;
-/// Sine of the angle from which on a facet counts as seen from below; nearer to 0 rounding decides.
-const EDGE_ON: f64 = 0.005;
-/// Distance to facets beside a pixel that count too, cells: on a ridge the pixel may belong to either side.
-const BESIDE: f64 = 0.04;
+/// Places on a ray where its side is judged, as shares of the way back from the ground to the near plane.
+const BACK: [f64; 9] = [0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 0.64, 1.0];
+/// Distance from the ground within which the side is not judged: cells, and pixels at that depth.
+const BESIDE: f64 = 0.02;
+const PIXELS: f64 = 2.0;
 /// Most pixels along a side of a picture that are judged.
 const MOST: usize = 160;
 
@@ -27,14 +28,6 @@ pub(crate) struct DrawnGround<'a> {
 struct Facet {
     corners: [DVec3; 3],
     weights: [f64; 3],
-    /// Sign of the upper side: corners of north-eastern triangles run clockwise seen from above.
-    up: f64,
-}
-
-impl Facet {
-    fn point(&self, corners: &[DVec3; 3]) -> DVec3 {
-        (0..3).map(|k| self.weights[k] * corners[k]).sum()
-    }
 }
 
 impl<'a> DrawnGround<'a> {
@@ -75,13 +68,9 @@ impl<'a> DrawnGround<'a> {
 
     /// Image before the pinhole of the drawn ground at a place of the undisplaced ground.
     pub(crate) fn at(&self, xy: DVec2) -> Option<DVec3> {
-        let facet = self.facet(xy)?;
-        Some(facet.point(&self.displaced(&facet)?))
-    }
-
-    fn displaced(&self, facet: &Facet) -> Option<[DVec3; 3]> {
-        let [a, b, c] = facet.corners.map(|p| self.view.displace(p).ok().map(|d| d.point));
-        Some([a?, b?, c?])
+        let Facet { corners, weights } = self.facet(xy)?;
+        let [a, b, c] = corners.map(|p| self.view.displace(p).ok().map(|d| d.point));
+        Some(weights[0] * a? + weights[1] * b? + weights[2] * c?)
     }
 
     fn facet(&self, xy: DVec2) -> Option<Facet> {
@@ -99,34 +88,11 @@ impl<'a> DrawnGround<'a> {
             t.node(c, r).filter(|_| t.states().get(r * t.cols() + c) != Some(&NodeState::Void))
         };
         let [a, b, c] = triangle.corners().map(node);
-        let up = if triangle == CellTriangle::NorthEast { -1.0 } else { 1.0 };
-        Some(Facet { corners: [a?, b?, c?], weights: triangle.weights(g - corner), up })
-    }
-
-    /// Sine of the angle at which the eye sees the ground at a place; negative from below. The larger one of the flat facet between
-    /// displaced nodes and of the surface that the stages make of the facet: renderers draw something between the two.
-    fn facing(&self, xy: DVec2) -> Option<f64> {
-        let facet = self.facet(xy)?;
-        let pinhole = self.view.pinhole();
-        let sine = |at: DVec3, [a, b]: [DVec3; 2]| {
-            let towards =
-                if pinhole.is_orthographic() { -pinhole.forward } else { (pinhole.eye - at).normalize_or_zero() };
-            facet.up * a.cross(b).normalize_or_zero().dot(towards)
-        };
-        let flat = self.displaced(&facet)?;
-        let flat = sine(flat[0], [flat[1] - flat[0], flat[2] - flat[0]]);
-        let corners = &facet.corners;
-        let mut at = facet.point(corners);
-        let mut along = [corners[1] - corners[0], corners[2] - corners[0]];
-        for stage in self.view.stages() {
-            let (Ok(jacobian), Ok(next)) = (stage.jacobian(at), stage.apply(at)) else { return Some(flat) };
-            (at, along) = (next, along.map(|v| jacobian * v));
-        }
-        Some(flat.max(sine(at, along)))
+        Some(Facet { corners: [a?, b?, c?], weights: triangle.weights(g - corner) })
     }
 
     /// Pixels of the ground that were judged, and those of them that show its lower side.
-    pub(crate) fn from_below(&self, frame: &Frame) -> [usize; 2] {
+    pub(crate) fn seen_from_below(&self, frame: &Frame) -> [usize; 2] {
         let step = (frame.width.max(frame.height) / MOST).max(1);
         let mut out = [0, 0];
         for row in (step / 2..frame.height).step_by(step) {
@@ -142,20 +108,21 @@ impl<'a> DrawnGround<'a> {
         out
     }
 
+    /// Whether the ray of a pixel lies under the ground before it meets it. Rays start on one side and stay there until they meet the ground,
+    /// so the last place decides where the ray is farther from the ground than the drawn ground may be from the true one.
     fn shows_below(&self, frame: &Frame, [col, row]: [usize; 2]) -> bool {
-        let i = row * frame.width + col;
-        let seen = match frame.world.as_ref().and_then(|world| world.get(i)) {
-            Some(p) => Some(DVec3::from_array(*p)),
-            None => {
-                let pixel = DVec2::new(col as f64 + 0.5, row as f64 + 0.5);
-                self.view.ray(pixel).at(f64::from(frame.depth[i])).ok().map(|p| p.point)
-            }
+        let pinhole = self.view.pinhole();
+        let depth = f64::from(frame.depth[row * frame.width + col]);
+        let ray = self.view.ray(DVec2::new(col as f64 + 0.5, row as f64 + 0.5));
+        let pixel = if pinhole.is_orthographic() { 0.0 } else { PIXELS / pinhole.scale_px() };
+        let surely = BESIDE * self.terrain.spacing().min_element();
+        let over = |back: f64| {
+            let t = pinhole.near + (1.0 - back) * (depth - pinhole.near);
+            let p = ray.at(t).ok()?.point;
+            let height = p.z - self.terrain.surface_at(p.truncate())?;
+            (height.abs() > surely + pixel * t).then_some(height)
         };
-        let Some(seen) = seen.map(|p| p.truncate()).filter(|p| p.is_finite()) else { return false };
-        let beside = BESIDE * self.terrain.spacing();
-        let around = [DVec2::ZERO, DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y].map(|d| seen + d * beside);
-        let facing = around.into_iter().filter_map(|xy| self.facing(xy));
-        facing.reduce(f64::max).is_some_and(|most| most < -EDGE_ON)
+        BACK.into_iter().find_map(over).is_some_and(|height| height < 0.0)
     }
 }
 
@@ -185,7 +152,7 @@ mod tests {
         let frame = CpuRenderer::default().render(&job).expect("a picture");
         let ground = DrawnGround::of(scene, &view).expect("terrain");
         assert!((ground.needed() - 3.7).abs() < 0.2, "{}", ground.needed());
-        (ground.clearance(), ground.from_below(&frame))
+        (ground.clearance(), ground.seen_from_below(&frame))
     }
 
     #[test]

@@ -200,3 +200,49 @@ fn a_number_of_frames_without_a_speed_takes_the_whole_route() {
     assert_eq!((made.manifest.frames.len(), animation.frames), (9, Some(9)));
     assert!(animation.speed_mps.is_some_and(|v| v < 1e4), "{animation:?}");
 }
+
+/// A route west to east over the ground as a track with a time at every point.
+fn track(folder: &Path) {
+    let point = |k: usize| {
+        let lon = 9.002 + 0.0015 * k as f64;
+        format!("<trkpt lon='{lon}' lat='45.158'><time>2024-07-06T10:{:02}:00Z</time></trkpt>", 5 * k)
+    };
+    let points: String = (0..10).map(point).collect();
+    std::fs::write(folder.join("track.gpx"), format!("<gpx><trk><trkseg>{points}</trkseg></trk></gpx>")).unwrap();
+}
+
+#[test]
+fn marker_clock_and_profile_are_drawn_where_they_are_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = GROUNDS[0].scene(folder.path(), "spline_bend");
+    track(folder.path());
+    let text =
+        std::fs::read_to_string(&scene).unwrap().replace("route.geojson", "track.gpx").replace("[48, 27]", "[160, 90]");
+    std::fs::write(&scene, text).unwrap();
+    let first = |animation: AnimationDoc| {
+        let made =
+            film(folder.path(), &scene, AnimationDoc { along: Some("features1".into()), frames: Some(2), ..animation });
+        assert_eq!(made.warnings, Vec::<String>::new());
+        let file = made.folder.join(&made.manifest.frames[0].as_ref().expect("a frame").file);
+        std::fs::read(file).unwrap()
+    };
+    let bare = first(AnimationDoc::default());
+    let over = [
+        AnimationDoc { marker: Some(true), ..AnimationDoc::default() },
+        AnimationDoc { clock: Some(true), ..AnimationDoc::default() },
+        AnimationDoc { profile: Some(true), ..AnimationDoc::default() },
+    ];
+    let drawn = over.map(first);
+    assert!(drawn.iter().all(|d| *d != bare) && drawn[0] != drawn[1] && drawn[1] != drawn[2]);
+    // Files without times.
+    let scene = GROUNDS[0].scene(folder.path(), "spline_bend");
+    let made = film(folder.path(), &scene, AnimationDoc { clock: Some(true), ..along(2) });
+    assert!(made.warnings.iter().any(|w| w.contains("no times")), "{:?}", made.warnings);
+    let session =
+        Session::open(&scene, &OpenOptions { allow_roots: vec![folder.path().to_owned()], ..OpenOptions::default() });
+    let turntable = belvedere::scene_file::TurntableDoc { deg_per_s: 90.0 };
+    let animation = AnimationDoc { turntable: Some(turntable), marker: Some(true), ..AnimationDoc::default() };
+    let request = AnimateRequest { animation, out: folder.path().join("turn"), ..AnimateRequest::default() };
+    let error = animate(&session.unwrap(), &request, &Progress::silent()).unwrap_err().to_string();
+    assert!(error.contains("marker follows a walker along a route"), "{error}");
+}

@@ -267,7 +267,7 @@ impl Drawing<'_> {
             let picture = picture::draw(&session, &options, manifest.inputs.clone(), &quiet)?;
             let adjusted = path.following.as_ref().map_or(Adjustment::NONE, |f| f.adjustments[frame]);
             let ground = DrawnGround::of(session.scene(), &picture.view).map(|ground| {
-                let [pixels, from_below] = ground.from_below(&picture.frame);
+                let [pixels, from_below] = ground.seen_from_below(&picture.frame);
                 FrameGround {
                     clearance_m: ground.clearance(),
                     needed_m: ground.needed(),

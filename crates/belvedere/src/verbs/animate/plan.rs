@@ -156,7 +156,7 @@ impl Judge<'_> {
         let (scene, light, progress) = (session.scene(), session.light(), &self.progress);
         let job = RenderJob { scene, view: &view, light, options: &options, progress };
         self.session.renderer.render_into(&job, &mut self.frame)?;
-        Ok(if ground.from_below(&self.frame)[1] > 0 { Lack::Side } else { Lack::Nothing })
+        Ok(if ground.seen_from_below(&self.frame)[1] > 0 { Lack::Side } else { Lack::Nothing })
     }
 }
 
