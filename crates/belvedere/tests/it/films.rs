@@ -222,7 +222,7 @@ fn marker_clock_and_profile_are_drawn_where_they_are_asked_for() {
     let first = |animation: AnimationDoc| {
         let made =
             film(folder.path(), &scene, AnimationDoc { along: Some("features1".into()), frames: Some(2), ..animation });
-        assert_eq!(made.warnings, Vec::<String>::new());
+        assert_eq!(made.warnings, []);
         let file = made.folder.join(&made.manifest.frames[0].as_ref().expect("a frame").file);
         std::fs::read(file).unwrap()
     };
@@ -237,7 +237,7 @@ fn marker_clock_and_profile_are_drawn_where_they_are_asked_for() {
     // Files without times.
     let scene = GROUNDS[0].scene(folder.path(), "spline_bend");
     let made = film(folder.path(), &scene, AnimationDoc { clock: Some(true), ..along(2) });
-    assert!(made.warnings.iter().any(|w| w.contains("no times")), "{:?}", made.warnings);
+    assert!(made.warnings.iter().any(|w| w.text().contains("no times")), "{:?}", made.warnings);
     let session =
         Session::open(&scene, &OpenOptions { allow_roots: vec![folder.path().to_owned()], ..OpenOptions::default() });
     let turntable = belvedere::scene_file::TurntableDoc { deg_per_s: 90.0 };
