@@ -362,7 +362,10 @@ pub(crate) fn stated_system(
 }
 
 fn of_another_body(path: &Path, name: &str) -> String {
-    format!("{}: its system {name} is of another body than the Earth, so the scene is local", path.display())
+    format!(
+        "{}: its coordinate system ({name}) is of another body than the Earth, so the scene is local",
+        path.display()
+    )
 }
 
 /// Whether coordinates can only be degrees: in the range of longitude and latitude, with steps finer than any metric grid.
