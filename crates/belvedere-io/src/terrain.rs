@@ -297,10 +297,12 @@ fn choose_target(
             let reason = "the file states no CRS that is understood; set its EPSG code (source_crs of its layer, or --source-crs)";
             return Err(IoError::format(&source.path, reason));
         }
-        warnings.push(format!(
-            "{}: no coordinate system is known, so the scene is local; source_crs of its layer, or --source-crs, places it on the earth",
-            source.path.display()
-        ));
+        if !source.is_elsewhere {
+            warnings.push(format!(
+                "{}: no coordinate system is known, so the scene is local; source_crs of its layer, or --source-crs, places it on the earth",
+                source.path.display()
+            ));
+        }
         return Ok(local);
     }
     let chosen = match request.crs {

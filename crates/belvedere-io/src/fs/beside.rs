@@ -31,12 +31,14 @@ pub(crate) fn beside(path: &Path, name: &str) -> Result<PathBuf, String> {
 }
 
 /// Other spellings of the name of a file that another file names: without quotes, with percent signs decoded, with slashes for backslashes,
-/// and at last without the folders of the machine on which it was written.
+/// and of an absolute path, which is of the machine on which it was written, the last part.
 pub(crate) fn spellings(name: &str) -> Vec<String> {
     let plain = name.trim().trim_matches(['"', '\'']).replace('\\', "/");
     let decoded = percent_decoded(&plain);
-    let base = |name: &str| name.rsplit('/').next().unwrap_or(name).to_owned();
-    let mut out = vec![plain.clone(), decoded.clone(), base(&plain), base(&decoded)];
+    let mut out = vec![plain, decoded];
+    if out[0].starts_with('/') || out[0].contains(':') {
+        out = out.iter().map(|name| name.rsplit('/').next().unwrap_or(name).to_owned()).collect();
+    }
     out.dedup();
     out
 }

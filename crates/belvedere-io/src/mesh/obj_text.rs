@@ -1,6 +1,6 @@
 //! Text of OBJ and MTL files as their reader takes it: one statement per line, in UTF-8, without forms that it rejects.
 
-use crate::vector::text::text_of;
+use crate::text::text_of;
 
 /// Statements of an OBJ file: lines that end in a backslash are joined with the next, comments behind numbers are cut off.
 pub(super) fn statements(bytes: &[u8]) -> String {

@@ -1,7 +1,7 @@
 //! PLY, text and binary, with colours and normals of its vertices or colours of its faces.
 
 use super::MeshFile;
-use crate::vector::text::text_of;
+use crate::text::text_of;
 use crate::{IoError, Limits, Loaded};
 use belvedere_scene::{Color, MeshColors};
 use glam::DVec3;

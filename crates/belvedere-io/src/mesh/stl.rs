@@ -1,7 +1,7 @@
 //! STL, text and binary.
 
 use super::MeshFile;
-use crate::vector::text::text_of;
+use crate::text::text_of;
 use crate::{IoError, Limits, Loaded};
 use glam::DVec3;
 use std::path::Path;
