@@ -34,7 +34,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
         tobj::load_mtl_buf(&mut text.as_bytes())
     };
     let text = obj_text::statements(bytes);
-    let read = |text: &str| tobj::load_obj_buf(&mut text.as_bytes(), &options, &materials);
+    let read = |text: &str| tobj::load_obj_buf(&mut text.as_bytes(), &options, materials);
     let (models, materials) = match read(&text) {
         // Colours of some vertices only are none.
         Err(tobj::LoadError::FaceColorOutOfBounds) => {
