@@ -144,7 +144,10 @@ impl CoordinateSystem {
         }
         if let Some(at) = text.find("+proj=") {
             let name = Some(text[..at].trim()).filter(|n| !n.is_empty()).unwrap_or("the PROJ string of the file");
-            return Self::from_proj_string(name, &text[at..]);
+            return match code_of_proj(&text[at..]) {
+                Some(code) => Self::from_epsg(code),
+                None => Self::from_proj_string(name, &text[at..]),
+            };
         }
         if let Some(system) = arc_info::parse(text) {
             return system;
@@ -292,6 +295,19 @@ impl CoordinateSystem {
 /// Whether a radius, metres, is one of the Earth.
 pub(crate) fn is_of_earth(radius_m: f64) -> bool {
     (6.2e6..6.5e6).contains(&radius_m)
+}
+
+/// The EPSG code of a PROJ string on a datum that PROJ knows by name, if one has the same parameters.
+fn code_of_proj(text: &str) -> Option<u32> {
+    let datum = text.split_whitespace().find_map(|part| part.strip_prefix("+datum="))?;
+    let base = match datum {
+        "WGS84" => 4326,
+        "NAD83" => 4269,
+        "NAD27" => 4267,
+        _ => return None,
+    };
+    let is_plain = text.contains("+proj=longlat") && !text.contains("+pm=");
+    if is_plain { Some(base) } else { code_of_parameters(base, text) }
 }
 
 /// A PROJ string whose parts all begin with `+`.

@@ -6,7 +6,7 @@
 mod numbers;
 
 use crate::fs::sidecar;
-use crate::vector::text::text_of;
+use crate::text::text_of;
 use crate::{Affine, InputFile, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs, fs};
 use belvedere_core::{Warning, WarningKind};
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! The table of formats: name, marks in content and file name, and loader.
 
-use crate::vector::text::text_of;
+use crate::text::text_of;
 use quick_xml::{Reader as XmlReader, events::Event};
 use std::path::Path;
 

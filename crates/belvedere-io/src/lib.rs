@@ -24,6 +24,7 @@ pub mod raster;
 mod recognise;
 mod table;
 pub mod terrain;
+mod text;
 pub mod vector;
 pub mod volume;
 

@@ -300,8 +300,10 @@ fn choose_target(
             let reason = "the file states no CRS that is understood; set its EPSG code (source_crs of its layer, or --source-crs)";
             return Err(IoError::format(&source.path, reason));
         }
-        let text = "no coordinate system is known, so the scene is local; source_crs of its layer, or --source-crs, places it on the earth";
-        warnings.push(Warning::new(WarningKind::Assumed, text).in_file(&source.path));
+        if !source.is_elsewhere {
+            let text = "no coordinate system is known, so the scene is local; source_crs of its layer, or --source-crs, places it on the earth";
+            warnings.push(Warning::new(WarningKind::Assumed, text).in_file(&source.path));
+        }
         return Ok(local);
     }
     let chosen = match request.crs {

@@ -79,6 +79,28 @@ fn info_goes_on_after_a_bad_file_and_tells_files_as_they_are() {
 }
 
 #[test]
+fn names_come_from_the_property_that_is_asked_for() {
+    let place = Place::new();
+    place.write(
+        "way",
+        r#"{"type":"FeatureCollection","features":[{"type":"Feature","properties":{"Naam":"a","PEAK":"Alp","n":3,"open":true},"geometry":{"type":"Point","coordinates":[11,46]}}]}"#,
+    );
+    let read = |arguments: &[&str]| -> serde_json::Value {
+        let out = place.run(arguments);
+        serde_json::from_slice::<serde_json::Value>(&out.stdout).expect("JSON")["files"][0].clone()
+    };
+    // a name without an ending leaves it to the content
+    let found = read(&["info", "way", "--json"]);
+    assert_eq!((&found["format"], &found["name_field"]), (&"GeoJSON".into(), &"Naam".into()));
+    let kinds: Vec<_> = found["properties"].as_array().expect("list").iter().map(|p| p["kind"].clone()).collect();
+    assert_eq!(kinds, ["text", "text", "number", "yes or no"]);
+    assert_eq!(read(&["info", "way", "--name-field", "PEAK", "--json"])["name_field"], "PEAK");
+    let out = place.run(&["info", "way", "--name-field", "summit"]);
+    let said = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert!(out.status.code() == Some(2) && said.contains("no feature has the property \"summit\""), "{said}");
+}
+
+#[test]
 fn names_from_files_do_not_steer_the_terminal() {
     let place = Place::new();
     place.write("s.toml", "format=1\ntitle=\"t\"\ncrs=\"local\"\n[[layer]]\nid=\"\\u001b[31mevil\"\nkind=\"boxes\"\nsource=\"builtin:street\"\n[camera]\neye=[0,-300,100]\nlook_at=[0,0,0]\nimage=[64,48]\n");

@@ -1,7 +1,7 @@
 //! Tables that supplement the register of PROJ strings: missing systems, missing or outdated datum shifts, and the geographic system of
 //! each datum and projected system.
 //!
-//! Source: the EPSG Geodetic Parameter Dataset, with the transformations that PROJ 9.5 chooses without grids at the middle of a system's
+//! Source: the EPSG Geodetic Parameter Dataset (11.022), with the transformations that PROJ 9.5 chooses without grids at the middle of a system's
 //! area of use. A line holds its value first, then codes; `a-b` stands for all codes from a to b.
 
 use super::CrsError;

@@ -1,7 +1,7 @@
 //! Numbers of text grids as locales and programs write them: decimal commas, separators of thousands, commas or semicolons between
 //! numbers, words for "no number", text of two bytes.
 
-use crate::vector::text::text_of;
+use crate::text::text_of;
 use std::borrow::Cow;
 
 /// How the numbers of a text are written.

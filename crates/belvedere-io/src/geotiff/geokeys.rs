@@ -229,6 +229,7 @@ fn crs(keys: &Keys, kind: CrsKind) -> SourceCrs {
     }
     let name = citations.iter().flatten().next().copied().unwrap_or("unnamed");
     let name: String = name.chars().take(80).collect();
+    let name = if name == "unknown" { "a system without a name".to_owned() } else { name };
     if keys.double(key::SEMI_MAJOR_AXIS).is_some_and(|a| !is_of_earth(a)) {
         return SourceCrs::OtherBody(name);
     }

@@ -7,7 +7,7 @@ use super::gltf_check;
 use super::gltf_pictures::Pictures;
 use super::{MeshFile, color};
 use crate::base64;
-use crate::fs::beside;
+use crate::fs::{beside, percent_decoded};
 use crate::{InputFile, IoError, Limits, Loaded};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Color, MeshColors, Texturing};
@@ -100,7 +100,7 @@ fn buffers(
                         .ok_or_else(|| bad("it holds a buffer that is no base64; it is damaged".into()))?
                 }
                 None => {
-                    let file = beside(path, &gltf_check::decoded(uri)).map_err(bad)?;
+                    let file = beside(path, &percent_decoded(uri)).map_err(bad)?;
                     let bytes = super::read_bytes(&file, limits)?;
                     files.push(InputFile::of(&file, &bytes));
                     bytes

@@ -1,8 +1,8 @@
 //! Pictures of glTF files: within the file, in a data address, or below its folder.
 
-use super::gltf_check::decoded;
 use super::{neighbour, picture};
 use crate::base64;
+use crate::fs::percent_decoded;
 use crate::{InputFile, Limits};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Texture, Wrap};
@@ -72,7 +72,7 @@ impl<'p> Pictures<'p> {
                     return Ok((decode(&bytes.ok_or("it is no base64; the file is damaged")?)?, None));
                 }
                 let path = self.path.unwrap_or(Path::new(""));
-                let (bytes, file) = neighbour(path, &decoded(uri), &self.limits)?;
+                let (bytes, file) = neighbour(path, &percent_decoded(uri), &self.limits)?;
                 Ok((decode(&bytes)?, Some(file)))
             }
         }

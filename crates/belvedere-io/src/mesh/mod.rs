@@ -10,7 +10,7 @@ mod ply;
 mod stl;
 
 use crate::formats::Reader;
-use crate::fs::beside;
+use crate::fs::{beside, spellings};
 use crate::packed::content;
 use crate::{InputFile, IoError, Limits, Loaded, fs};
 use belvedere_core::{Warning, WarningKind};
@@ -83,12 +83,15 @@ fn read_bytes(path: &Path, limits: &Limits) -> Result<Vec<u8>, IoError> {
     fs::read(path).map_err(|e| IoError::os(path, e))
 }
 
-/// A picture or a file of materials beside `path`, if it can be read.
+/// A picture or a file of materials beside `path`, if it can be read, under its name or in another spelling of it.
 pub(crate) fn neighbour(path: &Path, name: &str, limits: &Limits) -> Result<(Vec<u8>, InputFile), String> {
-    let file = beside(path, name)?;
-    let bytes = read_bytes(&file, limits).map_err(|e| e.to_string())?;
-    let record = InputFile::of(&file, &bytes);
-    Ok((bytes, record))
+    let read = |name: &str| {
+        let file = beside(path, name)?;
+        let bytes = read_bytes(&file, limits).map_err(|e| e.to_string())?;
+        let record = InputFile::of(&file, &bytes);
+        Ok((bytes, record))
+    };
+    read(name).or_else(|error| spellings(name).iter().find_map(|name| read(name).ok()).ok_or(error))
 }
 
 /// Removes triangles with a vertex that is not finite, and sets such vertices to zero. Returns their number.

@@ -18,12 +18,34 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
     let odd = std::cell::RefCell::new(Vec::new());
     let materials = |name: &Path| {
         let name = name.to_str().ok_or(tobj::LoadError::OpenFileFailed)?;
-        let (bytes, file) = neighbour(path, name, limits).map_err(|_| tobj::LoadError::OpenFileFailed)?;
-        files.borrow_mut().push(file);
-        tobj::load_mtl_buf(&mut obj_text::materials(&bytes, &mut odd.borrow_mut()).as_bytes())
+        // One name, which may hold blanks, else several.
+        let found: Vec<_> = match neighbour(path, name, limits) {
+            Ok(found) => vec![found],
+            Err(_) => name.split_whitespace().filter_map(|word| neighbour(path, word, limits).ok()).collect(),
+        };
+        if found.is_empty() {
+            return Err(tobj::LoadError::OpenFileFailed);
+        }
+        let mut text = String::new();
+        for (bytes, file) in found {
+            text.push_str(&obj_text::materials(&bytes, &mut odd.borrow_mut()));
+            text.push('\n');
+            files.borrow_mut().push(file);
+        }
+        tobj::load_mtl_buf(&mut text.as_bytes())
     };
-    let (models, materials) = tobj::load_obj_buf(&mut obj_text::statements(bytes).as_bytes(), &options, materials)
-        .map_err(|e| IoError::format(path, format!("{e}; it is damaged or no OBJ file")))?;
+    let text = obj_text::statements(bytes);
+    let read = |text: &str| tobj::load_obj_buf(&mut text.as_bytes(), &options, materials);
+    let (models, materials) = match read(&text) {
+        // Colours of some vertices only are none.
+        Err(tobj::LoadError::FaceColorOutOfBounds) => {
+            files.borrow_mut().clear();
+            odd.borrow_mut().clear();
+            read(&obj_text::without_colors(&text))
+        }
+        found => found,
+    }
+    .map_err(|e| IoError::format(path, format!("{e}; it is damaged or no OBJ file")))?;
     let mut warnings = Vec::new();
     if let Err(e) = &materials {
         let text = format!("its materials cannot be read ({e}), the layer's colour is used");

@@ -1,5 +1,7 @@
 //! Text of OBJ and MTL files as their reader takes it: one statement per line, in UTF-8, without forms that it rejects.
 
+use crate::text::text_of;
+
 /// Statements of an OBJ file: lines that end in a backslash are joined with the next, comments behind numbers are cut off.
 pub(super) fn statements(bytes: &[u8]) -> String {
     let mut out = String::with_capacity(bytes.len());
@@ -50,12 +52,19 @@ pub(super) fn materials(bytes: &[u8], left_out: &mut Vec<String>) -> String {
     out
 }
 
+/// Statements without the colours of vertices.
+pub(super) fn without_colors(statements: &str) -> String {
+    let position = |line: &str| {
+        let mut words = line.split_whitespace();
+        (words.next() == Some("v")).then(|| words.take(3).fold("v".to_owned(), |out, word| out + " " + word))
+    };
+    let lines = statements.lines().map(|line| position(line).unwrap_or_else(|| line.to_owned()) + "\n");
+    lines.collect()
+}
+
 fn decoded(bytes: &[u8]) -> String {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    match std::str::from_utf8(bytes) {
-        Ok(text) => text.to_owned(),
-        Err(_) => encoding_rs::WINDOWS_1252.decode_without_bom_handling(bytes).0.into_owned(),
-    }
+    let text = text_of(bytes, &mut Vec::new());
+    text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! PLY, text and binary, with colours and normals of its vertices or colours of its faces.
 
 use super::MeshFile;
+use crate::text::text_of;
 use crate::{IoError, Limits, Loaded};
 use belvedere_scene::{Color, MeshColors};
 use glam::DVec3;
@@ -37,6 +38,34 @@ impl PropertyAccess for Item {
         }
         PropertyAccessResult::Set
     }
+}
+
+/// The file with a header that the parser takes, if it has another: comments in Latin-1, lines that end in carriage returns alone, or a text
+/// of two bytes.
+fn mended(bytes: &[u8]) -> Option<Vec<u8>> {
+    const END: &[u8] = b"end_header";
+    if matches!(bytes, [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [b'p', 0, ..] | [0, b'p', ..]) {
+        return Some(text_of(bytes, &mut Vec::new()).into_bytes());
+    }
+    let end = bytes.windows(END.len()).position(|w| w == END)? + END.len();
+    let (header, rest) = bytes.split_at(end);
+    let old_lines = header.contains(&b'\r') && !header.contains(&b'\n');
+    if header.is_ascii() && !old_lines {
+        return None;
+    }
+    let line = |b: &u8| match *b {
+        b'\r' if old_lines => b'\n',
+        b if b.is_ascii() => b,
+        _ => b'?',
+    };
+    let is_text = header.windows(5).any(|w| w == b"ascii");
+    // Of binary data only the end of the header's last line is one.
+    let rest: Vec<u8> = match rest {
+        _ if old_lines && is_text => rest.iter().map(line).collect(),
+        [b'\r', data @ ..] if old_lines => [b"\n", data].concat(),
+        rest => rest.to_vec(),
+    };
+    Some(header.iter().map(line).chain(rest).collect())
 }
 
 fn number(value: &Property) -> Option<f64> {
@@ -81,6 +110,8 @@ pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshF
         bad(format!("{said}; it is damaged or no PLY file"))
     };
     let parser = Parser::<Item>::new();
+    let mended = mended(bytes);
+    let bytes = mended.as_deref().unwrap_or(bytes);
     let mut reader = Reader::new(bytes);
     let header = parser.read_header(&mut reader).map_err(|e| damaged(&e))?;
     let mut out = MeshFile { format: "PLY", ..MeshFile::default() };

@@ -1,7 +1,7 @@
 //! STL, text and binary.
 
 use super::MeshFile;
-use crate::vector::text::text_of;
+use crate::text::text_of;
 use crate::{IoError, Limits, Loaded};
 use belvedere_core::{Warning, WarningKind};
 use glam::DVec3;

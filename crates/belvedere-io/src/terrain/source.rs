@@ -32,6 +32,8 @@ pub(crate) struct SourceGrid {
     pub(crate) model_from_index: Affine,
     /// Coordinate system; `None` = not known.
     pub(crate) system: Option<CoordinateSystem>,
+    /// Whether its system is of another body than the Earth.
+    pub(crate) is_elsewhere: bool,
     /// Samples in the file and how many of them hold no data.
     pub(crate) samples: usize,
     pub(crate) voids: usize,
@@ -166,7 +168,9 @@ fn read_one(
         let text = "it has no georeference; one pixel counts as one metre";
         warnings.push(Warning::new(WarningKind::Assumed, text).in_file(path));
     }
-    let grid = SourceGrid { path: path.to_owned(), cols, rows, heights, model_from_index, system, samples, voids };
+    let is_elsewhere = request.source_crs.is_none() && is_of_another_body(&raster.info.crs);
+    let path = path.to_owned();
+    let grid = SourceGrid { path, cols, rows, heights, model_from_index, system, is_elsewhere, samples, voids };
     Ok(Loaded { value: within(grid, budget, factor, &mut warnings), warnings, files })
 }
 
@@ -362,8 +366,16 @@ pub(crate) fn stated_system(
     }
 }
 
+fn is_of_another_body(crs: &SourceCrs) -> bool {
+    match crs {
+        SourceCrs::OtherBody(_) => true,
+        SourceCrs::Wkt(text) => CoordinateSystem::from_text(text).is_ok_and(|system| system.is_local()),
+        _ => false,
+    }
+}
+
 fn of_another_body(path: &Path, name: &str) -> Warning {
-    let text = format!("its system {name} is of another body than the Earth, so the scene is local");
+    let text = format!("its coordinate system ({name}) is of another body than the Earth, so the scene is local");
     Warning::new(WarningKind::Assumed, text).in_file(path)
 }
 
@@ -518,6 +530,7 @@ pub(super) fn merge_aligned(
         heights,
         model_from_index: first.model_from_index.after_scale_and_shift(1.0, 1.0, left as f64, top as f64),
         system: first.system.clone(),
+        is_elsewhere: first.is_elsewhere,
         samples: sources.iter().map(|s| s.samples).sum(),
         voids: sources.iter().map(|s| s.voids).sum(),
     };

@@ -10,7 +10,6 @@ mod on_terrain;
 mod phantom;
 mod rings;
 mod shapefile;
-pub(crate) mod text;
 
 pub use area_kind::{AreaKind, area_kind};
 pub use gpx::track_times;
@@ -22,6 +21,7 @@ use crate::formats::Reader;
 use crate::packed::content_for;
 use crate::recognise::explain;
 use crate::table::split_table;
+use crate::text::text_of;
 use crate::{InputFile, IoError, Loaded, fs};
 use glam::DVec2;
 use phantom::Phantoms;
@@ -190,7 +190,7 @@ fn load_known(path: &Path) -> Result<Loaded<Vectors>, IoError> {
         ));
     }
     let mut warnings = Vec::new();
-    let text = text::text_of(&bytes, &mut warnings);
+    let text = text_of(&bytes, &mut warnings);
     let mut warnings: Vec<_> = warnings.into_iter().map(|w| w.in_file(path)).collect();
     let loaded = match text.trim_start().chars().next() {
         Some('<') => gpx::load(path, &text)?,

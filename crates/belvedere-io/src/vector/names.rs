@@ -50,7 +50,7 @@ const USUAL: [&str; 45] = [
     "título",
 ];
 /// Words for name, which stand with others in the names of fields (`naam_nl`, `NAMN1`, `NAZ_OBJ`, `gnis_name`, `NOM_VOIE`).
-const WORDS: [&str; 22] = [
+const WORDS: [&str; 20] = [
     "name",
     "fullname",
     "lakename",
@@ -65,8 +65,6 @@ const WORDS: [&str; 22] = [
     "nazev",
     "naziv",
     "nimi",
-    "label",
-    "title",
     "bezeichnung",
     "toponym",
     "название",
@@ -87,7 +85,9 @@ pub fn name_field<'k>(keys: impl Iterator<Item = &'k str> + Clone) -> Option<&'k
     let plain =
         |key: &str| key.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect::<String>();
     let one_of = |fields: &[&str]| fields.iter().find_map(|field| keys.clone().find(|k| plain(k) == *field));
-    one_of(&USUAL).or_else(|| keys.clone().find(|key| names(key))).or_else(|| one_of(&LAST))
+    let numbered =
+        || USUAL.iter().find_map(|f| keys.clone().find(|k| plain(k).trim_end_matches(char::is_numeric) == *f));
+    one_of(&USUAL).or_else(numbered).or_else(|| keys.clone().find(|key| names(key))).or_else(|| one_of(&LAST))
 }
 
 /// Whether a word for name stands among the words of a field.

@@ -1,11 +1,11 @@
 //! ESRI shapefiles: points, multipoints, polylines and polygons, with Z and M, names from the .dbf, system from the .prj.
 
-use super::text::{table_encoding, text_of};
 use super::{
     Geometry, VectorFeature, Vectors, Vertex, certainly_not_degrees, name_of, not_degrees, rings, shorten, vertex,
 };
 use crate::crs::CoordinateSystem;
 use crate::fs::sidecar;
+use crate::text::{table_encoding, text_of};
 use crate::{IoError, Loaded, fs};
 use belvedere_core::{Warning, WarningKind};
 use std::collections::BTreeMap;

@@ -146,6 +146,77 @@ fn geokeys() {
     assert_eq!((geographic.crs, geographic.pixel_is_point), (SourceCrs::Epsg(4258), true));
 }
 
+/// Systems that are given by their parameters: EPSG codes where one fits, else the same place as that of the PROJ string.
+#[test]
+fn geokeys_of_parameters() {
+    use belvedere_io::crs::{CoordinateSystem, Transform};
+    let keys = |shorts: &[[u64; 4]], doubles: &[(u64, f64)]| {
+        let from_doubles = doubles.iter().enumerate().map(|(k, (id, _))| [*id, 34736, 1, k as u64]);
+        let all: Vec<[u64; 4]> = shorts.iter().copied().chain(from_doubles).collect();
+        let values = [vec![1, 1, 0, all.len() as u64], all.concat()].concat();
+        let values_of: Vec<f64> = doubles.iter().map(|(_, v)| *v).collect();
+        with_tags(&[(34735, 3, values), (34736, 12, bits_of(&values_of))]).unwrap().info.crs
+    };
+    let own = [[1024, 0, 1, 1], [3072, 0, 1, 32767], [3074, 0, 1, 32767], [3076, 0, 1, 9001]];
+    let with = |more: &[[u64; 4]]| [own.to_vec(), more.to_vec()].concat();
+    // with a code: European LAEA, Lambert 93 with parallels exchanged, UTM 33 on ETRS 89 by its datum
+    let laea = keys(
+        &with(&[[2048, 0, 1, 4258], [3075, 0, 1, 10]]),
+        &[(3089, 52.0), (3088, 10.0), (3082, 4_321_000.0), (3083, 3_210_000.0)],
+    );
+    assert_eq!(laea, SourceCrs::Epsg(3035));
+    let lcc = [(3078, 44.0), (3079, 49.0), (3085, 46.5), (3084, 3.0), (3086, 700_000.0), (3087, 6_600_000.0)];
+    assert_eq!(keys(&with(&[[2048, 0, 1, 4171], [3075, 0, 1, 8]]), &lcc), SourceCrs::Epsg(2154));
+    let utm = [(3081, 0.0), (3080, 15.0), (3092, 0.9996), (3082, 500_000.0), (3083, 0.0)];
+    let by_datum = keys(&with(&[[2048, 0, 1, 32767], [2050, 0, 1, 6258], [3075, 0, 1, 1]]), &utm);
+    assert_eq!(by_datum, SourceCrs::Epsg(25833));
+    // without one
+    let wgs84 = CoordinateSystem::wgs84().unwrap();
+    for (method, doubles, proj, at) in [
+        (10, vec![(3089, 46.0), (3088, 11.0)], "+proj=laea +lat_0=46 +lon_0=11 +datum=WGS84", [11.2, 46.3]),
+        (
+            11,
+            vec![(3078, 29.5), (3079, 45.5), (3081, 23.0), (3080, -97.0)],
+            "+proj=aea +lat_1=29.5 +lat_2=45.5 +lat_0=23 +lon_0=-97 +datum=WGS84",
+            [-100.0, 40.0],
+        ),
+        (
+            15,
+            vec![(3081, 71.0), (3095, -45.0)],
+            "+proj=stere +lat_0=90 +lat_ts=71 +lon_0=-45 +datum=WGS84",
+            [-40.0, 72.0],
+        ),
+        (
+            16,
+            vec![(3081, 46.0), (3080, 25.0), (3092, 0.99975)],
+            "+proj=sterea +lat_0=46 +lon_0=25 +k=0.99975 +datum=WGS84",
+            [25.0, 45.5],
+        ),
+        (
+            9815,
+            vec![(3089, 46.0), (3088, 11.0), (3094, 30.0), (3096, 30.0)],
+            "+proj=omerc +lat_0=46 +lonc=11 +alpha=30 +gamma=30 +datum=WGS84",
+            [11.5, 46.5],
+        ),
+    ] {
+        let found = keys(&with(&[[2048, 0, 1, 4326], [3075, 0, 1, method]]), &doubles);
+        let SourceCrs::Wkt(text) = &found else { panic!("{method}: {found}") };
+        let of = |s: &CoordinateSystem| Transform::new(&wgs84, s).unwrap().forward_one(at.into()).unwrap();
+        let (a, b) =
+            (CoordinateSystem::from_text(text).unwrap(), CoordinateSystem::from_proj_string("p", proj).unwrap());
+        assert!(of(&a).distance(of(&b)) < 1e-3, "{text} {proj}");
+    }
+    // another body, an unknown method, other angles
+    let mars = keys(&with(&[[2048, 0, 1, 32767], [3075, 0, 1, 17]]), &[(2057, 3_396_190.0), (2058, 3_396_190.0)]);
+    assert!(matches!(mars, SourceCrs::OtherBody(_)), "{mars}");
+    for odd in [
+        with(&[[2048, 0, 1, 4326], [3075, 0, 1, 99]]),
+        with(&[[2048, 0, 1, 4326], [2054, 0, 1, 9105], [3075, 0, 1, 10]]),
+    ] {
+        assert!(matches!(keys(&odd, &[(3089, 46.0)]), SourceCrs::UserDefined(_)));
+    }
+}
+
 #[test]
 fn written_files_come_back() {
     let folder = std::env::temp_dir().join(format!("belvedere-geotiff-{}", std::process::id()));

@@ -87,7 +87,8 @@ fn texts_of_esri_and_codes_give_the_same_place() {
 #[test]
 fn no_false_alarms() {
     for code in [
-        4326, 25832, 3035, 2056, 28355, 7844, 3111, 31983, 4674, 2193, 6670, 2154, 3857, 26913, 5070, 2903, 3812, 32633,
+        4326, 25832, 3035, 2056, 28355, 7844, 3111, 31983, 4674, 2193, 6670, 2154, 3857, 26913, 5070, 2903, 3812,
+        32633, 4490, 4528, 22414, 9150, 9697, 10626, 9823, 6784, 6668,
     ] {
         let system = CoordinateSystem::from_epsg(code).unwrap();
         let note = system.datum_note();
@@ -107,6 +108,23 @@ fn codes_of_other_registers_are_those_of_today() {
     }
     let error = CoordinateSystem::from_text("my own system").unwrap_err().to_string();
     assert!(error.contains("my own system") && error.contains("give the EPSG code"), "{error}");
+}
+
+/// Texts of datums of satellite positioning that no table knows raise no alarm, those of old ones do.
+#[test]
+fn datums_on_modern_ellipsoids_are_close() {
+    for (axis, flattening, close) in [
+        (6_378_137.0, 298.257222101, true),
+        (6_378_137.0, 298.257223563, true),
+        (6_377_397.155, 299.1528128, false),
+        (6_378_388.0, 297.0, false),
+    ] {
+        let text = format!(
+            r#"PROJCS["Own_2031",GEOGCS["GCS_Own_2031",DATUM["D_Own_2031",SPHEROID["Own",{axis},{flattening}]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["False_Easting",1234.0],PARAMETER["Central_Meridian",9.5],PARAMETER["Scale_Factor",0.9997],UNIT["Meter",1.0]]"#
+        );
+        let note = CoordinateSystem::from_wkt(&text).unwrap().datum_note();
+        assert_eq!(note.is_none(), close, "{axis} {flattening}: {note:?}");
+    }
 }
 
 /// Krovak with axes to the south and west is refused, not drawn 2,400 km away.

@@ -245,7 +245,11 @@ fn a_segment_per_point_is_a_line() {
     let text = format!("<gpx><trk>{}</trk></gpx>", (1..=5).map(segment).collect::<String>());
     let loaded = load_vectors(&folder.file("a.gpx", text.as_bytes())).unwrap();
     assert_eq!((loaded.value.features.len(), loaded.value.vertex_count()), (1, 5));
-    assert!(loaded.warnings[0].text().contains("5 segments of a single point"), "{:?}", loaded.warnings);
+    assert!(
+        loaded.warnings[0].text().contains("5 segments, tracks or routes of a single point"),
+        "{:?}",
+        loaded.warnings
+    );
 }
 
 /// Records with gaps between them, in any order, are found at the offsets in the index.

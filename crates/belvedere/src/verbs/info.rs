@@ -202,6 +202,8 @@ pub struct PropertyInfo {
     pub name: String,
     /// Features that have it.
     pub features: usize,
+    /// Type of its values: "number", "yes or no" or "text".
+    pub kind: &'static str,
     /// Shortened value of one of them.
     pub example: String,
 }
@@ -383,20 +385,32 @@ const EXAMPLE: usize = 60;
 
 /// Properties of features, the most frequent first.
 fn properties(vectors: &Vectors) -> Vec<PropertyInfo> {
-    let mut found: BTreeMap<&str, (usize, &str)> = BTreeMap::new();
+    let mut found: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for (name, value) in vectors.features.iter().flat_map(|f| &f.properties) {
-        let entry = found.entry(name).or_insert((0, value));
-        entry.0 += 1;
+        found.entry(name).or_default().push(value);
     }
-    let info = |(name, (features, example)): (&str, (usize, &str))| PropertyInfo {
+    let info = |(name, values): (&str, Vec<&str>)| PropertyInfo {
         name: name.to_owned(),
-        features,
-        example: example.chars().take(EXAMPLE).collect(),
+        features: values.len(),
+        kind: kind_of(&values),
+        example: values[0].chars().take(EXAMPLE).collect(),
     };
     let mut list: Vec<PropertyInfo> = found.into_iter().map(info).collect();
     list.sort_by_key(|p| std::cmp::Reverse(p.features));
     list.truncate(LISTED);
     list
+}
+
+/// The type of a property by its values: "number", "yes or no" or "text".
+fn kind_of(values: &[&str]) -> &'static str {
+    let all = |fits: fn(&str) -> bool| values.iter().all(|value| fits(value));
+    if all(|v| v.trim().parse::<f64>().is_ok()) {
+        "number"
+    } else if all(|v| ["true", "false", "yes", "no", "T", "F"].contains(&v)) {
+        "yes or no"
+    } else {
+        "text"
+    }
 }
 
 fn features(path: &Path, name_field: Option<&str>) -> Result<FileInfo, BelvedereError> {

@@ -36,8 +36,9 @@ pub(super) fn code_of(system: &Node, proj_string: &str) -> Option<u32> {
 /// EPSG code of the projected system on a geographic one that has the projection of a PROJ string.
 pub(crate) fn code_of_parameters(base: u32, proj_string: &str) -> Option<u32> {
     let wanted = Parameters::of(proj_string);
-    tables::projected_on(base)
-        .find(|code| tables::definition(*code).is_ok_and(|text| Parameters::of(&text).same(&wanted)))
+    let same = |code: &u32| tables::definition(*code).is_ok_and(|text| Parameters::of(&text).same(&wanted));
+    // UTM on ETRS 89 has codes of its own for axes to the north and east.
+    tables::projected_on(base).filter(same).min_by_key(|code| (3038..=3051).contains(code))
 }
 
 /// The PROJ string with the shift of a known datum, where the text gives none.

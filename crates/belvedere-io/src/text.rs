@@ -72,7 +72,7 @@ fn declared(bytes: &[u8]) -> Option<String> {
 }
 
 /// The encoding of a dBASE table: as the `.cpg` file beside it says, else by the language in its header. `None` = not stated.
-pub(super) fn table_encoding(cpg: Option<&str>, language: u8) -> Option<&'static Encoding> {
+pub(crate) fn table_encoding(cpg: Option<&str>, language: u8) -> Option<&'static Encoding> {
     if let Some(encoding) = cpg.and_then(code_page) {
         return Some(encoding);
     }
