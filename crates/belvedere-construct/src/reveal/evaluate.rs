@@ -32,6 +32,8 @@ pub struct Evaluation {
     pub covered: f64,
     /// Mean position of the upper edge of the ground, share of the image height from the top; 1 = no ground in the image.
     pub skyline: f64,
+    /// Standard deviation of that edge over the columns of the image, share of its height: large where the data end aslant in the picture.
+    pub slant: f64,
     /// Horizontal extent of the middle 98 % of the features in the image, share of the image width.
     pub width: f64,
     /// Mean size of a grid cell at the lower border of the image, pixels; 0 without ground there. Ground that is magnified much more than 8
@@ -110,7 +112,7 @@ impl<'a> Evaluator<'a> {
         let height_angle = 2.0 * (0.5 * f64::from(pinhole.image[1]) / pinhole.scale_px()).atan();
         let depth_ratio =
             quantile(&mut distances, 0.97, Rank::Nearest) / quantile(&mut distances, 0.03, Rank::Nearest).max(1e-9);
-        let skyline = self.skyline(view);
+        let (skyline, slant) = self.skyline(view);
         let (covered, coarse_px) = self.covered(view, skyline);
         let [width, height] = pinhole.image.map(f64::from);
         Evaluation {
@@ -123,13 +125,14 @@ impl<'a> Evaluator<'a> {
             drawn: drawn * pinhole.scale_px() / width,
             covered,
             skyline,
+            slant,
             width: (quantile(&mut columns, 0.99, Rank::Nearest) - quantile(&mut columns, 0.01, Rank::Nearest)) / width,
             coarse_px,
         }
     }
 
-    /// Mean over the columns of the image of the highest terrain node in each, share of the image height from the top.
-    fn skyline(&self, view: &View) -> f64 {
+    /// Mean and standard deviation over the columns of the image of the highest terrain node in each, share of the image height from the top.
+    fn skyline(&self, view: &View) -> (f64, f64) {
         const COLUMNS: usize = 12;
         let [width, height] = view.pinhole().image.map(f64::from);
         let mut top = [height; COLUMNS];
@@ -141,7 +144,9 @@ impl<'a> Evaluator<'a> {
                 *highest = highest.min(image.pixel.y.max(0.0));
             }
         }
-        top.iter().sum::<f64>() / (COLUMNS as f64 * height)
+        let mean = |of: &dyn Fn(f64) -> f64| top.iter().map(|t| of(t / height)).sum::<f64>() / COLUMNS as f64;
+        let middle = mean(&|t| t);
+        (middle, mean(&|t| (t - middle) * (t - middle)).sqrt())
     }
 
     /// Share of a grid of rays below the skyline that come down on the ground of the data from above, and the size of its cells in the lowest

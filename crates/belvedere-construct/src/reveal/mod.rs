@@ -259,8 +259,8 @@ fn remarks(picture: &Evaluation, free: bool) -> Vec<Warning> {
     let mut out = Vec::new();
     if free && picture.in_frame < WHOLE {
         let text = format!(
-            "{:.0} % of the features lie in the frame: from every eye near the terrain that holds more of them, the ground of the data would not \
-             fill the picture, or they would be too small or hidden; take data that reach farther around them, or give --eye and --look",
+            "{:.0} % of the features lie in the frame, for no eye that was tried near the terrain gives a better picture with more of \
+             them; take data that reach farther around them, or give a view (eye and look_at)",
             100.0 * picture.in_frame
         );
         out.push(Warning::new(WarningKind::Hidden, text).with("share", picture.in_frame));

@@ -5,7 +5,7 @@ use super::evaluate::Evaluation;
 /// Score of a picture by its composition, whatever it hides: the whole of the features in it, large, on ground of the data that its cells
 /// can carry, under a horizon.
 pub(super) fn composition(a: &Evaluation) -> f64 {
-    let sky = 4.0 * (0.08 - a.skyline).max(0.0) + 2.0 * (a.skyline - 0.20).max(0.0);
+    let sky = 6.0 * (0.08 - a.skyline).max(0.0) + 2.0 * (a.skyline - 0.20).max(0.0) + 2.0 * (a.slant - 0.08).max(0.0);
     let fill = (0.45 - a.spread).max(0.0) + 2.0 * (a.spread - 0.85).max(0.0);
     let outside = 4.0 * (1.0 - a.in_frame) + 6.0 * (0.97 - a.in_frame).max(0.0);
     0.25 * (a.drawn / 0.8).min(1.0) + 0.3 * (a.width / 0.7).min(1.0)
@@ -36,6 +36,7 @@ mod tests {
         drawn: 1.0,
         covered: 1.0,
         skyline: 0.15,
+        slant: 0.04,
         width: 0.8,
         coarse_px: 4.0,
     };
@@ -50,6 +51,7 @@ mod tests {
         let worse = [
             Evaluation { coarse_px: 30.0, ..GOOD },
             Evaluation { skyline: 0.0, ..GOOD },
+            Evaluation { slant: 0.3, ..GOOD },
             Evaluation { covered: 0.9, ..GOOD },
             Evaluation { drawn: 0.2, ..GOOD },
             Evaluation { width: 0.3, ..GOOD },

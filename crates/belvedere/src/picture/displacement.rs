@@ -125,7 +125,7 @@ mod tests {
     fn raised(by: f64) -> View {
         let lens = Projection::Perspective { fov_y: 1.0 };
         let pinhole = Pinhole::look_at(DVec3::ZERO, DVec3::Y, DVec3::Z, lens, SIZE, 0.01, None).unwrap();
-        let grid = Grid::new(DVec2::splat(-500.0), DVec2::splat(1000.0), 2, 2, vec![by; 4]).unwrap();
+        let grid = Grid::new(DVec2::new(-500.0, 500.0), DVec2::splat(1000.0), 2, 2, vec![by; 4]).unwrap();
         View::new(pinhole, vec![Stage::TerrainDisocclusion(TerrainDisocclusion::new(grid))]).unwrap()
     }
 

@@ -110,7 +110,7 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
         && let Some(moved) = target_views::reframed(session.scene(), &view, sidestep, &target)
     {
         let sight = TargetSight::new(session.scene(), &target);
-        let bent = sidestep.view(&moved).map_err(belvedere_construct::ConstructError::from)?;
+        let bent = sidestep.view(&moved)?;
         report.visible = sight.share(&bent, 0.0);
         report.in_frame = sight.in_frame(&bent);
         report.visible_straight = sight.share(&moved, 0.0);
