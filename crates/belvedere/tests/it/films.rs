@@ -147,7 +147,7 @@ fn every_frame_shows_the_ground_from_above_with_every_technique() {
         for technique in ["spline_bend", "curved_rays", "terrain_disocclusion"] {
             let folder = tempfile::tempdir().unwrap();
             let scene = ground.scene(folder.path(), technique);
-            let made = film(folder.path(), &scene, along(12));
+            let made = film(folder.path(), &scene, along(8));
             let case = format!("{} by {technique}", ground.name);
             assert_eq!(made.warnings, [], "{case}");
             for (i, frame) in frames(&made).into_iter().enumerate() {
@@ -176,7 +176,7 @@ fn every_frame_shows_the_ground_from_above_with_every_technique() {
 fn a_film_moves_smoothly() {
     let folder = tempfile::tempdir().unwrap();
     let scene = GROUNDS[0].scene(folder.path(), "spline_bend");
-    let made = film(folder.path(), &scene, along(40));
+    let made = film(folder.path(), &scene, along(30));
     let eyes: Vec<[f64; 3]> = frames(&made).iter().map(|f| f.view.eye).collect();
     let step = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
     let steps: Vec<f64> = eyes.windows(2).map(|p| step(&p[0], &p[1])).collect();

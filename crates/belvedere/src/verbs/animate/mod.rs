@@ -285,10 +285,13 @@ impl Drawing<'_> {
             };
             let camera = following.camera(frame);
             let short = lacking.clearance_m.map_or(0.0, |c| lacking.needed_m - c);
+            let step = LIFT * (camera.eye.z - camera.walker.z).abs();
             following.adjustments[frame] = match () {
-                () if short > 0.0 => Adjustment { lift: adjusted.lift + 1.05 * short, ..adjusted },
+                () if short > 0.0 && (short <= step || adjusted.share <= 0.0) => {
+                    Adjustment { lift: adjusted.lift + 1.05 * short, ..adjusted }
+                }
                 () if adjusted.share > 0.0 => Adjustment { share: (adjusted.share - 0.34).max(0.0), ..adjusted },
-                () => Adjustment { lift: adjusted.lift + LIFT * (camera.eye.z - camera.walker.z).abs(), ..adjusted },
+                () => Adjustment { lift: adjusted.lift + step, ..adjusted },
             };
             *memory = before.clone();
         }
