@@ -235,3 +235,26 @@ fn ffmpeg(bin: &Path, script: &str) -> PathBuf {
     std::fs::set_permissions(&path, std::fs::Permissions::from_mode(0o755)).expect("runnable");
     path
 }
+
+#[test]
+fn flags_ask_for_marker_clock_and_profile_and_frames_replace_a_speed() {
+    let place = place();
+    place.write("s.toml", &format!("{SCENE}[animation]\nalong = 'trail'\nspeed_mps = 1e6\n"));
+    let args = ["animate", "s.toml", "-o", "out", "--frames", "3", "--marker", "--clock", "--profile", "--json"];
+    let said = place.json(&args);
+    assert_eq!(said["drawn"], 3);
+    assert!(said["warnings"].to_string().contains("no times along the route"), "{said}");
+    let record = record(&place.path("out"));
+    for key in ["marker", "clock", "profile"] {
+        assert_eq!(record["settings"]["animation"][key], true, "{key}");
+    }
+    for frame in record["frames"].as_array().expect("frames") {
+        assert!(frame["marker"]["pixel"].is_array(), "{frame}");
+        assert_eq!(frame["ground"]["from_below"], 0, "{frame}");
+        // No clearance where the eye lies beside the ground.
+        let clearance = frame["ground"]["clearance_m"].as_f64().unwrap_or(f64::INFINITY);
+        assert!(frame["ground"]["needed_m"].as_f64().is_some_and(|needed| clearance >= needed), "{frame}");
+    }
+    let line = place.fails(&["animate", "s.toml", "-o", "turn", "--turntable", "--marker"]);
+    assert!(line.contains("marker follows a walker along a route"), "{line}");
+}

@@ -129,7 +129,9 @@ impl Judge<'_> {
             match self.lack(path, frame, now.share)? {
                 Lack::Nothing => break,
                 // A bend that lifts the ground far above the eye is too strong there.
-                Lack::Clearance(short) if short <= step || now.share <= 0.0 => now.lift += 1.05 * short + 1e-3 * step,
+                Lack::Clearance(short) if now.lift - start.lift + short <= step || now.share <= 0.0 => {
+                    now.lift += 1.05 * short + 1e-3 * step;
+                }
                 Lack::Clearance(_) | Lack::Side => match SHARES.into_iter().find(|s| *s < now.share - 1e-9) {
                     Some(share) => now.share = share,
                     None => now.lift += step,
