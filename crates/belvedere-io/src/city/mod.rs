@@ -9,7 +9,6 @@ mod footprints;
 mod gml;
 mod looks;
 mod osm;
-mod osm_blocks;
 mod parts;
 mod pictures;
 mod place;

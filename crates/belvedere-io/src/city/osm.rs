@@ -2,7 +2,6 @@
 
 use super::attributes;
 use super::footprints::{cover, way_class};
-use super::osm_blocks::{self, Element, Kind, Tags};
 use super::parts::{self, Tagged};
 use super::plan::{self, Repairs};
 use super::{CityFile, IoError, Loaded};
@@ -11,8 +10,11 @@ use belvedere_core::polygon::{doubled_area, is_inside};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{City, CityArea, Polygon, Way, WayClass};
 use glam::DVec2;
+use osmpbf::{Element, ElementReader, RelMemberType};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
+
+type Tags = BTreeMap<String, String>;
 
 /// Values of tags for which an object is not a way, or not a visible one.
 const NOT_WAYS: [(&str, &[&str]); 3] = [
@@ -58,8 +60,11 @@ struct Lost {
 }
 
 pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<CityFile>, IoError> {
-    let damaged = |e: String| IoError::format(path, format!("OSM PBF is damaged or cut off ({e}); fetch it again"));
-    let map = Map::read(bytes).map_err(damaged)?;
+    // The reader panics on an unknown kind of a member.
+    let read = std::panic::catch_unwind(|| Map::read(bytes));
+    let read = read.unwrap_or_else(|_| Err("its blocks contradict themselves".into()));
+    let map =
+        read.map_err(|e| IoError::format(path, format!("OSM PBF is damaged or cut off ({e}); fetch it again")))?;
     let (mut lost, mut repairs) = (Lost::default(), Repairs::default());
     let city = map.city(&mut lost, &mut repairs);
     if city == City::default() {
@@ -87,33 +92,42 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<CityFile>, IoErro
 impl Map {
     /// Relations come after ways and ways after nodes, so the file is read three times and only what is used is kept.
     fn read(bytes: &[u8]) -> Result<Self, String> {
+        let each =
+            |what: &mut dyn FnMut(Element<'_>)| ElementReader::new(bytes).for_each(what).map_err(|e| e.to_string());
         let mut map = Self::default();
-        osm_blocks::each(bytes, Kind::Relation, &mut |element| map.relation(element))?;
+        each(&mut |element| map.relation(&element))?;
         let members: HashSet<i64> = map.relations.iter().flat_map(|r| &r.ways).copied().collect();
-        osm_blocks::each(bytes, Kind::Way, &mut |element| map.way(element, &members))?;
+        each(&mut |element| map.way(&element, &members))?;
         let wanted: HashSet<i64> = map.ways.values().flat_map(|w| &w.nodes).copied().collect();
-        osm_blocks::each(bytes, Kind::Node, &mut |element| map.node(&element, &wanted))?;
+        each(&mut |element| map.node(&element, &wanted))?;
         Ok(map)
     }
 
-    fn relation(&mut self, element: Element) {
-        let Element::Relation(id, tags, ways) = element else { return };
+    fn relation(&mut self, element: &Element<'_>) {
+        let Element::Relation(relation) = element else { return };
         self.counts[2] += 1;
+        let tags = owned(relation.tags());
         if tags.get("type").is_some_and(|t| t == "multipolygon") && is_wanted(&tags) {
-            self.relations.push(Relation { id, tags, ways });
+            let ways = relation.members().filter(|m| m.member_type == RelMemberType::Way).map(|m| m.member_id);
+            self.relations.push(Relation { id: relation.id(), tags, ways: ways.collect() });
         }
     }
 
-    fn way(&mut self, element: Element, members: &HashSet<i64>) {
-        let Element::Way(id, tags, nodes) = element else { return };
+    fn way(&mut self, element: &Element<'_>, members: &HashSet<i64>) {
+        let Element::Way(way) = element else { return };
         self.counts[1] += 1;
-        if members.contains(&id) || is_wanted(&tags) {
-            self.ways.insert(id, Line { tags, nodes });
+        let tags = owned(way.tags());
+        if members.contains(&way.id()) || is_wanted(&tags) {
+            self.ways.insert(way.id(), Line { tags, nodes: way.refs().collect() });
         }
     }
 
-    fn node(&mut self, element: &Element, wanted: &HashSet<i64>) {
-        let Element::Node(id, lon, lat) = *element else { return };
+    fn node(&mut self, element: &Element<'_>, wanted: &HashSet<i64>) {
+        let (id, lon, lat) = match element {
+            Element::Node(node) => (node.id(), node.lon(), node.lat()),
+            Element::DenseNode(node) => (node.id(), node.lon(), node.lat()),
+            _ => return,
+        };
         self.counts[0] += 1;
         let on_earth = lon.abs() <= 180.0 && lat.abs() <= 90.0;
         if on_earth && wanted.contains(&id) {
@@ -202,6 +216,10 @@ impl Map {
         }
         groups.into_iter().flatten().filter_map(|rings| plan::polygon(rings, repairs)).collect()
     }
+}
+
+fn owned<'t>(tags: impl Iterator<Item = (&'t str, &'t str)>) -> Tags {
+    tags.map(|(k, v)| (k.to_owned(), v.to_owned())).collect()
 }
 
 fn is_building(tags: &Tags) -> bool {

@@ -24,6 +24,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
             "glam",
             "gltf",
             "gpx",
+            "osmpbf",
             "ply-rs-bw",
             "png",
             "proj4rs",
@@ -181,7 +182,6 @@ fn cargo_run_means_the_program() {
     let packages = metadata["packages"].as_array().expect("packages").iter().filter(|p| default.contains(&p["id"]));
     let programs: Vec<_> = packages.filter_map(|p| p["default_run"].as_str()).collect();
     assert_eq!(programs, ["belvedere"]);
-}
 
 #[test]
 fn the_program_links_no_c_library() {
@@ -198,4 +198,5 @@ fn the_program_links_no_c_library() {
     let compilers = ["cc ", "cmake ", "pkg-config ", "libsqlite3-sys "];
     let found: Vec<&str> = tree.lines().filter(|line| compilers.iter().any(|name| line.starts_with(name))).collect();
     assert!(found.is_empty(), "{found:?} compile or link C");
+}
 }
