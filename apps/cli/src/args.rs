@@ -171,11 +171,12 @@ pub(crate) struct DemoArgs {
 /// Terrain and features.
 #[derive(Debug, Args)]
 pub(crate) struct RevealArgs {
-    /// Terrain: GeoTIFF, .hgt, ESRI ASCII, or builtin:massif?seed=7; with --see a model: OBJ, PLY, STL, glTF, PDB, mmCIF, VTI, NRRD,
+    /// Terrain: GeoTIFF, .hgt, ESRI ASCII, a folder of tiles, or builtin:massif?seed=7; with --see a model: OBJ, PLY, STL, glTF, PDB, mmCIF, VTI, NRRD,
     /// raw voxels, or a scene file
     #[arg(value_name = "DATA")]
     pub(crate) dem: String,
-    /// Routes, areas or points: GPX, GeoJSON, shapefiles, GeoPackages where they are built in, or builtin:massif?seed=7; with --see more models
+    /// Routes, areas or points: GPX, GeoJSON, shapefiles, GeoPackages where they are built in, or builtin:massif?seed=7; elevation models
+    /// among them are further tiles of the terrain; with --see more models
     #[arg(required_unless_present = "see")]
     pub(crate) features: Vec<String>,
     /// Part of a model that must be seen: a file (by its name without ending) or layer, a named part of a mesh, atoms such as "chain B",
@@ -214,6 +215,12 @@ pub(crate) struct RevealArgs {
     /// (GDAL colour-relief text, GMT .cpt)
     #[arg(long, value_name = "NAME|FILE", default_value = "auto")]
     pub(crate) palette: String,
+    /// Georeferenced picture laid over the ground, such as a map or an aerial photograph; may be given several times, later ones on top
+    #[arg(long, value_name = "FILE", conflicts_with = "see")]
+    pub(crate) drape: Vec<PathBuf>,
+    /// Write the names of lines and points
+    #[arg(long, conflicts_with = "see")]
+    pub(crate) labels: bool,
     /// Draw the sea as ordinary ground
     #[arg(long)]
     pub(crate) no_sea: bool,

@@ -267,7 +267,7 @@ fn reveal_one(request: &TargetRequest, files: &RevealFiles, context: &Context) -
 fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> {
     let out = RevealFiles { out: args.out, before: args.before, report: args.report, scene: args.scene };
     let inputs = args.features.iter().chain([&args.dem]).map(PathBuf::from);
-    let inputs: Vec<PathBuf> = inputs.chain(args.rivers.iter().cloned()).collect();
+    let inputs: Vec<PathBuf> = inputs.chain(args.rivers.iter().chain(&args.drape).cloned()).collect();
     png_named(&out.out)?;
     out.before.as_deref().map_or(Ok(()), png_named)?;
     let technique = args.technique.unwrap_or(TechniqueKind::Spline);
@@ -313,6 +313,8 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
             rivers: args.rivers.iter().map(|path| named(path)).collect(),
             crs: args.crs,
             keep_voids: args.keep_voids,
+            drape: args.drape.iter().map(|path| named(path)).collect(),
+            labels: args.labels,
             palette: PaletteDoc::of(&args.palette),
             no_sea: args.no_sea,
             area_style: args.area_style,

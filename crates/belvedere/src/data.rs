@@ -1,5 +1,7 @@
 //! Terrain and features straight from their files, without a scene file.
 
+mod tiles;
+
 use crate::record::{AreaRecord, InputFile};
 use crate::resolve::vectors::{FeatureKind, kind_of, kinds_of};
 use crate::resolve::{self, LayerRequest};
@@ -29,9 +31,9 @@ const RIVER_COLOR: &str = "#2b7bba";
 /// Files of a terrain and of features that must be seen on it.
 #[derive(Debug, Clone, Default)]
 pub struct DataFiles {
-    /// Terrain: a file, or `builtin:massif?seed=7`.
+    /// Terrain: a file, a folder of tiles, or `builtin:massif?seed=7`.
     pub dem: String,
-    /// Routes, areas or points: files, or `builtin:massif?seed=7`.
+    /// Routes, areas or points: files, or `builtin:massif?seed=7`. Elevation models among them are further tiles of the terrain.
     pub features: Vec<String>,
     /// Rivers that must not run uphill where the ground moves: files with lines.
     pub rivers: Vec<String>,
@@ -39,6 +41,10 @@ pub struct DataFiles {
     pub crs: Option<String>,
     /// Leaves holes of the terrain open; else those of at most [`LARGEST_HOLE`] are filled.
     pub keep_voids: bool,
+    /// Georeferenced pictures laid over the ground, later ones on top.
+    pub drape: Vec<String>,
+    /// Whether names of features are written.
+    pub labels: bool,
     /// Tint of the terrain by height.
     pub palette: PaletteDoc,
     /// Draws the sea like other ground.
@@ -73,24 +79,26 @@ impl DataFiles {
     /// Reads the files, each once.
     pub(crate) fn load(&self, keep_original: bool, options: &OpenOptions) -> Result<Data, BelvedereError> {
         let mut roots = Roots::default();
-        let dem = locate(&self.dem, &mut roots)?;
+        let tiles = tiles::of(&self.dem, &self.features)?;
+        let ground = tiles.ground.iter().map(|name| locate(name, &mut roots)).collect::<Result<_, _>>()?;
+        let drape = self.drape.iter().map(|name| locate(name, &mut roots)).collect::<Result<Vec<_>, _>>()?;
         let palette = self.palette.located(&mut roots.allowed)?;
         let mut layers = vec![LayerDoc::Terrain(TerrainDoc {
             id: "ground".into(),
-            source: Paths::One(dem),
+            source: tiles::paths(ground),
             fill_voids: !self.keep_voids,
             largest_hole: (!self.keep_voids).then_some(LARGEST_HOLE),
             source_crs: self.source_crs.clone(),
             nodata: self.nodata,
             vertical_unit: self.vertical_unit,
-            drape: None,
+            drape: (!drape.is_empty()).then(|| tiles::paths(drape)),
             style: TerrainStyleDoc { palette, sea: !self.no_sea, ..TerrainStyleDoc::default() },
         })];
-        if self.features.is_empty() {
+        if tiles.features.is_empty() {
             return Err(BelvedereError::NoFeatures);
         }
         let mut vectors = BTreeMap::new();
-        for (i, name) in self.features.iter().enumerate() {
+        for (i, name) in tiles.features.iter().enumerate() {
             let source = locate(name, &mut roots)?;
             let mut kinds = vec![FeatureKind::Lines];
             if !source.starts_with("builtin:") {
@@ -108,6 +116,9 @@ impl DataFiles {
                     && !source.starts_with("builtin:")
                 {
                     name_field.clone_from(&self.name_field);
+                }
+                if self.labels {
+                    write_names(&mut layer);
                 }
                 layers.push(layer);
             }
@@ -188,6 +199,14 @@ pub(crate) fn features_of(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, 
 fn river_layer(id: String, source: Paths) -> LineDoc {
     let style = LineStyleDoc { color: RIVER_COLOR.into(), width_px: 2.0, ..LineStyleDoc::default() };
     LineDoc { id, source: Some(source), route: None, name_field: None, must_see: false, style }
+}
+
+fn write_names(layer: &mut LayerDoc) {
+    match layer {
+        LayerDoc::Line(line) => line.style.labels = true,
+        LayerDoc::Point(point) => point.style.labels = true,
+        _ => {}
+    }
 }
 
 fn feature_layer(id: String, source: Paths, kind: FeatureKind) -> LayerDoc {

@@ -1,0 +1,58 @@
+//! Terrain in several files: tiles named one by one, or all of a folder.
+
+use crate::BelvedereError;
+use crate::scene_file::Paths;
+use belvedere_io::formats::Reader;
+use belvedere_io::{IoError, split_table};
+use std::path::Path;
+
+/// Files by what they hold.
+pub(super) struct Tiles {
+    /// Elevation models.
+    pub(super) ground: Vec<String>,
+    /// Routes, areas, points.
+    pub(super) features: Vec<String>,
+}
+
+/// Sorts files: elevation models among `features`, by their names, are tiles of the terrain beside `dem`, which may be a folder.
+pub(super) fn of(dem: &str, features: &[String]) -> Result<Tiles, BelvedereError> {
+    let is_ground =
+        |name: &&String| !name.starts_with("builtin:") && Reader::Terrain.reads(split_table(Path::new(name)).0);
+    let (more, features): (Vec<&String>, Vec<&String>) = features.iter().partition(is_ground);
+    let mut ground = match Path::new(dem).is_dir() {
+        true => in_folder(Path::new(dem))?,
+        false => vec![dem.to_owned()],
+    };
+    ground.extend(more.into_iter().cloned());
+    Ok(Tiles { ground, features: features.into_iter().cloned().collect() })
+}
+
+/// The elevation models of a folder, by name.
+fn in_folder(folder: &Path) -> Result<Vec<String>, BelvedereError> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(|e| IoError::os(folder, e))? {
+        let path = entry.map_err(|e| IoError::os(folder, e))?.path();
+        if path.is_file() && Reader::Terrain.reads(&path) {
+            found.push(
+                path.to_str()
+                    .map(str::to_owned)
+                    .ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?,
+            );
+        }
+    }
+    found.sort();
+    if found.is_empty() {
+        let reason =
+            "is a folder without elevation models (GeoTIFF, .hgt, ESRI ASCII); name a folder of tiles, or a file";
+        return Err(IoError::format(folder, reason).into());
+    }
+    Ok(found)
+}
+
+/// One file as itself, several as a list.
+pub(super) fn paths(mut files: Vec<String>) -> Paths {
+    match files.len() {
+        1 => Paths::One(files.remove(0)),
+        _ => Paths::Many(files),
+    }
+}
