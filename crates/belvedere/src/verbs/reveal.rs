@@ -124,7 +124,7 @@ pub struct Tried {
 /// Shares of the whole features in both pictures, by lines of sight through the whole chain of stages.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct FinalShares {
-    /// Technique that bends the picture; `None` if it is straight, because nothing is hidden or no bend shows more.
+    /// Technique that bends the picture; `None` if it is straight, because nothing is hidden or no bend makes a better picture.
     pub technique: Option<Technique>,
     /// Visible share in the straight picture, 0..=1.
     pub visible_straight: f64,
@@ -407,7 +407,7 @@ impl RevealAnswer {
         let reason = if straight.visible >= NOTHING_HIDDEN * straight.in_frame {
             "what is in the frame is not hidden, so nothing is bent"
         } else {
-            "no bend that was tried shows more"
+            "no bend that was tried makes a better picture"
         };
         format!("visible in the straight picture: {straight}; {reason}")
     }
