@@ -182,22 +182,21 @@ fn cargo_run_means_the_program() {
     let packages = metadata["packages"].as_array().expect("packages").iter().filter(|p| default.contains(&p["id"]));
     let programs: Vec<_> = packages.filter_map(|p| p["default_run"].as_str()).collect();
     assert_eq!(programs, ["belvedere"]);
+}
 
-    #[test]
-    fn the_program_links_no_c_library() {
-        // Features that tests add are not the program's.
-        let output = Command::new(env!("CARGO"))
-            .args(["tree", "--locked", "--offline", "-p", "belvedere-cli", "-e", "normal,build", "--prefix", "none"])
-            .current_dir(belvedere_testkit::workspace_root())
-            .env_remove("CARGO_RESOLVER_FEATURE_UNIFICATION")
-            .output()
-            .expect("cargo tree runs");
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        let tree = String::from_utf8(output.stdout).expect("UTF-8");
-        assert!(tree.contains("belvedere-io "), "{tree}");
-        let compilers = ["cc ", "cmake ", "pkg-config ", "libsqlite3-sys "];
-        let found: Vec<&str> =
-            tree.lines().filter(|line| compilers.iter().any(|name| line.starts_with(name))).collect();
-        assert!(found.is_empty(), "{found:?} compile or link C");
-    }
+#[test]
+fn the_program_links_no_c_library() {
+    // Features that tests add are not the program's.
+    let output = Command::new(env!("CARGO"))
+        .args(["tree", "--locked", "--offline", "-p", "belvedere-cli", "-e", "normal,build", "--prefix", "none"])
+        .current_dir(belvedere_testkit::workspace_root())
+        .env_remove("CARGO_RESOLVER_FEATURE_UNIFICATION")
+        .output()
+        .expect("cargo tree runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let tree = String::from_utf8(output.stdout).expect("UTF-8");
+    assert!(tree.contains("belvedere-io "), "{tree}");
+    let compilers = ["cc ", "cmake ", "pkg-config ", "libsqlite3-sys "];
+    let found: Vec<&str> = tree.lines().filter(|line| compilers.iter().any(|name| line.starts_with(name))).collect();
+    assert!(found.is_empty(), "{found:?} compile or link C");
 }

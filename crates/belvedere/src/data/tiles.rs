@@ -2,9 +2,14 @@
 
 use crate::BelvedereError;
 use crate::scene_file::Paths;
-use belvedere_io::formats::Reader;
+use belvedere_io::formats::{Reader, of_content};
 use belvedere_io::{IoError, split_table};
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
+
+/// Bytes that tell a grid in text.
+const HEAD: u64 = 200;
 
 /// Files by what they hold.
 pub(super) struct Tiles {
@@ -32,7 +37,7 @@ fn in_folder(folder: &Path) -> Result<Vec<String>, BelvedereError> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(|e| IoError::os(folder, e))? {
         let path = entry.map_err(|e| IoError::os(folder, e))?.path();
-        if path.is_file() && Reader::Terrain.reads(&path) {
+        if path.is_file() && is_tile(&path) {
             found.push(
                 path.to_str()
                     .map(str::to_owned)
@@ -47,6 +52,18 @@ fn in_folder(folder: &Path) -> Result<Vec<String>, BelvedereError> {
         return Err(IoError::format(folder, reason).into());
     }
     Ok(found)
+}
+
+/// Whether a file of a folder is a tile. Texts are told by their first word: notes lie beside data.
+fn is_tile(path: &Path) -> bool {
+    let is_text = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("txt"));
+    Reader::Terrain.reads(path) && (!is_text || begins_as_grid(path).unwrap_or(false))
+}
+
+fn begins_as_grid(path: &Path) -> std::io::Result<bool> {
+    let mut head = Vec::new();
+    File::open(path)?.take(HEAD).read_to_end(&mut head)?;
+    Ok(of_content(&head).is_some_and(|format| format.reader == Some(Reader::Terrain)))
 }
 
 /// One file as itself, several as a list.

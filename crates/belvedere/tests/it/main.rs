@@ -6,6 +6,7 @@ mod films;
 mod names;
 mod sessions;
 mod sweeps;
+mod tiles;
 mod typed_warnings;
 mod walls;
 mod warnings;
