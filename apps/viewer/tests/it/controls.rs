@@ -51,10 +51,12 @@ fn the_ground_makes_way_at_a_press() {
     loop {
         let said =
             harness.query_by_label_contains("visible straight").and_then(|node| node.value()).unwrap_or_default();
-        let shares: Vec<f64> = said.split(' ').filter_map(|word| word.parse().ok()).collect();
-        if let [straight, bent] = shares[..]
-            && straight < 90.0
-            && bent > 98.0
+        let words = said.split(' ').map(|word| word.trim_start_matches('('));
+        let shares: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
+        // Shares of the whole trail, each with the share in the frame.
+        if let [straight, straight_in_frame, bent, in_frame] = shares[..]
+            && straight < 0.9 * straight_in_frame
+            && bent > 0.98 * in_frame
         {
             break;
         }

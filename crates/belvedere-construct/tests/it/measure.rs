@@ -33,7 +33,7 @@ fn line_of_sight_and_depth_buffer_agree_within_one_percent() {
 #[test]
 fn a_depth_buffer_one_percent_off_is_found_out() {
     let scene = scene(48, 1);
-    let view = View::straight(camera(&scene, 500.0, [320, 180]));
+    let view = View::straight(camera(&scene, 500.0, [480, 270]));
     let judge = |fault| run(&scene, &view, Some(&Marcher { fault })).unwrap();
     let (nearer, farther) = (judge(0.99), judge(1.01));
     assert!(nearer.largest_difference.unwrap() > 0.1, "ground 1 % too near went unnoticed: {:#?}", nearer.lines);
