@@ -16,6 +16,7 @@ pub mod pack;
 pub mod points;
 pub mod preset;
 pub mod reveal;
+mod reveal_files;
 pub mod reveal_target;
 mod target_views;
 mod written_rivers;

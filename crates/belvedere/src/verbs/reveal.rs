@@ -1,16 +1,14 @@
 //! `reveal`: draws a picture of terrain in which routes and other features are visible.
 
 use super::in_time;
+pub use super::reveal_files::RevealFiles;
 use crate::data::{Data, DataFiles};
-use crate::output::{self, document_toml, pretty};
 use crate::picture::{DisplacementReport, Picture, PictureOptions, TerrainRecord};
 use crate::resolve::ground::{Ground, earth_radius};
 use crate::resolve::rays::sidestep_stage;
 use crate::resolve::solving::Memory;
 use crate::resolve::solving::Solving;
-use crate::scene_file::{
-    CameraDoc, Document, EarthDoc, PlaneDoc, PresetsDoc, SplineStageDoc, StageDoc, TerrainStageDoc,
-};
+use crate::scene_file::{CameraDoc, EarthDoc, PlaneDoc, PresetsDoc, SplineStageDoc, StageDoc, TerrainStageDoc};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::measure::{HiddenRun, Shares};
 use belvedere_construct::rays::{AroundOptions, Target, bend_around};
@@ -20,15 +18,14 @@ use belvedere_construct::{
 use belvedere_core::Warning;
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::TerrainReport;
-use belvedere_io::png::{self, Channels};
 use belvedere_scene::Instant;
 use belvedere_scene::{Crs, Progress, Scene};
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// Size of the picture unless given, pixels.
-const IMAGE: [u32; 2] = [1280, 720];
+pub(super) const IMAGE: [u32; 2] = [1280, 720];
 /// Full vertical field of view unless given, degrees.
 const FOV_Y_DEG: f64 = 45.0;
 
@@ -417,78 +414,23 @@ impl RevealAnswer {
     /// # Errors
     /// [`BelvedereError::Io`].
     pub fn write(&self, files: &RevealFiles, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
-        let single = Picture { straight: None, ..self.picture.clone() };
-        let mut written = single.write(&files.out, overwrite)?;
-        let (width, height, pixels) = self.picture.pixels();
-        let title = [("Software", self.picture.sidecar.program.as_str()), ("Comment", "straight | bent")];
-        png::write(&files.pair(), overwrite, width, height, Channels::Rgb, pixels.as_flattened(), &title)?;
-        written.push(files.pair());
-        if let (Some(path), Some(frame)) = (&files.before, &self.picture.straight) {
-            png::write(
-                path,
-                overwrite,
-                frame.width,
-                frame.height,
-                Channels::Rgb,
-                frame.color.as_flattened(),
-                &title[..1],
-            )?;
-            written.push(path.clone());
-        }
-        if let Some(path) = &files.report {
-            let sidecar = &self.picture.sidecar;
-            let report = ReportFile {
-                program: sidecar.program.clone(),
-                report: &self.report,
-                shares: self.shares,
-                disocclusion: self.session.terrain_report(),
-                tried: &self.tried,
-                hidden: &self.hidden,
-                measured_every: self.measured_every,
-                displacement: sidecar.displacement,
-                view: &sidecar.view,
-                crs: self.session.scene().crs.to_string(),
-                terrain: sidecar.terrain,
-                inputs: &sidecar.inputs,
-                scene_warnings: &self.session.warnings(),
-            };
-            output::write_text(path, &pretty(&report)?, overwrite)?;
-            written.push(path.clone());
-        }
-        if let (Some(path), Some(document)) = (&files.scene, self.session.resolved()) {
-            let document = beside(document, path);
-            output::write_text(path, &document_toml(&document)?, overwrite)?;
-            written.push(path.clone());
-        }
-        Ok(written)
-    }
-}
-
-/// Output files.
-#[derive(Debug, Clone, Default)]
-pub struct RevealFiles {
-    /// The bent picture.
-    pub out: PathBuf,
-    /// The straight picture.
-    pub before: Option<PathBuf>,
-    /// Figures, JSON.
-    pub report: Option<PathBuf>,
-    /// Scene file of the same picture.
-    pub scene: Option<PathBuf>,
-}
-
-impl RevealFiles {
-    /// File of the two pictures side by side.
-    pub fn pair(&self) -> PathBuf {
-        self.out.with_extension("pair.png")
-    }
-
-    /// Every file that will be written.
-    pub fn all(&self) -> Vec<PathBuf> {
-        let mut record = self.out.as_os_str().to_owned();
-        record.push(".json");
-        let asked = [&self.before, &self.report, &self.scene].into_iter().flatten().cloned();
-        [self.out.clone(), PathBuf::from(record), self.pair()].into_iter().chain(asked).collect()
+        let sidecar = &self.picture.sidecar;
+        let report = ReportFile {
+            program: sidecar.program.clone(),
+            report: &self.report,
+            shares: self.shares,
+            disocclusion: self.session.terrain_report(),
+            tried: &self.tried,
+            hidden: &self.hidden,
+            measured_every: self.measured_every,
+            displacement: sidecar.displacement,
+            view: &sidecar.view,
+            crs: self.session.scene().crs.to_string(),
+            terrain: sidecar.terrain,
+            inputs: &sidecar.inputs,
+            scene_warnings: &self.session.warnings(),
+        };
+        files.write(&self.picture, &self.session, &report, overwrite)
     }
 }
 
@@ -518,18 +460,4 @@ fn base_view(request: &RevealRequest, scene: &Scene) -> Result<Option<View>, Bel
     let lens = Projection::Perspective { fov_y: request.fov_y_deg.unwrap_or(FOV_Y_DEG).to_radians() };
     let image = request.image.unwrap_or(IMAGE);
     Ok(Some(View::straight(Pinhole::look_at(eye, xy.extend(height), DVec3::Z, lens, image, 1.0, None)?)))
-}
-
-/// The document with sources relative to the folder of `path` where they lie below it.
-fn beside(document: &Document, path: &Path) -> Document {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let folder = belvedere_io::fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
-    let below = |name: &mut String| {
-        if let Some(below) = Path::new(name.as_str()).strip_prefix(&folder).ok().and_then(Path::to_str) {
-            *name = below.to_owned();
-        }
-    };
-    let mut document = document.clone();
-    document.for_each_path(&mut |name| below(name));
-    document
 }

@@ -2,25 +2,21 @@
 
 use super::model_layers::{layer, set_transfer, unit_of};
 use super::target_views;
-use crate::output::{self, document_toml, pretty};
 use crate::picture::{Picture, PictureOptions, TargetPlace};
 use crate::resolve::rays::sidestep_stage;
 use crate::scene_file::{
     CameraDoc, ConstructorDoc, ConstructorKind, Document, LayerDoc, PointDoc, SourceDocument, StageDoc,
 };
 use crate::targets::{self, target};
-use crate::verbs::reveal::{RevealFiles, Viewpoint};
+use crate::verbs::reveal::{IMAGE, RevealFiles, Viewpoint};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::rays::{AroundOptions, BendReport, Sidestep, Target, TargetSight, bend_around};
 use belvedere_core::{DVec3, Pinhole, Projection, View, Warning};
-use belvedere_io::png::{self, Channels};
 use belvedere_scene::LayerKind;
 use belvedere_scene::molecule::Selection;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Size of the picture unless given, pixels.
-const IMAGE: [u32; 2] = [1280, 720];
 /// Full vertical field of view unless given, degrees.
 const FOV_Y_DEG: f64 = 30.0;
 /// Visible share from which on a view is good enough; and after so many views.
@@ -294,37 +290,16 @@ impl TargetAnswer {
     /// [`BelvedereError::Io`].
     pub fn write(&self, files: &RevealFiles, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
         let sidecar = &self.picture.sidecar;
-        let single = Picture { straight: None, ..self.picture.clone() };
-        let mut written = single.write(&files.out, overwrite)?;
-        let title = [("Software", sidecar.program.as_str()), ("Comment", "straight | bent")];
-        let mut draw = |path: &Path, [width, height]: [usize; 2], pixels: &[[u8; 3]], title: &[(&str, &str)]| {
-            png::write(path, overwrite, width, height, Channels::Rgb, pixels.as_flattened(), title)?;
-            written.push(path.to_owned());
-            Ok::<(), BelvedereError>(())
+        let report = TargetReport {
+            program: &sidecar.program,
+            see: &self.see,
+            target: &self.place,
+            report: self.report,
+            view: &sidecar.view,
+            inputs: &sidecar.inputs,
+            warnings: self.warnings(),
         };
-        let (width, height, pixels) = self.picture.pixels();
-        draw(&files.pair(), [width, height], &pixels, &title)?;
-        if let (Some(path), Some(frame)) = (&files.before, &self.picture.straight) {
-            draw(path, [frame.width, frame.height], &frame.color, &title[..1])?;
-        }
-        if let Some(path) = &files.report {
-            let report = TargetReport {
-                program: &sidecar.program,
-                see: &self.see,
-                target: &self.place,
-                report: self.report,
-                view: &sidecar.view,
-                inputs: &sidecar.inputs,
-                warnings: self.warnings(),
-            };
-            output::write_text(path, &pretty(&report)?, overwrite)?;
-            written.push(path.clone());
-        }
-        if let (Some(path), Some(document)) = (&files.scene, self.session.resolved()) {
-            output::write_text(path, &document_toml(document)?, overwrite)?;
-            written.push(path.clone());
-        }
-        Ok(written)
+        files.write(&self.picture, &self.session, &report, overwrite)
     }
 }
 
