@@ -135,7 +135,7 @@ fn what_files_leave_out_the_scene_may_say() {
 #[test]
 fn info_says_what_it_reads() {
     let place = Place::new();
-    place.write("x.docx", "v 0 0 0");
+    place.write("x.docx", "quite unlike anything");
     let said = place.fails(&["info", "x.docx"]);
     assert!(
         said.contains("features as GPX (.gpx), GeoJSON (.geojson, ") && said.contains("NRRD (.nrrd, .nhdr)"),

@@ -1,9 +1,11 @@
 //! Sessions from memory and from text, and the frames of an animation.
 
 use belvedere::core::{DVec2, DVec3, Pinhole, Projection, View};
+use belvedere::cpu::ExactRenderer;
 use belvedere::scene::{Heightfield, LayerKind, Scene};
-use belvedere::{BelvedereError, OpenOptions, PictureOptions, Session};
+use belvedere::{BelvedereError, OpenOptions, PictureOptions, RendererChoice, Session};
 use std::path::Path;
+use std::sync::Arc;
 
 fn hills() -> Scene {
     let heights = (0..40 * 40).map(|i| 50.0 * ((i % 40) as f32 / 5.0).sin()).collect();
@@ -29,6 +31,17 @@ fn layers_from_memory_are_drawn_and_recorded() {
     let higher = session.clone().with_view(view(400.0)).render(&PictureOptions::default()).unwrap();
     let alone = Session::from_parts(hills(), view(400.0)).render(&PictureOptions::default()).unwrap();
     assert!(higher.frame.color == alone.frame.color && higher.frame.color != picture.frame.color);
+}
+
+#[test]
+fn a_session_draws_with_the_renderer_that_it_is_given() {
+    let session = Session::from_parts(hills(), view(200.0));
+    let exact = PictureOptions { renderer: RendererChoice::Exact, ..PictureOptions::default() };
+    let asked = session.render(&exact).unwrap().frame.color;
+    let given = session.clone().with_renderer(Arc::new(ExactRenderer)).render(&PictureOptions::default()).unwrap();
+    assert!(given.frame.color == asked);
+    let usual = session.render(&PictureOptions::default()).unwrap().frame.color;
+    assert!(usual != asked, "edges are sampled in other ways");
 }
 
 #[test]
