@@ -151,7 +151,7 @@ fn a_packed_terrain_and_its_route_are_drawn_as_the_command_line_draws_them() {
 #[test]
 fn files_that_are_dropped_on_the_page_are_opened_and_what_is_saved_is_downloaded() {
     let Some(application) = application() else { return };
-    let names = ["rmnp/rmnp_dem.tif", "rmnp/continental-div-trail_clip.geojson"];
+    let names = ["cases/dem.tif", "cases/route.gpx"];
     let [Some(dem), Some(route)] = names.map(belvedere_testkit::data) else { return };
     // The browser takes no path that climbs ("..").
     let [dem, route] = [dem, route].map(|path| path.canonicalize().expect("test data"));
@@ -166,7 +166,7 @@ fn files_that_are_dropped_on_the_page_are_opened_and_what_is_saved_is_downloaded
         let data = json!({ "items": [], "files": [dem, route], "dragOperationsMask": 1 });
         page.call("Input.dispatchDragEvent", json!({ "type": step, "x": 700, "y": 400, "data": data }));
     }
-    let opened = |scene: &Value| scene.as_str().is_some_and(|text| text.contains("rmnp_dem.tif"));
+    let opened = |scene: &Value| scene.as_str().is_some_and(|text| text.contains("dem.tif"));
     let scene = page.wait("belvedere.application.scene()", opened);
     assert!(scene.as_str().is_some_and(|text| text.contains("must_see = true") && text.contains("spline_bend")));
     times(&mut page, rests);

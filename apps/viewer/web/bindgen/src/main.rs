@@ -6,5 +6,11 @@ use wasm_bindgen_cli_support::Bindgen;
 fn main() -> Result<()> {
     let mut args = std::env::args_os().skip(1);
     let (module, folder) = args.next().zip(args.next()).context("usage: bindgen FILE.wasm FOLDER")?;
-    Bindgen::new().input_path(module).out_name("belvedere").typescript(false).web(true)?.generate(folder)
+    Bindgen::new()
+        .input_path(module)
+        .out_name("belvedere")
+        .typescript(false)
+        .omit_default_module_path(false)
+        .web(true)?
+        .generate(folder)
 }
