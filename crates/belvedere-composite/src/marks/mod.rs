@@ -8,6 +8,7 @@ mod line_of_sight;
 mod names;
 mod path;
 mod ribbon;
+mod segment;
 mod shown;
 mod symbol;
 mod visibility;

@@ -1,6 +1,7 @@
 //! Lines draped on the ground and projected onto the image.
 
 use crate::drawn::Pass;
+use crate::marks::segment;
 use crate::screen::Screen;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Heightfield, Scene};
@@ -199,18 +200,10 @@ impl Tracer<'_> {
 
     /// Parameters of the visible part of a segment.
     fn clip(&self, a: (DVec3, [f64; 2]), b: (DVec3, [f64; 2])) -> Option<[f64; 2]> {
-        let (mut s, mut t) = (0.0f64, 1.0f64);
-        let da = self.screen.clip_distances(a.0).into_iter().chain(a.1.map(|m| m.min(1e30)));
-        let db = self.screen.clip_distances(b.0).into_iter().chain(b.1.map(|m| m.min(1e30)));
-        for (x, y) in da.zip(db) {
-            match (x >= 0.0, y >= 0.0) {
-                (true, true) => {}
-                (false, false) => return None,
-                (true, false) => t = t.min(x / (x - y)),
-                (false, true) => s = s.max(x / (x - y)),
-            }
-        }
-        (s < t).then_some([s, t])
+        let distances = |(v, margins): (DVec3, [f64; 2])| {
+            self.screen.clip_distances(v).into_iter().chain(margins.map(|m| m.min(1e30)))
+        };
+        segment::within(distances(a).zip(distances(b)))
     }
 
     fn point(&self, v: DVec3, on_line: LinePoint) -> PathPoint {

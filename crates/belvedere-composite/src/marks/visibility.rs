@@ -3,6 +3,7 @@
 use crate::drawn::Pass;
 use crate::marks::line_of_sight::LineOfSight;
 use crate::marks::path::{LinePoint, PathPoint};
+use crate::marks::segment;
 use crate::screen::Screen;
 use belvedere_core::DVec2;
 
@@ -286,16 +287,7 @@ fn between(screen: &Screen, a: f64, b: f64, k: f64) -> f64 {
 /// Parameters of the part of a segment on the image.
 fn on_image(a: DVec2, b: DVec2, map: DepthMap<'_>, margin: f64) -> Option<[f64; 2]> {
     let (lo, hi) = (-margin, DVec2::new(f64::from(map.width), f64::from(map.height)) + margin);
-    let (mut s, mut t) = (0.0f64, 1.0f64);
-    for (x, y) in [(a.x - lo, b.x - lo), (hi.x - a.x, hi.x - b.x), (a.y - lo, b.y - lo), (hi.y - a.y, hi.y - b.y)] {
-        match (x >= 0.0, y >= 0.0) {
-            (true, true) => {}
-            (false, false) => return None,
-            (true, false) => t = t.min(x / (x - y)),
-            (false, true) => s = s.max(x / (x - y)),
-        }
-    }
-    (s < t).then_some([s, t])
+    segment::within([(a.x - lo, b.x - lo), (hi.x - a.x, hi.x - b.x), (a.y - lo, b.y - lo), (hi.y - a.y, hi.y - b.y)])
 }
 
 #[cfg(test)]

@@ -106,7 +106,7 @@ fn content(path: &Path) -> io::Result<Arc<[u8]>> {
 ///
 /// # Errors
 /// [`io::ErrorKind::NotFound`].
-pub fn metadata(path: impl AsRef<Path>) -> io::Result<Metadata> {
+pub(super) fn metadata(path: impl AsRef<Path>) -> io::Result<Metadata> {
     let name = name_of(path.as_ref());
     let files = files();
     if let Some(bytes) = files.get(&name) {
@@ -120,7 +120,7 @@ pub fn metadata(path: impl AsRef<Path>) -> io::Result<Metadata> {
 ///
 /// # Errors
 /// [`io::ErrorKind::NotFound`].
-pub fn symlink_metadata(path: impl AsRef<Path>) -> io::Result<Metadata> {
+pub(super) fn symlink_metadata(path: impl AsRef<Path>) -> io::Result<Metadata> {
     metadata(path)
 }
 
@@ -128,7 +128,7 @@ pub fn symlink_metadata(path: impl AsRef<Path>) -> io::Result<Metadata> {
 ///
 /// # Errors
 /// [`io::ErrorKind::NotFound`].
-pub fn canonicalize(path: impl AsRef<Path>) -> io::Result<PathBuf> {
+pub(super) fn canonicalize(path: impl AsRef<Path>) -> io::Result<PathBuf> {
     metadata(path.as_ref()).map(|_| name_of(path.as_ref()))
 }
 
@@ -136,22 +136,14 @@ pub fn canonicalize(path: impl AsRef<Path>) -> io::Result<PathBuf> {
 ///
 /// # Errors
 /// [`io::ErrorKind::NotFound`].
-pub fn read(path: impl AsRef<Path>) -> io::Result<Vec<u8>> {
+pub(super) fn read(path: impl AsRef<Path>) -> io::Result<Vec<u8>> {
     content(path.as_ref()).map(|bytes| bytes.to_vec())
-}
-
-/// The text of a file.
-///
-/// # Errors
-/// [`io::ErrorKind::NotFound`]; [`io::ErrorKind::InvalidData`] if it is not UTF-8.
-pub fn read_to_string(path: impl AsRef<Path>) -> io::Result<String> {
-    String::from_utf8(read(path)?).map_err(|e| io::Error::new(io::ErrorKind::InvalidData, e))
 }
 
 /// Writes a file, replacing one of that name.
 ///
 /// # Errors
-/// None; that of a file system may have some.
+/// Never; the result is that of `std::fs::write`.
 pub fn write(path: impl AsRef<Path>, content: impl Into<Arc<[u8]>>) -> io::Result<()> {
     files_to_change().insert(name_of(path.as_ref()), content.into());
     Ok(())
