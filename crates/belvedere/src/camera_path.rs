@@ -69,6 +69,10 @@ fn merged(scene: &Document, given: &AnimationDoc) -> AnimationDoc {
         (None, None) => (doc.frames, doc.speed_mps),
         stated => stated,
     };
+    doc.start_m = given.start_m.or(doc.start_m);
+    doc.behind_m = given.behind_m.or(doc.behind_m);
+    doc.above_m = given.above_m.or(doc.above_m);
+    doc.ahead_m = given.ahead_m.or(doc.ahead_m);
     doc.marker = given.marker.or(doc.marker);
     doc.clock = given.clock.or(doc.clock);
     doc.profile = given.profile.or(doc.profile);
@@ -282,10 +286,14 @@ fn along(
     };
     let flight = Flight::along(&route.plan(), terrain, &options).map_err(|e| fail(e.to_string()))?;
     let walked = walk(flight.length_m(), 0.0, animation).map_err(fail)?;
-    let fov_y = scene.camera.fov_y_deg.to_radians();
+    let upright = (0.5 * scene.camera.fov_y_deg.to_radians()).tan();
+    let [width, height] = session.view().pinhole().image.map(f64::from);
+    let half = [upright * width / height, upright];
+    let on_ground = |p: DVec3| p.with_z(terrain.and_then(|t| t.surface_at(p.truncate())).unwrap_or(p.z));
+    let walkers = walked.iter().filter_map(|&s| route.at(s).map(on_ground)).collect();
     let adjustments = vec![Adjustment::NONE; walked.len()];
     let bends = FollowingBends::of(session.view(), scene);
-    Ok(Following { route, flight, walked, stated_target, fov_y, bends, adjustments })
+    Ok(Following { route, flight, walked, walkers, stated_target, half, bends, adjustments })
 }
 
 /// Positions on a route of a given length, one per frame, evenly spaced by the speed or by the number of frames.

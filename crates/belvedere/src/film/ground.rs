@@ -73,6 +73,11 @@ impl<'a> DrawnGround<'a> {
         Some(weights[0] * a? + weights[1] * b? + weights[2] * c?)
     }
 
+    /// Height of the drawn ground over the undisplaced one at a place, scene units; 0 where none is drawn.
+    pub(crate) fn rise(&self, xy: DVec2) -> f64 {
+        self.at(xy).zip(self.terrain.surface_at(xy)).map_or(0.0, |(drawn, height)| drawn.z - height)
+    }
+
     fn facet(&self, xy: DVec2) -> Option<Facet> {
         let t = self.terrain;
         let g = t.grid_from_scene(xy);

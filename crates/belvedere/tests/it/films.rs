@@ -173,6 +173,26 @@ fn every_frame_shows_the_ground_from_above_with_every_technique() {
 }
 
 #[test]
+fn the_walker_stays_in_the_picture_round_hairpins_and_where_the_ground_under_him_sinks() {
+    let ground = Ground {
+        name: "wide waves",
+        cell_m: 80.0,
+        height: |x, y| waves(1.7 * x, 1.7 * y),
+        route: &[[0.2, 0.3], [0.7, 0.33], [0.25, 0.4], [0.7, 0.45], [0.3, 0.7], [0.8, 0.9]],
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let scene = ground.scene(folder.path(), "terrain_disocclusion");
+    let close = AnimationDoc { behind_m: Some(350.0), above_m: Some(250.0), ..along(24) };
+    let made = film(folder.path(), &scene, close);
+    let sunk = frames(&made).iter().map(|f| -f.ground.expect("terrain").walker_m).fold(0.0, f64::max);
+    assert!(sunk > 60.0, "the case is too mild: {sunk}");
+    for (i, f) in frames(&made).into_iter().enumerate() {
+        let [x, y] = f.marker.unwrap_or_else(|| panic!("frame {i} has lost the walker: {:?}", f.ground)).pixel;
+        assert!((0.5..47.5).contains(&x) && (0.2..26.8).contains(&y), "frame {i}: at {x}, {y} of 48 x 27");
+    }
+}
+
+#[test]
 fn a_film_moves_smoothly() {
     let folder = tempfile::tempdir().unwrap();
     let scene = GROUNDS[0].scene(folder.path(), "spline_bend");

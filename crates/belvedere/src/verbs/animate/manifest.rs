@@ -91,6 +91,12 @@ pub struct FrameGround {
     pub lifted_m: f64,
     /// Share of the strength of spline bends and curved rays that the frame carries, 0..=1.
     pub bend_share: f64,
+    /// Height over the undisplaced ground of the walker that the camera was turned to, scene units.
+    #[serde(default)]
+    pub aimed_m: f64,
+    /// Height over the undisplaced ground of the walker as drawn, scene units.
+    #[serde(default)]
+    pub walker_m: f64,
     /// Pixels of ground that were judged.
     pub pixels: usize,
     /// Those of them that show its lower side.

@@ -216,20 +216,25 @@ impl Drawing<'_> {
         let work: Vec<usize> = if solves { (0..last).collect() } else { missing.clone() };
         let mut memory = Memory::default();
         let bends = if work.is_empty() { Vec::new() } else { tracking::plan(session, path, progress)? };
-        let started = Instant::now();
+        let (started, mut turned) = (Instant::now(), 0.0);
         for (step, &frame) in work.iter().enumerate() {
             let share = manifest.done as f64 / path.len() as f64;
             progress.tick(&remaining(frame, path.len(), step, work.len(), started), share)?;
             memory.tracking.follow(bends.get(frame).copied());
             let known = manifest.frames[frame].as_ref().map(|f| f.ground);
             if let (Some(Some(ground)), Some(following)) = (known, &mut path.following) {
-                following.adjustments[frame] = Adjustment { lift: ground.lifted_m, share: ground.bend_share };
+                let (lift, share, aim) = (ground.lifted_m, ground.bend_share, ground.aimed_m);
+                following.adjustments[frame] = Adjustment { lift, share, aim };
+                turned = Adjustment::next_aim(aim, ground.walker_m);
+            } else if let Some(following) = &mut path.following {
+                following.adjustments[frame].aim = turned;
             }
             if known.is_some() {
                 self.resolved(path, frame, solved, &mut memory)?;
                 continue;
             }
             let drawn = self.frame(path, frame, solved, (&mut memory, manifest))?;
+            turned = drawn.ground.map_or(0.0, |g| Adjustment::next_aim(g.aimed_m, g.walker_m));
             let record = self.write(path, frame, drawn)?;
             manifest.put(frame, record);
             manifest.write(self.folder)?;
@@ -259,13 +264,14 @@ impl Drawing<'_> {
     ) -> Result<DrawnFrame, BelvedereError> {
         let quiet = self.progress.unheard();
         let before = memory.clone();
-        let mut tries = 0;
+        let (mut tries, mut aimed) = (0, false);
         loop {
             let session = self.resolved(path, frame, solved, memory)?;
             let steady_mark = path.has_stages() && !self.request.picture.straight;
             let options = PictureOptions { steady_mark, ..self.request.picture.clone() };
             let picture = picture::draw(&session, &options, manifest.inputs.clone(), &quiet)?;
             let adjusted = path.following.as_ref().map_or(Adjustment::NONE, |f| f.adjustments[frame]);
+            let walker = path.following.as_ref().map(|f| f.walkers[frame]);
             let ground = DrawnGround::of(session.scene(), &picture.view).map(|ground| {
                 let [pixels, from_below] = ground.seen_from_below(&picture.frame);
                 FrameGround {
@@ -273,11 +279,22 @@ impl Drawing<'_> {
                     needed_m: ground.needed(),
                     lifted_m: adjusted.lift,
                     bend_share: adjusted.share,
+                    aimed_m: adjusted.aim,
+                    walker_m: walker.map_or(0.0, |p| ground.rise(p.truncate())),
                     pixels,
                     from_below,
                 }
             });
             tries += 1;
+            if let (Some(ground), Some(following)) = (&ground, &mut path.following)
+                && !aimed
+                && following.loses_walker(frame, &picture.view, ground.walker_m)
+            {
+                following.adjustments[frame].aim = ground.walker_m;
+                aimed = true;
+                *memory = before.clone();
+                continue;
+            }
             let (Some(lacking), Some(following)) =
                 (ground.filter(|g| !g.is_clear() && tries < TRIES), &mut path.following)
             else {

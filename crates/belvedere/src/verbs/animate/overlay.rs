@@ -91,7 +91,7 @@ fn marker(
     following: &Following,
     number: usize,
 ) -> Option<MarkerRecord> {
-    let walker = following.walker(number)?;
+    let walker = following.walkers[number];
     let drawn = DrawnGround::of(scene, view).and_then(|ground| ground.at(walker.truncate()));
     let at = drawn.or_else(|| view.displace(walker).ok().map(|d| d.point))?;
     let (pixel, depth) = view.pinhole().project(at).ok()?;

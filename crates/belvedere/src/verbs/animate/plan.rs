@@ -74,7 +74,10 @@ fn set(path: &mut CameraPath, adjustments: &[Adjustment]) {
 
 /// The larger lift and the smaller share of each frame.
 fn smoothed_over(a: &[Adjustment], b: &[Adjustment]) -> Vec<Adjustment> {
-    a.iter().zip(b).map(|(a, b)| Adjustment { lift: a.lift.max(b.lift), share: a.share.min(b.share) }).collect()
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| Adjustment { lift: a.lift.max(b.lift), share: a.share.min(b.share), aim: 0.0 })
+        .collect()
 }
 
 /// Frames to either side over which changes spread: as long as the walker takes from the eye's place to his own.
@@ -90,7 +93,11 @@ fn smoothed(least: &[Adjustment], reach: usize) -> Vec<Adjustment> {
     let lifts: Vec<f64> = least.iter().map(|a| a.lift).collect();
     let weaker: Vec<f64> = least.iter().map(|a| 1.0 - a.share).collect();
     let (lifts, weaker) = (spread(&lifts, reach), spread(&weaker, reach));
-    lifts.into_iter().zip(weaker).map(|(lift, w)| Adjustment { lift, share: (1.0 - w).clamp(0.0, 1.0) }).collect()
+    lifts
+        .into_iter()
+        .zip(weaker)
+        .map(|(lift, w)| Adjustment { lift, share: (1.0 - w).clamp(0.0, 1.0), aim: 0.0 })
+        .collect()
 }
 
 /// A sliding maximum over `reach` values to either side, then two running means of no more together: nowhere below `values`.
