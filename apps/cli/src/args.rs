@@ -5,13 +5,15 @@ use crate::common_args::Common;
 use crate::draw_args::DrawArgs;
 use crate::ground_args::{GroundArgs, InfoArgs};
 use crate::kinds::{self, RendererKind, TechniqueKind};
+use crate::look_args::LookArgs;
 use crate::pack::PackArgs;
 use crate::parse::{
-    Outside, parse_eye, parse_fallback, parse_highlight, parse_outside, parse_place, parse_scale, parse_size,
+    Outside, parse_eye, parse_fallback, parse_highlight, parse_outside, parse_position, parse_scale, parse_size,
     parse_spacing, parse_sweep,
 };
 use crate::preset::PresetArgs;
 use belvedere::RendererChoice;
+use belvedere::places::Place;
 use belvedere::scene_file::{HighlightMark, SurfaceDoc};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -180,7 +182,7 @@ pub(crate) struct RevealArgs {
     #[arg(required_unless_present = "see")]
     pub(crate) features: Vec<String>,
     /// Part of a model that must be seen: a file (by its name without ending) or layer, a named part of a mesh, atoms such as "chain B",
-    /// or a point x,y,z in scene coordinates; rays bend around what hides it
+    /// or a point x,y,z, in scene coordinates or as 46.5N,11.3E,+2; rays bend around what hides it
     #[arg(long, value_name = "WHAT", allow_hyphen_values = true)]
     pub(crate) see: Option<String>,
     /// Means that show it where no bend does: transparency, cutaway or explosion of everything that hides it, or LAYER:KIND for one
@@ -193,12 +195,13 @@ pub(crate) struct RevealArgs {
     /// Picture to write; its record goes to OUT.png.json, the straight beside the bent picture to OUT.pair.png
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
-    /// Eye: scene x,y (or lon,lat in degrees) and height in metres; chosen automatically if left out
+    /// Eye: x,y of the scene, lon,lat in degrees, or 46.5N,11.3E; and height in metres, or +20 for 20 m above the ground. Chosen
+    /// automatically if left out
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = parse_eye)]
-    pub(crate) eye: Option<[f64; 3]>,
-    /// Point to look at; without Z it lies on the ground
-    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true, value_delimiter = ',')]
-    pub(crate) look: Option<Vec<f64>>,
+    pub(crate) eye: Option<Place>,
+    /// Point to look at, written as the eye; without Z it lies on the ground
+    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
+    pub(crate) look: Option<Place>,
     /// Full vertical field of view, degrees
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub(crate) fov: Option<f64>,
@@ -211,10 +214,10 @@ pub(crate) struct RevealArgs {
     /// Leave holes of the terrain open instead of filling them
     #[arg(long)]
     pub(crate) keep_voids: bool,
-    /// Tint of the terrain by height: auto, alpine, desert, glacial, clear, plain, or a file of colours by height
+    /// Tint of the terrain by height: auto (the default), alpine, desert, glacial, clear, plain, or a file of colours by height
     /// (GDAL colour-relief text, GMT .cpt)
-    #[arg(long, value_name = "NAME|FILE", default_value = "auto")]
-    pub(crate) palette: String,
+    #[arg(long, value_name = "NAME|FILE")]
+    pub(crate) palette: Option<String>,
     /// Georeferenced picture laid over the ground, such as a map or an aerial photograph; may be given several times, later ones on top
     #[arg(long, value_name = "FILE", conflicts_with = "see")]
     pub(crate) drape: Vec<PathBuf>,
@@ -258,6 +261,8 @@ pub(crate) struct RevealArgs {
     /// Write a scene file that draws the same picture
     #[arg(long, value_name = "OUT.toml")]
     pub(crate) scene: Option<PathBuf>,
+    #[command(flatten, next_help_heading = "Look of the picture")]
+    pub(crate) look_args: LookArgs,
 }
 
 /// Terrain, features and an eye.
@@ -271,12 +276,13 @@ pub(crate) struct DisoccludeArgs {
     /// Rivers that do not run uphill on the displaced ground: a file of lines, GPX, GeoJSON, shapefile; may be given several times
     #[arg(long, value_name = "FILE")]
     pub(crate) rivers: Vec<PathBuf>,
-    /// Eye: x,y in the system of the elevation model (degrees if geographic), z in metres over its datum
+    /// Eye: x,y in the system of the elevation model, lon,lat in degrees, or 46.5N,11.3E; and height in metres over its datum, or +20
+    /// for 20 m above the ground
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = parse_eye)]
-    pub(crate) eye: [f64; 3],
-    /// Point to look at: x,y in the system of the elevation model
-    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = parse_place)]
-    pub(crate) look: [f64; 2],
+    pub(crate) eye: Place,
+    /// Point to look at, written as the eye, without a height
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = parse_position)]
+    pub(crate) look: Place,
     /// Full horizontal field of view, degrees
     #[arg(long, value_name = "DEG", default_value_t = 70.0, allow_negative_numbers = true)]
     pub(crate) fov: f64,
@@ -382,7 +388,7 @@ pub(crate) struct RenderArgs {
     /// Draw the camera itself from above: rays, planes, viewpoints, curve
     #[arg(long, conflicts_with_all = CAMERA_CONFLICTS)]
     pub(crate) overhead: bool,
-    /// Draw the camera itself from another eye: eye and point to look at, or auto
+    /// Draw the camera itself from another eye: eye and point to look at, in scene coordinates or lon,lat, or auto
     #[arg(long, value_name = "X,Y,Z,X,Y,Z", allow_hyphen_values = true, conflicts_with_all = CAMERA_CONFLICTS, conflicts_with = "overhead", value_parser = parse_outside)]
     pub(crate) outside: Option<Outside>,
     /// Tint of the terrain by height instead of the scene's: auto, alpine, desert, glacial, clear, plain, or a file of
@@ -469,7 +475,7 @@ pub(crate) enum AuxKind {
 pub(crate) struct ProjectArgs {
     /// Scene file, TOML or JSON
     pub(crate) scene: PathBuf,
-    /// JSON file of points [[x,y,z],...]
+    /// JSON file of points [[x,y,z],...]; texts such as "46.5N,11.3E,+20" may stand among them
     #[arg(long, value_name = "P.json")]
     pub(crate) points: PathBuf,
     /// Output; standard output if left out

@@ -10,6 +10,7 @@ mod draw_args;
 mod goal;
 mod ground_args;
 mod kinds;
+mod look_args;
 mod pack;
 mod parse;
 mod preset;

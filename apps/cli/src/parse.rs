@@ -1,12 +1,14 @@
 //! Values of arguments.
 
-use belvedere::scene_file::HighlightMark;
+use belvedere::places::Place;
+use belvedere::scene_file::{HighlightMark, StylisationDoc, SwitchOrStrength};
+use belvedere::verbs::appearance::EXAGGERATION;
 
 /// Most worker threads: far above what helps, far below what a system refuses to start.
 const MAX_THREADS: usize = 1024;
 
 /// Eye and target of a picture of the camera; `None`: they are chosen automatically.
-pub(crate) type Outside = Option<[[f64; 3]; 2]>;
+pub(crate) type Outside = Option<[Place; 2]>;
 
 /// Parses a number of threads, 0..=1024.
 pub(crate) fn parse_threads(text: &str) -> Result<usize, String> {
@@ -66,11 +68,11 @@ pub(crate) fn parse_sweep(text: &str) -> Result<[f64; 3], String> {
     }
 }
 
-/// Parses three numbers, such as `1.5,42.5,2400`.
-pub(crate) fn parse_eye(text: &str) -> Result<[f64; 3], String> {
-    let numbers: Vec<f64> =
-        text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
-    numbers.try_into().map_err(|_| "give X,Y,Z".into())
+/// Parses a place with a height, such as `1.5,42.5,2400` or `42.5N,1.5E,+20`.
+pub(crate) fn parse_eye(text: &str) -> Result<Place, String> {
+    let place: Place = text.parse()?;
+    let without = "an eye needs a height: give X,Y,Z, Z in metres, or +20 for 20 m above the ground";
+    if place.has_height() { Ok(place) } else { Err(without.into()) }
 }
 
 /// Parses a length in scene units, > 0.
@@ -83,23 +85,62 @@ pub(crate) fn parse_scale(text: &str) -> Result<f64, String> {
     text.trim().parse().ok().filter(|v| (0.1..=1.0).contains(v)).ok_or("give a factor in 0.1..=1, such as 0.5".into())
 }
 
-/// Parses `auto`, or the six numbers of eye and target.
+/// Parses `auto`, or eye and target, each with a height.
 pub(crate) fn parse_outside(text: &str) -> Result<Outside, String> {
     if text.trim() == "auto" {
         return Ok(None);
     }
-    let v: Vec<f64> = text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
-    match v[..] {
-        [a, b, c, d, e, f] => Ok(Some([[a, b, c], [d, e, f]])),
+    let at = text.match_indices(',').nth(2).map(|(at, _)| at);
+    let (eye, target) = at.map(|at| (&text[..at], &text[at + 1..])).unwrap_or((text, ""));
+    match [eye, target].map(parse_eye) {
+        [Ok(eye), Ok(target)] => Ok(Some([eye, target])),
         _ => Err("give auto, or eye and target as X,Y,Z,X,Y,Z".into()),
     }
 }
 
-/// Parses two numbers, such as `1.5,42.5`.
-pub(crate) fn parse_place(text: &str) -> Result<[f64; 2], String> {
-    let numbers: Vec<f64> =
-        text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
-    numbers.try_into().map_err(|_| "give X,Y".into())
+/// Parses a place without a height, such as `1.5,42.5`.
+pub(crate) fn parse_position(text: &str) -> Result<Place, String> {
+    let place: Place = text.parse()?;
+    if place.has_height() { Err("give X,Y without a height".into()) } else { Ok(place) }
+}
+
+/// Parses a time of the sun; returns the text unchanged.
+pub(crate) fn parse_time(text: &str) -> Result<String, String> {
+    belvedere::sun::check_time(text).map(|()| text.trim().to_owned())
+}
+
+/// Parses the direction of light: azimuth and altitude in degrees, such as `250,12`.
+pub(crate) fn parse_light(text: &str) -> Result<[f64; 2], String> {
+    let angles = numbers(text).and_then(|v| <[f64; 2]>::try_from(v).ok());
+    let fits = |[azimuth, altitude]: &[f64; 2]| azimuth.abs() <= 360.0 && *altitude > 0.0 && *altitude <= 90.0;
+    angles.filter(fits).ok_or_else(|| {
+        "give the azimuth, degrees clockwise from north, and the altitude above 0 and up to 90, such as 250,12".into()
+    })
+}
+
+/// Parses a factor of heights.
+pub(crate) fn parse_exaggeration(text: &str) -> Result<f64, String> {
+    let [least, most] = EXAGGERATION;
+    let factor = text.trim().parse().ok().filter(|v| (least..=most).contains(v));
+    factor.ok_or_else(|| format!("give a factor in {least}..={most}, such as 1.5"))
+}
+
+/// Parses the strengths of edges and, if given, of depth unsharp masking, such as `0.7,4`; 0 leaves one out.
+pub(crate) fn parse_stylise(text: &str) -> Result<StylisationDoc, String> {
+    let strengths = numbers(text).ok_or("give strengths, such as 0.7,4")?;
+    let strength = |value: f64| Some(SwitchOrStrength::Strength(value));
+    let document = match strengths[..] {
+        [edges] => StylisationDoc { edges: strength(edges), unsharp: None },
+        [edges, unsharp] => StylisationDoc { edges: strength(edges), unsharp: strength(unsharp) },
+        _ => return Err("give one strength or two, such as 0.7,4".into()),
+    };
+    document.strengths().map_err(|(_, reason)| reason)?;
+    Ok(document)
+}
+
+/// Finite numbers between commas.
+fn numbers(text: &str) -> Option<Vec<f64>> {
+    text.split(',').map(|t| t.trim().parse().ok().filter(|v: &f64| v.is_finite())).collect()
 }
 
 /// Parses a size in bytes, at least 1 MiB, such as `512MiB`, `2GB` or `100000`.

@@ -43,9 +43,17 @@ fn in_options(error: &BelvedereError) -> String {
     match error {
         BelvedereError::FieldOfView { .. } => format!("--fov: {error}"),
         BelvedereError::Highlight(_) => format!("--highlight: {error}"),
+        BelvedereError::Appearance { option, .. } => format!("--{option}: {error}"),
         BelvedereError::Setting(_) => format!("--set: {error}"),
         BelvedereError::Position { what, reason } => {
-            format!("{}: {reason}", if *what == "eye" { "--eye" } else { "--look" })
+            let option = match *what {
+                "target" => "--look",
+                "eye" => "--eye",
+                "see" => "--see",
+                "outside" => "--outside",
+                _ => return error.to_string(),
+            };
+            format!("{option}: {reason}")
         }
         BelvedereError::EyeIsTarget => "--eye and --look are the same point; look somewhere else".into(),
         BelvedereError::NoAnimation => {

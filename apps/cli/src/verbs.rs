@@ -16,7 +16,7 @@ use belvedere::scene::Compositing;
 use belvedere::scene_file::{AnimationDoc, PaletteDoc, StylisationDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{self, AnimateRequest, Film};
 use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest, WrittenGrid};
-use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest, Viewpoint};
+use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
 use belvedere::verbs::reveal_target::{TargetRequest, reveal_target};
 use belvedere::verbs::{check, info, measure, points};
 use belvedere::{CameraPicture, DataFiles, Needs, OpenOptions, Session, output, scene_file};
@@ -111,8 +111,8 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     (request.grid, request.heatmap, request.ghost, request.no_mark) =
         (args.grid, args.heatmap, args.ghost, args.no_mark);
     request.highlight = args.highlight.clone();
-    let overhead = args.overhead.then_some(CameraPicture::Overhead);
-    request.camera = overhead.or(args.outside.map(CameraPicture::Outside));
+    request.camera =
+        args.overhead.then_some(CameraPicture::Overhead).or(args.outside.map(|_| CameraPicture::Outside(None)));
     png_named(&args.out)?;
     let source = scene_file::read(&args.scene)?;
     let outputs = picture::outputs(&args.out, &request, source.document.solves_terrain());
@@ -129,10 +129,20 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     for path in &outputs {
         output::check(path, &session.input_paths(), context.common.overwrite)?;
     }
+    let mut warnings = session.warnings();
+    if let Some(Some(places)) = &args.outside {
+        let mut found = [[0.0; 3]; 2];
+        for (to, place) in found.iter_mut().zip(places) {
+            let (p, said) = session.find_place(place, "outside")?;
+            *to = p.to_array();
+            warnings.extend(said);
+        }
+        request.camera = Some(CameraPicture::Outside(Some(found)));
+    }
     let picture = session.render(&request)?;
     let written = picture.write(&args.out, context.common.overwrite)?;
     if context.common.json {
-        let mut result = done("render", &written, &session.warnings());
+        let mut result = done("render", &written, &warnings);
         result["displacement"] = serde_json::json!(picture.sidecar.displacement);
         result["render_ms"] = serde_json::json!(picture.sidecar.render_ms);
         result["fallback"] = serde_json::json!(picture.sidecar.fallback);
@@ -141,7 +151,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         context.finish();
         print(&format!("{fallback}\n"))?;
     }
-    context.warn(&session.warnings());
+    context.warn(&warnings);
     Ok(Goal::Reached)
 }
 
@@ -179,12 +189,12 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
             ..DataFiles::default()
         },
         fill_voids: args.fill_voids,
-        eye: args.eye,
-        look: args.look,
+        places: Some([args.eye, args.look]),
         fov_x_deg: args.fov,
         parameters: disocclude::parameters(&set)?,
         curved_earth: args.curved_earth,
         grid: if args.grid == "scene" { WrittenGrid::Scene } else { WrittenGrid::Input },
+        ..DisoccludeRequest::default()
     };
     let found = disocclude::disocclude(&request, &context.options(Needs::Everything, None))?;
     let written = found.write(&files, context.common.overwrite, &context.progress)?;
@@ -265,6 +275,7 @@ fn reveal_one(request: &TargetRequest, files: &RevealFiles, context: &Context) -
 }
 
 fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> {
+    crate::look_args::for_models(&args)?;
     let out = RevealFiles { out: args.out, before: args.before, report: args.report, scene: args.scene };
     let inputs = args.features.iter().chain([&args.dem]).map(PathBuf::from);
     let inputs: Vec<PathBuf> = inputs.chain(args.rivers.iter().chain(&args.drape).cloned()).collect();
@@ -276,13 +287,12 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
     for path in out.all().into_iter().chain(delta) {
         output::check(&path, &inputs, context.common.overwrite)?;
     }
-    let viewpoint = match (args.eye, args.look.as_deref()) {
+    let places = match (args.eye, args.look) {
         (None, None) => None,
-        (Some(eye), Some([x, y])) => Some(Viewpoint { eye, target: [*x, *y], target_height: None }),
-        (Some(eye), Some([x, y, z])) => Some(Viewpoint { eye, target: [*x, *y], target_height: Some(*z) }),
-        (Some(_), Some(look)) => anyhow::bail!("--look has {} numbers; give X,Y or X,Y,Z", look.len()),
+        (Some(eye), Some(look)) => Some([eye, look]),
         _ => anyhow::bail!("--eye and --look belong together; give both, or neither"),
     };
+    let appearance = args.look_args.appearance();
     let quality = |picture: &mut PictureOptions| {
         picture.quality.threads = context.common.threads;
         picture.quality.max_bytes = context.common.max_mem.unwrap_or(picture.quality.max_bytes);
@@ -297,7 +307,8 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
             see,
             fallback: args.fallback,
             transfer: args.transfer,
-            viewpoint,
+            places,
+            appearance,
             fov_y_deg: args.fov,
             up: args.up.map(belvedere::core::DVec3::from_array),
             image: args.size,
@@ -313,9 +324,12 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
             rivers: args.rivers.iter().map(|path| named(path)).collect(),
             crs: args.crs,
             keep_voids: args.keep_voids,
+            fill_all_voids: args.look_args.fill_voids,
+            relief: args.look_args.relief(),
+            hidden: args.look_args.hidden.map(Into::into),
             drape: args.drape.iter().map(|path| named(path)).collect(),
             labels: args.labels,
-            palette: PaletteDoc::of(&args.palette),
+            palette: PaletteDoc::of(args.palette.as_deref().unwrap_or("auto")),
             no_sea: args.no_sea,
             area_style: args.area_style,
             source_crs: args.ground.source_crs,
@@ -323,7 +337,8 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
             vertical_unit: args.ground.vertical_unit.map(Into::into),
             name_field: args.ground.name_field,
         },
-        viewpoint,
+        places,
+        appearance,
         fov_y_deg: args.fov,
         image: args.size,
         curved_earth: args.curved_earth,
@@ -443,17 +458,26 @@ fn describe(args: &InfoArgs, context: &Context) -> anyhow::Result<Goal> {
     }
 }
 
+/// A scene and points in its coordinates; the ground is read if a point is written as a place.
+fn with_points(args: &ProjectArgs, context: &Context) -> anyhow::Result<(Session, Vec<[f64; 3]>)> {
+    let written = points::read_written_points(&args.points)?;
+    let is_place = |point: &points::WrittenPoint| matches!(point, points::WrittenPoint::Place(_));
+    let needs = if written.iter().any(is_place) { Needs::Ground } else { Needs::View };
+    let session = context.open(&args.scene, needs, None)?;
+    let (found, said) = session.find_points(&written)?;
+    context.warn(&said);
+    Ok((session, found))
+}
+
 fn project(args: &ProjectArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[&args.scene, &args.points], context)?;
-    let session = context.open(&args.scene, Needs::View, None)?;
-    let points = points::read_points::<3>(&args.points)?;
+    let (session, points) = with_points(args, context)?;
     answer("project", &session, args.out.as_ref(), &output::json(&points::project(session.view(), &points))?, context)
 }
 
 fn displace(args: &ProjectArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[&args.scene, &args.points], context)?;
-    let session = context.open(&args.scene, Needs::View, None)?;
-    let points = points::read_points::<3>(&args.points)?;
+    let (session, points) = with_points(args, context)?;
     answer("displace", &session, args.out.as_ref(), &output::json(&points::displace(session.view(), &points))?, context)
 }
 

@@ -17,7 +17,7 @@ use belvedere_core::Warning;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::load_vectors;
 use belvedere_io::{join_table, split_table};
-use belvedere_scene::{Scene, Unit};
+use belvedere_scene::{Hidden, Relief, Scene, Unit};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -41,10 +41,16 @@ pub struct DataFiles {
     pub crs: Option<String>,
     /// Leaves holes of the terrain open; else those of at most [`LARGEST_HOLE`] are filled.
     pub keep_voids: bool,
+    /// Fills larger holes too.
+    pub fill_all_voids: bool,
     /// Georeferenced pictures laid over the ground, later ones on top.
     pub drape: Vec<String>,
     /// Whether names of features are written.
     pub labels: bool,
+    /// Shading of the terrain.
+    pub relief: Relief,
+    /// What happens to hidden parts of features; by default lines are dashed, outlines cut, points faint.
+    pub hidden: Option<Hidden>,
     /// Tint of the terrain by height.
     pub palette: PaletteDoc,
     /// Draws the sea like other ground.
@@ -87,12 +93,12 @@ impl DataFiles {
             id: "ground".into(),
             source: tiles::paths(ground),
             fill_voids: !self.keep_voids,
-            largest_hole: (!self.keep_voids).then_some(LARGEST_HOLE),
+            largest_hole: (!self.keep_voids && !self.fill_all_voids).then_some(LARGEST_HOLE),
             source_crs: self.source_crs.clone(),
             nodata: self.nodata,
             vertical_unit: self.vertical_unit,
             drape: (!drape.is_empty()).then(|| tiles::paths(drape)),
-            style: TerrainStyleDoc { palette, sea: !self.no_sea, ..TerrainStyleDoc::default() },
+            style: TerrainStyleDoc { palette, sea: !self.no_sea, relief: self.relief, ..TerrainStyleDoc::default() },
         })];
         if tiles.features.is_empty() {
             return Err(BelvedereError::NoFeatures);
@@ -119,6 +125,9 @@ impl DataFiles {
                 }
                 if self.labels {
                     write_names(&mut layer);
+                }
+                if let Some(hidden) = self.hidden {
+                    draw_hidden(&mut layer, hidden);
                 }
                 layers.push(layer);
             }
@@ -205,6 +214,15 @@ fn write_names(layer: &mut LayerDoc) {
     match layer {
         LayerDoc::Line(line) => line.style.labels = true,
         LayerDoc::Point(point) => point.style.labels = true,
+        _ => {}
+    }
+}
+
+fn draw_hidden(layer: &mut LayerDoc, hidden: Hidden) {
+    match layer {
+        LayerDoc::Line(line) => line.style.hidden = hidden,
+        LayerDoc::Area(area) => area.style.hidden = hidden,
+        LayerDoc::Point(point) => point.style.hidden = hidden,
         _ => {}
     }
 }

@@ -57,7 +57,7 @@ pub enum BelvedereError {
     /// A position that is not on the map.
     #[error("{what}: {reason}")]
     Position {
-        /// `eye` or `target`.
+        /// `eye`, `target`, or another place that was given.
         what: &'static str,
         /// Why it is not, and what to do.
         reason: String,
@@ -81,6 +81,14 @@ pub enum BelvedereError {
     /// A parameter of the terrain solver that does not exist or is out of range.
     #[error("{0}")]
     Setting(String),
+    /// A light, stylisation or exaggeration that a picture cannot have.
+    #[error("{reason}")]
+    Appearance {
+        /// What is asked for: `light-time`, `stylise`, `exaggeration`.
+        option: &'static str,
+        /// The measured value, the limit, and what to do.
+        reason: String,
+    },
     /// Highlights that cannot be drawn together.
     #[error("{0}")]
     Highlight(&'static str),

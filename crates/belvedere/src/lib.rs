@@ -42,10 +42,12 @@ pub mod output;
 mod overlays;
 pub mod pick;
 pub mod picture;
+pub mod places;
 pub mod record;
 mod resolve;
 pub mod scene_file;
 mod session;
+pub mod sun;
 mod targets;
 pub mod verbs;
 

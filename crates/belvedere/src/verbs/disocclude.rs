@@ -6,6 +6,7 @@ use super::written_rivers::run_downhill;
 use crate::data::DataFiles;
 use crate::output::{self, pretty};
 use crate::picture::{self, PictureOptions};
+use crate::places::{Place, PlaceFinder};
 use crate::record::{self, InputFile};
 use crate::resolve::ground::earth_radius;
 use crate::resolve::terrain as intent;
@@ -53,6 +54,8 @@ pub struct DisoccludeRequest {
     pub eye: [f64; 3],
     /// Point looked at, x, y likewise.
     pub look: [f64; 2],
+    /// Eye and point looked at as a user wrote them, instead of `eye` and `look`.
+    pub places: Option<[Place; 2]>,
     /// Full horizontal field of view, degrees, in (0, 180).
     pub fov_x_deg: f64,
     /// Parameters of the solver.
@@ -61,6 +64,14 @@ pub struct DisoccludeRequest {
     pub curved_earth: bool,
     /// Grid of the files that are written.
     pub grid: WrittenGrid,
+}
+
+impl DisoccludeRequest {
+    /// Eye and point looked at as they are written.
+    fn written(&self) -> [Place; 2] {
+        let [x, y, z] = self.eye;
+        self.places.unwrap_or([Place::of([x, y], Some(z)), Place::of(self.look, None)])
+    }
 }
 
 /// Grid of the written heights.
@@ -115,7 +126,10 @@ pub struct Disoccluded {
 struct Record {
     program: String,
     crs: String,
+    /// Eye: x, y as given, z in metres.
     eye: [f64; 3],
+    /// The same in `crs`.
+    scene_eye: [f64; 3],
     /// Eye after adjust_viewpoint, in `crs`.
     #[serde(skip_serializing_if = "Option::is_none")]
     adjusted_eye: Option<[f64; 3]>,
@@ -177,7 +191,11 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
     let original = data.original.take().ok_or_else(|| IoError::format(dem, "is no file; give an elevation model"))?;
     let radius = request.curved_earth.then(|| earth_radius(&data.scene, &mut data.warnings));
     data.warnings.extend(original.georeference_note());
-    let mut camera = LevelCamera::new(request, &original, data.scene.crs, radius)?;
+    let (mut camera, said) = LevelCamera::new(request, &original, &data.scene, radius)?;
+    data.warnings.extend(said);
+    let scene_eye = camera.eye.to_array();
+    let [eye, look] = request.written();
+    let [eye_x, eye_y] = eye.numbers();
     let adjusting = options.progress.part(ADJUSTING);
     let moved_eye = camera.adjust(request.parameters.adjust_viewpoint, &solver, &data.scene, &adjusting)?;
     data.warnings.extend(moved_eye.as_ref().map(|(_, said)| said.clone()));
@@ -215,9 +233,10 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
     let record = Record {
         program: format!("belvedere {}", crate::VERSION),
         crs: session.scene().crs.to_string(),
-        eye: request.eye,
+        eye: [eye_x, eye_y, scene_eye[2]],
+        scene_eye,
         adjusted_eye: moved_eye.map(|(eye, _)| eye.to_array()),
-        look: request.look,
+        look: look.numbers(),
         fov_x_deg: request.fov_x_deg,
         earth: if request.curved_earth { "curved" } else { "flat" },
         grid: request.grid,
@@ -302,31 +321,23 @@ impl LevelCamera {
     fn new(
         request: &DisoccludeRequest,
         original: &OriginalTerrain,
-        crs: Crs,
+        scene: &Scene,
         earth_radius: Option<f64>,
-    ) -> Result<Self, BelvedereError> {
+    ) -> Result<(Self, Vec<Warning>), BelvedereError> {
         let deg = request.fov_x_deg;
         if !(deg > 0.0 && deg < 180.0) {
             return Err(BelvedereError::FieldOfView { deg });
         }
-        let position = |what: &'static str, [x, y]: [f64; 2]| {
-            original.scene_from_model(crs, DVec2::new(x, y)).ok_or_else(|| BelvedereError::Position {
-                what,
-                reason: format!(
-                    "{x},{y} is no position in the system of the elevation model ({}); give x,y in that system",
-                    original.system_name()
-                ),
-            })
-        };
-        let [x, y, z] = request.eye;
-        let eye = position("eye", [x, y])?.extend(z);
-        let target = position("target", request.look)?;
+        let [eye, look] = request.written();
+        let finder = PlaceFinder::of(scene).in_model(original);
+        let ((eye, of_eye), (target, of_target)) = (finder.find(&eye, "eye")?, finder.on_map(&look, "target")?);
         if eye.truncate().distance(target) < 1e-6 {
             return Err(BelvedereError::EyeIsTarget);
         }
         let refraction = EarthCurvature::REFRACTION;
         let earth = earth_radius.map(|radius| Stage::EarthCurvature(EarthCurvature { eye, radius, refraction }));
-        Ok(Self { eye, target, fov_x: deg.to_radians(), earth })
+        let said = of_eye.into_iter().chain(of_target).collect();
+        Ok((Self { eye, target, fov_x: deg.to_radians(), earth }, said))
     }
 
     /// Moves the eye if `slider` allows it and less ground then moves; returns the new eye and a sentence about it.

@@ -1,6 +1,6 @@
 //! `reveal --drafts`: several views of the same features on one sheet, to choose from.
 
-use super::reveal::{FinalShares, RevealRequest, Viewpoint, reveal, search_options};
+use super::reveal::{FinalShares, RevealRequest, Viewpoint, reveal, search_options, taller};
 use crate::overlays::badge;
 use crate::{BelvedereError, OpenOptions};
 use belvedere_construct::measure::percent;
@@ -51,12 +51,14 @@ pub fn drafts(request: &RevealRequest, count: usize, options: &OpenOptions) -> R
     if !(1..=MOST_DRAFTS).contains(&count) {
         return Err(BelvedereError::Setting(format!("{count} drafts were asked for; give 1 to {MOST_DRAFTS}")));
     }
-    if request.viewpoint.is_some() {
+    if request.viewpoint.is_some() || request.places.is_some() {
         return Err(BelvedereError::Setting("drafts choose their views themselves; leave eye and look out".into()));
     }
     let mut data = request.data.load(false, options)?;
     let search = search_options(request, &mut data)?;
-    let views = belvedere_construct::reveal::views(&data.scene, count, &search, &options.progress)?;
+    let taller = taller(request, &data)?;
+    let scene = taller.as_ref().map_or(&data.scene, |taller| &taller.scene);
+    let views = belvedere_construct::reveal::views(scene, count, &search, &options.progress)?;
     let mut out = DraftsAnswer { drafts: Vec::new(), warnings: Vec::new() };
     for (i, view) in views.iter().enumerate() {
         let Some((viewpoint, fov_y_deg)) = rounded(view) else { continue };

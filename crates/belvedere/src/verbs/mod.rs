@@ -1,6 +1,7 @@
 //! The verbs of the command line as functions.
 
 pub mod animate;
+pub mod appearance;
 pub mod check;
 pub mod disocclude;
 pub mod drafts;

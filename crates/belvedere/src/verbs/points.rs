@@ -1,8 +1,9 @@
 //! Points to pixels and back: `project`, `rays`, `displace`.
 
+use crate::places::Place;
 use crate::scene_file::{Node, Value, json_points};
 use crate::{BelvedereError, Session};
-use belvedere_core::{DVec2, DVec3, Miss, View};
+use belvedere_core::{DVec2, DVec3, Miss, View, Warning};
 use serde::Serialize;
 use std::io::Read;
 use std::path::Path;
@@ -157,6 +158,60 @@ pub fn rays(view: &View, pixels: &[[f64; 2]], samples: usize, far: f64) -> Resul
 /// # Errors
 /// [`BelvedereError::Points`] with the index of the first bad element.
 pub fn read_points<const N: usize>(path: &Path) -> Result<Vec<[f64; N]>, BelvedereError> {
+    let shape = if N == 3 { "[x, y, z]" } else { "[x, y]" };
+    read_list(path, shape, &|item| {
+        numbers::<N>(item).ok_or_else(|| {
+            format!("{shape} of finite numbers was expected, found {} on line {}", found(item, N), item.line)
+        })
+    })
+}
+
+/// A point of a file.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum WrittenPoint {
+    /// Scene coordinates.
+    Scene([f64; 3]),
+    /// A place in words, such as `"46.5N,11.3E,+20"`.
+    Place(Place),
+}
+
+/// Reads a list of points: `[x, y, z]` in scene coordinates, or texts as [`crate::places`] reads them.
+///
+/// # Errors
+/// [`BelvedereError::Points`] with the index of the first bad element.
+pub fn read_written_points(path: &Path) -> Result<Vec<WrittenPoint>, BelvedereError> {
+    let shape = "[x, y, z]";
+    read_list(path, shape, &|item| match &item.value {
+        Value::Text(text) => text.parse().map(WrittenPoint::Place).map_err(|e: String| format!("\"{text}\": {e}")),
+        _ => numbers::<3>(item).map(WrittenPoint::Scene).ok_or_else(|| {
+            format!("{shape} of finite numbers was expected, found {} on line {}", found(item, 3), item.line)
+        }),
+    })
+}
+
+impl Session {
+    /// The scene coordinates of points of a file, and warnings about those that were not read as they are written.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Position`] for a place that is not on the map, or needs a height that there is no ground for.
+    pub fn find_points(&self, points: &[WrittenPoint]) -> Result<(Vec<[f64; 3]>, Vec<Warning>), BelvedereError> {
+        let (mut out, mut warnings) = (Vec::with_capacity(points.len()), Vec::new());
+        for point in points {
+            out.push(match point {
+                WrittenPoint::Scene(p) => *p,
+                WrittenPoint::Place(place) => {
+                    let (p, said) = self.find_place(place, "point")?;
+                    warnings.extend(said);
+                    p.to_array()
+                }
+            });
+        }
+        Ok((out, warnings))
+    }
+}
+
+/// Reads a JSON list of elements of a `shape`.
+fn read_list<T>(path: &Path, shape: &str, read: &dyn Fn(&Node) -> Result<T, String>) -> Result<Vec<T>, BelvedereError> {
     let fail = |reason: String| BelvedereError::Points { path: path.to_owned(), reason };
     let mut text = Vec::new();
     belvedere_io::fs::File::open(path)
@@ -167,24 +222,12 @@ pub fn read_points<const N: usize>(path: &Path) -> Result<Vec<[f64; N]>, Belvede
     }
     let text = String::from_utf8(text)
         .map_err(|e| fail(format!("byte {} is not UTF-8 text; give JSON", e.utf8_error().valid_up_to())))?;
-    let shape = if N == 3 { "[x, y, z]" } else { "[x, y]" };
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let root = json_points(text).map_err(|e| fail(format!("line {}: {e}", e.line.unwrap_or(1))))?;
     let items =
         root.list().ok_or_else(|| fail(format!("a list of {shape} was expected, found {}", root.describe())))?;
-    items
-        .iter()
-        .enumerate()
-        .map(|(i, item)| {
-            numbers::<N>(item).ok_or_else(|| {
-                fail(format!(
-                    "element {i}: {shape} of finite numbers was expected, found {} on line {}",
-                    found(item, N),
-                    item.line
-                ))
-            })
-        })
-        .collect()
+    let one = |(i, item)| read(item).map_err(|e| fail(format!("element {i}: {e}")));
+    items.iter().enumerate().map(one).collect()
 }
 
 fn numbers<const N: usize>(node: &Node) -> Option<[f64; N]> {

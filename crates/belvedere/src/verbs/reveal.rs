@@ -1,10 +1,12 @@
 //! `reveal`: draws a picture of terrain in which routes and other features are visible.
 
+use super::appearance::{Appearance, Taller, is_exaggeration};
 use super::in_time;
 pub use super::reveal_files::RevealFiles;
 use crate::data::{Data, DataFiles};
 use crate::picture::{DisplacementReport, Picture, PictureOptions, TerrainRecord};
-use crate::resolve::ground::{Ground, earth_radius};
+use crate::places::{Place, PlaceFinder};
+use crate::resolve::ground::earth_radius;
 use crate::resolve::rays::sidestep_stage;
 use crate::resolve::solving::Memory;
 use crate::resolve::solving::Solving;
@@ -16,10 +18,10 @@ use belvedere_construct::{
     Goal, RevealMemory, RevealOptions, RevealReport, Revealed, default_spacing, sample_features,
 };
 use belvedere_core::Warning;
-use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
+use belvedere_core::{DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::Instant;
-use belvedere_scene::{Crs, Progress, Scene};
+use belvedere_scene::{Progress, Scene};
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -36,6 +38,8 @@ pub struct RevealRequest {
     pub data: DataFiles,
     /// Eye and target; chosen automatically if left out.
     pub viewpoint: Option<Viewpoint>,
+    /// Eye and target as a user wrote them, instead of `viewpoint`.
+    pub places: Option<[Place; 2]>,
     /// Full vertical field of view, degrees.
     pub fov_y_deg: Option<f64>,
     /// Picture size, pixels.
@@ -48,9 +52,11 @@ pub struct RevealRequest {
     pub no_limits: bool,
     /// Quality of the pictures.
     pub picture: PictureOptions,
+    /// Light, stylisation, mark and exaggeration.
+    pub appearance: Appearance,
 }
 
-/// An eye and its target; x, y in the scene's system, or degrees if small enough for a georeferenced scene.
+/// An eye and its target: x, y as [`crate::places`] reads them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Viewpoint {
     /// x, y, and z in metres.
@@ -59,6 +65,12 @@ pub struct Viewpoint {
     pub target: [f64; 2],
     /// Height of the target, metres; that of the ground if left out.
     pub target_height: Option<f64>,
+}
+
+impl From<Viewpoint> for [Place; 2] {
+    fn from(Viewpoint { eye: [x, y, z], target, target_height }: Viewpoint) -> Self {
+        [Place::of([x, y], Some(z)), Place::of(target, target_height)]
+    }
 }
 
 /// Technique that bends the picture.
@@ -211,19 +223,23 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     check_fov(request)?;
     let mut data = request.data.load(false, options)?;
     let rivers = std::mem::take(&mut data.rivers);
-    let base = base_view(request, &data.scene)?;
+    let taller = taller(request, &data)?;
+    let searched_scene = taller.as_ref().map_or(&data.scene, |taller| &taller.scene).clone();
+    let (base, said) = base_view(request, &searched_scene)?;
+    data.warnings.extend(said);
     let search = search_options(request, &mut data)?;
     let mut memory = RevealMemory::default();
     let searched = Instant::now();
     let searching = options.progress.part(if request.technique == Technique::Spline { SEARCH_ALONE } else { SEARCH });
-    let found = belvedere_construct::reveal(&data.scene, base.as_ref(), &search, &mut memory, &searching)?;
+    let found = belvedere_construct::reveal(&searched_scene, base.as_ref(), &search, &mut memory, &searching)?;
     let pinhole = found.straight.pinhole();
-    let middle = found.bend.as_ref().map_or_else(|| middle(&data.scene), |bend| bend.pivot);
+    let middle = found.bend.as_ref().map_or_else(|| middle(&searched_scene), |bend| bend.pivot);
     let ahead = (middle - pinhole.eye).length().max(1.0);
     let camera = CameraDoc::of(pinhole, pinhole.eye + ahead * pinhole.forward);
     let earth = if request.curved_earth { EarthDoc::Curved } else { EarthDoc::Flat };
     let mut spline = data.session(found.view.clone(), camera, spline_stage(&found).into_iter().collect(), earth);
     spline.loaded.warnings.extend(found.report.warnings.iter().cloned());
+    let spline = request.appearance.put_on(spline, taller.as_ref())?;
     let candidates: &[Technique] = match request.technique {
         Technique::Spline => &[],
         Technique::CurvedRays => &[Technique::CurvedRays],
@@ -236,7 +252,11 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     let by_spline = found.bend.is_some() && (candidates.is_empty() || is_auto);
     let first = if by_spline { spline.clone() } else { straightened(&spline)? };
     let mut best = Answer::of(first, by_spline.then_some(Technique::Spline), &options.progress)?;
-    let straight = best.shares.both()[0];
+    // Exaggeration hides more: a bend is measured by the picture without bends, but with the same heights.
+    let straight = match &taller {
+        Some(_) => Answer::of(straightened(&spline)?, None, &options.progress)?.shares.both()[1],
+        None => best.shares.both()[0],
+    };
     let mut tried = vec![best.tried(Technique::Spline, searched.elapsed())];
     if best.shares.visible_bent < straight.visible + LEAST_GAIN && best.shares.technique.is_some() {
         best = Answer::of(straightened(&spline)?, None, &options.progress)?;
@@ -249,7 +269,7 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
         }
         let began = Instant::now();
         let next = match technique {
-            Technique::CurvedRays => around_what_hides(&spline, &found.straight, &options.progress)?,
+            Technique::CurvedRays => around_what_hides(&spline, (&searched_scene, &found.straight), &options.progress)?,
             _ => disoccluded(
                 &spline,
                 (technique, request.no_limits, &rivers),
@@ -320,10 +340,10 @@ fn middle(scene: &Scene) -> DVec3 {
     bounds.reduce(|a, b| a.union(b)).unwrap_or_else(|| scene.bounds()).center()
 }
 
-/// The session without stages that bend.
+/// The session without stages that bend; exaggeration stays.
 fn straightened(session: &Session) -> Result<Session, BelvedereError> {
     let Some(mut document) = session.resolved().cloned() else { return Ok(session.clone()) };
-    document.stage.clear();
+    document.stage.retain(is_exaggeration);
     session.with_document(document, None)
 }
 
@@ -335,7 +355,7 @@ fn disoccluded(
 ) -> Result<Session, BelvedereError> {
     let Some(mut document) = session.resolved().cloned() else { return Ok(session.clone()) };
     if technique == Technique::Terrain {
-        document.stage.clear();
+        document.stage.retain(is_exaggeration);
     }
     let limits = no_limits.then_some(false);
     let stage = TerrainStageDoc { limits, rivers: rivers.to_vec(), ..TerrainStageDoc::default() };
@@ -345,9 +365,12 @@ fn disoccluded(
 }
 
 /// The session with rays of a single turn in place of the spline, chosen to show most of the features.
-fn around_what_hides(session: &Session, straight: &View, progress: &Progress) -> Result<Session, BelvedereError> {
+fn around_what_hides(
+    session: &Session,
+    (scene, straight): (&Scene, &View),
+    progress: &Progress,
+) -> Result<Session, BelvedereError> {
     let Some(mut document) = session.resolved().cloned() else { return Ok(session.clone()) };
-    let scene = session.scene();
     let features = sample_features(scene, default_spacing(scene));
     let samples: Vec<DVec3> = features.iter().flat_map(|f| f.samples.iter().map(|s| s.p_world)).collect();
     let in_frame = |p: &DVec3| straight.project(*p).is_ok_and(|image| straight.pinhole().contains(image.pixel));
@@ -357,7 +380,8 @@ fn around_what_hides(session: &Session, straight: &View, progress: &Progress) ->
     let around = AroundOptions { grow_px: 0.0, ..AroundOptions::default() };
     let found = bend_around(scene, straight, &target, &around, progress)?;
     let turns = found.bent.map(|(_, sidestep)| StageDoc::CurvedRays(sidestep_stage(&sidestep, straight.pinhole())));
-    document.stage = turns.into_iter().collect();
+    document.stage.retain(is_exaggeration);
+    document.stage.extend(turns);
     session.with_document(document, None)
 }
 
@@ -401,12 +425,14 @@ impl RevealAnswer {
         if self.shares.technique.is_some() {
             return format!("visible in the straight picture: {straight}, in the bent one: {bent}");
         }
-        let reason = if straight.visible >= NOTHING_HIDDEN * straight.in_frame {
+        let taller =
+            if self.session.view().is_bent() { format!(", with exaggerated heights: {bent}") } else { String::new() };
+        let reason = if bent.visible >= NOTHING_HIDDEN * bent.in_frame {
             "what is in the frame is not hidden, so nothing is bent"
         } else {
             "no bend that was tried makes a better picture"
         };
-        format!("visible in the straight picture: {straight}; {reason}")
+        format!("visible in the straight picture: {straight}{taller}; {reason}")
     }
 
     /// Writes the bent picture with its record, the pair (`OUT.pair.png`), and the other files asked for.
@@ -444,20 +470,20 @@ fn spline_stage(found: &Revealed) -> Option<StageDoc> {
     }))
 }
 
-/// The view of the given camera, if there is one.
-fn base_view(request: &RevealRequest, scene: &Scene) -> Result<Option<View>, BelvedereError> {
-    let Some(Viewpoint { eye, target, target_height }) = request.viewpoint else { return Ok(None) };
-    let ground = Ground::of(scene);
-    let wrong = |what| move |reason| BelvedereError::Position { what, reason };
-    let position = |[x, y]: [f64; 2]| {
-        let degrees = matches!(scene.crs, Crs::Epsg(_)) && x.abs() <= 360.0 && y.abs() <= 90.0;
-        if degrees { ground.position_of(x, y) } else { Ok(DVec2::new(x, y)) }
+/// The scene with exaggerated heights, if that is asked for.
+pub(super) fn taller(request: &RevealRequest, data: &Data) -> Result<Option<Taller>, BelvedereError> {
+    request.appearance.exaggeration.map_or(Ok(None), |factor| Taller::of(&data.scene, factor))
+}
+
+/// The view of the given camera, if there is one, and warnings about its places.
+fn base_view(request: &RevealRequest, scene: &Scene) -> Result<(Option<View>, Vec<Warning>), BelvedereError> {
+    let Some([eye, target]) = request.places.or(request.viewpoint.map(Into::into)) else {
+        return Ok((None, Vec::new()));
     };
-    let [x, y, z] = eye;
-    let eye = position([x, y]).map_err(wrong("eye"))?.extend(z);
-    let xy = position(target).map_err(wrong("target"))?;
-    let height = target_height.map_or_else(|| ground.height_at(xy), Ok).map_err(wrong("target"))?;
+    let finder = PlaceFinder::of(scene);
+    let ((eye, of_eye), (target, of_target)) = (finder.find(&eye, "eye")?, finder.find(&target, "target")?);
     let lens = Projection::Perspective { fov_y: request.fov_y_deg.unwrap_or(FOV_Y_DEG).to_radians() };
     let image = request.image.unwrap_or(IMAGE);
-    Ok(Some(View::straight(Pinhole::look_at(eye, xy.extend(height), DVec3::Z, lens, image, 1.0, None)?)))
+    let view = View::straight(Pinhole::look_at(eye, target, DVec3::Z, lens, image, 1.0, None)?);
+    Ok((Some(view), of_eye.into_iter().chain(of_target).collect()))
 }

@@ -1,8 +1,10 @@
 //! `reveal --see`: draws a picture in which one target in models is visible, by rays that bend around its occluders.
 
+use super::appearance::Appearance;
 use super::model_layers::{layer, set_transfer, unit_of};
 use super::target_views;
 use crate::picture::{Picture, PictureOptions, TargetPlace};
+use crate::places::Place;
 use crate::resolve::rays::sidestep_stage;
 use crate::scene_file::{
     CameraDoc, ConstructorDoc, ConstructorKind, Document, LayerDoc, PointDoc, SourceDocument, StageDoc,
@@ -36,6 +38,8 @@ pub struct TargetRequest {
     pub transfer: Option<String>,
     /// Eye and target of the view; if left out, the camera of the scene file, or one chosen automatically.
     pub viewpoint: Option<Viewpoint>,
+    /// Eye and target as a user wrote them, instead of `viewpoint`.
+    pub places: Option<[Place; 2]>,
     /// Full vertical field of view, degrees.
     pub fov_y_deg: Option<f64>,
     /// Direction that is up in the picture, a unit vector; z if left out. Not for scene files, which state their own.
@@ -46,6 +50,8 @@ pub struct TargetRequest {
     pub fallback: Vec<String>,
     /// Quality of the pictures.
     pub picture: PictureOptions,
+    /// Light, stylisation and mark; models have no exaggeration.
+    pub appearance: Appearance,
 }
 
 /// Result: a session that shows the target, its picture beside the straight one, and the report.
@@ -72,11 +78,15 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
     if !(fov_y_deg > 0.0 && fov_y_deg < 180.0) {
         return Err(BelvedereError::FieldOfView { deg: fov_y_deg });
     }
-    let session = open(request, options)?;
-    let target = target(session.scene(), &request.see)?;
-    let place = targets::point(&request.see).map(|p| TargetPlace::of(session.scene(), p));
+    let mut session = open(request, options)?;
+    let (see, said) = written_point(&session, &request.see)?;
+    session.loaded.warnings.extend(said);
+    let target = target(session.scene(), &see)?;
+    let place = targets::point(&see).map(|p| TargetPlace::of(session.scene(), p));
     let up = request.up.unwrap_or(DVec3::Z);
-    let (views, free) = match given(&session, request, fov_y_deg, up)? {
+    let (view, said) = given(&session, request, fov_y_deg, up)?;
+    session.loaded.warnings.extend(said);
+    let (views, free) = match view {
         Some(view) => (vec![view], false),
         None => {
             let image = request.image.unwrap_or(IMAGE);
@@ -116,10 +126,14 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
     let report = BendReport { tried, light_best, ..report };
     let mut document = document(&session, &view, sidestep.as_ref(), &target)?;
     if report.visible < ENOUGH && !request.fallback.is_empty() {
-        let (target, fallback) = (Some(request.see.clone()), request.fallback.clone());
+        let (target, fallback) = (Some(see.clone()), request.fallback.clone());
         document.constructor = Some(ConstructorDoc { target, fallback, ..ConstructorDoc::of(ConstructorKind::Manual) });
     }
-    let session = session.with_document(document, None)?;
+    request.appearance.describe(&mut document, session.scene().crs)?;
+    let session = match request.appearance.is_usual() {
+        true => session.with_document(document, None)?,
+        false => Appearance::of_document(&session, document)?,
+    };
     let pair = PictureOptions {
         compare: true,
         straight: false,
@@ -130,7 +144,7 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
     if let Some(place) = &place {
         picture.mark_target(place, &report);
     }
-    Ok(TargetAnswer { session, picture, report, see: request.see.clone(), place })
+    Ok(TargetAnswer { session, picture, report, see, place })
 }
 
 /// Opens the layers with a provisional camera.
@@ -180,22 +194,33 @@ fn given(
     request: &TargetRequest,
     fov_y_deg: f64,
     up: DVec3,
-) -> Result<Option<View>, BelvedereError> {
+) -> Result<(Option<View>, Vec<Warning>), BelvedereError> {
     let is_scene_file = session.path().is_some();
     let own = session.view().pinhole();
     let image = request.image.unwrap_or(if is_scene_file { own.image } else { IMAGE });
     let lens = Projection::Perspective { fov_y: fov_y_deg.to_radians() };
-    if let Some(Viewpoint { eye, target: [x, y], target_height }) = request.viewpoint {
-        let bounds = session.scene().bounds();
-        let look = DVec3::new(x, y, target_height.unwrap_or(bounds.center().z));
-        let eye = DVec3::from_array(eye);
+    if let Some([eye, target]) = request.places.or(request.viewpoint.map(Into::into)) {
+        let ((eye, of_eye), (look, of_look)) =
+            (session.find_place(&eye, "eye")?, session.find_place(&target, "target")?);
         let near = 1e-3 * (look - eye).length();
-        return Ok(Some(View::straight(Pinhole::look_at(eye, look, up, lens, image, near, None)?)));
+        let view = View::straight(Pinhole::look_at(eye, look, up, lens, image, near, None)?);
+        return Ok((Some(view), of_eye.into_iter().chain(of_look).collect()));
     }
     if is_scene_file && request.up.is_some() {
         return Err(BelvedereError::Target("a scene file states what is up in camera.up; leave --up out".into()));
     }
-    Ok(is_scene_file.then(|| session.view().straightened()))
+    Ok((is_scene_file.then(|| session.view().straightened()), Vec::new()))
+}
+
+/// A target as `x,y,z` in scene coordinates where a place with a height is written, else as it is; and a warning about the place.
+fn written_point(session: &Session, see: &str) -> Result<(String, Option<Warning>), BelvedereError> {
+    match see.parse::<Place>() {
+        Ok(place) if place.has_height() => {
+            let (p, said) = session.find_place(&place, "see")?;
+            Ok((format!("{},{},{}", p.x, p.y, p.z), said))
+        }
+        _ => Ok((see.to_owned(), None)),
+    }
 }
 
 /// The document of the session with the found view.

@@ -1,0 +1,143 @@
+//! Arguments of `reveal` that say how its picture looks, and what of them is for terrain alone.
+
+use crate::args::RevealArgs;
+use crate::parse::{parse_exaggeration, parse_light, parse_stylise, parse_time};
+use belvedere::scene::{Hidden, Relief};
+use belvedere::scene_file::{LightDoc, StylisationDoc};
+use belvedere::verbs::appearance::Appearance;
+use clap::{Args, ValueEnum};
+
+/// Look of the picture; all of it is written into the scene file too.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct LookArgs {
+    /// Light the scene as the sun does over the eye at this time, such as 2026-07-01T15:00:00Z or 2026-07-01T17:00+02:00: shading by
+    /// the sun alone (unless --relief says otherwise), with cast shadows
+    #[arg(long, value_name = "TIME", value_parser = parse_time)]
+    pub(crate) light_time: Option<String>,
+    /// Light from a direction: degrees clockwise from north, and over the horizon; 315,45 by default
+    #[arg(long, value_name = "AZIMUTH,ALTITUDE", allow_hyphen_values = true, conflicts_with = "light_time", value_parser = parse_light)]
+    pub(crate) light: Option<[f64; 2]>,
+    /// Draw cast shadows
+    #[arg(long)]
+    pub(crate) shadows: bool,
+    /// Shading of the terrain; swiss by default
+    #[arg(long, value_enum, value_name = "SHADING")]
+    pub(crate) relief: Option<ReliefKind>,
+    /// Style of hidden parts of features; by default lines are dashed, outlines of areas cut, points faint
+    #[arg(long, value_enum, value_name = "STYLE")]
+    pub(crate) hidden: Option<HiddenKind>,
+    /// Multiply heights over the median height of the terrain by F, 0.01 to 100; the straight picture keeps the true heights
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = parse_exaggeration)]
+    pub(crate) exaggeration: Option<f64>,
+    /// Draw dark edges and depth unsharp masking, of strengths in 0..=1 and 0..=10; 0.7,4 without a value
+    #[arg(long, value_name = "EDGES[,UNSHARP]", num_args = 0..=1, require_equals = true, default_missing_value = "0.7,4", value_parser = parse_stylise)]
+    pub(crate) stylise: Option<StylisationDoc>,
+    /// Leave out the mark in the corner that says that the view is bent, and by how much; the record still says so
+    #[arg(long)]
+    pub(crate) no_mark: bool,
+    /// Fill all holes of the terrain, also large ones; by default those of at most 3 % of it
+    #[arg(long, conflicts_with = "keep_voids")]
+    pub(crate) fill_voids: bool,
+}
+
+/// Shading of terrain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ReliefKind {
+    /// Several directions of light blended, as in Swiss relief maps
+    Swiss,
+    /// One light
+    Sun,
+    /// No shading
+    None,
+}
+
+/// Style of hidden parts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum HiddenKind {
+    /// As if nothing were in front
+    Show,
+    /// Faint
+    Fade,
+    /// Dashed and thinner
+    Dash,
+    /// Not drawn
+    Cut,
+}
+
+impl From<ReliefKind> for Relief {
+    fn from(kind: ReliefKind) -> Self {
+        match kind {
+            ReliefKind::Swiss => Self::Swiss,
+            ReliefKind::Sun => Self::Sun,
+            ReliefKind::None => Self::None,
+        }
+    }
+}
+
+impl From<HiddenKind> for Hidden {
+    fn from(kind: HiddenKind) -> Self {
+        match kind {
+            HiddenKind::Show => Self::Show,
+            HiddenKind::Fade => Self::Fade,
+            HiddenKind::Dash => Self::Dash,
+            HiddenKind::Cut => Self::Cut,
+        }
+    }
+}
+
+impl LookArgs {
+    /// Shading of the terrain: a time of the sun asks for the sun.
+    pub(crate) fn relief(&self) -> Relief {
+        let of_light = if self.light_time.is_some() { Relief::Sun } else { Relief::Swiss };
+        self.relief.map_or(of_light, Into::into)
+    }
+
+    /// What is drawn in another way than usual.
+    pub(crate) fn appearance(&self) -> Appearance {
+        let [azimuth_deg, altitude_deg] = [0, 1].map(|i| self.light.map(|light| light[i]));
+        let time = self.light_time.clone();
+        let shadows = self.shadows || time.is_some();
+        let stated = shadows || self.light.is_some();
+        Appearance {
+            light: stated.then_some(LightDoc { azimuth_deg, altitude_deg, time, shadows }),
+            stylisation: self.stylise,
+            no_mark: self.no_mark,
+            exaggeration: self.exaggeration,
+        }
+    }
+}
+
+/// Refuses options that say something of terrain where models are shown.
+pub(crate) fn for_models(args: &RevealArgs) -> anyhow::Result<()> {
+    if args.see.is_none() {
+        return Ok(());
+    }
+    let (look, ground) = (&args.look_args, &args.ground);
+    let given: Vec<&str> = [
+        ("--relief", look.relief.is_some()),
+        ("--hidden", look.hidden.is_some()),
+        ("--exaggeration", look.exaggeration.is_some()),
+        ("--fill-voids", look.fill_voids),
+        ("--keep-voids", args.keep_voids),
+        ("--palette", args.palette.is_some()),
+        ("--no-sea", args.no_sea),
+        ("--area-style", args.area_style.is_some()),
+        ("--curved-earth", args.curved_earth),
+        ("--no-limits", args.no_limits),
+        ("--crs", args.crs.is_some()),
+        ("--source-crs", ground.source_crs.is_some()),
+        ("--nodata", ground.nodata.is_some()),
+        ("--vertical-unit", ground.vertical_unit.is_some()),
+        ("--name-field", ground.name_field.is_some()),
+    ]
+    .into_iter()
+    .filter_map(|(name, given)| given.then_some(name))
+    .collect();
+    let (is_are, it) = if given.len() == 1 { ("is", "it") } else { ("are", "them") };
+    anyhow::ensure!(
+        given.is_empty(),
+        "{} {is_are} for terrain with features, not for models with --see; leave {it} out",
+        given.join(", ")
+    );
+    Ok(())
+}

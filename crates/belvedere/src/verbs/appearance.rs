@@ -1,0 +1,125 @@
+//! How the pictures of `reveal` are drawn: light, stylisation, mark, exaggeration. It is written into their scene files.
+
+use crate::scene_file::{Document, LightDoc, OneOrTwo, OverlayDoc, PlaneDoc, ReliefStageDoc, StageDoc, StylisationDoc};
+use crate::{BelvedereError, Session};
+use belvedere_scene::{Crs, Heightfield, LayerKind, Scene};
+use std::sync::Arc;
+
+/// Limits of [`Appearance::exaggeration`].
+pub const EXAGGERATION: [f64; 2] = [0.01, 100.0];
+
+/// How a picture is drawn; what is left out stays as it is.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Appearance {
+    /// The sun: a direction, or a time, which needs a georeferenced scene.
+    pub light: Option<LightDoc>,
+    /// Dark edges and depth unsharp masking.
+    pub stylisation: Option<StylisationDoc>,
+    /// Leaves out the mark that says that the view is bent; the record still says so.
+    pub no_mark: bool,
+    /// Factor of heights over the median height of the terrain, in [`EXAGGERATION`]. The straight picture keeps the true heights.
+    pub exaggeration: Option<f64>,
+}
+
+impl Appearance {
+    /// Whether nothing is asked for.
+    pub fn is_usual(&self) -> bool {
+        *self == Self::default()
+    }
+
+    /// Puts light, marks and stylisation into a document of a scene in `crs`.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Appearance`] for a time of the sun without georeference, and for strengths out of range.
+    pub(super) fn describe(&self, document: &mut Document, crs: Crs) -> Result<(), BelvedereError> {
+        if let Some(light) = &self.light {
+            if light.time.is_some() && crs == Crs::Local {
+                let reason = "the position of the sun at a time needs a georeferenced scene, and this one is local; give a direction of \
+                              light instead";
+                return Err(BelvedereError::Appearance { option: "light-time", reason: reason.into() });
+            }
+            document.light = Some(light.clone());
+        }
+        if let Some(stylisation) = &self.stylisation {
+            stylisation.strengths().map_err(|(_, reason)| BelvedereError::Appearance { option: "stylise", reason })?;
+            document.stylisation = Some(*stylisation);
+        }
+        if self.no_mark {
+            let overlay = document.overlay.take().unwrap_or_default();
+            document.overlay = Some(OverlayDoc { mark: false, ..overlay });
+        }
+        Ok(())
+    }
+
+    /// The session of a document that [`Appearance::describe`] changed.
+    pub(super) fn of_document(session: &Session, document: Document) -> Result<Session, BelvedereError> {
+        let overlay = document.overlay.clone().unwrap_or_default();
+        let stylisation = document.stylisation.unwrap_or_default().strengths().unwrap_or_default();
+        Ok(session.with_document(document, None)?.with_overlay(overlay).with_stylisation(stylisation))
+    }
+
+    /// The session in this appearance, with exaggerated heights in front of its other stages.
+    pub(super) fn put_on(&self, session: Session, taller: Option<&Taller>) -> Result<Session, BelvedereError> {
+        let Some(mut document) = session.resolved().filter(|_| !self.is_usual()).cloned() else { return Ok(session) };
+        self.describe(&mut document, session.scene().crs)?;
+        document.stage.splice(0..0, taller.map(Taller::stage));
+        Self::of_document(&session, document)
+    }
+}
+
+/// Whether a stage is an exaggeration, which stays where other bends are left out.
+pub(super) fn is_exaggeration(stage: &StageDoc) -> bool {
+    matches!(stage, StageDoc::Relief(_))
+}
+
+/// A scene with exaggerated heights: what the relief stage of [`Taller::stage`] makes of it, in which views and bends are searched.
+pub(super) struct Taller {
+    pub(super) scene: Arc<Scene>,
+    factor: f64,
+    plane_m: f64,
+}
+
+impl Taller {
+    /// The scene with its heights over their median multiplied by `factor`; `None` without terrain.
+    pub(super) fn of(scene: &Scene, factor: f64) -> Result<Option<Self>, BelvedereError> {
+        let [least, most] = EXAGGERATION;
+        if !(least..=most).contains(&factor) {
+            let reason = format!("the exaggeration is {factor}, it must be in {least}..={most}");
+            return Err(BelvedereError::Appearance { option: "exaggeration", reason });
+        }
+        let Some(plane_m) = scene.terrain().map(Heightfield::median_height) else { return Ok(None) };
+        let raised = |z: f64| plane_m + factor * (z - plane_m);
+        let mut scene = scene.clone();
+        for layer in &mut scene.layers {
+            match &mut layer.kind {
+                LayerKind::Terrain(terrain) => {
+                    terrain.heightfield = Arc::new(stretched(&terrain.heightfield, &raised)?)
+                }
+                LayerKind::Line(line) => {
+                    line.features.iter_mut().flat_map(|f| &mut f.points).for_each(|p| p.z = raised(p.z));
+                }
+                LayerKind::Point(points) => {
+                    points.features.iter_mut().for_each(|p| p.position.z = raised(p.position.z));
+                }
+                _ => {}
+            }
+        }
+        Ok(Some(Self { scene: Arc::new(scene), factor, plane_m }))
+    }
+
+    fn stage(&self) -> StageDoc {
+        StageDoc::Relief(ReliefStageDoc {
+            exaggeration: Some(OneOrTwo::One(self.factor)),
+            plane: Some(PlaneDoc { normal: [0.0, 0.0, 1.0], height_m: Some(self.plane_m) }),
+            ..ReliefStageDoc::default()
+        })
+    }
+}
+
+/// The ground with other heights at its nodes.
+fn stretched(ground: &Heightfield, raised: &dyn Fn(f64) -> f64) -> Result<Heightfield, BelvedereError> {
+    let heights = ground.heights().iter().map(|h| raised(f64::from(*h)) as f32).collect();
+    let (cols, rows, states) = (ground.cols(), ground.rows(), ground.states().to_vec());
+    Heightfield::new(ground.north_west(), ground.spacing(), cols, rows, heights, states)
+        .map_err(|e| BelvedereError::Appearance { option: "exaggeration", reason: e.to_string() })
+}
