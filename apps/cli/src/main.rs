@@ -10,10 +10,13 @@ mod draw_args;
 mod goal;
 mod ground_args;
 mod kinds;
+mod outputs;
 mod pack;
 mod parse;
 mod preset;
 mod report;
+mod timings;
+mod trust;
 mod verbs;
 mod view;
 
@@ -52,7 +55,8 @@ fn broken(panic: &(dyn std::any::Any + Send)) -> ExitCode {
 
 fn run(cli: Cli) -> ExitCode {
     let context = Context::new(cli.common, cli.verb.makes_many_pictures());
-    match verbs::run(cli.verb, &context) {
+    let verb = cli.verb.name();
+    match verbs::run(cli.verb, &context).and_then(|goal| context.timings.write(verb, &context).map(|()| goal)) {
         Ok(goal) => {
             context.finish();
             if goal.is_missed() && context.common.strict { ExitCode::from(1) } else { ExitCode::SUCCESS }

@@ -36,6 +36,7 @@ pub mod editor;
 mod error;
 pub mod fallback;
 mod film;
+mod names;
 mod open;
 mod options;
 pub mod output;
@@ -47,6 +48,7 @@ mod resolve;
 pub mod scene_file;
 mod session;
 mod targets;
+pub mod trust;
 pub mod verbs;
 
 pub use belvedere_builtin as builtin;
@@ -66,6 +68,7 @@ pub use overlays::camera::CameraPicture;
 pub use overlays::highlight::{GhostRecord, HighlightRecord, PartRecord};
 pub use picture::{DisplacementReport, Picture, PictureOptions, RendererChoice, Sidecar};
 pub use session::Session;
+pub use trust::Trust;
 
 /// Version of the program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
