@@ -12,6 +12,7 @@ use crate::parse::{
     parse_spacing, parse_sweep,
 };
 use crate::preset::PresetArgs;
+use crate::trust::TrustArgs;
 use belvedere::RendererChoice;
 use belvedere::places::Place;
 use belvedere::scene_file::{HighlightMark, SurfaceDoc};
@@ -29,6 +30,33 @@ pub(crate) struct Cli {
 }
 
 impl Verb {
+    /// Its name on the command line.
+    pub(crate) fn name(&self) -> &'static str {
+        match self {
+            Self::Demo(_) => "demo",
+            Self::Reveal(_) => "reveal",
+            Self::Disocclude(_) => "disocclude",
+            Self::Generalise(_) => "generalise",
+            Self::Preset(_) => "preset",
+            Self::Render(_) => "render",
+            Self::Animate(_) => "animate",
+            Self::Project(_) => "project",
+            Self::Rays(_) => "rays",
+            Self::Displace(_) => "displace",
+            Self::Pick(_) => "pick",
+            Self::Measure(_) => "measure",
+            Self::Check(_) => "check",
+            Self::Info(_) => "info",
+            Self::Show(_) => "show",
+            Self::Schema(_) => "schema",
+            Self::Bench(_) => "bench",
+            Self::Figures(_) => "figures",
+            Self::View(_) => "view",
+            Self::Pack(_) => "pack",
+            Self::Trust(_) => "trust",
+        }
+    }
+
     /// Whether it makes many pictures, each of which may take as long as the limit of time says.
     pub(crate) fn makes_many_pictures(&self) -> bool {
         matches!(self, Self::Animate(_) | Self::Bench(_) | Self::Demo(_) | Self::Figures(_) | Self::View(_))
@@ -79,6 +107,8 @@ pub(crate) enum Verb {
     View(ViewArgs),
     /// Write the application with a scene, data or the built-in scenes as a web page: a folder for any web server
     Pack(PackArgs),
+    /// Let a scene read the files outside its folder that it names, from now on; list and forget such scenes
+    Trust(TrustArgs),
 }
 
 /// The application.
@@ -192,7 +222,8 @@ pub(crate) struct RevealArgs {
     /// Colours and opacities of volumes with --see: auto, solid, engine, ct-bone, ct-soft, vessels, grey, or a file
     #[arg(long, value_name = "NAME|FILE", requires = "see")]
     pub(crate) transfer: Option<String>,
-    /// Picture to write; its record goes to OUT.png.json, the straight beside the bent picture to OUT.pair.png
+    /// Picture to write; its record goes to OUT.png.json, the straight beside the bent picture to OUT.pair.png; - = standard output, and
+    /// the picture alone
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
     /// Eye: x,y of the scene, lon,lat in degrees, or 46.5N,11.3E; and height in metres, or +20 for 20 m above the ground. Chosen
@@ -357,7 +388,7 @@ impl From<RendererKind> for RendererChoice {
 pub(crate) struct RenderArgs {
     /// Scene file, TOML or JSON
     pub(crate) scene: PathBuf,
-    /// Output; the record is written beside it as OUT.png.json
+    /// Output; the record is written beside it as OUT.png.json; - = standard output, and no record
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
     #[command(flatten)]

@@ -1,6 +1,7 @@
 //! `generalise`: its arguments, and what it says.
 
 use crate::goal::Goal;
+use crate::outputs;
 use crate::report::{Context, done, print};
 use belvedere::output;
 use belvedere::verbs::generalise::{self, GeneraliseRequest, GeneraliseSettings};
@@ -25,6 +26,7 @@ pub(crate) struct GeneraliseArgs {
 }
 
 pub(crate) fn generalise_city(args: GeneraliseArgs, context: &Context) -> anyhow::Result<Goal> {
+    outputs::check_folder(&args.out, context)?;
     let inputs: Vec<PathBuf> = args.roads.iter().chain([&args.city]).cloned().collect();
     if args.out.exists() {
         for path in [None, Some(0)].iter().flat_map(|epsg| generalise::files(&args.out, *epsg)) {

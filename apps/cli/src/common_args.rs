@@ -35,4 +35,11 @@ pub(crate) struct Common {
     /// Folder, beside the scene's own, from which files may be read; may be given several times
     #[arg(long, global = true, help_heading = "Every command", value_name = "DIR")]
     pub(crate) allow_root: Vec<PathBuf>,
+    /// Do not remember which files outside their folders scenes may read, and do not use what is remembered; as with
+    /// BELVEDERE_NO_TRUST=1. See trust --help
+    #[arg(long, global = true, help_heading = "Every command")]
+    pub(crate) no_remember: bool,
+    /// Write how long the steps took, JSON
+    #[arg(long, global = true, help_heading = "Every command", value_name = "FILE.json")]
+    pub(crate) timings: Option<PathBuf>,
 }

@@ -11,10 +11,13 @@ mod goal;
 mod ground_args;
 mod kinds;
 mod look_args;
+mod outputs;
 mod pack;
 mod parse;
 mod preset;
 mod report;
+mod timings;
+mod trust;
 mod verbs;
 mod view;
 
@@ -53,7 +56,8 @@ fn broken(panic: &(dyn std::any::Any + Send)) -> ExitCode {
 
 fn run(cli: Cli) -> ExitCode {
     let context = Context::new(cli.common, cli.verb.makes_many_pictures());
-    match verbs::run(cli.verb, &context) {
+    let verb = cli.verb.name();
+    match verbs::run(cli.verb, &context).and_then(|goal| context.timings.write(verb, &context).map(|()| goal)) {
         Ok(goal) => {
             context.finish();
             if goal.is_missed() && context.common.strict { ExitCode::from(1) } else { ExitCode::SUCCESS }

@@ -1,6 +1,7 @@
 //! The verb that makes a web page.
 
 use crate::goal::Goal;
+use crate::outputs;
 use crate::report::{Context, done, print};
 use belvedere::verbs::pack::{PackRequest, pack};
 use clap::Args;
@@ -20,7 +21,9 @@ pub(crate) struct PackArgs {
 }
 
 pub(crate) fn pack_scene(args: PackArgs, context: &Context) -> anyhow::Result<Goal> {
+    outputs::check_folder(&args.out, context)?;
     let request = PackRequest {
+        trust: context.trust.clone(),
         files: args.files,
         allowed: context.common.allow_root.clone(),
         application: args.app.unwrap_or_else(application),

@@ -1,6 +1,7 @@
 //! `preset`: its arguments, and what it says.
 
 use crate::goal::Goal;
+use crate::outputs::{self, is_stdout};
 use crate::report::{Context, done, print};
 use belvedere::core::presets::PresetDocument;
 use belvedere::core::presets::edit::{PresetChange, PresetOperation};
@@ -91,23 +92,35 @@ pub(crate) fn preset(args: PresetArgs, context: &Context) -> anyhow::Result<Goal
     match args.work {
         PresetWork::List => list(context),
         PresetWork::Show { preset, out } => {
-            let text = preset::text(&preset::load(&preset)?, out.as_deref().unwrap_or(Path::new("")))?;
+            let file = outputs::file(out.as_ref()).cloned();
+            outputs::check(file.as_slice(), &[], context)?;
+            let text = preset::text(&preset::load(&preset)?, &file.unwrap_or_default())?;
             context.deliver("preset", out.as_deref(), &text, &[])?;
             Ok(Goal::Reached)
         }
         PresetWork::New { out, from } => {
-            let text = preset::text(&preset::load(&from)?, &out)?;
-            output::write_text(&out, &text, context.common.overwrite)?;
-            written(&[out], &[], context)
+            let file = outputs::file(Some(&out)).cloned();
+            outputs::check(file.as_slice(), &[], context)?;
+            let text = preset::text(&preset::load(&from)?, &file.unwrap_or_default())?;
+            context.deliver("preset", Some(&out), &text, &[])?;
+            Ok(Goal::Reached)
         }
         PresetWork::Set { file, operations, capture, out } => set(&file, operations, &capture, out, context),
         PresetWork::Check { preset } => check(&preset, context),
         PresetWork::Plot { preset, out, phi } => {
             let document = preset::load(&preset)?;
-            output::check(&out, &[], context.common.overwrite)?;
+            let file = outputs::file(Some(&out));
+            file.map_or_else(|| outputs::check_stdout(context), |_| Ok(()))?;
+            outputs::check(&file.cloned().into_iter().collect::<Vec<_>>(), &[], context)?;
             let plot = preset::plot(&document, phi);
             let height = plot.pixels.len() / plot.width;
             let pixels = plot.pixels.as_flattened();
+            if file.is_none() {
+                let mut bytes = Vec::new();
+                png::encode(&mut bytes, plot.width, height, png::Channels::Rgb, pixels, &[])?;
+                outputs::write_stdout(&bytes)?;
+                return Ok(Goal::Reached);
+            }
             png::write(&out, context.common.overwrite, plot.width, height, png::Channels::Rgb, pixels, &[])?;
             written(&[out], &[], context)
         }
@@ -170,6 +183,13 @@ fn set(
     out: Option<PathBuf>,
     context: &Context,
 ) -> anyhow::Result<Goal> {
+    // What is changed in place is meant to be replaced.
+    let replaces = out.is_none() || context.common.overwrite;
+    let to = out.unwrap_or_else(|| file.to_owned());
+    if !is_stdout(&to) {
+        output::check(&to, &[], replaces)?;
+    }
+    outputs::check(&[], &[], context)?;
     for text in capture {
         let (preset, scene) =
             text.split_once('=').ok_or_else(|| anyhow::anyhow!("--capture {text}: write PRESET=SCENE.toml"))?;
@@ -181,11 +201,19 @@ fn set(
     let source = file.to_string_lossy();
     anyhow::ensure!(file.exists(), "{source}: there is no such file; preset new -o {source} --from NAME makes one");
     let (document, clamped) = preset::set(&load_file(&source)?, &operations)?;
-    let to = out.clone().unwrap_or_else(|| file.to_owned());
-    // What is changed in place is meant to be replaced.
-    output::write_text(&to, &preset::text(&document, &to)?, out.is_none() || context.common.overwrite)?;
+    let text = preset::text(&document, outputs::file(Some(&to)).map_or(Path::new(""), PathBuf::as_path))?;
+    if is_stdout(&to) {
+        print(&text)?;
+    } else {
+        output::write_text(&to, &text, replaces)?;
+    }
     let clamped = clamped.iter().map(Warning::from);
-    written(&[to], &clamped.chain(preset::check(&document).warnings).collect::<Vec<_>>(), context)
+    let warnings: Vec<Warning> = clamped.chain(preset::check(&document).warnings).collect();
+    if is_stdout(&to) {
+        context.warn(&warnings);
+        return Ok(Goal::Reached);
+    }
+    written(&[to], &warnings, context)
 }
 
 /// The document of a file, which may be called like a built-in one.

@@ -1,8 +1,10 @@
 //! Output for the user: one line per failure, warnings, progress, results.
 
 use crate::common_args::Common;
+use crate::outputs::is_stdout;
+use crate::timings::Timings;
 use belvedere::scene::Progress;
-use belvedere::{BelvedereError, Needs, OpenOptions, Session, Warning};
+use belvedere::{BelvedereError, Needs, OpenOptions, Session, Trust, Warning, trust};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -67,7 +69,9 @@ fn in_options(error: &BelvedereError) -> String {
 /// End of the message: the options that lift an error; `None` if no option does.
 fn option_for(error: &BelvedereError) -> Option<&'static str> {
     Some(match error {
-        BelvedereError::Path { root_missing: true, .. } => " with --allow-root DIR",
+        BelvedereError::Path { root_missing: true, .. } => {
+            " with --allow-root DIR, or for good with: belvedere trust SCENE"
+        }
         BelvedereError::Scene { source: Some(source), .. } | BelvedereError::Frame { source, .. } => {
             return option_for(source);
         }
@@ -110,6 +114,9 @@ pub(crate) fn usage(error: &clap::Error) -> ExitCode {
 pub(crate) struct Context {
     pub(crate) common: Common,
     pub(crate) progress: Progress,
+    /// Files outside their folders that scenes may read.
+    pub(crate) trust: Trust,
+    pub(crate) timings: Timings,
     bar: Arc<Mutex<Option<indicatif::ProgressBar>>>,
 }
 
@@ -136,7 +143,8 @@ impl Context {
                 std::process::exit(2);
             }
         });
-        Self { common, progress, bar }
+        let trust = if common.no_remember { Trust::default() } else { Trust::of_user() };
+        Self { common, progress, trust, timings: Timings::begin(), bar }
     }
 
     /// Removes the progress bar.
@@ -157,16 +165,35 @@ impl Context {
     pub(crate) fn options(&self, needs: Needs, image: Option<[u32; 2]>) -> OpenOptions {
         OpenOptions {
             allow_roots: self.common.allow_root.clone(),
+            trust: self.trust.clone(),
             needs,
             image,
             seed: self.common.seed,
-            palette: None,
-            area_style: None,
-            sea: None,
-            unsolved: false,
             max_bytes: self.common.max_mem,
             progress: self.progress.clone(),
+            ..OpenOptions::default()
         }
+    }
+
+    /// Remembers that a scene that this command wrote may read the files that it was made from: the user gave or allowed them.
+    pub(crate) fn remember(&self, scene: &Path) {
+        let remembered = trust::outside(scene, &self.common.allow_root)
+            .and_then(|outside| self.trust.remember(scene, &outside.files));
+        if let Err(e) = remembered {
+            self.warn(&[format!(
+                "{}: its files are not remembered: {e}; it opens with --allow-root DIR",
+                scene.display()
+            )]);
+        }
+    }
+
+    /// Prints what a verb has to say: on standard output, or on standard error where a picture goes there.
+    pub(crate) fn say(&self, text: &str, out: &Path) -> anyhow::Result<()> {
+        if is_stdout(out) {
+            let _ = write!(std::io::stderr(), "{}", escaped(text));
+            return Ok(());
+        }
+        print(text)
     }
 
     /// Prints the text of each warning or missed goal on standard error.
@@ -187,7 +214,7 @@ impl Context {
         text: &str,
         warnings: &[Warning],
     ) -> anyhow::Result<()> {
-        match out {
+        match out.filter(|path| !is_stdout(path)) {
             Some(path) => {
                 belvedere::output::write_text(path, text, self.common.overwrite)?;
                 if self.common.json {

@@ -8,10 +8,11 @@ use crate::draw_args::{CompositingKind, DrawArgs};
 use crate::goal::Goal;
 use crate::ground_args::InfoArgs;
 use crate::kinds::TechniqueKind;
+use crate::outputs::{self, is_stdout};
 use crate::report::{Context, done, print};
 use anyhow::Context as _;
 use belvedere::pick;
-use belvedere::picture::{self, AuxBuffer, AuxFormat, PictureOptions};
+use belvedere::picture::{self, AuxBuffer, AuxFormat, Picture, PictureOptions};
 use belvedere::scene::Compositing;
 use belvedere::scene_file::{AnimationDoc, PaletteDoc, StylisationDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{self, AnimateRequest, Film};
@@ -46,13 +47,14 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
         Verb::Figures(args) => draw_figures(&args, context),
         Verb::View(args) => crate::view::view(&args, context),
         Verb::Pack(args) => crate::pack::pack_scene(args, context),
+        Verb::Trust(args) => crate::trust::trust(&args, context),
     }
 }
 
 /// Refuses a bad output before the work starts.
 fn ready(out: Option<&PathBuf>, inputs: &[&Path], context: &Context) -> anyhow::Result<()> {
     let inputs: Vec<PathBuf> = inputs.iter().map(|p| p.to_path_buf()).collect();
-    out.map_or(Ok(()), |path| Ok(output::check(path, &inputs, context.common.overwrite)?))
+    outputs::check(&outputs::file(out).cloned().into_iter().collect::<Vec<_>>(), &inputs, context)
 }
 
 /// Refuses file names with the ending of another format: the file that is written is PNG.
@@ -115,10 +117,16 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         args.overhead.then_some(CameraPicture::Overhead).or(args.outside.map(|_| CameraPicture::Outside(None)));
     png_named(&args.out)?;
     let source = scene_file::read(&args.scene)?;
-    let outputs = picture::outputs(&args.out, &request, source.document.solves_terrain());
-    for path in &outputs {
-        ready(Some(path), &[&args.scene], context)?;
+    let mut files = picture::outputs(&args.out, &request, source.document.solves_terrain());
+    if is_stdout(&args.out) {
+        outputs::check_stdout(context)?;
+        anyhow::ensure!(
+            args.aux.is_empty(),
+            "-o -: --aux writes several files, which standard output cannot hold; name a file"
+        );
+        files.clear();
     }
+    outputs::check(&files, std::slice::from_ref(&args.scene), context)?;
     let palette = args.palette.as_deref().map(PaletteDoc::of);
     // A straight picture does not need the ground solved.
     let unsolved = request.straight;
@@ -126,9 +134,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     let options =
         OpenOptions { palette, area_style, sea, unsolved, ..context.options(Needs::Everything, args.draw.size) };
     let session = Session::from_document(source, &options)?;
-    for path in &outputs {
-        output::check(path, &session.input_paths(), context.common.overwrite)?;
-    }
+    outputs::check(&files, &session.input_paths(), context)?;
     let mut warnings = session.warnings();
     if let Some(Some(places)) = &args.outside {
         let mut found = [[0.0; 3]; 2];
@@ -140,7 +146,11 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         request.camera = Some(CameraPicture::Outside(Some(found)));
     }
     let picture = session.render(&request)?;
-    let written = picture.write(&args.out, context.common.overwrite)?;
+    context.timings.note_picture(&picture.sidecar);
+    let written = match is_stdout(&args.out) {
+        true => outputs::write_stdout(&picture.to_png()?).map(|()| Vec::new())?,
+        false => picture.write(&args.out, context.common.overwrite)?,
+    };
     if context.common.json {
         let mut result = done("render", &written, &warnings);
         result["displacement"] = serde_json::json!(picture.sidecar.displacement);
@@ -149,7 +159,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         context.print(&result)?;
     } else if let Some(fallback) = picture.sidecar.fallback.as_ref().filter(|_| !context.common.quiet) {
         context.finish();
-        print(&format!("{fallback}\n"))?;
+        context.say(&format!("{fallback}\n"), &args.out)?;
     }
     context.warn(&warnings);
     Ok(Goal::Reached)
@@ -169,9 +179,8 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
     };
     files.picture.as_deref().map_or(Ok(()), png_named)?;
     let inputs: Vec<PathBuf> = args.features.iter().chain(&args.rivers).chain([&args.dem]).cloned().collect();
-    for path in files.all() {
-        output::check(&path, &inputs, context.common.overwrite)?;
-    }
+    anyhow::ensure!(!is_stdout(&files.out), "-o -: an elevation model is written to a file; name one");
+    outputs::check(&files.all(), &inputs, context)?;
     let mode = args.mode.map(|mode| format!("mode=\"{mode}\""));
     let limits = args.no_limits.then(|| "limits=false".to_owned());
     let set: Vec<String> = args.set.into_iter().chain(mode).chain(limits).collect();
@@ -198,6 +207,7 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
     };
     let found = disocclude::disocclude(&request, &context.options(Needs::Everything, None))?;
     let written = found.write(&files, context.common.overwrite, &context.progress)?;
+    context.timings.note("disocclusion", serde_json::json!(found.report().times));
     context.finish();
     if context.common.json {
         let mut result = done("disocclude", &written, &found.session.warnings());
@@ -212,7 +222,12 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
 }
 
 fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
-    animate::outputs(&args.out)?;
+    let (folder, film) = animate::outputs(&args.out)?;
+    outputs::check_folder(&folder, context)?;
+    if let Some(film) = &film {
+        let replaces = context.common.overwrite || args.resume;
+        output::check(film, std::slice::from_ref(&args.scene), replaces)?;
+    }
     let picture = request(&args.draw, context);
     let animation = AnimationDoc {
         along: args.along,
@@ -258,35 +273,54 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
 }
 
 /// Finds what one target in models needs to be visible, and writes the files that were asked for.
-fn reveal_one(request: &TargetRequest, files: &RevealFiles, context: &Context) -> anyhow::Result<Goal> {
+fn reveal_one(request: &TargetRequest, (out, files): (&Path, &RevealFiles), context: &Context) -> anyhow::Result<Goal> {
     let answer = reveal_target(request, &context.options(Needs::Everything, None))?;
     let written = answer.write(files, context.common.overwrite)?;
+    delivered(&answer.picture, out, files, context)?;
     if context.common.json {
         let mut result = done("reveal", &written, &answer.warnings());
         result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;
         context.print(&result)?;
     } else if !context.common.quiet {
         context.finish();
-        print(&format!("{}\n", answer.summary()))?;
+        context.say(&format!("{}\n", answer.summary()), out)?;
     }
     context.warn(&answer.warnings());
     context.warn(&answer.missed());
     Ok(if answer.missed().is_empty() { Goal::Reached } else { Goal::Missed })
 }
 
+/// After the files of a revealed picture: the picture on standard output if it goes there, its times, and consent for the scene.
+fn delivered(picture: &Picture, out: &Path, files: &RevealFiles, context: &Context) -> anyhow::Result<()> {
+    context.timings.note_picture(&picture.sidecar);
+    if let Some(scene) = &files.scene {
+        context.remember(scene);
+    }
+    if is_stdout(out) {
+        let mut alone = picture.clone();
+        alone.straight = None;
+        outputs::write_stdout(&alone.to_png()?)?;
+    }
+    Ok(())
+}
+
 fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> {
     crate::look_args::for_models(&args)?;
-    let out = RevealFiles { out: args.out, before: args.before, report: args.report, scene: args.scene };
+    let picture = args.out;
+    let to_file = if is_stdout(&picture) { PathBuf::new() } else { picture.clone() };
+    let out = RevealFiles { out: to_file, before: args.before, report: args.report, scene: args.scene };
     let inputs = args.features.iter().chain([&args.dem]).map(PathBuf::from);
     let inputs: Vec<PathBuf> = inputs.chain(args.rivers.iter().chain(&args.drape).cloned()).collect();
-    png_named(&out.out)?;
+    png_named(&picture)?;
     out.before.as_deref().map_or(Ok(()), png_named)?;
     let technique = args.technique.unwrap_or(TechniqueKind::Spline);
     let moves = args.see.is_none() && !matches!(technique, TechniqueKind::Spline | TechniqueKind::CurvedRays);
-    let delta = moves.then(|| picture::delta_path(&out.out));
-    for path in out.all().into_iter().chain(delta) {
-        output::check(&path, &inputs, context.common.overwrite)?;
+    let delta = (moves && !is_stdout(&picture)).then(|| picture::delta_path(&picture));
+    if is_stdout(&picture) {
+        outputs::check_stdout(context)?;
+        anyhow::ensure!(args.drafts.is_none(), "-o -: --drafts prints commands on standard output; name a file");
     }
+    outputs::check(&out.all().into_iter().chain(delta).collect::<Vec<_>>(), &inputs, context)?;
     let places = match (args.eye, args.look) {
         (None, None) => None,
         (Some(eye), Some(look)) => Some([eye, look]),
@@ -315,7 +349,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
             ..TargetRequest::default()
         };
         quality(&mut request.picture);
-        return reveal_one(&request, &out, context);
+        return reveal_one(&request, (&picture, &out), context);
     }
     let mut request = RevealRequest {
         data: DataFiles {
@@ -352,6 +386,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
     }
     let answer = reveal::reveal(&request, &context.options(Needs::Everything, None))?;
     let written = answer.write(&out, context.common.overwrite)?;
+    delivered(&answer.picture, &picture, &out, context)?;
     if context.common.json {
         let mut result = done("reveal", &written, &answer.session.warnings());
         result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;
@@ -360,7 +395,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
         context.print(&result)?;
     } else if !context.common.quiet {
         context.finish();
-        print(&format!("{}\n", answer.summary()))?;
+        context.say(&format!("{}\n", answer.summary()), &picture)?;
     }
     context.warn(&answer.session.warnings());
     context.warn(answer.missed());
@@ -376,6 +411,7 @@ fn measure_scene(args: &MeasureArgs, context: &Context) -> anyhow::Result<Goal> 
 }
 
 fn draw_figures(args: &FiguresArgs, context: &Context) -> anyhow::Result<Goal> {
+    outputs::check_folder(&args.out, context)?;
     let (options, overwrite) = (context.options(Needs::Everything, None), context.common.overwrite);
     let mut written = Vec::new();
     if args.what.0.contains(&FigureKind::Algorithms) {
@@ -406,6 +442,7 @@ fn draw_figures(args: &FiguresArgs, context: &Context) -> anyhow::Result<Goal> {
 }
 
 fn demonstrate(args: &DemoArgs, context: &Context) -> anyhow::Result<Goal> {
+    outputs::check_folder(&args.out, context)?;
     let mut request = PictureOptions::default();
     request.quality.threads = context.common.threads;
     let options = context.options(Needs::Everything, args.size);
@@ -420,6 +457,7 @@ fn demonstrate(args: &DemoArgs, context: &Context) -> anyhow::Result<Goal> {
 }
 
 fn describe(args: &InfoArgs, context: &Context) -> anyhow::Result<Goal> {
+    ready(None, &[], context)?;
     let mut result = serde_json::json!({ "verb": "info" });
     if args.adapters {
         result["machine"] = serde_json::from_str(&output::json(&info::machine())?)?;
@@ -502,6 +540,7 @@ fn pick_pixels(args: &PickArgs, context: &Context) -> anyhow::Result<Goal> {
 }
 
 fn check_scene(args: &SceneArgs, context: &Context) -> anyhow::Result<Goal> {
+    ready(None, &[&args.scene], context)?;
     let options = OpenOptions { unsolved: true, ..context.options(Needs::Everything, None) };
     let session = Session::open(&args.scene, &options)?;
     let report = check::check(&session)?;
@@ -518,11 +557,19 @@ fn show(args: &ShowArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[&args.scene], context)?;
     let options = OpenOptions { unsolved: true, ..context.options(Needs::Ground, None) };
     let session = Session::open(&args.scene, &options)?;
-    let named_json = args.out.as_ref().is_some_and(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")));
-    let json = if args.out.is_some() { named_json } else { context.common.json };
-    let document = session.resolved().context("the scene has no document")?;
-    let text = if json { output::document_json(document)? } else { output::document_toml(document)? };
+    let out = outputs::file(args.out.as_ref());
+    let named_json = out.is_some_and(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")));
+    let json = if out.is_some() { named_json } else { context.common.json };
+    let document = match out {
+        Some(path) => session.resolved_for(path),
+        None => session.resolved().cloned(),
+    };
+    let document = document.context("the scene has no document")?;
+    let text = if json { output::document_json(&document)? } else { output::document_toml(&document)? };
     context.deliver("show", args.out.as_deref(), &text, &session.warnings())?;
+    if let Some(path) = out {
+        context.remember(path);
+    }
     Ok(Goal::Reached)
 }
 
@@ -539,12 +586,13 @@ fn measure_machine(args: &BenchArgs, context: &Context) -> anyhow::Result<Goal> 
     let report = belvedere_bench::bench(&request, &context.progress)?;
     context.finish();
     let text = output::json(&report)?;
+    let to_stdout = args.out.as_deref().is_some_and(is_stdout);
     match &args.out {
         Some(_) => context.deliver("bench", args.out.as_deref(), &text, &[])?,
         None if context.common.json => print(&text)?,
         None => {}
     }
-    if !context.common.json && !context.common.quiet {
+    if !to_stdout && !context.common.json && !context.common.quiet {
         print(&report.to_string())?;
     }
     Ok(Goal::Reached)

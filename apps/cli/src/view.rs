@@ -24,6 +24,9 @@ pub(crate) fn view(args: &ViewArgs, context: &Context) -> anyhow::Result<Goal> {
     for root in &context.common.allow_root {
         command.arg("--allow-root").arg(root);
     }
+    if context.common.no_remember {
+        command.arg("--no-remember");
+    }
     let status = command.arg("--").args(&args.files).status().map_err(|e| {
         anyhow::anyhow!(
             "the application, {PROGRAM}, cannot be started: {e}; it is found beside this program or on the PATH: \

@@ -3,6 +3,7 @@
 #[cfg(target_family = "wasm")]
 mod browser;
 mod builtin;
+mod consent;
 mod export;
 mod files;
 mod keys;

@@ -2,6 +2,7 @@
 
 #[cfg(not(target_family = "wasm"))]
 mod native {
+    use belvedere::Trust;
     use belvedere_viewer::Opening;
     use clap::Parser;
     use std::io::Write;
@@ -17,6 +18,9 @@ mod native {
         /// Folder outside the scene's own from which its files may come; may be given several times
         #[arg(long, value_name = "DIR")]
         allow_root: Vec<PathBuf>,
+        /// Do not remember which files outside their folders scenes may read, and do not use what is remembered
+        #[arg(long)]
+        no_remember: bool,
     }
 
     pub(super) fn main() -> ExitCode {
@@ -25,6 +29,7 @@ mod native {
         let opening = Opening {
             files: args.files,
             allowed: args.allow_root,
+            trust: if args.no_remember { Trust::default() } else { Trust::of_user() },
             state: Opening::usual_state(),
             system_dialogs: true,
         };

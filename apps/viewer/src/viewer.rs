@@ -1,6 +1,7 @@
 //! The application as a whole: opening, saving, kept state; panels around the picture.
 
 use crate::builtin::BUILTIN;
+use crate::consent::{self, Consent, Decision};
 use crate::files;
 use crate::keys::{self, Command};
 use crate::menu::{self, Bookmark, Choice};
@@ -10,11 +11,12 @@ use crate::picture::{PictureView, image_of_frame};
 use crate::times::Times;
 use crate::wake::Wake;
 use crate::widgets::overhead::overhead;
+use belvedere::Trust;
 use belvedere::editor::{Editor, Place, Recovery, beside};
 use belvedere::io::fs;
 use belvedere::scene::Progress;
 use belvedere::scene_file::{self, CameraDoc, StageDoc};
-use belvedere::verbs::open_files::{Opened, open_beside, open_files};
+use belvedere::verbs::open_files::{Opened, open_beside, open_trusted};
 use eframe::egui::{self, CentralPanel, Context, Panel, TextureHandle, TextureOptions, Ui, ViewportCommand, Window};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -29,6 +31,8 @@ pub struct Opening {
     pub files: Vec<PathBuf>,
     /// Folders beside that of a scene from which its files may come.
     pub allowed: Vec<PathBuf>,
+    /// Files outside their folders that scenes may read.
+    pub trust: Trust,
     /// Folder of the state that is kept between runs; `None`: nothing is kept.
     pub state: Option<PathBuf>,
     /// Whether files are chosen in windows of the system, if it has any; else in windows of the application.
@@ -59,8 +63,14 @@ struct Remembered {
 
 /// A file that is being opened in the background, and the progress in words.
 struct Pending {
-    opened: Receiver<Result<Opened, String>>,
+    opened: Receiver<Result<Opened, Refusal>>,
     at: Arc<Mutex<String>>,
+}
+
+/// Why files are not opened.
+enum Refusal {
+    Reason(String),
+    Asks(Consent),
 }
 
 /// State of the window that the recovery file holds beside the document.
@@ -81,6 +91,8 @@ pub struct Viewer {
     bookmarks: Vec<Bookmark>,
     remembered: Remembered,
     allowed: Vec<PathBuf>,
+    trust: Trust,
+    consent: Option<Consent>,
     state: Option<PathBuf>,
     recovery: Option<Recovery>,
     /// Last content of the recovery file, and the time since which the state differs from it.
@@ -121,6 +133,8 @@ impl Viewer {
             bookmarks: Vec::new(),
             remembered: opening.state.as_deref().map_or_else(Remembered::default, remembered),
             allowed: opening.allowed.clone(),
+            trust: opening.trust.clone(),
+            consent: None,
             state: opening.state.clone(),
             recovery,
             written: None,
@@ -191,7 +205,7 @@ impl Viewer {
             self.remember(path);
         }
         let (outbox, inbox) = std::sync::mpsc::channel();
-        let (allowed, wake) = (self.allowed.clone(), self.wake.clone());
+        let (allowed, trust, wake) = (self.allowed.clone(), self.trust.clone(), self.wake.clone());
         let at = Arc::new(Mutex::new("opening".to_owned()));
         self.model.opening = Some("opening".into());
         let current = self.model.shown.is_some().then(|| self.model.document().clone());
@@ -203,11 +217,14 @@ impl Viewer {
             }
         });
         let work = move || {
-            let opened = match &current {
-                Some(current) => open_beside(current, &paths, &allowed, &progress),
-                None => open_files(&paths, &allowed, &progress).map(|editor| Opened::Scene(Box::new(editor))),
+            let opened = match (Consent::needed(&paths, &allowed, &trust), &current) {
+                (Some(consent), _) => Err(Refusal::Asks(consent)),
+                (None, Some(current)) => open_beside(current, &paths, &allowed, &trust, &progress).map_err(refusal),
+                (None, None) => {
+                    let editor = open_trusted(&paths, &allowed, &trust, &progress).map_err(refusal);
+                    editor.map(|editor| Opened::Scene(Box::new(editor)))
+                }
             };
-            let opened = opened.map_err(|e| e.to_string());
             let _ = outbox.send(opened);
             wake.call();
         };
@@ -270,8 +287,12 @@ impl Viewer {
                     self.model.editor.add_layers(layers, folders);
                     self.pending = None;
                 }
-                Ok(Err(reason)) => {
+                Ok(Err(Refusal::Reason(reason))) => {
                     self.model.notices.error(reason);
+                    self.pending = None;
+                }
+                Ok(Err(Refusal::Asks(consent))) => {
+                    self.consent = Some(consent);
                     self.pending = None;
                 }
                 Err(TryRecvError::Disconnected) => {
@@ -313,18 +334,27 @@ impl Viewer {
         }
     }
 
+    /// Asks for the consent that a scene lacks, and opens it once it has it.
+    fn ask_for_consent(&mut self, ctx: &Context) {
+        let Some(decision) = self.consent.as_ref().and_then(|consent| consent.show(ctx)) else { return };
+        let Some(consent) = self.consent.take().filter(|_| decision == Decision::Allowed) else { return };
+        if let Err(reason) = consent.give(&mut self.trust) {
+            self.model.notices.error(reason);
+        }
+        self.open(vec![consent.scene]);
+    }
+
     fn save(&mut self, ctx: &Context, path: &Path) {
         match self.model.editor.save(path) {
             Ok(()) => {
                 self.remember(path);
                 // The recovery file is written anew, since it says whether the scene is saved.
                 self.written = None;
-                let outside = self.model.editor.outside();
                 let mut said = format!("Saved: {}", path.display());
-                if !outside.is_empty() {
-                    let folders: Vec<String> =
-                        outside.iter().map(|folder| format!("--allow-root {}", folder.display())).collect();
-                    said += &format!("; on the command line it needs {}", folders.join(" "));
+                match consent::remember(&mut self.trust, path, &self.model.editor.outside()) {
+                    Ok(is_remembered) if is_remembered || self.model.editor.outside().is_empty() => {}
+                    Ok(_) => said += "; it names files outside its folder: the command line needs --allow-root DIR",
+                    Err(reason) => self.model.notices.error(reason),
                 }
                 self.model.notices.say(said, ctx.input(|input| input.time));
                 if let Err(reason) = files::hand_over(path) {
@@ -468,6 +498,10 @@ impl Viewer {
     }
 }
 
+fn refusal(error: belvedere::BelvedereError) -> Refusal {
+    Refusal::Reason(error.to_string())
+}
+
 /// A built-in scene.
 fn builtin(i: usize) -> Editor {
     let text = BUILTIN.get(i).map_or("", |(_, text)| text);
@@ -502,6 +536,7 @@ impl eframe::App for Viewer {
         CentralPanel::no_frame().show(ui, |ui| self.picture.show(ui, &mut self.model));
         self.overhead(&ctx);
         menu::help(&ctx, &mut self.help);
+        self.ask_for_consent(&ctx);
         self.model.notices.show(&ctx);
         self.write_down(&ctx);
         self.times.note(&self.model);

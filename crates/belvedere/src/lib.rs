@@ -36,6 +36,7 @@ pub mod editor;
 mod error;
 pub mod fallback;
 mod film;
+mod names;
 mod open;
 mod options;
 pub mod output;
@@ -49,6 +50,7 @@ pub mod scene_file;
 mod session;
 pub mod sun;
 mod targets;
+pub mod trust;
 pub mod verbs;
 
 pub use belvedere_builtin as builtin;
@@ -68,6 +70,7 @@ pub use overlays::camera::CameraPicture;
 pub use overlays::highlight::{GhostRecord, HighlightRecord, PartRecord};
 pub use picture::{DisplacementReport, Picture, PictureOptions, RendererChoice, Sidecar};
 pub use session::Session;
+pub use trust::Trust;
 
 /// Version of the program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -59,7 +59,8 @@ impl Session {
         }
         validate::document(&source)?;
         let scene_dir = source.path().and_then(Path::parent).map(Path::to_owned).unwrap_or_default();
-        let roots = Roots { scene_dir, allowed };
+        let trusted = source.path().map(|scene| options.trust.files_of(scene)).unwrap_or_default();
+        let roots = Roots { scene_dir, allowed, files: [options.allow_files.clone(), trusted].concat() };
         let document = &source.document;
         let request = LayerRequest {
             needs: needs(&source, options),

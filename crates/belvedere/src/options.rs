@@ -1,6 +1,7 @@
 //! Options for opening a scene.
 
 use crate::scene_file::{PaletteDoc, SurfaceDoc};
+use crate::trust::Trust;
 use belvedere_io::Limits;
 use belvedere_scene::Progress;
 use std::path::PathBuf;
@@ -22,6 +23,10 @@ pub enum Needs {
 pub struct OpenOptions {
     /// Folders beside that of the scene from which files may come.
     pub allow_roots: Vec<PathBuf>,
+    /// Files outside its folder that a scene file may read because the user agreed; by default none.
+    pub trust: Trust,
+    /// Single files that may be read, canonical paths.
+    pub allow_files: Vec<PathBuf>,
     /// Parts of the scene to load.
     pub needs: Needs,
     /// Size of the picture instead of the scene's, pixels.

@@ -6,7 +6,8 @@ use belvedere_io::{fs, split_table};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Returns an error if `path` is one of `inputs`, exists while `overwrite` is false, or cannot be created. Call it before long work.
+/// Returns an error if `path` is one of `inputs`, exists while `overwrite` is false, or cannot be created: its folder is missing or
+/// cannot be written. Call it before long work.
 ///
 /// # Errors
 /// [`BelvedereError::Output`], [`BelvedereError::Io`].
@@ -19,7 +20,91 @@ pub fn check(path: &Path, inputs: &[PathBuf], overwrite: bool) -> Result<(), Bel
             reason: "is an input of this command and is never written; choose another output".into(),
         });
     }
-    Ok(belvedere_io::atomic::check_output(path, overwrite)?)
+    belvedere_io::atomic::check_output(path, overwrite)?;
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    // A device is written directly.
+    if fs::metadata(&target).is_ok_and(|meta| !meta.is_file()) {
+        return Ok(());
+    }
+    check_writable(&folder_of(&target), path)
+}
+
+/// [`check`] for all files that one call writes. Two of them may not be the same.
+///
+/// # Errors
+/// As [`check`]; [`BelvedereError::Output`] for a path that is named twice.
+pub fn check_all(paths: &[PathBuf], inputs: &[PathBuf], overwrite: bool) -> Result<(), BelvedereError> {
+    let mut places: Vec<PathBuf> = Vec::with_capacity(paths.len());
+    for path in paths {
+        check(path, inputs, overwrite)?;
+        let place = place_of(path);
+        if places.contains(&place) {
+            let reason = "is named for two outputs; give each a name of its own".into();
+            return Err(BelvedereError::Output { path: path.to_owned(), reason });
+        }
+        places.push(place);
+    }
+    Ok(())
+}
+
+/// Returns an error if `path` is a file, or a folder in which nothing can be written or that cannot be made.
+///
+/// # Errors
+/// [`BelvedereError::Output`].
+pub fn check_folder(path: &Path) -> Result<(), BelvedereError> {
+    let Some(there) = path.ancestors().map(or_here).find(|folder| fs::symlink_metadata(folder).is_ok()) else {
+        return Ok(());
+    };
+    if fs::metadata(there).is_ok_and(|meta| !meta.is_dir()) {
+        let reason = "is a file, a folder is needed; name another".into();
+        return Err(BelvedereError::Output { path: there.to_owned(), reason });
+    }
+    check_writable(there, path)
+}
+
+/// Makes and removes a file in `folder`: permissions alone do not tell whether that is possible.
+#[cfg(not(target_family = "wasm"))]
+fn check_writable(folder: &Path, output: &Path) -> Result<(), BelvedereError> {
+    static COUNT: std::sync::atomic::AtomicU32 = std::sync::atomic::AtomicU32::new(0);
+    let count = COUNT.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+    let probe = folder.join(format!(".belvedere-{}-{count}.tmp", std::process::id()));
+    let made = std::fs::OpenOptions::new().write(true).create_new(true).open(&probe);
+    match made {
+        Ok(file) => {
+            drop(file);
+            // A file that cannot be removed is no reason not to write another.
+            let _ = std::fs::remove_file(&probe);
+            Ok(())
+        }
+        Err(e) => {
+            let reason = format!("cannot be written: folder {}: {e}; choose another folder", folder.display());
+            Err(BelvedereError::Output { path: output.to_owned(), reason })
+        }
+    }
+}
+
+#[cfg(target_family = "wasm")]
+fn check_writable(_: &Path, _: &Path) -> Result<(), BelvedereError> {
+    Ok(())
+}
+
+/// Where a file lies or will lie; equal for two spellings of one path.
+fn place_of(path: &Path) -> PathBuf {
+    let place = fs::canonicalize(path).unwrap_or_else(|_| {
+        let folder = folder_of(path);
+        fs::canonicalize(&folder).unwrap_or(folder).join(path.file_name().unwrap_or_default())
+    });
+    // These systems do not tell large letters from small ones.
+    let folds = cfg!(any(target_os = "windows", target_os = "macos"));
+    if folds { place.to_string_lossy().to_lowercase().into() } else { place }
+}
+
+fn folder_of(path: &Path) -> PathBuf {
+    or_here(path.parent().unwrap_or(Path::new(""))).to_owned()
+}
+
+fn or_here(folder: &Path) -> &Path {
+    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
 }
 
 /// `value` as JSON, one line, ending in a newline; numbers round-trip exactly.

@@ -1,5 +1,6 @@
 //! A session: a scene with a view and a light, ready to be drawn.
 
+use crate::names::PublicNames;
 use crate::record::{AreaRecord, InputFile};
 use crate::resolve::StripReport;
 use crate::resolve::constructor::{self, ConstructorReport};
@@ -7,13 +8,14 @@ use crate::resolve::motion::Motions;
 use crate::resolve::solving::{Memory, Solving};
 use crate::resolve::terrain;
 use crate::resolve::{validate, view, wall};
-use crate::scene_file::paths::Roots;
+use crate::scene_file::paths::{Roots, folder_of, stays_below};
 use crate::scene_file::{Document, OverlayDoc, SourceDocument, StageDoc};
 use crate::{BelvedereError, OpenOptions};
 use belvedere_core::Warning;
 use belvedere_core::{SpaceMap, View};
 use belvedere_cpu::CpuRenderer;
 use belvedere_disocclusion::{TerrainReport, TerrainSettings};
+use belvedere_io::split_table;
 use belvedere_scene::{Light, Renderer, Scene, Stylisation};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -205,7 +207,8 @@ impl Session {
     ) -> Result<Self, BelvedereError> {
         let source = SourceDocument::new(document);
         validate::document(&source)?;
-        let roots = Roots { allowed: options.allow_roots.clone(), ..Roots::default() };
+        let (allowed, files) = (options.allow_roots.clone(), options.allow_files.clone());
+        let roots = Roots { allowed, files, ..Roots::default() };
         let mut solving = Solving { memory, time_step_s: None, progress: &options.progress };
         let solving = (!options.unsolved).then_some(&mut solving);
         let resolved = Resolved::of(source, roots, &self.loaded.scene, solving)?;
@@ -316,9 +319,39 @@ impl Session {
         settings.map_err(|(_, reason)| BelvedereError::Setting(reason))
     }
 
-    /// The scene file, or the title of the scene, for reports.
+    /// The document for a scene file at `path`: files are named relative to its folder wherever that is possible. `None` for a session
+    /// from parts.
+    pub fn resolved_for(&self, path: &Path) -> Option<Document> {
+        let description = self.resolved.description.as_ref()?;
+        Some(description.resolved.seen_from(&folder_of(path), &description.roots))
+    }
+
+    /// Name of the scene file, or the title of the scene, for reports.
     pub(crate) fn name(&self) -> String {
-        self.path().map_or_else(|| self.loaded.scene.title.clone(), |path| path.display().to_string())
+        let name = self.path().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
+        name.unwrap_or_else(|| self.loaded.scene.title.clone())
+    }
+
+    /// Names of its files in outputs.
+    pub(crate) fn public_names(&self) -> PublicNames {
+        let Some(Description { source, resolved, roots }) = &self.resolved.description else {
+            return PublicNames::new(None, Vec::new(), &self.input_paths());
+        };
+        let mut named = Vec::new();
+        resolved.clone().for_each_path(&mut |name| {
+            if stays_below(name)
+                && let Ok(file) = roots.resolve(name)
+            {
+                let [file, name] = [&file, Path::new(name.as_str())].map(|path| split_table(path).0.to_owned());
+                named.push((file, name.to_string_lossy().into_owned()));
+            }
+        });
+        PublicNames::new(source.path().map(folder_of).as_deref(), named, &self.input_paths())
+    }
+
+    /// The document with the names of its files in outputs.
+    pub(crate) fn public_document(&self, names: &PublicNames) -> Option<Document> {
+        self.resolved.description.as_ref().map(|d| names.document(&d.resolved, &d.roots))
     }
 
     /// Names of the stages of the view, in order of application.

@@ -55,12 +55,20 @@ impl Place {
         path
     }
 
+    /// The program in this folder, with settings of its own.
+    fn command(&self, args: &[&str]) -> Command {
+        let settings =
+            Path::new(env!("CARGO_TARGET_TMPDIR")).join("settings").join(self.0.path().file_name().expect("name"));
+        let mut command = Command::new(env!("CARGO_BIN_EXE_belvedere"));
+        command.current_dir(self.0.path()).args(args).env_remove("BELVEDERE_NO_TRUST");
+        for name in ["HOME", "XDG_CONFIG_HOME", "APPDATA"] {
+            command.env(name, &settings);
+        }
+        command
+    }
+
     fn run(&self, args: &[&str]) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_belvedere"))
-            .current_dir(self.0.path())
-            .args(args)
-            .output()
-            .expect("the program starts")
+        self.command(args).output().expect("the program starts")
     }
 
     /// Runs, expects success, returns standard output.

@@ -1,10 +1,10 @@
 //! Files of a document: opening, saving, and recovery after a crash.
 
 use super::Editor;
-use crate::scene_file::paths::Roots;
+use crate::scene_file::paths::{Roots, folder_of};
 use crate::scene_file::{self, Document, SourceDocument};
-use crate::{BelvedereError, OpenOptions, Session, output};
-use belvedere_io::fs;
+use crate::{BelvedereError, OpenOptions, Session, Trust, output};
+use belvedere_io::split_table;
 use belvedere_scene::Progress;
 use serde::{Deserialize, Serialize};
 use std::fs::{File, TryLockError};
@@ -28,7 +28,8 @@ impl Place {
     pub fn session(&self, document: Document, progress: &Progress) -> Result<Session, BelvedereError> {
         let folder = Some(&self.roots.scene_dir).filter(|dir| !dir.as_os_str().is_empty());
         let allow_roots = folder.into_iter().chain(&self.roots.allowed).cloned().collect();
-        let options = OpenOptions { allow_roots, progress: progress.clone(), ..OpenOptions::default() };
+        let allow_files = self.roots.files.clone();
+        let options = OpenOptions { allow_roots, allow_files, progress: progress.clone(), ..OpenOptions::default() };
         let file = self.scene.as_deref().and_then(|path| scene_file::read(path).ok());
         let source = file.filter(|file| file.document == document);
         Session::from_document(source.unwrap_or_else(|| SourceDocument::new(document)), &options)
@@ -43,28 +44,27 @@ impl Editor {
     /// # Errors
     /// As [`scene_file::read`].
     pub fn open(path: &Path, allowed: Vec<PathBuf>) -> Result<Self, BelvedereError> {
-        let source = scene_file::read(path)?;
-        let place = Place { scene: Some(path.to_owned()), roots: Roots { scene_dir: folder_of(path), allowed } };
-        Ok(Self::new(source.document, place))
+        Self::open_trusted(path, allowed, &Trust::default())
     }
 
-    /// Writes the scene file. Names of its files are adapted: relative below the folder of the scene, else absolute.
+    /// Opens a scene file, with the consent that was given to it.
+    ///
+    /// # Errors
+    /// As [`Editor::open`].
+    pub fn open_trusted(path: &Path, allowed: Vec<PathBuf>, trust: &Trust) -> Result<Self, BelvedereError> {
+        let source = scene_file::read(path)?;
+        let roots = Roots { scene_dir: folder_of(path), allowed, files: trust.files_of(path) };
+        Ok(Self::new(source.document, Place { scene: Some(path.to_owned()), roots }))
+    }
+
+    /// Writes the scene file. Names of its files are adapted: relative to the folder of the scene wherever that is possible.
     ///
     /// # Errors
     /// [`BelvedereError::Output`] if `path` is one of the scene's own files; [`BelvedereError::Io`].
     pub fn save(&mut self, path: &Path) -> Result<(), BelvedereError> {
         let folder = folder_of(path);
-        let mut document = (**self.document()).clone();
-        let mut files = Vec::new();
-        if folder != self.place.roots.scene_dir {
-            document.for_each_path(&mut |name| {
-                if let Ok(file) = self.place.roots.resolve(name) {
-                    let shown = file.strip_prefix(&folder).unwrap_or(&file);
-                    shown.to_string_lossy().as_ref().clone_into(name);
-                    files.push(file);
-                }
-            });
-        }
+        let document = self.document().seen_from(&folder, &self.place.roots);
+        let files = self.files();
         output::check(path, &files, true)?;
         output::write_text(path, &output::document_toml(&document)?, true)?;
         if folder != self.place.roots.scene_dir {
@@ -78,24 +78,21 @@ impl Editor {
         Ok(())
     }
 
-    /// Folders outside that of the scene file that hold its files: a command line must allow them.
-    pub fn outside(&self) -> Vec<PathBuf> {
-        let home = fs::canonicalize(&self.place.roots.scene_dir).unwrap_or_default();
-        let mut out = Vec::new();
+    /// The files that the document names, canonical paths.
+    fn files(&self) -> Vec<PathBuf> {
+        let mut files = Vec::new();
         (**self.document()).clone().for_each_path(&mut |name| {
-            let folder = self.place.roots.resolve(name).ok().and_then(|file| file.parent().map(Path::to_owned));
-            out.extend(folder.filter(|folder| !folder.starts_with(&home)));
+            files.extend(self.place.roots.resolve(name).ok().map(|file| split_table(&file).0.to_owned()));
         });
-        out.sort();
-        out.dedup();
-        out
+        files.sort();
+        files.dedup();
+        files
     }
-}
 
-/// The folder of a file, as an absolute path if possible.
-fn folder_of(path: &Path) -> PathBuf {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
+    /// Files of the document outside the folder of the scene file, canonical paths: they need consent where the scene is opened.
+    pub fn outside(&self) -> Vec<PathBuf> {
+        self.files().into_iter().filter(|file| !self.place.roots.is_beside(file)).collect()
+    }
 }
 
 /// Recovery file of an instance of an application: written while it runs and removed when it ends.
@@ -121,6 +118,8 @@ struct Left {
     scene: Option<PathBuf>,
     scene_dir: PathBuf,
     allowed: Vec<PathBuf>,
+    #[serde(default)]
+    files: Vec<PathBuf>,
     changed: bool,
     document: serde_json::Value,
     #[serde(default)]
@@ -169,6 +168,7 @@ impl Recovery {
             scene: editor.place.scene.clone(),
             scene_dir: editor.place.roots.scene_dir.clone(),
             allowed: editor.place.roots.allowed.clone(),
+            files: editor.place.roots.files.clone(),
             changed: editor.is_changed(),
             document: document.map_err(|e| BelvedereError::Text { what: "the document", reason: e.to_string() })?,
             extra,
@@ -186,7 +186,7 @@ impl Recovery {
 fn recovered(text: &str) -> Option<Recovered> {
     let left: Left = serde_json::from_str(text).ok()?;
     let parsed: Document = scene_file::parse(Path::new("state.json"), &left.document.to_string()).ok()?.document;
-    let roots = Roots { scene_dir: left.scene_dir, allowed: left.allowed };
+    let roots = Roots { scene_dir: left.scene_dir, allowed: left.allowed, files: left.files };
     let saved = left.scene.as_deref().and_then(|path| scene_file::read(path).ok()).map(|source| source.document);
     let place = Place { scene: left.scene, roots };
     let editor = match (left.changed, saved) {
@@ -259,10 +259,13 @@ mod tests {
         std::fs::create_dir(&below).expect("folder");
         editor.save(&below.join("t.toml")).expect("saved");
         assert!(editor.is_saved());
-        let there = Editor::open(&below.join("t.toml"), editor.outside()).expect("again");
+        let mut trust = Trust::default();
+        trust.give(&below.join("t.toml"), &editor.outside()).expect("scene");
+        let there = Editor::open_trusted(&below.join("t.toml"), Vec::new(), &trust).expect("again");
         let mut names = Vec::new();
         (**there.document()).clone().for_each_path(&mut |name| names.push(name.clone()));
-        assert!(there.place.roots.resolve(&names[0]).is_ok(), "{names:?}");
+        assert_eq!(names, ["../a.obj"]);
+        assert!(there.place.roots.resolve(&names[0]).is_ok());
         let refused = editor.save(&dir.path().join("a.obj")).expect_err("one of its own files");
         assert!(refused.to_string().contains("input"), "{refused}");
     }

@@ -22,11 +22,12 @@ impl Session {
     /// [`BelvedereError::UnderGround`], [`BelvedereError::Render`], [`BelvedereError::Io`] if an input has gone,
     /// [`BelvedereError::Cancelled`].
     pub fn render(&self, options: &PictureOptions) -> Result<Picture, BelvedereError> {
-        draw(self, options, record::inputs(&self.inputs())?, &options.progress)
+        let inputs = self.public_names().inputs(&record::inputs(&self.inputs())?);
+        draw(self, options, inputs, &options.progress)
     }
 }
 
-/// The same as [`Session::render`], with the given record of inputs.
+/// The same as [`Session::render`], with the given record of inputs, under the names that outputs give them.
 pub(crate) fn draw(
     session: &Session,
     request: &PictureOptions,
@@ -42,6 +43,9 @@ pub(crate) fn draw(
     let Drawn { view, frame, straight, overlay, displacement, fallback } = drawn;
     let rigid = RigidLayers::of(session.scene(), &view);
     let render_ms = started.elapsed().as_secs_f64() * 1e3;
+    let names = session.public_names();
+    let mut volumes = VolumeRecord::all(session.scene());
+    volumes.iter_mut().for_each(|volume| volume.transfer = names.text(&volume.transfer));
     let sidecar = Sidecar {
         program: format!("belvedere {}", crate::VERSION),
         renderer: request.renderer.of(session).name(),
@@ -51,7 +55,7 @@ pub(crate) fn draw(
         displacement,
         terrain: session.scene().terrain().map(TerrainRecord::of),
         molecules: MoleculeRecord::all_of(session.scene()),
-        volumes: VolumeRecord::all(session.scene()),
+        volumes,
         rigid: rigid.ids(session.scene()),
         areas: session.areas().to_vec(),
         disocclusion: session.terrain_report().filter(|_| !request.straight).cloned(),
@@ -60,10 +64,10 @@ pub(crate) fn draw(
         target: None,
         fallback,
         view: ViewRecord::of(&view),
-        scene: session.resolved().cloned(),
+        scene: session.public_document(&names),
         title: session.scene().title.clone(),
         inputs,
-        warnings: session.warnings(),
+        warnings: names.warnings(&session.warnings()),
         stats: frame.stats.clone(),
         render_ms,
     };

@@ -15,7 +15,8 @@ use belvedere_core::View;
 use belvedere_core::Warning;
 use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::{Crs, Frame, FrameStats, Heightfield, Layer, LayerKind, NodeState, Scene, Unit};
-use serde::Serialize;
+use serde::ser::Error as _;
+use serde::{Serialize, Serializer};
 
 /// Measured and made-up parts of the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -130,8 +131,8 @@ pub struct Sidecar {
     /// Surfaces that areas were drawn as, and the sources of this choice.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub areas: Vec<AreaRecord>,
-    /// Report of the solver of terrain disocclusion; `None` if it did not run.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Report of the solver of terrain disocclusion; `None` if it did not run. Its times are not written.
+    #[serde(skip_serializing_if = "Option::is_none", serialize_with = "without_times")]
     pub disocclusion: Option<TerrainReport>,
     /// Report of the strip along a route; `None` if the scene has no strip.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -153,14 +154,34 @@ pub struct Sidecar {
     /// Title of the scene.
     #[serde(skip)]
     pub title: String,
-    /// Files that were read.
+    /// Files that were read: names relative to the scene, or bare names, and hashes.
     pub inputs: Vec<InputFile>,
     /// Warnings.
     pub warnings: Vec<Warning>,
-    /// Counts of the renderer.
+    /// Counts of the renderer. Its time is not written.
+    #[serde(serialize_with = "counts")]
     pub stats: FrameStats,
-    /// Wall time of drawing, milliseconds.
+    /// Wall time of drawing, milliseconds. It is not written: the record is the same in every run.
+    #[serde(skip)]
     pub render_ms: f64,
+}
+
+/// The report without the times that the solver took.
+fn without_times<S: Serializer>(report: &Option<TerrainReport>, serializer: S) -> Result<S::Ok, S::Error> {
+    let mut value = serde_json::to_value(report).map_err(S::Error::custom)?;
+    if let Some(entries) = value.as_object_mut() {
+        entries.remove("times");
+    }
+    value.serialize(serializer)
+}
+
+/// The counts without the time that drawing took.
+fn counts<S: Serializer>(stats: &FrameStats, serializer: S) -> Result<S::Ok, S::Error> {
+    let mut value = serde_json::to_value(stats).map_err(S::Error::custom)?;
+    if let Some(entries) = value.as_object_mut() {
+        entries.remove("milliseconds");
+    }
+    value.serialize(serializer)
 }
 
 /// A finished picture and its record.

@@ -90,6 +90,20 @@ impl Picture {
         Ok(png::write(out, overwrite, width, height, Channels::Rgb, pixels.as_flattened(), &text)?)
     }
 
+    /// The bytes of the picture, as [`Picture::write_png`] writes them.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Io`] for a picture without pixels.
+    pub fn to_png(&self) -> Result<Vec<u8>, BelvedereError> {
+        let (width, height, pixels) = self.pixels();
+        let text = self.text()?;
+        let text: Vec<(&str, &str)> = text.iter().map(|(k, v)| (*k, v.as_str())).collect();
+        let mut bytes = Vec::new();
+        png::encode(&mut bytes, width, height, Channels::Rgb, pixels.as_flattened(), &text)
+            .map_err(|e| belvedere_io::IoError::os(Path::new("the picture"), e))?;
+        Ok(bytes)
+    }
+
     /// Width, height and colours; the two pictures of a pair side by side.
     pub fn pixels(&self) -> (usize, usize, Vec<[u8; 3]>) {
         let Some(straight) = &self.straight else {

@@ -70,13 +70,16 @@ pub struct Roots {
     pub scene_dir: PathBuf,
     /// Folders that the user allowed.
     pub allowed: Vec<PathBuf>,
+    /// Single files that the user allowed, as canonical paths.
+    pub files: Vec<PathBuf>,
 }
 
 impl Roots {
     /// The file that a scene means by `name`.
     ///
-    /// It is looked for beside the scene file, then (relative names) in each allowed folder. After links are
-    /// followed it must lie in one of these folders. The table behind the name of a GeoPackage stays behind it.
+    /// It is looked for beside the scene file, then (relative names) in each allowed folder, then among the allowed
+    /// files. After links are followed it must lie in one of these folders or be one of these files. The table behind the name of a
+    /// GeoPackage stays behind it.
     ///
     /// # Errors
     /// [`BelvedereError::Path`] if the name is refused or nothing is found.
@@ -90,12 +93,11 @@ impl Roots {
         let outside = "use a path below that folder, or allow a folder";
         check_name(name).map_err(refuse)?;
         let (path, table) = split_table(Path::new(name));
-        let leaves = path.is_absolute() || looks_absolute(name) || path.components().any(|c| c == Component::ParentDir);
-        if leaves && self.allowed.is_empty() {
+        // Without anything that is allowed the answer does not depend on whether the file exists.
+        if leaves(path, name) && self.allowed.is_empty() && !self.allows_file(path) {
             return Err(refused(format!("leaves the folder of the scene file; {outside}"), true));
         }
-        let bases = std::iter::once(&self.scene_dir).chain(self.allowed.iter().filter(|_| !path.is_absolute()));
-        let Some(found) = bases.map(|base| base.join(path)).find(|p| fs::symlink_metadata(p).is_ok()) else {
+        let Some(found) = self.find(path) else {
             let folders: Vec<String> =
                 std::iter::once(&self.scene_dir).chain(&self.allowed).map(|p| shown(p)).collect();
             let folders = folders.join(", ");
@@ -105,11 +107,7 @@ impl Roots {
             ));
         };
         let real = fs::canonicalize(&found).map_err(|e| refuse(format!("cannot be followed: {e}; check the name")))?;
-        let inside = std::iter::once(&self.scene_dir)
-            .chain(&self.allowed)
-            .filter_map(|base| fs::canonicalize(if base.as_os_str().is_empty() { Path::new(".") } else { base }).ok())
-            .any(|base| real.starts_with(base));
-        if !inside {
+        if !self.contains(&real) && !self.files.contains(&real) {
             let real = real.display();
             return Err(refused(format!("leads to {real}, outside the folder of the scene file; {outside}"), true));
         }
@@ -118,10 +116,108 @@ impl Roots {
             _ => Err(refuse("is not a regular file; give a file".into())),
         }
     }
+
+    /// The file that a scene means by `name`, wherever it lies, as a canonical path without its table: to ask the user whether it may be
+    /// read. `None` if it is not there, or if its name is one that nothing allows.
+    pub(crate) fn locate(&self, name: &str) -> Option<PathBuf> {
+        check_name(name).ok()?;
+        let real = fs::canonicalize(self.find(split_table(Path::new(name)).0)?).ok()?;
+        fs::metadata(&real).is_ok_and(|meta| meta.is_file()).then_some(real)
+    }
+
+    /// Whether a canonical path lies in the folder of the scene.
+    pub(crate) fn is_beside(&self, real: &Path) -> bool {
+        fs::canonicalize(or_here(&self.scene_dir)).is_ok_and(|folder| real.starts_with(folder))
+    }
+
+    /// Whether a canonical path lies in the folder of the scene or an allowed one.
+    fn contains(&self, real: &Path) -> bool {
+        let allowed = |folder: &PathBuf| fs::canonicalize(or_here(folder)).is_ok_and(|folder| real.starts_with(folder));
+        self.is_beside(real) || self.allowed.iter().any(allowed)
+    }
+
+    fn allows_file(&self, path: &Path) -> bool {
+        !self.files.is_empty()
+            && fs::canonicalize(self.scene_dir.join(path)).is_ok_and(|real| self.files.contains(&real))
+    }
+
+    /// The first file of that name, without regard to where links lead.
+    fn find(&self, path: &Path) -> Option<PathBuf> {
+        let bases = std::iter::once(&self.scene_dir).chain(self.allowed.iter().filter(|_| !path.is_absolute()));
+        let found = bases.map(|base| base.join(path)).find(|p| fs::symlink_metadata(p).is_ok());
+        // A name that was found in an allowed folder when its file was allowed.
+        found.or_else(|| self.files.iter().find(|file| !path.is_absolute() && file.ends_with(path)).cloned())
+    }
+}
+
+/// Whether a name leads out of the folder that it is relative to.
+fn leaves(path: &Path, name: &str) -> bool {
+    path.is_absolute() || looks_absolute(name) || path.components().any(|c| c == Component::ParentDir)
+}
+
+/// Whether a name stays below the folder that it is relative to.
+pub(crate) fn stays_below(name: &str) -> bool {
+    !leaves(split_table(Path::new(name)).0, name)
+}
+
+/// The file `to` as a name seen from the folder `from`, both canonical: with `/`, and `..` upwards. `None` if they lie on
+/// different drives, or if a part of the name is not UTF-8.
+pub fn relative(from: &Path, to: &Path) -> Option<String> {
+    let (from, to): (Vec<_>, Vec<_>) = (from.components().collect(), to.components().collect());
+    let common = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
+    // In memory, as in a browser, paths have no root.
+    let is_same_drive = common > 0 || matches!(from.first(), Some(Component::Normal(_)) | None);
+    if to.len() == common || !is_same_drive {
+        return None;
+    }
+    let up = from[common..].iter().map(|_| Some(".."));
+    let down = to[common..].iter().map(|part| match part {
+        Component::Normal(part) => part.to_str(),
+        _ => None,
+    });
+    let name = up.chain(down).collect::<Option<Vec<&str>>>()?.join("/");
+    // A colon in the first part would be read as a drive or an address.
+    let first = name.split('/').next().unwrap_or_default();
+    Some(if first.contains(':') { format!("./{name}") } else { name })
+}
+
+impl Document {
+    /// The same for a scene file in `folder` (canonical): files are named relative to it wherever that is possible. Names that lead to no
+    /// file stay as they are.
+    ///
+    /// * `roots`: where the files lie now.
+    pub fn seen_from(&self, folder: &Path, roots: &Roots) -> Self {
+        let moves = roots.scene_dir.as_os_str().is_empty()
+            || fs::canonicalize(&roots.scene_dir).ok().as_deref() != Some(folder);
+        let mut document = self.clone();
+        document.for_each_path(&mut |name| {
+            let beside = || fs::symlink_metadata(roots.scene_dir.join(split_table(Path::new(name.as_str())).0));
+            if !moves && stays_below(name) && beside().is_ok() {
+                return;
+            }
+            let Ok(file) = roots.resolve(name) else { return };
+            let (file, table) = split_table(&file);
+            let file = relative(folder, file).map_or_else(|| file.to_owned(), PathBuf::from);
+            if let Some(new) = join_table(file, table).to_str() {
+                new.clone_into(name);
+            }
+        });
+        document
+    }
+}
+
+/// The folder of a file, as an absolute path if possible.
+pub(crate) fn folder_of(path: &Path) -> PathBuf {
+    let folder = or_here(path.parent().unwrap_or(Path::new("")));
+    fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
 }
 
 fn shown(dir: &Path) -> String {
-    if dir.as_os_str().is_empty() { ".".into() } else { dir.display().to_string() }
+    or_here(dir).display().to_string()
+}
+
+fn or_here(dir: &Path) -> &Path {
+    if dir.as_os_str().is_empty() { Path::new(".") } else { dir }
 }
 
 /// Refusals that no option lifts.
@@ -170,7 +266,7 @@ mod tests {
 
     #[test]
     fn names_that_leave_the_folder_are_refused() {
-        let roots = Roots { scene_dir: env!("CARGO_MANIFEST_DIR").into(), allowed: vec![] };
+        let roots = Roots { scene_dir: env!("CARGO_MANIFEST_DIR").into(), ..Roots::default() };
         for name in ["../belvedere-core/Cargo.toml", "src/../../x", "/etc/passwd", "C:\\x", "\\\\host\\x", "..\\x"] {
             let refused = roots.resolve(name).expect_err(name);
             assert!(matches!(refused, BelvedereError::Path { root_missing: true, .. }), "{name}: {refused}");
@@ -180,8 +276,40 @@ mod tests {
     }
 
     #[test]
+    fn an_allowed_file_is_that_file_alone() {
+        let dir = Path::new(env!("CARGO_MANIFEST_DIR")).canonicalize().expect("folder");
+        let roots = Roots { scene_dir: dir.join("src"), files: vec![dir.join("Cargo.toml")], ..Roots::default() };
+        assert_eq!(roots.resolve("../Cargo.toml").ok(), Some(dir.join("Cargo.toml")));
+        assert_eq!(
+            roots.resolve("Cargo.toml").ok(),
+            Some(dir.join("Cargo.toml")),
+            "as found in a folder that was allowed"
+        );
+        assert!(roots.resolve("../tests/it/main.rs").is_err());
+        assert!(roots.resolve("../tests").is_err() && roots.resolve("../no-such-file").is_err());
+        assert!(roots.resolve(dir.join("Cargo.toml").to_str().expect("UTF-8")).is_ok());
+    }
+
+    #[test]
+    fn names_are_relative_upwards_too() {
+        let seen = |from: &str, to: &str| relative(Path::new(from), Path::new(to));
+        assert_eq!(seen("/a/b", "/a/b/c/d.tif").as_deref(), Some("c/d.tif"));
+        assert_eq!(seen("/a/b", "/a/data/d.tif").as_deref(), Some("../data/d.tif"));
+        assert_eq!(seen("/a/b", "/x/d.tif").as_deref(), Some("../../x/d.tif"));
+        assert_eq!(seen("/a", "/a/x:y.tif").as_deref(), Some("./x:y.tif"));
+        assert_eq!((seen("/a", "/a"), seen("/a", "x/d.tif")), (None, None));
+    }
+
+    #[test]
+    #[cfg(windows)]
+    fn files_of_another_drive_have_no_relative_name() {
+        assert_eq!(relative(Path::new(r"C:\a"), Path::new(r"D:\x.tif")), None);
+        assert_eq!(relative(Path::new(r"C:\a\b"), Path::new(r"C:\a\x.tif")).as_deref(), Some("../x.tif"));
+    }
+
+    #[test]
     fn addresses_and_devices_are_always_refused() {
-        let roots = Roots { scene_dir: env!("CARGO_MANIFEST_DIR").into(), allowed: vec!["/".into()] };
+        let roots = Roots { scene_dir: env!("CARGO_MANIFEST_DIR").into(), allowed: vec!["/".into()], files: vec![] };
         for name in [
             "file:///etc/passwd",
             "http://x/y.tif",
@@ -202,7 +330,7 @@ mod tests {
     #[test]
     fn an_allowed_root_is_searched_and_enough() {
         let dir = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let roots = Roots { scene_dir: dir.join("src"), allowed: vec![dir.to_owned()] };
+        let roots = Roots { scene_dir: dir.join("src"), allowed: vec![dir.to_owned()], files: vec![] };
         assert_eq!(roots.resolve("Cargo.toml").ok(), dir.join("Cargo.toml").canonicalize().ok());
         assert!(roots.resolve("../Cargo.toml").is_ok());
         assert!(roots.resolve("../../belvedere-core/Cargo.toml").is_err());

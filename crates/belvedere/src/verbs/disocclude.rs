@@ -230,6 +230,7 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
     let camera = CameraDoc::of(view.pinhole(), look_at);
     let mut session = data.session(view, camera, vec![stage], earth);
     session.resolved.terrain = Some(solved.report.clone());
+    let names = session.public_names();
     let record = Record {
         program: format!("belvedere {}", crate::VERSION),
         crs: session.scene().crs.to_string(),
@@ -245,8 +246,8 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
         rivers_written,
         guaranteed: solved.report.guaranteed && visible_written.is_none_or(|share| share >= KEPT_SHARE),
         layers: session.scene().layers.iter().map(|l| l.id.clone()).collect(),
-        inputs: record::inputs(&session.inputs())?,
-        warnings: session.warnings(),
+        inputs: names.inputs(&record::inputs(&session.inputs())?),
+        warnings: names.warnings(&session.warnings()),
     };
     Ok(Disoccluded { session, solved, rasters, record })
 }

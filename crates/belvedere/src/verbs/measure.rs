@@ -75,7 +75,7 @@ pub fn measure(
         in_frame: shares.map(|[_, bent]| bent.in_frame),
         terrain: session.terrain_report().cloned(),
         measures,
-        scene_warnings: session.warnings(),
+        scene_warnings: session.public_names().warnings(&session.warnings()),
     })
 }
 

@@ -7,7 +7,7 @@ use crate::data::features_of;
 use crate::editor::{Editor, Place, framed, set_camera};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, CameraDoc, Document, LayerDoc, Paths, SourceDocument, TerrainDoc, TerrainStyleDoc};
-use crate::{BelvedereError, DataFiles, OpenOptions, Session};
+use crate::{BelvedereError, DataFiles, OpenOptions, Session, Trust};
 use belvedere_core::DVec3;
 use belvedere_io::{fs, join_table, split_table};
 use belvedere_scene::Progress;
@@ -24,10 +24,23 @@ const REMEDY: &str = "give one scene file, models (meshes, cities, molecules, vo
 /// # Errors
 /// [`BelvedereError`] of the first file that cannot be read; [`BelvedereError::Target`] for files that make no scene together.
 pub fn open_files(paths: &[PathBuf], allowed: &[PathBuf], progress: &Progress) -> Result<Editor, BelvedereError> {
+    open_trusted(paths, allowed, &Trust::default(), progress)
+}
+
+/// The same, where a scene file has the consent that was given to it.
+///
+/// # Errors
+/// As [`open_files`].
+pub fn open_trusted(
+    paths: &[PathBuf],
+    allowed: &[PathBuf],
+    trust: &Trust,
+    progress: &Progress,
+) -> Result<Editor, BelvedereError> {
     if let [path] = paths
         && (path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) || is_json_scene(path))
     {
-        return Editor::open(path, allowed.to_vec());
+        return Editor::open_trusted(path, allowed.to_vec(), trust);
     }
     let (mut grounds, mut features, mut models) = (Vec::new(), Vec::new(), Vec::new());
     for path in paths {
@@ -49,7 +62,7 @@ pub fn open_files(paths: &[PathBuf], allowed: &[PathBuf], progress: &Progress) -
     let options = OpenOptions { progress: progress.clone(), ..OpenOptions::default() };
     let folders =
         paths.iter().filter_map(|path| fs::canonicalize(split_table(path).0).ok()?.parent().map(Path::to_owned));
-    let place = Place { scene: None, roots: Roots { scene_dir: PathBuf::new(), allowed: folders.collect() } };
+    let place = Place { scene: None, roots: Roots { allowed: folders.collect(), ..Roots::default() } };
     let title = paths.first().and_then(|path| path.file_name()?.to_str()?.split('.').next().map(str::to_owned));
     let mut document = match (grounds.as_slice(), features.is_empty(), models.is_empty()) {
         ([dem], false, true) => {
@@ -88,6 +101,7 @@ pub fn open_beside(
     current: &Document,
     paths: &[PathBuf],
     allowed: &[PathBuf],
+    trust: &Trust,
     progress: &Progress,
 ) -> Result<Opened, BelvedereError> {
     let has_terrain = current.layer.iter().any(|layer| matches!(layer, LayerDoc::Terrain(_)));
@@ -97,14 +111,14 @@ pub fn open_beside(
         let is_scene = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) || is_json_scene(&path);
         let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
         if is_scene || !matches!(info::describe(name, progress)?, FileInfo::Features(_)) {
-            return open_files(paths, allowed, progress).map(|editor| Opened::Scene(Box::new(editor)));
+            return open_trusted(paths, allowed, trust, progress).map(|editor| Opened::Scene(Box::new(editor)));
         }
         layers.push(features_of(&path, &layers)?);
         folders.extend(path.parent().map(Path::to_owned));
     }
     let new = layers.split_off(current.layer.len());
     match new.is_empty() {
-        true => open_files(paths, allowed, progress).map(|editor| Opened::Scene(Box::new(editor))),
+        true => open_trusted(paths, allowed, trust, progress).map(|editor| Opened::Scene(Box::new(editor))),
         false => Ok(Opened::Layers(new, folders)),
     }
 }
@@ -157,7 +171,7 @@ mod tests {
         let way = dir.path().join("way.geojson");
         let line = r#"{"type":"LineString","coordinates":[[1.50,42.50],[1.51,42.51],[1.52,42.50]]}"#;
         std::fs::write(&way, line).expect("file");
-        let open = |paths: &[PathBuf]| open_beside(&document, paths, &[], &Progress::silent());
+        let open = |paths: &[PathBuf]| open_beside(&document, paths, &[], &Trust::default(), &Progress::silent());
         let Ok(Opened::Layers(layers, folders)) = open(&[way.clone(), way.clone()]) else { panic!("no layers") };
         let ids: Vec<&str> = layers.iter().map(LayerDoc::id).collect();
         assert_eq!((ids, folders.len()), (vec!["way", "way-2"], 2));

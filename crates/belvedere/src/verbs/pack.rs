@@ -1,8 +1,8 @@
 //! Packs a scene, its files and the application into a folder that any web server can host.
 
-use super::open_files::open_files;
+use super::open_files::open_trusted;
 use crate::editor::{Editor, Place};
-use crate::{BelvedereError, output};
+use crate::{BelvedereError, Trust, output};
 use belvedere_io::{InputFile, IoError, atomic, fs, split_table};
 use belvedere_scene::Progress;
 use serde::Serialize;
@@ -30,6 +30,8 @@ pub struct PackRequest {
     pub files: Vec<PathBuf>,
     /// Folders beside that of a scene file from which its files may come.
     pub allowed: Vec<PathBuf>,
+    /// Consent that was given to the scene file.
+    pub trust: Trust,
     /// Folder with the files of the application ([`APPLICATION`]).
     pub application: PathBuf,
     /// The folder to be made.
@@ -136,7 +138,7 @@ fn names_below(root: &Path, folder: &Path, names: &mut Vec<PathBuf>) {
 
 /// The scene with names valid in the bundle, and every file that it needs, with contents.
 fn scene_files(request: &PackRequest, progress: &Progress) -> Result<(Bundle, Vec<Vec<u8>>), BelvedereError> {
-    let editor = open_files(&request.files, &request.allowed, progress)?;
+    let editor = open_trusted(&request.files, &request.allowed, &request.trust, progress)?;
     let session = editor.place.session((**editor.document()).clone(), progress)?;
     let mut layout = Layout::new(&editor);
     let mut document = (**editor.document()).clone();
@@ -195,7 +197,9 @@ impl Layout {
         let Place { roots, .. } = &editor.place;
         let own = (!roots.scene_dir.as_os_str().is_empty()).then_some(&roots.scene_dir);
         let folders = own.into_iter().chain(&roots.allowed).filter_map(|folder| fs::canonicalize(folder).ok());
-        let mut folders: Vec<PathBuf> = folders.collect();
+        // Beside single files that the user allowed lie those that they refer to.
+        let beside = roots.files.iter().filter_map(|file| file.parent().map(Path::to_owned));
+        let mut folders: Vec<PathBuf> = folders.chain(beside).collect();
         let mut seen = std::collections::BTreeSet::new();
         folders.retain(|folder| seen.insert(folder.clone()));
         Self { folders, files: BTreeMap::new() }

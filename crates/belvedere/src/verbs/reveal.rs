@@ -454,7 +454,7 @@ impl RevealAnswer {
             crs: self.session.scene().crs.to_string(),
             terrain: sidecar.terrain,
             inputs: &sidecar.inputs,
-            scene_warnings: &self.session.warnings(),
+            scene_warnings: &sidecar.warnings,
         };
         files.write(&self.picture, &self.session, &report, overwrite)
     }

@@ -2,7 +2,6 @@
 
 use crate::output::{self, document_toml, pretty};
 use crate::picture::Picture;
-use crate::scene_file::Document;
 use crate::{BelvedereError, Session};
 use belvedere_io::png::{self, Channels};
 use serde::Serialize;
@@ -11,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// Output files.
 #[derive(Debug, Clone, Default)]
 pub struct RevealFiles {
-    /// The bent picture.
+    /// The bent picture, with its record and the pair beside it; empty: these are not written.
     pub out: PathBuf,
     /// The straight picture.
     pub before: Option<PathBuf>,
@@ -32,7 +31,12 @@ impl RevealFiles {
         let mut record = self.out.as_os_str().to_owned();
         record.push(".json");
         let asked = [&self.before, &self.report, &self.scene].into_iter().flatten().cloned();
-        [self.out.clone(), PathBuf::from(record), self.pair()].into_iter().chain(asked).collect()
+        let pictures = [self.out.clone(), PathBuf::from(record), self.pair()];
+        pictures.into_iter().filter(|_| self.writes_pictures()).chain(asked).collect()
+    }
+
+    fn writes_pictures(&self) -> bool {
+        !self.out.as_os_str().is_empty()
     }
 
     /// Writes the files of a picture; returns their names.
@@ -43,15 +47,20 @@ impl RevealFiles {
         report: &impl Serialize,
         overwrite: bool,
     ) -> Result<Vec<PathBuf>, BelvedereError> {
-        let mut written = Picture { straight: None, ..picture.clone() }.write(&self.out, overwrite)?;
+        let mut written = Vec::new();
+        if self.writes_pictures() {
+            written = Picture { straight: None, ..picture.clone() }.write(&self.out, overwrite)?;
+        }
         let title = [("Software", picture.sidecar.program.as_str()), ("Comment", "straight | bent")];
         let mut draw = |path: &Path, [width, height]: [usize; 2], pixels: &[[u8; 3]], title: &[(&str, &str)]| {
             png::write(path, overwrite, width, height, Channels::Rgb, pixels.as_flattened(), title)?;
             written.push(path.to_owned());
             Ok::<(), BelvedereError>(())
         };
-        let (width, height, pixels) = picture.pixels();
-        draw(&self.pair(), [width, height], &pixels, &title)?;
+        if self.writes_pictures() {
+            let (width, height, pixels) = picture.pixels();
+            draw(&self.pair(), [width, height], &pixels, &title)?;
+        }
         if let (Some(path), Some(frame)) = (&self.before, &picture.straight) {
             draw(path, [frame.width, frame.height], &frame.color, &title[..1])?;
         }
@@ -59,24 +68,10 @@ impl RevealFiles {
             output::write_text(path, &pretty(report)?, overwrite)?;
             written.push(path.clone());
         }
-        if let (Some(path), Some(document)) = (&self.scene, session.resolved()) {
-            output::write_text(path, &document_toml(&beside(document, path))?, overwrite)?;
+        if let Some((path, document)) = self.scene.as_ref().and_then(|path| Some((path, session.resolved_for(path)?))) {
+            output::write_text(path, &document_toml(&document)?, overwrite)?;
             written.push(path.clone());
         }
         Ok(written)
     }
-}
-
-/// The document with sources relative to the folder of `path` where they lie below it.
-fn beside(document: &Document, path: &Path) -> Document {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let folder = belvedere_io::fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
-    let below = |name: &mut String| {
-        if let Some(below) = Path::new(name.as_str()).strip_prefix(&folder).ok().and_then(Path::to_str) {
-            *name = below.to_owned();
-        }
-    };
-    let mut document = document.clone();
-    document.for_each_path(&mut |name| below(name));
-    document
 }

@@ -322,7 +322,12 @@ impl TargetAnswer {
             report: self.report,
             view: &sidecar.view,
             inputs: &sidecar.inputs,
-            warnings: self.warnings(),
+            warnings: sidecar
+                .warnings
+                .iter()
+                .cloned()
+                .chain(self.place.as_ref().and_then(TargetPlace::warning))
+                .collect(),
         };
         files.write(&self.picture, &self.session, &report, overwrite)
     }

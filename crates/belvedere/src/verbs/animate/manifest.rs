@@ -22,7 +22,7 @@ pub struct Manifest {
     pub program: String,
     /// sha256 of the resolved scene without its animation, hexadecimal.
     pub scene_sha256: String,
-    /// Files that were read.
+    /// Files that were read: names relative to the scene, or bare names, and hashes.
     pub inputs: Vec<InputFile>,
     /// Settings of the frames.
     pub settings: Settings,
@@ -163,11 +163,12 @@ pub fn frame_name(frame: usize) -> String {
 impl Manifest {
     /// The manifest of an animation without finished frames.
     pub(super) fn new(session: &Session, path: &CameraPath, request: &PictureOptions) -> Result<Self, BelvedereError> {
-        let document = session.resolved().map(|document| Document { animation: None, ..document.clone() });
+        let names = session.public_names();
+        let document = session.public_document(&names).map(|document| Document { animation: None, ..document });
         Ok(Self {
             program: format!("belvedere {}", crate::VERSION),
             scene_sha256: belvedere_io::sha256(output::json(&document)?.as_bytes()),
-            inputs: record::inputs(&session.inputs())?,
+            inputs: names.inputs(&record::inputs(&session.inputs())?),
             settings: Settings {
                 animation: path.animation.clone(),
                 fps: path.fps,

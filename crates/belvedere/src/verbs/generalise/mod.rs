@@ -5,6 +5,7 @@ mod read;
 use crate::city_blocks;
 use crate::city_map::overview::{Panel, overview};
 use crate::city_map::{MapPicture, bounds, map_picture};
+use crate::names::PublicNames;
 use crate::record::{self, InputFile};
 use crate::{BelvedereError, output};
 pub use belvedere_construct::generalise::GeneraliseSettings;
@@ -53,10 +54,10 @@ pub struct GeneralisedCity {
 struct Record<'a> {
     program: &'static str,
     crs: Option<String>,
-    inputs: &'a [InputFile],
+    inputs: Vec<InputFile>,
     #[serde(flatten)]
     report: &'a GeneraliseReport,
-    warnings: &'a [Warning],
+    warnings: Vec<Warning>,
 }
 
 /// Reads a city and generalises it.
@@ -87,12 +88,14 @@ impl GeneralisedCity {
     /// # Errors
     /// [`BelvedereError::Text`], which no report gives.
     pub fn report_json(&self) -> Result<String, BelvedereError> {
+        let files: Vec<PathBuf> = self.inputs.iter().map(|input| input.path.clone()).collect();
+        let names = PublicNames::new(None, Vec::new(), &files);
         output::pretty(&Record {
             program: concat!("belvedere ", env!("CARGO_PKG_VERSION")),
             crs: self.epsg.map(|code| format!("EPSG:{code}")),
-            inputs: &self.inputs,
+            inputs: names.inputs(&self.inputs),
             report: &self.generalised.report,
-            warnings: &self.warnings,
+            warnings: names.warnings(&self.warnings),
         })
     }
 

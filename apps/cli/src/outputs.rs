@@ -1,0 +1,53 @@
+//! Outputs: checked before the work, all of them together; `-o -` is standard output.
+
+use crate::report::Context;
+use anyhow::ensure;
+use belvedere::output;
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+/// Whether an output is standard output.
+pub(crate) fn is_stdout(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// The file of an output; `None` if it is left out or standard output.
+pub(crate) fn file(out: Option<&PathBuf>) -> Option<&PathBuf> {
+    out.filter(|path| !is_stdout(path))
+}
+
+/// Refuses outputs that cannot be written, that exist, that are inputs, or that are named twice.
+pub(crate) fn check(paths: &[PathBuf], inputs: &[PathBuf], context: &Context) -> anyhow::Result<()> {
+    let paths: Vec<PathBuf> = paths.iter().chain(&context.common.timings).cloned().collect();
+    ensure!(!paths.iter().any(|path| is_stdout(path)), "-: only -o takes standard output; name a file");
+    Ok(output::check_all(&paths, inputs, context.common.overwrite)?)
+}
+
+/// Refuses a folder that cannot be written or made, and standard output.
+pub(crate) fn check_folder(folder: &Path, context: &Context) -> anyhow::Result<()> {
+    ensure!(
+        !is_stdout(folder),
+        "-o -: this command writes several files, which standard output cannot hold; name a folder"
+    );
+    check(&[], &[], context)?;
+    Ok(output::check_folder(folder)?)
+}
+
+/// Refuses to write a picture on standard output where it is a terminal, or where the result of `--json` goes.
+pub(crate) fn check_stdout(context: &Context) -> anyhow::Result<()> {
+    ensure!(!context.common.json, "-o -: --json prints on standard output, too; name a file, or leave --json out");
+    ensure!(
+        !std::io::stdout().is_terminal(),
+        "-o -: standard output is a terminal; send it to a file or a program, or name a file"
+    );
+    Ok(())
+}
+
+/// Writes bytes on standard output; a closed pipe is not an error.
+pub(crate) fn write_stdout(bytes: &[u8]) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(anyhow::anyhow!("standard output: {e}")),
+        _ => Ok(()),
+    }
+}

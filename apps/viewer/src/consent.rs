@@ -1,0 +1,89 @@
+//! Asks whether a scene may read files outside its folder.
+
+use belvedere::Trust;
+use eframe::egui::{Context, Window};
+use std::path::{Path, PathBuf};
+
+/// Files that are listed, at most.
+const MOST: usize = 8;
+
+/// A scene that waits for the user's consent.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Consent {
+    pub(crate) scene: PathBuf,
+    /// The files, canonical paths.
+    pub(crate) files: Vec<PathBuf>,
+}
+
+/// What the user decided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Decision {
+    /// The scene may read the files.
+    Allowed,
+    /// It is not opened.
+    Refused,
+}
+
+impl Consent {
+    /// The question for files to open; `None` if there is nothing to ask. In a browser all files are given by the user.
+    pub(crate) fn needed(paths: &[PathBuf], allowed: &[PathBuf], trust: &Trust) -> Option<Self> {
+        let [scene] = paths else { return None };
+        let ending = scene.extension()?.to_str()?.to_ascii_lowercase();
+        if cfg!(target_family = "wasm") || !["toml", "json"].contains(&ending.as_str()) {
+            return None;
+        }
+        // What is wrong with the scene is said when it is opened.
+        let files = trust.lacking(scene, allowed).ok().filter(|files| !files.is_empty())?;
+        Some(Self { scene: scene.clone(), files })
+    }
+
+    /// Shows the question.
+    pub(crate) fn show(&self, ctx: &Context) -> Option<Decision> {
+        let mut decision = None;
+        let room = ctx.content_rect();
+        Window::new("Files outside the folder of the scene")
+            .collapsible(false)
+            .default_pos(room.center() - eframe::egui::vec2(240.0, 120.0))
+            .show(ctx, |ui| {
+                ui.set_width(480.0);
+                let name = self.scene.file_name().unwrap_or_default().to_string_lossy();
+                ui.label(format!("{name} names files that do not lie in its folder:"));
+                for file in self.files.iter().take(MOST) {
+                    ui.label(file.display().to_string());
+                }
+                if self.files.len() > MOST {
+                    ui.label(format!("and {} more", self.files.len() - MOST));
+                }
+                ui.label("Allow this if you know where the scene comes from. It is remembered for this scene and these files.");
+                ui.horizontal(|ui| {
+                    let allow = if self.files.len() == 1 { "Allow this file" } else { "Allow these files" };
+                    if ui.button(allow).clicked() {
+                        decision = Some(Decision::Allowed);
+                    }
+                    if ui.button("Do not open").clicked() {
+                        decision = Some(Decision::Refused);
+                    }
+                });
+            });
+        decision
+    }
+
+    /// Gives and remembers the consent.
+    ///
+    /// # Errors
+    /// One sentence, if it cannot be remembered; it is given nevertheless.
+    pub(crate) fn give(&self, trust: &mut Trust) -> Result<(), String> {
+        let files = [self.files.clone(), trust.files_of(&self.scene)].concat();
+        remember(trust, &self.scene, &files).map(drop)
+    }
+}
+
+/// Lets a scene read these files outside its folder from now on, and no others. Returns whether other programs know of it.
+///
+/// # Errors
+/// One sentence, if it cannot be remembered; the consent holds in this window.
+pub(crate) fn remember(trust: &mut Trust, scene: &Path, files: &[PathBuf]) -> Result<bool, String> {
+    let said = |e: belvedere::BelvedereError| format!("the consent is not remembered: {e}");
+    trust.give(scene, files).map_err(said)?;
+    trust.remember(scene, files).map_err(said)
+}
