@@ -11,7 +11,7 @@ use clap::{Args, ValueEnum};
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct LookArgs {
     /// Light the scene as the sun does over the eye at this time, such as 2026-07-01T15:00:00Z or 2026-07-01T17:00+02:00: shading by
-    /// the sun alone (unless --relief says otherwise), with cast shadows
+    /// the sun alone while it is up (unless --relief says otherwise), with cast shadows
     #[arg(long, value_name = "TIME", value_parser = parse_time)]
     pub(crate) light_time: Option<String>,
     /// Light from a direction: degrees clockwise from north, and over the horizon; 315,45 by default
@@ -20,7 +20,7 @@ pub(crate) struct LookArgs {
     /// Draw cast shadows
     #[arg(long)]
     pub(crate) shadows: bool,
-    /// Shading of the terrain; swiss by default
+    /// Shading of the terrain; swiss by default, sun with --light-time
     #[arg(long, value_enum, value_name = "SHADING")]
     pub(crate) relief: Option<ReliefKind>,
     /// Style of hidden parts of features; by default lines are dashed, outlines of areas cut, points faint
@@ -86,12 +86,6 @@ impl From<HiddenKind> for Hidden {
 }
 
 impl LookArgs {
-    /// Shading of the terrain: a time of the sun asks for the sun.
-    pub(crate) fn relief(&self) -> Relief {
-        let of_light = if self.light_time.is_some() { Relief::Sun } else { Relief::Swiss };
-        self.relief.map_or(of_light, Into::into)
-    }
-
     /// What is drawn in another way than usual.
     pub(crate) fn appearance(&self) -> Appearance {
         let [azimuth_deg, altitude_deg] = [0, 1].map(|i| self.light.map(|light| light[i]));
@@ -100,6 +94,7 @@ impl LookArgs {
         let stated = shadows || self.light.is_some();
         Appearance {
             light: stated.then_some(LightDoc { azimuth_deg, altitude_deg, time, shadows }),
+            relief: self.relief.map(Into::into),
             stylisation: self.stylise,
             no_mark: self.no_mark,
             exaggeration: self.exaggeration,

@@ -359,7 +359,6 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
             crs: args.crs,
             keep_voids: args.keep_voids,
             fill_all_voids: args.look_args.fill_voids,
-            relief: args.look_args.relief(),
             hidden: args.look_args.hidden.map(Into::into),
             drape: args.drape.iter().map(|path| named(path)).collect(),
             labels: args.labels,

@@ -17,7 +17,7 @@ use belvedere_core::Warning;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::load_vectors;
 use belvedere_io::{join_table, split_table};
-use belvedere_scene::{Hidden, Relief, Scene, Unit};
+use belvedere_scene::{Hidden, Scene, Unit};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -47,8 +47,6 @@ pub struct DataFiles {
     pub drape: Vec<String>,
     /// Whether names of features are written.
     pub labels: bool,
-    /// Shading of the terrain.
-    pub relief: Relief,
     /// What happens to hidden parts of features; by default lines are dashed, outlines cut, points faint.
     pub hidden: Option<Hidden>,
     /// Tint of the terrain by height.
@@ -98,7 +96,7 @@ impl DataFiles {
             nodata: self.nodata,
             vertical_unit: self.vertical_unit,
             drape: (!drape.is_empty()).then(|| tiles::paths(drape)),
-            style: TerrainStyleDoc { palette, sea: !self.no_sea, relief: self.relief, ..TerrainStyleDoc::default() },
+            style: TerrainStyleDoc { palette, sea: !self.no_sea, ..TerrainStyleDoc::default() },
         })];
         if tiles.features.is_empty() {
             return Err(BelvedereError::NoFeatures);

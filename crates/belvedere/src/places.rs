@@ -280,7 +280,8 @@ impl<'a> PlaceFinder<'a> {
         let near = self.distance(p);
         let right = if near > 0.0 { format!("{:.1} km from it", near / 1000.0) } else { "on it".into() };
         let order = if read.exchanged { format!("; write {y},{x}") } else { String::new() };
-        let text = format!("{what} {x},{y} {wrong} as {given}; as {read} it lies {right}, and is taken so{order}");
+        let which = if what == "target" { format!("the point looked at, {x},{y},") } else { format!("{what} {x},{y}") };
+        let text = format!("{which} {wrong} as {given}; as {read} it lies {right}, and is taken so{order}");
         Warning::new(WarningKind::Repaired, text).about(what).with("away_m", away).with("taken_away_m", near)
     }
 

@@ -63,7 +63,7 @@ fn from_time(
             None => format!("it does not rise {DAY_DEG} degrees high within a day of that"),
         };
         let text = format!(
-            "the sun stands {:.1} degrees below the horizon at {time}; the ground is lit by the sky alone; {day}",
+            "the sun stands {:.1} degrees below the horizon at {time}, so all ground lies in shadow; {day}",
             -altitude_deg
         );
         warnings.push(Warning::new(WarningKind::Suspect, text).about("light").with("altitude_deg", altitude_deg));

@@ -1,8 +1,10 @@
 //! How the pictures of `reveal` are drawn: light, stylisation, mark, exaggeration. It is written into their scene files.
 
-use crate::scene_file::{Document, LightDoc, OneOrTwo, OverlayDoc, PlaneDoc, ReliefStageDoc, StageDoc, StylisationDoc};
+use crate::scene_file::{
+    Document, LayerDoc, LightDoc, OneOrTwo, OverlayDoc, PlaneDoc, ReliefStageDoc, StageDoc, StylisationDoc,
+};
 use crate::{BelvedereError, Session};
-use belvedere_scene::{Crs, Heightfield, LayerKind, Scene};
+use belvedere_scene::{Crs, Heightfield, LayerKind, Relief, Scene};
 use std::sync::Arc;
 
 /// Limits of [`Appearance::exaggeration`].
@@ -13,6 +15,8 @@ pub const EXAGGERATION: [f64; 2] = [0.01, 100.0];
 pub struct Appearance {
     /// The sun: a direction, or a time, which needs a georeferenced scene.
     pub light: Option<LightDoc>,
+    /// Shading of the terrain. If left out, the sun at a time shades by [`Relief::Sun`] while it is up, for all else is dark at night.
+    pub relief: Option<Relief>,
     /// Dark edges and depth unsharp masking.
     pub stylisation: Option<StylisationDoc>,
     /// Leaves out the mark that says that the view is bent; the record still says so.
@@ -63,8 +67,31 @@ impl Appearance {
         let Some(mut document) = session.resolved().filter(|_| !self.is_usual()).cloned() else { return Ok(session) };
         self.describe(&mut document, session.scene().crs)?;
         document.stage.splice(0..0, taller.map(Taller::stage));
-        Self::of_document(&session, document)
+        let session = Self::of_document(&session, document)?;
+        let by_day = self.light.as_ref().is_some_and(|l| l.time.is_some()) && session.light().altitude > 0.0;
+        Ok(match self.relief.or(by_day.then_some(Relief::Sun)) {
+            Some(relief) => shaded(session, relief),
+            None => session,
+        })
     }
+}
+
+/// The session with another shading of its terrain, in the scene and in the documents.
+fn shaded(mut session: Session, relief: Relief) -> Session {
+    for layer in &mut Arc::make_mut(&mut session.loaded.scene).layers {
+        if let LayerKind::Terrain(terrain) = &mut layer.kind {
+            terrain.relief = relief;
+        }
+    }
+    let description = session.resolved.description.iter_mut();
+    for document in description.flat_map(|d| [&mut d.source.document, &mut d.resolved]) {
+        for layer in &mut document.layer {
+            if let LayerDoc::Terrain(terrain) = layer {
+                terrain.style.relief = relief;
+            }
+        }
+    }
+    session
 }
 
 /// Whether a stage is an exaggeration, which stays where other bends are left out.
