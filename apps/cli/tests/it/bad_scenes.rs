@@ -162,7 +162,7 @@ fn files_stay_in_their_folder() {
     let layer = |source: &str| with(&format!("[[layer]]\nid = 'g'\nkind = 'terrain'\nsource = '{source}'"));
     refuses(
         &layer("../x.tif"),
-        "8: layer \"g\": path \"../x.tif\" leaves the folder of the scene file; use a path below that folder, or allow a folder with --allow-root DIR",
+        "8: layer \"g\": path \"../x.tif\" leaves the folder of the scene file; use a path below that folder, or allow a folder with --allow-root DIR, or for good with: belvedere trust SCENE",
     );
     refuses(
         &layer("file:///etc/passwd"),

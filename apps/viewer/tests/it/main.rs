@@ -1,6 +1,7 @@
 //! The application driven by its accessibility tree, as a screen reader sees it.
 
 mod authoring;
+mod consent;
 mod controls;
 mod files;
 mod moving;

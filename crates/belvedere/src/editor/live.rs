@@ -353,6 +353,7 @@ fn options(order: &Order, progress: &Progress) -> OpenOptions {
     let folder = Some(&roots.scene_dir).filter(|dir| !dir.as_os_str().is_empty());
     OpenOptions {
         allow_roots: folder.into_iter().chain(&roots.allowed).cloned().collect(),
+        allow_files: roots.files.clone(),
         progress: progress.clone(),
         ..OpenOptions::default()
     }

@@ -37,7 +37,7 @@ fn consent_is_for_one_scene_and_the_files_that_it_named() {
     assert!(trust.remember(&scene, &found.files).expect("written"));
     assert_eq!(refused(&scene, &trust), "");
     write_scene(&scene, &["../data/a.obj", "../data/b.obj"]);
-    assert!(refused(&scene, &trust).contains("\"../data/b.obj\" leads to"), "{}", refused(&scene, &trust));
+    assert!(refused(&scene, &trust).contains("\"../data/b.obj\" leaves the folder"), "{}", refused(&scene, &trust));
     let moved = root.join("data/moved.toml");
     write_scene(&moved, &["../data/a.obj"]);
     std::fs::create_dir(root.join("other")).expect("folder");
