@@ -27,6 +27,44 @@ pub(super) fn share(target: &Target, frame: &Frame, alone: &Frame) -> (usize, f6
     (all, seen as f64 / all.max(1) as f64)
 }
 
+/// The scene with the target alone; `None` for points and lines, which have no surface of their own.
+pub(crate) fn target_alone(scene: &Scene, target: &Target) -> Option<Scene> {
+    occluders::target_alone(scene, target)
+}
+
+/// The pixels that a target fills where it is drawn alone, and those of them that a picture shows.
+pub(crate) struct Mask {
+    /// Whether a pixel is one of the target's, row by row.
+    pub(crate) own: Vec<bool>,
+    seen: Vec<bool>,
+    width: usize,
+}
+
+impl Mask {
+    pub(crate) fn of(target: &Target, frame: &Frame, alone: &Frame) -> Self {
+        let own: Vec<bool> = alone.id.iter().map(|id| is_target(target, *id)).collect();
+        let is_seen = |i: usize| {
+            let (here, there) = (f64::from(frame.depth[i]), f64::from(alone.depth[i]));
+            own[i] && is_target(target, frame.id[i]) && (here - there).abs() <= SAME_DEPTH * there
+        };
+        let seen = (0..own.len()).map(is_seen).collect();
+        Self { own, seen, width: frame.width }
+    }
+
+    /// Whether the picture shows the target at a pixel or beside it: its rim shares pixels with what is behind.
+    pub(crate) fn is_seen(&self, i: usize) -> bool {
+        let beside = [Some(i), i.checked_sub(1), Some(i + 1), i.checked_sub(self.width), Some(i + self.width)];
+        beside.into_iter().flatten().any(|k| self.seen.get(k) == Some(&true))
+    }
+
+    /// Share of the pixels that are seen, 0..=1; 0 without any.
+    pub(crate) fn share(&self) -> f64 {
+        let own = (0..self.own.len()).filter(|&i| self.own[i]);
+        let (all, seen) = own.fold((0usize, 0usize), |(all, seen), i| (all + 1, seen + usize::from(self.is_seen(i))));
+        seen as f64 / all.max(1) as f64
+    }
+}
+
 /// Visible share, 0..=1, of the session's tracked target in a picture; `None` if it tracks none, or one without pixels of its own, such
 /// as a point.
 ///

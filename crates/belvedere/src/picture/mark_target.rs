@@ -1,9 +1,12 @@
-//! Marks of target points in pictures.
+//! Marks of targets in pictures: a ring around points, an outline around everything that has a surface.
 
-use super::{Picture, TargetPlace};
-use crate::overlays::ring;
-use belvedere_construct::rays::BendReport;
-use belvedere_core::DVec3;
+use super::{Picture, PictureOptions, TargetPlace};
+use crate::fallback::in_sight::{Mask, target_alone};
+use crate::overlays::{contour, ring};
+use crate::{BelvedereError, Session};
+use belvedere_construct::rays::{BendReport, Target};
+use belvedere_core::{DVec3, View};
+use belvedere_scene::{RenderJob, RenderOptions};
 
 impl Picture {
     /// Marks a target point in both pictures, and records its position.
@@ -22,5 +25,32 @@ impl Picture {
             }
         }
         self.sidecar.target = Some(place.clone());
+    }
+
+    /// Draws the outline of a target in both pictures, of dashes where it is hidden; returns the shares of its pixels that the straight and
+    /// the bent picture show, of those that it fills where it is drawn alone. `None` for points and lines, which have no surface.
+    pub(crate) fn mark_shape(
+        &mut self,
+        session: &Session,
+        target: &Target,
+        options: &PictureOptions,
+    ) -> Result<Option<[f64; 2]>, BelvedereError> {
+        let Some(alone) = target_alone(session.scene(), target) else { return Ok(None) };
+        let drawing = RenderOptions { marks: false, ..options.quality.clone() };
+        let draw = |view: &View| {
+            let (light, progress) = (session.light(), &options.progress);
+            let job = RenderJob { scene: &alone, view, light, options: &drawing, progress };
+            options.renderer.of(session).render(&job)
+        };
+        let straight_view = self.view.straightened();
+        let mut shares = [0.0; 2];
+        let frames = [(self.straight.as_mut(), &straight_view), (Some(&mut self.frame), &self.view)];
+        for (share, (frame, view)) in shares.iter_mut().zip(frames) {
+            let Some(frame) = frame else { continue };
+            let mask = Mask::of(target, frame, &draw(view)?);
+            *share = mask.share();
+            contour::draw(frame, &mask);
+        }
+        Ok(Some(shares))
     }
 }
