@@ -36,23 +36,24 @@ pub(crate) fn target_alone(scene: &Scene, target: &Target) -> Option<Scene> {
 pub(crate) struct Mask {
     /// Whether a pixel is one of the target's, row by row.
     pub(crate) own: Vec<bool>,
-    seen: Vec<bool>,
+    /// Whether the picture shows the target there.
+    pub(crate) seen: Vec<bool>,
     width: usize,
 }
 
 impl Mask {
-    pub(crate) fn of(target: &Target, frame: &Frame, alone: &Frame) -> Self {
-        let own: Vec<bool> = alone.id.iter().map(|id| is_target(target, *id)).collect();
-        let is_seen = |i: usize| {
-            let (here, there) = (f64::from(frame.depth[i]), f64::from(alone.depth[i]));
-            own[i] && is_target(target, frame.id[i]) && (here - there).abs() <= SAME_DEPTH * there
-        };
+    /// * `alone`: the target alone; `on_ground`: with the ground on which it stands, below which it has no pixels.
+    pub(crate) fn of(target: &Target, frame: &Frame, alone: &Frame, on_ground: Option<&Frame>) -> Self {
+        let same = |a: f32, b: f32| (f64::from(a) - f64::from(b)).abs() <= SAME_DEPTH * f64::from(b);
+        let above = |i: usize| on_ground.is_none_or(|ground| same(ground.depth[i], alone.depth[i]));
+        let own: Vec<bool> = (0..alone.id.len()).map(|i| is_target(target, alone.id[i]) && above(i)).collect();
+        let is_seen = |i: usize| own[i] && is_target(target, frame.id[i]) && same(frame.depth[i], alone.depth[i]);
         let seen = (0..own.len()).map(is_seen).collect();
         Self { own, seen, width: frame.width }
     }
 
     /// Whether the picture shows the target at a pixel or beside it: its rim shares pixels with what is behind.
-    pub(crate) fn is_seen(&self, i: usize) -> bool {
+    fn is_seen(&self, i: usize) -> bool {
         let beside = [Some(i), i.checked_sub(1), Some(i + 1), i.checked_sub(self.width), Some(i + self.width)];
         beside.into_iter().flatten().any(|k| self.seen.get(k) == Some(&true))
     }

@@ -15,26 +15,23 @@ const PITCHES: [(f64, f64); 4] = [(30.0, 0.0), (40.0, 0.02), (52.0, 0.08), (68.0
 const WORTH: f64 = 0.03;
 /// Views for which bends are searched, at most.
 pub(super) const KEPT: usize = 4;
-/// Radius of the surroundings of a building in radii of its own, and in addition, metres.
-const AROUND: f64 = 1.5;
-const AROUND_M: f64 = 8.0;
-/// Factor by which routes are widened, so that they end within the frame.
-const MARGIN: f64 = 1.12;
+/// Factors by which routes and buildings are widened, so that they end within the frame and have surroundings.
+const MARGINS: [f64; 2] = [1.12, 1.45];
+/// Least distance around a building, metres.
+const AROUND_M: f64 = 3.0;
 /// Distance of the eye from buildings, and height over terrain, at least, metres.
 const CLEAR_M: f64 = 4.0;
 
 /// Points that the picture is to hold.
 pub(super) fn region(target: &Target) -> Vec<DVec3> {
-    let (center, bounds) = (target.center(), target.bounds);
-    if target.own_layers.is_empty() && target.own_parts.is_none() && target.points.len() > 1 {
-        return target.points.iter().map(|p| center + MARGIN * (*p - center)).collect();
-    }
-    let radius = AROUND * 0.5 * (bounds.max - bounds.min).truncate().length() + AROUND_M;
-    let ring = (0..16).map(|k| {
-        let (sin, cos) = (std::f64::consts::TAU * f64::from(k) / 16.0).sin_cos();
-        DVec3::new(center.x + radius * cos, center.y + radius * sin, bounds.min.z)
-    });
-    ring.chain(target.points.iter().copied()).collect()
+    let center = target.center();
+    let is_solid = !target.own_layers.is_empty() || target.own_parts.is_some();
+    let factor = MARGINS[usize::from(is_solid)];
+    let wide = |p: &DVec3| {
+        let off = *p - center;
+        center + factor * off + if is_solid { AROUND_M * off.normalize_or_zero() } else { DVec3::ZERO }
+    };
+    target.points.iter().map(wide).collect()
 }
 
 /// The views that are worth a search for bends, the best first; only one if it shows the whole target.

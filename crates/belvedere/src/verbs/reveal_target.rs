@@ -221,7 +221,7 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
     if let Some(place) = &place {
         picture.mark_target(place, &report);
         mark = place.mark;
-    } else if let Some(shares) = picture.mark_shape(&session, &targets.judge, &pair)? {
+    } else if let Some(shares) = picture.mark_shape(&session, (&targets.shape, &targets.judge), &pair)? {
         mark = "an outline around it, of dashes where it is hidden";
         // Volumes let light through, which ids do not tell, and fallbacks have a report of their own.
         if !has_volumes(&session) && picture.sidecar.fallback.is_none() {

@@ -25,6 +25,8 @@ use std::path::{Path, PathBuf};
 /// Points of lines and points by which bends are chosen, at most, and by which shares are judged, about.
 const TO_SEARCH: usize = 120;
 const TO_JUDGE: f64 = 1500.0;
+/// Number of the part of a city that is its level ground.
+const GROUND: u32 = 0;
 /// Streets of a map beside what must be seen.
 const STREETS: &str = "#b9b2a6";
 const STREETS_PX: f64 = 1.6;
@@ -40,17 +42,34 @@ pub(super) enum Meant {
     Features,
 }
 
-/// A target twice: by few points, for the search of a bend, and by many, for shares.
+/// A target three times.
 pub(super) struct Targets {
+    /// By few points, for the search of a bend.
     pub(super) search: Target,
+    /// By many points, for shares.
     pub(super) judge: Target,
+    /// As it is drawn, without the level ground of a city, which hides the feet of walls and no more.
+    pub(super) shape: Target,
+}
+
+impl Targets {
+    fn of(shape: Target, target: Target) -> Self {
+        Self { search: target.clone(), judge: target, shape }
+    }
 }
 
 impl Meant {
     pub(super) fn targets(&self, scene: &Scene) -> Result<Targets, BelvedereError> {
-        let both = |target: Target| Targets { search: target.clone(), judge: target };
         match self {
-            Self::Named(see) | Self::Solid(see) => targets::target(scene, see).map(both),
+            Self::Named(see) => targets::target(scene, see).map(|target| Targets::of(target.clone(), target)),
+            Self::Solid(id) => {
+                let shape = targets::target(scene, id)?;
+                let mut target = shape.clone();
+                if let Some((_, parts)) = target.own_parts.as_mut().filter(|(_, parts)| !parts.contains(&GROUND)) {
+                    parts.insert(0, GROUND);
+                }
+                Ok(Targets::of(shape, target))
+            }
             Self::Features => {
                 let length: f64 = scene.must_see().map(|(_, layer)| length(&layer.kind)).sum();
                 let features = sample_features(scene, (length / TO_JUDGE).max(1e-3));
@@ -61,7 +80,8 @@ impl Meant {
                 }
                 let every = points.len().div_ceil(TO_SEARCH).max(1);
                 let search = Target::points(points.iter().skip(every / 2).step_by(every).copied());
-                Ok(Targets { search, judge: Target::points(points) })
+                let judge = Target::points(points);
+                Ok(Targets { search, shape: judge.clone(), judge })
             }
         }
     }
@@ -194,19 +214,29 @@ fn kind_of(path: &Path) -> Result<Kind, BelvedereError> {
     })
 }
 
-/// Whether files are those of a city, beside which features and elevation models may be given.
-///
-/// # Errors
-/// [`BelvedereError::Io`] of a file that cannot be read.
-pub fn hold_a_city(files: &[PathBuf]) -> Result<bool, BelvedereError> {
+/// Whether files are those of a city, or footprints and features, beside which features and elevation models may be given. Files that
+/// cannot be read are none.
+pub fn hold_a_city(files: &[PathBuf]) -> bool {
+    if let [first, _, ..] = files
+        && split_table(first).0.is_file()
+        && matches!(kind_of(first), Ok(Kind::Features))
+        && load_vectors(first).is_ok_and(|v| kinds_of(&v.value).contains(&FeatureKind::Areas))
+    {
+        // Footprints, unless an elevation model follows.
+        let features = |file: &PathBuf| {
+            let is_builtin = file.to_str().is_some_and(|name| name.starts_with("builtin:"));
+            !is_builtin && split_table(file).0.is_file() && matches!(kind_of(file), Ok(Kind::Features))
+        };
+        return files.iter().all(features);
+    }
     for file in files {
         let is_builtin = file.to_str().is_some_and(|name| name.starts_with("builtin:"));
         let is_town = file.to_str().is_some_and(|name| name.starts_with("builtin:town"));
-        if is_town || !is_builtin && split_table(file).0.exists() && matches!(kind_of(file)?, Kind::City) {
-            return Ok(true);
+        if is_town || !is_builtin && split_table(file).0.exists() && matches!(kind_of(file), Ok(Kind::City)) {
+            return true;
         }
     }
-    Ok(false)
+    false
 }
 
 /// The files of a scene with a city.
