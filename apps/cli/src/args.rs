@@ -203,16 +203,16 @@ pub(crate) struct DemoArgs {
 /// Terrain and features.
 #[derive(Debug, Args)]
 pub(crate) struct RevealArgs {
-    /// Terrain: GeoTIFF, .hgt, ESRI ASCII, a folder of tiles, or builtin:massif?seed=7; with --see a model: OBJ, PLY, STL, glTF, PDB, mmCIF, VTI, NRRD,
-    /// raw voxels, or a scene file
+    /// Terrain: GeoTIFF, .hgt, ESRI ASCII, a folder of tiles, or builtin:massif?seed=7; or a city: CityJSON, CityGML, OSM PBF or XML; with --see
+    /// also a model: OBJ, PLY, STL, glTF, PDB, mmCIF, VTI, NRRD, raw voxels, footprints, or a scene file
     #[arg(value_name = "DATA")]
     pub(crate) dem: String,
     /// Routes, areas or points: GPX, GeoJSON, shapefiles, GeoPackages where they are built in, or builtin:massif?seed=7; elevation models
     /// among them are further tiles of the terrain; with --see more models
-    #[arg(required_unless_present = "see")]
     pub(crate) features: Vec<String>,
-    /// Part of a model that must be seen: a file (by its name without ending) or layer, a named part of a mesh, atoms such as "chain B",
-    /// or a point x,y,z, in scene coordinates or as 46.5N,11.3E,+2; rays bend around what hides it
+    /// Part of a model or city that must be seen: a file (by its name without ending) or layer, a named part of a mesh, atoms such as
+    /// "chain B", a building, street or area by name, id or key=value (`info` lists them), a file of routes, or a point x,y,z in scene
+    /// coordinates or as 46.5N,11.3E,+2; rays bend around what hides it
     #[arg(long, value_name = "WHAT", allow_hyphen_values = true)]
     pub(crate) see: Option<String>,
     /// Means that show it where no bend does: transparency, cutaway or explosion of everything that hides it, or LAYER:KIND for one
@@ -266,7 +266,7 @@ pub(crate) struct RevealArgs {
     pub(crate) area_style: Option<SurfaceDoc>,
     /// Write a sheet of up to N pictures from different sides to OUT.png instead of one, with the shares of each and the command that
     /// makes it
-    #[arg(long, value_name = "N", conflicts_with_all = ["see", "eye", "look"])]
+    #[arg(long, value_name = "N", conflicts_with_all = ["eye", "look"])]
     pub(crate) drafts: Option<usize>,
     /// Axis that points upwards in the picture, with --see: x, y, z, -x, -y or -z
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = crate::parse::axis, requires = "see")]

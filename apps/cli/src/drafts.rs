@@ -4,8 +4,10 @@ use crate::goal::Goal;
 use crate::report::{Context, done, print};
 use belvedere::Needs;
 use belvedere::output;
-use belvedere::verbs::drafts::{self, Draft};
+use belvedere::verbs::drafts::{self, Draft, DraftsAnswer};
 use belvedere::verbs::reveal::RevealRequest;
+use belvedere::verbs::reveal_target::TargetRequest;
+use belvedere::verbs::target_drafts::target_drafts;
 use std::path::{Path, PathBuf};
 
 /// Options of the sheet that its commands leave out, with a value of their own.
@@ -13,7 +15,16 @@ const LEFT_OUT: [&str; 7] = ["--drafts", "--out", "-o", "--report", "--before", 
 
 /// Draws the drafts.
 pub(crate) fn drafts(request: &RevealRequest, count: usize, out: &Path, context: &Context) -> anyhow::Result<Goal> {
-    let found = drafts::drafts(request, count, &context.options(Needs::Everything, None))?;
+    sheet(&drafts::drafts(request, count, &context.options(Needs::Everything, None))?, out, context)
+}
+
+/// Draws the drafts of a target in models or in a city.
+pub(crate) fn of_target(request: &TargetRequest, count: usize, out: &Path, context: &Context) -> anyhow::Result<Goal> {
+    sheet(&target_drafts(request, count, &context.options(Needs::Everything, None))?, out, context)
+}
+
+/// Writes the sheet and prints the commands.
+fn sheet(found: &DraftsAnswer, out: &Path, context: &Context) -> anyhow::Result<Goal> {
     found.write(out, context.common.overwrite)?;
     context.finish();
     let commands: Vec<String> = found.drafts.iter().enumerate().map(|(i, draft)| command(draft, i, out)).collect();

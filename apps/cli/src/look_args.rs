@@ -102,11 +102,8 @@ impl LookArgs {
     }
 }
 
-/// Refuses options that say something of terrain where models are shown.
+/// Refuses options that say something of terrain with features where models or cities are shown.
 pub(crate) fn for_models(args: &RevealArgs) -> anyhow::Result<()> {
-    if args.see.is_none() {
-        return Ok(());
-    }
     let (look, ground) = (&args.look_args, &args.ground);
     let given: Vec<&str> = [
         ("--relief", look.relief.is_some()),
@@ -131,7 +128,7 @@ pub(crate) fn for_models(args: &RevealArgs) -> anyhow::Result<()> {
     let (is_are, it) = if given.len() == 1 { ("is", "it") } else { ("are", "them") };
     anyhow::ensure!(
         given.is_empty(),
-        "{} {is_are} for terrain with features, not for models with --see; leave {it} out",
+        "{} {is_are} for terrain with features, not for models and cities; leave {it} out",
         given.join(", ")
     );
     Ok(())

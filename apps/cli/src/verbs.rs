@@ -19,7 +19,7 @@ use belvedere::verbs::animate::{self, AnimateRequest, Film};
 use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest, WrittenGrid};
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
 use belvedere::verbs::reveal_target::{TargetRequest, reveal_target};
-use belvedere::verbs::{check, info, measure, points};
+use belvedere::verbs::{check, hold_a_city, info, measure, points};
 use belvedere::{CameraPicture, DataFiles, Needs, OpenOptions, Session, output, scene_file};
 use belvedere_bench::BenchRequest;
 use std::path::{Path, PathBuf};
@@ -305,7 +305,11 @@ fn delivered(picture: &Picture, out: &Path, files: &RevealFiles, context: &Conte
 }
 
 fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> {
-    crate::look_args::for_models(&args)?;
+    let files: Vec<PathBuf> = [&args.dem].into_iter().chain(&args.features).map(PathBuf::from).collect();
+    let models = args.see.is_some() || hold_a_city(&files);
+    if models {
+        crate::look_args::for_models(&args)?;
+    }
     let picture = args.out;
     let to_file = if is_stdout(&picture) { PathBuf::new() } else { picture.clone() };
     let out = RevealFiles { out: to_file, before: args.before, report: args.report, scene: args.scene };
@@ -331,11 +335,16 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
         picture.quality.threads = context.common.threads;
         picture.quality.max_bytes = context.common.max_mem.unwrap_or(picture.quality.max_bytes);
     };
-    if let Some(see) = args.see {
-        if !matches!(args.technique, None | Some(TechniqueKind::Auto | TechniqueKind::CurvedRays)) {
-            anyhow::bail!("--see bends rays; give --technique curved_rays, or leave it out");
+    if models {
+        if !matches!(
+            args.technique,
+            None | Some(TechniqueKind::Auto | TechniqueKind::CurvedRays | TechniqueKind::Spline)
+        ) {
+            anyhow::bail!(
+                "--see bends rays, or in a city the ground by a spline; give --technique curved_rays or spline, or leave it out"
+            );
         }
-        let files = [args.dem].into_iter().chain(args.features).map(PathBuf::from).collect();
+        let see = args.see.unwrap_or_default();
         let mut request = TargetRequest {
             files,
             see,
@@ -346,9 +355,13 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
             fov_y_deg: args.fov,
             up: args.up.map(belvedere::core::DVec3::from_array),
             image: args.size,
+            technique: args.technique.filter(|kind| *kind != TechniqueKind::Auto).map(Into::into),
             ..TargetRequest::default()
         };
         quality(&mut request.picture);
+        if let Some(count) = args.drafts {
+            return crate::drafts::of_target(&request, count, &out.out, context);
+        }
         return reveal_one(&request, (&picture, &out), context);
     }
     let mut request = RevealRequest {

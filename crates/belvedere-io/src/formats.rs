@@ -159,13 +159,6 @@ pub const FORMATS: &[Format] = &[
     ),
     unread("7-Zip", PACKED, &[".7z"], &[At(0, b"7z\xbc\xaf")], UNPACK),
     unread("RAR", PACKED, &[".rar"], &[At(0, b"Rar!")], UNPACK),
-    unread(
-        "OSM XML",
-        "a map of OpenStreetMap",
-        &[".osm", ".osm.bz2"],
-        &[Root("osm")],
-        "osmium export turns it into GeoJSON",
-    ),
     unread("bzip2", PACKED, &[".bz2"], &[At(0, b"BZh")], UNPACK),
     unread("xz", PACKED, &[".xz"], &[At(0, b"\xfd7zXZ")], UNPACK),
     unread("Zstandard", PACKED, &[".zst"], &[At(0, b"(\xb5/\xfd")], UNPACK),
@@ -210,6 +203,8 @@ pub const FORMATS: &[Format] = &[
     },
     unread("SQLite", "map features in a database", &[".sqlite"], &[At(0, b"SQLite format 3\0")], AS_GEOJSON),
     read(City, "OSM PBF", "a map of OpenStreetMap", &[".pbf"], &[At(6, b"OSMHeader")]),
+    read(City, "OSM XML", "a map of OpenStreetMap", &[".osm"], &[Root("osm")]),
+    read(City, "Overpass JSON", "a map of OpenStreetMap", &[".overpass.json"], &[Json("\"osm3s\":{")]),
     // Recognised by words of their text.
     read(City, "CityJSONSeq", CITY, &[".city.jsonl"], &[Json("\"type\":\"CityJSONFeature\"")]),
     read(City, "CityJSON", CITY, &[".city.json"], &[Json("\"type\":\"CityJSON\""), Json("\"CityObjects\":{")]),
@@ -538,7 +533,7 @@ mod tests {
             ("a.tar.gz", "tar"),
             ("a.raw.gz", "raw samples"),
             ("a.city.json", "CityJSON"),
-            ("b.osm.bz2", "OSM XML"),
+            ("b.osm.bz2", "bzip2"),
             ("c.bz2", "bzip2"),
             ("1abc.ent", "PDB"),
         ] {

@@ -205,7 +205,7 @@ pub(crate) fn features_of(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, 
 /// A layer of rivers: drawn, but not a required feature.
 fn river_layer(id: String, source: Paths) -> LineDoc {
     let style = LineStyleDoc { color: RIVER_COLOR.into(), width_px: 2.0, ..LineStyleDoc::default() };
-    LineDoc { id, source: Some(source), route: None, name_field: None, must_see: false, style }
+    LineDoc { id, source: Some(source), select: None, route: None, name_field: None, must_see: false, style }
 }
 
 fn write_names(layer: &mut LayerDoc) {
@@ -231,6 +231,7 @@ fn feature_layer(id: String, source: Paths, kind: FeatureKind) -> LayerDoc {
         FeatureKind::Lines => LayerDoc::Line(LineDoc {
             id,
             source: Some(source),
+            select: None,
             route: None,
             name_field,
             must_see,

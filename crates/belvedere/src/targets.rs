@@ -20,7 +20,8 @@ pub(crate) fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError>
     if let Some(point) = point(see) {
         return Ok(Target::points([point]));
     }
-    if let Some(index) = scene.layers.iter().position(|l| l.id == see) {
+    let layer = |same: fn(&str, &str) -> bool| scene.layers.iter().position(|l| same(&l.id, see));
+    if let Some(index) = layer(|a, b| a == b).or_else(|| layer(str::eq_ignore_ascii_case)) {
         return Target::layer(scene, index).ok_or_else(|| {
             BelvedereError::Target(format!(
                 "layer \"{see}\" cannot be looked for: it is ground, an area, or holds nothing"

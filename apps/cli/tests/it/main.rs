@@ -4,6 +4,7 @@ mod animate;
 mod areas;
 mod bad_scenes;
 mod cities;
+mod city_targets;
 mod constructors;
 mod curve_inset;
 mod figures;

@@ -178,7 +178,7 @@ fn what_cannot_be_is_refused_in_one_line_that_names_the_option() {
         (place.fails(&massif), "--light-time: the position of the sun at a time needs a georeferenced scene"),
         (model(&["--light-time", "2026-07-01T08:00Z"]), "--light-time: the position of the sun"),
         (model(&["--exaggeration", "2", "--no-sea"]), "--exaggeration, --no-sea are for terrain with features"),
-        (model(&["--relief", "sun"]), "--relief is for terrain with features, not for models with --see; leave it out"),
+        (model(&["--relief", "sun"]), "--relief is for terrain with features, not for models and cities; leave it out"),
     ] {
         assert!(line.contains(words), "{line}");
     }

@@ -24,8 +24,8 @@ use crate::ConstructError;
 use crate::sample::SampledFeature;
 use crate::samples::{default_spacing, sample_features};
 use belvedere_core::presets::PresetDocument;
-use belvedere_core::{DVec3, View, Warning, WarningKind};
-use belvedere_scene::{Progress, Scene};
+use belvedere_core::{DVec2, DVec3, View, Warning, WarningKind};
+use belvedere_scene::{Heightfield, LayerKind, Progress, Scene, Unit};
 use choose::Base;
 use evaluate::Evaluator;
 use search::Candidate;
@@ -90,6 +90,7 @@ pub struct RevealReport {
 
 /// Chooses a view (unless `base` gives one) and a spline bend that show more of the layers that must be seen.
 ///
+/// * `scene`: with terrain; or a city without it, for which `base` is given: it stands on level ground.
 /// * `base`: a camera, with earth curvature at most; its other stages are left out.
 /// * `memory`: where the search of an earlier frame ended;
 /// * `progress`: when its time is up, the best view so far is taken.
@@ -107,7 +108,14 @@ pub fn reveal(
     memory: &mut RevealMemory,
     progress: &Progress,
 ) -> Result<Revealed, ConstructError> {
-    let heightfield = scene.terrain().ok_or(ConstructError::NoTerrain)?;
+    let flat;
+    let heightfield = match scene.terrain() {
+        Some(terrain) => terrain,
+        None => {
+            flat = base.and_then(|_| flat_ground(scene)).ok_or(ConstructError::NoTerrain)?;
+            &flat
+        }
+    };
     let features = usable_features(scene, heightfield)?;
     progress.tick("preparing lines of sight", 0.0)?;
     let evaluator = Evaluator::new(scene, heightfield, &features, 4 * options.samples_per_try);
@@ -140,6 +148,35 @@ pub fn reveal(
     progress.tick("refining the picture", 1.0)?;
     let total = features.iter().flat_map(|f| &f.samples).map(|s| s.amount).sum();
     Ok(finish(&evaluator, &base.view, best, options, &Counts { total, eyes_tried, bends_tried, free }))
+}
+
+/// Grid cells along the longer side of level ground.
+const FLAT_CELLS: f64 = 256.0;
+
+/// Level ground under a city without terrain, at the median height of its lines and points that must be seen; `None` if there is no such
+/// scene.
+fn flat_ground(scene: &Scene) -> Option<Heightfield> {
+    let has_mesh = scene.layers.iter().any(|l| matches!(l.kind, LayerKind::Mesh(_)));
+    let bounds = scene.bounds();
+    if scene.unit != Unit::Metre || !has_mesh || bounds.is_empty() {
+        return None;
+    }
+    let features = sample_features(scene, default_spacing(scene));
+    let mut heights: Vec<f64> = features.iter().flat_map(|f| &f.samples).map(|s| s.p_world.z - s.lift).collect();
+    heights.sort_by(f64::total_cmp);
+    let height = heights.get(heights.len() / 2).copied()?;
+    let size = (bounds.max - bounds.min).truncate();
+    let step = (size.max_element() / FLAT_CELLS).max(1e-3);
+    let [cols, rows] = [size.x, size.y].map(|side| (side / step).ceil() as usize + 1);
+    let north_west = DVec2::new(bounds.min.x, bounds.min.y + step * (rows - 1) as f64);
+    Heightfield::measured(
+        north_west,
+        DVec2::splat(step),
+        cols.max(2),
+        rows.max(2),
+        vec![height as f32; cols.max(2) * rows.max(2)],
+    )
+    .ok()
 }
 
 /// Angle between the headings of two drafts, degrees.
@@ -185,7 +222,7 @@ struct Counts {
     free: bool,
 }
 
-fn usable_features(scene: &Scene, hf: &belvedere_scene::Heightfield) -> Result<Vec<SampledFeature>, ConstructError> {
+fn usable_features(scene: &Scene, hf: &Heightfield) -> Result<Vec<SampledFeature>, ConstructError> {
     if scene.must_see().next().is_none() {
         return Err(ConstructError::NothingToSee { layers: scene.layers.len() });
     }

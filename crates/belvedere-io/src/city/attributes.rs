@@ -1,6 +1,8 @@
 //! Attributes of buildings: names, heights, storeys, and whether they are landmarks.
 
+use super::plan::Repairs;
 use belvedere_scene::HeightSource;
+use std::collections::BTreeMap;
 
 /// Height of a storey, and of the roof above the last one, metres.
 const STOREY_M: f64 = 3.0;
@@ -49,22 +51,33 @@ const LANDMARKS: [&str; 16] = [
 pub(super) trait Attributes {
     /// The attribute as text, if it is there and not empty.
     fn text(&self, key: &str) -> Option<String>;
+
+    /// All attributes that are text or numbers.
+    fn all(&self) -> BTreeMap<String, String> {
+        BTreeMap::new()
+    }
 }
 
-/// Height over ground, metres, and its source, from attributes. Values that are not numbers, or not in 0..=2000 m, are counted in `odd`
-/// and ignored. Zero storeys are ignored.
-pub(super) fn height(of: &impl Attributes, odd: &mut usize) -> (f64, HeightSource) {
-    let mut believed = |text: Option<String>, metres: fn(&str) -> Option<f64>| {
-        let text = text?;
-        let fine = metres(&text).filter(|v| *v > 0.0 && *v <= MOST_M);
-        *odd += usize::from(fine.is_none());
+/// Height over ground, metres, and its source, from attributes. Values that are not numbers, or not in 0..=2000 m, are counted in
+/// `repairs` and ignored. Zero storeys are ignored. Of lists and ranges the largest counts, for heights reach up to the top of a
+/// building (OpenStreetMap Wiki, "Simple 3D Buildings").
+pub(super) fn height(of: &impl Attributes, repairs: &mut Repairs) -> (f64, HeightSource) {
+    let mut believed = |text: Option<String>, metres: fn(&Stated) -> f64| {
+        let stated = Stated::of(&text?);
+        let fine = stated.as_ref().map(metres).filter(|v| *v > 0.0 && *v <= MOST_M);
+        repairs.heights += usize::from(fine.is_none());
+        if let (Some(stated), Some(_)) = (stated, fine) {
+            repairs.about += usize::from(stated.approximate);
+            repairs.several += usize::from(stated.several);
+        }
         fine
     };
-    if let Some(height) = believed(HEIGHTS.iter().find_map(|k| of.text(k)), length_m) {
+    if let Some(height) = believed(HEIGHTS.iter().find_map(|k| of.text(k)), |s| s.metres) {
         return (height, HeightSource::Stated);
     }
-    let levels = LEVELS.iter().find_map(|k| of.text(k)).filter(|text| first_number(text).is_none_or(|(n, _)| n != 0.0));
-    match believed(levels, |text| first_number(text).filter(|(n, _)| *n > 0.0).map(|(n, _)| n * STOREY_M + ABOVE_M)) {
+    let none = |text: &String| Stated::of(text).is_some_and(|s| s.number == 0.0);
+    let levels = LEVELS.iter().find_map(|k| of.text(k)).filter(|text| !none(text));
+    match believed(levels, |s| if s.number > 0.0 { s.number * STOREY_M + ABOVE_M } else { 0.0 }) {
         Some(height) => (height, HeightSource::Levels),
         None => (ASSUMED_M, HeightSource::Assumed),
     }
@@ -81,17 +94,92 @@ pub(super) fn is_landmark(of: &impl Attributes) -> bool {
     })
 }
 
-/// A length such as `12`, `12.5 m`, `12,5m`, `40 ft` or `10-12 ft` (the first number counts), in metres.
-pub(super) fn length_m(text: &str) -> Option<f64> {
-    let (number, rest) = first_number(text)?;
-    let unit = rest.trim_start_matches(|c: char| !c.is_alphabetic() && c != '\'');
-    let feet = unit.starts_with("ft") || unit.starts_with("feet") || unit.starts_with('\'');
-    // `65'6"`: feet and inches.
-    let inches = rest.strip_prefix('\'').and_then(first_number).map_or(0.0, |(inches, _)| inches);
-    Some(if feet { 0.3048 * (number + inches / 12.0) } else { number })
+/// Words and signs before a number that is approximate.
+const ABOUT: [&str; 14] =
+    ["~", "≈", "±", "approximately", "approx.", "approx", "circa", "about", "etwa", "env.", "ca.", "ca ", "c.", "est."];
+
+/// A number as people write it: `18`, `~18`, `18 m`, `60 ft`, `60'`, `65'6"`, `18,5`, `5;7` or `10-12 ft`.
+struct Stated {
+    /// The largest number.
+    number: f64,
+    /// The same as a length, metres; without a unit it is in metres.
+    metres: f64,
+    /// Whether it is called approximate.
+    approximate: bool,
+    /// Whether there are several numbers.
+    several: bool,
 }
 
-/// The longest number that a text begins with, and the rest: `2;3` is 2, `10-12 m` is 10.
+impl Stated {
+    fn of(text: &str) -> Option<Self> {
+        let bare = without_about(text);
+        let approximate = bare.len() < text.trim().len();
+        let pieces = pieces(&bare);
+        // `10-12 ft`: the unit stands once.
+        let last = pieces.last().and_then(|piece| unit_m(&first_number(piece)?.1)).unwrap_or(1.0);
+        let mut found: Option<(f64, f64)> = None;
+        for piece in &pieces {
+            let (number, rest) = first_number(without_about(piece).as_str())?;
+            // `65'6"`: feet and inches.
+            let inches = rest.strip_prefix('\'').and_then(first_number).map_or(0.0, |(inches, _)| inches);
+            let metres = number * unit_m(&rest).unwrap_or(last) + 0.0254 * inches;
+            if found.is_none_or(|(_, most)| metres > most) {
+                found = Some((number, metres));
+            }
+        }
+        let (number, metres) = found?;
+        Some(Self { number, metres, approximate, several: pieces.len() > 1 })
+    }
+}
+
+/// A length, in metres, as heights are read.
+pub(super) fn length_m(text: &str) -> Option<f64> {
+    Stated::of(text).map(|stated| stated.metres)
+}
+
+/// A number, as numbers of storeys are read.
+pub(super) fn number(text: &str) -> Option<f64> {
+    Stated::of(text).map(|stated| stated.number)
+}
+
+fn without_about(text: &str) -> String {
+    let mut text = text.trim().to_lowercase();
+    while let Some(rest) = ABOUT.iter().find_map(|word| text.strip_prefix(word)) {
+        text = rest.trim_start().to_owned();
+    }
+    text
+}
+
+/// The unit that follows a number, metres; `None` if none does.
+fn unit_m(rest: &str) -> Option<f64> {
+    let unit = rest.trim_start_matches(|c: char| !c.is_alphabetic() && c != '\'');
+    let is = |names: &[&str]| names.iter().any(|name| unit.starts_with(name));
+    match () {
+        () if is(&["ft", "feet", "foot", "'"]) => Some(0.3048),
+        () if is(&["cm"]) => Some(0.01),
+        () if unit.is_empty() => None,
+        () => Some(1.0),
+    }
+}
+
+/// The parts of a list or a range: at `;`, `/` and at dashes between numbers.
+fn pieces(text: &str) -> Vec<String> {
+    let mut out = vec![String::new()];
+    let mut before = ' ';
+    for c in text.chars() {
+        let dash = matches!(c, '-' | '–' | '—') && before != ' ' && before != 'e';
+        if matches!(c, ';' | '/') || dash {
+            out.push(String::new());
+        } else if let Some(last) = out.last_mut() {
+            last.push(c);
+        }
+        before = if c == ' ' { before } else { c };
+    }
+    out.retain(|piece| !piece.trim().is_empty());
+    out
+}
+
+/// The longest number that a text begins with, and the rest.
 fn first_number(text: &str) -> Option<(f64, String)> {
     let text = text.trim().replace(',', ".");
     let of_number = |c: &char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E');
@@ -112,32 +200,38 @@ mod tests {
 
     #[test]
     fn heights_are_stated_or_follow_from_storeys_or_are_assumed() {
-        let mut odd = 0;
+        let mut repairs = Repairs::default();
         for (attributes, want, source) in [
             (&[("height", "12,5 m")][..], 12.5, HeightSource::Stated),
+            (&[("height", "18m")][..], 18.0, HeightSource::Stated),
             (&[("height", "40 ft")][..], 12.192, HeightSource::Stated),
             (&[("height", "40'")][..], 12.192, HeightSource::Stated),
             (&[("height", "65'6\"")][..], 19.9644, HeightSource::Stated),
             (&[("height", "1e2")][..], 100.0, HeightSource::Stated),
-            (&[("height", "10-12 ft")][..], 3.048, HeightSource::Stated),
-            (&[("building:levels", "2;3")][..], 7.0, HeightSource::Levels),
+            (&[("height", "10-12 ft")][..], 3.6576, HeightSource::Stated),
+            (&[("height", "30 – 25,5 m")][..], 30.0, HeightSource::Stated),
+            (&[("height", "~18")][..], 18.0, HeightSource::Stated),
+            (&[("height", "ca. 18 m")][..], 18.0, HeightSource::Stated),
+            (&[("building:levels", "5;7")][..], 22.0, HeightSource::Levels),
             (&[("building:levels", "2.5")][..], 8.5, HeightSource::Levels),
+            (&[("building:levels", "~4")][..], 13.0, HeightSource::Levels),
             (&[("levels", "0")][..], 9.0, HeightSource::Assumed),
             (&[][..], 9.0, HeightSource::Assumed),
         ] {
-            let (height, from) = height(&attributes, &mut odd);
+            let (height, from) = height(&attributes, &mut repairs);
             assert!((height - want).abs() < 1e-9 && from == source, "{attributes:?}: {height} {from:?}");
         }
-        assert_eq!(odd, 0);
-        assert_eq!(height(&&[("height", "-4"), ("levels", "3")][..], &mut odd), (10.0, HeightSource::Levels));
-        for text in ["99999", "1e300", "1e999", "NaN", "inf", "0", "tall", "~12", "-"] {
-            assert_eq!(height(&&[("height", text)][..], &mut odd), (9.0, HeightSource::Assumed), "{text}");
+        assert_eq!([repairs.heights, repairs.about, repairs.several], [0, 3, 3]);
+        let of = |attributes: &[(&str, &str)], repairs: &mut Repairs| height(&attributes, repairs);
+        assert_eq!(of(&[("height", "-4"), ("levels", "3")], &mut repairs), (10.0, HeightSource::Levels));
+        for text in ["99999", "1e300", "1e999", "NaN", "inf", "0", "tall", "~", "-", ";", "~tall"] {
+            assert_eq!(of(&[("height", text)], &mut repairs), (9.0, HeightSource::Assumed), "{text}");
         }
-        assert_eq!(height(&&[("height", "tall"), ("levels", "4")][..], &mut odd), (13.0, HeightSource::Levels));
+        assert_eq!(of(&[("height", "tall"), ("levels", "4")], &mut repairs), (13.0, HeightSource::Levels));
         for text in ["-1", "1000", "two"] {
-            assert_eq!(height(&&[("levels", text)][..], &mut odd), (9.0, HeightSource::Assumed), "{text}");
+            assert_eq!(of(&[("levels", text)], &mut repairs), (9.0, HeightSource::Assumed), "{text}");
         }
-        assert_eq!(odd, 1 + 9 + 1 + 3);
+        assert_eq!(repairs.heights, 1 + 11 + 1 + 3);
         assert!(is_landmark(&&[("building", "Church;ruins")][..]) && !is_landmark(&&[("building", "towerblock")][..]));
     }
 }

@@ -25,6 +25,10 @@ impl Attributes for Map<String, Value> {
             _ => None,
         }
     }
+
+    fn all(&self) -> BTreeMap<String, String> {
+        self.keys().filter_map(|key| Some((key.clone(), self.text(key)?))).collect()
+    }
 }
 
 /// Vertices and templates to which indices refer.

@@ -4,7 +4,7 @@ use super::attributes::{self, Attributes};
 use super::pictures::PictureList;
 use super::plan::{self, Repairs};
 use super::reference::Reference;
-use super::{CityFile, IoError, Loaded};
+use super::{CityAbout, CityFile, IoError, Loaded};
 use crate::Limits;
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Building, City, CityArea, CityFace, HeightSource, LandCover, Structure, StructureKind};
@@ -33,6 +33,7 @@ impl Lod {
 #[derive(Default)]
 pub(super) struct Collector<'l> {
     city: City,
+    about: Vec<CityAbout>,
     repairs: Repairs,
     lods: BTreeSet<Lod>,
     wanted: Option<&'l str>,
@@ -62,6 +63,7 @@ impl<'l> Collector<'l> {
             return;
         };
         self.clean(&mut faces);
+        self.about.push(CityAbout { id: id.clone(), name: name.clone(), attributes: about.all() });
         let structure = match kind {
             "Building" | "BuildingPart" | "BuildingUnit" => return self.building(id, name, about, faces),
             "Bridge" | "BridgePart" => StructureKind::Bridge,
@@ -86,7 +88,7 @@ impl<'l> Collector<'l> {
         limits: &Limits,
     ) -> Result<Loaded<CityFile>, IoError> {
         let fail = |reason: String| IoError::format(path, reason);
-        let Self { mut city, repairs, lods, wanted, left_out, pictures, without_faces, unread } = self;
+        let Self { mut city, about, repairs, lods, wanted, left_out, pictures, without_faces, unread } = self;
         let lods: Vec<String> = lods.into_iter().map(|lod| lod.1).collect();
         if let Some(wanted) = wanted.filter(|w| !lods.iter().any(|lod| lod == w)) {
             return Err(fail(format!("has no level of detail {wanted}; it has {}", lods.join(", "))));
@@ -112,7 +114,7 @@ impl<'l> Collector<'l> {
         let (crs, reference) = (reference.crs, reference.said);
         Ok(Loaded {
             files,
-            ..Loaded::new(CityFile { path: path.into(), format, crs, reference, lods, city }, warnings)
+            ..Loaded::new(CityFile { path: path.into(), format, crs, reference, lods, city, about }, warnings)
         })
     }
 
@@ -161,7 +163,7 @@ impl<'l> Collector<'l> {
         let (height_m, height_source, faces) = if height > 0.1 {
             (height, HeightSource::Shape, faces)
         } else {
-            let (height, source) = attributes::height(about, &mut self.repairs.heights);
+            let (height, source) = attributes::height(about, &mut self.repairs);
             (height, source, Vec::new())
         };
         if footprint.is_empty() && faces.is_empty() {

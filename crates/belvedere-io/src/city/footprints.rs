@@ -1,5 +1,6 @@
 //! Footprints, ways and land cover from map features.
 
+use super::about::{CityAbout, IDS};
 use super::attributes::{self, Attributes};
 use super::plan::{self, Repairs};
 use super::{CityFile, IoError, Loaded};
@@ -13,16 +14,20 @@ impl Attributes for BTreeMap<String, String> {
         let (_, value) = self.iter().find(|(k, _)| k.eq_ignore_ascii_case(key))?;
         Some(value.trim().to_owned()).filter(|t| !t.is_empty())
     }
+
+    fn all(&self) -> BTreeMap<String, String> {
+        self.clone()
+    }
 }
 
 /// The city that the features of a file make. If no polygon of the file has a known kind, all are buildings; if no line has a known
 /// class, all are residential streets.
 pub(super) fn city(vectors: Vectors) -> Result<Loaded<CityFile>, IoError> {
-    let mut city = City::default();
+    let (mut city, mut about) = (City::default(), Vec::new());
     let (mut repairs, mut unknown, mut points) = (Repairs::default(), 0, 0);
     let told = vectors.features.iter().any(|f| is_building(f) || cover(&f.properties).is_some());
     let told_ways = vectors.features.iter().any(|f| way_class(&f.properties).is_some());
-    for feature in &vectors.features {
+    for (number, feature) in vectors.features.iter().enumerate() {
         match &feature.geometry {
             Geometry::Points(_) => points += 1,
             Geometry::Lines(lines) => match way_class(&feature.properties)
@@ -51,7 +56,13 @@ pub(super) fn city(vectors: Vectors) -> Result<Loaded<CityFile>, IoError> {
                         city.areas.push(CityArea { name: feature.name.clone(), cover, polygons });
                     }
                     _ if is_building(feature) || !told => {
-                        city.buildings.push(building(feature, polygons, &mut repairs))
+                        let mut building = building(feature, polygons, &mut repairs);
+                        if building.id.is_empty() {
+                            building.id = format!("feature/{}", number + 1);
+                        }
+                        let (id, name) = (building.id.clone(), building.name.clone());
+                        about.push(CityAbout { id, name, attributes: feature.properties.clone() });
+                        city.buildings.push(building);
                     }
                     _ => unknown += 1,
                 }
@@ -77,7 +88,7 @@ pub(super) fn city(vectors: Vectors) -> Result<Loaded<CityFile>, IoError> {
     let (warnings, reference) = (warnings.collect(), vectors.crs.name().to_owned());
     let format = vectors.format.to_owned();
     let crs = Some(vectors.crs).filter(|crs| !crs.is_local());
-    let file = CityFile { path, format, crs, reference, lods: vec!["0".into()], city };
+    let file = CityFile { path, format, crs, reference, lods: vec!["0".into()], city, about };
     Ok(Loaded::new(file, warnings))
 }
 
@@ -93,8 +104,8 @@ fn is_building(feature: &VectorFeature) -> bool {
 
 fn building(feature: &VectorFeature, footprint: Vec<Polygon>, repairs: &mut Repairs) -> Building {
     let about = &feature.properties;
-    let (height_m, height_source) = attributes::height(about, &mut repairs.heights);
-    let id = ["id", "@id", "osm_id", "full_id", "fid"].iter().find_map(|k| about.text(k)).unwrap_or_default();
+    let (height_m, height_source) = attributes::height(about, repairs);
+    let id = IDS.iter().find_map(|k| about.text(k)).unwrap_or_default();
     let name = if feature.name.is_empty() { attributes::name(about) } else { feature.name.clone() };
     let landmark = attributes::is_landmark(about);
     Building { id, name, landmark, footprint, base_m: None, height_m, height_source, faces: Vec::new() }

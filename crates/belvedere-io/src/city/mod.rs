@@ -1,6 +1,7 @@
-//! Cities: CityJSON, CityJSONSeq, CityGML and OpenStreetMap's PBF, and footprints, ways and land cover in GeoJSON,
+//! Cities: CityJSON, CityJSONSeq, CityGML and OpenStreetMap's files, and footprints, ways and land cover in GeoJSON,
 //! shapefiles and GeoPackages.
 
+mod about;
 mod attributes;
 mod citygml;
 mod cityjson;
@@ -19,6 +20,8 @@ mod roofs;
 mod surface;
 mod tin;
 
+pub use about::{CityAbout, is_meant};
+pub(crate) use osm::vectors as osm_vectors;
 pub use place::reproject;
 pub use roof::prism_on;
 pub use surface::{CityColors, CityGround, plate_extent, surface};
@@ -39,7 +42,7 @@ use std::path::{Path, PathBuf};
 pub struct CityFile {
     /// The file, for messages.
     pub path: PathBuf,
-    /// Format, for messages: "CityJSON 2.0", "CityJSONSeq", "CityGML 2.0", "OSM PBF", "GeoJSON", "shapefile" or "GeoPackage".
+    /// Format, for messages: "CityJSON 2.0", "CityJSONSeq", "CityGML 2.0", "OSM PBF", "OSM XML", "Overpass JSON", "GeoJSON", "shapefile" or "GeoPackage".
     pub format: String,
     /// Horizontal system of every coordinate; `None` if the file names none.
     pub crs: Option<CoordinateSystem>,
@@ -49,6 +52,8 @@ pub struct CityFile {
     pub lods: Vec<String>,
     /// The city, in the file's coordinates: x and y in its system, heights in metres.
     pub city: City,
+    /// What the file says of buildings and other solids, by their ids.
+    pub about: Vec<CityAbout>,
 }
 
 /// Reads a city; the format is told by the content.
@@ -66,7 +71,7 @@ pub fn load_city(path: &Path, lod: Option<&str>, limits: &Limits) -> Result<Load
     if let Some(model) = model(path)? {
         let (bytes, file) = InputFile::read(path)?;
         let loaded = match model {
-            Model::OsmPbf => osm::load(path, &bytes)?,
+            Model::Osm(format) => osm::load(path, &bytes, format)?,
             Model::CityJson => cityjson::load(path, &text(path, &bytes)?, lod, limits)?,
             Model::CityGml => citygml::load(path, &text(path, &bytes)?, lod, limits)?,
         };
@@ -91,15 +96,18 @@ fn text<'b>(path: &Path, bytes: &'b [u8]) -> Result<Cow<'b, str>, IoError> {
     }
 }
 
+/// Names of the formats of OpenStreetMap.
+pub(crate) const OSM: [&str; 3] = ["OSM PBF", "OSM XML", "Overpass JSON"];
+
 /// Formats that hold only cities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Model {
     CityJson,
     CityGml,
-    OsmPbf,
+    Osm(&'static str),
 }
 
-/// Whether a file can only be a city, by its first bytes: CityJSON, CityJSONSeq, CityGML or OpenStreetMap's PBF.
+/// Whether a file can only be a city, by its first bytes: CityJSON, CityJSONSeq, CityGML or a file of OpenStreetMap.
 ///
 /// # Errors
 /// [`IoError::Os`].
@@ -115,7 +123,7 @@ fn meant(path: &Path, limits: &Limits) -> Result<PathBuf, IoError> {
 fn model(path: &Path) -> Result<Option<Model>, IoError> {
     let format = recognise::of_content(split_table(path).0)?.filter(|format| format.reader == Some(Reader::City));
     Ok(format.map(|format| match format.name {
-        "OSM PBF" => Model::OsmPbf,
+        name if OSM.contains(&name) => Model::Osm(name),
         "CityGML" => Model::CityGml,
         _ => Model::CityJson,
     }))

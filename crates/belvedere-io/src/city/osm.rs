@@ -1,16 +1,20 @@
-//! OpenStreetMap's PBF: buildings, streets, railways, rivers and land cover from tagged ways and multipolygons.
+//! OpenStreetMap: buildings, streets, railways, rivers and land cover from tagged ways and multipolygons.
+
+mod features;
+mod read;
+
+pub(crate) use features::vectors;
 
 use super::attributes;
 use super::footprints::{cover, way_class};
 use super::parts::{self, Tagged};
 use super::plan::{self, Repairs};
-use super::{CityFile, IoError, Loaded};
+use super::{CityAbout, CityFile, IoError, Loaded};
 use crate::crs::CoordinateSystem;
 use belvedere_core::polygon::{doubled_area, is_inside};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{City, CityArea, Polygon, Way, WayClass};
 use glam::DVec2;
-use osmpbf::{Element, ElementReader, RelMemberType};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 
@@ -59,18 +63,14 @@ struct Lost {
     underground: usize,
 }
 
-pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<CityFile>, IoError> {
-    // The reader panics on an unknown kind of a member.
-    let read = std::panic::catch_unwind(|| Map::read(bytes));
-    let read = read.unwrap_or_else(|_| Err("its blocks contradict themselves".into()));
-    let map =
-        read.map_err(|e| IoError::format(path, format!("OSM PBF is damaged or cut off ({e}); fetch it again")))?;
+pub(super) fn load(path: &Path, bytes: &[u8], format: &'static str) -> Result<Loaded<CityFile>, IoError> {
+    let map = Map::of_file(path, bytes, format)?;
     let (mut lost, mut repairs) = (Lost::default(), Repairs::default());
     let city = map.city(&mut lost, &mut repairs);
     if city == City::default() {
         let [nodes, ways, relations] = map.counts;
         let reason = format!(
-            "OSM PBF of {nodes} nodes, {ways} ways and {relations} relations holds no building, way or land cover; choose another extract"
+            "{format} of {nodes} nodes, {ways} ways and {relations} relations holds no building, way or land cover; choose another extract"
         );
         return Err(IoError::format(path, reason));
     }
@@ -84,55 +84,19 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<CityFile>, IoErro
         .map(|w| w.in_file(path))
         .collect();
     let crs = CoordinateSystem::wgs84().map_err(|e| IoError::format(path, e.to_string()))?;
-    let (format, reference) = ("OSM PBF".into(), crs.name().to_owned());
-    let file = CityFile { path: path.into(), format, crs: Some(crs), reference, lods: vec!["0".into()], city };
+    let (format, reference) = (format.into(), crs.name().to_owned());
+    let (crs, lods, about) = (Some(crs), vec!["0".into()], map.about());
+    let file = CityFile { path: path.into(), format, crs, reference, lods, city, about };
     Ok(Loaded::new(file, warnings))
 }
 
 impl Map {
-    /// Relations come after ways and ways after nodes, so the file is read three times and only what is used is kept.
-    fn read(bytes: &[u8]) -> Result<Self, String> {
-        let each =
-            |what: &mut dyn FnMut(Element<'_>)| ElementReader::new(bytes).for_each(what).map_err(|e| e.to_string());
-        let mut map = Self::default();
-        each(&mut |element| map.relation(&element))?;
-        let members: HashSet<i64> = map.relations.iter().flat_map(|r| &r.ways).copied().collect();
-        each(&mut |element| map.way(&element, &members))?;
-        let wanted: HashSet<i64> = map.ways.values().flat_map(|w| &w.nodes).copied().collect();
-        each(&mut |element| map.node(&element, &wanted))?;
-        Ok(map)
-    }
-
-    fn relation(&mut self, element: &Element<'_>) {
-        let Element::Relation(relation) = element else { return };
-        self.counts[2] += 1;
-        let tags = owned(relation.tags());
-        if tags.get("type").is_some_and(|t| t == "multipolygon") && is_wanted(&tags) {
-            let ways = relation.members().filter(|m| m.member_type == RelMemberType::Way).map(|m| m.member_id);
-            self.relations.push(Relation { id: relation.id(), tags, ways: ways.collect() });
-        }
-    }
-
-    fn way(&mut self, element: &Element<'_>, members: &HashSet<i64>) {
-        let Element::Way(way) = element else { return };
-        self.counts[1] += 1;
-        let tags = owned(way.tags());
-        if members.contains(&way.id()) || is_wanted(&tags) {
-            self.ways.insert(way.id(), Line { tags, nodes: way.refs().collect() });
-        }
-    }
-
-    fn node(&mut self, element: &Element<'_>, wanted: &HashSet<i64>) {
-        let (id, lon, lat) = match element {
-            Element::Node(node) => (node.id(), node.lon(), node.lat()),
-            Element::DenseNode(node) => (node.id(), node.lon(), node.lat()),
-            _ => return,
-        };
-        self.counts[0] += 1;
-        let on_earth = lon.abs() <= 180.0 && lat.abs() <= 90.0;
-        if on_earth && wanted.contains(&id) {
-            self.nodes.insert(id, DVec2::new(lon, lat));
-        }
+    /// What the tags say of buildings.
+    fn about(&self) -> Vec<CityAbout> {
+        let of_ways = self.ways.iter().map(|(id, line)| (format!("way/{id}"), &line.tags));
+        let of_relations = self.relations.iter().map(|r| (format!("relation/{}", r.id), &r.tags));
+        let buildings = of_ways.chain(of_relations).filter(|(_, tags)| is_building(tags));
+        buildings.map(|(id, tags)| CityAbout { id, name: attributes::name(tags), attributes: tags.clone() }).collect()
     }
 
     fn city(&self, lost: &mut Lost, repairs: &mut Repairs) -> City {
@@ -216,10 +180,6 @@ impl Map {
         }
         groups.into_iter().flatten().filter_map(|rings| plan::polygon(rings, repairs)).collect()
     }
-}
-
-fn owned<'t>(tags: impl Iterator<Item = (&'t str, &'t str)>) -> Tags {
-    tags.map(|(k, v)| (k.to_owned(), v.to_owned())).collect()
 }
 
 fn is_building(tags: &Tags) -> bool {

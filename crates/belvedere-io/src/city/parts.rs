@@ -37,7 +37,7 @@ impl Tagged {
         part: bool,
         repairs: &mut Repairs,
     ) -> Self {
-        let (mut height_m, height_source) = attributes::height(about, &mut repairs.heights);
+        let (mut height_m, height_source) = attributes::height(about, repairs);
         let roof = Roof::of(about, length_m);
         let mut rise = 0.0;
         if roof.is_pitched() {
@@ -76,7 +76,7 @@ impl Tagged {
 fn under(about: &impl Attributes) -> Option<f64> {
     let height = ["min_height", "building:min_height"].iter().find_map(|k| about.text(k));
     let level = ["building:min_level", "min_level"].iter().find_map(|k| about.text(k));
-    let by_level = || Some(STOREY_M * level?.parse::<f64>().ok()?);
+    let by_level = || Some(STOREY_M * attributes::number(&level?)?);
     height.as_deref().and_then(length_m).or_else(by_level).filter(|h| h.is_finite() && *h > 0.0)
 }
 

@@ -21,6 +21,10 @@ pub(super) struct Repairs {
     pub(super) crossing: usize,
     /// Heights that are out of range, or not numbers.
     pub(super) heights: usize,
+    /// Heights that are stated as approximate.
+    pub(super) about: usize,
+    /// Heights that are lists or ranges.
+    pub(super) several: usize,
     /// Polygons with a coordinate beyond the limit, or not finite.
     pub(super) far: usize,
     /// Holes that are not within their outline.
@@ -31,7 +35,7 @@ pub(super) struct Repairs {
 
 impl Repairs {
     pub(super) fn warnings(&self) -> impl Iterator<Item = Warning> {
-        use WarningKind::{Ignored, Repaired, Suspect};
+        use WarningKind::{Assumed, Ignored, Inexact, Repaired, Suspect};
         let of = Warning::counted;
         [
             of(Ignored, self.short_rings, "rings of fewer than 3 different vertices were dropped"),
@@ -40,6 +44,8 @@ impl Repairs {
             of(Ignored, self.holes, "holes that are not within their outline were dropped"),
             of(Ignored, self.far, "polygons with coordinates beyond 1e8 were dropped; correct their system"),
             of(Repaired, self.heights, "heights that are no numbers of metres in 0..2000 were not believed"),
+            of(Inexact, self.about, "heights are stated as approximate, such as ~18, and are taken as they stand"),
+            of(Assumed, self.several, "heights are lists or ranges, such as 5;7; the largest of each is taken"),
             of(Suspect, self.tall, "buildings are higher than 2000 m by their shape; check the unit of their heights"),
         ]
         .into_iter()

@@ -16,10 +16,11 @@ pub use gpx::track_times;
 pub use names::name_field;
 pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
 
+use crate::city::{OSM, osm_vectors};
 use crate::crs::CoordinateSystem;
 use crate::formats::Reader;
 use crate::packed::content_for;
-use crate::recognise::explain;
+use crate::recognise::{self, explain};
 use crate::table::split_table;
 use crate::text::text_of;
 use crate::{InputFile, IoError, Loaded, fs};
@@ -89,7 +90,7 @@ pub struct VectorFeature {
 pub struct Vectors {
     /// The file, for messages.
     pub path: PathBuf,
-    /// Format, for messages: "GPX", "GeoJSON", "shapefile" or "GeoPackage".
+    /// Format, for messages: "GPX", "GeoJSON", "shapefile", "GeoPackage", or one of OpenStreetMap.
     pub format: &'static str,
     /// Name of the layer that the file states, possibly empty.
     pub layer: String,
@@ -134,7 +135,7 @@ impl Vectors {
     }
 }
 
-/// Reads a GPX, GeoJSON, shapefile or (with the feature `geopackage`) GeoPackage; the content decides which, not the name.
+/// Reads a GPX, GeoJSON, shapefile, file of OpenStreetMap or (with the feature `geopackage`) GeoPackage; the content decides which, not the name.
 ///
 /// * `path`: for a GeoPackage optionally with the wanted table appended, see [`crate::split_table`]; by default all of its tables are read.
 ///
@@ -169,6 +170,10 @@ fn load_known(path: &Path) -> Result<Loaded<Vectors>, IoError> {
         ));
     }
     let (bytes, file) = InputFile::read(path)?;
+    let osm = recognise::of_content(path)?.filter(|format| OSM.contains(&format.name));
+    if let Some(format) = osm {
+        return Ok(osm_vectors(path, &bytes, format.name)?.with_file(file));
+    }
     #[cfg(feature = "geopackage")]
     if bytes.starts_with(geopackage::MAGIC) {
         return Ok(geopackage::load(path, table, bytes)?.with_file(file));

@@ -339,7 +339,7 @@ fn footprints() {
         judge(&folder, "a.geojson", height, &file(json!([s]), json!({ "height": height })).to_string(), &wrong);
     }
     for (key, value) in
-        [("height", "12 m"), ("height", "40'"), ("height", "2;3"), ("building:levels", "2;3"), ("building:levels", "0")]
+        [("height", "12 m"), ("height", "40'"), ("height", "2,5"), ("building:levels", "2.5"), ("building:levels", "0")]
     {
         judge(&folder, "a.geojson", value, &file(json!([s]), json!({ key: value })).to_string(), &Fine);
     }

@@ -1,6 +1,7 @@
 //! OpenStreetMap's PBF: files made here byte by byte, broken ones, and a real extract.
 
 use crate::support_files::Folder;
+use belvedere_io::vector::load_vectors;
 use belvedere_io::{CityFile, Limits, Loaded, load_city};
 use belvedere_scene::{HeightSource, LandCover, WayClass};
 use belvedere_testkit::data;
@@ -245,6 +246,47 @@ fn parts_float_stand_on_each_other_and_hide_underground() {
     assert!(block.faces.is_empty() && (block.height_m - 19.9644).abs() < 1e-9);
     assert_eq!(value.city.ways.len(), 1, "the passage");
     assert!(warnings.iter().any(|w| w.text().contains("2 buildings and ways that lie underground")), "{warnings:?}");
+}
+
+/// The same town as XML and as the answer of Overpass.
+fn as_text(town: &Extract) -> [String; 2] {
+    let xml = "<osm version=\"0.6\"><bounds/>".to_owned();
+    let nodes = town.nodes.iter().map(|(id, x, y)| format!("<node id=\"{id}\" lon=\"{x}\" lat=\"{y}\"/>\n"));
+    let way = "<way id=\"1\"><nd ref=\"10\"/><nd ref=\"11\"/><nd ref=\"12\"/><nd ref=\"13\"/><nd ref=\"10\"/>\
+        <tag k=\"building\" v=\"yes\"/><tag k=\"name\" v=\"Bread &amp; Co\"/><tag k=\"height\" v=\"~18\"/></way>\n\
+        <way id=\"2\"><nd ref=\"20\"/><nd ref=\"22\"/><tag k=\"highway\" v=\"residential\"/><tag k=\"name\" v=\"Lane\"/></way>\n\
+        <relation id=\"3\"><member type=\"way\" ref=\"4\" role=\"outer\"/><tag k=\"type\" v=\"multipolygon\"/>\
+        <tag k=\"leisure\" v=\"park\"/></relation><way id=\"4\"><nd ref=\"30\"/><nd ref=\"31\"/><nd ref=\"32\"/><nd ref=\"30\"/></way></osm>";
+    let json_nodes =
+        town.nodes.iter().map(|(id, x, y)| format!("{{\"type\":\"node\",\"id\":{id},\"lon\":{x},\"lat\":{y}}},\n"));
+    let json_ways = "{\"type\":\"way\",\"id\":1,\"nodes\":[10,11,12,13,10],\"tags\":{\"building\":\"yes\",\"name\":\"Bread & Co\",\"height\":\"~18\"}},\
+        {\"type\":\"way\",\"id\":2,\"nodes\":[20,22],\"tags\":{\"highway\":\"residential\",\"name\":\"Lane\"}},\
+        {\"type\":\"relation\",\"id\":3,\"members\":[{\"type\":\"way\",\"ref\":4,\"role\":\"outer\"}],\"tags\":{\"type\":\"multipolygon\",\"leisure\":\"park\"}},\
+        {\"type\":\"way\",\"id\":4,\"nodes\":[30,31,32,30]}]}";
+    let json = "{\"version\":0.6,\"osm3s\":{\"copyright\":\"x\"},\"elements\":[\n".to_owned();
+    [xml + &nodes.collect::<String>() + way, json + &json_nodes.collect::<String>() + json_ways]
+}
+
+#[test]
+fn xml_and_the_answer_of_overpass_are_read_as_pbf_is_and_their_objects_are_features() {
+    let folder = Folder::new();
+    let texts = as_text(&town());
+    for (name, format, text) in [("a.osm", "OSM XML", &texts[0]), ("a.json", "Overpass JSON", &texts[1])] {
+        let path = folder.file(name, text.as_bytes());
+        let Loaded { value, warnings, .. } = load_city(&path, None, &Limits::default()).expect(name);
+        assert_eq!(value.format, format);
+        let [building] = &value.city.buildings[..] else { panic!("{:?}", value.city.buildings) };
+        assert_eq!((building.name.as_str(), building.height_m), ("Bread & Co", 18.0));
+        assert!(warnings.iter().any(|w| w.text().contains("1 heights are stated as approximate")), "{warnings:?}");
+        assert!(value.about[0].is_meant("bread & co") && value.about[0].is_meant("building=yes"));
+        assert_eq!((value.city.ways.len(), value.city.areas.len()), (1, 1));
+        let features = load_vectors(&path).expect(name).value.features;
+        let names: Vec<(&str, &str)> =
+            features.iter().map(|f| (f.properties["id"].as_str(), f.name.as_str())).collect();
+        assert_eq!(names, [("relation/3", ""), ("way/1", "Bread & Co"), ("way/2", "Lane")]);
+        let error = load_city(&folder.file(name, &text.as_bytes()[..text.len() - 20]), None, &Limits::default());
+        assert!(error.is_err_and(|e| e.to_string().contains("damaged or cut off")), "{name}");
+    }
 }
 
 #[test]

@@ -27,6 +27,45 @@ pub(super) fn share(target: &Target, frame: &Frame, alone: &Frame) -> (usize, f6
     (all, seen as f64 / all.max(1) as f64)
 }
 
+/// The scene with the target alone; `None` for points and lines, which have no surface of their own.
+pub(crate) fn target_alone(scene: &Scene, target: &Target) -> Option<Scene> {
+    occluders::target_alone(scene, target)
+}
+
+/// The pixels that a target fills where it is drawn alone, and those of them that a picture shows.
+pub(crate) struct Mask {
+    /// Whether a pixel is one of the target's, row by row.
+    pub(crate) own: Vec<bool>,
+    /// Whether the picture shows the target there.
+    pub(crate) seen: Vec<bool>,
+    width: usize,
+}
+
+impl Mask {
+    /// * `alone`: the target alone; `on_ground`: with the ground on which it stands, below which it has no pixels.
+    pub(crate) fn of(target: &Target, frame: &Frame, alone: &Frame, on_ground: Option<&Frame>) -> Self {
+        let same = |a: f32, b: f32| (f64::from(a) - f64::from(b)).abs() <= SAME_DEPTH * f64::from(b);
+        let above = |i: usize| on_ground.is_none_or(|ground| same(ground.depth[i], alone.depth[i]));
+        let own: Vec<bool> = (0..alone.id.len()).map(|i| is_target(target, alone.id[i]) && above(i)).collect();
+        let is_seen = |i: usize| own[i] && is_target(target, frame.id[i]) && same(frame.depth[i], alone.depth[i]);
+        let seen = (0..own.len()).map(is_seen).collect();
+        Self { own, seen, width: frame.width }
+    }
+
+    /// Whether the picture shows the target at a pixel or beside it: its rim shares pixels with what is behind.
+    fn is_seen(&self, i: usize) -> bool {
+        let beside = [Some(i), i.checked_sub(1), Some(i + 1), i.checked_sub(self.width), Some(i + self.width)];
+        beside.into_iter().flatten().any(|k| self.seen.get(k) == Some(&true))
+    }
+
+    /// Share of the pixels that are seen, 0..=1; 0 without any.
+    pub(crate) fn share(&self) -> f64 {
+        let own = (0..self.own.len()).filter(|&i| self.own[i]);
+        let (all, seen) = own.fold((0usize, 0usize), |(all, seen), i| (all + 1, seen + usize::from(self.is_seen(i))));
+        seen as f64 / all.max(1) as f64
+    }
+}
+
 /// Visible share, 0..=1, of the session's tracked target in a picture; `None` if it tracks none, or one without pixels of its own, such
 /// as a point.
 ///

@@ -2,6 +2,7 @@
 
 pub(crate) mod badge;
 pub(crate) mod camera;
+pub(crate) mod contour;
 pub(crate) mod curve_inset;
 pub(crate) mod ghost;
 pub(crate) mod grid;

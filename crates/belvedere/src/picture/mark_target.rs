@@ -1,9 +1,12 @@
-//! Marks of target points in pictures.
+//! Marks of targets in pictures: a ring around points, an outline around everything that has a surface.
 
-use super::{Picture, TargetPlace};
-use crate::overlays::ring;
-use belvedere_construct::rays::BendReport;
-use belvedere_core::DVec3;
+use super::{Picture, PictureOptions, TargetPlace};
+use crate::fallback::in_sight::{Mask, target_alone};
+use crate::overlays::{contour, ring};
+use crate::{BelvedereError, Session};
+use belvedere_construct::rays::{BendReport, Target};
+use belvedere_core::{DVec3, View};
+use belvedere_scene::{RenderJob, RenderOptions, Scene};
 
 impl Picture {
     /// Marks a target point in both pictures, and records its position.
@@ -22,5 +25,43 @@ impl Picture {
             }
         }
         self.sidecar.target = Some(place.clone());
+    }
+
+    /// Draws the outline of a target in both pictures, of dashes where it is hidden; returns the shares of its pixels that the straight and
+    /// the bent picture show, of those that it fills where it is drawn alone. `None` for points and lines, which have no surface.
+    ///
+    /// * `on_ground`: the target with the ground on which it stands, if that is drawn with it.
+    pub(crate) fn mark_shape(
+        &mut self,
+        session: &Session,
+        (target, on_ground): (&Target, &Target),
+        options: &PictureOptions,
+    ) -> Result<Option<[f64; 2]>, BelvedereError> {
+        let Some(alone) = target_alone(session.scene(), target) else { return Ok(None) };
+        let ground = if on_ground == target { None } else { target_alone(session.scene(), on_ground) };
+        let drawing = RenderOptions { marks: false, ..options.quality.clone() };
+        let draw = |scene: &Scene, view: &View| {
+            let (light, progress) = (session.light(), &options.progress);
+            let job = RenderJob { scene, view, light, options: &drawing, progress };
+            options.renderer.of(session).render(&job)
+        };
+        // Around everything in the picture an outline tells nothing.
+        let is_own = |i: usize| target.own_layers.contains(&i);
+        let has_others =
+            (0..session.scene().layers.len()).any(|i| !is_own(i) && !session.scene().layers[i].bounds().is_empty());
+        let straight_view = self.view.straightened();
+        let mut shares = [0.0; 2];
+        let frames = [(self.straight.as_mut(), &straight_view), (Some(&mut self.frame), &self.view)];
+        for (share, (frame, view)) in shares.iter_mut().zip(frames) {
+            let Some(frame) = frame else { continue };
+            let own = draw(&alone, view)?;
+            let above = ground.as_ref().map(|scene| draw(scene, view)).transpose()?;
+            let mask = Mask::of(target, frame, &own, above.as_ref());
+            *share = mask.share();
+            if has_others {
+                contour::draw(frame, &mask);
+            }
+        }
+        Ok(Some(shares))
     }
 }

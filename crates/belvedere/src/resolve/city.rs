@@ -11,10 +11,11 @@ use crate::scene_file::{CityDoc, LayerDoc, Paths};
 use belvedere_construct::generalise::{GeneraliseSettings, generalise};
 use belvedere_core::DVec2;
 use belvedere_core::{Warning, WarningKind};
-use belvedere_io::city::{CityColors, plate_extent, reproject};
+use belvedere_io::city::{CityAbout, CityColors, plate_extent, reproject};
 use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::{CityFile, load_city};
 use belvedere_scene::{City, Crs, HeightSource, LayerKind, RigidParts, Surface};
+use std::collections::HashSet;
 
 /// Widest city, with its rim, metres.
 const WIDEST_M: f64 = 1.5e6;
@@ -49,7 +50,7 @@ pub(super) fn files(loader: &mut Loader<'_>, index: usize, doc: &CityDoc) -> Res
 
 fn built_in(name: &str, city: City) -> CityFile {
     let (path, format) = (name.into(), BUILT_IN.into());
-    CityFile { path, format, crs: None, reference: String::new(), lods: Vec::new(), city }
+    CityFile { path, format, crs: None, reference: String::new(), lods: Vec::new(), city, about: Vec::new() }
 }
 
 /// The coordinate system of a scene with this city alone: the city's own if scenes support it, else the UTM zone of its middle.
@@ -97,10 +98,11 @@ pub(super) fn layer(
         wall: loader.color(index, &style.wall)?,
         ground: loader.color(index, &style.ground)?,
     };
-    let mut city = City::default();
+    let (mut city, mut about) = (City::default(), Vec::new());
     let stated = stated(loader, index, doc)?;
     for file in files(loader, index, doc)? {
         let mut part = file.city;
+        about.extend(file.about);
         if let (Some(from), Crs::Epsg(_)) = (stated.as_ref().or(file.crs.as_ref()), ground.crs) {
             let to = CoordinateSystem::from_scene(ground.crs).map_err(|e| loader.fail(index, "crs", e))?;
             let lost = reproject(&mut part, from, &to).map_err(|e| loader.fail(index, "crs", e))?;
@@ -136,15 +138,30 @@ pub(super) fn layer(
     compact(&city).map_err(|e| loader.fail(index, "source", e))?;
     // Part 0 is the space between buildings; bridges and trees follow the buildings.
     let buildings = (1..=city.buildings.len() as u32).collect();
+    let chosen = doc.select.as_deref().map(|select| meant(&city, &about, select));
     let mut layer = mesh(city, &colors, terrain, extent).map_err(|e| loader.fail(index, "source", e))?;
     layer.mesh = with_ambient_occlusion(loader, index, layer.mesh, style.ambient_occlusion, ground)?;
     if doc.rigid {
         layer.rigid = RigidParts::Only(buildings);
     }
-    if let Some(select) = &doc.select {
-        layer.wanted = Some(wanted(&layer, select).map_err(|e| loader.fail(index, "select", e))?);
-    }
+    layer.wanted = match (chosen, &doc.select) {
+        (Some(parts), _) if !parts.is_empty() => Some(parts),
+        (_, Some(select)) => Some(wanted(&layer, select).map_err(|e| loader.fail(index, "select", e))?),
+        _ => None,
+    };
     Ok(LayerKind::Mesh(layer))
+}
+
+/// Numbers of the parts of the buildings and other solids that a text means: as a whole, or else separated by commas.
+fn meant(city: &City, about: &[CityAbout], select: &str) -> Vec<u32> {
+    let of = |by: &str| {
+        let ids: HashSet<&str> = about.iter().filter(|a| a.is_meant(by)).map(|a| a.id.as_str()).collect();
+        let solids = city.buildings.iter().map(|b| &b.id).chain(city.structures.iter().map(|s| &s.id));
+        let named = solids.enumerate().filter(|(_, id)| ids.contains(id.as_str()));
+        named.map(|(k, _)| k as u32 + 1).collect::<Vec<_>>()
+    };
+    let whole = of(select);
+    if whole.is_empty() { select.split(',').flat_map(of).collect() } else { whole }
 }
 
 /// A city at a level of abstraction.

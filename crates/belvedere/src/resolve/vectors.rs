@@ -5,6 +5,7 @@ use super::loader::Loader;
 use crate::BelvedereError;
 use crate::scene_file::{LayerDoc, Paths};
 use belvedere_core::{Warning, WarningKind};
+use belvedere_io::city::is_meant;
 use belvedere_io::vector::{
     AreaKind, Geometry, Vectors, area_kind, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain,
 };
@@ -101,6 +102,26 @@ fn name_field(layer: &LayerDoc) -> Option<&str> {
     }
 }
 
+/// The features that a layer means, if it says which.
+fn select<'l>(loader: &Loader<'l>, index: usize) -> Option<&'l str> {
+    match loader.layers.get(index)? {
+        LayerDoc::Line(l) => l.select.as_deref(),
+        _ => None,
+    }
+}
+
+/// Keeps the features that `select` means.
+fn kept(vectors: &mut Vectors, select: &str) -> Result<(), String> {
+    let before = vectors.features.len();
+    vectors.features.retain(|f| is_meant(select, &f.name, &f.properties));
+    match vectors.features.is_empty() {
+        true => Err(format!(
+            "none of its {before} features is meant by \"{select}\"; give a name, an id or key=value, `info` lists them"
+        )),
+        false => Ok(()),
+    }
+}
+
 fn names(paths: &Paths, file: &str) -> bool {
     paths.as_slice().iter().any(|name| name == file)
 }
@@ -128,6 +149,10 @@ fn all<T>(
         inspect(&vectors);
         if let Some(field) = loader.layers.get(index).and_then(name_field) {
             vectors.name_by(field).map_err(|reason| loader.fail(index, "name_field", reason))?;
+        }
+        if let Some(select) = select(loader, index) {
+            let select = select.to_owned();
+            kept(&mut vectors, &select).map_err(|reason| loader.fail(index, "select", reason))?;
         }
         stand(loader, index, &mut vectors);
         let found = on_terrain(&vectors, ground.crs, ground.terrain)?;

@@ -4,7 +4,7 @@ use super::common::{Paths, is_false};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// A city: CityJSON, CityJSONSeq, CityGML 1 or 2, OSM PBF, or footprints and land cover as GeoJSON, shapefile or GeoPackage.
+/// A city: CityJSON, CityJSONSeq, CityGML 1 or 2, OSM PBF or XML, or footprints and land cover as GeoJSON, shapefile or GeoPackage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct CityDoc {
@@ -15,7 +15,7 @@ pub struct CityDoc {
     /// Whether constructors and measures work for it.
     #[serde(default)]
     pub must_see: bool,
-    /// Names or ids of buildings, separated by commas, that `must_see` means; by default the whole city.
+    /// Names or ids of buildings, separated by commas, or `key=value` of an attribute, that `must_see` means; by default the whole city.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub select: Option<String>,
     /// `EPSG:n` of the files' x and y, where they do not say it or say it wrongly.

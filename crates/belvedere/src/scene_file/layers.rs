@@ -72,6 +72,21 @@ impl LayerDoc {
         }
     }
 
+    /// Sets whether constructors and measures work for the layer; terrain stays as it is.
+    pub fn set_must_see(&mut self, must_see: bool) {
+        *match self {
+            Self::Terrain(_) => return,
+            Self::Line(l) => &mut l.must_see,
+            Self::Area(l) => &mut l.must_see,
+            Self::Point(l) => &mut l.must_see,
+            Self::Boxes(l) => &mut l.must_see,
+            Self::Mesh(l) => &mut l.must_see,
+            Self::Molecule(l) => &mut l.must_see,
+            Self::City(l) => &mut l.must_see,
+            Self::Volume(l) => &mut l.must_see,
+        } = must_see;
+    }
+
     /// Whether bends carry its parts as rigid bodies; `None` for kinds that have none.
     pub fn rigid(&self) -> Option<bool> {
         match self {
@@ -226,6 +241,9 @@ pub struct LineDoc {
     /// A file, several, or `builtin:NAME` for the lines of a built-in scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub source: Option<Paths>,
+    /// Those features of the files that are meant: a name, an id, or `key=value` of a property; by default all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub select: Option<String>,
     /// A generated route along the valleys instead of a file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub route: Option<RouteDoc>,

@@ -112,6 +112,15 @@ fn smaller(width: usize, height: usize, pixels: &[[u8; 3]]) -> (usize, usize, Ve
 }
 
 impl Draft {
+    /// * `eye`, `look`, `fov_y_deg`: the view; `frame`: its picture.
+    pub(super) fn new(
+        (eye, look, fov_y_deg): ([f64; 3], [f64; 3], f64),
+        shares: FinalShares,
+        frame: &belvedere_scene::Frame,
+    ) -> Self {
+        Self { eye, look, fov_y_deg, shares, pixels: smaller(frame.width, frame.height, &frame.color) }
+    }
+
     /// Its shares in words.
     pub fn words(&self) -> String {
         let [straight, bent] = self.shares.both();

@@ -3,6 +3,7 @@
 pub mod animate;
 pub mod appearance;
 pub mod check;
+mod city_views;
 pub mod disocclude;
 pub mod drafts;
 pub mod generalise;
@@ -19,5 +20,11 @@ pub mod preset;
 pub mod reveal;
 mod reveal_files;
 pub mod reveal_target;
+pub mod target_drafts;
+mod target_names;
+mod target_scene;
 mod target_views;
 mod written_rivers;
+
+pub use target_names::CitySee;
+pub use target_scene::hold_a_city;

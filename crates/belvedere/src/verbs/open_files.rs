@@ -127,7 +127,7 @@ fn is_json_scene(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) && scene_file::read(path).is_ok()
 }
 
-fn ground(mut files: Vec<String>) -> LayerDoc {
+pub(super) fn ground(mut files: Vec<String>) -> LayerDoc {
     let source = if files.len() == 1 { Paths::One(files.remove(0)) } else { Paths::Many(files) };
     LayerDoc::Terrain(TerrainDoc {
         id: "ground".into(),

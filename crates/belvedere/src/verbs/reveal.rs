@@ -461,7 +461,7 @@ impl RevealAnswer {
 }
 
 /// The found spline as a stage of a document; `None` if the picture is straight.
-fn spline_stage(found: &Revealed) -> Option<StageDoc> {
+pub(super) fn spline_stage(found: &Revealed) -> Option<StageDoc> {
     let bend = found.bend.as_ref()?;
     Some(StageDoc::SplineBend(SplineStageDoc {
         presets: PresetsDoc::Inline(Box::new(bend.document.clone())),

@@ -1,23 +1,22 @@
-//! `reveal --see`: draws a picture in which one target in models is visible, by rays that bend around its occluders.
+//! `reveal --see`: draws a picture in which one target in models or in a city is visible, by rays that bend around its occluders, or by a
+//! spline where it lies on the ground.
 
 use super::appearance::Appearance;
-use super::model_layers::{layer, set_transfer, unit_of};
-use super::target_views;
+use super::target_scene::{self, Meant, Targets};
+use super::{city_views, target_views};
 use crate::picture::{Picture, PictureOptions, TargetPlace};
 use crate::places::Place;
 use crate::resolve::rays::sidestep_stage;
-use crate::scene_file::{
-    CameraDoc, ConstructorDoc, ConstructorKind, Document, LayerDoc, PointDoc, SourceDocument, StageDoc,
-};
-use crate::targets::{self, target};
-use crate::verbs::reveal::{IMAGE, RevealFiles, Viewpoint};
+use crate::scene_file::{CameraDoc, ConstructorDoc, ConstructorKind, Document, PointDoc, StageDoc};
+use crate::targets;
+use crate::verbs::reveal::{IMAGE, RevealFiles, Technique, Viewpoint, spline_stage};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::rays::{AroundOptions, BendReport, Sidestep, Target, TargetSight, bend_around};
+use belvedere_construct::{ConstructError, RevealMemory, RevealOptions, Revealed};
 use belvedere_core::{DVec3, Pinhole, Projection, View, Warning};
-use belvedere_scene::LayerKind;
-use belvedere_scene::molecule::Selection;
+use belvedere_scene::{LayerKind, Unit};
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Full vertical field of view unless given, degrees.
 const FOV_Y_DEG: f64 = 30.0;
@@ -25,14 +24,17 @@ const FOV_Y_DEG: f64 = 30.0;
 const ENOUGH: f64 = 0.99;
 const VIEWS_AT_LEAST: usize = 3;
 const MUCH: f64 = 0.8;
+/// Visible share that a spline must show in addition to curved rays: it moves the whole picture.
+const SPLINE_GAIN: f64 = 0.03;
 
 /// Target to show, and the view.
 #[derive(Debug, Clone, Default)]
 pub struct TargetRequest {
-    /// Models (meshes, molecules, volumes) or one scene file.
+    /// Models (meshes, molecules, volumes), one scene file, or cities with features and elevation models.
     pub files: Vec<PathBuf>,
-    /// The target: id of a layer (that of a file is its name without the ending), atoms such as `chain B`, or a point `x,y,z`, scene
-    /// coordinates.
+    /// The target: id of a layer (that of a file is its name without the ending), atoms such as `chain B`, a point `x,y,z`, scene
+    /// coordinates, or in a city the name or id of a building, street or area, `key=value`, or a file of features; empty for all
+    /// features of `files`.
     pub see: String,
     /// Transfer function of volume files: a name or a file; `auto` if left out.
     pub transfer: Option<String>,
@@ -48,6 +50,8 @@ pub struct TargetRequest {
     pub image: Option<[u32; 2]>,
     /// Fallbacks if no bend shows the target: `transparency`, `cutaway` or `explosion`, alone or as `LAYER:KIND`.
     pub fallback: Vec<String>,
+    /// Curved rays, or a spline for features in a city; by default the one that shows more.
+    pub technique: Option<Technique>,
     /// Quality of the pictures.
     pub picture: PictureOptions,
     /// Light, stylisation and mark; models have no exaggeration.
@@ -67,6 +71,85 @@ pub struct TargetAnswer {
     pub see: String,
     /// Position of the target, if it is a point.
     pub place: Option<TargetPlace>,
+    /// Technique that bends the picture; `None` if it is straight.
+    pub technique: Option<Technique>,
+    /// Kind of the target's mark in the pictures.
+    pub mark: &'static str,
+}
+
+/// A bend that was found.
+enum Bend {
+    Rays(Sidestep),
+    Spline(Box<Revealed>),
+}
+
+/// A scene that was opened, and what must be seen in it.
+pub(super) struct Opened {
+    pub(super) session: Session,
+    pub(super) meant: Meant,
+    /// The target by its name; of a place its scene coordinates.
+    pub(super) see: String,
+    pub(super) targets: Targets,
+    pub(super) up: DVec3,
+    pub(super) lens: ([u32; 2], f64),
+}
+
+impl Opened {
+    pub(super) fn of(request: &TargetRequest, options: &OpenOptions) -> Result<Self, BelvedereError> {
+        let fov_y_deg = request.fov_y_deg.unwrap_or(FOV_Y_DEG);
+        if !(fov_y_deg > 0.0 && fov_y_deg < 180.0) {
+            return Err(BelvedereError::FieldOfView { deg: fov_y_deg });
+        }
+        let (mut session, mut meant) = target_scene::open(request, options)?;
+        let (see, said) = written_point(&session, &request.see)?;
+        session.loaded.warnings.extend(said);
+        if targets::point(&see).is_some() {
+            meant = Meant::Named(see.clone());
+        }
+        let targets = meant.targets(session.scene())?;
+        if request.technique == Some(Technique::Spline) && !meant.is_features() {
+            let reason = "a spline bends the ground under routes, streets and areas; for this target give --technique curved_rays";
+            return Err(BelvedereError::Target(reason.into()));
+        }
+        let lens = (request.image.unwrap_or(IMAGE), fov_y_deg.to_radians());
+        Ok(Self { session, meant, see, targets, up: request.up.unwrap_or(DVec3::Z), lens })
+    }
+
+    /// Whether views are chosen as those of a city.
+    fn is_city(&self) -> bool {
+        let scene = self.session.scene();
+        let from_files = self.session.path().is_none();
+        let city = || self.session.resolved().is_some_and(|d| d.layer.iter().any(|l| l.kind() == "city"));
+        from_files && scene.unit == Unit::Metre && city()
+    }
+
+    /// The views that are worth a search for bends; at most `most`, or as many as are usual.
+    pub(super) fn views(&self, most: Option<usize>) -> Result<Vec<View>, BelvedereError> {
+        let (scene, target) = (self.session.scene(), &self.targets.search);
+        match self.is_city() {
+            true => city_views::around(scene, target, self.lens, most.unwrap_or(city_views::KEPT)),
+            false => target_views::around(scene, target, self.up, self.lens, most.unwrap_or(target_views::KEPT)),
+        }
+    }
+
+    /// The camera of a bent picture, brought back to what it is to hold.
+    pub(super) fn reframed(&self, view: &View, sidestep: &Sidestep) -> Option<View> {
+        let (scene, target) = (self.session.scene(), &self.targets.search);
+        let points = if self.is_city() { city_views::region(target) } else { target_views::outline(scene) };
+        target_views::reframed(scene, view, sidestep, (target, &points))
+    }
+
+    /// The spline that shows more of the features in a view, if there is one.
+    fn spline(&self, view: &View, options: &OpenOptions) -> Result<Option<Revealed>, BelvedereError> {
+        let search = RevealOptions { image: self.lens.0, fov_y: self.lens.1, ..RevealOptions::default() };
+        let (scene, progress) = (self.session.scene(), &options.progress);
+        match belvedere_construct::reveal(scene, Some(view), &search, &mut RevealMemory::default(), progress) {
+            Ok(found) => Ok(found.bend.is_some().then_some(found)),
+            Err(e @ ConstructError::Cancelled(_)) => Err(e.into()),
+            // Views for which no spline can be made keep their curved rays.
+            Err(_) => Ok(None),
+        }
+    }
 }
 
 /// Chooses a view (unless given) and the smallest bend that shows the target, and draws both pictures.
@@ -74,30 +157,22 @@ pub struct TargetAnswer {
 /// # Errors
 /// [`BelvedereError::Target`] if there is no such target, else as [`Session::open`] and [`Session::render`].
 pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnswer, BelvedereError> {
-    let fov_y_deg = request.fov_y_deg.unwrap_or(FOV_Y_DEG);
-    if !(fov_y_deg > 0.0 && fov_y_deg < 180.0) {
-        return Err(BelvedereError::FieldOfView { deg: fov_y_deg });
-    }
-    let mut session = open(request, options)?;
-    let (see, said) = written_point(&session, &request.see)?;
-    session.loaded.warnings.extend(said);
-    let target = target(session.scene(), &see)?;
-    let place = targets::point(&see).map(|p| TargetPlace::of(session.scene(), p));
-    let up = request.up.unwrap_or(DVec3::Z);
-    let (view, said) = given(&session, request, fov_y_deg, up)?;
-    session.loaded.warnings.extend(said);
+    let mut opened = Opened::of(request, options)?;
+    let (view, said) = given(&opened.session, request, opened.lens, opened.up)?;
+    opened.session.loaded.warnings.extend(said);
+    let Opened { session, meant, targets, see, .. } = &opened;
+    let scene = session.scene();
+    let target = &targets.search;
+    let place = targets::point(see).map(|p| TargetPlace::of(scene, p));
     let (views, free) = match view {
         Some(view) => (vec![view], false),
-        None => {
-            let image = request.image.unwrap_or(IMAGE);
-            (target_views::around(session.scene(), &target, up, (image, fov_y_deg.to_radians()))?, true)
-        }
+        None => (opened.views(None)?, true),
     };
     let around = AroundOptions::default();
     let mut best: Option<(View, Option<Sidestep>, BendReport)> = None;
     let (mut tried, mut light_best) = (0, 0.0f64);
     for (k, view) in views.into_iter().enumerate() {
-        let found = bend_around(session.scene(), &view, &target, &around, &options.progress)?;
+        let found = bend_around(scene, &view, target, &around, &options.progress)?;
         (tried, light_best) = (tried + found.report.tried, light_best.max(found.report.light_best));
         let score = |r: &BendReport| r.visible - 0.1 * r.motion;
         if best.as_ref().is_none_or(|(.., b)| score(&found.report) > score(b) + 0.02) {
@@ -109,30 +184,51 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
             break;
         }
     }
-    let Some((mut view, sidestep, mut report)) = best else {
+    let Some((mut view, sidestep, report)) = best else {
         return Err(BelvedereError::Target("there is no view to look from".into()));
     };
-    if let Some(sidestep) = sidestep.as_ref().filter(|_| free)
-        && let Some(moved) = target_views::reframed(session.scene(), &view, sidestep, &target)
+    let only_spline = request.technique == Some(Technique::Spline);
+    let mut bend = sidestep.filter(|_| !only_spline).map(Bend::Rays);
+    if let Some(Bend::Rays(sidestep)) = bend.as_ref().filter(|_| free)
+        && let Some(moved) = opened.reframed(&view, sidestep)
     {
-        let sight = TargetSight::new(session.scene(), &target);
-        let bent = sidestep.view(&moved)?;
-        report.visible = sight.share(&bent, 0.0);
-        report.in_frame = sight.in_frame(&bent);
-        report.visible_straight = sight.share(&moved, 0.0);
-        report.in_frame_straight = sight.in_frame(&moved);
         view = moved;
     }
-    let report = BendReport { tried, light_best, ..report };
-    let mut document = document(&session, &view, sidestep.as_ref(), &target)?;
+    let sight = TargetSight::new(scene, &targets.judge);
+    let bent = match &bend {
+        Some(Bend::Rays(sidestep)) => sidestep.view(&view)?,
+        _ => view.clone(),
+    };
+    let mut report = BendReport { tried, light_best, ..judged(&sight, &view, &bent, report) };
+    if meant.is_features()
+        && request.technique != Some(Technique::CurvedRays)
+        && (only_spline || report.visible < ENOUGH)
+        && let Some(found) = opened.spline(&view, options)?
+    {
+        let by_spline = judged(&sight, &view, &found.view, report);
+        let gain = if only_spline { 0.0 } else { SPLINE_GAIN };
+        if by_spline.visible > report.visible + gain {
+            (report, bend) = (by_spline, Some(Bend::Spline(Box::new(found))));
+        }
+    }
+    let mut document = document(session, &view, bend.as_ref(), target)?;
     if report.visible < ENOUGH && !request.fallback.is_empty() {
-        let (target, fallback) = (Some(see.clone()), request.fallback.clone());
+        let Some(name) = meant.name() else {
+            return Err(BelvedereError::Target(
+                "--fallback is for buildings and models, not for features on the ground".into(),
+            ));
+        };
+        let (target, fallback) = (Some(name.to_owned()), request.fallback.clone());
         document.constructor = Some(ConstructorDoc { target, fallback, ..ConstructorDoc::of(ConstructorKind::Manual) });
     }
+    let technique = bend.as_ref().map(|bend| match bend {
+        Bend::Rays(_) => Technique::CurvedRays,
+        Bend::Spline(_) => Technique::Spline,
+    });
     request.appearance.describe(&mut document, session.scene().crs)?;
     let session = match request.appearance.is_usual() {
         true => session.with_document(document, None)?,
-        false => Appearance::of_document(&session, document)?,
+        false => Appearance::of_document(session, document)?,
     };
     let pair = PictureOptions {
         compare: true,
@@ -141,64 +237,49 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
         ..request.picture.clone()
     };
     let mut picture = session.render(&pair)?;
+    let mut mark = "lines and points in colour, dashed where they are hidden";
     if let Some(place) = &place {
         picture.mark_target(place, &report);
+        mark = place.mark;
+    } else if let Some(shares) = picture.mark_shape(&session, (&targets.shape, &targets.judge), &pair)? {
+        mark = "an outline around it, of dashes where it is hidden";
+        // Volumes let light through, which ids do not tell, and fallbacks have a report of their own.
+        if !has_volumes(&session) && picture.sidecar.fallback.is_none() {
+            let [straight, bent] = shares;
+            report.visible_straight = straight * report.in_frame_straight;
+            report.visible = bent * report.in_frame;
+        }
     }
-    Ok(TargetAnswer { session, picture, report, see, place })
+    let see = see.clone();
+    Ok(TargetAnswer { session, picture, report, see, place, technique, mark })
 }
 
-/// Opens the layers with a provisional camera.
-fn open(request: &TargetRequest, options: &OpenOptions) -> Result<Session, BelvedereError> {
-    let is_scene = |p: &PathBuf| p.extension().is_some_and(|e| e == "toml" || e == "json");
-    if let [file] = &request.files[..]
-        && is_scene(file)
-    {
-        if request.transfer.is_some() {
-            return Err(BelvedereError::Target(
-                "a scene file states its transfer functions itself; leave --transfer out".into(),
-            ));
-        }
-        return Session::open(file, options);
+/// A report with the shares of a straight and of a bent view.
+fn judged(sight: &TargetSight<'_>, straight: &View, bent: &View, report: BendReport) -> BendReport {
+    BendReport {
+        visible: sight.share(bent, 0.0),
+        in_frame: sight.in_frame(bent),
+        visible_straight: sight.share(straight, 0.0),
+        in_frame_straight: sight.in_frame(straight),
+        ..report
     }
-    let mut options = options.clone();
-    let mut layers = Vec::new();
-    for file in &request.files {
-        if file.to_str().is_some_and(|name| name.starts_with("builtin:")) {
-            layers.push(layer(file, &layers)?);
-            continue;
-        }
-        let path = belvedere_io::fs::canonicalize(file).map_err(|e| belvedere_io::IoError::os(file, e))?;
-        options.allow_roots.extend(path.parent().map(Path::to_owned));
-        layers.push(layer(&path, &layers)?);
-    }
-    if let Some(transfer) = &request.transfer {
-        set_transfer(&mut layers, transfer, &mut options)?;
-    }
-    for layer in &mut layers {
-        if let LayerDoc::Molecule(molecule) = layer
-            && Selection::parse(&request.see).is_ok()
-        {
-            molecule.select = Some(request.see.clone());
-        }
-    }
-    let unit = unit_of(&layers);
-    let camera = CameraDoc::looking(DVec3::new(0.0, -1.0, 0.0), DVec3::ZERO);
-    let title = format!("{} revealed", request.see);
-    let document = Document { title, crs: "local".into(), unit, layer: layers, ..Document::seen_by(camera) };
-    Session::from_document(SourceDocument::new(document), &options)
+}
+
+fn has_volumes(session: &Session) -> bool {
+    session.scene().layers.iter().any(|l| matches!(l.kind, LayerKind::Volume(_)))
 }
 
 /// The view that is given by the request or the scene file.
 fn given(
     session: &Session,
     request: &TargetRequest,
-    fov_y_deg: f64,
+    (_, fov_y): ([u32; 2], f64),
     up: DVec3,
 ) -> Result<(Option<View>, Vec<Warning>), BelvedereError> {
     let is_scene_file = session.path().is_some();
     let own = session.view().pinhole();
     let image = request.image.unwrap_or(if is_scene_file { own.image } else { IMAGE });
-    let lens = Projection::Perspective { fov_y: fov_y_deg.to_radians() };
+    let lens = Projection::Perspective { fov_y };
     if let Some([eye, target]) = request.places.or(request.viewpoint.map(Into::into)) {
         let ((eye, of_eye), (look, of_look)) =
             (session.find_place(&eye, "eye")?, session.find_place(&target, "target")?);
@@ -224,12 +305,7 @@ fn written_point(session: &Session, see: &str) -> Result<(String, Option<Warning
 }
 
 /// The document of the session with the found view.
-fn document(
-    session: &Session,
-    view: &View,
-    sidestep: Option<&Sidestep>,
-    target: &Target,
-) -> Result<Document, BelvedereError> {
+fn document(session: &Session, view: &View, bend: Option<&Bend>, target: &Target) -> Result<Document, BelvedereError> {
     let Some(resolved) = session.resolved() else {
         return Err(BelvedereError::Target("the scene has no document".into()));
     };
@@ -241,7 +317,11 @@ fn document(
     document.camera = CameraDoc { up, ..CameraDoc::of(pinhole, pinhole.eye + ahead * pinhole.forward) };
     document.constructor = None;
     document.stage.retain(|stage| !matches!(stage, StageDoc::CurvedRays(_)));
-    document.stage.extend(sidestep.map(|s| StageDoc::CurvedRays(sidestep_stage(s, pinhole))));
+    match bend {
+        Some(Bend::Rays(s)) => document.stage.push(StageDoc::CurvedRays(sidestep_stage(s, pinhole))),
+        Some(Bend::Spline(found)) => document.stage.extend(spline_stage(found)),
+        None => {}
+    }
     Ok(document)
 }
 
@@ -254,6 +334,8 @@ struct TargetReport<'a> {
     target: &'a Option<TargetPlace>,
     #[serde(flatten)]
     report: BendReport,
+    technique: Option<Technique>,
+    mark: &'static str,
     view: &'a crate::record::ViewRecord,
     inputs: &'a [crate::record::InputFile],
     warnings: Vec<Warning>,
@@ -276,7 +358,7 @@ impl TargetAnswer {
         let straight = of(visible_straight, self.report.in_frame_straight);
         if tried > 0 && visible < ENOUGH && visible <= visible_straight {
             let percent = |share: f64| format!("{:.0} %", 100.0 * share);
-            let light = match self.has_volumes() {
+            let light = match has_volumes(&self.session) {
                 true => format!(
                     "; {} of its light comes through straight, {} at best by a bend, half is needed",
                     percent(light_straight),
@@ -290,10 +372,6 @@ impl TargetAnswer {
             return format!("visible without any bend: {straight}");
         }
         format!("visible in the straight picture: {straight}, in the bent one: {}", of(visible, self.report.in_frame))
-    }
-
-    fn has_volumes(&self) -> bool {
-        self.session.scene().layers.iter().any(|l| matches!(l.kind, LayerKind::Volume(_)))
     }
 
     /// Warnings.
@@ -320,6 +398,8 @@ impl TargetAnswer {
             see: &self.see,
             target: &self.place,
             report: self.report,
+            technique: self.technique,
+            mark: self.mark,
             view: &sidecar.view,
             inputs: &sidecar.inputs,
             warnings: sidecar

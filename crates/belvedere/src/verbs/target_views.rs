@@ -11,7 +11,7 @@ use rayon::prelude::*;
 const HEADINGS: [f64; 12] = [30.0, 330.0, 60.0, 300.0, 0.0, 90.0, 270.0, 120.0, 240.0, 150.0, 210.0, 180.0];
 const PITCHES: [[f64; 2]; 2] = [[20.0, 35.0], [8.0, 30.0]];
 /// Views for which bends are searched, at most.
-const KEPT: usize = 8;
+pub(super) const KEPT: usize = 8;
 /// Visible share that a heading of the list must gain over an earlier one.
 const WORTH: f64 = 0.03;
 /// Share of half the picture's width and height that the model takes up.
@@ -24,7 +24,7 @@ const MOST_POINTS: usize = 3000;
 const MAY_COST: f64 = 0.005;
 
 /// Points that show how far the visible layers reach.
-fn outline(scene: &Scene) -> Vec<DVec3> {
+pub(super) fn outline(scene: &Scene) -> Vec<DVec3> {
     let of = |layer: &Layer| -> Vec<DVec3> {
         let thin = |count: usize| count.div_ceil(MOST_POINTS).max(1);
         match &layer.kind {
@@ -54,7 +54,8 @@ fn axes(up: DVec3) -> [DVec3; 3] {
 
 /// The views from all around that are worth a search for bends, the best first; only one if it shows the whole target.
 ///
-/// * `up`: unit vector; `image`, `fov_y`: size in pixels, and full vertical field of view, radians.
+/// * `up`: unit vector; `image`, `fov_y`: size in pixels, and full vertical field of view, radians;
+/// * `most`: number of views at most, [`KEPT`] for the search of one.
 ///
 /// # Errors
 /// [`BelvedereError`] if no camera is possible.
@@ -63,6 +64,7 @@ pub(super) fn around(
     target: &Target,
     up: DVec3,
     (image, fov_y): ([u32; 2], f64),
+    most: usize,
 ) -> Result<Vec<View>, BelvedereError> {
     let points = outline(scene);
     let points = if points.is_empty() { target.points.clone() } else { points };
@@ -85,12 +87,13 @@ pub(super) fn around(
         })
         .collect();
     judged.sort_by(|a, b| b.1.total_cmp(&a.1));
-    judged.truncate(if judged.first().is_some_and(|best| best.0 >= 1.0) { 1 } else { KEPT });
+    let whole = judged.first().is_some_and(|best| best.0 >= 1.0) && most == KEPT;
+    judged.truncate(if whole { 1 } else { most });
     Ok(judged.into_iter().map(|(.., view)| view).collect())
 }
 
 /// The camera in a direction from which the model fills the picture; nearer, at the target, where that is small.
-fn fitted(
+pub(super) fn fitted(
     points: &[DVec3],
     target: &Target,
     (forward, up): (DVec3, DVec3),
@@ -130,14 +133,20 @@ fn fitted(
 
 /// The camera of a bent picture, turned and zoomed so that the model fills the bent picture and lies in the middle of the straight and the
 /// bent one together; `None` if it stays as it is because the target would be seen less.
-pub(super) fn reframed(scene: &Scene, base: &View, sidestep: &Sidestep, target: &Target) -> Option<View> {
-    let points = outline(scene);
+///
+/// * `points`: what the picture is to hold.
+pub(super) fn reframed(
+    scene: &Scene,
+    base: &View,
+    sidestep: &Sidestep,
+    (target, points): (&Target, &[DVec3]),
+) -> Option<View> {
     let sight = TargetSight::new(scene, target);
     let share = |view: &View| sidestep.view(view).map_or(0.0, |bent| sight.share(&bent, 0.0));
     let (before, mut best) = (share(base), None);
     let mut view = base.clone();
     for _ in 0..3 {
-        let (low, high) = extent(&view, sidestep, &points)?;
+        let (low, high) = extent(&view, sidestep, points)?;
         view = turned(&view, (low, high))?;
         if share(&view) + MAY_COST >= before {
             best = Some(view.clone());

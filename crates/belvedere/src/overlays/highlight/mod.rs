@@ -12,7 +12,7 @@ mod shift;
 mod tests;
 
 pub use ghosts::GhostRecord;
-pub(crate) use outline::border;
+pub(crate) use outline::{border, regions, spread};
 
 use super::heat;
 use crate::BelvedereError;

@@ -15,13 +15,13 @@ const OPENED: f64 = 1.5;
 
 /// The mask with gaps closed and then specks removed (morphological closing and opening).
 /// * `close`, `open`: half widths of these gaps and specks, pixels.
-fn regions(mask: &[bool], width: usize, close: usize, open: usize) -> Vec<bool> {
+pub(crate) fn regions(mask: &[bool], width: usize, close: usize, open: usize) -> Vec<bool> {
     let closed = spread(&spread(mask, width, close, true), width, close, false);
     spread(&spread(&closed, width, open, false), width, open, true)
 }
 
 /// Sets every pixel to `value` within `reach` columns and rows of a pixel with that value (dilation or erosion).
-fn spread(mask: &[bool], width: usize, reach: usize, value: bool) -> Vec<bool> {
+pub(crate) fn spread(mask: &[bool], width: usize, reach: usize, value: bool) -> Vec<bool> {
     let height = mask.len().checked_div(width).unwrap_or(0);
     let along = |mask: &[bool], lines: usize, length: usize, at: &dyn Fn(usize, usize) -> usize| {
         let mut out = mask.to_vec();

@@ -1,6 +1,7 @@
 //! Description of a city file.
 
 use crate::BelvedereError;
+use crate::verbs::CitySee;
 use belvedere_core::Warning;
 use belvedere_io::{Limits, load_city};
 use serde::Serialize;
@@ -31,6 +32,8 @@ pub struct CityInfo {
     pub crs: Option<String>,
     /// Coordinate and height reference as named by the file.
     pub reference: String,
+    /// What `reveal --see` understands.
+    pub see: CitySee,
     /// Warnings.
     pub warnings: Vec<Warning>,
 }
@@ -51,6 +54,7 @@ impl CityInfo {
             lods: file.lods.clone(),
             crs: file.crs.as_ref().map(|crs| crs.name().to_owned()),
             reference: file.reference.clone(),
+            see: CitySee::of(file),
             warnings: loaded.warnings,
         })
     }

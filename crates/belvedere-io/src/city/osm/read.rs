@@ -1,0 +1,272 @@
+//! Reading of OpenStreetMap's files: PBF, XML and the JSON of Overpass.
+
+use super::{Line, Map, Relation, Tags, is_wanted};
+use crate::IoError;
+use crate::text::text_of;
+use glam::DVec2;
+use osmpbf::{Element, ElementReader, RelMemberType};
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+use serde::Deserialize;
+use std::collections::HashSet;
+use std::path::Path;
+
+impl Map {
+    /// Reads a file of a format by its name in the list of formats.
+    ///
+    /// # Errors
+    /// [`IoError::Format`]: damaged.
+    pub(super) fn of_file(path: &Path, bytes: &[u8], format: &str) -> Result<Self, IoError> {
+        let read = match format {
+            "OSM PBF" => {
+                // The reader panics on an unknown kind of a member.
+                let read = std::panic::catch_unwind(|| Self::of_pbf(bytes));
+                read.unwrap_or_else(|_| Err("its blocks contradict themselves".into()))
+            }
+            "OSM XML" => Objects::of_xml(&text_of(bytes, &mut Vec::new())).map(Objects::map),
+            _ => Objects::of_json(bytes).map(Objects::map),
+        };
+        read.map_err(|e| IoError::format(path, format!("{format} is damaged or cut off ({e}); fetch it again")))
+    }
+
+    /// Relations come after ways and ways after nodes, so the file is read three times and only what is used is kept.
+    fn of_pbf(bytes: &[u8]) -> Result<Self, String> {
+        let each =
+            |what: &mut dyn FnMut(Element<'_>)| ElementReader::new(bytes).for_each(what).map_err(|e| e.to_string());
+        let mut map = Self::default();
+        each(&mut |element| {
+            let Element::Relation(relation) = element else { return };
+            let ways = relation.members().filter(|m| m.member_type == RelMemberType::Way).map(|m| m.member_id);
+            map.relation(Relation { id: relation.id(), tags: owned(relation.tags()), ways: ways.collect() });
+        })?;
+        let members = map.members();
+        each(&mut |element| {
+            let Element::Way(way) = element else { return };
+            map.way(way.id(), Line { tags: owned(way.tags()), nodes: way.refs().collect() }, &members);
+        })?;
+        let wanted = map.corners();
+        each(&mut |element| {
+            let (id, lon, lat) = match element {
+                Element::Node(node) => (node.id(), node.lon(), node.lat()),
+                Element::DenseNode(node) => (node.id(), node.lon(), node.lat()),
+                _ => return,
+            };
+            map.node(id, DVec2::new(lon, lat), &wanted);
+        })?;
+        Ok(map)
+    }
+
+    fn members(&self) -> HashSet<i64> {
+        self.relations.iter().flat_map(|r| &r.ways).copied().collect()
+    }
+
+    fn corners(&self) -> HashSet<i64> {
+        self.ways.values().flat_map(|w| &w.nodes).copied().collect()
+    }
+
+    fn relation(&mut self, relation: Relation) {
+        self.counts[2] += 1;
+        if relation.tags.get("type").is_some_and(|t| t == "multipolygon") && is_wanted(&relation.tags) {
+            self.relations.push(relation);
+        }
+    }
+
+    fn way(&mut self, id: i64, line: Line, members: &HashSet<i64>) {
+        self.counts[1] += 1;
+        if members.contains(&id) || is_wanted(&line.tags) {
+            self.ways.insert(id, line);
+        }
+    }
+
+    fn node(&mut self, id: i64, at: DVec2, wanted: &HashSet<i64>) {
+        self.counts[0] += 1;
+        if at.x.abs() <= 180.0 && at.y.abs() <= 90.0 && wanted.contains(&id) {
+            self.nodes.insert(id, at);
+        }
+    }
+}
+
+fn owned<'t>(tags: impl Iterator<Item = (&'t str, &'t str)>) -> Tags {
+    tags.map(|(k, v)| (k.to_owned(), v.to_owned())).collect()
+}
+
+/// Everything that a text holds.
+#[derive(Default)]
+struct Objects {
+    nodes: Vec<(i64, DVec2)>,
+    ways: Vec<(i64, Line)>,
+    relations: Vec<Relation>,
+}
+
+/// The object that is being read.
+enum Open {
+    Way(i64, Line),
+    Relation(Relation),
+    Other,
+}
+
+impl Objects {
+    fn map(self) -> Map {
+        let mut map = Map::default();
+        self.relations.into_iter().for_each(|relation| map.relation(relation));
+        let members = map.members();
+        self.ways.into_iter().for_each(|(id, line)| map.way(id, line, &members));
+        let wanted = map.corners();
+        self.nodes.into_iter().for_each(|(id, at)| map.node(id, at, &wanted));
+        map
+    }
+
+    /// Source: OpenStreetMap Wiki, "OSM XML".
+    fn of_xml(text: &str) -> Result<Self, String> {
+        let mut reader = Reader::from_str(text);
+        let (mut objects, mut open, mut depth) = (Self::default(), Open::Other, 0usize);
+        loop {
+            match reader.read_event().map_err(|e| e.to_string())? {
+                Event::Start(e) => {
+                    objects.element(&e, &mut open);
+                    depth += 1;
+                }
+                Event::Empty(e) => {
+                    objects.element(&e, &mut open);
+                    if is_object(&e) {
+                        objects.close(&mut open);
+                    }
+                }
+                Event::End(e) => {
+                    depth = depth.saturating_sub(1);
+                    if matches!(e.local_name().as_ref(), "node" | "way" | "relation") {
+                        objects.close(&mut open);
+                    }
+                }
+                Event::Eof if depth > 0 => return Err("it ends within an element".into()),
+                Event::Eof => return Ok(objects),
+                _ => {}
+            }
+        }
+    }
+
+    fn element(&mut self, e: &BytesStart<'_>, open: &mut Open) {
+        let value = |key: &str| {
+            let found = e.attributes().flatten().find(|a| a.key.local_name().as_ref() == key)?;
+            Some(plain(&found.value))
+        };
+        let number = |key: &str| value(key)?.trim().parse::<i64>().ok();
+        let degrees = |key: &str| value(key)?.trim().parse::<f64>().ok();
+        match e.local_name().as_ref() {
+            "node" => {
+                *open = Open::Other;
+                if let (Some(id), Some(lon), Some(lat)) = (number("id"), degrees("lon"), degrees("lat")) {
+                    self.nodes.push((id, DVec2::new(lon, lat)));
+                }
+            }
+            "way" => {
+                let line = Line { tags: Tags::new(), nodes: Vec::new() };
+                *open = number("id").map_or(Open::Other, |id| Open::Way(id, line));
+            }
+            "relation" => {
+                let relation = |id| Relation { id, tags: Tags::new(), ways: Vec::new() };
+                *open = number("id").map_or(Open::Other, |id| Open::Relation(relation(id)));
+            }
+            "nd" => {
+                if let (Open::Way(_, line), Some(id)) = (open, number("ref")) {
+                    line.nodes.push(id);
+                }
+            }
+            "member" => {
+                if let (Open::Relation(relation), Some(id)) = (open, number("ref"))
+                    && value("type").is_some_and(|t| t == "way")
+                {
+                    relation.ways.push(id);
+                }
+            }
+            "tag" => {
+                let tags = match open {
+                    Open::Way(_, line) => &mut line.tags,
+                    Open::Relation(relation) => &mut relation.tags,
+                    Open::Other => return,
+                };
+                tags.extend(value("k").zip(value("v")));
+            }
+            _ => {}
+        }
+    }
+
+    fn close(&mut self, open: &mut Open) {
+        match std::mem::replace(open, Open::Other) {
+            Open::Way(id, line) => self.ways.push((id, line)),
+            Open::Relation(relation) => self.relations.push(relation),
+            Open::Other => {}
+        }
+    }
+
+    /// The answer of Overpass with `out:json`; the positions of ways may stand in the ways themselves (`out geom`).
+    fn of_json(bytes: &[u8]) -> Result<Self, String> {
+        let answer: Answer = serde_json::from_slice(bytes).map_err(|e| e.to_string())?;
+        let mut objects = Self::default();
+        for element in answer.elements {
+            let JsonElement { kind, id, lat, lon, nodes, geometry, members, tags } = element;
+            match kind.as_str() {
+                "node" => objects.nodes.extend(lon.zip(lat).map(|(x, y)| (id, DVec2::new(x, y)))),
+                "way" => {
+                    for (node, at) in nodes.iter().zip(&geometry) {
+                        objects.nodes.extend(at.as_ref().map(|at| (*node, DVec2::new(at.lon, at.lat))));
+                    }
+                    objects.ways.push((id, Line { tags, nodes }));
+                }
+                "relation" => {
+                    let ways = members.iter().filter(|m| m.kind == "way").map(|m| m.id).collect();
+                    objects.relations.push(Relation { id, tags, ways });
+                }
+                _ => {}
+            }
+        }
+        Ok(objects)
+    }
+}
+
+fn is_object(e: &BytesStart<'_>) -> bool {
+    matches!(e.local_name().as_ref(), "node" | "way" | "relation")
+}
+
+/// A value without the entities of XML.
+fn plain(value: &str) -> String {
+    quick_xml::escape::unescape(value).map_or_else(|_| value.to_owned(), |text| text.into_owned())
+}
+
+/// An answer of Overpass.
+#[derive(Deserialize)]
+struct Answer {
+    elements: Vec<JsonElement>,
+}
+
+#[derive(Deserialize)]
+struct JsonElement {
+    #[serde(rename = "type")]
+    kind: String,
+    #[serde(default)]
+    id: i64,
+    lat: Option<f64>,
+    lon: Option<f64>,
+    #[serde(default)]
+    nodes: Vec<i64>,
+    #[serde(default)]
+    geometry: Vec<Option<Place>>,
+    #[serde(default)]
+    members: Vec<Member>,
+    #[serde(default)]
+    tags: Tags,
+}
+
+#[derive(Deserialize)]
+struct Place {
+    lat: f64,
+    lon: f64,
+}
+
+#[derive(Deserialize)]
+struct Member {
+    #[serde(rename = "type")]
+    kind: String,
+    #[serde(rename = "ref", default)]
+    id: i64,
+}

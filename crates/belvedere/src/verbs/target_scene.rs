@@ -1,0 +1,414 @@
+//! `reveal --see`: the files of a request as one scene, and what is meant in it.
+
+use super::model_layers::{layer, set_transfer, unit_of};
+use super::open_files::ground;
+use super::reveal_target::TargetRequest;
+use super::target_names::{is_building, known_names};
+use crate::data::features_of;
+use crate::places::Place;
+use crate::resolve::vectors::{FeatureKind, kinds_of};
+use crate::scene_file::{CameraDoc, CityDoc, Document, LayerDoc, LineDoc, LineStyleDoc, Paths, SourceDocument};
+use crate::targets;
+use crate::{BelvedereError, OpenOptions, Session};
+use belvedere_construct::rays::Target;
+use belvedere_construct::sample_features;
+use belvedere_core::{DVec2, DVec3};
+use belvedere_io::city::{is_city, is_meant};
+use belvedere_io::formats::Reader;
+use belvedere_io::vector::load_vectors;
+use belvedere_io::{Limits, join_table, load_city, split_table};
+use belvedere_scene::molecule::Selection;
+use belvedere_scene::{LayerKind, Scene};
+use std::path::{Path, PathBuf};
+
+/// Points of lines and points by which bends are chosen, at most, and by which shares are judged, about.
+const TO_SEARCH: usize = 120;
+const TO_JUDGE: f64 = 1500.0;
+/// Number of the part of a city that is its level ground.
+const GROUND: u32 = 0;
+/// Streets of a map beside what must be seen.
+const STREETS: &str = "#b9b2a6";
+const STREETS_PX: f64 = 1.6;
+
+/// What must be seen in a scene.
+#[derive(Debug, Clone)]
+pub(super) enum Meant {
+    /// A target by its name.
+    Named(String),
+    /// A layer that must be seen, or the chosen buildings of it.
+    Solid(String),
+    /// All lines and points that must be seen.
+    Features,
+}
+
+/// A target three times.
+pub(super) struct Targets {
+    /// By few points, for the search of a bend.
+    pub(super) search: Target,
+    /// By many points, for shares.
+    pub(super) judge: Target,
+    /// As it is drawn, without the level ground of a city, which hides the feet of walls and no more.
+    pub(super) shape: Target,
+}
+
+impl Targets {
+    fn of(shape: Target, target: Target) -> Self {
+        Self { search: target.clone(), judge: target, shape }
+    }
+}
+
+impl Meant {
+    pub(super) fn targets(&self, scene: &Scene) -> Result<Targets, BelvedereError> {
+        match self {
+            Self::Named(see) => targets::target(scene, see).map(|target| Targets::of(target.clone(), target)),
+            Self::Solid(id) => {
+                let shape = targets::target(scene, id)?;
+                let mut target = shape.clone();
+                if let Some((_, parts)) = target.own_parts.as_mut().filter(|(_, parts)| !parts.contains(&GROUND)) {
+                    parts.insert(0, GROUND);
+                }
+                Ok(Targets::of(shape, target))
+            }
+            Self::Features => {
+                let length: f64 = scene.must_see().map(|(_, layer)| length(&layer.kind)).sum();
+                let features = sample_features(scene, (length / TO_JUDGE).max(1e-3));
+                let points: Vec<DVec3> = features.iter().flat_map(|f| &f.samples).map(|s| s.p_world).collect();
+                if points.is_empty() {
+                    let reason = "the features that must be seen lie outside the ground, or hold no position";
+                    return Err(BelvedereError::Target(reason.into()));
+                }
+                let every = points.len().div_ceil(TO_SEARCH).max(1);
+                let search = Target::points(points.iter().skip(every / 2).step_by(every).copied());
+                let judge = Target::points(points);
+                Ok(Targets { search, shape: judge.clone(), judge })
+            }
+        }
+    }
+
+    /// Whether it is lines or points on the ground.
+    pub(super) fn is_features(&self) -> bool {
+        matches!(self, Self::Features)
+    }
+
+    /// Its name for the constructor of a scene file.
+    pub(super) fn name(&self) -> Option<&str> {
+        match self {
+            Self::Named(name) | Self::Solid(name) => Some(name),
+            Self::Features => None,
+        }
+    }
+}
+
+fn length(kind: &LayerKind) -> f64 {
+    let flat =
+        |points: &[DVec3]| points.windows(2).map(|w| DVec2::distance(w[0].truncate(), w[1].truncate())).sum::<f64>();
+    match kind {
+        LayerKind::Line(l) => l.features.iter().map(|f| flat(&f.points)).filter(|length| length.is_finite()).sum(),
+        _ => 0.0,
+    }
+}
+
+/// Opens the files with a provisional camera.
+pub(super) fn open(request: &TargetRequest, options: &OpenOptions) -> Result<(Session, Meant), BelvedereError> {
+    let named = || Meant::Named(request.see.clone());
+    if let [file] = &request.files[..]
+        && is_scene(file)?
+    {
+        if request.transfer.is_some() {
+            return Err(BelvedereError::Target(
+                "a scene file states its transfer functions itself; leave --transfer out".into(),
+            ));
+        }
+        return Ok((Session::open(file, options)?, named()));
+    }
+    let mut options = options.clone();
+    let mut map = Map { see: request.see.clone(), ..Map::default() };
+    let mut models: Vec<LayerDoc> = Vec::new();
+    for file in request.files.iter().chain(seen_file(&request.see).as_ref()) {
+        if file.to_str().is_some_and(|name| name.starts_with("builtin:")) {
+            models.push(layer(file, &models)?);
+            continue;
+        }
+        let (whole, table) = split_table(file);
+        let path = belvedere_io::fs::canonicalize(whole).map_err(|e| belvedere_io::IoError::os(whole, e))?;
+        options.allow_roots.extend(path.parent().map(Path::to_owned));
+        let path = join_table(path, table);
+        match kind_of(&path)? {
+            Kind::City => map.cities.push(path),
+            Kind::Ground => map.grounds.push(path),
+            Kind::Features => map.features.push(path),
+            Kind::Model => models.push(layer(&path, &models)?),
+        }
+    }
+    map.take_footprints(&models)?;
+    let is_city = !map.cities.is_empty() || matches!(models[..], [LayerDoc::City(_), ..]);
+    if !is_city && let Some(path) = map.grounds.iter().chain(&map.features).next() {
+        // The error names what can be looked into.
+        layer(path, &models)?;
+    }
+    let (layers, meant, crs) = match is_city {
+        true => {
+            let (layers, meant) = map.layers(models)?;
+            (layers, meant, "auto")
+        }
+        false => {
+            for layer in &mut models {
+                if let LayerDoc::Molecule(molecule) = layer
+                    && Selection::parse(&request.see).is_ok()
+                {
+                    molecule.select = Some(request.see.clone());
+                }
+            }
+            (models, named(), "local")
+        }
+    };
+    let mut layers = layers;
+    if let Some(transfer) = &request.transfer {
+        set_transfer(&mut layers, transfer, &mut options)?;
+    }
+    let unit = unit_of(&layers);
+    let camera = CameraDoc::looking(DVec3::new(0.0, -1.0, 0.0), DVec3::ZERO);
+    let title = if request.see.is_empty() { "Revealed".into() } else { format!("{} revealed", request.see) };
+    let document = Document { title, crs: crs.into(), unit, layer: layers, ..Document::seen_by(camera) };
+    Ok((Session::from_document(SourceDocument::new(document), &options)?, meant))
+}
+
+/// Whether a file is a scene: TOML, or JSON of no other kind that is read.
+fn is_scene(path: &Path) -> Result<bool, BelvedereError> {
+    let ends = |ending: &str| path.extension().is_some_and(|e| e == ending);
+    if ends("toml") || !ends("json") {
+        return Ok(ends("toml"));
+    }
+    Ok(!is_city(path)? && belvedere_io::readable(path)?.is_none())
+}
+
+/// The file that `--see` names, if it names one.
+fn seen_file(see: &str) -> Option<PathBuf> {
+    let is_file = !see.is_empty() && split_table(Path::new(see)).0.is_file();
+    is_file.then(|| PathBuf::from(see))
+}
+
+enum Kind {
+    City,
+    Ground,
+    Features,
+    Model,
+}
+
+fn kind_of(path: &Path) -> Result<Kind, BelvedereError> {
+    if split_table(path).1.is_some() {
+        return Ok(Kind::Features);
+    }
+    if path.is_dir() {
+        return Ok(Kind::Ground);
+    }
+    let inside = belvedere_io::inside(path)?;
+    if is_city(&inside)? {
+        return Ok(Kind::City);
+    }
+    Ok(match belvedere_io::readable(&inside)?.and_then(|format| format.reader) {
+        Some(Reader::City) => Kind::City,
+        Some(Reader::Terrain) => Kind::Ground,
+        Some(Reader::Features) => Kind::Features,
+        _ => Kind::Model,
+    })
+}
+
+/// Whether files are those of a city, or footprints and features, beside which features and elevation models may be given. Files that
+/// cannot be read are none.
+pub fn hold_a_city(files: &[PathBuf]) -> bool {
+    if let [first, _, ..] = files
+        && split_table(first).0.is_file()
+        && matches!(kind_of(first), Ok(Kind::Features))
+        && load_vectors(first).is_ok_and(|v| kinds_of(&v.value).contains(&FeatureKind::Areas))
+    {
+        // Footprints, unless an elevation model follows.
+        let features = |file: &PathBuf| {
+            let is_builtin = file.to_str().is_some_and(|name| name.starts_with("builtin:"));
+            !is_builtin && split_table(file).0.is_file() && matches!(kind_of(file), Ok(Kind::Features))
+        };
+        return files.iter().all(features);
+    }
+    for file in files {
+        let is_builtin = file.to_str().is_some_and(|name| name.starts_with("builtin:"));
+        let is_town = file.to_str().is_some_and(|name| name.starts_with("builtin:town"));
+        if is_town || !is_builtin && split_table(file).0.exists() && matches!(kind_of(file), Ok(Kind::City)) {
+            return true;
+        }
+    }
+    false
+}
+
+/// The files of a scene with a city.
+#[derive(Default)]
+struct Map {
+    see: String,
+    cities: Vec<PathBuf>,
+    grounds: Vec<PathBuf>,
+    features: Vec<PathBuf>,
+}
+
+fn text(path: &Path) -> Result<String, BelvedereError> {
+    path.to_str().map(str::to_owned).ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))
+}
+
+impl Map {
+    /// Without a city model the polygons of the first file of features are footprints.
+    fn take_footprints(&mut self, models: &[LayerDoc]) -> Result<(), BelvedereError> {
+        if !(self.cities.is_empty() && self.grounds.is_empty() && models.is_empty()) {
+            return Ok(());
+        }
+        if let Some(first) = self.features.first()
+            && kinds_of(&load_vectors(first)?.value).contains(&FeatureKind::Areas)
+        {
+            self.cities.push(self.features.remove(0));
+        }
+        Ok(())
+    }
+
+    /// The layers, with what must be seen.
+    fn layers(self, models: Vec<LayerDoc>) -> Result<(Vec<LayerDoc>, Meant), BelvedereError> {
+        let mut layers: Vec<LayerDoc> = Vec::new();
+        if !self.grounds.is_empty() {
+            layers.push(ground(self.grounds.iter().map(|path| text(path)).collect::<Result<_, _>>()?));
+        }
+        layers.extend(models);
+        for path in &self.cities {
+            let id = layer_id(path, &layers);
+            layers.push(LayerDoc::City(CityDoc::of(id, &text(path)?)));
+            if is_city(&belvedere_io::inside(path)?)? && holds_streets(path) {
+                let id = format!("{}-streets", layers.last().map_or("", LayerDoc::id));
+                let style = LineStyleDoc {
+                    color: STREETS.into(),
+                    width_px: STREETS_PX,
+                    casing: "none".into(),
+                    hidden: belvedere_scene::Hidden::Cut,
+                    lift_m: 0.1,
+                    ..LineStyleDoc::default()
+                };
+                layers.push(lines(id, &text(path)?, (Some("highway=*"), false), style));
+            }
+        }
+        let first = layers.len();
+        for path in &self.features {
+            for kind in kinds_of(&load_vectors(path)?.value) {
+                let (id, source) = (layer_id(path, &layers), text(path)?);
+                // In a city areas are drawn by their outlines, which lines of the same file hold already.
+                match kind {
+                    FeatureKind::Points => layers.push(features_of(path, &layers)?),
+                    _ if layers[first..].iter().any(|l| draws(l, &source)) => {}
+                    _ => layers.push(lines(id, &source, (None, true), LineStyleDoc::default())),
+                }
+            }
+        }
+        let meant = self.meant(&mut layers, first)?;
+        Ok((layers, meant))
+    }
+
+    /// What must be seen; the layers from `first` on are those of features.
+    fn meant(&self, layers: &mut Vec<LayerDoc>, first: usize) -> Result<Meant, BelvedereError> {
+        let see = self.see.as_str();
+        if see.is_empty() {
+            return match layers.len() > first {
+                true => Ok(Meant::Features),
+                false => Err(BelvedereError::Target(format!(
+                    "nothing is named that must be seen; give --see WHAT or a file of routes: {}",
+                    known_names(&self.cities, "")?
+                ))),
+            };
+        }
+        if see.parse::<Place>().is_ok_and(|place| place.has_height()) {
+            return Ok(Meant::Named(see.to_owned()));
+        }
+        let file = seen_file(see);
+        let is_file = |path: &PathBuf| file.as_ref().is_some_and(|file| same_file(file, path));
+        let of_file = self.features.iter().find(|path| is_file(path)).map(|path| text(path)).transpose()?;
+        let chosen = |l: &LayerDoc| l.id() == see || of_file.as_ref().is_some_and(|source| draws(l, source));
+        if let Some(k) = layers.iter().position(chosen) {
+            layers.iter_mut().for_each(|l| l.set_must_see(false));
+            let is_features = matches!(layers[k], LayerDoc::Line(_) | LayerDoc::Point(_));
+            for l in layers.iter_mut().filter(|l| l.id() == see || of_file.as_ref().is_some_and(|f| draws(l, f))) {
+                l.set_must_see(true);
+            }
+            return Ok(if is_features { Meant::Features } else { Meant::Solid(layers[k].id().to_owned()) });
+        }
+        layers.iter_mut().for_each(|l| l.set_must_see(false));
+        for path in &self.cities {
+            let file = load_city(path, None, &Limits::default())?.value;
+            let drawn = |id: &str| {
+                file.city.buildings.iter().any(|b| b.id == id) || file.city.structures.iter().any(|s| s.id == id)
+            };
+            if file.about.iter().any(|about| about.is_meant(see) && drawn(&about.id)) {
+                let source = text(path)?;
+                for l in layers.iter_mut() {
+                    if let LayerDoc::City(city) = l
+                        && city.source.as_slice().contains(&source)
+                    {
+                        (city.select, city.must_see) = (Some(see.to_owned()), true);
+                        return Ok(Meant::Solid(city.id.clone()));
+                    }
+                }
+            }
+        }
+        for path in &self.features {
+            if load_vectors(path)?.value.features.iter().any(|f| is_meant(see, &f.name, &f.properties)) {
+                let source = text(path)?;
+                for l in layers.iter_mut().filter(|l| draws(l, &source)) {
+                    if let LayerDoc::Line(line) = l {
+                        (line.select, line.must_see) = (Some(see.to_owned()), true);
+                    }
+                }
+                return Ok(Meant::Features);
+            }
+        }
+        for path in &self.cities {
+            let Ok(vectors) = load_vectors(path) else { continue };
+            let of_map = vectors.value.features.iter().filter(|f| !is_building(&f.properties));
+            if of_map.into_iter().any(|f| is_meant(see, &f.name, &f.properties)) {
+                let style = LineStyleDoc { width_px: 4.0, ..LineStyleDoc::default() };
+                layers.push(lines("seen".into(), &text(path)?, (Some(see), true), style));
+                return Ok(Meant::Features);
+            }
+        }
+        if layers.iter().any(|l| matches!(l, LayerDoc::Mesh(_))) || self.cities.is_empty() {
+            return Ok(Meant::Named(see.to_owned()));
+        }
+        Err(BelvedereError::Target(format!(
+            "\"{see}\" is no building, street or area of these files; {}",
+            known_names(&self.cities, see)?
+        )))
+    }
+}
+
+fn same_file(a: &Path, b: &Path) -> bool {
+    let of = |path: &Path| belvedere_io::fs::canonicalize(split_table(path).0).ok();
+    of(a).is_some_and(|a| of(b) == Some(a))
+}
+
+fn draws(layer: &LayerDoc, source: &str) -> bool {
+    match layer {
+        LayerDoc::Line(l) => l.source.as_ref().is_some_and(|s| s.as_slice().iter().any(|name| name == source)),
+        LayerDoc::Point(l) => l.source.as_slice().iter().any(|name| name == source),
+        _ => false,
+    }
+}
+
+fn lines(id: String, source: &str, (select, must_see): (Option<&str>, bool), style: LineStyleDoc) -> LayerDoc {
+    let (source, select) = (Some(Paths::One(source.to_owned())), select.map(str::to_owned));
+    LayerDoc::Line(LineDoc { id, source, select, route: None, name_field: None, must_see, style })
+}
+
+/// An id from the name of a file that no other layer has.
+fn layer_id(path: &Path, others: &[LayerDoc]) -> String {
+    let name = split_table(path).0.file_name().and_then(|name| name.to_str()).unwrap_or("city");
+    let stem = name.split('.').next().filter(|stem| !stem.is_empty()).unwrap_or("city");
+    let taken = |id: &str| others.iter().any(|l| l.id() == id);
+    let id = (1..).map(|k| if k == 1 { stem.to_owned() } else { format!("{stem}-{k}") }).find(|id| !taken(id));
+    id.unwrap_or_default()
+}
+
+/// Whether a map holds streets.
+fn holds_streets(path: &Path) -> bool {
+    let is_street = |f: &belvedere_io::vector::VectorFeature| f.properties.contains_key("highway");
+    load_vectors(path).is_ok_and(|vectors| vectors.value.features.iter().any(is_street))
+}
