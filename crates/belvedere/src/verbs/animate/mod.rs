@@ -211,6 +211,8 @@ impl Drawing<'_> {
         // The memory of a solver depends on all earlier frames: existing frames are solved again but not drawn.
         // Straight frames need no solution, unless a constructor leads the camera along a path.
         let solved = !straight || path.is_previewed();
+        // Bends keep the walker where he is; the terrain solver may sink the ground under him.
+        let sinks = solved && session.resolved().is_some_and(Document::solves_terrain);
         let solves = solved && (session.resolved().is_some_and(Document::solves_terrain) || session.tracks());
         let last = missing.last().map_or(0, |f| f + 1);
         let work: Vec<usize> = if solves { (0..last).collect() } else { missing.clone() };
@@ -225,7 +227,7 @@ impl Drawing<'_> {
             if let (Some(Some(ground)), Some(following)) = (known, &mut path.following) {
                 let (lift, share, aim) = (ground.lifted_m, ground.bend_share, ground.aimed_m);
                 following.adjustments[frame] = Adjustment { lift, share, aim };
-                turned = Adjustment::next_aim(aim, ground.walker_m);
+                turned = if sinks { Adjustment::next_aim(aim, ground.walker_m) } else { 0.0 };
             } else if let Some(following) = &mut path.following {
                 following.adjustments[frame].aim = turned;
             }
@@ -234,7 +236,7 @@ impl Drawing<'_> {
                 continue;
             }
             let drawn = self.frame(path, frame, solved, (&mut memory, manifest))?;
-            turned = drawn.ground.map_or(0.0, |g| Adjustment::next_aim(g.aimed_m, g.walker_m));
+            turned = drawn.ground.filter(|_| sinks).map_or(0.0, |g| Adjustment::next_aim(g.aimed_m, g.walker_m));
             let record = self.write(path, frame, drawn)?;
             manifest.put(frame, record);
             manifest.write(self.folder)?;
@@ -288,6 +290,7 @@ impl Drawing<'_> {
             tries += 1;
             if let (Some(ground), Some(following)) = (&ground, &mut path.following)
                 && !aimed
+                && session.resolved().is_some_and(Document::solves_terrain)
                 && following.loses_walker(frame, &picture.view, ground.walker_m)
             {
                 following.adjustments[frame].aim = ground.walker_m;
@@ -305,7 +308,8 @@ impl Drawing<'_> {
             let step = LIFT * (camera.eye.z - camera.walker.z).abs();
             following.adjustments[frame] = match () {
                 () if short > 0.0 && (short <= step || adjusted.share <= 0.0) => {
-                    Adjustment { lift: adjusted.lift + 1.05 * short, ..adjusted }
+                    // A bend lifts part of the ground with the eye.
+                    Adjustment { lift: adjusted.lift + 1.05 * tries as f64 * short, ..adjusted }
                 }
                 () if adjusted.share > 0.0 => Adjustment { share: (adjusted.share - 0.34).max(0.0), ..adjusted },
                 () => Adjustment { lift: adjusted.lift + step, ..adjusted },
