@@ -68,7 +68,7 @@ fn what_does_not_fit_one_stream_is_refused() {
         (&["generalise", "way.geojson", "-o", "-"], several),
         (&["render", "s.toml", "-o", "-", "--json"], "--json prints on standard output, too"),
         (&["reveal", "dem.asc", "way.geojson", "-o", "a.png", "--report", "-"], "only -o takes standard output"),
-        (&["reveal", "dem.asc", "way.geojson", "-o", "-", "--drafts"], "--drafts prints commands"),
+        (&["reveal", "dem.asc", "way.geojson", "-o", "-", "--drafts", "2"], "--drafts prints commands"),
         (
             &["disocclude", "dem.asc", "way.geojson", "--eye", "8.022,46.002,1500", "--look", "8.024,46.03", "-o", "-"],
             "an elevation model is written to a file",
@@ -142,7 +142,7 @@ fn outputs_that_cannot_be_written_are_noticed_before_the_work() {
             let line = place.fails(&[args, &["-o", out][..]].concat());
             assert!(line.contains(out.trim_end_matches("/x.png")) && !line.contains("none.json"), "{args:?}: {line}");
         }
-        let more = [args, &["-o", "fine.png", "--timings", "none/t.json"][..]].concat();
+        let more = [args, &["-o", "fine", "--timings", "none/t.json"][..]].concat();
         let line = place.fails(&more);
         assert!(line.contains("folder none does not exist; create it first"), "{args:?}: {line}");
     }
