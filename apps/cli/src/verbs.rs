@@ -290,8 +290,13 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
     let files: Vec<PathBuf> = [&args.dem].into_iter().chain(&args.features).map(PathBuf::from).collect();
     let in_city = args.see.is_none() && hold_a_city(&files);
     if args.see.is_some() || in_city {
-        if !matches!(args.technique, None | Some(TechniqueKind::Auto | TechniqueKind::CurvedRays | TechniqueKind::Spline)) {
-            anyhow::bail!("--see bends rays, or in a city the ground by a spline; give --technique curved_rays or spline, or leave it out");
+        if !matches!(
+            args.technique,
+            None | Some(TechniqueKind::Auto | TechniqueKind::CurvedRays | TechniqueKind::Spline)
+        ) {
+            anyhow::bail!(
+                "--see bends rays, or in a city the ground by a spline; give --technique curved_rays or spline, or leave it out"
+            );
         }
         let see = args.see.unwrap_or_default();
         let mut request = TargetRequest {

@@ -169,7 +169,14 @@ fn flat_ground(scene: &Scene) -> Option<Heightfield> {
     let step = (size.max_element() / FLAT_CELLS).max(1e-3);
     let [cols, rows] = [size.x, size.y].map(|side| (side / step).ceil() as usize + 1);
     let north_west = DVec2::new(bounds.min.x, bounds.min.y + step * (rows - 1) as f64);
-    Heightfield::measured(north_west, DVec2::splat(step), cols.max(2), rows.max(2), vec![height as f32; cols.max(2) * rows.max(2)]).ok()
+    Heightfield::measured(
+        north_west,
+        DVec2::splat(step),
+        cols.max(2),
+        rows.max(2),
+        vec![height as f32; cols.max(2) * rows.max(2)],
+    )
+    .ok()
 }
 
 /// Angle between the headings of two drafts, degrees.

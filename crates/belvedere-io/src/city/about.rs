@@ -46,7 +46,15 @@ mod tests {
         let properties = [("id", "way/7"), ("leisure", "park"), ("name:fr", "Parc = Parc")];
         let properties = properties.map(|(k, v)| (k.to_owned(), v.to_owned())).into();
         let meant = |by: &str| is_meant(by, "Městský park", &properties);
-        for by in ["Městský park", "MĚSTSKÝ PARK", "way/7", "leisure=park", "Leisure = Park", "leisure=*", "name:fr=Parc = Parc"] {
+        for by in [
+            "Městský park",
+            "MĚSTSKÝ PARK",
+            "way/7",
+            "leisure=park",
+            "Leisure = Park",
+            "leisure=*",
+            "name:fr=Parc = Parc",
+        ] {
             assert!(meant(by), "{by}");
         }
         for by in ["", "park", "leisure", "leisure=", "way/8", "="] {

@@ -1,8 +1,8 @@
 //! Footprints, ways and land cover from map features.
 
+use super::about::{CityAbout, IDS};
 use super::attributes::{self, Attributes};
 use super::plan::{self, Repairs};
-use super::about::{CityAbout, IDS};
 use super::{CityFile, IoError, Loaded};
 use crate::vector::{Geometry, VectorFeature, Vectors, Vertex};
 use belvedere_core::{Warning, WarningKind};

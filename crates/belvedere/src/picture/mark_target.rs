@@ -47,7 +47,8 @@ impl Picture {
         };
         // Around everything in the picture an outline tells nothing.
         let is_own = |i: usize| target.own_layers.contains(&i);
-        let has_others = (0..session.scene().layers.len()).any(|i| !is_own(i) && !session.scene().layers[i].bounds().is_empty());
+        let has_others =
+            (0..session.scene().layers.len()).any(|i| !is_own(i) && !session.scene().layers[i].bounds().is_empty());
         let straight_view = self.view.straightened();
         let mut shares = [0.0; 2];
         let frames = [(self.straight.as_mut(), &straight_view), (Some(&mut self.frame), &self.view)];

@@ -115,7 +115,9 @@ fn kept(vectors: &mut Vectors, select: &str) -> Result<(), String> {
     let before = vectors.features.len();
     vectors.features.retain(|f| is_meant(select, &f.name, &f.properties));
     match vectors.features.is_empty() {
-        true => Err(format!("none of its {before} features is meant by \"{select}\"; give a name, an id or key=value, `info` lists them")),
+        true => Err(format!(
+            "none of its {before} features is meant by \"{select}\"; give a name, an id or key=value, `info` lists them"
+        )),
         false => Ok(()),
     }
 }

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// Headings, degrees clockwise from north, those along the light first.
 const HEADINGS: [f64; 12] = [30.0, 330.0, 60.0, 300.0, 0.0, 90.0, 270.0, 120.0, 240.0, 150.0, 210.0, 180.0];
 /// Pitches, degrees, and the visible share that a steep one must gain.
-const PITCHES: [(f64, f64); 4] = [(30.0, 0.0), (40.0, 0.02), (52.0, 0.08), (68.0, 0.3)];
+const PITCHES: [(f64, f64); 4] = [(30.0, 0.0), (40.0, 0.01), (52.0, 0.03), (68.0, 0.12)];
 /// The same for the last of the headings.
 const WORTH: f64 = 0.03;
 /// Views for which bends are searched, at most.
@@ -38,7 +38,12 @@ pub(super) fn region(target: &Target) -> Vec<DVec3> {
 ///
 /// # Errors
 /// [`BelvedereError::Target`] if no eye has room.
-pub(super) fn around(scene: &Scene, target: &Target, lens: ([u32; 2], f64), most: usize) -> Result<Vec<View>, BelvedereError> {
+pub(super) fn around(
+    scene: &Scene,
+    target: &Target,
+    lens: ([u32; 2], f64),
+    most: usize,
+) -> Result<Vec<View>, BelvedereError> {
     let points = region(target);
     let mut views = Vec::new();
     for (pitch, price) in PITCHES {
@@ -67,7 +72,9 @@ pub(super) fn around(scene: &Scene, target: &Target, lens: ([u32; 2], f64), most
     }
     kept.truncate(if whole { 1 } else { most });
     match kept.is_empty() {
-        true => Err(BelvedereError::Target("no eye around the target is free of buildings; give --eye and --look".into())),
+        true => {
+            Err(BelvedereError::Target("no eye around the target is free of buildings; give --eye and --look".into()))
+        }
         false => Ok(kept),
     }
 }

@@ -2,10 +2,10 @@
 
 pub mod animate;
 pub mod check;
+mod city_views;
 pub mod disocclude;
 pub mod drafts;
 pub mod generalise;
-mod city_views;
 mod in_time;
 pub mod info;
 mod level_lakes;

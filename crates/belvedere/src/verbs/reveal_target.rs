@@ -165,7 +165,7 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
             best = Some((view, found.bent.map(|(_, sidestep)| sidestep), found.report));
         }
         // Where much is seen, later views, which show less without a bend, seldom show more with one.
-        let enough = if k + 1 < VIEWS_AT_LEAST { ENOUGH } else { MUCH };
+        let enough = if k + 1 < VIEWS_AT_LEAST || opened.is_city() { ENOUGH } else { MUCH };
         if best.as_ref().is_some_and(|(.., b)| b.visible >= enough) {
             break;
         }
@@ -200,7 +200,9 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
     let mut document = document(session, &view, bend.as_ref(), target)?;
     if report.visible < ENOUGH && !request.fallback.is_empty() {
         let Some(name) = meant.name() else {
-            return Err(BelvedereError::Target("--fallback is for buildings and models, not for features on the ground".into()));
+            return Err(BelvedereError::Target(
+                "--fallback is for buildings and models, not for features on the ground".into(),
+            ));
         };
         let (target, fallback) = (Some(name.to_owned()), request.fallback.clone());
         document.constructor = Some(ConstructorDoc { target, fallback, ..ConstructorDoc::of(ConstructorKind::Manual) });
@@ -281,12 +283,7 @@ fn given(
 }
 
 /// The document of the session with the found view.
-fn document(
-    session: &Session,
-    view: &View,
-    bend: Option<&Bend>,
-    target: &Target,
-) -> Result<Document, BelvedereError> {
+fn document(session: &Session, view: &View, bend: Option<&Bend>, target: &Target) -> Result<Document, BelvedereError> {
     let Some(resolved) = session.resolved() else {
         return Err(BelvedereError::Target("the scene has no document".into()));
     };

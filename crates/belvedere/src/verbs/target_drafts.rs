@@ -28,7 +28,8 @@ pub fn target_drafts(
     }
     let opened = Opened::of(request, options)?;
     if request.viewpoint.is_some() || opened.session.path().is_some() {
-        let reason = "drafts choose their views themselves; leave eye and look out, and give data instead of a scene file";
+        let reason =
+            "drafts choose their views themselves; leave eye and look out, and give data instead of a scene file";
         return Err(BelvedereError::Setting(reason.into()));
     }
     let mut views: Vec<View> = Vec::new();
@@ -43,7 +44,8 @@ pub fn target_drafts(
         let scene = opened.session.scene();
         let found = bend_around(scene, view, &opened.targets.search, &AroundOptions::default(), &options.progress)?;
         let moved = found.bent.and_then(|(_, sidestep)| opened.reframed(view, &sidestep));
-        let Some((viewpoint, fov_y_deg)) = rounded(moved.as_ref().unwrap_or(view), opened.targets.search.center()) else {
+        let Some((viewpoint, fov_y_deg)) = rounded(moved.as_ref().unwrap_or(view), opened.targets.search.center())
+        else {
             continue;
         };
         let request = TargetRequest { viewpoint: Some(viewpoint), fov_y_deg: Some(fov_y_deg), ..request.clone() };

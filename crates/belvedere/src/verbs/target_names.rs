@@ -82,10 +82,15 @@ impl CitySee {
 pub(super) fn known_names(cities: &[PathBuf], see: &str) -> Result<String, BelvedereError> {
     let of = |path: &Path| Ok::<_, BelvedereError>(CitySee::of(&load_city(path, None, &Limits::default())?.value));
     let all: Vec<CitySee> = cities.iter().map(|path| of(path)).collect::<Result<_, _>>()?;
-    let names = all.iter().flat_map(|s| s.buildings.keys().chain(s.ways.keys()).chain(s.areas.keys()).chain(s.kinds.keys()));
+    let names =
+        all.iter().flat_map(|s| s.buildings.keys().chain(s.ways.keys()).chain(s.areas.keys()).chain(s.kinds.keys()));
     let names: Vec<&str> = names.map(String::as_str).collect();
     let ids: Vec<&str> = all.iter().flat_map(|s| &s.ids).map(String::as_str).collect();
     let list = if names.is_empty() { &ids } else { &names };
-    let near = if see.is_empty() { list.iter().take(6).copied().collect::<Vec<_>>().join(", ") } else { suggestion(see, list) };
+    let near = if see.is_empty() {
+        list.iter().take(6).copied().collect::<Vec<_>>().join(", ")
+    } else {
+        suggestion(see, list)
+    };
     Ok(format!("{near}; `belvedere info` lists names, ids and key=value"))
 }

@@ -6,9 +6,7 @@ use super::reveal_target::TargetRequest;
 use super::target_names::{is_building, known_names};
 use crate::data::features_of;
 use crate::resolve::vectors::{FeatureKind, kinds_of};
-use crate::scene_file::{
-    CameraDoc, CityDoc, Document, LayerDoc, LineDoc, LineStyleDoc, Paths, SourceDocument,
-};
+use crate::scene_file::{CameraDoc, CityDoc, Document, LayerDoc, LineDoc, LineStyleDoc, Paths, SourceDocument};
 use crate::targets;
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::rays::Target;
@@ -101,7 +99,8 @@ impl Meant {
 }
 
 fn length(kind: &LayerKind) -> f64 {
-    let flat = |points: &[DVec3]| points.windows(2).map(|w| DVec2::distance(w[0].truncate(), w[1].truncate())).sum::<f64>();
+    let flat =
+        |points: &[DVec3]| points.windows(2).map(|w| DVec2::distance(w[0].truncate(), w[1].truncate())).sum::<f64>();
     match kind {
         LayerKind::Line(l) => l.features.iter().map(|f| flat(&f.points)).filter(|length| length.is_finite()).sum(),
         _ => 0.0,

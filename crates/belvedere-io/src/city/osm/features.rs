@@ -19,7 +19,10 @@ pub(crate) fn vectors(path: &Path, bytes: &[u8], format: &'static str) -> Result
     let map = Map::of_file(path, bytes, format)?;
     let features = map.features();
     if features.is_empty() {
-        return Err(IoError::format(path, format!("{format} holds no building, way or land cover; choose another extract")));
+        return Err(IoError::format(
+            path,
+            format!("{format} holds no building, way or land cover; choose another extract"),
+        ));
     }
     let crs = CoordinateSystem::wgs84().map_err(|e| IoError::format(path, e.to_string()))?;
     let value = Vectors { path: path.into(), format, layer: String::new(), crs, crs_stated: true, features };
