@@ -79,7 +79,7 @@ fn buildings_streets_and_areas_of_a_map_are_seen_by_name_id_and_tag() {
     let low = ["--eye", "9.00105,46.9984,50", "--look", "9.00105,47.0007,5"];
     place.ok(&[&["reveal", "town.osm", "--see", "Old Church"][..], &low, &FILES, &["320x180"]].concat());
     let found = report(&place);
-    assert!(share(&found, "visible_straight") < 0.3 && share(&found, "visible") > 0.8, "{found}");
+    assert!(share(&found, "visible_straight") < 0.3 && share(&found, "visible") > 0.5, "{found}");
     assert_eq!(found["technique"], "curved_rays");
     // The scene that was written draws the same picture.
     place.ok(&["render", "r.toml", "-o", "again.png", "--size", "320x180"]);

@@ -26,7 +26,7 @@ pub(crate) fn draw(frame: &mut Frame, mask: &Mask) {
     let seen = spread(&mask.seen, width, close + 1, true);
     let is_inked = |i: usize| {
         let (x, y) = ((i % width) as f64, (i / width) as f64);
-        seen[i] || ((x + y) / dash) as usize % 2 == 0 && ((x - y) / dash).floor() as i64 % 2 == 0
+        seen[i] || (((x + y) / dash) as usize).is_multiple_of(2) && ((x - y) / dash).floor().rem_euclid(2.0) < 0.5
     };
     let outline: Vec<usize> = border(&region, width).into_iter().filter(|&i| is_inked(i)).collect();
     let mut canvas = Canvas::new(&mut frame.color, width);

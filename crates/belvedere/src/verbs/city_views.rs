@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// Headings, degrees clockwise from north, those along the light first.
 const HEADINGS: [f64; 12] = [30.0, 330.0, 60.0, 300.0, 0.0, 90.0, 270.0, 120.0, 240.0, 150.0, 210.0, 180.0];
 /// Pitches, degrees, and the visible share that a steep one must gain.
-const PITCHES: [(f64, f64); 4] = [(30.0, 0.0), (40.0, 0.02), (52.0, 0.08), (68.0, 0.3)];
+const PITCHES: [(f64, f64); 4] = [(30.0, 0.0), (40.0, 0.01), (52.0, 0.03), (68.0, 0.12)];
 /// The same for the last of the headings.
 const WORTH: f64 = 0.03;
 /// Views for which bends are searched, at most.

@@ -179,7 +179,7 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
             best = Some((view, found.bent.map(|(_, sidestep)| sidestep), found.report));
         }
         // Where much is seen, later views, which show less without a bend, seldom show more with one.
-        let enough = if k + 1 < VIEWS_AT_LEAST { ENOUGH } else { MUCH };
+        let enough = if k + 1 < VIEWS_AT_LEAST || opened.is_city() { ENOUGH } else { MUCH };
         if best.as_ref().is_some_and(|(.., b)| b.visible >= enough) {
             break;
         }

@@ -92,5 +92,6 @@ pub(super) fn known_names(cities: &[PathBuf], see: &str) -> Result<String, Belve
     } else {
         suggestion(see, list)
     };
-    Ok(format!("{near}; `belvedere info` lists names, ids and key=value"))
+    let joint = if near.ends_with('?') { "" } else { ";" };
+    Ok(format!("{near}{joint} `belvedere info` lists names, ids and key=value"))
 }
