@@ -190,7 +190,8 @@ pub(crate) struct RevealArgs {
     /// Colours and opacities of volumes with --see: auto, solid, engine, ct-bone, ct-soft, vessels, grey, or a file
     #[arg(long, value_name = "NAME|FILE", requires = "see")]
     pub(crate) transfer: Option<String>,
-    /// Picture to write; its record goes to OUT.png.json, the straight beside the bent picture to OUT.pair.png
+    /// Picture to write; its record goes to OUT.png.json, and if it is bent, the straight beside the bent picture to
+    /// OUT.pair.png
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
     /// Eye: scene x,y (or lon,lat in degrees) and height in metres; chosen automatically if left out
