@@ -275,3 +275,17 @@ fn thin(features: &[SampledFeature], count: usize) -> Vec<Sample> {
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ground_that_faces_the_eye_rises() {
+        let slope = |of: fn(f64) -> f64| rise(&(0..100).map(|k| (f64::from(k), of(f64::from(k)))).collect::<Vec<_>>());
+        assert!(slope(|d| 0.5 * d) > 1.0 && slope(|d| -0.5 * d) < -1.0);
+        assert!(slope(|d| if d < 50.0 { 500.0 } else { 0.0 }) < -1.9, "mountains before a plain");
+        assert_eq!((slope(|_| 7.0), rise(&[]), rise(&[(5.0, 3.0)])), (0.0, 0.0, 0.0));
+        assert!(slope(|d| 0.0005 * d) < 0.1, "hardly any relief");
+    }
+}

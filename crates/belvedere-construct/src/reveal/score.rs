@@ -13,11 +13,13 @@ pub(super) fn composition(a: &Evaluation) -> f64 {
 /// The part of [`composition`] that a bend changes little: it turns the ground up and down, so that it brings the horizon into the picture and
 /// spreads the features over its height, but moves nothing sideways.
 pub(super) fn frame(a: &Evaluation) -> f64 {
+    let void = 1.0 - a.covered;
     let outside = 4.0 * (1.0 - a.in_frame) + 6.0 * (0.97 - a.in_frame).max(0.0);
     0.25 * (a.drawn / 0.8).min(1.0) + 0.35 * (a.width / 0.7).min(1.0) + 0.15 * a.rise.clamp(-1.0, 1.0)
         - outside
         - 1.0 * (a.in_frame - a.in_margin)
-        - 5.0 * (1.0 - a.covered)
+        - 4.0 * void.min(0.15)
+        - 2.0 * (void - 0.15).max(0.0)
         - 3.0 * (a.slant - 0.05).max(0.0)
         - 0.03 * (a.coarse_px - 8.0).clamp(0.0, 40.0)
 }
@@ -70,6 +72,21 @@ mod tests {
             Evaluation { in_frame: 0.95, in_margin: 0.95, ..GOOD },
         ];
         assert!(worse.iter().all(|w| composition(w) < all), "{:?}", worse.map(|w| composition(&w)));
+    }
+
+    #[test]
+    fn a_bend_brings_the_horizon_but_neither_the_ground_nor_the_width() {
+        let steep = Evaluation { skyline: 0.0, spread: 0.2, ..GOOD };
+        assert!(frame(&steep) == frame(&GOOD) && composition(&steep) < composition(&GOOD));
+        for worse in [Evaluation { covered: 0.7, ..GOOD }, Evaluation { width: 0.2, ..GOOD }] {
+            assert!(frame(&worse) < frame(&GOOD), "{worse:?}");
+        }
+    }
+
+    #[test]
+    fn only_a_straight_picture_that_shows_nearly_all_is_preferred_for_being_straight() {
+        let of = |visible_in_frame: f64| unbent(&Evaluation { visible_in_frame, ..GOOD });
+        assert!(of(1.0) > of(0.98) && of(0.98) > 0.0 && of(0.94) == 0.0);
     }
 
     #[test]
