@@ -222,8 +222,8 @@ pub(crate) struct RevealArgs {
     /// Colours and opacities of volumes with --see: auto, solid, engine, ct-bone, ct-soft, vessels, grey, or a file
     #[arg(long, value_name = "NAME|FILE", requires = "see")]
     pub(crate) transfer: Option<String>,
-    /// Picture to write; its record goes to OUT.png.json, the straight beside the bent picture to OUT.pair.png; - = standard output, and
-    /// the picture alone
+    /// Picture to write; its record goes to OUT.png.json, and if it is bent, the straight beside the bent picture to OUT.pair.png; - =
+    /// standard output, and the picture alone
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
     /// Eye: x,y of the scene, lon,lat in degrees, or 46.5N,11.3E; and height in metres, or +20 for 20 m above the ground. Chosen

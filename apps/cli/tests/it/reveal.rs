@@ -215,6 +215,7 @@ fn headline_report_and_measure_give_the_same_shares_of_the_whole() {
         assert_eq!([visible, in_frame], ["visible", "in_frame"].map(|key| of(&measured[key])), "{technique}");
         assert_eq!([visible, in_frame], ["visible", "in_frame"].map(|key| of(&report["bent"][key])), "{technique}");
         assert!(visible <= in_frame, "{technique}: {visible} of {in_frame}");
+        assert_eq!(place.path("out.pair.png").exists(), !report["technique"].is_null(), "{technique}");
         assert_eq!(in_frame < 0.9, view.contains(&"14"), "{technique}: {in_frame}");
         for share in ["visible_straight", "in_frame_straight", "visible_bent", "in_frame_bent"] {
             let words = format!("{:.1} %", 100.0 * of(&report[share]));
@@ -245,6 +246,12 @@ fn where_nothing_is_hidden_the_answer_is_the_straight_picture_and_a_word() {
         let scene = String::from_utf8(super::read(&place.path("r.toml"))).expect("UTF-8");
         assert!(!scene.contains("[[stage]]"), "{technique}: {scene}");
     }
+    // There is no pair of two equal pictures, nor that of an earlier picture; the straight picture is written if it is asked for.
+    place.write("out.pair.png", "old");
+    place.ok(&[&args[..], &["--before", "before.png"]].concat());
+    assert!(!place.path("out.pair.png").exists());
+    let pixels = |name: &str| super::light_and_tints::pixels(&super::read(&place.path(name)));
+    assert!(pixels("before.png") == pixels("out.png"));
 }
 
 #[test]

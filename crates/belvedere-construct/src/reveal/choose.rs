@@ -3,10 +3,10 @@
 use super::evaluate::{Evaluation, Evaluator};
 use super::eyes::Eye;
 use super::options::RevealOptions;
-use super::score::{composition, shown};
-use super::search::{BendSearch, Candidate, SearchStart, stride_for};
+use super::score::{composition, frame, shown, unbent};
+use super::search::{BENT, BendSearch, Candidate, SearchStart, coarse_stride, stride_for};
 use crate::ConstructError;
-use belvedere_core::{EarthCurvature, Stage, View};
+use belvedere_core::{EarthCurvature, Projection, Stage, View};
 use belvedere_scene::Progress;
 use rayon::prelude::*;
 
@@ -16,11 +16,15 @@ pub(super) const NOTHING_HIDDEN: f64 = 0.995;
 pub(super) const VIEWS_KEPT: usize = 10;
 /// Views whose bend is improved before one is chosen.
 const VIEWS_REFINED: usize = 3;
+/// Eyes with the best compositions, from which lines of sight are looked along.
+const LOOKED_FROM: usize = 500;
 /// Eyes that are evaluated even where time is up.
 const EYES_AT_LEAST: usize = 24;
 /// Views within this angle of each other are alike, degrees; so many of them are kept.
 const ALIKE_DEG: f64 = 20.0;
 const MOST_ALIKE: usize = 2;
+/// The best straight pictures are kept in any case: where one shows all, no bend is needed.
+const STRAIGHT_KEPT: usize = 2;
 
 /// A camera whose straight picture was evaluated.
 #[derive(Debug, Clone)]
@@ -29,6 +33,8 @@ pub(crate) struct Base {
     pub(crate) straight: Evaluation,
     /// Heading in degrees clockwise from north.
     pub(crate) heading_deg: f64,
+    /// Score of the camera, whatever its picture shows.
+    pub(crate) taste: f64,
 }
 
 /// The chosen camera with its bend, if bending pays.
@@ -39,18 +45,25 @@ pub(crate) struct Choice {
     pub(crate) score: f64,
 }
 
-/// Score of a heading: light comes from the north-west, and looking north shows the shaded side of the relief as readers of maps know it.
-fn north(heading_deg: f64) -> f64 {
-    0.15 * heading_deg.to_radians().cos()
+/// Score of a camera: light comes from the north-west, and looking north shows the shaded side of the relief as readers of maps know it; through
+/// a narrow lens, from far away, relief looks flat.
+fn taste(eye: &Eye, options: &RevealOptions) -> f64 {
+    let lens = match eye.pinhole.projection {
+        Projection::Perspective { fov_y } => (fov_y / options.fov_y).min(1.0),
+        Projection::Orthographic { .. } => 0.0,
+    };
+    0.15 * eye.heading_deg.to_radians().cos() - 0.2 * (1.0 - lens)
 }
 
-/// Score of a straight picture as a start: composition, what it shows already, and how far a bend can show the rest.
-fn promise(a: &Evaluation, heading_deg: f64) -> f64 {
+/// Score of a straight picture as a start: composition, what it shows already, and how far a bend can show the rest. Where something is hidden,
+/// the bend also brings a horizon that is not there yet.
+fn promise(a: &Evaluation, taste: f64) -> f64 {
     let hidden = 1.0 - a.visible_in_frame;
-    composition(a) + north(heading_deg) + 0.8 * a.visible_in_frame - 2.0 * hidden * (0.8 - a.attainable).max(0.0)
+    let bent = if a.visible_in_frame < NOTHING_HIDDEN { frame(a) - BENT } else { f64::NEG_INFINITY };
+    composition(a).max(bent) + taste + 0.8 * a.visible_in_frame - 2.0 * hidden * (0.8 - a.attainable).max(0.0)
 }
 
-/// Evaluates every eye by its straight picture and keeps the most promising, not many from nearly the same direction.
+/// Evaluates the eyes by their straight pictures and keeps the most promising, not many from nearly the same direction.
 pub(super) fn promising(
     evaluator: &Evaluator<'_>,
     eyes: Vec<Eye>,
@@ -60,12 +73,13 @@ pub(super) fn promising(
 ) -> Result<Vec<Base>, ConstructError> {
     progress.tick("looking from all around", 0.1)?;
     let tried = eyes.len();
-    let stride = 2 * stride_for(evaluator.samples.len(), options);
-    let mut evaluated: Vec<(f64, Base)> = eyes
+    let samples = evaluator.samples.len();
+    let stride = coarse_stride(samples, stride_for(samples, options));
+    let mut composed: Vec<(f64, Base)> = eyes
         .into_par_iter()
         .enumerate()
         .filter_map(|(i, eye)| {
-            // When time is up, the other eyes are left out, but not the most promising ones.
+            // When time is up, the other eyes are left out, but not the most usual ones.
             if i >= EYES_AT_LEAST && progress.should_end() {
                 return None;
             }
@@ -74,13 +88,26 @@ pub(super) fn promising(
                 Stage::EarthCurvature(EarthCurvature { eye: eye.pinhole.eye, radius, refraction })
             });
             let view = View::new(eye.pinhole.clone(), stages.into_iter().collect()).ok()?;
-            let straight = evaluator.evaluate(&view, stride);
-            let heading_deg = eye.heading_deg;
-            Some((promise(&straight, heading_deg), Base { view, straight, heading_deg }))
+            let (straight, taste) = (evaluator.composed(&view, stride), taste(&eye, options));
+            let score = composition(&straight).max(frame(&straight) - BENT) + taste;
+            Some((score, Base { view, straight, heading_deg: eye.heading_deg, taste }))
+        })
+        .collect();
+    composed.sort_by(|a, b| b.0.total_cmp(&a.0));
+    composed.truncate(LOOKED_FROM);
+    let mut evaluated: Vec<(f64, Base)> = composed
+        .into_par_iter()
+        .enumerate()
+        .filter_map(|(i, (_, base))| {
+            if i >= EYES_AT_LEAST && progress.should_end() {
+                return None;
+            }
+            let straight = evaluator.evaluate(&base.view, stride);
+            Some((promise(&straight, base.taste), Base { straight, ..base }))
         })
         .collect();
     evaluated.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut kept: Vec<Base> = Vec::new();
+    let (mut kept, mut others): (Vec<Base>, Vec<Base>) = Default::default();
     for (_, base) in evaluated {
         let apart = |k: &&Base| {
             let turn = (k.heading_deg - base.heading_deg).rem_euclid(360.0);
@@ -88,17 +115,22 @@ pub(super) fn promising(
         };
         if base.straight.in_frame > 0.05 && kept.iter().filter(apart).count() < MOST_ALIKE && kept.len() < most {
             kept.push(base);
+        } else {
+            others.push(base);
         }
     }
     if kept.is_empty() {
         return Err(ConstructError::NoView { tried });
     }
+    others.sort_by(|a, b| score_straight(b).total_cmp(&score_straight(a)));
+    let least = kept.iter().map(score_straight).fold(f64::NEG_INFINITY, f64::max);
+    kept.extend(others.into_iter().take(STRAIGHT_KEPT).filter(|base| score_straight(base) > least));
     Ok(kept)
 }
 
 /// Score of the straight picture as the answer.
 fn score_straight(base: &Base) -> f64 {
-    composition(&base.straight) + shown(&base.straight) + north(base.heading_deg)
+    composition(&base.straight) + shown(&base.straight) + unbent(&base.straight) + base.taste
 }
 
 /// The best of all pictures, straight and bent; with the number of bends tried.
@@ -118,8 +150,8 @@ pub(super) fn best_of_all(
     });
     for (index, base) in bases.iter().enumerate() {
         progress.tick("bending the picture", 0.3 + 0.3 * index as f64 / bases.len() as f64)?;
-        // No bend of it can be worth more than all of the features in the same composition.
-        let at_best = composition(&base.straight) + 3.0 + 1.0 + north(base.heading_deg);
+        // A bend of it is hardly worth more than all of the features under a horizon.
+        let at_best = frame(&base.straight).max(composition(&base.straight)) + 3.2 + base.taste;
         let hides = base.straight.visible_in_frame < NOTHING_HIDDEN;
         if !hides || best.as_ref().is_some_and(|best| best.score >= at_best) {
             continue;
@@ -127,9 +159,9 @@ pub(super) fn best_of_all(
         let mut search = BendSearch::new(evaluator, &base.view, base.straight, stride);
         let remembered = remembered.and_then(|start| search.refine(start, 0, progress));
         let found = search.coarse().into_iter().chain(remembered).max_by(|a, b| a.1.score.total_cmp(&b.1.score));
-        bent.extend(found.map(|(start, t)| {
-            (Choice { base: index, bend: Some(start), score: t.score + north(base.heading_deg) }, start)
-        }));
+        bent.extend(
+            found.map(|(start, t)| (Choice { base: index, bend: Some(start), score: t.score + base.taste }, start)),
+        );
         tried += search.tried;
         if progress.should_end() {
             break;
@@ -143,7 +175,7 @@ pub(super) fn best_of_all(
             let base = &bases[chosen.base];
             let mut search = BendSearch::new(evaluator, &base.view, base.straight, stride);
             if let Some((start, better)) = search.refine(&start, 3, progress) {
-                let score = better.score + north(base.heading_deg);
+                let score = better.score + base.taste;
                 chosen = Choice { bend: Some(start), score, ..chosen };
             }
             tried += search.tried;

@@ -39,6 +39,9 @@ pub struct Evaluation {
     /// Mean size of a grid cell at the lower border of the image, pixels; 0 without ground there. Ground that is magnified much more than 8
     /// times looks smeared.
     pub coarse_px: f64,
+    /// How much higher the farther half of the ground in the image lies than the nearer half, in units of the spread of all its heights,
+    /// about -2..=2: > 0 if the ground faces the eye, < 0 if the eye looks over mountains down into what lies behind them. 0 on flat ground.
+    pub rise: f64,
 }
 
 impl Evaluation {
@@ -84,6 +87,15 @@ impl<'a> Evaluator<'a> {
 
     /// Evaluates `view`; `stride` > 1 looks at every stride-th sample only.
     pub(crate) fn evaluate(&self, view: &View, stride: usize) -> Evaluation {
+        self.evaluated(view, stride, true)
+    }
+
+    /// The same without lines of sight, which take most of the time: nothing counts as visible.
+    pub(crate) fn composed(&self, view: &View, stride: usize) -> Evaluation {
+        self.evaluated(view, stride, false)
+    }
+
+    fn evaluated(&self, view: &View, stride: usize, looks: bool) -> Evaluation {
         // Only whether a sample is seen counts, and a quarter of a cell is exact enough to choose by.
         let sight = SightOptions { chord_m: 0.05 * self.cell, cap_m: 0.0, guard_m: 1.5 * self.cell };
         let pinhole = view.pinhole();
@@ -105,14 +117,17 @@ impl<'a> Evaluator<'a> {
             distances.push((sample.p_world - pinhole.eye).length());
             drawn += sample.amount / image.depth;
             let at = (image.pixel, image.depth);
-            if !image.folded && self.obstacles.clearance(view, (sample.p_world, sample.lift), at, &sight) >= 0.0 {
+            if looks
+                && !image.folded
+                && self.obstacles.clearance(view, (sample.p_world, sample.lift), at, &sight) >= 0.0
+            {
                 seen += sample.amount;
             }
         }
         let height_angle = 2.0 * (0.5 * f64::from(pinhole.image[1]) / pinhole.scale_px()).atan();
         let depth_ratio =
             quantile(&mut distances, 0.97, Rank::Nearest) / quantile(&mut distances, 0.03, Rank::Nearest).max(1e-9);
-        let (skyline, slant) = self.skyline(view);
+        let (skyline, slant, rise) = self.skyline(view);
         let (covered, coarse_px) = self.covered(view, skyline);
         let [width, height] = pinhole.image.map(f64::from);
         Evaluation {
@@ -122,31 +137,37 @@ impl<'a> Evaluator<'a> {
             visible_in_frame: if framed > 0.0 { seen / framed } else { 0.0 },
             attainable: (0.8 * height_angle).atan2(depth_ratio.ln().max(0.0)),
             spread: (quantile(&mut rows, 0.95, Rank::Nearest) - quantile(&mut rows, 0.05, Rank::Nearest)) / height,
-            drawn: drawn * pinhole.scale_px() / width,
+            drawn: drawn * stride.max(1) as f64 * pinhole.scale_px() / width,
             covered,
             skyline,
             slant,
             width: (quantile(&mut columns, 0.99, Rank::Nearest) - quantile(&mut columns, 0.01, Rank::Nearest)) / width,
             coarse_px,
+            rise,
         }
     }
 
-    /// Mean and standard deviation over the columns of the image of the highest terrain node in each, share of the image height from the top.
-    fn skyline(&self, view: &View) -> (f64, f64) {
+    /// Mean and standard deviation over the columns of the image of the highest terrain node in each, share of the image height from the top;
+    /// and the rise of the ground.
+    fn skyline(&self, view: &View) -> (f64, f64, f64) {
         const COLUMNS: usize = 12;
         let [width, height] = view.pinhole().image.map(f64::from);
         let mut top = [height; COLUMNS];
+        let mut framed: Vec<(f64, f64)> = Vec::new();
         for &p in &self.ground {
             let Ok(image) = view.project(p) else { continue };
             let column = image.pixel.x / width * COLUMNS as f64;
             if (0.0..COLUMNS as f64).contains(&column) {
                 let highest = &mut top[column as usize];
                 *highest = highest.min(image.pixel.y.max(0.0));
+                if view.pinhole().contains(image.pixel) {
+                    framed.push(((p - view.pinhole().eye).dot(view.pinhole().forward), p.z));
+                }
             }
         }
         let mean = |of: &dyn Fn(f64) -> f64| top.iter().map(|t| of(t / height)).sum::<f64>() / COLUMNS as f64;
         let middle = mean(&|t| t);
-        (middle, mean(&|t| (t - middle) * (t - middle)).sqrt())
+        (middle, mean(&|t| (t - middle) * (t - middle)).sqrt(), rise(&framed))
     }
 
     /// Share of a grid of rays below the skyline that come down on the ground of the data from above, and the size of its cells in the lowest
@@ -157,7 +178,7 @@ impl<'a> Evaluator<'a> {
         let (mut hit, mut all) = (0.0, 0.0);
         let (mut lowest, mut cells_px) = (0.0f64, 0.0);
         // The lower the row, the nearer and the more conspicuous a missing corner of the ground.
-        for (part, weight) in [(0.05, 0.5), (0.15, 0.7), (0.3, 1.0), (0.6, 1.5), (0.985, 2.0)] {
+        for (part, weight) in [(0.05, 0.3), (0.15, 0.5), (0.3, 1.0), (0.6, 2.0), (0.985, 3.0)] {
             for column in [0.005, 0.12, 0.24, 0.38, 0.5, 0.62, 0.76, 0.88, 0.995] {
                 let pixel = DVec2::new(column * width, (top + (1.0 - top) * part) * height);
                 all += weight;
@@ -217,6 +238,20 @@ impl<'a> Evaluator<'a> {
     }
 }
 
+/// Difference of the mean heights of the nodes (distance, height) beyond and before the mean distance, in units of the standard deviation of
+/// the heights; less on ground whose relief is less than a hundredth of its depth.
+fn rise(nodes: &[(f64, f64)]) -> f64 {
+    let mean = |of: &dyn Fn(&(f64, f64)) -> Option<f64>| {
+        let (sum, count) = nodes.iter().filter_map(of).fold((0.0, 0.0), |(sum, count), v| (sum + v, count + 1.0));
+        if count > 0.0 { sum / count } else { 0.0 }
+    };
+    let (at, height) = (mean(&|n| Some(n.0)), mean(&|n| Some(n.1)));
+    let depth = 4.0 * mean(&|n| Some((n.0 - at).abs()));
+    let spread = mean(&|n| Some((n.1 - height).powi(2))).sqrt();
+    let [near, far] = [false, true].map(|beyond| mean(&|n| ((n.0 > at) == beyond).then_some(n.1)));
+    (far - near) / spread.max(0.01 * depth).max(1e-9)
+}
+
 /// About `count` samples that stand for all: runs of neighbours are merged into their middle one.
 fn thin(features: &[SampledFeature], count: usize) -> Vec<Sample> {
     let total: f64 = features.iter().flat_map(|f| &f.samples).map(|s| s.amount).sum();
@@ -242,4 +277,18 @@ fn thin(features: &[SampledFeature], count: usize) -> Vec<Sample> {
         close(&mut run, &mut amount);
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ground_that_faces_the_eye_rises() {
+        let slope = |of: fn(f64) -> f64| rise(&(0..100).map(|k| (f64::from(k), of(f64::from(k)))).collect::<Vec<_>>());
+        assert!(slope(|d| 0.5 * d) > 1.0 && slope(|d| -0.5 * d) < -1.0);
+        assert!(slope(|d| if d < 50.0 { 500.0 } else { 0.0 }) < -1.9, "mountains before a plain");
+        assert_eq!((slope(|_| 7.0), rise(&[]), rise(&[(5.0, 3.0)])), (0.0, 0.0, 0.0));
+        assert!(slope(|d| 0.0005 * d) < 0.1, "hardly any relief");
+    }
 }

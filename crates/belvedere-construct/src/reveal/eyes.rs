@@ -7,7 +7,10 @@ use belvedere_core::{DVec2, DVec3, Pinhole, Projection};
 /// Eyes are tried in this many directions.
 const DIRECTIONS: usize = 24;
 /// Pitches as shares of half the field of view: up to 0.9 the horizon lies in the picture, from steeper ones a bend brings it there.
-const PITCHES: [f64; 4] = [0.65, 0.82, 1.0, 1.35];
+const PITCHES: [f64; 5] = [0.65, 0.82, 1.0, 1.35, 1.8];
+/// Fields of view as shares of the widest: through a narrow one, from farther away, all of a long feature is about as large, and data that
+/// are hardly wider than it fill the picture.
+const LENSES: [f64; 3] = [1.0, 0.75, 0.5];
 /// Distances as shares of the one from which all features fit into the picture.
 const DISTANCES: [f64; 4] = [1.0, 1.25, 0.8, 0.6];
 /// Share of the half width and of the half height of the picture that the features take up where they fit.
@@ -23,22 +26,26 @@ pub(crate) struct Eye {
     pub(crate) heading_deg: f64,
 }
 
-/// All cameras worth evaluating: eyes in a ring of directions, at several distances and pitches.
+/// All cameras worth evaluating: eyes in a ring of directions, at several distances and pitches; the most usual distances and pitches first.
 pub(crate) fn candidates(evaluator: &Evaluator<'_>, options: &RevealOptions) -> Vec<Eye> {
     let points: Vec<DVec3> = evaluator.samples.iter().map(|s| s.p_world).collect();
-    let mut out = Vec::new();
-    for direction in 0..DIRECTIONS {
-        let heading = std::f64::consts::TAU * direction as f64 / DIRECTIONS as f64;
-        let ahead = DVec3::new(heading.sin(), heading.cos(), 0.0);
-        for fov_y in [options.fov_y, 0.75 * options.fov_y] {
-            for pitch in PITCHES.map(|p| p * 0.5 * fov_y) {
+    let mut fits = Vec::new();
+    for lens in LENSES {
+        let fov_y = lens * options.fov_y;
+        for pitch in PITCHES.map(|p| p * 0.5 * fov_y) {
+            for direction in 0..DIRECTIONS {
+                let heading = std::f64::consts::TAU * direction as f64 / DIRECTIONS as f64;
+                let ahead = DVec3::new(heading.sin(), heading.cos(), 0.0);
                 let forward = pitch.cos() * ahead - pitch.sin() * DVec3::Z;
-                let Some(fit) = Fit::of(&points, forward, fov_y, options.image) else { continue };
-                for share in DISTANCES {
-                    let eye = camera(evaluator, options, &fit, (fov_y, share));
-                    out.extend(eye.map(|pinhole| Eye { pinhole, heading_deg: heading.to_degrees() }));
-                }
+                fits.extend(Fit::of(&points, forward, fov_y, options.image).map(|fit| (fit, fov_y, heading)));
             }
+        }
+    }
+    let mut out = Vec::new();
+    for share in DISTANCES {
+        for (fit, fov_y, heading) in &fits {
+            let eye = camera(evaluator, options, fit, (*fov_y, share));
+            out.extend(eye.map(|pinhole| Eye { pinhole, heading_deg: heading.to_degrees() }));
         }
     }
     out
@@ -93,7 +100,7 @@ fn camera(
     let distance = (share * fit.distance).max(least);
     let eye = fit.eye - (distance - fit.distance) * fit.forward;
     let outside = (eye - eye.clamp(bounds.min, bounds.max)).truncate().length();
-    if outside > 0.5 * extent {
+    if outside > extent {
         return None;
     }
     let clearance = evaluator.obstacles.above_ground(eye).unwrap_or(f64::INFINITY);

@@ -21,7 +21,7 @@ pub use options::RevealOptions;
 pub use shape::BendShape;
 
 use crate::ConstructError;
-use crate::sample::SampledFeature;
+use crate::sample::{Amount, SampledFeature};
 use crate::samples::{default_spacing, sample_features};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{DVec2, DVec3, View, Warning, WarningKind};
@@ -64,7 +64,7 @@ pub struct RevealedBend {
 /// Figures of a [`Revealed`], ready for JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RevealReport {
-    /// Length (areas: area, points: count) of all features.
+    /// Length of all lines; of areas alone their area, of points alone their number.
     pub total: f64,
     /// The picture without the bend.
     pub straight: Evaluation,
@@ -146,7 +146,7 @@ pub fn reveal(
         }
     }
     progress.tick("refining the picture", 1.0)?;
-    let total = features.iter().flat_map(|f| &f.samples).map(|s| s.amount).sum();
+    let total = KINDS.into_iter().map(|kind| total(&features, kind)).find(|total| *total > 0.0).unwrap_or(0.0);
     Ok(finish(&evaluator, &base.view, best, options, &Counts { total, eyes_tried, bends_tried, free }))
 }
 
@@ -230,15 +230,34 @@ fn usable_features(scene: &Scene, hf: &Heightfield) -> Result<Vec<SampledFeature
     for f in &mut features {
         f.samples.retain(|s| s.amount > 0.0 && hf.surface_at(s.p_world.truncate()).is_some());
     }
-    // Lines, areas and points cannot be added up: the picture is made for the first kind that is there.
-    let kinds = [crate::Amount::Length, crate::Amount::Area, crate::Amount::Count];
-    let first = kinds.into_iter().find(|k| features.iter().any(|f| f.amount == *k && !f.samples.is_empty()));
-    let Some(kind) = first else {
+    features.retain(|f| KINDS.contains(&f.amount) && !f.samples.is_empty());
+    if features.is_empty() {
         let layers: Vec<&str> = scene.must_see().map(|(_, l)| l.id.as_str()).collect();
         return Err(ConstructError::NoSamples { layers: layers.join(", ") });
-    };
-    features.retain(|f| f.amount == kind);
-    Ok(features)
+    }
+    Ok(weighed(features))
+}
+
+/// Kinds of amounts that a view is chosen for.
+const KINDS: [Amount; 3] = [Amount::Length, Amount::Area, Amount::Count];
+
+/// Lengths, areas and numbers cannot be added up: the amounts of every kind are scaled to the total of the first kind that is there, so that
+/// every kind counts alike in a share.
+fn weighed(mut features: Vec<SampledFeature>) -> Vec<SampledFeature> {
+    let totals = KINDS.map(|kind| total(&features, kind));
+    let Some(first) = totals.into_iter().find(|total| *total > 0.0) else { return features };
+    for f in &mut features {
+        let own = KINDS.into_iter().zip(totals).find(|(kind, _)| *kind == f.amount).map_or(first, |(_, total)| total);
+        for s in &mut f.samples {
+            s.amount *= first / own;
+        }
+    }
+    features
+}
+
+/// Total amount of the features of one kind.
+fn total(features: &[SampledFeature], kind: Amount) -> f64 {
+    features.iter().filter(|f| f.amount == kind).flat_map(|f| &f.samples).map(|s| s.amount).sum()
 }
 
 fn given_view(evaluator: &Evaluator<'_>, view: &View) -> Result<Base, ConstructError> {
@@ -252,7 +271,7 @@ fn given_view(evaluator: &Evaluator<'_>, view: &View) -> Result<Base, ConstructE
     if straight.in_frame < 0.02 {
         return Err(ConstructError::OutOfFrame { in_frame_share: 100.0 * straight.in_frame, needed: 2.0 });
     }
-    Ok(Base { view: base, straight, heading_deg: 0.0 })
+    Ok(Base { view: base, straight, heading_deg: 0.0, taste: 0.0 })
 }
 
 fn finish(

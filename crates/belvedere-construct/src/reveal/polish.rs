@@ -3,13 +3,13 @@
 use super::choose::{Base, candidate};
 use super::evaluate::Evaluator;
 use super::options::RevealOptions;
-use super::score::{composition, shown};
+use super::score::{composition, shown, unbent};
 use super::search::{Candidate, SearchStart, stride_for};
 use belvedere_core::{Pinhole, Projection, View};
 use belvedere_scene::Progress;
 
 /// Steps in which the camera is turned up and sideways, and its field of view changed, shares of the field of view.
-const TURNS: [f64; 2] = [0.06, 0.03];
+const TURNS: [f64; 3] = [0.06, 0.06, 0.03];
 const ZOOM: f64 = 0.06;
 /// Score that a moved frame must gain.
 const WORTH: f64 = 0.01;
@@ -68,7 +68,7 @@ fn framed(
     progress: &Progress,
 ) -> Option<Framed> {
     let Some(start) = bend else {
-        let score = composition(&base.straight) + shown(&base.straight);
+        let score = composition(&base.straight) + shown(&base.straight) + unbent(&base.straight);
         return Some(Framed { base, bend: None, score, tried: 0 });
     };
     let (found, tried) = candidate(evaluator, &base, start, 0, options, progress);

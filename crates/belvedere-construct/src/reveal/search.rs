@@ -19,7 +19,7 @@ pub(crate) struct Candidate {
 }
 
 /// Score that any bend costs: a straight picture that shows as much is better.
-const BENT: f64 = 0.05;
+pub(super) const BENT: f64 = 0.05;
 
 /// Distances and angles that the free parameters of a shape are multiples of.
 struct Scales {
@@ -152,7 +152,7 @@ impl<'a, 'b> BendSearch<'a, 'b> {
                 }
             }
         }
-        let stride = self.stride * 2;
+        let stride = coarse_stride(self.evaluator.samples.len(), self.stride);
         self.best_of(&grid, stride).map(|(k, t)| (SearchStart(k), t))
     }
 
@@ -199,7 +199,15 @@ impl<'a, 'b> BendSearch<'a, 'b> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SearchStart(ShapeParameters);
 
-/// Default options that the search and the choice of views share.
+/// Samples that a first look needs at least.
+const LEAST_SAMPLES: usize = 60;
+
+/// Every how many-th sample a first look takes: half of those of `stride`, unless that leaves too few.
+pub(crate) fn coarse_stride(samples: usize, stride: usize) -> usize {
+    if samples / (2 * stride) >= LEAST_SAMPLES { 2 * stride } else { stride }
+}
+
+/// Every how many-th sample is judged.
 pub(crate) fn stride_for(samples: usize, options: &RevealOptions) -> usize {
     (samples / options.samples_per_try.max(1)).max(1)
 }

@@ -11,6 +11,7 @@ mod preview;
 mod preview_foreground;
 mod probe;
 mod reveal;
+mod reveal_views;
 mod rigid;
 mod surfaces;
 mod tracking;

@@ -170,7 +170,7 @@ impl FinalShares {
 pub struct RevealAnswer {
     /// Scene and bent view.
     pub session: Session,
-    /// Both pictures.
+    /// Both pictures; one if it is straight.
     pub picture: Picture,
     /// Report of the search for a view and a spline.
     pub report: RevealReport,
@@ -209,7 +209,8 @@ struct ReportFile<'a> {
     scene_warnings: &'a [Warning],
 }
 
-/// Chooses a view (unless given) and a bend, and draws both pictures. Where nothing is hidden, or no bend shows more, both are straight.
+/// Chooses a view (unless given) and a bend, and draws both pictures. Where nothing is hidden, or no bend shows more, the straight one is the
+/// answer.
 ///
 /// # Errors
 /// [`BelvedereError::FieldOfView`], [`BelvedereError::Position`], [`BelvedereError::Construct`] if no view is possible, else as
@@ -289,7 +290,7 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     session.loaded.warnings.extend(warnings);
     let report = judged_report(found.report, &shares, (&search, request.technique));
     let pair = PictureOptions {
-        compare: true,
+        compare: session.view().is_bent(),
         straight: false,
         progress: options.progress.clone(),
         ..request.picture.clone()
@@ -432,10 +433,10 @@ impl RevealAnswer {
         } else {
             "no bend that was tried makes a better picture"
         };
-        format!("visible in the straight picture: {straight}{taller}; {reason}")
+        format!("visible in the straight picture: {straight}{taller}; {reason}, and there is no pair of pictures")
     }
 
-    /// Writes the bent picture with its record, the pair (`OUT.pair.png`), and the other files asked for.
+    /// Writes the picture with its record, the pair (`OUT.pair.png`) if it is bent, and the other files asked for.
     ///
     /// # Errors
     /// [`BelvedereError::Io`].

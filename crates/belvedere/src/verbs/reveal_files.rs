@@ -21,12 +21,12 @@ pub struct RevealFiles {
 }
 
 impl RevealFiles {
-    /// File of the two pictures side by side.
+    /// File of the two pictures side by side; written if they differ.
     pub fn pair(&self) -> PathBuf {
         self.out.with_extension("pair.png")
     }
 
-    /// Every file that will be written.
+    /// Every file that may be written.
     pub fn all(&self) -> Vec<PathBuf> {
         let mut record = self.out.as_os_str().to_owned();
         record.push(".json");
@@ -57,12 +57,17 @@ impl RevealFiles {
             written.push(path.to_owned());
             Ok::<(), BelvedereError>(())
         };
-        if self.writes_pictures() {
+        let differs = picture.straight.as_ref().is_some_and(|straight| straight.color != picture.frame.color);
+        if differs && self.writes_pictures() {
             let (width, height, pixels) = picture.pixels();
             draw(&self.pair(), [width, height], &pixels, &title)?;
         }
-        if let (Some(path), Some(frame)) = (&self.before, &picture.straight) {
+        if let Some(path) = &self.before {
+            let frame = picture.straight.as_ref().unwrap_or(&picture.frame);
             draw(path, [frame.width, frame.height], &frame.color, &title[..1])?;
+        }
+        if !differs && overwrite {
+            remove_old(&self.pair())?;
         }
         if let Some(path) = &self.report {
             output::write_text(path, &pretty(report)?, overwrite)?;
@@ -74,4 +79,13 @@ impl RevealFiles {
         }
         Ok(written)
     }
+}
+
+/// Removes the pair of an earlier picture of the same name, which does not belong to the new one.
+fn remove_old(path: &Path) -> Result<(), BelvedereError> {
+    if !path.exists() {
+        return Ok(());
+    }
+    std::fs::remove_file(path)
+        .map_err(|source| BelvedereError::Io(belvedere_io::IoError::Os { path: path.to_owned(), source }))
 }

@@ -387,7 +387,7 @@ impl TargetAnswer {
         missed.then(text).into_iter().chain(self.place.iter().filter(|_| missed).filter_map(TargetPlace::why)).collect()
     }
 
-    /// Writes the bent picture with its record, the pair (`OUT.pair.png`), and the other files asked for.
+    /// Writes the picture with its record, the pair (`OUT.pair.png`) if it differs from the straight one, and the other files asked for.
     ///
     /// # Errors
     /// [`BelvedereError::Io`].
