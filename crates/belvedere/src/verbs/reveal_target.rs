@@ -4,7 +4,7 @@ use super::appearance::Appearance;
 use super::model_layers::{layer, set_transfer, unit_of};
 use super::target_views;
 use crate::picture::{Picture, PictureOptions, TargetPlace};
-use crate::places::Place;
+use crate::places::{Place, PlaceHeight};
 use crate::resolve::rays::sidestep_stage;
 use crate::scene_file::{
     CameraDoc, ConstructorDoc, ConstructorKind, Document, LayerDoc, PointDoc, SourceDocument, StageDoc,
@@ -79,6 +79,7 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
         return Err(BelvedereError::FieldOfView { deg: fov_y_deg });
     }
     let mut session = open(request, options)?;
+    request.appearance.check(session.scene().crs)?;
     let (see, said) = written_point(&session, &request.see)?;
     session.loaded.warnings.extend(said);
     let target = target(session.scene(), &see)?;
@@ -129,7 +130,7 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
         let (target, fallback) = (Some(see.clone()), request.fallback.clone());
         document.constructor = Some(ConstructorDoc { target, fallback, ..ConstructorDoc::of(ConstructorKind::Manual) });
     }
-    request.appearance.describe(&mut document, session.scene().crs)?;
+    request.appearance.describe(&mut document);
     let session = match request.appearance.is_usual() {
         true => session.with_document(document, None)?,
         false => Appearance::of_document(&session, document)?,
@@ -212,12 +213,15 @@ fn given(
     Ok((is_scene_file.then(|| session.view().straightened()), Vec::new()))
 }
 
-/// A target as `x,y,z` in scene coordinates where a place with a height is written, else as it is; and a warning about the place.
+/// A target as `x,y,z` in scene coordinates where a place with a height is written in another way, else as it is; and a warning about
+/// the place.
 fn written_point(session: &Session, see: &str) -> Result<(String, Option<Warning>), BelvedereError> {
     match see.parse::<Place>() {
         Ok(place) if place.has_height() => {
             let (p, said) = session.find_place(&place, "see")?;
-            Ok((format!("{},{},{}", p.x, p.y, p.z), said))
+            let is_scene = p.truncate().to_array() == place.numbers() && matches!(place.height, PlaceHeight::Metres(_));
+            let text = if is_scene { see.to_owned() } else { format!("{:.3},{:.3},{:.3}", p.x, p.y, p.z) };
+            Ok((text, said))
         }
         _ => Ok((see.to_owned(), None)),
     }
