@@ -73,10 +73,20 @@ fn disocclude_render_project_and_see_take_the_same_places() {
     };
     assert!(points.len() == 4 && points.iter().all(|p| near(p, &points[0])), "{points:?}");
     let said = String::from_utf8_lossy(&out.stderr);
-    assert!(said.lines().count() == 1 && said.contains("point 46.006,8.03"), "{said}");
+    assert!(said.matches("is taken so").count() == 1 && said.contains("point 46.006,8.03"), "{said}");
     place.write("bad.json", "[[1,2,3], \"46.006N,8.03\"]");
     let line = place.fails(&["project", "s.toml", "--points", "bad.json"]);
     assert!(line.contains("element 1") && line.contains("only one of the two has a letter"), "{line}");
+
+    let seen = |see: &str| {
+        let args = ["reveal", "s.toml", "--see", see, "-o", "see.png", "--size", "48x32", "--overwrite", "--json"];
+        let result = place.json(&args);
+        (json(&place, "see.png.json")["target"]["point"].clone(), result["warnings"].to_string())
+    };
+    let (point, said) = seen("46.035N,8.03E,1200");
+    assert!(point[2] == 1200.0 && !said.contains("is taken so"), "{point} {said}");
+    let (exchanged, said) = seen("46.035,8.03,1200");
+    assert!(exchanged == point && said.contains("see 46.035,8.03"), "{exchanged} {said}");
 
     let from = |text: &str, out: &str| {
         place.json(&["render", "s.toml", "-o", out, "--outside", text, "--size", "48x32", "--overwrite", "--json"])
