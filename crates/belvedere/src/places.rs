@@ -274,11 +274,14 @@ impl<'a> PlaceFinder<'a> {
     }
 
     fn said(&self, what: &str, [x, y]: [f64; 2], (given, away): (&Read, f64), (read, p): (&Read, DVec2)) -> Warning {
-        let km = |metres: f64| format!("{:.0} km", metres / 1000.0);
+        let long = |metres: f64| match metres {
+            1000.0.. => format!("{:.0} km", metres / 1000.0),
+            _ => format!("{metres:.0} m"),
+        };
         let wrong =
-            if away.is_finite() { format!("lies {} from the ground", km(away)) } else { "is no position".into() };
+            if away.is_finite() { format!("lies {} from the ground", long(away)) } else { "is no position".into() };
         let near = self.distance(p);
-        let right = if near > 0.0 { format!("{:.1} km from it", near / 1000.0) } else { "on it".into() };
+        let right = if near > 0.0 { format!("{} from it", long(near)) } else { "on it".into() };
         let order = if read.exchanged { format!("; write {y},{x}") } else { String::new() };
         let which = if what == "target" { format!("the point looked at, {x},{y},") } else { format!("{what} {x},{y}") };
         let text = format!("{which} {wrong} as {given}; as {read} it lies {right}, and is taken so{order}");

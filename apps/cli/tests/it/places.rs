@@ -19,7 +19,7 @@ fn eye(place: &Place, eye: &str, look: &str) -> ([f64; 3], String) {
 #[test]
 fn one_place_in_all_its_forms_is_one_eye() {
     let place = land(0.0, |_, _| false);
-    let (right, said) = eye(&place, "8.03,46.002,1900", "8.03,46.035");
+    let (right, said) = eye(&place, "8.03,46.006,1900", "8.03,46.035");
     assert!(right[2] == 1900.0 && !said.contains("is taken so"), "{said}");
     let [x, y, _] = right;
     let near = |text: &str, look: &str, words: Option<&str>| {
@@ -29,13 +29,13 @@ fn one_place_in_all_its_forms_is_one_eye() {
         assert_eq!(said.contains("is taken so"), words.is_some(), "{text}: {said}");
         assert!(words.is_none_or(|words| said.contains(words)), "{text}: {said}");
     };
-    near("46.002N,8.03E,1900", "8.03E,46.035N", None);
+    near("46.006N,8.03E,1900", "8.03E,46.035N", None);
     near(&format!("{x},{y},1900"), "8.03,46.035,1000", None);
-    near("46.002,8.03,1900", "8.03,46.035", Some("eye 46.002,8.03 lies"));
-    near("8.03,46.002,1900", "46.035,8.03", Some("the point looked at, 46.035,8.03, lies"));
+    near("46.006,8.03,1900", "8.03,46.035", Some("eye 46.006,8.03 lies"));
+    near("8.03,46.006,1900", "46.035,8.03", Some("the point looked at, 46.035,8.03, lies"));
     near(&format!("{y},{x},1900"), "8.03,46.035", Some("as y,x of the scene it lies on it"));
     // Above the ground: 300 m more is 300 m higher.
-    let [low, high] = ["+500", "+800"].map(|z| eye(&place, &format!("46.002N,8.03E,{z}"), "46.035N,8.03E").0[2]);
+    let [low, high] = ["+500", "+800"].map(|z| eye(&place, &format!("46.006N,8.03E,{z}"), "46.035N,8.03E").0[2]);
     assert!((high - low - 300.0).abs() < 1e-6 && low > 1000.0, "{low} {high}");
 }
 
@@ -49,10 +49,10 @@ fn disocclude_render_project_and_see_take_the_same_places() {
         let report = json(&place, "d.json");
         (report["scene_eye"].clone(), result["warnings"].to_string(), report["crs"].clone())
     };
-    let (right, said, crs) = eye_of("8.03,46.002,1900", "8.03,46.035");
+    let (right, said, crs) = eye_of("8.03,46.006,1900", "8.03,46.035");
     assert!(crs == "EPSG:32632" && !said.contains("is taken so"), "{said}");
-    assert_eq!(eye_of("46.002N,8.03E,1900", "46.035N,8.03E").0, right);
-    let (found, said, _) = eye_of("46.002,8.03,1900", "46.035,8.03");
+    assert_eq!(eye_of("46.006N,8.03E,1900", "46.035N,8.03E").0, right);
+    let (found, said, _) = eye_of("46.006,8.03,1900", "46.035,8.03");
     assert!(found == right && said.contains("as lat,lon it lies on it"), "{said}");
     let [x, y] = [0, 1].map(|i| right[i].as_f64().expect("a number"));
     let (found, said, _) = eye_of(&format!("{x},{y},1900"), "8.03,46.035");
@@ -60,10 +60,10 @@ fn disocclude_render_project_and_see_take_the_same_places() {
     assert!((found[0].as_f64().expect("a number") - x).abs() < 1e-6);
 
     let args = ["reveal", "dem.asc", "way.geojson", "-o", "out.png", "--size", "48x32", "--scene", "s.toml"];
-    place.ok(&[&args[..], &["--eye", "8.03,46.002,1900", "--look", "8.03,46.035"]].concat());
+    place.ok(&[&args[..], &["--eye", "8.03,46.006,1900", "--look", "8.03,46.035"]].concat());
     place.write(
         "p.json",
-        &format!("[[{x},{y},1000], \"46.002N,8.03E,1000\", \"8.03,46.002,1000\", \"46.002,8.03,1000\"]"),
+        &format!("[[{x},{y},1000], \"46.006N,8.03E,1000\", \"8.03,46.006,1000\", \"46.006,8.03,1000\"]"),
     );
     let out = place.run(&["displace", "s.toml", "--points", "p.json"]);
     let points: Value = serde_json::from_slice(&out.stdout).expect("JSON");
@@ -73,10 +73,20 @@ fn disocclude_render_project_and_see_take_the_same_places() {
     };
     assert!(points.len() == 4 && points.iter().all(|p| near(p, &points[0])), "{points:?}");
     let said = String::from_utf8_lossy(&out.stderr);
-    assert!(said.lines().count() == 1 && said.contains("point 46.002,8.03"), "{said}");
-    place.write("bad.json", "[[1,2,3], \"46.002N,8.03\"]");
+    assert!(said.matches("is taken so").count() == 1 && said.contains("point 46.006,8.03"), "{said}");
+    place.write("bad.json", "[[1,2,3], \"46.006N,8.03\"]");
     let line = place.fails(&["project", "s.toml", "--points", "bad.json"]);
     assert!(line.contains("element 1") && line.contains("only one of the two has a letter"), "{line}");
+
+    let seen = |see: &str| {
+        let args = ["reveal", "s.toml", "--see", see, "-o", "see.png", "--size", "48x32", "--overwrite", "--json"];
+        let result = place.json(&args);
+        (json(&place, "see.png.json")["target"]["point"].clone(), result["warnings"].to_string())
+    };
+    let (point, said) = seen("46.035N,8.03E,1200");
+    assert!(point[2] == 1200.0 && !said.contains("is taken so"), "{point} {said}");
+    let (exchanged, said) = seen("46.035,8.03,1200");
+    assert!(exchanged == point && said.contains("see 46.035,8.03"), "{exchanged} {said}");
 
     let from = |text: &str, out: &str| {
         place.json(&["render", "s.toml", "-o", out, "--outside", text, "--size", "48x32", "--overwrite", "--json"])

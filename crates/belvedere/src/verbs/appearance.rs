@@ -31,28 +31,28 @@ impl Appearance {
         *self == Self::default()
     }
 
-    /// Puts light, marks and stylisation into a document of a scene in `crs`.
+    /// Refuses what pictures in `crs` cannot have, before anything is searched for.
     ///
     /// # Errors
     /// [`BelvedereError::Appearance`] for a time of the sun without georeference, and for strengths out of range.
-    pub(super) fn describe(&self, document: &mut Document, crs: Crs) -> Result<(), BelvedereError> {
-        if let Some(light) = &self.light {
-            if light.time.is_some() && crs == Crs::Local {
-                let reason = "the position of the sun at a time needs a georeferenced scene, and this one is local; give a direction of \
-                              light instead";
-                return Err(BelvedereError::Appearance { option: "light-time", reason: reason.into() });
-            }
-            document.light = Some(light.clone());
+    pub(super) fn check(&self, crs: Crs) -> Result<(), BelvedereError> {
+        if self.light.as_ref().is_some_and(|light| light.time.is_some()) && crs == Crs::Local {
+            let reason = "the position of the sun at a time needs a georeferenced scene, and this one is local; give a direction of \
+                          light instead";
+            return Err(BelvedereError::Appearance { option: "light-time", reason: reason.into() });
         }
-        if let Some(stylisation) = &self.stylisation {
-            stylisation.strengths().map_err(|(_, reason)| BelvedereError::Appearance { option: "stylise", reason })?;
-            document.stylisation = Some(*stylisation);
-        }
+        let strengths = self.stylisation.unwrap_or_default().strengths();
+        strengths.map(|_| ()).map_err(|(_, reason)| BelvedereError::Appearance { option: "stylise", reason })
+    }
+
+    /// Puts light, marks and stylisation into a document.
+    pub(super) fn describe(&self, document: &mut Document) {
+        document.light = self.light.clone().or(document.light.take());
+        document.stylisation = self.stylisation.or(document.stylisation);
         if self.no_mark {
             let overlay = document.overlay.take().unwrap_or_default();
             document.overlay = Some(OverlayDoc { mark: false, ..overlay });
         }
-        Ok(())
     }
 
     /// The session of a document that [`Appearance::describe`] changed.
@@ -65,7 +65,7 @@ impl Appearance {
     /// The session in this appearance, with exaggerated heights in front of its other stages.
     pub(super) fn put_on(&self, session: Session, taller: Option<&Taller>) -> Result<Session, BelvedereError> {
         let Some(mut document) = session.resolved().filter(|_| !self.is_usual()).cloned() else { return Ok(session) };
-        self.describe(&mut document, session.scene().crs)?;
+        self.describe(&mut document);
         document.stage.splice(0..0, taller.map(Taller::stage));
         let session = Self::of_document(&session, document)?;
         let by_day = self.light.as_ref().is_some_and(|l| l.time.is_some()) && session.light().altitude > 0.0;

@@ -106,7 +106,7 @@ const LEAST_GAIN: f64 = 0.001;
 /// Largest number of samples of the features by which curved rays are chosen.
 const SAMPLES_TO_BEND_FOR: usize = 150;
 
-/// Time limit for solving the ground of each tried technique, if none is given.
+/// Time limit for solving the ground of each tried technique, and exaggerated ground, if none is given.
 const TRY_FOR: Duration = Duration::from_secs(120);
 
 /// Share of the remaining time for the search of a view and a bend: if only the picture follows, and otherwise.
@@ -224,6 +224,7 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
     check_fov(request)?;
     let mut data = request.data.load(false, options)?;
     let rivers = std::mem::take(&mut data.rivers);
+    request.appearance.check(data.scene.crs)?;
     let taller = taller(request, &data)?;
     let searched_scene = taller.as_ref().map_or(&data.scene, |taller| &taller.scene).clone();
     let (base, said) = base_view(request, &searched_scene)?;
@@ -274,7 +275,12 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
             _ => disoccluded(
                 &spline,
                 (technique, request.no_limits, &rivers),
-                &if is_auto { progress.part(FIRST_TRY) } else { options.progress.clone() },
+                &match (is_auto, &taller) {
+                    (true, _) => progress.part(FIRST_TRY),
+                    // Rays that exaggeration bends are many more to solve for.
+                    (false, Some(_)) => progress.clone(),
+                    (false, None) => options.progress.clone(),
+                },
             )?,
         };
         let next = Answer::of(next, Some(technique), &options.progress)?;

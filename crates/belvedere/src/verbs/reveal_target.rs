@@ -5,7 +5,7 @@ use super::appearance::Appearance;
 use super::target_scene::{self, Meant, Targets};
 use super::{city_views, target_views};
 use crate::picture::{Picture, PictureOptions, TargetPlace};
-use crate::places::Place;
+use crate::places::{Place, PlaceHeight};
 use crate::resolve::rays::sidestep_stage;
 use crate::scene_file::{CameraDoc, ConstructorDoc, ConstructorKind, Document, PointDoc, StageDoc};
 use crate::targets;
@@ -101,6 +101,7 @@ impl Opened {
             return Err(BelvedereError::FieldOfView { deg: fov_y_deg });
         }
         let (mut session, mut meant) = target_scene::open(request, options)?;
+        request.appearance.check(session.scene().crs)?;
         let (see, said) = written_point(&session, &request.see)?;
         session.loaded.warnings.extend(said);
         if targets::point(&see).is_some() {
@@ -225,7 +226,7 @@ pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<T
         Bend::Rays(_) => Technique::CurvedRays,
         Bend::Spline(_) => Technique::Spline,
     });
-    request.appearance.describe(&mut document, session.scene().crs)?;
+    request.appearance.describe(&mut document);
     let session = match request.appearance.is_usual() {
         true => session.with_document(document, None)?,
         false => Appearance::of_document(session, document)?,
@@ -293,12 +294,15 @@ fn given(
     Ok((is_scene_file.then(|| session.view().straightened()), Vec::new()))
 }
 
-/// A target as `x,y,z` in scene coordinates where a place with a height is written, else as it is; and a warning about the place.
+/// A target as `x,y,z` in scene coordinates where a place with a height is written in another way, else as it is; and a warning about
+/// the place.
 fn written_point(session: &Session, see: &str) -> Result<(String, Option<Warning>), BelvedereError> {
     match see.parse::<Place>() {
         Ok(place) if place.has_height() => {
             let (p, said) = session.find_place(&place, "see")?;
-            Ok((format!("{},{},{}", p.x, p.y, p.z), said))
+            let is_scene = p.truncate().to_array() == place.numbers() && matches!(place.height, PlaceHeight::Metres(_));
+            let text = if is_scene { see.to_owned() } else { format!("{:.3},{:.3},{:.3}", p.x, p.y, p.z) };
+            Ok((text, said))
         }
         _ => Ok((see.to_owned(), None)),
     }
