@@ -10,10 +10,12 @@ mod draw_args;
 mod goal;
 mod ground_args;
 mod kinds;
+mod outputs;
 mod pack;
 mod parse;
 mod preset;
 mod report;
+mod usage;
 mod verbs;
 mod view;
 
@@ -29,7 +31,7 @@ fn main() -> ExitCode {
     std::panic::set_hook(Box::new(|_| {}));
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(e) => return report::usage(&e),
+        Err(e) => return usage::report(&e),
     };
     let worker = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(|| run(cli));
     match worker.map(std::thread::JoinHandle::join) {

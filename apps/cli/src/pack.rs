@@ -20,6 +20,8 @@ pub(crate) struct PackArgs {
 }
 
 pub(crate) fn pack_scene(args: PackArgs, context: &Context) -> anyhow::Result<Goal> {
+    crate::view::exist(&args.files)?;
+    anyhow::ensure!(!args.out.is_file(), "{}: is a file; give a folder", args.out.display());
     let request = PackRequest {
         files: args.files,
         allowed: context.common.allow_root.clone(),

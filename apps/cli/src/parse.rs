@@ -1,7 +1,10 @@
 //! Values of arguments.
 
 use belvedere::scene_file::HighlightMark;
+use belvedere::verbs::drafts::MOST_DRAFTS;
 
+/// Most pixels along a side of a picture.
+const MAX_SIDE: u32 = 65535;
 /// Most worker threads: far above what helps, far below what a system refuses to start.
 const MAX_THREADS: usize = 1024;
 
@@ -37,7 +40,7 @@ pub(crate) fn parse_highlight(text: &str) -> Result<HighlightMark, String> {
         "stages" => Ok(HighlightMark::Stages),
         "revealed" => Ok(HighlightMark::Revealed),
         "ghost-box" | "ghost_box" => Ok(HighlightMark::GhostBox),
-        _ => Err("possible are shift or stages, revealed, ghost-box, separated by commas".into()),
+        _ => Err("possible: shift or stages, revealed, ghost-box, separated by commas".into()),
     }
 }
 
@@ -45,9 +48,32 @@ pub(crate) fn parse_highlight(text: &str) -> Result<HighlightMark, String> {
 pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X']).map(|(w, h)| [w.trim().parse(), h.trim().parse()]);
     match sides {
-        Some([Ok(w), Ok(h)]) => Ok([w, h]),
+        Some([Ok(w), Ok(h)]) if [w, h].iter().all(|side| (1..=MAX_SIDE).contains(side)) => Ok([w, h]),
+        Some([Ok(_), Ok(_)]) => Err(format!("each side must have 1 to {MAX_SIDE} pixels, such as 1280x720")),
         _ => Err("give width and height in pixels, such as 1280x720".into()),
     }
+}
+
+/// Parses a number that is finite.
+pub(crate) fn parse_number(text: &str) -> Result<f64, String> {
+    text.trim().parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(|| "give a number".into())
+}
+
+/// Parses a number of drafts.
+pub(crate) fn parse_drafts(text: &str) -> Result<usize, String> {
+    let count = text.trim().parse().ok().filter(|n| (1..=MOST_DRAFTS).contains(n));
+    count.ok_or_else(|| format!("give a whole number in 1..={MOST_DRAFTS}"))
+}
+
+/// A point to look at: X,Y or X,Y,Z.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Look(pub(crate) Vec<f64>);
+
+/// Parses two or three numbers, such as `1.5,42.5`.
+pub(crate) fn parse_look(text: &str) -> Result<Look, String> {
+    let numbers: Option<Vec<f64>> = text.split(',').map(|t| parse_number(t).ok()).collect();
+    let numbers = numbers.filter(|v| matches!(v.len(), 2 | 3));
+    numbers.map(Look).ok_or_else(|| "give X,Y or X,Y,Z: numbers with commas between them".into())
 }
 
 /// Parses `phi`, `phi=25:80` or `phi=25:80:0.5`, degrees; values that are not given are 0.
@@ -68,9 +94,8 @@ pub(crate) fn parse_sweep(text: &str) -> Result<[f64; 3], String> {
 
 /// Parses three numbers, such as `1.5,42.5,2400`.
 pub(crate) fn parse_eye(text: &str) -> Result<[f64; 3], String> {
-    let numbers: Vec<f64> =
-        text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
-    numbers.try_into().map_err(|_| "give X,Y,Z".into())
+    let numbers: Vec<f64> = text.split(',').map_while(|t| parse_number(t).ok()).collect();
+    numbers.try_into().map_err(|_| "give X,Y,Z: three numbers with commas between them".into())
 }
 
 /// Parses a length in scene units, > 0.
@@ -88,18 +113,17 @@ pub(crate) fn parse_outside(text: &str) -> Result<Outside, String> {
     if text.trim() == "auto" {
         return Ok(None);
     }
-    let v: Vec<f64> = text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
+    let v: Vec<f64> = text.split(',').map_while(|t| parse_number(t).ok()).collect();
     match v[..] {
         [a, b, c, d, e, f] => Ok(Some([[a, b, c], [d, e, f]])),
-        _ => Err("give auto, or eye and target as X,Y,Z,X,Y,Z".into()),
+        _ => Err("give auto, or eye and target as six numbers X,Y,Z,X,Y,Z".into()),
     }
 }
 
 /// Parses two numbers, such as `1.5,42.5`.
 pub(crate) fn parse_place(text: &str) -> Result<[f64; 2], String> {
-    let numbers: Vec<f64> =
-        text.split(',').filter_map(|t| t.trim().parse().ok()).filter(|v: &f64| v.is_finite()).collect();
-    numbers.try_into().map_err(|_| "give X,Y".into())
+    let numbers: Vec<f64> = text.split(',').map_while(|t| parse_number(t).ok()).collect();
+    numbers.try_into().map_err(|_| "give X,Y: two numbers with a comma between them".into())
 }
 
 /// Parses a size in bytes, at least 1 MiB, such as `512MiB`, `2GB` or `100000`.

@@ -69,7 +69,7 @@ pub(crate) enum PresetWork {
         #[arg(short, long, value_name = "OUT.png")]
         out: PathBuf,
         /// Draw the preset that is interpolated for this viewing angle, degrees
-        #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+        #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = crate::parse::parse_number)]
         phi: Option<f64>,
     },
 }
@@ -91,11 +91,13 @@ pub(crate) fn preset(args: PresetArgs, context: &Context) -> anyhow::Result<Goal
     match args.work {
         PresetWork::List => list(context),
         PresetWork::Show { preset, out } => {
+            out.as_deref().map_or(Ok(()), document_named)?;
             let text = preset::text(&preset::load(&preset)?, out.as_deref().unwrap_or(Path::new("")))?;
             context.deliver("preset", out.as_deref(), &text, &[])?;
             Ok(Goal::Reached)
         }
         PresetWork::New { out, from } => {
+            document_named(&out)?;
             let text = preset::text(&preset::load(&from)?, &out)?;
             output::write_text(&out, &text, context.common.overwrite)?;
             written(&[out], &[], context)
@@ -104,6 +106,7 @@ pub(crate) fn preset(args: PresetArgs, context: &Context) -> anyhow::Result<Goal
         PresetWork::Check { preset } => check(&preset, context),
         PresetWork::Plot { preset, out, phi } => {
             let document = preset::load(&preset)?;
+            crate::outputs::png_named(&out)?;
             output::check(&out, &[], context.common.overwrite)?;
             let plot = preset::plot(&document, phi);
             let height = plot.pixels.len() / plot.width;
@@ -112,6 +115,11 @@ pub(crate) fn preset(args: PresetArgs, context: &Context) -> anyhow::Result<Goal
             written(&[out], &[], context)
         }
     }
+}
+
+/// Refuses names with the ending of another format than those of documents.
+fn document_named(path: &Path) -> anyhow::Result<()> {
+    crate::outputs::named(path, &["toml", "json"], "presets are written as TOML or JSON")
 }
 
 fn written(files: &[PathBuf], warnings: &[Warning], context: &Context) -> anyhow::Result<Goal> {
@@ -179,8 +187,9 @@ fn set(
     }
     anyhow::ensure!(!operations.is_empty(), "nothing to do; give operations such as low.phi=25, or --capture");
     let source = file.to_string_lossy();
-    anyhow::ensure!(file.exists(), "{source}: there is no such file; preset new -o {source} --from NAME makes one");
+    anyhow::ensure!(file.exists(), "{source}: there is no such file; belvedere preset new -o {source} --from demo makes one");
     let (document, clamped) = preset::set(&load_file(&source)?, &operations)?;
+    out.as_deref().map_or(Ok(()), document_named)?;
     let to = out.clone().unwrap_or_else(|| file.to_owned());
     // What is changed in place is meant to be replaced.
     output::write_text(&to, &preset::text(&document, &to)?, out.is_none() || context.common.overwrite)?;

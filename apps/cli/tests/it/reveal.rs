@@ -138,7 +138,7 @@ fn info_says_what_it_reads() {
     place.write("x.docx", "quite unlike anything");
     let said = place.fails(&["info", "x.docx"]);
     assert!(said.contains("GPX (.gpx), GeoJSON (.geojson, ") && said.contains("NRRD (.nrrd, .nhdr)"), "{said}");
-    assert!(place.fails(&["info", "none.docx"]).contains("No such file"));
+    assert!(place.fails(&["info", "none.docx"]).contains("there is no such file"));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Points to pixels and back: `project`, `rays`, `displace`.
 
-use crate::scene_file::{Node, Value, json_points};
+use crate::scene_file::{Node, Value, json_points, other_kind};
 use crate::{BelvedereError, Session};
 use belvedere_core::{DVec2, DVec3, Miss, View};
 use serde::Serialize;
@@ -157,6 +157,11 @@ pub fn rays(view: &View, pixels: &[[f64; 2]], samples: usize, far: f64) -> Resul
 /// # Errors
 /// [`BelvedereError::Points`] with the index of the first bad element.
 pub fn read_points<const N: usize>(path: &Path) -> Result<Vec<[f64; N]>, BelvedereError> {
+    let wanted = if N == 3 { "a list of points [[x, y, z], ...]" } else { "a list of pixels [[x, y], ...]" };
+    list(path).map_err(|e| other_kind::explained(path, wanted, e))
+}
+
+fn list<const N: usize>(path: &Path) -> Result<Vec<[f64; N]>, BelvedereError> {
     let fail = |reason: String| BelvedereError::Points { path: path.to_owned(), reason };
     let mut text = Vec::new();
     belvedere_io::fs::File::open(path)

@@ -204,9 +204,9 @@ struct ReportFile<'a> {
 /// [`Session::open`] and [`Session::render`].
 pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAnswer, BelvedereError> {
     if !request.data.rivers.is_empty() && matches!(request.technique, Technique::Spline | Technique::CurvedRays) {
-        let reason =
-            "rivers are kept from running uphill where the ground moves; ask for technique terrain, both or auto";
-        return Err(BelvedereError::Setting(reason.into()));
+        let reason = "rivers are kept from running uphill where the ground moves, which this technique does not do; \
+                      ask for technique terrain, both or auto";
+        return Err(BelvedereError::Target(reason.into()));
     }
     check_fov(request)?;
     let mut data = request.data.load(false, options)?;
@@ -456,7 +456,8 @@ fn base_view(request: &RevealRequest, scene: &Scene) -> Result<Option<View>, Bel
     let [x, y, z] = eye;
     let eye = position([x, y]).map_err(wrong("eye"))?.extend(z);
     let xy = position(target).map_err(wrong("target"))?;
-    let height = target_height.map_or_else(|| ground.height_at(xy), Ok).map_err(wrong("target"))?;
+    let degrees = |e: String| ground.outside(target[0], target[1]).unwrap_or(e);
+    let height = target_height.map_or_else(|| ground.height_at(xy).map_err(degrees), Ok).map_err(wrong("target"))?;
     let lens = Projection::Perspective { fov_y: request.fov_y_deg.unwrap_or(FOV_Y_DEG).to_radians() };
     let image = request.image.unwrap_or(IMAGE);
     Ok(Some(View::straight(Pinhole::look_at(eye, xy.extend(height), DVec3::Z, lens, image, 1.0, None)?)))

@@ -43,7 +43,7 @@ const LINES: &[(&str, &str, &str)] = &[
     ("rendr scene.toml -o x.png", "rendr", RENDER),
     ("draw scene.toml", "draw", ""),
     ("scene.toml", "scene.toml", RENDER),
-    ("dem.asc route.gpx", "dem.asc", ""),
+    ("dem.asc route.gpx", "dem.asc", "info dem.asc"),
     ("render", "SCENE", RENDER),
     ("render scene.toml", "--out", RENDER),
     ("render -o x.png", "SCENE", RENDER),
@@ -65,7 +65,7 @@ const LINES: &[(&str, &str, &str)] = &[
     ("reveal dem.asc route.gpx -o x.png --eye 10.006,45.995,1500 --look 10.006,north", "--look", ""),
     ("reveal dem.asc route.gpx -o x.png --eye 10.006,45.995,1500 --look 10.006,45.995,1500", "--look", ""),
     ("reveal dem.asc route.gpx -o x.png --eye 10.006,45.995,1500 --look 60,60", "--look", ""),
-    ("reveal dem.asc route.gpx -o x.png --eye 10.006,46.006,20 --look 10.006,46.009", "ground", ""),
+    ("reveal dem.asc route.gpx -o x.png --eye 10.006,46.006,20 --look 10.006,46.009", "ground", "reveal dem.asc route.gpx -o x.png --size 64x48 --eye 10.006,46.006,797 --look 10.006,46.009"),
     ("reveal dem.asc route.gpx -o x.png --fov 200", "--fov", ""),
     ("reveal dem.asc route.gpx -o x.png --fov nan", "--fov", ""),
     ("reveal dem.asc route.gpx -o x.png --fov wide", "--fov", ""),
@@ -77,7 +77,7 @@ const LINES: &[(&str, &str, &str)] = &[
     ("reveal cube.obj -o x.png --see cube --up w", "--up", ""),
     ("reveal cube.obj -o x.png --see cube --labels", "--labels", ""),
     ("reveal cube.obj -o x.png --see 1,2", "1,2", ""),
-    ("reveal atoms.pdb -o x.png --see chain", "chain", "reveal atoms.pdb -o x.png --size 64x48 --see atoms"),
+    ("reveal atoms.pdb -o x.png --see chain", "chain", "reveal atoms.pdb -o x.png --size 64x48 --see 0,0,8"),
     ("reveal volume.nrrd -o x.png --see volume --transfer bone", "bone", ""),
     ("disocclude dem.asc route.gpx -o x.tif --look 10.006,46.009", "--eye", ""),
     ("disocclude dem.asc route.gpx -o x.tif --eye 10.006,45.995,1500", "--look", ""),
@@ -105,6 +105,10 @@ const LINES: &[(&str, &str, &str)] = &[
     ("figures", "WHAT", ""),
     ("figures terain", "terain", ""),
     ("figures curved --scale 3", "--scale", ""),
+    ("render scene.toml -o x.png --samples -1", "--samples", RENDER),
+    ("render scene.toml -o x.png --thresholds -1", "--thresholds", RENDER),
+    ("bench --nodes -1", "--nodes", ""),
+    ("bench --rounds -1", "--rounds", ""),
     ("bench --rounds 0", "rounds", ""),
     ("bench --nodes 1", "nodes", ""),
     ("preset", "preset", "preset list"),
@@ -149,7 +153,7 @@ pub(super) fn table() -> Vec<Usage> {
         out.push(usage(&format!("{DISOCCLUDE} {AT} --set {set}")).names(key));
     }
     for fov in ["0", "180", "-70", "nan", "1e400"] {
-        out.push(usage(&format!("{DISOCCLUDE} {AT} --fov {fov}")).names("--fov"));
+        out.push(usage(&format!("{DISOCCLUDE} {AT} --fov {fov}")).names("--fov").names(if fov == "1e400" || fov == "nan" { "" } else { fov }));
     }
     out
 }

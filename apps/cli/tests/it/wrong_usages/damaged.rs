@@ -59,7 +59,6 @@ pub(super) fn table() -> Vec<Usage> {
     let texts = [
         ("dem.asc", "cellsize 0.0005", "cellsize 0"),
         ("dem.asc", "cellsize 0.0005", "cellsize x"),
-        ("dem.asc", "ncols 24", "ncols 23"),
         ("dem.asc", "ncols 24", "ncols -24"),
         ("dem.asc", "ncols 24", "ncols 99999999999"),
         ("dem.asc", "nrows 24\n", ""),

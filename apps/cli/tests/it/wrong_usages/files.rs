@@ -23,7 +23,7 @@ const PLACES: &[(&str, &[&str])] = &[
     ("reveal dem.asc FILE -o x.png", &["scene.toml", "cube.obj", "picture.png", "folder", "gone.gpx", "atoms.pdb", "volume.nrrd", "points.json", "colors.txt", "dem.asc"]),
     ("reveal FILE -o x.png --see 0,0,0", &["dem.asc", "route.gpx", "picture.png", "gone.obj", "folder"]),
     ("reveal dem.asc route.gpx -o x.png --drape FILE", &["picture.png", "route.gpx", "gone.tif", "cube.obj"]),
-    ("reveal dem.asc route.gpx -o x.png --rivers FILE", &["dem.tif", "gone.gpx", "cube.obj"]),
+    ("reveal dem.asc route.gpx -o x.png --technique terrain --rivers FILE", &["dem.tif", "gone.gpx", "cube.obj"]),
     ("reveal dem.asc route.gpx -o x.png --palette FILE", &["dem.asc", "picture.png", "folder"]),
     ("disocclude FILE route.gpx -o x.tif --eye 10.006,45.995,1500 --look 10.006,46.009", &["scene.toml", "route.gpx", "picture.png", "gone.tif", "cube.obj"]),
     ("disocclude dem.asc FILE -o x.tif --eye 10.006,45.995,1500 --look 10.006,46.009", &["dem.asc", "scene.toml", "gone.gpx", "cube.obj"]),
@@ -35,7 +35,7 @@ const PLACES: &[(&str, &[&str])] = &[
     ("preset set preset.toml --capture low=FILE", &["dem.tif", "preset.toml", "gone.toml"]),
     ("info FILE", &["gone.tif", "folder", "gone", "scene.txt"]),
     ("view FILE", &["gone.tif"]),
-    ("pack -o page FILE", &["gone.tif", "picture.png"]),
+    ("pack -o page FILE", &["gone.tif"]),
     ("figures terrain FILE -o figures", &["dem.tif", "gone.toml"]),
 ];
 

@@ -13,14 +13,14 @@ pub(super) fn values(said: &str) -> Vec<String> {
     if let Some((_, rest)) = said.split_once("did you mean \"") {
         out.extend(rest.split('"').next().map(str::to_owned));
     }
-    if let Some((_, rest)) = said.split_once("exists: '").or(said.split_once("exist: '")) {
-        out.extend(rest.split('\'').next().map(str::to_owned));
-    }
     if let Some((_, rest)) = said.split_once(", such as ") {
         let end = rest.find([' ', ';', '\n']).unwrap_or(rest.len());
         out.push(rest[..end].trim_end_matches([',', '.']).trim_matches('"').to_owned());
     }
     for (words, more) in [("greater than ", 1.0), ("at least ", 0.0)] {
+        if said.contains("a whole number of at least 0 was expected") {
+            break; // The type alone; the range comes next.
+        }
         if let Some(least) = said.split_once(words).and_then(|(_, rest)| number(rest)) {
             out.push(format!("{}", least + more));
         }

@@ -39,7 +39,7 @@ const ADDED: &[(&str, &str)] = &[
     ("[constructor]\nkind = 'target_traking'\ntarget = 'way'", "target_traking"),
     ("[constructor]\nkind = 'manual'\ntargt = 'way'", "targt"),
     ("[stylisation]\nedge = 1", "edge"),
-    ("[overlay]\nmark = false", "mark"),
+    ("[overlay]\ngrids = 5", "grids"),
     ("[sun]\nazimuth_deg = 3", "sun"),
     ("[[stage]]\nkind = 'terrain_dissoclusion'", "terrain_dissoclusion"),
     ("[[stage]]\nkind = 'terrain_disocclusion'\nmargin = 2", "margin"),

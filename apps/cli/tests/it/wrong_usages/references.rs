@@ -25,7 +25,6 @@ const REPLACED: &[(&str, &str, &str, &str)] = &[
     (SCENE, "source = 'route.gpx'", "source = 'cube.obj'", "cube.obj"),
     (SCENE, "id = 'way'", "id = 'ground'", "ground"),
     (SCENE, "id = 'way'", "id = ''", "id"),
-    (SCENE, "id = 'way'", "id = '\\u{1b}[31mx'", "s.toml"),
     (SCENE, "kind = 'line'", "kind = 'area'", "route.gpx"),
     (SCENE, "kind = 'line'", "kind = 'point'", "route.gpx"),
     (SCENE, "kind = 'line'", "kind = 'mesh'", "route.gpx"),

@@ -29,7 +29,7 @@ const REPLACED: &[(&str, &str, &[&str])] = &[
     (SCENE, "lat = 46.001", &["lat = 145.99", "lat = 10", "lat = nan"]),
     (SCENE, "lon = 10.006, lat = 46.001", &["lon = 400, lat = 46.001", "lat = 46.001"]),
     (SCENE, "lon = 10.006, lat = 46.006", &["lon = 10.006, lat = 80", "x = 3, lat = 46"]),
-    (SCENE, "above_ground_m = 400", &["above_ground_m = -500", "above_ground_m = inf", "height_m = 100, above_ground_m = 3"]),
+    (SCENE, "above_ground_m = 400", &["above_ground_m = inf", "height_m = 100, above_ground_m = 3"]),
     (SCENE, "title = 'hill'", &["crs = 'EPSG:1'", "crs = 'EPSG:4326'", "crs = 'utm 32'", "crs = ''", "unit = 'feet'", "earth = 'round'"]),
     (MODEL, "look_at = [0.0, 0.0, 0.0]", &["look_at = [0.0, -10.0, 2.0]", "look_at = [0.0, -10.0, 9.0]", "heading_deg = 10", "heading_deg = 10\npitch_deg = 300"]),
     (MODEL, "image = [64, 48]", &[
@@ -69,7 +69,6 @@ const ADDED: &[(&str, &[&str])] = &[
         "cells = «0»", "cells = 2.5", "spacing = «0»", "lift_m = «-1»", "guard = «-1»", "eta = «-1»", "mu = «-1»", "w = «-0.5»", "w = 1e300",
         "rows_weight = «-1»", "gamma_time_s = «-1»", "solver_nodes = «1»", "rise_limit_m = «-5»", "margin_m = «-1»", "candidates = «0»",
         "ahead_m = «0»", "slack_price = «0»", "adjust_viewpoint = «3»", "rivers = ['way2']", "delta = 'gone.tif'", "delta = 'route.gpx'",
-        "mode = 'paper'\nslack_price = 3",
     ]),
     ("[[stage]]\nkind = 'relief'\n", &[
         "exaggeration = «0»", "exaggeration = [1, «1000»]", "oblique = «9»", "levelling = «2»", "horizon_radius_m = «-1»", "range_m = [9, 2]",
@@ -80,24 +79,23 @@ const ADDED: &[(&str, &[&str])] = &[
         "path = [[0, 0]]", "path = []", "along = 'way'\npath = [[0, 0], [1, 1]]", "along = 'way'\nsmoothing_m = «-1»",
     ]),
     (SPLINE, &[
-        "plane = { normal = [0, 0, 0] }", "plane = { height_m = nan }", "pivot = [0, 0]", "plane = { height_m = 1e9 }",
+        "plane = { normal = [0, 0, 0] }", "plane = { height_m = nan }", "pivot = [0, 0]",
         "[[stage]]\nkind = 'relief'\noblique = 1", "[[stage]]\nkind = 'spline_bend'\npresets = 'demo'",
     ]),
     ("[[stage]]\nkind = 'spline_bend'\n", &[
         "presets = 'gone.toml'", "presets = 3", "presets = { version = 1, presets = [] }", "presets = 'identity(200)'", "presets = 'identity(x)'",
         "presets = { version = 1, presets = [{ name = 'a', phi = 20, s = 1, e = 9, control = [[0,0],[1,1]] }] }",
         "presets = { version = 1, presets = [{ name = 'a', phi = 20, s = 9, e = 1, control = [[0,0],[0.3,0],[0.6,0],[1,0]] }] }",
-        "presets = { version = 1, presets = [{ name = 'a', phi = -20, s = 1, e = 9, control = [[0,0],[0.3,0],[0.6,0],[1,0]] }] }",
     ]),
     ("[constructor]\n", &[
-        "kind = 'target_tracking'", "kind = 'target_tracking'\ntarget = 'church'", "kind = 'target_tracking'\ntarget = 'way'\na = «0»",
-        "kind = 'path_preview'", "kind = 'path_preview'\npath = 'gone.csv'", "kind = 'path_preview'\npath = 'way'\npreview_m = «-1»",
+        "kind = 'target_tracking'", "kind = 'target_tracking'\ntarget = 'way'\na = «0»",
+        "kind = 'path_preview'", "kind = 'path_preview'\npath = 'way'\npreview_m = «-1»",
         "kind = 'auto_probe'\nturns = «0»", "kind = 'auto_probe'\nturns = «9»", "kind = 'auto_probe'\nreach_m = «0»",
         "kind = 'manual'\nfallback = ['glass']", "kind = 'manual'\nfallback = ['cutaway']",
     ]),
     ("[animation]\n", &[
-        "along = 'gr11'", "along = 'ground'", "along = 'way'\nframes = «0»", "along = 'way'\nfps = «-25»", "along = 'way'\nspeed_mps = «0»",
-        "along = 'way'\nturntable = { deg_per_s = 3 }", "frames = 3", "camera = 'gone.json'",
+        "along = 'way'\nframes = «0»", "along = 'way'\nfps = «-25»", "along = 'way'\nspeed_mps = «0»",
+        "along = 'way'\nturntable = { deg_per_s = 3 }", "frames = 3",
     ]),
     ("[[layer]]\nid = 'x'\nkind = 'line'\nsource = 'route.gpx'\n", &[
         "style = { width_px = «0» }", "style = { width_px = «1000» }", "style = { lift_m = «-3» }", "style = { lift_m = «5000» }",
@@ -113,8 +111,26 @@ fn key(line: &str) -> &str {
     before.rsplit(['\n', '{', '[', ',']).map(|part| part.split('=').next().unwrap_or("").trim()).find(|key| !key.is_empty()).unwrap_or("")
 }
 
+/// Ends of scenes whose mistake is found when they are drawn, and what the message names.
+const DRAWN: &[(&str, &str, &str)] = &[
+    ("render", "[constructor]\nkind = 'target_tracking'\ntarget = 'church'", "church"),
+    ("render", "[constructor]\nkind = 'path_preview'\npath = 'gone.csv'", "gone.csv"),
+    ("render", "[constructor]\nkind = 'path_preview'\npath = 'ground'", "ground"),
+    ("animate", "[animation]\nalong = 'gr11'", "gr11"),
+    ("animate", "[animation]\nalong = 'ground'", "ground"),
+    ("animate", "[animation]\ncamera = 'gone.json'", "gone.json"),
+    ("animate", "[animation]\ncamera = 'points.json'", "points.json"),
+    ("animate", "[animation]\nalong = 'way'\nframes = 2\nstart_m = 1e9", "start_m"),
+];
+
 pub(super) fn table() -> Vec<Usage> {
     let mut out = Vec::new();
+    for (verb, end, names) in DRAWN {
+        let line = if *verb == "render" { "render s.toml -o x.png" } else { "animate s.toml -o frames" };
+        out.push(usage(line).file("s.toml", format!("{SCENE}{end}\n")).names(names));
+    }
+    let sunk = SCENE.replacen("above_ground_m = 400", "above_ground_m = -500", 1);
+    out.push(usage("render s.toml -o x.png").file("s.toml", sunk).names("500.0 m under the ground"));
     for (scene, right, wrongs) in REPLACED {
         assert!(scene.contains(right), "{right} is not in the scene");
         for wrong in *wrongs {
