@@ -6,7 +6,6 @@ use belvedere::scene::Progress;
 use belvedere::{BelvedereError, Needs, OpenOptions, Session, Warning};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};

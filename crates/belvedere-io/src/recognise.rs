@@ -102,7 +102,7 @@ pub(crate) fn explain(error: IoError) -> IoError {
 ///
 /// * `wanted`: the kind and its formats.
 pub(crate) fn not_a(path: &Path, wanted: &str) -> IoError {
-    let is_scene = crate::formats::ends(path, &[".toml"]);
+    let is_scene = formats::ends(path, &[".toml"]);
     let reason = match readable(path).ok().flatten() {
         Some(format) => format!("is {} ({}), not {wanted}", format.name, format.holds),
         None if is_scene => format!("is a scene or preset document by its name, not {wanted}"),

@@ -9,6 +9,7 @@ mod hints;
 mod keys;
 mod outputs;
 mod references;
+mod terminal;
 mod usage;
 mod values;
 

@@ -1,12 +1,20 @@
 //! One wrong usage, and how it is tried.
 
 use super::good;
+use std::collections::HashMap;
 use std::path::Path;
 use std::process::Command;
+use std::sync::{LazyLock, Mutex};
 use std::time::{Duration, Instant};
 
 /// No wrong usage may take longer; no measurement, for other work of the machine must not matter.
 const SOON: Duration = Duration::from_secs(30);
+
+/// Words and files of a usage.
+type Key = (Vec<String>, Vec<(String, Option<Vec<u8>>)>);
+
+/// Remedies that were tried, and how they were refused.
+static TRIED: LazyLock<Mutex<HashMap<Key, Option<String>>>> = LazyLock::new(Mutex::default);
 
 /// One wrong usage.
 #[derive(Clone, Default)]
@@ -133,6 +141,18 @@ impl Usage {
         answer(folder.path(), &self.words)
     }
 
+    /// What the program says if it refuses a usage that should work; each is tried once.
+    fn refusal(&self) -> Option<String> {
+        let key = (self.words.clone(), self.files.clone());
+        let known = TRIED.lock().expect("no panic").get(&key).cloned();
+        known.unwrap_or_else(|| {
+            let answer = self.run();
+            let refusal = (!matches!(answer.code, Some(0 | 1))).then(|| answer.said.trim().to_owned());
+            TRIED.lock().expect("no panic").insert(key, refusal.clone());
+            refusal
+        })
+    }
+
     /// Everything that is wrong with the answer of the program.
     pub(super) fn faults(&self, answer: &Answer, options: &str) -> Vec<String> {
         let mut faults = answer.faults();
@@ -151,9 +171,8 @@ impl Usage {
         let valid = super::hints::nearest(said).into_iter().filter_map(|(key, value)| self.with_key(&key, &value));
         let tried = suggested.map(|right| self.mended(&right)).chain(commands).chain(valid).chain(self.remedies.iter().cloned());
         for remedy in tried {
-            let answer = remedy.run();
-            if !matches!(answer.code, Some(0 | 1)) {
-                faults.push(format!("its remedy is refused: {}: {}", remedy.title(), answer.said.trim()));
+            if let Some(refusal) = remedy.refusal() {
+                faults.push(format!("its remedy is refused: {}: {refusal}", remedy.title()));
             }
         }
         faults
@@ -165,6 +184,8 @@ pub(super) struct Answer {
     pub(super) code: Option<i32>,
     /// Standard error.
     pub(super) said: String,
+    /// Standard output.
+    pub(super) printed: String,
     took: Duration,
 }
 
@@ -176,8 +197,9 @@ fn answer(folder: &Path, words: &[String]) -> Answer {
         .stdin(std::process::Stdio::null())
         .output()
         .expect("the program starts");
-    let said = String::from_utf8_lossy(&out.stderr).into_owned();
-    Answer { code: out.status.code(), said, took: started.elapsed() }
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    let (said, printed) = (text(&out.stderr), text(&out.stdout));
+    Answer { code: out.status.code(), said, printed, took: started.elapsed() }
 }
 
 /// Words of the language that the program is written in, and others that say nothing to its user.
