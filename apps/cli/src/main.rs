@@ -38,7 +38,7 @@ fn main() -> ExitCode {
         Ok(Ok(code)) => code,
         Ok(Err(panic)) => broken(&*panic),
         Err(e) => {
-            report::complain(&format!("no thread could be started: {e}"));
+            report::fail(&format!("no thread could be started: {e}"));
             ExitCode::from(2)
         }
     }
@@ -48,7 +48,7 @@ fn main() -> ExitCode {
 fn broken(panic: &(dyn std::any::Any + Send)) -> ExitCode {
     let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
     let what = text.unwrap_or("no message").lines().next().unwrap_or_default();
-    report::complain(&format!("internal error ({what}); please report this with the command line and the files"));
+    report::fail(&format!("internal error ({what}); please report this with the command line and the files"));
     ExitCode::from(2)
 }
 
@@ -61,7 +61,7 @@ fn run(cli: Cli) -> ExitCode {
         }
         Err(e) => {
             context.finish();
-            report::complain(&report::one_line(&e));
+            report::fail(&report::one_line(&e));
             ExitCode::from(2)
         }
     }

@@ -59,6 +59,11 @@ pub(crate) fn parse_number(text: &str) -> Result<f64, String> {
     text.trim().parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(|| "give a number".into())
 }
 
+/// Parses a number of coverage samples: 1, 4 or 16.
+pub(crate) fn parse_samples(text: &str) -> Result<u32, String> {
+    text.trim().parse().ok().filter(|n| matches!(n, 1 | 4 | 16)).ok_or_else(|| "give 1, 4 or 16".into())
+}
+
 /// Parses a number of drafts.
 pub(crate) fn parse_drafts(text: &str) -> Result<usize, String> {
     let count = text.trim().parse().ok().filter(|n| (1..=MOST_DRAFTS).contains(n));

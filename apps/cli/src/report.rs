@@ -23,6 +23,11 @@ pub(crate) fn complain(text: &str) {
     let _ = writeln!(std::io::stderr(), "belvedere: {}", plain::escaped(text));
 }
 
+/// Prints an error, of at most [`LONGEST`] characters.
+pub(crate) fn fail(text: &str) {
+    complain(&plain::shortened(&plain::escaped(text), LONGEST));
+}
+
 /// An error as one line.
 pub(crate) fn one_line(error: &anyhow::Error) -> String {
     if error.downcast_ref::<BelvedereError>().is_some_and(BelvedereError::is_cancelled) {
@@ -42,8 +47,7 @@ pub(crate) fn one_line(error: &anyhow::Error) -> String {
             text = format!("{text}: {cause}");
         }
     }
-    let text = text.split('\n').map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ");
-    plain::shortened(&plain::escaped(&text), LONGEST).into_owned()
+    text.split('\n').map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ")
 }
 
 /// An error of the library as a message for the command line, which names the options that lift it.
@@ -61,12 +65,13 @@ fn in_options(error: &BelvedereError) -> String {
             format!("{error}, or give --along LAYER, --sweep phi or --turntable")
         }
         BelvedereError::NoSweepRange => format!("{error}; add one, or give --sweep phi=FIRST:LAST"),
+        BelvedereError::Target(reason) if reason.starts_with("palette ") => format!("--palette: {reason}"),
         BelvedereError::Scene { path: None, reason, .. } => match named_by(reason) {
             Some(option) => format!("{option}: {error}"),
             None => error.to_string(),
         },
         BelvedereError::Scene { path: Some(path), reason, .. } if reason.ends_with("not a scene document") => {
-            format!("{error}; belvedere info {} describes it", path.display())
+            format!("{error}; for a description: belvedere info {}", path.display())
         }
         _ => format!("{error}{}", option_for(error).unwrap_or_default()),
     }

@@ -1,11 +1,15 @@
 //! Mistakes in the words of a command line, as one line each.
 
 use crate::args::Cli;
-use crate::report::complain;
+use crate::report::fail;
+use belvedere::core::plain as plain_text;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, CommandFactory};
 use std::path::Path;
 use std::process::ExitCode;
+
+/// Most characters of a mistake, before the way to the help.
+const MOST: usize = 420;
 
 /// Help and version on standard output, a mistake as one line.
 pub(crate) fn report(error: &clap::Error) -> ExitCode {
@@ -17,7 +21,8 @@ pub(crate) fn report(error: &clap::Error) -> ExitCode {
     let cli = Cli::command();
     let (command, names) = meant(&cli, &given);
     let help = [&["belvedere"], &names[..], &["--help"]].concat().join(" ");
-    complain(&format!("{}; see {help}", words(error, command)));
+    let what = words(error, command);
+    fail(&format!("{}; see {help}", plain_text::shortened(&what, MOST)));
     ExitCode::from(2)
 }
 

@@ -102,11 +102,16 @@ pub(crate) fn explain(error: IoError) -> IoError {
 ///
 /// * `wanted`: the kind and its formats.
 pub(crate) fn not_a(path: &Path, wanted: &str) -> IoError {
-    let is_scene = formats::ends(path, &[".toml"]);
-    let reason = match readable(path).ok().flatten() {
-        Some(format) => format!("is {} ({}), not {wanted}", format.name, format.holds),
-        None if is_scene => format!("is a scene or preset document by its name, not {wanted}"),
-        None => format!("is not {wanted}; convert it, or choose another file"),
+    let by_content = head(path).ok().and_then(|head| formats::readable_content(&head));
+    let by_name = formats::of_name(path).filter(|format| format.reader.is_some());
+    let reason = match (by_content, by_name) {
+        (Some(format), _) => format!("is {} ({}), not {wanted}", format.name, format.holds),
+        (None, Some(format)) if wanted.contains(format.name) => {
+            format!("is {} by its name, but does not begin like one; it is damaged or something else", format.name)
+        }
+        (None, Some(format)) => format!("is {} ({}) by its name, not {wanted}", format.name, format.holds),
+        (None, None) if formats::ends(path, &[".toml"]) => format!("is a scene or preset document by its name, not {wanted}"),
+        (None, None) => format!("is not {wanted}; convert it, or choose another file"),
     };
     IoError::format(path, reason)
 }

@@ -11,7 +11,7 @@ const DISOCCLUDE: &str = "disocclude dem.asc route.gpx -o x.tif";
 const VALUES: &[(&str, &str, &[&str])] = &[
     (RENDER, "--size", &["0x10", "10x", "-5x5", "100000x100000", "64", "x", "''", "1e3x5", "64*48", "64x48x2", "nanxnan"]),
     (RENDER, "--lod", &["-1", "nan", "1000", "fine"]),
-    (RENDER, "--samples", &["0", "3", "x", "1000000"]),
+    (RENDER, "--samples", &["0", "3", "many", "1000000"]),
     (RENDER, "--thresholds", &["0", "5000"]),
     (RENDER, "--renderer", &["gpx", "fast"]),
     (RENDER, "--aux", &["dept", "normal"]),
@@ -126,7 +126,8 @@ const LINES: &[(&str, &str, &str)] = &[
     ("preset set preset.toml low.phi=x", "x", ""),
     ("preset set preset.toml low.phi=120", "120", ""),
     ("preset set preset.toml low.point.9=1,1", "9", ""),
-    ("preset set preset.toml --capture low", "--capture", "preset set preset.toml --capture low=scene.toml"),
+    ("preset set preset.toml --capture low", "--capture", ""),
+    ("preset set preset.toml --capture low=scene.toml", "--capture", ""),
     ("preset set gone.toml low.phi=3", "gone.toml", ""),
     ("generalise houses.geojson -o city --margin -5", "margin", "generalise houses.geojson -o city --margin 5"),
     ("generalise houses.geojson", "--out", ""),

@@ -42,12 +42,19 @@ pub(super) fn nearest(said: &str) -> Option<(String, String)> {
     let (_, rest) = said.split_once("the nearest valid ")?;
     let (key, rest) = rest.split_once(" is ")?;
     let value = rest.split_once(']').map(|(value, _)| format!("{value}]"))?;
-    Some((key.rsplit(' ').next()?.to_owned(), value))
+    let key = key.rsplit(' ').next()?;
+    // Keys within a line are not replaced by the test.
+    (!key.contains('.')).then(|| (key.to_owned(), value))
 }
 
 /// The number that a text begins with.
 fn number(text: &str) -> Option<f64> {
     text.split([' ', ';', ',', ')', ']', '\n']).next()?.parse().ok()
+}
+
+/// The ending that a message wants for a file.
+pub(super) fn ending(said: &str) -> Option<&str> {
+    said.split_once("rename it so that it ends in ")?.1.split_whitespace().next()
 }
 
 /// Commands of the program that a message gives, without words that stand for something.

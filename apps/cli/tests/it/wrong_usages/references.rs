@@ -43,7 +43,9 @@ pub(super) fn table() -> Vec<Usage> {
     let mut out = Vec::new();
     for (scene, right, wrong, names) in REPLACED {
         assert!(scene.contains(right), "{right} is not in the scene");
-        out.push(usage("check s.toml").file("s.toml", scene.replacen(right, wrong, 1)).names("s.toml:").names(names));
+        // A file with lines of its own is named in place of the scene.
+        let place = if wrong.contains("motion") { "points.json:" } else { "s.toml:" };
+        out.push(usage("check s.toml").file("s.toml", scene.replacen(right, wrong, 1)).names(place).names(names));
     }
     let at = |lon: f64, lat: f64| format!(r#"{{"type":"LineString","coordinates":[[{lon},{lat}],[{},{lat}]]}}"#, lon + 0.001);
     let reveal = |content: String| usage("reveal dem.asc w.geojson -o x.png").file("w.geojson", content).names("w.geojson");

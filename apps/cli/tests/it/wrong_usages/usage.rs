@@ -100,6 +100,14 @@ impl Usage {
         Self { words, files: if is_in_words { self.files.clone() } else { files }, ..Self::default() }
     }
 
+    /// This usage with its file under a name with another ending.
+    fn renamed(&self, ending: &str) -> Self {
+        let (name, content) = self.files[0].clone();
+        let new = Path::new(&name).with_extension(ending.trim_start_matches('.')).to_string_lossy().into_owned();
+        let words = self.words.iter().map(|word| word.replace(&name, &new)).collect();
+        Self { words, files: vec![(new, content)], ..Self::default() }
+    }
+
     /// This usage with another value of a key of its scene.
     fn with_key(&self, key: &str, value: &str) -> Option<Self> {
         let (name, content) = self.files.first()?;
@@ -169,7 +177,8 @@ impl Usage {
         let commands = super::hints::commands(said).into_iter().map(|line| usage(&line));
         let commands = commands.map(|usage| Self { files: self.files.clone(), ..usage });
         let valid = super::hints::nearest(said).into_iter().filter_map(|(key, value)| self.with_key(&key, &value));
-        let tried = suggested.map(|right| self.mended(&right)).chain(commands).chain(valid).chain(self.remedies.iter().cloned());
+        let renamed = super::hints::ending(said).map(|ending| self.renamed(ending));
+        let tried = suggested.map(|right| self.mended(&right)).chain(commands).chain(valid).chain(renamed).chain(self.remedies.iter().cloned());
         for remedy in tried {
             if let Some(refusal) = remedy.refusal() {
                 faults.push(format!("its remedy is refused: {}: {refusal}", remedy.title()));
@@ -199,6 +208,9 @@ fn answer(folder: &Path, words: &[String]) -> Answer {
         .expect("the program starts");
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     let (said, printed) = (text(&out.stderr), text(&out.stdout));
+    // On a slow machine lines of progress come first.
+    let is_progress = |line: &str| line.split_once(" %: ").is_some_and(|(start, _)| start.starts_with("belvedere: ") && start.len() <= 14);
+    let said: String = said.split_inclusive('\n').filter(|line| !is_progress(line)).collect();
     Answer { code: out.status.code(), said, printed, took: started.elapsed() }
 }
 

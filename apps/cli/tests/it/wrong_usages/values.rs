@@ -75,8 +75,8 @@ const ADDED: &[(&str, &[&str])] = &[
         "levelling = 0.5\nlevelling_scale_m = «0»", "range_tag = 1", "exaggeration = [1, 2, 3]",
     ]),
     ("[[stage]]\nkind = 'strip'\n", &[
-        "half_width_m = 300", "along = 'way'\nhalf_width_m = «0»", "along = 'way'\nshare = «2»", "along = 'ground'", "along = 'gone'",
-        "path = [[0, 0]]", "path = []", "along = 'way'\npath = [[0, 0], [1, 1]]", "along = 'way'\nsmoothing_m = «-1»",
+        "half_width_m = 300", "along = 'way'\nhalf_width_m = 0", "along = 'way'\nshare = «2»", "along = 'ground'", "along = 'gone'",
+        "path = [[0, 0]]", "path = []", "along = 'way'\npath = [[0, 0], [1, 1]]", "along = 'way'\nsmoothing_m = -1",
     ]),
     (SPLINE, &[
         "plane = { normal = [0, 0, 0] }", "plane = { height_m = nan }", "pivot = [0, 0]",
