@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 /// Endings of formats; an output is not named after one that it does not have.
 const KNOWN: [&str; 30] = [
-    "jpg", "jpeg", "png", "tif", "tiff", "webp", "gif", "bmp", "svg", "pdf", "json", "toml", "geojson", "xml", "yaml", "yml",
-    "txt", "csv", "asc", "hgt", "gpx", "obj", "ply", "stl", "gltf", "glb", "mp4", "avi", "exr", "npy",
+    "jpg", "jpeg", "png", "tif", "tiff", "webp", "gif", "bmp", "svg", "pdf", "json", "toml", "geojson", "xml", "yaml",
+    "yml", "txt", "csv", "asc", "hgt", "gpx", "obj", "ply", "stl", "gltf", "glb", "mp4", "avi", "exr", "npy",
 ];
 
 /// Refuses names with the ending of another format than those that are written.

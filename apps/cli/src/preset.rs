@@ -182,14 +182,16 @@ fn set(
         let (preset, scene) =
             text.split_once('=').ok_or_else(|| anyhow::anyhow!("--capture {text}: write PRESET=SCENE.toml"))?;
         let session = Session::open(Path::new(scene), &context.options(Needs::View, None))?;
-        let change = PresetChange::Phi(
-            preset::viewing_angle(&session).map_err(|e| anyhow::anyhow!("--capture {text}: {e}"))?,
-        );
+        let change =
+            PresetChange::Phi(preset::viewing_angle(&session).map_err(|e| anyhow::anyhow!("--capture {text}: {e}"))?);
         operations.push(PresetOperation::Preset { preset: preset.to_owned(), change });
     }
     anyhow::ensure!(!operations.is_empty(), "nothing to do; give operations such as low.phi=25, or --capture");
     let source = file.to_string_lossy();
-    anyhow::ensure!(file.exists(), "{source}: there is no such file; make one with belvedere preset new -o {source} --from demo");
+    anyhow::ensure!(
+        file.exists(),
+        "{source}: there is no such file; make one with belvedere preset new -o {source} --from demo"
+    );
     let (document, clamped) = preset::set(&load_file(&source)?, &operations)?;
     out.as_deref().map_or(Ok(()), document_named)?;
     let to = out.clone().unwrap_or_else(|| file.to_owned());

@@ -60,7 +60,9 @@ fn in_options(error: &BelvedereError) -> String {
             format!("{}: {reason}", if *what == "eye" { "--eye" } else { "--look" })
         }
         BelvedereError::RaySamples { .. } => format!("--samples: {error}"),
-        BelvedereError::EyeIsTarget | BelvedereError::Camera(PinholeError::EyeIsTarget { .. }) => "--eye and --look are the same point; look somewhere else".into(),
+        BelvedereError::EyeIsTarget | BelvedereError::Camera(PinholeError::EyeIsTarget { .. }) => {
+            "--eye and --look are the same point; look somewhere else".into()
+        }
         BelvedereError::NoAnimation => {
             format!("{error}, or give --along LAYER, --sweep phi or --turntable")
         }

@@ -45,14 +45,20 @@ fn words(error: &clap::Error, command: &Command) -> String {
     match (error.kind(), error.get(ContextKind::InvalidSubcommand)) {
         (ErrorKind::MissingSubcommand | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand, _) => {
             let (name, of) = (command.get_name(), command.has_subcommands());
-            let what = if name == "belvedere" || !of { "a verb is missing".to_owned() } else { format!("{name}: what to do is missing") };
+            let what = if name == "belvedere" || !of {
+                "a verb is missing".to_owned()
+            } else {
+                format!("{name}: what to do is missing")
+            };
             format!("{what}; possible: {}", choices())
         }
         (ErrorKind::InvalidSubcommand, Some(ContextValue::String(word))) => {
             if Path::new(word).exists() {
                 let document = [".toml", ".json"].iter().any(|ending| word.ends_with(ending));
                 let verb = if document { "check" } else { "info" };
-                return format!("\"{word}\" is a file, not a verb; the verb comes first, as in belvedere {verb} {word}");
+                return format!(
+                    "\"{word}\" is a file, not a verb; the verb comes first, as in belvedere {verb} {word}"
+                );
             }
             let near = match error.get(ContextKind::SuggestedSubcommand) {
                 // The likeliest comes last.
@@ -78,7 +84,12 @@ fn rendered(error: &clap::Error) -> String {
 /// A line of clap in the words of the other messages.
 fn plain(line: &str) -> String {
     let quoted = |rest: &str| rest.split('\'').next().unwrap_or_default().to_owned();
-    for start in ["a similar value exists: '", "a similar argument exists: '", "some similar values exist: '", "some similar arguments exist: '"] {
+    for start in [
+        "a similar value exists: '",
+        "a similar argument exists: '",
+        "some similar values exist: '",
+        "some similar arguments exist: '",
+    ] {
         if let Some(rest) = line.strip_prefix(start) {
             return format!("did you mean \"{}\"?", quoted(rest));
         }

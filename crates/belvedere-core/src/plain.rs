@@ -21,7 +21,8 @@ pub fn number(value: f64) -> String {
 
 /// Whether a character breaks lines, moves the cursor or turns the direction of reading.
 fn steers(c: char) -> bool {
-    c.is_control() || matches!(c, '\u{2028}' | '\u{2029}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    c.is_control()
+        || matches!(c, '\u{2028}' | '\u{2029}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
 /// A text on one line in which characters that steer a terminal are escaped, as `\n` or `\u{1b}`: names come from files.

@@ -110,7 +110,9 @@ pub(crate) fn not_a(path: &Path, wanted: &str) -> IoError {
             format!("is {} by its name, but does not begin like one; it is damaged or something else", format.name)
         }
         (None, Some(format)) => format!("is {} ({}) by its name, not {wanted}", format.name, format.holds),
-        (None, None) if formats::ends(path, &[".toml"]) => format!("is a scene or preset document by its name, not {wanted}"),
+        (None, None) if formats::ends(path, &[".toml"]) => {
+            format!("is a scene or preset document by its name, not {wanted}")
+        }
         (None, None) => format!("is not {wanted}; convert it, or choose another file"),
     };
     IoError::format(path, reason)

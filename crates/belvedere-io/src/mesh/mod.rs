@@ -58,8 +58,7 @@ pub fn load_mesh(path: &Path, limits: &Limits) -> Result<Loaded<MeshFile>, IoErr
         _ => return Err(not_a(path, "a mesh that this version reads: OBJ, PLY, STL, glTF or GLB")),
     };
     let bytes = read_bytes(path, limits)?;
-    let mut loaded =
-        read(path, &bytes, limits).map_err(explain)?.with_file(InputFile::of(path, &bytes));
+    let mut loaded = read(path, &bytes, limits).map_err(explain)?.with_file(InputFile::of(path, &bytes));
     let mesh = &mut loaded.value;
     if mesh.triangles.is_empty() {
         let reason = "the mesh has no triangles; a surface is needed, points and lines are not drawn";

@@ -49,7 +49,9 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
     let mut warnings = Vec::new();
     if materials.is_err() {
         let names = obj_text::material_files(&text);
-        let text = format!("its file of materials {names} cannot be read, so the colour of the layer is used; put it beside the OBJ file");
+        let text = format!(
+            "its file of materials {names} cannot be read, so the colour of the layer is used; put it beside the OBJ file"
+        );
         warnings.push(Warning::new(WarningKind::Fallback, text).in_file(path));
     }
     let odd = odd.into_inner();

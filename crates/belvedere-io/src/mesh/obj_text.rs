@@ -111,6 +111,13 @@ mod tests {
     use super::*;
 
     #[test]
+    fn materials_need_a_name_and_a_blank() {
+        let text = statements(b"mtllib\twall.mtl\nusemtl\nusemtl \nusemtl\tred\nf 1 2 3\nmtllib\n");
+        assert_eq!(text.split_whitespace().collect::<Vec<_>>().join(" "), "mtllib wall.mtl usemtl red f 1 2 3");
+        assert_eq!(material_files(&text), "\"wall.mtl\"");
+    }
+
+    #[test]
     fn lines_are_joined_and_comments_cut_off() {
         let text = statements(b"v 0 0 0 # first\r\nf 1 2 \\\r\n 3\n# f 9 9 9\rusemtl a#b\\\nc");
         assert_eq!(text, "v 0 0 0 \nf 1 2   3\n# f 9 9 9\nusemtl a#b c\n");

@@ -122,9 +122,7 @@ fn words(said: &str) -> String {
 
 pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshFile>, IoError> {
     let bad = |reason: String| IoError::format(path, reason);
-    let damaged = |e: &dyn std::fmt::Display| {
-        bad(format!("{}; it is damaged or no PLY file", words(&e.to_string())))
-    };
+    let damaged = |e: &dyn std::fmt::Display| bad(format!("{}; it is damaged or no PLY file", words(&e.to_string())));
     let parser = Parser::<Item>::new();
     let mended = mended(bytes);
     let bytes = mended.as_deref().unwrap_or(bytes);

@@ -68,7 +68,8 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
 
 /// The JSON values of a file: one, or as many as a sequence has (RFC 8142, or one per line), or the members of a list.
 fn records(text: &str) -> Result<Vec<Value>, String> {
-    let broken = |e: serde_json::Error| format!("is no valid JSON ({}); it is damaged or cut off", crate::json_fault(&e));
+    let broken =
+        |e: serde_json::Error| format!("is no valid JSON ({}); it is damaged or cut off", crate::json_fault(&e));
     let text = if text.contains('\u{1e}') { text.replace('\u{1e}', " ").into() } else { std::borrow::Cow::from(text) };
     let parse = |text: &str| serde_json::Deserializer::from_str(text).into_iter().collect::<Result<Vec<Value>, _>>();
     // Some programs write numbers that are none as NaN and Infinity, which JSON does not have.

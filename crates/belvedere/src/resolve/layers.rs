@@ -6,8 +6,7 @@ use super::{areas, boxes, builtin, city, dem, mesh, molecule, sea, vectors, volu
 use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
-    AutoOrLength, LayerDoc, LineDoc, Origin, PaletteDoc, Paths, PointLayerDoc, PositionDoc, RouteDoc,
-    TerrainDoc,
+    AutoOrLength, LayerDoc, LineDoc, Origin, PaletteDoc, Paths, PointLayerDoc, PositionDoc, RouteDoc, TerrainDoc,
 };
 use crate::{BelvedereError, Needs, OpenOptions};
 use belvedere_builtin::{RouteCost, least_cost_route, valley_route};

@@ -9,7 +9,11 @@ const DISOCCLUDE: &str = "disocclude dem.asc route.gpx -o x.tif";
 
 /// Options with values that are not possible, and what the message names beside them.
 const VALUES: &[(&str, &str, &[&str])] = &[
-    (RENDER, "--size", &["0x10", "10x", "-5x5", "100000x100000", "64", "x", "''", "1e3x5", "64*48", "64x48x2", "nanxnan"]),
+    (
+        RENDER,
+        "--size",
+        &["0x10", "10x", "-5x5", "100000x100000", "64", "x", "''", "1e3x5", "64*48", "64x48x2", "nanxnan"],
+    ),
     (RENDER, "--lod", &["-1", "nan", "1000", "fine"]),
     (RENDER, "--samples", &["0", "3", "many", "1000000"]),
     (RENDER, "--thresholds", &["0", "5000"]),
@@ -64,7 +68,11 @@ const LINES: &[(&str, &str, &str)] = &[
     ("reveal dem.asc route.gpx -o x.png --eye 10.006,45.995,1500 --look 10.006,north", "--look", ""),
     ("reveal dem.asc route.gpx -o x.png --eye 10.006,45.995,1500 --look 10.006,45.995,1500", "--look", ""),
     ("reveal dem.asc route.gpx -o x.png --eye 10.006,45.995,1500 --look 60,60", "--look", ""),
-    ("reveal dem.asc route.gpx -o x.png --eye 10.006,46.006,20 --look 10.006,46.009", "ground", "reveal dem.asc route.gpx -o x.png --size 64x48 --eye 10.006,46.006,797 --look 10.006,46.009"),
+    (
+        "reveal dem.asc route.gpx -o x.png --eye 10.006,46.006,20 --look 10.006,46.009",
+        "ground",
+        "reveal dem.asc route.gpx -o x.png --size 64x48 --eye 10.006,46.006,797 --look 10.006,46.009",
+    ),
     ("reveal dem.asc route.gpx -o x.png --fov 200", "--fov", ""),
     ("reveal dem.asc route.gpx -o x.png --fov nan", "--fov", ""),
     ("reveal dem.asc route.gpx -o x.png --fov wide", "--fov", ""),
@@ -98,11 +106,27 @@ const LINES: &[(&str, &str, &str)] = &[
     ("animate scene.toml -o frames --sweep phi=20:20", "phi=20:20", ""),
     ("animate scene.toml -o frames --turntable --marker --frames 2", "marker", ""),
     ("project scene.toml", "--points", "project scene.toml --points points.json"),
-    ("rays bare.toml --pixels pixels.json --samples 0 --far 9", "--samples", "rays bare.toml --pixels pixels.json --samples 2 --far 9"),
+    (
+        "rays bare.toml --pixels pixels.json --samples 0 --far 9",
+        "--samples",
+        "rays bare.toml --pixels pixels.json --samples 2 --far 9",
+    ),
     ("rays bare.toml --pixels pixels.json --samples -1 --far 9", "--samples", ""),
-    ("rays bare.toml --pixels pixels.json --samples 2", "--far", "rays bare.toml --pixels pixels.json --samples 2 --far 9"),
-    ("rays bare.toml --pixels pixels.json --samples 2 --far 0.1", "0.1", "rays bare.toml --pixels pixels.json --samples 2 --far 9"),
-    ("rays bare.toml --pixels pixels.json --samples 99999999 --far 9", "99999999", "rays bare.toml --pixels pixels.json --samples 2 --far 9"),
+    (
+        "rays bare.toml --pixels pixels.json --samples 2",
+        "--far",
+        "rays bare.toml --pixels pixels.json --samples 2 --far 9",
+    ),
+    (
+        "rays bare.toml --pixels pixels.json --samples 2 --far 0.1",
+        "0.1",
+        "rays bare.toml --pixels pixels.json --samples 2 --far 9",
+    ),
+    (
+        "rays bare.toml --pixels pixels.json --samples 99999999 --far 9",
+        "99999999",
+        "rays bare.toml --pixels pixels.json --samples 2 --far 9",
+    ),
     ("info", "FILES", "info dem.asc"),
     ("figures", "WHAT", ""),
     ("figures terain", "terain", ""),
@@ -136,7 +160,20 @@ const LINES: &[(&str, &str, &str)] = &[
 ];
 
 /// Values for the solver of `disocclude`.
-const SET: &[&str] = &["w", "w=", "w=x", "w=-1", "width=3", "cells=0", "margin_m=nan", "margin_m=-1", "eta=1e400", "mode=fast", "detail=none", "solver_nodes=1"];
+const SET: &[&str] = &[
+    "w",
+    "w=",
+    "w=x",
+    "w=-1",
+    "width=3",
+    "cells=0",
+    "margin_m=nan",
+    "margin_m=-1",
+    "eta=1e400",
+    "mode=fast",
+    "detail=none",
+    "solver_nodes=1",
+];
 
 pub(super) fn table() -> Vec<Usage> {
     let mut out = Vec::new();
@@ -156,7 +193,13 @@ pub(super) fn table() -> Vec<Usage> {
         out.push(usage(&format!("{DISOCCLUDE} {AT} --set {set}")).names(key));
     }
     for fov in ["0", "180", "-70", "nan", "1e400"] {
-        out.push(usage(&format!("{DISOCCLUDE} {AT} --fov {fov}")).names("--fov").names(if fov == "1e400" || fov == "nan" { "" } else { fov }));
+        out.push(
+            usage(&format!("{DISOCCLUDE} {AT} --fov {fov}")).names("--fov").names(if fov == "1e400" || fov == "nan" {
+                ""
+            } else {
+                fov
+            }),
+        );
     }
     out
 }

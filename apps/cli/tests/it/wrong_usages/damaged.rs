@@ -5,12 +5,31 @@ use super::usage::{Usage, usage};
 
 /// Files that are nothing in part, and the share that is left of them, percent.
 const CUT: &[(&str, usize)] = &[
-    ("dem.tif", 60), ("dem.asc", 60), ("route.gpx", 60), ("way.geojson", 60), ("line.shp", 70), ("tri.gltf", 60), ("tri.bin", 60), ("cube.ply", 80),
-    ("volume.nrrd", 60), ("houses.geojson", 60), ("scene.toml", 51), ("points.json", 60),
+    ("dem.tif", 60),
+    ("dem.asc", 60),
+    ("route.gpx", 60),
+    ("way.geojson", 60),
+    ("line.shp", 70),
+    ("tri.gltf", 60),
+    ("tri.bin", 60),
+    ("cube.ply", 80),
+    ("volume.nrrd", 60),
+    ("houses.geojson", 60),
+    ("scene.toml", 51),
+    ("points.json", 60),
 ];
 
 const KINDS: &[&str] = &[
-    "dem.tif", "dem.asc", "route.gpx", "way.geojson", "line.shp", "cube.obj", "cube.ply", "cube.stl", "tri.gltf", "atoms.pdb",
+    "dem.tif",
+    "dem.asc",
+    "route.gpx",
+    "way.geojson",
+    "line.shp",
+    "cube.obj",
+    "cube.ply",
+    "cube.stl",
+    "tri.gltf",
+    "atoms.pdb",
     "volume.nrrd",
 ];
 
@@ -50,10 +69,14 @@ pub(super) fn table() -> Vec<Usage> {
     for name in KINDS {
         out.push(used(name).file(name, "hello, this is a text\n").names(name));
     }
-    for (name, of) in [("dem.tif", "route.gpx"), ("route.gpx", "dem.tif"), ("cube.obj", "picture.png"), ("way.geojson", "scene.toml")] {
+    for (name, of) in
+        [("dem.tif", "route.gpx"), ("route.gpx", "dem.tif"), ("cube.obj", "picture.png"), ("way.geojson", "scene.toml")]
+    {
         out.push(used(name).file(name, good(of)).names(name));
     }
-    for text in ["version https://git-lfs.github.com/spec/v1\noid sha256:1\n", "<!DOCTYPE html>\n<html><body>404</body></html>"] {
+    for text in
+        ["version https://git-lfs.github.com/spec/v1\noid sha256:1\n", "<!DOCTYPE html>\n<html><body>404</body></html>"]
+    {
         out.push(used("dem.tif").file("dem.tif", text).names("dem.tif"));
     }
     out.push(usage("info tri.gltf").without("tri.bin").names("tri.bin"));

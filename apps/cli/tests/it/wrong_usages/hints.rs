@@ -61,6 +61,7 @@ pub(super) fn ending(said: &str) -> Option<&str> {
 pub(super) fn commands(said: &str) -> Vec<String> {
     let ends = |c: char| matches!(c, ';' | '\n' | ',' | ')' | '`');
     let lines = said.split("belvedere ").skip(1).map(|rest| rest.split(ends).next().unwrap_or_default().trim());
-    let is_whole = |line: &&str| !line.is_empty() && !line.split(' ').any(|word| word.chars().all(|c| c.is_uppercase()));
+    let is_whole =
+        |line: &&str| !line.is_empty() && !line.split(' ').any(|word| word.chars().all(|c| c.is_uppercase()));
     lines.filter(is_whole).map(str::to_owned).collect()
 }

@@ -116,7 +116,9 @@ pub(super) fn table() -> Vec<Usage> {
     for (scene, right, wrong) in MISSPELT {
         assert!(scene.contains(right), "{right} is not in the scene");
         let wrong_word = differing(right, wrong);
-        out.push(usage("check s.toml").file("s.toml", scene.replacen(right, wrong, 1)).wrong(wrong_word).names("s.toml:"));
+        out.push(
+            usage("check s.toml").file("s.toml", scene.replacen(right, wrong, 1)).wrong(wrong_word).names("s.toml:"),
+        );
     }
     for (added, wrong) in ADDED {
         let usage = usage("check s.toml").file("s.toml", format!("{SCENE}{added}\n"));
@@ -129,7 +131,11 @@ pub(super) fn table() -> Vec<Usage> {
         out.push(usage("check s.toml").file("s.toml", *text).names(names).names("s.toml:"));
     }
     out.push(usage("check s.json").file("s.json", BARE).names("s.json:1"));
-    out.push(usage("check s.json").file("s.json", "{\"format\": 1, \"camera\": {\"eye\": [0,0,0], \"lookat\": [0,1,0]}}").wrong("lookat"));
+    out.push(
+        usage("check s.json")
+            .file("s.json", "{\"format\": 1, \"camera\": {\"eye\": [0,0,0], \"lookat\": [0,1,0]}}")
+            .wrong("lookat"),
+    );
     out
 }
 

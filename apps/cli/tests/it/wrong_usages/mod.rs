@@ -7,6 +7,7 @@ mod files;
 mod good;
 mod hints;
 mod keys;
+mod no_materials;
 mod outputs;
 mod references;
 mod terminal;

@@ -47,13 +47,18 @@ pub(super) fn table() -> Vec<Usage> {
         let place = if wrong.contains("motion") { "points.json:" } else { "s.toml:" };
         out.push(usage("check s.toml").file("s.toml", scene.replacen(right, wrong, 1)).names(place).names(names));
     }
-    let at = |lon: f64, lat: f64| format!(r#"{{"type":"LineString","coordinates":[[{lon},{lat}],[{},{lat}]]}}"#, lon + 0.001);
-    let reveal = |content: String| usage("reveal dem.asc w.geojson -o x.png").file("w.geojson", content).names("w.geojson");
+    let at = |lon: f64, lat: f64| {
+        format!(r#"{{"type":"LineString","coordinates":[[{lon},{lat}],[{},{lat}]]}}"#, lon + 0.001)
+    };
+    let reveal =
+        |content: String| usage("reveal dem.asc w.geojson -o x.png").file("w.geojson", content).names("w.geojson");
     out.push(reveal(at(20.0, 10.0)));
     out.push(reveal(at(500_000.0, 5_000_000.0)));
     out.push(reveal(r#"{"type":"LineString","coordinates":[[10.005,46.005]]}"#.into()));
     out.push(reveal(r#"{"type":"FeatureCollection","features":[]}"#.into()));
-    out.push(reveal(r#"{"type":"FeatureCollection","features":[{"type":"Feature","geometry":null,"properties":{}}]}"#.into()));
+    out.push(reveal(
+        r#"{"type":"FeatureCollection","features":[{"type":"Feature","geometry":null,"properties":{}}]}"#.into(),
+    ));
     out.push(reveal(r#"{"type":"LineString","coordinates":[[46.009,10.002],[46.0095,10.006]]}"#.into()));
     out
 }

@@ -19,9 +19,11 @@ fn names_from_files_are_printed_without_control_characters() {
     let title = SCENE.replace("'hill'", &format!("\"{AS_TOML}\\n\""));
     let unknown = SCENE.replace("must_see", &format!("\"{AS_TOML}\""));
     let value = SCENE.replace("'route.gpx'", &format!("\"{AS_TOML}\\nmore\""));
-    let track = |name: &str| format!(
-        "<gpx version=\"1.1\"><trk><name>{name}</name><trkseg><trkpt lat=\"46.009\" lon=\"10.002\"/><trkpt lat=\"46.009\" lon=\"10.009\"/></trkseg></trk></gpx>"
-    );
+    let track = |name: &str| {
+        format!(
+            "<gpx version=\"1.1\"><trk><name>{name}</name><trkseg><trkpt lat=\"46.009\" lon=\"10.002\"/><trkpt lat=\"46.009\" lon=\"10.009\"/></trkseg></trk></gpx>"
+        )
+    };
     let property = format!(
         r#"{{"type":"Feature","properties":{{"{AS_TOML}\n":"{AS_TOML}"}},"geometry":{{"type":"Point","coordinates":[10.004,46.004]}}}}"#
     );
@@ -71,6 +73,10 @@ fn errors_have_at_most_500_characters() {
     ] {
         let answer = usage.run();
         let length = answer.said.trim_end().chars().count();
-        assert!(answer.code == Some(2) && length <= 500 && answer.said.lines().count() == 1, "{length}: {}", answer.said);
+        assert!(
+            answer.code == Some(2) && length <= 500 && answer.said.lines().count() == 1,
+            "{length}: {}",
+            answer.said
+        );
     }
 }

@@ -113,7 +113,8 @@ impl Usage {
         let (name, content) = self.files.first()?;
         let text = String::from_utf8_lossy(content.as_deref()?).into_owned();
         let start = format!("{key} = ");
-        let line = |line: &str| if line.starts_with(&start) { format!("{start}{value}\n") } else { format!("{line}\n") };
+        let line =
+            |line: &str| if line.starts_with(&start) { format!("{start}{value}\n") } else { format!("{line}\n") };
         let mended: String = text.lines().map(line).collect();
         Some(Self { words: self.words.clone(), ..Self::default() }.file(name, mended))
     }
@@ -178,7 +179,12 @@ impl Usage {
         let commands = commands.map(|usage| Self { files: self.files.clone(), ..usage });
         let valid = super::hints::nearest(said).into_iter().filter_map(|(key, value)| self.with_key(&key, &value));
         let renamed = super::hints::ending(said).map(|ending| self.renamed(ending));
-        let tried = suggested.map(|right| self.mended(&right)).chain(commands).chain(valid).chain(renamed).chain(self.remedies.iter().cloned());
+        let tried = suggested
+            .map(|right| self.mended(&right))
+            .chain(commands)
+            .chain(valid)
+            .chain(renamed)
+            .chain(self.remedies.iter().cloned());
         for remedy in tried {
             if let Some(refusal) = remedy.refusal() {
                 faults.push(format!("its remedy is refused: {}: {refusal}", remedy.title()));
@@ -209,16 +215,42 @@ fn answer(folder: &Path, words: &[String]) -> Answer {
     let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
     let (said, printed) = (text(&out.stderr), text(&out.stdout));
     // On a slow machine lines of progress come first.
-    let is_progress = |line: &str| line.split_once(" %: ").is_some_and(|(start, _)| start.starts_with("belvedere: ") && start.len() <= 14);
+    let is_progress = |line: &str| {
+        line.split_once(" %: ").is_some_and(|(start, _)| start.starts_with("belvedere: ") && start.len() <= 14)
+    };
     let said: String = said.split_inclusive('\n').filter(|line| !is_progress(line)).collect();
     Answer { code: out.status.code(), said, printed, took: started.elapsed() }
 }
 
 /// Words of the language that the program is written in, and others that say nothing to its user.
 const CODE: &[&str] = &[
-    "panicked", "internal error", "unwrap", "Some(", "None", "Ok(", "Err(", "ParseIntError", "ParseFloatError", "Utf8Error",
-    "usize", "f64", "u32", "i64", "os error", "EOF", "serde", "tobj", "struct ", "enum ", "variant", "src/", ".rs:",
-    "deserialize", "{}", "\\u{", "::",
+    "panicked",
+    "internal error",
+    "unwrap",
+    "Some(",
+    "None",
+    "Ok(",
+    "Err(",
+    "ParseIntError",
+    "ParseFloatError",
+    "Utf8Error",
+    "usize",
+    "f64",
+    "u32",
+    "i64",
+    "os error",
+    "EOF",
+    "serde",
+    "tobj",
+    "struct ",
+    "enum ",
+    "variant",
+    "src/",
+    ".rs:",
+    "deserialize",
+    "{}",
+    "\\u{",
+    "::",
 ];
 
 impl Answer {

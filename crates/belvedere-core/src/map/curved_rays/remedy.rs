@@ -38,7 +38,8 @@ pub(super) fn rays_cross(pixel: DVec2, sigma: f64, spec: &TurnSpec, context: &Tu
     };
     let healed = |t: f64| parted(&end_at(spec, context, t)).is_some();
     let remedy = if context.advise { smallest(healed, 1.0) } else { None };
-    let remedy = remedy.map_or(Remedy::OtherModel, |t| Remedy::MovePoint { name: "t2", to: end_at(spec, context, t).t2 });
+    let remedy =
+        remedy.map_or(Remedy::OtherModel, |t| Remedy::MovePoint { name: "t2", to: end_at(spec, context, t).t2 });
     CurvedRaysError::RaysCross { turn: context.turn, pixel, sigma, remedy }
 }
 
@@ -174,9 +175,7 @@ fn turned_planes(spec: &TurnSpec, context: &TurnContext<'_>, healed: &dyn Fn(&Tu
         Pencil::Line { point, dir } => {
             let foot = point + (spec.t1 - point).project_onto(dir);
             let (arm, across) = (foot - spec.t1, (foot - spec.t1).reject_from(axis));
-            let to = |t: f64| {
-                rounded(spec.t1 + arm.length() * arm.lerp(across, t).normalize_or_zero(), spec, context)
-            };
+            let to = |t: f64| rounded(spec.t1 + arm.length() * arm.lerp(across, t).normalize_or_zero(), spec, context);
             let with = |t: f64| TurnSpec { pencil: Pencil::Line { point: to(t), dir }, ..*spec };
             smallest(|t| healed(&with(t)), 1.0).map(|t| Remedy::MovePoint { name: "line.point", to: to(t) })
         }

@@ -83,7 +83,11 @@ impl Value<'_> {
                 },
                 _ => return Err("a built-in, a name and a viewing angle are needed".into()),
             },
-            _ => return Err(format!("{key:?} is no key of the document; its keys are {DOCUMENT_KEYS}, those of a preset stand behind its name, as in low.phi=25")),
+            _ => {
+                return Err(format!(
+                    "{key:?} is no key of the document; its keys are {DOCUMENT_KEYS}, those of a preset stand behind its name, as in low.phi=25"
+                ));
+            }
         })
     }
 

@@ -67,7 +67,9 @@ pub fn load(source: &str) -> Result<PresetDocument, BelvedereError> {
         match PresetDocument::builtin(source) {
             Ok(document) => return Ok(document),
             Err(_) if belvedere_io::fs::metadata(path).is_ok_and(|m| m.is_file()) => {}
-            Err(PresetError::UnknownName { name }) => return Err(BelvedereError::Builtin(scene_file::no_preset(&name))),
+            Err(PresetError::UnknownName { name }) => {
+                return Err(BelvedereError::Builtin(scene_file::no_preset(&name)));
+            }
             Err(e) => return Err(e.into()),
         }
     }
