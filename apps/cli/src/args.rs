@@ -8,8 +8,8 @@ use crate::kinds::{self, RendererKind, TechniqueKind};
 use crate::look_args::LookArgs;
 use crate::pack::PackArgs;
 use crate::parse::{
-    Outside, parse_eye, parse_fallback, parse_highlight, parse_outside, parse_position, parse_scale, parse_size,
-    parse_spacing, parse_sweep,
+    Outside, parse_drafts, parse_eye, parse_fallback, parse_highlight, parse_number, parse_outside, parse_position,
+    parse_scale, parse_size, parse_spacing, parse_sweep,
 };
 use crate::preset::PresetArgs;
 use crate::trust::TrustArgs;
@@ -131,7 +131,7 @@ pub(crate) struct FiguresArgs {
     #[arg(short, long, value_name = "DIR", default_value = "belvedere-figures")]
     pub(crate) out: PathBuf,
     /// Factor of the width and height of the pictures of curved, spline and compare, in 0.1..=1: smaller drafts are drawn sooner
-    #[arg(long, default_value = "1", value_parser = parse_scale)]
+    #[arg(long, default_value = "1", allow_negative_numbers = true, value_parser = parse_scale)]
     pub(crate) scale: f64,
 }
 
@@ -169,10 +169,10 @@ fn parse_figures(text: &str) -> Result<FigureKinds, String> {
 #[derive(Debug, Args)]
 pub(crate) struct BenchArgs {
     /// Times that every case is drawn
-    #[arg(long, default_value_t = 7, value_name = "N")]
+    #[arg(long, default_value_t = 7, value_name = "N", allow_negative_numbers = true)]
     pub(crate) rounds: usize,
     /// Nodes along a side of the ground
-    #[arg(long, default_value_t = 1025, value_name = "N")]
+    #[arg(long, default_value_t = 1025, value_name = "N", allow_negative_numbers = true)]
     pub(crate) nodes: usize,
     /// Size of the picture
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
@@ -234,7 +234,7 @@ pub(crate) struct RevealArgs {
     #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
     pub(crate) look: Option<Place>,
     /// Full vertical field of view, degrees
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = parse_number)]
     pub(crate) fov: Option<f64>,
     /// Size of the picture, such as 1920x1080
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = parse_size)]
@@ -266,7 +266,7 @@ pub(crate) struct RevealArgs {
     pub(crate) area_style: Option<SurfaceDoc>,
     /// Write a sheet of up to N pictures from different sides to OUT.png instead of one, with the shares of each and the command that
     /// makes it
-    #[arg(long, value_name = "N", conflicts_with_all = ["eye", "look"])]
+    #[arg(long, value_name = "N", conflicts_with_all = ["eye", "look"], allow_negative_numbers = true, value_parser = parse_drafts)]
     pub(crate) drafts: Option<usize>,
     /// Axis that points upwards in the picture, with --see: x, y, z, -x, -y or -z
     #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = crate::parse::axis, requires = "see")]
@@ -315,7 +315,7 @@ pub(crate) struct DisoccludeArgs {
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = parse_position)]
     pub(crate) look: Place,
     /// Full horizontal field of view, degrees
-    #[arg(long, value_name = "DEG", default_value_t = 70.0, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", default_value = "70", allow_negative_numbers = true, value_parser = parse_number)]
     pub(crate) fov: f64,
     /// Passes of the solver: paper as published; qp guarantees visibility by a quadratic program; paper+qp both
     #[arg(long, value_name = "MODE", value_parser = ["paper", "paper+qp", "qp"])]
@@ -455,16 +455,16 @@ pub(crate) struct AnimateArgs {
     #[arg(short, long, value_name = "OUT.mp4|DIR")]
     pub(crate) out: PathBuf,
     /// Number of frames; by default the scene's, else 250 or as many as the path needs. Without --speed the speed follows
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) frames: Option<u32>,
     /// Frames per second; by default the scene's, else 25
-    #[arg(long, value_name = "F", allow_negative_numbers = true)]
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = parse_number)]
     pub(crate) fps: Option<f64>,
     /// Follow the route of this line layer, behind and above a walker; the eye stays above the drawn ground
     #[arg(long, value_name = "LAYER", group = "way")]
     pub(crate) along: Option<String>,
     /// Ground speed along the route, metres per second of film; by default the whole route in all frames
-    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = parse_number)]
     pub(crate) speed: Option<f64>,
     /// Tilt through the viewing angles of the spline's presets: phi, or phi=FIRST:LAST[:STEP] in degrees
     #[arg(long, value_name = "phi[=A:B]", group = "way", value_parser = parse_sweep)]
@@ -526,7 +526,7 @@ pub(crate) struct RaysArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) samples: usize,
     /// Depth of the last sample; by default the camera's far, else the scene's largest depth
-    #[arg(long, value_name = "W", allow_negative_numbers = true)]
+    #[arg(long, value_name = "W", allow_negative_numbers = true, value_parser = parse_number)]
     pub(crate) far: Option<f64>,
     /// Output; standard output if left out
     #[arg(short, long, value_name = "OUT.json")]

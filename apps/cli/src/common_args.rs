@@ -23,14 +23,14 @@ pub(crate) struct Common {
     #[arg(long, global = true, help_heading = "Every command", default_value_t = 0, value_name = "N", allow_negative_numbers = true, value_parser = parse_threads)]
     pub(crate) threads: usize,
     /// Limit of memory for one picture and for the samples of one file, such as 2GiB or 800MiB
-    #[arg(long, global = true, help_heading = "Every command", value_name = "SIZE", value_parser = parse_bytes)]
+    #[arg(long, global = true, help_heading = "Every command", value_name = "SIZE", allow_negative_numbers = true, value_parser = parse_bytes)]
     pub(crate) max_mem: Option<u64>,
     /// Limit of time for the whole command (animate and view: for solving the ground of each picture); when it is reached the best
     /// result so far is taken, and a warning says so
-    #[arg(long, global = true, help_heading = "Every command", value_name = "SECONDS", value_parser = parse_seconds)]
+    #[arg(long, global = true, help_heading = "Every command", value_name = "SECONDS", allow_negative_numbers = true, value_parser = parse_seconds)]
     pub(crate) time_limit: Option<f64>,
     /// Seed of generated layers, instead of the scene's
-    #[arg(long, global = true, help_heading = "Every command", value_name = "N")]
+    #[arg(long, global = true, help_heading = "Every command", value_name = "N", allow_negative_numbers = true)]
     pub(crate) seed: Option<u64>,
     /// Folder, beside the scene's own, from which files may be read; may be given several times
     #[arg(long, global = true, help_heading = "Every command", value_name = "DIR")]

@@ -1,7 +1,7 @@
 //! Arguments that all pictures and frames have in common.
 
 use crate::kinds::RendererKind;
-use crate::parse::{parse_lod, parse_size};
+use crate::parse::{parse_lod, parse_samples, parse_size};
 use belvedere::picture::THRESHOLDS;
 use clap::{Args, ValueEnum};
 
@@ -32,10 +32,10 @@ pub(crate) struct DrawArgs {
     #[arg(long, conflicts_with = "straight")]
     pub(crate) compare: bool,
     /// Coverage samples per pixel: 1, 4 or 16
-    #[arg(long, default_value_t = 4, value_name = "N")]
+    #[arg(long, default_value_t = 4, value_name = "N", allow_negative_numbers = true, value_parser = parse_samples)]
     pub(crate) samples: u32,
     /// Thresholds per pixel in transitions between styling sections; 1 is a dither
-    #[arg(long, default_value_t = THRESHOLDS, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=4096))]
+    #[arg(long, default_value_t = THRESHOLDS, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub(crate) thresholds: u32,
     /// How representations of styling sections are composited
     #[arg(long, value_enum, default_value = "single")]

@@ -18,6 +18,7 @@ mod preset;
 mod report;
 mod timings;
 mod trust;
+mod usage;
 mod verbs;
 mod view;
 
@@ -33,14 +34,14 @@ fn main() -> ExitCode {
     std::panic::set_hook(Box::new(|_| {}));
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
-        Err(e) => return report::usage(&e),
+        Err(e) => return usage::report(&e),
     };
     let worker = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(|| run(cli));
     match worker.map(std::thread::JoinHandle::join) {
         Ok(Ok(code)) => code,
         Ok(Err(panic)) => broken(&*panic),
         Err(e) => {
-            report::complain(&format!("no thread could be started: {e}"));
+            report::fail(&format!("no thread could be started: {e}"));
             ExitCode::from(2)
         }
     }
@@ -50,7 +51,7 @@ fn main() -> ExitCode {
 fn broken(panic: &(dyn std::any::Any + Send)) -> ExitCode {
     let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
     let what = text.unwrap_or("no message").lines().next().unwrap_or_default();
-    report::complain(&format!("internal error ({what}); please report this with the command line and the files"));
+    report::fail(&format!("internal error ({what}); please report this with the command line and the files"));
     ExitCode::from(2)
 }
 
@@ -64,7 +65,7 @@ fn run(cli: Cli) -> ExitCode {
         }
         Err(e) => {
             context.finish();
-            report::complain(&report::one_line(&e));
+            report::fail(&report::one_line(&e));
             ExitCode::from(2)
         }
     }

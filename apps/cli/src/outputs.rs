@@ -6,6 +6,29 @@ use belvedere::output;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
+/// Endings of formats; an output is not named after one that it does not have.
+const KNOWN: [&str; 30] = [
+    "jpg", "jpeg", "png", "tif", "tiff", "webp", "gif", "bmp", "svg", "pdf", "json", "toml", "geojson", "xml", "yaml",
+    "yml", "txt", "csv", "asc", "hgt", "gpx", "obj", "ply", "stl", "gltf", "glb", "mp4", "avi", "exr", "npy",
+];
+
+/// Refuses names with the ending of another format than those that are written.
+///
+/// * `endings`: of what is written, the best one first.
+/// * `what`: a sentence that says what is written.
+pub(crate) fn named(path: &Path, endings: &[&str], what: &str) -> anyhow::Result<()> {
+    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    let is_other = KNOWN.contains(&ending.as_str()) && !endings.contains(&ending.as_str());
+    let best = endings.first().copied().unwrap_or_default();
+    anyhow::ensure!(!is_other, "{}: {what}, not .{ending}; name the output .{best}", path.display());
+    Ok(())
+}
+
+/// The same for pictures.
+pub(crate) fn png_named(path: &Path) -> anyhow::Result<()> {
+    named(path, &["png"], "pictures are written as PNG")
+}
+
 /// Whether an output is standard output.
 pub(crate) fn is_stdout(path: &Path) -> bool {
     path == Path::new("-")

@@ -3,7 +3,10 @@
 use belvedere::places::Place;
 use belvedere::scene_file::{HighlightMark, StylisationDoc, SwitchOrStrength};
 use belvedere::verbs::appearance::EXAGGERATION;
+use belvedere::verbs::drafts::MOST_DRAFTS;
 
+/// Most pixels along a side of a picture.
+const MAX_SIDE: u32 = 65535;
 /// Most worker threads: far above what helps, far below what a system refuses to start.
 const MAX_THREADS: usize = 1024;
 
@@ -39,7 +42,7 @@ pub(crate) fn parse_highlight(text: &str) -> Result<HighlightMark, String> {
         "stages" => Ok(HighlightMark::Stages),
         "revealed" => Ok(HighlightMark::Revealed),
         "ghost-box" | "ghost_box" => Ok(HighlightMark::GhostBox),
-        _ => Err("possible are shift or stages, revealed, ghost-box, separated by commas".into()),
+        _ => Err("possible: shift or stages, revealed, ghost-box, separated by commas".into()),
     }
 }
 
@@ -47,9 +50,26 @@ pub(crate) fn parse_highlight(text: &str) -> Result<HighlightMark, String> {
 pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X']).map(|(w, h)| [w.trim().parse(), h.trim().parse()]);
     match sides {
-        Some([Ok(w), Ok(h)]) => Ok([w, h]),
+        Some([Ok(w), Ok(h)]) if [w, h].iter().all(|side| (1..=MAX_SIDE).contains(side)) => Ok([w, h]),
+        Some([Ok(_), Ok(_)]) => Err(format!("each side must have 1 to {MAX_SIDE} pixels, such as 1280x720")),
         _ => Err("give width and height in pixels, such as 1280x720".into()),
     }
+}
+
+/// Parses a number that is finite.
+pub(crate) fn parse_number(text: &str) -> Result<f64, String> {
+    text.trim().parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(|| "give a number".into())
+}
+
+/// Parses a number of coverage samples: 1, 4 or 16.
+pub(crate) fn parse_samples(text: &str) -> Result<u32, String> {
+    text.trim().parse().ok().filter(|n| matches!(n, 1 | 4 | 16)).ok_or_else(|| "give 1, 4 or 16".into())
+}
+
+/// Parses a number of drafts.
+pub(crate) fn parse_drafts(text: &str) -> Result<usize, String> {
+    let count = text.trim().parse().ok().filter(|n| (1..=MOST_DRAFTS).contains(n));
+    count.ok_or_else(|| format!("give a whole number in 1..={MOST_DRAFTS}"))
 }
 
 /// Parses `phi`, `phi=25:80` or `phi=25:80:0.5`, degrees; values that are not given are 0.

@@ -70,7 +70,7 @@ pub(crate) enum PresetWork {
         #[arg(short, long, value_name = "OUT.png")]
         out: PathBuf,
         /// Draw the preset that is interpolated for this viewing angle, degrees
-        #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+        #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = crate::parse::parse_number)]
         phi: Option<f64>,
     },
 }
@@ -92,6 +92,7 @@ pub(crate) fn preset(args: PresetArgs, context: &Context) -> anyhow::Result<Goal
     match args.work {
         PresetWork::List => list(context),
         PresetWork::Show { preset, out } => {
+            out.as_deref().map_or(Ok(()), document_named)?;
             let file = outputs::file(out.as_ref()).cloned();
             outputs::check(file.as_slice(), &[], context)?;
             let text = preset::text(&preset::load(&preset)?, &file.unwrap_or_default())?;
@@ -99,6 +100,7 @@ pub(crate) fn preset(args: PresetArgs, context: &Context) -> anyhow::Result<Goal
             Ok(Goal::Reached)
         }
         PresetWork::New { out, from } => {
+            document_named(&out)?;
             let file = outputs::file(Some(&out)).cloned();
             outputs::check(file.as_slice(), &[], context)?;
             let text = preset::text(&preset::load(&from)?, &file.unwrap_or_default())?;
@@ -109,6 +111,7 @@ pub(crate) fn preset(args: PresetArgs, context: &Context) -> anyhow::Result<Goal
         PresetWork::Check { preset } => check(&preset, context),
         PresetWork::Plot { preset, out, phi } => {
             let document = preset::load(&preset)?;
+            outputs::png_named(&out)?;
             let file = outputs::file(Some(&out));
             file.map_or_else(|| outputs::check_stdout(context), |_| Ok(()))?;
             outputs::check(&file.cloned().into_iter().collect::<Vec<_>>(), &[], context)?;
@@ -125,6 +128,11 @@ pub(crate) fn preset(args: PresetArgs, context: &Context) -> anyhow::Result<Goal
             written(&[out], &[], context)
         }
     }
+}
+
+/// Refuses names with the ending of another format than those of documents.
+fn document_named(path: &Path) -> anyhow::Result<()> {
+    outputs::named(path, &["toml", "json"], "presets are written as TOML or JSON")
 }
 
 fn written(files: &[PathBuf], warnings: &[Warning], context: &Context) -> anyhow::Result<Goal> {
@@ -194,13 +202,18 @@ fn set(
         let (preset, scene) =
             text.split_once('=').ok_or_else(|| anyhow::anyhow!("--capture {text}: write PRESET=SCENE.toml"))?;
         let session = Session::open(Path::new(scene), &context.options(Needs::View, None))?;
-        let change = PresetChange::Phi(preset::viewing_angle(&session)?);
+        let change =
+            PresetChange::Phi(preset::viewing_angle(&session).map_err(|e| anyhow::anyhow!("--capture {text}: {e}"))?);
         operations.push(PresetOperation::Preset { preset: preset.to_owned(), change });
     }
     anyhow::ensure!(!operations.is_empty(), "nothing to do; give operations such as low.phi=25, or --capture");
     let source = file.to_string_lossy();
-    anyhow::ensure!(file.exists(), "{source}: there is no such file; preset new -o {source} --from NAME makes one");
+    anyhow::ensure!(
+        file.exists(),
+        "{source}: there is no such file; make one with belvedere preset new -o {source} --from demo"
+    );
     let (document, clamped) = preset::set(&load_file(&source)?, &operations)?;
+    document_named(&to)?;
     let text = preset::text(&document, outputs::file(Some(&to)).map_or(Path::new(""), PathBuf::as_path))?;
     if is_stdout(&to) {
         print(&text)?;

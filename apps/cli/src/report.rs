@@ -3,11 +3,11 @@
 use crate::common_args::Common;
 use crate::outputs::is_stdout;
 use crate::timings::Timings;
+use belvedere::core::{PinholeError, plain};
 use belvedere::scene::Progress;
 use belvedere::{BelvedereError, Needs, OpenOptions, Session, Trust, Warning, trust};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
@@ -17,9 +17,17 @@ const BETWEEN_LINES: Duration = Duration::from_secs(10);
 /// Work shorter than this shows no progress bar.
 const QUIET_FOR: Duration = Duration::from_millis(500);
 
-/// Prints `belvedere: text` on standard error; ignores a closed pipe.
+/// Most characters of an error.
+const LONGEST: usize = 480;
+
+/// Prints `belvedere: text` on standard error, on one line; ignores a closed pipe.
 pub(crate) fn complain(text: &str) {
-    let _ = writeln!(std::io::stderr(), "belvedere: {}", escaped(text));
+    let _ = writeln!(std::io::stderr(), "belvedere: {}", plain::escaped(text));
+}
+
+/// Prints an error, of at most [`LONGEST`] characters.
+pub(crate) fn fail(text: &str) {
+    complain(&plain::shortened(&plain::escaped(text), LONGEST));
 }
 
 /// An error as one line.
@@ -31,7 +39,11 @@ pub(crate) fn one_line(error: &anyhow::Error) -> String {
     if let Some(library) = error.downcast_ref::<BelvedereError>().filter(|e| e.to_string() == text) {
         text = in_options(library);
     }
-    for cause in error.chain().skip(1).map(ToString::to_string) {
+    let words = |cause: &(dyn std::error::Error + 'static)| match cause.downcast_ref::<std::io::Error>() {
+        Some(error) => belvedere::io::said(error),
+        None => cause.to_string(),
+    };
+    for cause in error.chain().skip(1).map(words) {
         // Errors that show their cause themselves also name it as their source.
         if !text.contains(&cause) {
             text = format!("{text}: {cause}");
@@ -57,13 +69,39 @@ fn in_options(error: &BelvedereError) -> String {
             };
             format!("{option}: {reason}")
         }
-        BelvedereError::EyeIsTarget => "--eye and --look are the same point; look somewhere else".into(),
+        BelvedereError::RaySamples { .. } => format!("--samples: {error}"),
+        BelvedereError::EyeIsTarget | BelvedereError::Camera(PinholeError::EyeIsTarget { .. }) => {
+            "--eye and --look are the same point; look somewhere else".into()
+        }
         BelvedereError::NoAnimation => {
             format!("{error}, or give --along LAYER, --sweep phi or --turntable")
         }
         BelvedereError::NoSweepRange => format!("{error}; add one, or give --sweep phi=FIRST:LAST"),
+        BelvedereError::Target(reason) if reason.starts_with("palette ") => format!("--palette: {reason}"),
+        BelvedereError::Scene { path: None, reason, .. } => match named_by(reason) {
+            Some(option) => format!("{option}: {error}"),
+            None => error.to_string(),
+        },
+        BelvedereError::Scene { path: Some(path), reason, .. } if reason.ends_with("not a scene document") => {
+            format!("{error}; for a description: belvedere info {}", path.display())
+        }
         _ => format!("{error}{}", option_for(error).unwrap_or_default()),
     }
+}
+
+/// The option that a mistake in data without a scene file comes from.
+fn named_by(reason: &str) -> Option<&'static str> {
+    let options = [
+        ("source_crs", "--source-crs"),
+        ("no feature has the property", "--name-field"),
+        ("palette", "--palette"),
+        ("picture with a georeference", "--drape"),
+        ("the picture has no georeference", "--drape"),
+    ];
+    if reason.starts_with("crs ") {
+        return Some("--crs");
+    }
+    options.into_iter().find(|(part, _)| reason.contains(part)).map(|(_, option)| option)
 }
 
 /// End of the message: the options that lift an error; `None` if no option does.
@@ -86,28 +124,6 @@ fn option_for(error: &BelvedereError) -> Option<&'static str> {
         BelvedereError::Interrupted { .. } => "; the same command with --resume goes on from there",
         _ => return None,
     })
-}
-
-/// What clap found: help and version on standard output, a mistake as one line.
-pub(crate) fn usage(error: &clap::Error) -> ExitCode {
-    if !error.use_stderr() {
-        let _ = error.print();
-        return ExitCode::SUCCESS;
-    }
-    let text = error.render().to_string();
-    let advice = |l: &&str| !l.is_empty() && !l.starts_with("For more information");
-    let mut lines = text.lines().map(str::trim).filter(advice);
-    let first = lines.next().unwrap_or("bad arguments");
-    let more: Vec<&str> =
-        lines.take_while(|l| !l.starts_with("Usage")).map(|l| l.trim_start_matches("tip: ")).collect();
-    let first = first.trim_start_matches("error: ");
-    let what = if first.starts_with("Pictures in which") {
-        "a verb is missing".to_owned()
-    } else {
-        [&[first], &more[..]].concat().join("; ").replace(":; ", ": ")
-    };
-    complain(&format!("{what}; see belvedere --help"));
-    ExitCode::from(2)
 }
 
 /// Options, progress and cancellation of one run.
@@ -190,7 +206,7 @@ impl Context {
     /// Prints what a verb has to say: on standard output, or on standard error where a picture goes there.
     pub(crate) fn say(&self, text: &str, out: &Path) -> anyhow::Result<()> {
         if is_stdout(out) {
-            let _ = write!(std::io::stderr(), "{}", escaped(text));
+            let _ = write!(std::io::stderr(), "{}", plain::escaped_lines(text));
             return Ok(());
         }
         print(text)
@@ -239,23 +255,10 @@ pub(crate) fn done(verb: &str, outputs: &[PathBuf], warnings: &[Warning]) -> ser
     serde_json::json!({ "verb": verb, "outputs": outputs, "warnings": warnings })
 }
 
-/// Text without characters that steer a terminal: names come from files.
-pub(crate) fn escaped(text: &str) -> std::borrow::Cow<'_, str> {
-    let steers = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
-    if !text.contains(steers) {
-        return text.into();
-    }
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        if steers(c) { out.extend(c.escape_default()) } else { out.push(c) }
-    }
-    out.into()
-}
-
 /// Prints a text on standard output; a closed pipe is not an error.
 pub(crate) fn print(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
-    match out.write_all(escaped(text).as_bytes()).and_then(|()| out.flush()) {
+    match out.write_all(plain::escaped_lines(text).as_bytes()).and_then(|()| out.flush()) {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(anyhow::anyhow!("standard output: {e}")),
         _ => Ok(()),
     }

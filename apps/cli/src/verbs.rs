@@ -8,7 +8,7 @@ use crate::draw_args::{CompositingKind, DrawArgs};
 use crate::goal::Goal;
 use crate::ground_args::InfoArgs;
 use crate::kinds::TechniqueKind;
-use crate::outputs::{self, is_stdout};
+use crate::outputs::{self, is_stdout, named, png_named};
 use crate::report::{Context, done, print};
 use anyhow::Context as _;
 use belvedere::pick;
@@ -57,16 +57,9 @@ fn ready(out: Option<&PathBuf>, inputs: &[&Path], context: &Context) -> anyhow::
     outputs::check(&outputs::file(out).cloned().into_iter().collect::<Vec<_>>(), &inputs, context)
 }
 
-/// Refuses file names with the ending of another format: the file that is written is PNG.
-fn png_named(path: &Path) -> anyhow::Result<()> {
-    let others = ["jpg", "jpeg", "tif", "tiff", "webp", "gif", "bmp", "svg", "pdf", "json", "toml"];
-    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-    anyhow::ensure!(
-        !others.contains(&ending.as_str()),
-        "{}: pictures are written as PNG, not .{ending}; name the output .png",
-        path.display()
-    );
-    Ok(())
+/// A path as text.
+fn as_text(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
 }
 
 fn answer(verb: &str, session: &Session, out: Option<&PathBuf>, text: &str, context: &Context) -> anyhow::Result<Goal> {
@@ -165,10 +158,6 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     Ok(Goal::Reached)
 }
 
-fn named(path: &Path) -> String {
-    path.to_string_lossy().into_owned()
-}
-
 fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result<Goal> {
     let files = DisoccludeFiles {
         out: args.out,
@@ -178,6 +167,9 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
         picture: args.picture,
     };
     files.picture.as_deref().map_or(Ok(()), png_named)?;
+    for path in [Some(&files.out), files.displacement.as_ref()].into_iter().flatten() {
+        named(path, &["tif", "tiff"], "elevation models are written as GeoTIFF")?;
+    }
     let inputs: Vec<PathBuf> = args.features.iter().chain(&args.rivers).chain([&args.dem]).cloned().collect();
     anyhow::ensure!(!is_stdout(&files.out), "-o -: an elevation model is written to a file; name one");
     outputs::check(&files.all(), &inputs, context)?;
@@ -186,9 +178,9 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
     let set: Vec<String> = args.set.into_iter().chain(mode).chain(limits).collect();
     let request = DisoccludeRequest {
         data: DataFiles {
-            dem: named(&args.dem),
-            features: args.features.iter().map(|path| named(path)).collect(),
-            rivers: args.rivers.iter().map(|path| named(path)).collect(),
+            dem: as_text(&args.dem),
+            features: args.features.iter().map(|path| as_text(path)).collect(),
+            rivers: args.rivers.iter().map(|path| as_text(path)).collect(),
             crs: args.crs,
             area_style: args.area_style,
             source_crs: args.ground.source_crs,
@@ -318,6 +310,11 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
     png_named(&picture)?;
     out.before.as_deref().map_or(Ok(()), png_named)?;
     let technique = args.technique.unwrap_or(TechniqueKind::Spline);
+    let follows_rivers = !matches!(technique, TechniqueKind::Spline | TechniqueKind::CurvedRays);
+    anyhow::ensure!(
+        args.rivers.is_empty() || follows_rivers,
+        "--rivers needs --technique terrain, both or auto: rivers are kept from running uphill where the ground moves"
+    );
     let moves = args.see.is_none() && !matches!(technique, TechniqueKind::Spline | TechniqueKind::CurvedRays);
     let delta = (moves && !is_stdout(&picture)).then(|| picture::delta_path(&picture));
     if is_stdout(&picture) {
@@ -328,7 +325,8 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
     let places = match (args.eye, args.look) {
         (None, None) => None,
         (Some(eye), Some(look)) => Some([eye, look]),
-        _ => anyhow::bail!("--eye and --look belong together; give both, or neither"),
+        (Some(_), None) => anyhow::bail!("--eye is given without --look; give both, or neither"),
+        (None, Some(_)) => anyhow::bail!("--look is given without --eye; give both, or neither"),
     };
     let appearance = args.look_args.appearance();
     let quality = |picture: &mut PictureOptions| {
@@ -368,12 +366,12 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
         data: DataFiles {
             dem: args.dem,
             features: args.features,
-            rivers: args.rivers.iter().map(|path| named(path)).collect(),
+            rivers: args.rivers.iter().map(|path| as_text(path)).collect(),
             crs: args.crs,
             keep_voids: args.keep_voids,
             fill_all_voids: args.look_args.fill_voids,
             hidden: args.look_args.hidden.map(Into::into),
-            drape: args.drape.iter().map(|path| named(path)).collect(),
+            drape: args.drape.iter().map(|path| as_text(path)).collect(),
             labels: args.labels,
             palette: PaletteDoc::of(args.palette.as_deref().unwrap_or("auto")),
             no_sea: args.no_sea,

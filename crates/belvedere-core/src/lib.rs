@@ -16,6 +16,7 @@ pub mod deformation;
 pub mod grid;
 pub mod map;
 mod miss;
+pub mod plain;
 pub mod polygon;
 pub mod presets;
 pub mod quantile;

@@ -1,6 +1,7 @@
 //! Errors of terrain disocclusion. A reference point that cannot be made visible is a result, not an error.
 
 use belvedere_core::grid::GridError;
+use belvedere_core::plain::number;
 use belvedere_scene::Cancelled;
 
 pub use crate::in_view::EyeError;
@@ -29,13 +30,13 @@ pub enum DisocclusionError {
     #[error(transparent)]
     River(#[from] RiverError),
     /// A parameter out of range.
-    #[error("{key} is {value}, it must lie in: {range}")]
+    #[error("{key} is {}, it must be {range}", number(*value))]
     Setting {
         /// Name, as scene files write it.
         key: &'static str,
         /// Value given.
         value: f64,
-        /// Range.
+        /// Range, as `in 0..=1` or `greater than 0`.
         range: &'static str,
     },
     /// An eye from which terrain cannot be solved.

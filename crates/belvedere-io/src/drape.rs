@@ -66,7 +66,8 @@ pub fn load_drape(
     let source = Source::open(path, request, &mut warnings)?;
     let info = source.info();
     let Some(model_from_pixel) = info.pixel_to_model else {
-        let reason = "the picture has no georeference, so nobody knows where it lies; give it one (GeoTIFF tags or a world file)";
+        let reason =
+            "the picture has no georeference, so its place is not known; give it one (GeoTIFF tags or a world file)";
         return Err(IoError::format(path, reason));
     };
     let mut system = stated_system(info, request.source_crs, target.is_none(), &mut warnings)?;
@@ -140,7 +141,13 @@ impl Source {
             };
             return Ok(Self::Whole(Box::new(raster)));
         }
-        let loaded = GeoTiff::open(path, request.limits)?;
+        let other = crate::recognise::readable(path)?.filter(|format| format.name != "GeoTIFF");
+        let loaded = GeoTiff::open(path, request.limits).map_err(|e| match other {
+            Some(_) => {
+                crate::recognise::not_a(path, "a picture with a georeference: GeoTIFF, or PNG with a world file")
+            }
+            None => e,
+        })?;
         warnings.extend(loaded.warnings);
         Ok(Self::Tiff(Box::new(loaded.value)))
     }

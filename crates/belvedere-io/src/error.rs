@@ -7,7 +7,7 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum IoError {
     /// The operating system refused.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {}", path.display(), said(source))]
     Os {
         /// The file.
         path: PathBuf,
@@ -31,6 +31,31 @@ pub enum IoError {
     /// The work was cancelled.
     #[error(transparent)]
     Cancelled(#[from] belvedere_scene::Cancelled),
+}
+
+/// An error of the operating system in words that need no knowledge of it.
+pub fn said(error: &std::io::Error) -> String {
+    use std::io::ErrorKind;
+    match error.kind() {
+        ErrorKind::NotFound => "there is no such file; check the name".into(),
+        ErrorKind::IsADirectory => "is a folder; give a file".into(),
+        ErrorKind::NotADirectory => "a part of the path is a file where a folder is needed; check the name".into(),
+        ErrorKind::AlreadyExists => "there is a file of this name; give a folder".into(),
+        ErrorKind::PermissionDenied => "access is denied; change its permissions, or choose another place".into(),
+        ErrorKind::StorageFull => "the disk is full; free some space, or choose another place".into(),
+        _ => {
+            let text = error.to_string();
+            text.split_once(" (os error").map_or(text.as_str(), |(text, _)| text).to_owned()
+        }
+    }
+}
+
+/// Why a text is not valid JSON.
+pub fn json_fault(error: &serde_json::Error) -> String {
+    if error.is_eof() {
+        return format!("it ends too early, on line {}: a bracket or quote is not closed", error.line().max(1));
+    }
+    error.to_string()
 }
 
 impl IoError {

@@ -111,13 +111,14 @@ fn header<'a>(words: &mut std::iter::Peekable<impl Iterator<Item = &'a [u8]>>) -
             .ok_or_else(|| format!("the header's {key:.20} has no number; it is damaged or no ESRI ASCII grid"))?;
         let finite =
             || Some(value).filter(|v| v.is_finite()).ok_or(format!("the header's {key} is {value}, not finite"));
-        let size =
-            || Some(value).filter(|v| *v > 0.0 && v.is_finite()).ok_or(format!("{key} is {value:?}, it must be > 0"));
+        let size = || {
+            Some(value)
+                .filter(|v| *v > 0.0 && v.is_finite())
+                .ok_or(format!("{key} is {value}, it must be greater than 0"))
+        };
         let count = || {
             let valid = value.fract() == 0.0 && (2.0..=MAX_SIDE).contains(&value);
-            valid
-                .then_some(value as usize)
-                .ok_or(format!("{key} is {value:?}, it must be a whole number from 2 to 1,000,000"))
+            valid.then_some(value as usize).ok_or(format!("{key} is {value}, it must be a whole number in 2..=1000000"))
         };
         match key.as_str() {
             "ncols" => out.cols = Some(count()?),

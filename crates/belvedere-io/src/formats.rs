@@ -75,7 +75,7 @@ const TILES: &str = "tiles of a map";
 const SIDE: &str = "a part of a shapefile";
 const PACKED: &str = "packed files";
 const WATCH: &str = "the track of a watch";
-const UNPLACED: &str = "a picture that says not where it lies";
+const UNPLACED: &str = "a picture without a georeference";
 
 const AS_PDB: &str = "turn it into PDB or mmCIF";
 const AS_NRRD: &str = "3D Slicer turns it into NRRD";

@@ -30,7 +30,7 @@ pub mod volume;
 
 pub use city::{CityFile, load_city};
 pub use drape::{DrapeRequest, load_drape};
-pub use error::IoError;
+pub use error::{IoError, json_fault, said};
 pub use geotiff::GeoTiff;
 pub use input::{InputFile, sha256, sha256_of_file};
 pub use loaded::Loaded;

@@ -70,17 +70,52 @@ pub(crate) fn ending(path: &Path) -> String {
     known.map_or(own, |format| format.endings[0].trim_start_matches('.').to_owned())
 }
 
-/// Replaces the error of a loader if the file is of a known format that no loader reads, whatever its name.
+/// Replaces the error of a loader where the file explains it, whatever its name: it is empty, of a known format that no loader reads, or
+/// holds another kind of data than its name says.
 pub(crate) fn explain(error: IoError) -> IoError {
     let IoError::Format { path, .. } = &error else { return error };
-    let unread = of_content(path).ok().flatten().filter(|format| format.reader.is_none());
-    if let Some(format) = unread {
+    let Ok(head) = head(path) else { return error };
+    let by_name = formats::of_name(path);
+    if head.is_empty() {
+        let kind = by_name.map_or_else(String::new, |format| format!(" and so no {}", format.name));
+        return IoError::format(path, format!("is empty{kind}; get it again"));
+    }
+    if let Some(format) = formats::of_content(&head).filter(|format| format.reader.is_none()) {
         return IoError::format(path, Recognised { format, is_broken: false }.reason());
+    }
+    if let (Some(named), Some(held)) = (by_name.filter(|f| f.reader.is_some()), formats::readable_content(&head))
+        && named.reader != held.reader
+    {
+        let reason = format!(
+            "holds {} ({}), but its name says {}; rename it so that it ends in {}",
+            held.name, held.holds, named.name, held.endings[0]
+        );
+        return IoError::format(path, reason);
     }
     match recognise(path) {
         Ok(Some(known)) => IoError::format(path, known.reason()),
         _ => error,
     }
+}
+
+/// The error of a file that is not of the wanted kind.
+///
+/// * `wanted`: the kind and its formats.
+pub(crate) fn not_a(path: &Path, wanted: &str) -> IoError {
+    let by_content = head(path).ok().and_then(|head| formats::readable_content(&head));
+    let by_name = formats::of_name(path).filter(|format| format.reader.is_some());
+    let reason = match (by_content, by_name) {
+        (Some(format), _) => format!("is {} ({}), not {wanted}", format.name, format.holds),
+        (None, Some(format)) if wanted.contains(format.name) => {
+            format!("is {} by its name, but does not begin like one; it is damaged or something else", format.name)
+        }
+        (None, Some(format)) => format!("is {} ({}) by its name, not {wanted}", format.name, format.holds),
+        (None, None) if formats::ends(path, &[".toml"]) => {
+            format!("is a scene or preset document by its name, not {wanted}")
+        }
+        (None, None) => format!("is not {wanted}; convert it, or choose another file"),
+    };
+    IoError::format(path, reason)
 }
 
 impl Recognised {

@@ -99,7 +99,7 @@ impl DataFiles {
             style: TerrainStyleDoc { palette, sea: !self.no_sea, ..TerrainStyleDoc::default() },
         })];
         if tiles.features.is_empty() {
-            return Err(BelvedereError::NoFeatures);
+            return Err(tiles::without_features(&self.dem, &self.features));
         }
         let mut vectors = BTreeMap::new();
         for (i, name) in tiles.features.iter().enumerate() {

@@ -64,7 +64,7 @@ pub enum BelvedereError {
     },
     /// The eye is under the ground.
     #[error(
-        "camera eye at height {eye_m:.1} is {:.1} under the ground ({ground_m:.1}); raise it, or give above_ground_m", ground_m - eye_m
+        "the eye at height {eye_m:.1} m is {:.1} m under the ground, which is at {ground_m:.1} m; raise it above the ground", ground_m - eye_m
     )]
     UnderGround {
         /// Height of the eye, metres.

@@ -54,7 +54,7 @@ pub(crate) fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError>
     let ids: Vec<&str> = ids.chain(meshes(scene).flat_map(|(_, m)| &m.names).map(String::as_str)).collect();
     let complaint = complaint.map_or_else(String::new, |c| format!(", and as atoms: {c}"));
     Err(BelvedereError::Target(format!(
-        "\"{see}\" is no layer of the scene and no part of a mesh{complaint}; {} or give a point x,y,z",
+        "\"{see}\" is no layer of the scene and no part of a mesh{complaint}; {}; or give a point x,y,z",
         crate::scene_file::suggestion(see, &ids)
     )))
 }

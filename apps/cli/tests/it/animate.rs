@@ -177,7 +177,7 @@ fn impossible_animations_are_one_clear_line() {
     let low = SCENE.replace("-9000, 5000", "-3000, 5000") + "plane = { height_m = -500 }\n";
     place.write("low.toml", &low);
     let line = place.fails(&["animate", "low.toml", "-o", "out", "--sweep", "phi=0:50:10"]);
-    assert!(line.contains("frame 0: camera eye") && line.contains("under the ground"), "{line}");
+    assert!(line.contains("frame 0: the eye") && line.contains("under the ground"), "{line}");
     assert!(place.fails(&["animate", "s.toml", "-o", "x.gif", "--turntable"]).contains("written as .mp4"));
     assert!(!place.path("out").exists(), "nothing is begun that cannot be ended");
     place.write("file", "x");

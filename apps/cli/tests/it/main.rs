@@ -39,6 +39,7 @@ mod volume_targets;
 mod volumes;
 #[cfg(target_os = "linux")]
 mod window;
+mod wrong_usages;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

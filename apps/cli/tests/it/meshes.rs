@@ -92,7 +92,7 @@ fn mistakes_about_meshes_are_told_with_their_line() {
     place.write("s.toml", &SCENE.replace("pyramid.obj", "builtin:churhc"));
     assert!(place.fails(&["check", "s.toml"]).contains("did you mean \"church\""));
     place.write("s.toml", &SCENE.replace("pyramid.obj", "trail.geojson"));
-    assert!(place.fails(&["check", "s.toml"]).contains("no mesh that this version reads"));
+    assert!(place.fails(&["check", "s.toml"]).contains("not a mesh that this version reads"));
     place.write("s.toml", &SCENE.replace("style = {", "motion = 'car.csv'\nstyle = {"));
     assert!(place.fails(&["check", "s.toml"]).contains("path \"car.csv\" is not there"));
     place.write("pyramid.obj", "v 0 0 0\n");

@@ -61,7 +61,7 @@ fn what_fails_changes_nothing_and_says_where() {
     let before = read(&place.path("own.toml"));
     for (args, why) in [
         (&["low.phi=20", "low.remove-point=2"][..], "a curve needs 4 control points"),
-        (&["low.phi=north"], "\"north\" is not a value of this option"),
+        (&["low.phi=north"], "\"north\" is not a number"),
         (&["nobody.phi=20"], "there are \"low\", \"medium\", \"high\""),
         (&[], "nothing to do"),
         (&["--capture", "low"], "write PRESET=SCENE.toml"),

@@ -1,5 +1,6 @@
 //! Errors of the generalisation of a city.
 
+use belvedere_core::plain::number;
 use belvedere_scene::Cancelled;
 
 /// A generalisation that is not possible.
@@ -24,7 +25,7 @@ pub enum GeneraliseError {
         height: f64,
     },
     /// A setting out of its range.
-    #[error("{name} is {value}, it must lie in {least}..={most}")]
+    #[error("{name} is {}, it must be {}", number(*value), range_words(*least, *most))]
     Setting {
         /// Name.
         name: &'static str,
@@ -35,6 +36,10 @@ pub enum GeneraliseError {
         /// Largest value.
         most: f64,
     },
+}
+
+fn range_words(least: f64, most: f64) -> String {
+    if most > 1e15 { format!("at least {}", number(least)) } else { format!("in {}..={}", number(least), number(most)) }
 }
 
 fn extent_hint(width: f64, height: f64) -> &'static str {

@@ -1,6 +1,7 @@
 //! The planar pinhole camera, perspective or orthographic.
 
 use super::ImageBox;
+use crate::plain::number;
 use crate::{Aabb, Miss};
 use glam::{DVec2, DVec3};
 
@@ -42,6 +43,16 @@ pub struct Pinhole {
     pub far: Option<f64>,
 }
 
+/// What is wrong with the range of depths.
+fn depths(near: f64, far: f64) -> String {
+    let near_text = number(near);
+    if !(near > 0.0) {
+        format!("camera near is {near_text}, it must be greater than 0")
+    } else {
+        format!("camera far is {}, it must be greater than near = {near_text}", number(far))
+    }
+}
+
 /// Camera parameters that are not valid.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -55,14 +66,14 @@ pub enum PinholeError {
         value: f64,
     },
     /// Eye and look-at coincide.
-    #[error("camera eye and look_at coincide (distance {distance:e}); move one of them apart")]
+    #[error("camera eye and look_at are the same point (distance {}); move one of them", number(*distance))]
     EyeIsTarget {
         /// Distance in scene units.
         distance: f64,
     },
     /// The camera looks along `up`.
     #[error(
-        "camera looks along its up direction (|forward x up| = {sine:e}, at least 1e-6 needed); tilt the view or give another up"
+        "camera looks along its up direction (sine of the angle {}, at least 1e-6 needed); tilt the view or give another up", number(*sine)
     )]
     AlongUp {
         /// Sine of the angle between forward and up.
@@ -89,7 +100,7 @@ pub enum PinholeError {
         height: u32,
     },
     /// `near` and `far` do not satisfy 0 < near < far.
-    #[error("camera near is {near} and far is {far}; 0 < near < far is needed")]
+    #[error("{}", depths(*near, *far))]
     Range {
         /// Near depth, scene units.
         near: f64,

@@ -314,39 +314,39 @@ pub(super) fn check(settings: &TerrainSettings) -> Result<(), DisocclusionError>
         return bad("cells", 0.0, "at least 1");
     }
     if !in_range(s.solver_nodes as f64, 2.0, 4097.0) {
-        return bad("solver_nodes", s.solver_nodes as f64, "2..=4097");
+        return bad("solver_nodes", s.solver_nodes as f64, "in 2..=4097");
     }
     for (key, value) in [("spacing", s.spacing), ("candidates", s.candidates)] {
         if !in_range(value, 0.02, 1e4) {
-            return bad(key, value, "0.02..=10000 cells");
+            return bad(key, value, "in 0.02..=10000 cells");
         }
     }
     if !in_range(s.guard, 0.0, 1e3) {
-        return bad("guard", s.guard, "0..=1000 cells");
+        return bad("guard", s.guard, "in 0..=1000 cells");
     }
     if let Some(w) = s.w.filter(|w| !in_range(*w, 1e-4, MOST_W)) {
-        return bad("w", w, "0.0001..=10000");
+        return bad("w", w, "in 0.0001..=10000");
     }
     let weights = [("eta", s.eta), ("mu", s.mu), ("mu_dev", s.mu_dev), ("rows_weight", s.rows_weight)];
     for (key, value) in weights {
         if !in_range(value, 0.0, 1e6) {
-            return bad(key, value, "0..=1000000");
+            return bad(key, value, "in 0..=1000000");
         }
     }
     let lengths = [("lift_m", s.lift_m.unwrap_or(0.0)), ("margin_m", s.margin_m), ("gamma_time_s", s.gamma_time_s)];
     for (key, value) in lengths {
         if !in_range(value, 0.0, 1e4) {
-            return bad(key, value, "0..=10000");
+            return bad(key, value, "in 0..=10000");
         }
     }
     if !(s.rise_limit_m >= 0.0) {
         return bad("rise_limit_m", s.rise_limit_m, "0 or more");
     }
     if let Some(price) = s.slack_price.filter(|p| !in_range(*p, 1e-9, 1e9)) {
-        return bad("slack_price", price, "0.000000001..=1000000000");
+        return bad("slack_price", price, "in 0.000000001..=1000000000");
     }
     match s.ahead_m {
-        Some(v) if !(v > 0.0) => bad("ahead_m", v, "above 0"),
+        Some(v) if !(v > 0.0) => bad("ahead_m", v, "greater than 0"),
         _ => Ok(()),
     }
 }

@@ -63,8 +63,9 @@ impl Reader<'_> {
         }
         let mut head: Option<Value> = None;
         for (i, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-            let value: Value = serde_json::from_str(line)
-                .map_err(|e| format!("line {}: no valid JSON ({e}); it is damaged or cut off", i + 1))?;
+            let value: Value = serde_json::from_str(line).map_err(|e| {
+                format!("line {}: no valid JSON ({}); it is damaged or cut off", i + 1, crate::json_fault(&e))
+            })?;
             if head.is_none() {
                 version(&value).map_err(|e| format!("line {}: {e}", i + 1))?;
             }

@@ -101,7 +101,7 @@ fn buffers(
                 }
                 None => {
                     let file = beside(path, &percent_decoded(uri)).map_err(bad)?;
-                    let bytes = super::read_bytes(&file, limits)?;
+                    let bytes = super::read_bytes(&file, limits).map_err(|e| bad(format!("its part {e}")))?;
                     files.push(InputFile::of(&file, &bytes));
                     bytes
                 }

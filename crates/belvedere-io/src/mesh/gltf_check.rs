@@ -48,7 +48,7 @@ const NAMES: [(&str, &[&str], &str); 9] = [
 pub(super) fn checked(json: &[u8]) -> Result<Vec<u8>, String> {
     let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
     let mut root: Value = serde_json::from_slice(json)
-        .map_err(|e| format!("its JSON cannot be read ({e}); it is damaged or no glTF 2.0"))?;
+        .map_err(|e| format!("its JSON cannot be read ({}); it is damaged or no glTF 2.0", crate::json_fault(&e)))?;
     let required: Vec<String> = strings(root.get("extensionsRequired"));
     for name in &required {
         if let Some((_, what)) = COMPRESSED.iter().find(|(extension, _)| extension == name) {

@@ -12,6 +12,7 @@ mod stl;
 use crate::formats::Reader;
 use crate::fs::{beside, spellings};
 use crate::packed::content;
+use crate::recognise::{explain, not_a};
 use crate::{InputFile, IoError, Limits, Loaded, fs};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Color, MeshColors, Texturing};
@@ -54,17 +55,14 @@ pub fn load_mesh(path: &Path, limits: &Limits) -> Result<Loaded<MeshFile>, IoErr
         "ply" => ply::read,
         "stl" => stl::read,
         "gltf" | "glb" => gltf::read,
-        _ => return Err(IoError::format(path, "it is no mesh that this version reads: OBJ, PLY, STL, glTF or GLB")),
+        _ => return Err(not_a(path, "a mesh that this version reads: OBJ, PLY, STL, glTF or GLB")),
     };
     let bytes = read_bytes(path, limits)?;
-    let mut loaded =
-        read(path, &bytes, limits).map_err(crate::recognise::explain)?.with_file(InputFile::of(path, &bytes));
+    let mut loaded = read(path, &bytes, limits).map_err(explain)?.with_file(InputFile::of(path, &bytes));
     let mesh = &mut loaded.value;
     if mesh.triangles.is_empty() {
-        return Err(IoError::format(
-            path,
-            "the mesh has no triangles; a surface is needed, points and lines are not drawn",
-        ));
+        let reason = "the mesh has no triangles; a surface is needed, points and lines are not drawn";
+        return Err(explain(IoError::format(path, reason)));
     }
     let odd = drop_not_finite(mesh);
     if mesh.triangles.is_empty() {

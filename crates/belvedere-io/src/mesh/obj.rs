@@ -45,10 +45,13 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
         }
         found => found,
     }
-    .map_err(|e| IoError::format(path, format!("{e}; it is damaged or no OBJ file")))?;
+    .map_err(|e| IoError::format(path, format!("{}; it is damaged or no OBJ file", obj_text::fault(&e, &text))))?;
     let mut warnings = Vec::new();
-    if let Err(e) = &materials {
-        let text = format!("its materials cannot be read ({e}), the layer's colour is used");
+    if materials.is_err() {
+        let names = obj_text::material_files(&text);
+        let text = format!(
+            "its file of materials {names} cannot be read, so the colour of the layer is used; put it beside the OBJ file"
+        );
         warnings.push(Warning::new(WarningKind::Fallback, text).in_file(path));
     }
     let odd = odd.into_inner();
@@ -166,9 +169,11 @@ impl Builder {
         self.texturing.of_triangle.extend(std::iter::repeat_n(texture, triangles));
         self.texturing.corners.extend(corners.unwrap_or_else(|| vec![[Vec2::ZERO; 3]; triangles]));
         let next = self.out.names.len() as u32;
-        let part = *self.part_of.entry(model.name.clone()).or_insert(next);
+        // The reader's word for triangles before the first object or group.
+        let name = if model.name == "unnamed_object" { "" } else { model.name.as_str() };
+        let part = *self.part_of.entry(name.to_owned()).or_insert(next);
         if part == next {
-            self.out.names.push(model.name.clone());
+            self.out.names.push(name.to_owned());
         }
         self.out.parts.extend(std::iter::repeat_n(part, triangles));
         Ok(())
@@ -177,6 +182,10 @@ impl Builder {
     fn finish(self, textures: Vec<Arc<Texture>>) -> MeshFile {
         let Self { mut out, normals, per_vertex, per_triangle, texturing, smooth, painted, has_material, .. } = self;
         out.format = "OBJ";
+        if out.names.iter().all(String::is_empty) {
+            out.names.clear();
+            out.parts.clear();
+        }
         out.normals = smooth.then_some(normals);
         out.colors = match (painted, has_material) {
             (true, _) => MeshColors::PerVertex(per_vertex),

@@ -11,7 +11,12 @@ pub(super) fn statements(bytes: &[u8]) -> String {
         let open = line.trim_end().strip_suffix('\\');
         let part = open.unwrap_or(line);
         let numbers = ["v ", "vn ", "vt ", "f ", "v\t", "f\t"].iter().any(|k| part.trim_start().starts_with(k));
-        out.push_str(if numbers { part.split('#').next().unwrap_or(part) } else { part });
+        match part.trim_start().split_once(char::is_whitespace).unwrap_or((part.trim(), "")) {
+            // The reader rejects a material without a name, and wants a blank before it.
+            ("usemtl" | "mtllib", name) if name.trim().is_empty() => {}
+            (key @ ("usemtl" | "mtllib"), name) => out.extend([key, " ", name]),
+            _ => out.push_str(if numbers { part.split('#').next().unwrap_or(part) } else { part }),
+        }
         out.push(if open.is_some() { ' ' } else { '\n' });
     }
     out
@@ -52,6 +57,40 @@ pub(super) fn materials(bytes: &[u8], left_out: &mut Vec<String>) -> String {
     out
 }
 
+/// The files of materials that statements name, in quotes.
+pub(super) fn material_files(statements: &str) -> String {
+    let names = statements.lines().filter_map(|line| line.trim_start().strip_prefix("mtllib "));
+    names.map(|name| format!("{:?}", name.trim().chars().take(80).collect::<String>())).collect::<Vec<_>>().join(", ")
+}
+
+/// What is wrong with statements that the reader rejects, with the first line at fault where it can be told.
+pub(super) fn fault(error: &tobj::LoadError, statements: &str) -> String {
+    use tobj::LoadError as E;
+    let (key, what) = match error {
+        E::PositionParseError => ("v", "a vertex is not three numbers"),
+        E::NormalParseError => ("vn", "a normal is not three numbers"),
+        E::TexcoordParseError => ("vt", "a place in a picture is not two numbers"),
+        E::FaceParseError => ("f", "a face is not a list of numbers"),
+        E::FaceVertexOutOfBounds => return "a face names a vertex that there is not".into(),
+        E::FaceTexCoordOutOfBounds => return "a face names a place in a picture that there is not".into(),
+        E::FaceNormalOutOfBounds => return "a face names a normal that there is not".into(),
+        other => return other.to_string(),
+    };
+    let least = if key == "vt" { 2 } else { 3 };
+    let is_bad = |line: &&str| {
+        let mut words = line.split_whitespace();
+        words.next() == Some(key) && {
+            let words: Vec<&str> = words.collect();
+            let number = |w: &&str| w.split('/').all(|part| part.is_empty() || part.parse::<f64>().is_ok());
+            words.len() < least || !words.iter().all(number)
+        }
+    };
+    match statements.lines().find(is_bad) {
+        Some(line) => format!("{what} ({})", line.trim().chars().take(60).collect::<String>()),
+        None => what.into(),
+    }
+}
+
 /// Statements without the colours of vertices.
 pub(super) fn without_colors(statements: &str) -> String {
     let position = |line: &str| {
@@ -70,6 +109,13 @@ fn decoded(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn materials_need_a_name_and_a_blank() {
+        let text = statements(b"mtllib\twall.mtl\nusemtl\nusemtl \nusemtl\tred\nf 1 2 3\nmtllib\n");
+        assert_eq!(text.split_whitespace().collect::<Vec<_>>().join(" "), "mtllib wall.mtl usemtl red f 1 2 3");
+        assert_eq!(material_files(&text), "\"wall.mtl\"");
+    }
 
     #[test]
     fn lines_are_joined_and_comments_cut_off() {

@@ -103,12 +103,26 @@ fn list(value: Property) -> Option<Vec<i64>> {
     })
 }
 
+/// The message of the parser without its inner workings.
+fn words(said: &str) -> String {
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    let said = said.split(" Error: ").next().unwrap_or_default().trim_end_matches('.');
+    let (place, line) = said.split_once(" String: ").unwrap_or((said, ""));
+    let number = place.strip_prefix("Line ").and_then(|rest| rest.split(':').next());
+    match number {
+        Some(number) if !line.is_empty() => {
+            let line: String = line.trim_matches(['\'', ' ']).chars().take(60).collect();
+            format!("line {number} cannot be read ({line})")
+        }
+        _ if said.contains("UTF-8") => "its header is no text".into(),
+        _ if said.contains("end of file") => "it ends too early".into(),
+        _ => said.chars().take(120).collect(),
+    }
+}
+
 pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshFile>, IoError> {
     let bad = |reason: String| IoError::format(path, reason);
-    let damaged = |e: &dyn std::fmt::Display| {
-        let said: String = e.to_string().split_whitespace().collect::<Vec<_>>().join(" ").chars().take(160).collect();
-        bad(format!("{said}; it is damaged or no PLY file"))
-    };
+    let damaged = |e: &dyn std::fmt::Display| bad(format!("{}; it is damaged or no PLY file", words(&e.to_string())));
     let parser = Parser::<Item>::new();
     let mended = mended(bytes);
     let bytes = mended.as_deref().unwrap_or(bytes);

@@ -42,9 +42,18 @@ pub fn load_molecule(path: &Path, limits: &Limits) -> Result<Loaded<MoleculeFile
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
     let is_cif = name.contains(".cif") || name.contains(".mmcif") || crate::recognise::ending(path) == "cif";
     let (format, read) = if is_cif { ("mmCIF", mmcif::read(&text)) } else { ("PDB", pdb::read(&text)) };
-    let (molecule, found) = read.and_then(sites::Sites::finish).map_err(bad)?;
+    let (molecule, found) = read.and_then(sites::Sites::finish).map_err(|e| other_kind(path, bad(e)))?;
     let warnings = found.warnings.into_iter().map(|w| w.in_file(path)).collect();
     let (models, alternates, named_bonds) = (found.models, found.alternates, found.named_bonds);
     let value = MoleculeFile { format, molecule, models, alternates, named_bonds };
     Ok(Loaded::new(value, warnings).with_file(file))
+}
+
+/// The error of a file, or that it holds no molecule but something else.
+fn other_kind(path: &Path, error: IoError) -> IoError {
+    let readable = crate::recognise::readable(path).ok().flatten();
+    match readable.filter(|format| format.reader != Some(Reader::Molecule)) {
+        Some(_) => crate::recognise::not_a(path, "a molecule: PDB or mmCIF"),
+        None => crate::recognise::explain(error),
+    }
 }

@@ -211,8 +211,8 @@ fn read_raster(
         "hgt" => hgt::read(path, &request.limits)?,
         "asc" | "grd" | "txt" => esri_ascii::read(path, &request.limits)?,
         _ => {
-            let reason = "it has no known elevation format; known are: GeoTIFF, SRTM .hgt, ESRI ASCII .asc (all also in .zip and .gz)";
-            return Err(IoError::format(path, reason));
+            let wanted = "an elevation model: GeoTIFF, SRTM .hgt or ESRI ASCII .asc (all also in .zip and .gz)";
+            return Err(crate::recognise::not_a(path, wanted));
         }
     };
     Ok(loaded.map(|raster| (raster, 1.0)))

@@ -41,10 +41,16 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
     warn(reader.one_position, "lines of one position only were dropped, a line needs 2 that differ");
     warn(reader.short_rings, "polygon rings of fewer than 3 points were dropped");
     if reader.features.is_empty() {
-        return Err(fail(format!(
-            "GeoJSON holds no usable geometry ({} features without any, {} lines and {} rings too short, {} lines of one position only); choose another file",
-            reader.without_geometry, reader.short_lines, reader.short_rings, reader.one_position
-        )));
+        let found = [
+            (reader.without_geometry, "features without geometry"),
+            (reader.short_lines, "lines of fewer than 2 points"),
+            (reader.short_rings, "rings of fewer than 3 points"),
+            (reader.one_position, "lines of one position only"),
+        ];
+        let found: Vec<String> =
+            found.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
+        let found = if found.is_empty() { "no feature at all".to_owned() } else { found.join(", ") };
+        return Err(fail(format!("GeoJSON holds no usable geometry ({found}); choose another file")));
     }
     let mut crs = crs;
     if let Some(reason) = not_degrees(&reader.features).filter(|_| crs.is_geographic()) {
@@ -62,7 +68,8 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
 
 /// The JSON values of a file: one, or as many as a sequence has (RFC 8142, or one per line), or the members of a list.
 fn records(text: &str) -> Result<Vec<Value>, String> {
-    let broken = |e: serde_json::Error| format!("is no valid JSON ({e}); it is damaged or cut off");
+    let broken =
+        |e: serde_json::Error| format!("is no valid JSON ({}); it is damaged or cut off", crate::json_fault(&e));
     let text = if text.contains('\u{1e}') { text.replace('\u{1e}', " ").into() } else { std::borrow::Cow::from(text) };
     let parse = |text: &str| serde_json::Deserializer::from_str(text).into_iter().collect::<Result<Vec<Value>, _>>();
     // Some programs write numbers that are none as NaN and Infinity, which JSON does not have.

@@ -20,7 +20,7 @@ use crate::city::{OSM, osm_vectors};
 use crate::crs::CoordinateSystem;
 use crate::formats::Reader;
 use crate::packed::content_for;
-use crate::recognise::{self, explain};
+use crate::recognise::{self, explain, not_a};
 use crate::table::split_table;
 use crate::text::text_of;
 use crate::{InputFile, IoError, Loaded, fs};
@@ -120,8 +120,8 @@ impl Vectors {
         let Some(found) = has(field).then(|| field.to_owned()).or_else(same) else {
             let known: std::collections::BTreeSet<&String> = keys().collect();
             let known: Vec<&str> = known.into_iter().take(20).map(String::as_str).collect();
-            let known = if known.is_empty() { "have none".into() } else { format!("have {}", known.join(", ")) };
-            return Err(format!("no feature has the property \"{field}\"; they {known}"));
+            let known = if known.is_empty() { "none".into() } else { known.join(", ") };
+            return Err(format!("no feature has the property \"{field}\"; its properties: {known}"));
         };
         for feature in &mut self.features {
             feature.name = feature.properties.get(&found).cloned().unwrap_or_default();
@@ -201,9 +201,7 @@ fn load_known(path: &Path) -> Result<Loaded<Vectors>, IoError> {
         Some('<') => gpx::load(path, &text)?,
         Some('{' | '[' | '\u{1e}') => geojson::load(path, &text)?,
         None => return Err(IoError::format(path, "is empty; a GPX, GeoJSON or shapefile is needed")),
-        Some(_) => {
-            return Err(IoError::format(path, "is no GPX (XML), GeoJSON or shapefile; convert it to one of these"));
-        }
+        Some(_) => return Err(not_a(path, "routes, areas or points: GPX, GeoJSON or shapefile")),
     };
     warnings.extend(loaded.warnings);
     Ok(Loaded::new(loaded.value, warnings).with_file(file))

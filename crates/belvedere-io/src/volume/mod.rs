@@ -12,6 +12,7 @@ pub use raw::RawLayout;
 
 use crate::formats::Reader;
 use crate::packed::content;
+use crate::recognise::explain;
 use crate::{InputFile, IoError, Limits, Loaded, fs};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::VoxelValues;
@@ -72,12 +73,12 @@ pub fn load_volume(path: &Path, request: &VolumeRequest) -> Result<Loaded<Volume
     let (bytes, file) = InputFile::read(path)?;
     let source = Source { path, bytes: &bytes, request };
     let loaded = match () {
-        () if name.ends_with(".vti") => vti::read(&source).map_err(format)?,
-        () if is_nrrd || name.ends_with(".nhdr") => nrrd::read(&source)?,
+        () if name.ends_with(".vti") => vti::read(&source).map_err(|e| explain(format(e)))?,
+        () if is_nrrd || name.ends_with(".nhdr") => nrrd::read(&source).map_err(explain)?,
         () if name.ends_with(".raw") || name.ends_with(".raw.gz") => raw::read(&source).map_err(format)?,
         () => {
-            let reason = "it is no volume that this version reads: VTK XML ImageData (.vti), NRRD (.nrrd, .nhdr) or raw samples (.raw, .raw.gz)";
-            return Err(format(reason.into()));
+            let wanted = "a volume that this version reads: VTK XML ImageData (.vti), NRRD (.nrrd, .nhdr) or raw samples (.raw, .raw.gz)";
+            return Err(crate::recognise::not_a(path, wanted));
         }
     };
     let mut loaded = loaded;

@@ -32,6 +32,23 @@ pub(super) fn of(dem: &str, features: &[String]) -> Result<Tiles, BelvedereError
     Ok(Tiles { ground, features: features.into_iter().cloned().collect() })
 }
 
+/// The error of files none of which holds features: they may be given in the wrong order.
+pub(super) fn without_features(dem: &str, features: &[String]) -> BelvedereError {
+    let held = |name: &str| belvedere_io::readable(Path::new(name)).ok().flatten();
+    let first = held(dem).filter(|format| format.reader == Some(Reader::Features));
+    match (first, features) {
+        (_, []) => BelvedereError::NoFeatures,
+        (Some(format), [ground, ..]) => BelvedereError::Target(format!(
+            "{dem} is {} ({}), not an elevation model; the elevation model comes first, then the features: {ground} {dem}",
+            format.name, format.holds
+        )),
+        (None, _) => BelvedereError::Target(format!(
+            "no features are given: {} is read as an elevation model; name at least one file of routes, areas or points",
+            features.join(", ")
+        )),
+    }
+}
+
 /// The elevation models of a folder, by name.
 fn in_folder(folder: &Path) -> Result<Vec<String>, BelvedereError> {
     let mut found = Vec::new();

@@ -136,7 +136,11 @@ fn position(
     };
     let z = match (map.height_m, map.above_ground_m) {
         (Some(height), None) => height,
-        (None, Some(above)) => above + ground.height_at(xy).map_err(|e| fail(format!("camera {key}: {e}")))?,
+        (None, Some(above)) => {
+            let degrees = map.lon.zip(map.lat).and_then(|(lon, lat)| ground.outside(lon, lat));
+            let wrong = |e: String| fail(format!("camera {key}: {}", degrees.unwrap_or(e)));
+            above + ground.height_at(xy).map_err(wrong)?
+        }
         _ => return Err(fail(format!("camera {key} needs exactly one of height_m and above_ground_m"))),
     };
     Ok(xy.extend(z))

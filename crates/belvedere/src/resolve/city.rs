@@ -38,7 +38,8 @@ pub(super) fn files(loader: &mut Loader<'_>, index: usize, doc: &CityDoc) -> Res
         }
         let path = loader.files(index, "source", &Paths::One(name.clone()))?.remove(0);
         loader.options.progress.tick("reading cities", 0.0)?;
-        let loaded = load_city(&path, doc.lod.as_deref(), &loader.options.limits())?;
+        let loaded = load_city(&path, doc.lod.as_deref(), &loader.options.limits())
+            .map_err(|e| loader.in_layer(index, e.into()))?;
         files.push(loader.take(index, loaded));
     }
     if files.is_empty() {

@@ -84,6 +84,24 @@ impl<'a> Ground<'a> {
         Transform::new(&from, &to).map_err(|e| e.to_string())
     }
 
+    /// That a position in degrees lies outside the terrain, if it does, with the terrain's extent in degrees.
+    pub(crate) fn outside(&self, lon: f64, lat: f64) -> Option<String> {
+        let bounds = self.terrain?.bounds();
+        let (low, high) = (bounds.min.truncate(), bounds.max.truncate());
+        let xy = self.position_of(lon, lat).ok()?;
+        if (low.x..=high.x).contains(&xy.x) && (low.y..=high.y).contains(&xy.y) {
+            return None;
+        }
+        let corners = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
+        let corners: Vec<DVec2> = corners.into_iter().filter_map(|p| self.lon_lat(p)).collect();
+        let least = corners.iter().copied().reduce(DVec2::min)?;
+        let most = corners.iter().copied().reduce(DVec2::max)?;
+        Some(format!(
+            "lon {lon}, lat {lat} lies outside the terrain (lon {:.4}..{:.4}, lat {:.4}..{:.4}), so there is no ground to stand on; move it inside, or give the height",
+            least.x, most.x, least.y, most.y
+        ))
+    }
+
     /// Bilinear height of the undeformed terrain.
     pub(crate) fn height_at(&self, xy: DVec2) -> Result<f64, String> {
         let Some(terrain) = self.terrain else {

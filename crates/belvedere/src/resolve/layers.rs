@@ -6,8 +6,7 @@ use super::{areas, boxes, builtin, city, dem, mesh, molecule, sea, vectors, volu
 use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
-    AutoOrLength, LayerDoc, LineDoc, Origin, PaletteDoc, PaletteName, Paths, PointLayerDoc, PositionDoc, RouteDoc,
-    TerrainDoc,
+    AutoOrLength, LayerDoc, LineDoc, Origin, PaletteDoc, Paths, PointLayerDoc, PositionDoc, RouteDoc, TerrainDoc,
 };
 use crate::{BelvedereError, Needs, OpenOptions};
 use belvedere_builtin::{RouteCost, least_cost_route, valley_route};
@@ -84,14 +83,14 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
     let mut layers: Vec<Option<Layer>> = docs.iter().map(|_| None).collect();
     for (i, doc) in docs.iter().enumerate().filter(|_| needs != Needs::View) {
         if let LayerDoc::Terrain(doc) = doc {
-            let (layer, found) = terrain(&mut loader, i, doc, crs)?;
+            let (layer, found) = terrain(&mut loader, i, doc, crs).map_err(|e| loader.in_layer(i, e))?;
             crs.get_or_insert(found);
             layers[i] = Some(Layer { id: doc.id.clone(), must_see: false, kind: LayerKind::Terrain(layer) });
         }
     }
     for (i, doc) in docs.iter().enumerate().filter(|_| needs != Needs::View) {
         if let (None, LayerDoc::City(doc)) = (crs, doc) {
-            crs = city::crs(&mut loader, i, doc)?;
+            crs = city::crs(&mut loader, i, doc).map_err(|e| loader.in_layer(i, e))?;
         }
     }
     let crs = crs.or(fallback_crs).unwrap_or_default();
@@ -106,7 +105,7 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
                 t.drapes = drapes;
             }
         } else {
-            layers[i] = layer(&mut loader, i, doc, &ground)?;
+            layers[i] = layer(&mut loader, i, doc, &ground).map_err(|e| loader.in_layer(i, e))?;
         }
     }
     // Layers keep their numbers: the sea comes last, but is drawn below all other areas.
@@ -154,7 +153,7 @@ pub(super) fn stated_crs(origin: &Origin, text: &str) -> Result<Option<Crs>, Bel
     let Some(code) = epsg(text) else {
         return Err(fail(format!("crs \"{text}\" is not known; give \"auto\", \"local\" or \"EPSG:n\"")));
     };
-    let system = CoordinateSystem::from_epsg(code).map_err(|e| fail(e.to_string()))?;
+    let system = CoordinateSystem::from_epsg(code).map_err(|e| fail(format!("crs {e}")))?;
     if !system.suits_scenes() {
         return Err(fail(format!(
             "crs EPSG:{code} is not projected in metres with x east and y north; give a UTM zone or another metric system, or \"auto\""
@@ -201,14 +200,16 @@ fn palette(loader: &mut Loader<'_>, index: usize, doc: &PaletteDoc) -> Result<Pa
         PaletteDoc::Named(name) => return Ok((*name).into()),
         PaletteDoc::File(name) => name,
     };
-    let fail = |e: &dyn std::fmt::Display| {
-        let names = PaletteName::ALL.map(|(name, _)| name).join(", ");
-        let id = loader.id(index);
-        let reason = format!("layer \"{id}\": palette: {e}; give one of {names}, or a file of colours by height");
+    let fail = |e: String| {
+        let reason = format!("layer \"{}\": {e}", loader.id(index));
         loader.origin.error(&["layer", &index.to_string(), "style", "palette"], reason)
     };
-    let file = loader.roots.resolve(name).map_err(|e| fail(&e))?;
-    let loaded = belvedere_io::load_ramp(&file).map_err(|e| fail(&e))?;
+    let has_ending = std::path::Path::new(name).extension().is_some();
+    let file = loader.roots.resolve(name).map_err(|e| {
+        let reason = if has_ending { format!("palette: {e}") } else { PaletteDoc::unknown(name) };
+        fail(reason)
+    })?;
+    let loaded = belvedere_io::load_ramp(&file).map_err(|e| fail(format!("palette: {}", loader.shown(&e))))?;
     Ok(Palette::Ramp(Arc::new(loader.take(index, loaded))))
 }
 

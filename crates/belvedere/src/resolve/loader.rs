@@ -9,10 +9,10 @@ use crate::{BelvedereError, OpenOptions};
 use belvedere_core::Warning;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
-use belvedere_io::{CityFile, InputFile, Loaded};
+use belvedere_io::{CityFile, InputFile, IoError, Loaded};
 use belvedere_scene::{Color, LayerKind};
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Inputs of reading layers, and its records.
 pub(super) struct Loader<'a> {
@@ -46,6 +46,31 @@ impl Loader<'_> {
     pub(super) fn file(&self, index: usize, key: &str, name: &str) -> Result<PathBuf, BelvedereError> {
         let about = format!("layer \"{}\": ", self.id(index));
         self.roots.resolve(name).map_err(|e| self.origin.refusal(&["layer", &index.to_string(), key], &about, e))
+    }
+
+    /// An error in words, in which files of the scene's folder are named relative to it.
+    pub(super) fn shown(&self, error: &dyn std::fmt::Display) -> String {
+        let text = error.to_string();
+        let folder = match self.roots.scene_dir.as_os_str().is_empty() {
+            true => belvedere_io::fs::canonicalize(Path::new(".")),
+            false => belvedere_io::fs::canonicalize(&self.roots.scene_dir),
+        };
+        match folder {
+            Ok(folder) => text.replacen(&format!("{}{}", folder.display(), std::path::MAIN_SEPARATOR), "", 1),
+            Err(_) => text,
+        }
+    }
+
+    /// The error of a file of a layer, with the line of the document that names the file.
+    pub(super) fn in_layer(&self, index: usize, error: BelvedereError) -> BelvedereError {
+        let BelvedereError::Io(IoError::Format { .. } | IoError::Os { .. }) = &error else { return error };
+        let reason = format!("layer \"{}\": {}", self.id(index), self.shown(&error));
+        match self.origin.error(&["layer", &index.to_string(), "source"], reason) {
+            BelvedereError::Scene { path: Some(path), line, reason, .. } => {
+                BelvedereError::Scene { path: Some(path), line, reason, source: Some(Box::new(error)) }
+            }
+            _ => error,
+        }
     }
 
     pub(super) fn id(&self, index: usize) -> &str {

@@ -70,7 +70,7 @@ pub(super) fn style(doc: &MoleculeDoc, wanted: Option<&Selection>) -> Result<Mol
     let highlight = optional_color("highlight", &doc.style.highlight)?;
     paint.extend(wanted.cloned().zip(highlight).map(|(selection, color)| Paint { selection, color }));
     if let Some(detail) = doc.style.detail.filter(|d| !(1..=16).contains(d)) {
-        return Err(("detail", format!("detail is {detail}, it must lie in 1..=16")));
+        return Err(("detail", format!("detail is {detail}, it must be in 1..=16")));
     }
     Ok(MoleculeStyle {
         representation: doc.style.representation,
@@ -149,7 +149,7 @@ mod tests {
             ("style.selection = \"chian A\"", "selection", "\"chian\" is no word"),
             ("style.paint = [{ selection = \"all\", color = \"x\" }]", "paint", "is no colour"),
             ("style.highlight = \"x\"", "highlight", "is no colour"),
-            ("style.detail = 0", "detail", "detail is 0, it must lie in 1..=16"),
+            ("style.detail = 0", "detail", "detail is 0, it must be in 1..=16"),
         ] {
             let (found, reason) = style(&doc(text), None).unwrap_err();
             assert!(found == key && reason.contains(said), "{text}: {found} {reason}");

@@ -51,7 +51,7 @@ pub(super) fn resolve(
     }
     let terrain = context.ground.terrain.filter(|_| shape.levelling > 0.0);
     let base = terrain.and_then(|terrain| large_forms(terrain, scale)).map(Arc::new);
-    let relief = Relief::new(pinhole, &plane, shape.clone(), base).map_err(|e| at.error(&[key(&e)], e))?;
+    let relief = Relief::new(pinhole, &plane, shape.clone(), base).map_err(|e| at.error(&[key(&e)], words(&e)))?;
     let document = ReliefStageDoc {
         exaggeration: Some(OneOrTwo::Two(shape.exaggeration)),
         oblique: Some(shape.oblique),
@@ -86,6 +86,16 @@ fn transition(context: &StageContext<'_>, plane: &ReferencePlane, number: usize)
     let [_, heading, _] = bend.axes();
     Ok([tag.u - tag.delta, tag.u + tag.delta]
         .map(|t| (bend.unbent(t * bend.curve().length(), 0.0, 0.0) - eye).dot(heading)))
+}
+
+/// The error with the keys of the document.
+fn words(error: &ReliefError) -> String {
+    let text = error.to_string();
+    match error {
+        ReliefError::Range { key: short, .. } if key(error) != *short => text.replacen(short, key(error), 1),
+        ReliefError::Order { .. } => text.replacen("range", "range_m", 1),
+        _ => text,
+    }
 }
 
 /// Key of the document to which an error refers.

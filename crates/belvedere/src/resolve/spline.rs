@@ -6,7 +6,7 @@ use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, PlaneDoc, PresetsDoc, SplineStageDoc, StageDoc, Table};
 use belvedere_core::Warning;
 use belvedere_core::map::spline::default_pivot;
-use belvedere_core::presets::{BUILTIN_NAMES, PresetDocument};
+use belvedere_core::presets::{PresetDocument, PresetError};
 use belvedere_core::{DVec3, SplineBend};
 use belvedere_io::InputFile;
 use belvedere_scene::{Heightfield, Layer, LayerKind, RigidParts};
@@ -73,9 +73,9 @@ pub(super) fn presets(
         PresetsDoc::Inline(document) => (**document).clone(),
         PresetsDoc::Named(name) => {
             if !scene_file::names_a_preset_file(name) {
-                return PresetDocument::builtin(name).map_err(|e| {
-                    let hint = scene_file::suggestion(name, &BUILTIN_NAMES);
-                    at.error(&["presets"], format!("{e} ({hint})"))
+                return PresetDocument::builtin(name).map_err(|e| match e {
+                    PresetError::UnknownName { name } => at.error(&["presets"], scene_file::no_preset(&name)),
+                    e => at.error(&["presets"], e),
                 });
             }
             let path = roots.resolve(name).map_err(|e| at.refusal(&["presets"], e))?;

@@ -40,7 +40,7 @@ pub(super) fn resolve(
     let (points, named) = route(context, doc, at)?;
     let length: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
     let half_width = doc.half_width_m.unwrap_or(WIDTH * length);
-    let fail = |e: StripError| at.error(&[key(&e, named)], e);
+    let fail = |e: StripError| at.error(&[key(&e, named)], words(&e));
     let route = SmoothedRoute::new(&points, half_width, doc.smoothing_m).map_err(fail)?;
     let anchor = match doc.anchor {
         Some(anchor) => DVec2::from_array(anchor),
@@ -112,6 +112,15 @@ fn looked_at(context: &StageContext<'_>) -> DVec2 {
         plane(context, None, at).map_or(pinhole.eye, |(plane, _)| default_pivot(pinhole, &plane))
     };
     context.camera.look_at.unwrap_or_else(met).truncate()
+}
+
+/// The error with the keys of the document.
+fn words(error: &StripError) -> String {
+    let text = error.to_string();
+    match error {
+        StripError::Range { key: short, .. } => text.replacen(short, key(error, short), 1),
+        _ => text,
+    }
 }
 
 /// Key of the document to which an error refers.

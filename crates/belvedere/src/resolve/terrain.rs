@@ -21,7 +21,7 @@ pub(crate) fn check(doc: &TerrainStageDoc) -> Result<(), (&'static str, String)>
     }
     match doc.adjust_viewpoint {
         Some(slider) if !(0.0..=1.0).contains(&slider) => {
-            Err(("adjust_viewpoint", format!("adjust_viewpoint is {slider}, it must lie in: 0..=1")))
+            Err(("adjust_viewpoint", format!("adjust_viewpoint is {slider}, it must be in 0..=1")))
         }
         _ => Ok(()),
     }

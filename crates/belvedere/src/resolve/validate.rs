@@ -8,6 +8,7 @@ use crate::scene_file::{
     AnimationDoc, AutoOrLength, ConstructorDoc, ConstructorKind, LayerDoc, SourceDocument, StageDoc, SwitchOrLength,
     suggestion,
 };
+use belvedere_core::plain::number;
 use belvedere_scene::Unit;
 use std::collections::HashSet;
 
@@ -99,14 +100,14 @@ fn terrain_intent(source: &SourceDocument) -> Result<(), BelvedereError> {
 fn layer_sources(layer: &LayerDoc) -> Result<(), Complaint> {
     match layer {
         LayerDoc::Line(l) if l.source.is_some() == l.route.is_some() => {
-            Err(("source", "a line layer needs exactly one of source and route".into()))
+            Err(("source", "a line layer needs either source or route".into()))
         }
         LayerDoc::City(l) if l.loa > 2 => Err((
             "loa",
             format!("loa is {}, it must be 0 (as it is), 1 (blocks) or 2 (blocks between main streets)", l.loa),
         )),
         LayerDoc::Boxes(l) if l.source.is_some() == l.boxes.is_some() => {
-            Err(("source", "a boxes layer needs exactly one of source and boxes".into()))
+            Err(("source", "a boxes layer needs either source or boxes".into()))
         }
         _ => Ok(()),
     }
@@ -150,7 +151,7 @@ fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
         LayerDoc::Molecule(l) => super::molecule::style(l, None).map(|_| ()),
         LayerDoc::Volume(l) => {
             if !(0.05..=8.0).contains(&l.step) {
-                return Err(("step", format!("step is {}, it must lie in 0.05..=8 voxel edges", l.step)));
+                return Err(("step", format!("step is {}, it must be in 0.05..=8 voxel edges", number(l.step))));
             }
             match l.spacing.filter(|s| !s.iter().all(|v| *v > 0.0 && v.is_finite())) {
                 Some(s) => Err(("spacing", format!("spacing is {s:?}, every distance must be greater than 0"))),
@@ -166,14 +167,14 @@ fn within(key: &'static str, value: f64, low: f64, high: f64) -> Result<(), Comp
     if value > low && value <= high {
         return Ok(());
     }
-    Err((key, format!("{key} is {value}, it must lie above {low} and up to {high}")))
+    Err((key, format!("{key} is {}, it must be greater than {low} and at most {high}", number(value))))
 }
 
 fn lift(value: f64) -> Result<(), Complaint> {
     if (0.0..=1000.0).contains(&value) {
         return Ok(());
     }
-    Err(("lift_m", format!("lift_m is {value}, it must lie in 0..=1000")))
+    Err(("lift_m", format!("lift_m is {}, it must be in 0..=1000", number(value))))
 }
 
 fn rank(stage: &StageDoc) -> u32 {
@@ -221,7 +222,7 @@ fn constructor(doc: &ConstructorDoc) -> Result<(), Complaint> {
             let path = [("preview_m", doc.preview_m), ("behind_m", lens.behind_m), ("width_m", lens.width_m)];
             for (key, value) in stage.into_iter().chain(path).chain([("reach_m", doc.reach_m)]) {
                 if let Some(v) = value.filter(|v| !(*v > 0.0)) {
-                    return Err((key, format!("{key} is {v}, it must be greater than 0")));
+                    return Err((key, format!("{key} is {}, it must be greater than 0", number(v))));
                 }
             }
             if let Some(n) = doc.turns.filter(|n| !(1..=6).contains(n)) {
@@ -244,7 +245,8 @@ pub(crate) fn animation(doc: &AnimationDoc, may_rest: bool) -> Result<(), Compla
     let ways = [doc.along.is_some(), doc.camera.is_some(), doc.sweep.is_some(), doc.turntable.is_some()];
     let given = ways.iter().filter(|w| **w).count();
     if given != 1 && !(given == 0 && may_rest) {
-        return Err(("", "exactly one of along, camera, sweep and turntable is needed".into()));
+        let given = if given == 0 { "none is given" } else { "several are given" };
+        return Err(("", format!("exactly one of along, camera, sweep and turntable is needed, {given}")));
     }
     match doc.frames {
         Some(0) => return Err(("frames", "frames is 0, it must be at least 1".into())),
@@ -255,7 +257,7 @@ pub(crate) fn animation(doc: &AnimationDoc, may_rest: bool) -> Result<(), Compla
         [("fps", doc.fps), ("speed_mps", doc.speed_mps), ("behind_m", doc.behind_m), ("above_m", doc.above_m)];
     for (key, value) in positive.into_iter().chain([("ahead_m", doc.ahead_m)]) {
         if let Some(v) = value.filter(|v| !(*v > 0.0 && *v <= 1e9)) {
-            return Err((key, format!("{key} is {v}, it must be greater than 0")));
+            return Err((key, format!("{key} is {}, it must be greater than 0", number(v))));
         }
     }
     if let Some(v) = doc.start_m.filter(|v| !(*v >= 0.0 && v.is_finite())) {
@@ -266,7 +268,7 @@ pub(crate) fn animation(doc: &AnimationDoc, may_rest: bool) -> Result<(), Compla
         return Err((key, format!("{key} follows a walker along a route; give along, the id of a line layer")));
     }
     if let Some(t) = doc.turntable.as_ref().filter(|t| t.deg_per_s == 0.0 || !t.deg_per_s.is_finite()) {
-        return Err(("turntable", format!("deg_per_s is {}, it must not be 0", t.deg_per_s)));
+        return Err(("turntable", format!("deg_per_s is {}, it must not be 0; 12 turns once in 30 s", t.deg_per_s)));
     }
     match doc.sweep.as_ref().map(|s| s.phi_deg) {
         Some([first, last, step])

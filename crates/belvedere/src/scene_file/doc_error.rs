@@ -97,10 +97,11 @@ fn plain(expected: &dyn Expected) -> String {
         "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number".into(),
         "f32" | "f64" => "a number".into(),
         "a string" => "a text".into(),
+        "a boolean" => "true or false".into(),
         other => match other.strip_prefix("an array of length ") {
             Some(length) => format!("a list of {length}"),
             None if other.starts_with("struct ") => "a table".into(),
-            None => text,
+            None => text.replace(" | ", " or "),
         },
     }
 }
@@ -144,6 +145,6 @@ pub(crate) fn suggestion(given: &str, valid: &[&str]) -> String {
 
 /// `text` cut to a length that fits a message.
 pub(crate) fn shorten(text: &str) -> String {
-    let clean: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(61).collect();
+    let clean: String = belvedere_core::plain::escaped(text).chars().take(61).collect();
     if clean.chars().count() > 60 { clean.chars().take(57).chain("...".chars()).collect() } else { clean }
 }

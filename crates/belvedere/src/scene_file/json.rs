@@ -28,7 +28,10 @@ fn syntax_error(e: &serde_json::Error, text: &str, lines: &Lines) -> DocError {
 
 /// What is wrong, without the position that serde_json appends.
 fn reason(e: &serde_json::Error) -> String {
-    let text = e.to_string();
+    if e.is_eof() {
+        return "not valid JSON: it ends too early, a bracket or quote is not closed".into();
+    }
+    let text = e.to_string().replace("expected ident", "it does not begin like JSON");
     format!("not valid JSON: {}", text.rsplit_once(" at line ").map_or(text.as_str(), |(reason, _)| reason))
 }
 
@@ -133,7 +136,7 @@ mod tests {
             ("{\"a\": 1,\n\"a\": 2}", 2, "key \"a\" is given twice"),
             ("[\n\"\\ud800\"]", 2, "not valid JSON"),
             ("[1]\n 2", 2, "not valid JSON: trailing characters"),
-            ("{\"a\": \"x", 1, "not valid JSON: EOF"),
+            ("{\"a\": \"x", 1, "not valid JSON: it ends too early"),
             ("", 1, "not valid JSON"),
         ] {
             let error = parse(text).unwrap_err();

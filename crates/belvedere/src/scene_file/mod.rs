@@ -13,6 +13,7 @@ mod layers;
 mod mesh;
 mod molecule;
 mod node;
+pub(crate) mod other_kind;
 mod overlay;
 mod palette;
 pub mod paths;
@@ -141,8 +142,8 @@ impl SourceDocument {
 /// # Errors
 /// [`BelvedereError::Scene`] with the line of the mistake; [`BelvedereError::Io`] if the file cannot be read.
 pub fn read(path: &Path) -> Result<SourceDocument, BelvedereError> {
-    let (text, file) = read_text(path)?;
-    parse_as(file, &text)
+    let read = read_text(path).and_then(|(text, file)| parse_as(file, &text));
+    read.map_err(|e| other_kind::explained(path, "a scene document", e))
 }
 
 /// Parses the text of a scene file; `path` serves messages only.
@@ -165,7 +166,16 @@ fn parse_as(file: InputFile, text: &str) -> Result<SourceDocument, BelvedereErro
 /// As [`read`].
 pub fn parse_presets(path: &Path, text: &str) -> Result<PresetDocument, BelvedereError> {
     let root = tree(path, text).map_err(|e| e.in_file(path))?;
+    if root.get("camera").is_some() && root.get("presets").is_none() {
+        return Err(DocError::whole("is a scene document, not a preset document").in_file(path));
+    }
     de::from_node(&root).map_err(|e| e.in_file(path))
+}
+
+/// That there is no built-in preset of a name, and which are near.
+pub(crate) fn no_preset(name: &str) -> String {
+    let names = &belvedere_core::presets::BUILTIN_NAMES;
+    format!("there is no built-in preset \"{}\"; {}", doc_error::shorten(name), suggestion(name, names))
 }
 
 /// Whether a text means the file of a preset document, not a built-in one.
@@ -183,8 +193,11 @@ pub(crate) fn read_text(path: &Path) -> Result<(String, InputFile), BelvedereErr
     let os = |e| belvedere_io::IoError::os(path, e);
     let refuse = |reason: String| DocError::whole(reason).in_file(path);
     let meta = belvedere_io::fs::metadata(path).map_err(os)?;
+    if meta.is_dir() {
+        return Err(refuse("is a folder; give a file".into()));
+    }
     if !meta.is_file() {
-        return Err(refuse("this is not a regular file; give the path of a file".into()));
+        return Err(refuse("is a device or pipe; give a file".into()));
     }
     let too_large = |bytes: u64| {
         refuse(format!(
@@ -228,6 +241,10 @@ pub(crate) fn decode<'a, T: serde::Deserialize<'a>>(node: &'a Node) -> Result<T,
 fn document(root: &Node) -> Result<Document, DocError> {
     if !matches!(root.value, Value::Table(_)) {
         return Err(DocError::at(root.line, format!("a scene document is a table of keys, found {}", root.describe())));
+    }
+    if root.get("presets").is_some() && root.get("camera").is_none() {
+        let reason = "is a preset document, not a scene document; name it as presets of a stage spline_bend";
+        return Err(DocError::at(root.line, reason));
     }
     if let Some(version) = root.get("format").filter(|n| matches!(n.value, Value::Int(v) if v != 1)) {
         return Err(DocError::at(
@@ -276,6 +293,12 @@ fn each<T>(
         .collect()
 }
 
+/// The entry of a table whose key is one slip away from the wanted one.
+fn misspelt<'n>(table: &'n Node, wanted: &str) -> Option<&'n node::Entry> {
+    let Value::Table(entries) = &table.value else { return None };
+    entries.iter().find(|e| e.key != "id" && strsim::damerau_levenshtein(&e.key.to_lowercase(), wanted) <= 1)
+}
+
 fn one_of<T>(
     item: &Node,
     kinds: &'static [&'static str],
@@ -284,8 +307,12 @@ fn one_of<T>(
     if !matches!(item.value, Value::Table(_)) {
         return Err(DocError::at(item.line, format!("a table was expected, found {}", item.describe())));
     }
-    let kind = item.get("kind").ok_or_else(|| {
-        DocError::at(item.line, format!("key \"kind\" is missing; give one of: {}", kinds.join(", ")))
+    let kind = item.get("kind").ok_or_else(|| match misspelt(item, "kind") {
+        Some(entry) => {
+            let shown = doc_error::shorten(&entry.key);
+            DocError::at(entry.line, format!("unknown key \"{shown}\"; did you mean \"kind\"?"))
+        }
+        None => DocError::at(item.line, format!("key \"kind\" is missing; give one of: {}", kinds.join(", "))),
     })?;
     let Value::Text(name) = &kind.value else {
         return Err(DocError::at(kind.line, format!("kind: a text was expected, found {}", kind.describe())));

@@ -24,6 +24,16 @@ impl Default for PaletteDoc {
 }
 
 impl PaletteDoc {
+    /// Why a name means no palette, and what to give.
+    pub(crate) fn unknown(name: &str) -> String {
+        let names = PaletteName::ALL.map(|(name, _)| name);
+        format!(
+            "palette \"{}\" is neither the name of a palette nor a file of colours by height; {}",
+            super::doc_error::shorten(name),
+            super::suggestion(name, &names)
+        )
+    }
+
     /// The built-in one of that name, else a file.
     pub fn of(text: &str) -> Self {
         let named = PaletteName::ALL.iter().find(|(name, _)| *name == text);
@@ -35,12 +45,7 @@ impl PaletteDoc {
     /// The palette with the full path of its file, whose folder is allowed from now on.
     pub(crate) fn located(&self, allowed: &mut Vec<PathBuf>) -> Result<Self, BelvedereError> {
         let Self::File(name) = self else { return Ok(self.clone()) };
-        let names = PaletteName::ALL.map(|(name, _)| name).join(", ");
-        let path = belvedere_io::fs::canonicalize(name).map_err(|e| BelvedereError::Path {
-            name: name.clone(),
-            reason: format!("is no palette ({names}) and no file of colours by height: {e}"),
-            root_missing: false,
-        })?;
+        let path = belvedere_io::fs::canonicalize(name).map_err(|_| BelvedereError::Target(Self::unknown(name)))?;
         allowed.extend(path.parent().map(Path::to_owned));
         path.to_str().map(|path| Self::File(path.to_owned())).ok_or_else(|| BelvedereError::not_utf8(name))
     }

@@ -9,7 +9,12 @@ pub(crate) fn parse(text: &str) -> Result<Node, DocError> {
     let lines = Lines::new(text);
     let table = DeTable::parse(text).map_err(|e| {
         let line = e.span().map_or(1, |s| lines.line(s.start));
-        DocError::at(line, format!("not valid TOML: {}", e.message().trim().replace('\n', "; ")))
+        let said = e.message().trim().replace('\n', "; ");
+        let key = e.span().and_then(|span| text.get(span)).map(super::doc_error::shorten).unwrap_or_default();
+        match said.as_str() {
+            "duplicate key" => DocError::at(line, format!("key \"{key}\" is given twice; keep one")),
+            _ => DocError::at(line, format!("not valid TOML: {said}")),
+        }
     })?;
     Ok(Node { line: 1, value: table_value(table.into_inner(), &lines, 1)? })
 }

@@ -102,7 +102,10 @@ pub fn parameters(texts: &[String]) -> Result<TerrainStageDoc, BelvedereError> {
         toml += &format!("{key} = {value}\n");
     }
     let fail = |e: scene_file::DocError| BelvedereError::Setting(e.to_string());
-    let tree = scene_file::tree(std::path::Path::new("settings.toml"), &toml).map_err(fail)?;
+    let tree = scene_file::tree(std::path::Path::new("settings.toml"), &toml).map_err(|e| {
+        let given = e.line.and_then(|line| texts.get(line - 1)).map_or_else(String::new, |text| format!("{text}: "));
+        BelvedereError::Setting(format!("{given}{e}"))
+    })?;
     let document: TerrainStageDoc = scene_file::decode(&tree).map_err(fail)?;
     match (&document.delta, &document.delta_sha256) {
         (None, None) => Ok(document),

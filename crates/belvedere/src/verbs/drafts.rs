@@ -46,10 +46,10 @@ pub struct DraftsAnswer {
 /// [`reveal`] make the same picture.
 ///
 /// # Errors
-/// [`BelvedereError::Setting`] unless `count` is 1 to [`MOST_DRAFTS`] and no view is given; those of [`reveal`].
+/// [`BelvedereError::Target`] unless `count` is 1 to [`MOST_DRAFTS`] and no view is given; those of [`reveal`].
 pub fn drafts(request: &RevealRequest, count: usize, options: &OpenOptions) -> Result<DraftsAnswer, BelvedereError> {
     if !(1..=MOST_DRAFTS).contains(&count) {
-        return Err(BelvedereError::Setting(format!("{count} drafts were asked for; give 1 to {MOST_DRAFTS}")));
+        return Err(BelvedereError::Target(format!("{count} drafts were asked for; give 1 to {MOST_DRAFTS}")));
     }
     if request.viewpoint.is_some() || request.places.is_some() {
         return Err(BelvedereError::Setting("drafts choose their views themselves; leave eye and look out".into()));

@@ -114,8 +114,9 @@ fn application_files(folder: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>, Belvedere
         Err(e) => Err(BelvedereError::Output {
             path: folder.to_owned(),
             reason: format!(
-                "holds no application for browsers ({}: {e}); build it by apps/viewer/web/build",
-                name.display()
+                "holds no application for browsers ({}: {}); build it with apps/viewer/web/build",
+                name.display(),
+                belvedere_io::said(&e)
             ),
         }),
     };

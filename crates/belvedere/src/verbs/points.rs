@@ -1,7 +1,7 @@
 //! Points to pixels and back: `project`, `rays`, `displace`.
 
 use crate::places::Place;
-use crate::scene_file::{Node, Value, json_points};
+use crate::scene_file::{Node, Value, json_points, other_kind};
 use crate::{BelvedereError, Session};
 use belvedere_core::{DVec2, DVec3, Miss, View, Warning};
 use serde::Serialize;
@@ -212,6 +212,11 @@ impl Session {
 
 /// Reads a JSON list of elements of a `shape`.
 fn read_list<T>(path: &Path, shape: &str, read: &dyn Fn(&Node) -> Result<T, String>) -> Result<Vec<T>, BelvedereError> {
+    let what = if shape.contains('z') { "points" } else { "pixels" };
+    list(path, shape, read).map_err(|e| other_kind::explained(path, &format!("a list of {what} [{shape}, ...]"), e))
+}
+
+fn list<T>(path: &Path, shape: &str, read: &dyn Fn(&Node) -> Result<T, String>) -> Result<Vec<T>, BelvedereError> {
     let fail = |reason: String| BelvedereError::Points { path: path.to_owned(), reason };
     let mut text = Vec::new();
     belvedere_io::fs::File::open(path)

@@ -217,9 +217,9 @@ struct ReportFile<'a> {
 /// [`Session::open`] and [`Session::render`].
 pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAnswer, BelvedereError> {
     if !request.data.rivers.is_empty() && matches!(request.technique, Technique::Spline | Technique::CurvedRays) {
-        let reason =
-            "rivers are kept from running uphill where the ground moves; ask for technique terrain, both or auto";
-        return Err(BelvedereError::Setting(reason.into()));
+        let reason = "rivers are kept from running uphill where the ground moves, which this technique does not do; \
+                      ask for technique terrain, both or auto";
+        return Err(BelvedereError::Target(reason.into()));
     }
     check_fov(request)?;
     let mut data = request.data.load(false, options)?;

@@ -54,23 +54,6 @@ pub(super) enum Violation {
     NearPastStart { pixel: DVec2, start: f64 },
 }
 
-impl Violation {
-    /// Position in the order of the checks.
-    pub(super) fn order(self) -> u32 {
-        match self {
-            Self::Order { .. } => 0,
-            Self::PreviousPastBend { .. } => 1,
-            Self::ViewpointPastBend { .. } => 2,
-            Self::PreviousPastStart { .. } => 3,
-            Self::BendNotMet { .. } => 4,
-            Self::LineInPicture { .. } => 5,
-            Self::EndNotReached { .. } => 6,
-            Self::TurnsOverlap { .. } => 7,
-            Self::NearPastStart { .. } => 8,
-        }
-    }
-}
-
 /// Checks that all numbers are finite and not beyond 1e15, that directions are not zero and that m is in range.
 pub(super) fn numbers(spec: &TurnSpec, turn: usize) -> Result<(), CurvedRaysError> {
     let (pencil_names, u, v) = match spec.pencil {

@@ -36,14 +36,15 @@ pub(super) fn rays_cross(pixel: DVec2, sigma: f64, spec: &TurnSpec, context: &Tu
         let forms = UnscaledTurn::new(candidate, context.turn, &context.part).ok()?.check(candidate, context).ok()?;
         crossing(&forms, context).1.is_none().then_some(())
     };
-    let healed = |t: f64| parted(&end_at(spec, t)).is_some();
+    let healed = |t: f64| parted(&end_at(spec, context, t)).is_some();
     let remedy = if context.advise { smallest(healed, 1.0) } else { None };
-    let remedy = remedy.map_or(Remedy::OtherModel, |t| Remedy::MovePoint { name: "t2", to: end_at(spec, t).t2 });
+    let remedy =
+        remedy.map_or(Remedy::OtherModel, |t| Remedy::MovePoint { name: "t2", to: end_at(spec, context, t).t2 });
     CurvedRaysError::RaysCross { turn: context.turn, pixel, sigma, remedy }
 }
 
 fn remedy(violation: Violation, spec: &TurnSpec, context: &TurnContext<'_>) -> Remedy {
-    let healed = |candidate: &TurnSpec| heals(violation, candidate, context);
+    let healed = |candidate: &TurnSpec| heals(candidate, context);
     let found = match violation {
         Violation::Order { depths } => {
             let swapped = TurnSpec { t0: spec.t2, t2: spec.t0, ..*spec };
@@ -55,30 +56,50 @@ fn remedy(violation: Violation, spec: &TurnSpec, context: &TurnContext<'_>) -> R
         }
         Violation::PreviousPastBend { .. } => shifted_planes(spec, context, &healed),
         Violation::ViewpointPastBend { past } => viewpoint_back(spec, context, past, &healed),
-        Violation::PreviousPastStart { .. } => start_towards_bend(spec, &healed),
+        Violation::PreviousPastStart { .. } => start_towards_bend(spec, context, &healed),
         Violation::BendNotMet { .. } => turned_planes(spec, context, &healed),
-        Violation::LineInPicture { .. } => line_away(spec, &healed),
-        Violation::EndNotReached { .. } => smallest(|t| healed(&end_at(spec, t)), 1.0)
-            .map(|t| Remedy::MovePoint { name: "t2", to: end_at(spec, t).t2 }),
-        Violation::TurnsOverlap { .. } => shrunk(violation, spec, context),
+        Violation::LineInPicture { .. } => line_away(spec, context, &healed),
+        Violation::EndNotReached { .. } => smallest(|t| healed(&end_at(spec, context, t)), 1.0)
+            .map(|t| Remedy::MovePoint { name: "t2", to: end_at(spec, context, t).t2 }),
+        Violation::TurnsOverlap { .. } => shrunk(spec, context),
         Violation::NearPastStart { .. } => {
             let start = UnscaledTurn::new(spec, context.turn, &context.part).map(|unscaled| {
                 let forms = unscaled.forms(&context.part, spec.viewpoint);
                 let start = |px: &DVec2| forms.start(corner_direction(*px, context.root, &context.part));
                 context.corners.iter().map(start).fold(f64::INFINITY, f64::min)
             });
-            let near = start.unwrap_or(0.0) * (1.0 - 1e-9);
-            if near > 0.0 { Some(Remedy::Near { near }) } else { start_towards_bend(spec, &healed) }
+            let near = floor(start.unwrap_or(0.0) * (1.0 - 1e-6));
+            if near > 0.0 { Some(Remedy::Near { near }) } else { start_towards_bend(spec, context, &healed) }
         }
     };
     found.unwrap_or(Remedy::Rebuild)
 }
 
-/// Whether a changed turn meets the violated condition and all before it.
-fn heals(violation: Violation, candidate: &TurnSpec, context: &TurnContext<'_>) -> bool {
-    UnscaledTurn::new(candidate, context.turn, &context.part).is_ok_and(|unscaled| {
-        unscaled.check(candidate, context).err().is_none_or(|now| now.order() > violation.order())
-    })
+/// Whether a changed turn meets all conditions.
+fn heals(candidate: &TurnSpec, context: &TurnContext<'_>) -> bool {
+    UnscaledTurn::new(candidate, context.turn, &context.part)
+        .is_ok_and(|unscaled| unscaled.check(candidate, context).is_ok())
+}
+
+/// Share of the distance to the bend point to which remedies are rounded.
+const GRAIN: f64 = 1e-6;
+
+/// A point with as few decimals as the turn's size allows: what is printed is what was tried.
+fn rounded(p: DVec3, spec: &TurnSpec, context: &TurnContext<'_>) -> DVec3 {
+    let size = (spec.t1 - context.part.viewpoint).length().max((spec.viewpoint - context.part.viewpoint).length());
+    let decimals = (-(GRAIN * size).log10().floor()).clamp(0.0, 15.0) as usize;
+    let one = |v: f64| format!("{v:.decimals$}").parse().unwrap_or(v) + 0.0;
+    DVec3::new(one(p.x), one(p.y), one(p.z))
+}
+
+/// At most `value`, with six digits.
+fn floor(value: f64) -> f64 {
+    if !(value > 0.0) {
+        return 0.0;
+    }
+    let scale = 10f64.powi(5 - value.log10().floor() as i32);
+    let down = (value * scale).floor() / scale;
+    format!("{down:.5e}").parse().unwrap_or(down)
 }
 
 /// Smallest `t` in (0, `end`] with `valid(t)`, to about a millionth, assuming that `valid` stays once it holds.
@@ -101,10 +122,14 @@ fn smallest(valid: impl Fn(f64) -> bool, end: f64) -> Option<f64> {
 
 fn shifted_planes(spec: &TurnSpec, context: &TurnContext<'_>, healed: &dyn Fn(&TurnSpec) -> bool) -> Option<Remedy> {
     let axis = axis(context);
-    let by = |t: f64| TurnSpec { t0: spec.t0 + t * axis, t1: spec.t1 + t * axis, t2: spec.t2 + t * axis, ..*spec };
+    let shift = |t: f64| rounded(t * axis, spec, context);
+    let by = |t: f64| {
+        let shift = shift(t);
+        TurnSpec { t0: spec.t0 + shift, t1: spec.t1 + shift, t2: spec.t2 + shift, ..*spec }
+    };
     let reach =
         100.0 * ((spec.t1 - context.part.viewpoint).length() + (spec.viewpoint - context.part.viewpoint).length());
-    smallest(|t| healed(&by(t)), reach).map(|t| Remedy::MovePlanes { by: t * axis })
+    smallest(|t| healed(&by(t)), reach).map(|t| Remedy::MovePlanes { by: shift(t) })
 }
 
 fn viewpoint_back(
@@ -118,18 +143,22 @@ fn viewpoint_back(
         Pencil::Line { point, dir } => (spec.t1 - point).cross(dir).normalize(),
     };
     let back = normal * (context.part.viewpoint - spec.t1).dot(normal).signum();
-    let to = |t: f64| TurnSpec { viewpoint: spec.viewpoint + t * back, ..*spec };
+    let to = |t: f64| TurnSpec { viewpoint: rounded(spec.viewpoint + t * back, spec, context), ..*spec };
     let reach = 100.0 * (past + (spec.t1 - context.part.viewpoint).length());
     smallest(|t| healed(&to(t)), reach).map(|t| Remedy::MovePoint { name: "viewpoint", to: to(t).viewpoint })
 }
 
-fn start_towards_bend(spec: &TurnSpec, healed: &dyn Fn(&TurnSpec) -> bool) -> Option<Remedy> {
-    let to = |t: f64| TurnSpec { t0: spec.t0.lerp(spec.t1, t), ..*spec };
+fn start_towards_bend(
+    spec: &TurnSpec,
+    context: &TurnContext<'_>,
+    healed: &dyn Fn(&TurnSpec) -> bool,
+) -> Option<Remedy> {
+    let to = |t: f64| TurnSpec { t0: rounded(spec.t0.lerp(spec.t1, t), spec, context), ..*spec };
     smallest(|t| healed(&to(t)), 1.0 - 1e-6).map(|t| Remedy::MovePoint { name: "t0", to: to(t).t0 })
 }
 
-fn end_at(spec: &TurnSpec, t: f64) -> TurnSpec {
-    TurnSpec { t2: spec.t2.lerp(spec.t1, t * (1.0 - 1e-6)), ..*spec }
+fn end_at(spec: &TurnSpec, context: &TurnContext<'_>, t: f64) -> TurnSpec {
+    TurnSpec { t2: rounded(spec.t2.lerp(spec.t1, t * (1.0 - 1e-6)), spec, context), ..*spec }
 }
 
 fn turned_planes(spec: &TurnSpec, context: &TurnContext<'_>, healed: &dyn Fn(&TurnSpec) -> bool) -> Option<Remedy> {
@@ -138,14 +167,15 @@ fn turned_planes(spec: &TurnSpec, context: &TurnContext<'_>, healed: &dyn Fn(&Tu
         Pencil::Parallel { normal } => {
             let normal = normal.normalize();
             let ahead = if normal.dot(axis) < 0.0 { -normal } else { normal };
-            let turned = |t: f64| ahead.lerp(axis, t).normalize();
+            let short = |v: f64| format!("{v:.6}").parse().unwrap_or(v) + 0.0;
+            let turned = |t: f64| ahead.lerp(axis, t).normalize().to_array().map(short).into();
             let with = |t: f64| TurnSpec { pencil: Pencil::Parallel { normal: turned(t) }, ..*spec };
             smallest(|t| healed(&with(t)), 1.0).map(|t| Remedy::Normal { normal: turned(t) })
         }
         Pencil::Line { point, dir } => {
             let foot = point + (spec.t1 - point).project_onto(dir);
             let (arm, across) = (foot - spec.t1, (foot - spec.t1).reject_from(axis));
-            let to = |t: f64| spec.t1 + arm.length() * arm.lerp(across, t).normalize_or_zero();
+            let to = |t: f64| rounded(spec.t1 + arm.length() * arm.lerp(across, t).normalize_or_zero(), spec, context);
             let with = |t: f64| TurnSpec { pencil: Pencil::Line { point: to(t), dir }, ..*spec };
             smallest(|t| healed(&with(t)), 1.0).map(|t| Remedy::MovePoint { name: "line.point", to: to(t) })
         }
@@ -153,16 +183,16 @@ fn turned_planes(spec: &TurnSpec, context: &TurnContext<'_>, healed: &dyn Fn(&Tu
 }
 
 /// The line moves within t1, away from the bend point.
-fn line_away(spec: &TurnSpec, healed: &dyn Fn(&TurnSpec) -> bool) -> Option<Remedy> {
+fn line_away(spec: &TurnSpec, context: &TurnContext<'_>, healed: &dyn Fn(&TurnSpec) -> bool) -> Option<Remedy> {
     let Pencil::Line { point, dir } = spec.pencil else { return None };
     let away: DVec3 = (point - spec.t1).reject_from(dir);
-    let to = |t: f64| point + t * away;
+    let to = |t: f64| rounded(point + t * away, spec, context);
     let with = |t: f64| TurnSpec { pencil: Pencil::Line { point: to(t), dir }, ..*spec };
     smallest(|t| healed(&with(t)), 1000.0).map(|t| Remedy::MovePoint { name: "line.point", to: to(t) })
 }
 
 /// Both turns get narrower by one factor; the straight parts do not depend on t0 and t2.
-fn shrunk(violation: Violation, spec: &TurnSpec, context: &TurnContext<'_>) -> Option<Remedy> {
+fn shrunk(spec: &TurnSpec, context: &TurnContext<'_>) -> Option<Remedy> {
     let previous = context.previous.as_ref()?;
     let narrower = |s: &TurnSpec, t: f64| TurnSpec { t0: s.t0.lerp(s.t1, t), t2: s.t2.lerp(s.t1, t), ..*s };
     let valid = |t: f64| {
@@ -172,7 +202,7 @@ fn shrunk(violation: Violation, spec: &TurnSpec, context: &TurnContext<'_>) -> O
         let end = |px: &DVec2| forms.end(corner_direction(*px, context.root, &previous.part));
         let ends = context.corners.iter().map(end).collect();
         let narrow = TurnContext { previous: Some(PreviousTurn { ends, ..previous.clone() }), ..context.clone() };
-        heals(violation, &narrower(spec, t), &narrow)
+        heals(&narrower(spec, t), &narrow)
     };
-    smallest(valid, 1.0).map(|t| Remedy::Shrink { factor: 1.0 - t })
+    smallest(valid, 1.0).map(|t| Remedy::Shrink { factor: floor(1.0 - t) })
 }

@@ -1,5 +1,6 @@
 //! Specification of a curved ray camera, and its errors.
 
+use crate::plain::number;
 use glam::{DVec2, DVec3};
 use serde::de::{Deserializer, Error, Visitor};
 use serde::{Deserialize, Serialize};
@@ -158,15 +159,15 @@ pub enum Remedy {
 
 impl std::fmt::Display for Remedy {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let point = |p: DVec3| format!("[{:.6}, {:.6}, {:.6}]", p.x, p.y, p.z);
+        let point = |p: DVec3| format!("[{}, {}, {}]", p.x, p.y, p.z);
         match self {
             Self::MovePoint { name, to } => write!(f, "the nearest valid {name} is {}", point(*to)),
             Self::MovePlanes { by } => write!(f, "move t0, t1 and t2 by at least {}", point(*by)),
             Self::Normal { normal } => write!(f, "the nearest valid plane normal is {}", point(*normal)),
             Self::Shrink { factor } => {
-                write!(f, "multiply the distances of t0 and t2 from t1 by at most {factor:.6} in both turns")
+                write!(f, "multiply the distances of t0 and t2 from t1 by at most {factor} in both turns")
             }
-            Self::Near { near } => write!(f, "near may be at most {near:.6}, or move t0 away from the eye"),
+            Self::Near { near } => write!(f, "near may be at most {near}, or move t0 away from the eye"),
             Self::SwapPlanes => write!(f, "exchange t0 and t2"),
             Self::BendInPicture => write!(f, "move t1 into the picture, or give m as a number"),
             Self::OtherModel => write!(f, "no t2 parts them"),
@@ -175,6 +176,11 @@ impl std::fmt::Display for Remedy {
             }
         }
     }
+}
+
+/// A viewpoint in words.
+fn eye(viewpoint: usize) -> String {
+    if viewpoint == 0 { "the eye".into() } else { format!("viewpoint {viewpoint}") }
 }
 
 /// Errors of a curved ray camera. Turns and viewpoints are counted from 1; viewpoint 0 is the eye.
@@ -226,7 +232,7 @@ pub enum CurvedRaysError {
     },
     /// A plane's point lies on the common line.
     #[error(
-        "turn {turn}: {name} is {distance:e} from the common line, which leaves its plane undefined (more than {limit:e} needed); move it away from the line"
+        "turn {turn}: {name} lies on the common line of the planes (distance {}, more than {} needed), so its plane is not defined; move it away from the line", number(*distance), number(*limit)
     )]
     PointOnLine {
         /// Turn, from 1.
@@ -240,7 +246,7 @@ pub enum CurvedRaysError {
     },
     /// The bend point lies on t0 or t2 (but not on both, which is a turn of width 0 and allowed).
     #[error(
-        "turn {turn}: the bend point t1 is {distance:e} from plane {name}, more than {limit:e} needed; move {name} away from t1, or put both t0 and t2 onto it for a sharp bend"
+        "turn {turn}: plane {name} passes through the bend point t1 (distance {}, more than {} needed); move {name} away from t1, or put both t0 and t2 onto it for a sharp bend", number(*distance), number(*limit)
     )]
     BendOnPlane {
         /// Turn, from 1.
@@ -254,7 +260,7 @@ pub enum CurvedRaysError {
     },
     /// t0 and t2 are one plane, apart from t1.
     #[error(
-        "turn {turn}: t0 and t2 are the same plane, {distance:.6} from the bend point t1; put them on either side of t1"
+        "turn {turn}: t0 and t2 are the same plane, {} from the bend point t1; put them on either side of t1", number(*distance)
     )]
     SamePlanes {
         /// Turn, from 1.
@@ -264,7 +270,7 @@ pub enum CurvedRaysError {
     },
     /// A viewpoint lies on t1.
     #[error(
-        "turn {turn}: viewpoint {viewpoint} is {distance:e} from plane t1, more than {limit:e} needed; move it back from the plane"
+        "turn {turn}: {} lies on plane t1 (distance {}, more than {} needed); move it back from the plane", eye(*viewpoint), number(*distance), number(*limit)
     )]
     ViewpointOnBend {
         /// Turn, from 1.
@@ -278,7 +284,7 @@ pub enum CurvedRaysError {
     },
     /// Planes in the wrong order or behind both viewpoints.
     #[error(
-        "turn {turn}: rays must meet t0, t1, t2 in this order, they lie {t0:.6}, {t1:.6}, {t2:.6} ahead of viewpoint {viewpoint} along its axis; {remedy}"
+        "turn {turn}: rays must meet t0, t1, t2 in this order, they lie {}, {}, {} ahead of {} along its axis; {remedy}", number(*t0), number(*t1), number(*t2), eye(*viewpoint)
     )]
     PlaneOrder {
         /// Turn, from 1.
@@ -295,7 +301,7 @@ pub enum CurvedRaysError {
         remedy: Remedy,
     },
     /// Section 7, row 1: the viewpoint before the turn is past t1.
-    #[error("turn {turn}: viewpoint {viewpoint} is {past:.6} past plane t1, it must lie before it; {remedy}")]
+    #[error("turn {turn}: {} is {} past plane t1, it must lie before it; {remedy}", eye(*viewpoint), number(*past))]
     PreviousPastBend {
         /// Turn, from 1.
         turn: usize,
@@ -307,7 +313,7 @@ pub enum CurvedRaysError {
         remedy: Remedy,
     },
     /// Row 1: the viewpoint before the turn is past t0.
-    #[error("turn {turn}: viewpoint {viewpoint} is {past:.6} past plane t0, it must lie before it; {remedy}")]
+    #[error("turn {turn}: {} is {} past plane t0, it must lie before it; {remedy}", eye(*viewpoint), number(*past))]
     PreviousPastStart {
         /// Turn, from 1.
         turn: usize,
@@ -319,7 +325,7 @@ pub enum CurvedRaysError {
         remedy: Remedy,
     },
     /// Row 2: the viewpoint after the turn is past t1, the picture would be mirrored.
-    #[error("turn {turn}: viewpoint {turn} is {past:.6} past plane t1, which would mirror the picture; {remedy}")]
+    #[error("turn {turn}: viewpoint {turn} is {} past plane t1, which would mirror the picture; {remedy}", number(*past))]
     ViewpointPastBend {
         /// Turn, from 1.
         turn: usize,
@@ -329,7 +335,7 @@ pub enum CurvedRaysError {
         remedy: Remedy,
     },
     /// Row 3: rays of the picture do not meet t1.
-    #[error("turn {turn}: the ray of pixel ({}, {}) does not meet plane t1 ahead of viewpoint {viewpoint} (slope towards it {slope:e}, more than 0 needed); {remedy}", pixel.x, pixel.y)]
+    #[error("turn {turn}: the ray of pixel ({}, {}) does not meet plane t1 ahead of {} (slope towards it {}, more than 0 needed); {remedy}", pixel.x, pixel.y, eye(*viewpoint), number(*slope))]
     BendNotMet {
         /// Turn, from 1.
         turn: usize,
@@ -343,7 +349,7 @@ pub enum CurvedRaysError {
         remedy: Remedy,
     },
     /// Row 3: the common line cuts the picture.
-    #[error("turn {turn}: the common line lies inside the picture, the ray of pixel ({}, {}) passes it on the far side by {beyond:.6}; {remedy}", pixel.x, pixel.y)]
+    #[error("turn {turn}: the common line lies inside the picture, the ray of pixel ({}, {}) passes it on the far side by {}; {remedy}", pixel.x, pixel.y, number(*beyond))]
     LineInPicture {
         /// Turn, from 1.
         turn: usize,
@@ -381,7 +387,7 @@ pub enum CurvedRaysError {
         remedy: Remedy,
     },
     /// Row 5: a turn begins before the one before has ended.
-    #[error("turn {turn} begins at depth {start:.6} before turn {} has ended at depth {end:.6} on the ray of pixel ({}, {}); {remedy}", turn - 1, pixel.x, pixel.y)]
+    #[error("turn {turn} begins at depth {} before turn {} has ended at depth {} on the ray of pixel ({}, {}); {remedy}", number(*start), turn - 1, number(*end), pixel.x, pixel.y)]
     TurnsOverlap {
         /// The later turn, from 1.
         turn: usize,
@@ -395,7 +401,7 @@ pub enum CurvedRaysError {
         remedy: Remedy,
     },
     /// Row 6: rays bend nearer than the near plane.
-    #[error("turn 1 begins at depth {start:.6} on the ray of pixel ({}, {}), not beyond near = {near}; {remedy}", pixel.x, pixel.y)]
+    #[error("turn 1 begins at depth {} on the ray of pixel ({}, {}), not beyond near = {near}; {remedy}", number(*start), pixel.x, pixel.y)]
     NearPastStart {
         /// Image corner.
         pixel: DVec2,

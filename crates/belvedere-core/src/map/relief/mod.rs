@@ -7,6 +7,7 @@ pub use base::{BaseError, BaseSurface};
 
 use super::spline::ReferencePlane;
 use super::{Miss, SpaceMap, finite};
+use crate::plain::number;
 use crate::{Aabb, Pinhole};
 use glam::{DMat2, DMat3, DVec2, DVec3};
 use std::sync::Arc;
@@ -33,12 +34,17 @@ impl ReliefShape {
     }
 }
 
+/// A range in words.
+fn range_words(min: f64, max: f64) -> String {
+    if max.is_infinite() { "greater than 0".into() } else { format!("in {}..={}", number(min), number(max)) }
+}
+
 /// An invalid shape of relief.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReliefError {
     /// A parameter is out of range.
-    #[error("{key} is {value}, it must be in {min}..={max}")]
+    #[error("{key} is {}, it must be {}", number(*value), range_words(*min, *max))]
     Range {
         /// The parameter.
         key: &'static str,

@@ -10,6 +10,7 @@ pub use curve::{PlanCurve, PlanFrame, StripPoint};
 pub use route::{BEND_SHARE, SmoothedRoute};
 
 use super::{Miss, SpaceMap};
+use crate::plain::number;
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
 
@@ -26,7 +27,7 @@ pub enum StripError {
         value: DVec2,
     },
     /// The route has no length.
-    #[error("the route has {points} points and is {length} long; it needs at least 2 apart from each other")]
+    #[error("the route has {points} points and is {} long; at least 2 points apart from each other are needed", number(*length))]
     TooShort {
         /// Points.
         points: usize,
@@ -88,7 +89,7 @@ pub enum StripError {
         most: f64,
     },
     /// Out of range.
-    #[error("{key} is {value}, it must be in {min}..={max}")]
+    #[error("{key} is {}, it must be in {}..={}", number(*value), number(*min), number(*max))]
     Range {
         /// The parameter.
         key: &'static str,

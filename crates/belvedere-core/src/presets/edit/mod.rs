@@ -135,7 +135,7 @@ pub enum EditError {
         remedy: &'static str,
     },
     /// A text that is not an operation.
-    #[error("{text:?} is no operation: {reason}")]
+    #[error("{text:?}: {reason}")]
     Text {
         /// The text.
         text: String,

@@ -4,11 +4,12 @@ use super::{EditError, PresetChange, PresetOperation};
 use crate::presets::{BendFrame, DepthUnits, Ease};
 use std::str::FromStr;
 
-/// All keys, for messages.
-const KEYS: &str = "PRESET.point.N=U,V  PRESET.add-point=T  PRESET.remove-point=N  PRESET.corner=N  PRESET.soften=SHARE  PRESET.angles=COUNT  PRESET.angle.N=DEG  \
-PRESET.tag.N=T or U,V  PRESET.width.N=DELTA  PRESET.section.N=ID  PRESET.split=N  PRESET.merge=N  PRESET.range=S,E  PRESET.phi=DEG  \
-PRESET.tau=DEG  PRESET.fade=A,B  PRESET.fov=DEG or none  PRESET.mirror  PRESET.duplicate=NAME,DEG  PRESET.name=NAME  PRESET.remove  \
-add=BUILT-IN,NAME,DEG  frame=camera or plane  units=absolute or distance  ease=linear or smoothstep  pin=true  follow=true";
+/// Keys of a preset, for messages.
+const KEYS: &str = "point, add-point, remove-point, corner, soften, angles, angle, tag, width, section, split, merge, range, phi, tau, \
+fade, fov, mirror, duplicate, name, remove";
+
+/// Keys of the whole document, for messages.
+const DOCUMENT_KEYS: &str = "add, frame, units, ease, pin, follow";
 
 impl FromStr for PresetOperation {
     type Err = EditError;
@@ -40,12 +41,12 @@ struct Value<'a> {
 
 impl Value<'_> {
     fn text(&self) -> Result<&str, String> {
-        self.value.filter(|v| !v.is_empty()).ok_or_else(|| "a value is missing behind =".into())
+        self.value.filter(|v| !v.is_empty()).ok_or_else(|| "a value is missing, as in low.phi=25".into())
     }
 
     fn one<T: FromStr>(&self) -> Result<T, String> {
         let text = self.text()?;
-        text.parse().map_err(|_| format!("{text:?} is not a value of this option; give a number"))
+        text.parse().map_err(|_| format!("{text:?} is not a number or choice that it takes"))
     }
 
     fn numbers(&self) -> Result<Vec<f64>, String> {
@@ -82,7 +83,11 @@ impl Value<'_> {
                 },
                 _ => return Err("a built-in, a name and a viewing angle are needed".into()),
             },
-            _ => return Err(format!("{key:?} is not one of {KEYS}")),
+            _ => {
+                return Err(format!(
+                    "{key:?} is no key of the document; its keys are {DOCUMENT_KEYS}, those of a preset stand behind its name, as in low.phi=25"
+                ));
+            }
         })
     }
 
@@ -98,7 +103,7 @@ impl Value<'_> {
             "angle" => PresetChange::Turn(numbered()?, self.one()?),
             "width" => PresetChange::TagWidth(numbered()?, self.one()?),
             "section" => PresetChange::Section(numbered()?, self.text()?.to_owned()),
-            _ if number.is_some() => return Err(format!("{key:?} takes no number; the keys are {KEYS}")),
+            _ if number.is_some() => return Err(format!("{key:?} takes no number, or is no key; keys are {KEYS}")),
             "add-point" => PresetChange::AddPoint(self.one()?),
             "remove-point" => PresetChange::RemovePoint(self.one()?),
             "corner" => PresetChange::Corner(self.one()?),
@@ -122,7 +127,7 @@ impl Value<'_> {
             "mirror" | "remove" if self.value.is_some() => return Err(format!("{key} takes no value")),
             "mirror" => PresetChange::Mirror,
             "remove" => PresetChange::Remove,
-            _ => return Err(format!("{key:?} is not one of {KEYS}")),
+            _ => return Err(format!("{key:?} is no key of a preset; keys are {KEYS}")),
         };
         Ok(change)
     }

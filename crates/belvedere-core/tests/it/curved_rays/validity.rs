@@ -141,7 +141,7 @@ fn planes_in_the_wrong_order() {
     let behind = TurnSpec { t0: -90.0 * DVec3::Y, t1: -75.0 * DVec3::Y, t2: -60.0 * DVec3::Y, ..side() };
     let e = error(&[behind]);
     let E::PlaneOrder { remedy: remedy @ Remedy::MovePlanes { .. }, .. } = &e else { panic!("{e}") };
-    healed_or_later(&behind, remedy, &e);
+    new(&[healed(&behind, remedy)]).unwrap_or_else(|again| panic!("{e}\nbut then: {again}"));
 }
 
 #[test]
@@ -153,15 +153,13 @@ fn viewpoint_before_the_turn_past_its_planes() {
     let e = error(&[past_t1]);
     let E::PreviousPastBend { turn: 1, viewpoint: 0, past, remedy } = &e else { panic!("{e}") };
     assert!((past - 3.0).abs() < 1e-12, "{e}");
-    let next = new(&[healed(&past_t1, remedy)]).unwrap_err();
-    assert!(matches!(next, E::PreviousPastStart { .. }), "{e}\nbut then: {next}");
+    new(&[healed(&past_t1, remedy)]).unwrap_or_else(|again| panic!("{e}\nbut then: {again}"));
 
     let past_t0 = TurnSpec { t0: at(-5.0), t1: at(30.0), ..past_t1 };
     let e = error(&[past_t0]);
     let E::PreviousPastStart { turn: 1, viewpoint: 0, past, remedy } = &e else { panic!("{e}") };
     assert!((past - 5.0).abs() < 1e-12, "{e}");
-    let next = new(&[healed(&past_t0, remedy)]).unwrap_err();
-    assert!(matches!(next, E::NearPastStart { .. }), "{e}\nbut then: {next}");
+    new(&[healed(&past_t0, remedy)]).unwrap_or_else(|again| panic!("{e}\nbut then: {again}"));
 }
 
 #[test]
@@ -170,13 +168,8 @@ fn viewpoint_past_the_bend() {
     let e = error(&[turn]);
     let E::ViewpointPastBend { turn: 1, past, remedy } = &e else { panic!("{e}") };
     assert!(*past > 5.0 && *past < 30.0, "{e}");
-    healed_or_later(&turn, remedy, &e);
-}
-
-/// The remedy satisfies its own condition; a later condition may still fail.
-fn healed_or_later(turn: &TurnSpec, remedy: &Remedy, first: &E) {
-    if let Err(later) = new(&[healed(turn, remedy)]) {
-        assert_ne!(std::mem::discriminant(&later), std::mem::discriminant(first), "{first}\nbut then: {later}");
+    if *remedy != Remedy::Rebuild {
+        new(&[healed(&turn, remedy)]).unwrap_or_else(|again| panic!("{e}\nbut then: {again}"));
     }
 }
 

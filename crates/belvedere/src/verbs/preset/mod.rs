@@ -12,7 +12,7 @@ use crate::scene_file;
 use crate::{BelvedereError, output};
 use belvedere_core::map::spline::{ReferencePlane, SplineBend};
 use belvedere_core::presets::edit::{Clamped, PresetOperation};
-use belvedere_core::presets::{BUILTINS, PresetDocument};
+use belvedere_core::presets::{BUILTINS, PresetDocument, PresetError};
 use belvedere_core::{DVec3, Pinhole, Projection};
 use serde::Serialize;
 use std::path::Path;
@@ -67,11 +67,14 @@ pub fn load(source: &str) -> Result<PresetDocument, BelvedereError> {
         match PresetDocument::builtin(source) {
             Ok(document) => return Ok(document),
             Err(_) if belvedere_io::fs::metadata(path).is_ok_and(|m| m.is_file()) => {}
+            Err(PresetError::UnknownName { name }) => {
+                return Err(BelvedereError::Builtin(scene_file::no_preset(&name)));
+            }
             Err(e) => return Err(e.into()),
         }
     }
-    let (text, _) = scene_file::read_text(path)?;
-    let document = scene_file::parse_presets(path, &text)?;
+    let read = scene_file::read_text(path).and_then(|(text, _)| scene_file::parse_presets(path, &text));
+    let document = read.map_err(|e| scene_file::other_kind::explained(path, "a preset document", e))?;
     document.validate().map_err(|e| scene_file::DocError::whole(e.to_string()).in_file(path))?;
     Ok(document)
 }
