@@ -114,7 +114,7 @@ fn warn_about_reduction(path: &Path, picture: &Picture, full: Affine, warnings: 
     let factor = (picture.model_from_pixel.determinant() / full.determinant()).abs().sqrt();
     if factor > 1.01 {
         let text = format!(
-            "the picture is used {factor:.1} times coarser than it is, to keep its pixels within the limit; raise max_pixels for more detail"
+            "the picture is used {factor:.1} times coarser than it is, to keep its pixels within the limit; a part of it over the terrain keeps its detail"
         );
         warnings.push(Warning::new(WarningKind::Reduced, text).with("coarser", factor).in_file(path));
     }

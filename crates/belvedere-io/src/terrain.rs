@@ -424,7 +424,7 @@ fn onto_scene_grid(
         && e.p99_m > request.max_error_p99_m.max(WARN_P99_M)
     {
         let text = format!(
-            "resampling to the metric grid moves heights by {:.1} m rms, and by more than {:.1} m at 1 % of the samples (wanted: {:.1} m); a larger refine_to_nodes makes it finer",
+            "resampling to the metric grid moves heights by {:.1} m rms, and by more than {:.1} m at 1 % of the samples (wanted: {:.1} m); a smaller part of the terrain is resampled more finely, and a file in a metric system is not resampled",
             e.rms_m, e.p99_m, request.max_error_p99_m
         );
         let warning = Warning::new(WarningKind::Inexact, text).with("rms_m", e.rms_m).with("p99_m", e.p99_m);

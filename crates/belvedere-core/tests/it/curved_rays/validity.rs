@@ -370,7 +370,8 @@ fn a_viewpoint_past_a_bend_plane_through_a_line_is_moved_back_square_to_it() {
         };
         assert!((past - 10.0).abs() < 1e-9, "{past}");
         assert!((to.x - x).abs() < 1e-9 && (to.z - 5.0).abs() < 1e-9 && to.y <= 100.0, "{to}");
-        healed_or_later(&turn, &Remedy::MovePoint { name: "viewpoint", to }, &error(&[turn]));
+        let remedy = Remedy::MovePoint { name: "viewpoint", to };
+        new(&[healed(&turn, &remedy)]).unwrap_or_else(|again| panic!("{}\nbut then: {again}", error(&[turn])));
     }
 }
 
