@@ -1,15 +1,10 @@
 //! Outputs: checked before the work, all of them together; `-o -` is standard output.
 
-use crate::report::Context;
+use crate::report::{Context, is_stdout};
 use anyhow::ensure;
 use belvedere::output;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-
-/// Whether an output is standard output.
-pub(crate) fn is_stdout(path: &Path) -> bool {
-    path == Path::new("-")
-}
 
 /// The file of an output; `None` if it is left out or standard output.
 pub(crate) fn file(out: Option<&PathBuf>) -> Option<&PathBuf> {

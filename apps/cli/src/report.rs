@@ -1,7 +1,6 @@
 //! Output for the user: one line per failure, warnings, progress, results.
 
 use crate::common_args::Common;
-use crate::outputs::is_stdout;
 use crate::timings::Timings;
 use belvedere::scene::Progress;
 use belvedere::{BelvedereError, Needs, OpenOptions, Session, Trust, Warning, trust};
@@ -20,6 +19,11 @@ const QUIET_FOR: Duration = Duration::from_millis(500);
 /// Prints `belvedere: text` on standard error; ignores a closed pipe.
 pub(crate) fn complain(text: &str) {
     let _ = writeln!(std::io::stderr(), "belvedere: {}", escaped(text));
+}
+
+/// Whether an output is standard output.
+pub(crate) fn is_stdout(path: &Path) -> bool {
+    path == Path::new("-")
 }
 
 /// An error as one line.
