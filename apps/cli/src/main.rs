@@ -58,7 +58,7 @@ fn broken(panic: &(dyn std::any::Any + Send)) -> ExitCode {
 fn run(cli: Cli) -> ExitCode {
     let context = Context::new(cli.common, cli.verb.makes_many_pictures());
     let verb = cli.verb.name();
-    match verbs::run(cli.verb, &context).and_then(|goal| context.timings.write(verb, &context).map(|()| goal)) {
+    match verbs::run(cli.verb, &context).and_then(|goal| context.timings.write(verb, &context.common).map(|()| goal)) {
         Ok(goal) => {
             context.finish();
             if goal.is_missed() && context.common.strict { ExitCode::from(1) } else { ExitCode::SUCCESS }

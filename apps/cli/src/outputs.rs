@@ -1,6 +1,6 @@
 //! Outputs: checked before the work, all of them together; `-o -` is standard output.
 
-use crate::report::Context;
+use crate::report::{Context, is_stdout};
 use anyhow::ensure;
 use belvedere::output;
 use std::io::{IsTerminal, Write};
@@ -27,11 +27,6 @@ pub(crate) fn named(path: &Path, endings: &[&str], what: &str) -> anyhow::Result
 /// The same for pictures.
 pub(crate) fn png_named(path: &Path) -> anyhow::Result<()> {
     named(path, &["png"], "pictures are written as PNG")
-}
-
-/// Whether an output is standard output.
-pub(crate) fn is_stdout(path: &Path) -> bool {
-    path == Path::new("-")
 }
 
 /// The file of an output; `None` if it is left out or standard output.

@@ -1,8 +1,8 @@
 //! `preset`: its arguments, and what it says.
 
 use crate::goal::Goal;
-use crate::outputs::{self, is_stdout};
-use crate::report::{Context, done, print};
+use crate::outputs;
+use crate::report::{Context, done, is_stdout, print};
 use belvedere::core::presets::PresetDocument;
 use belvedere::core::presets::edit::{PresetChange, PresetOperation};
 use belvedere::io::png;

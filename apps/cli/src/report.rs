@@ -1,7 +1,6 @@
 //! Output for the user: one line per failure, warnings, progress, results.
 
 use crate::common_args::Common;
-use crate::outputs::is_stdout;
 use crate::timings::Timings;
 use belvedere::core::{PinholeError, plain};
 use belvedere::scene::Progress;
@@ -28,6 +27,11 @@ pub(crate) fn complain(text: &str) {
 /// Prints an error, of at most [`LONGEST`] characters.
 pub(crate) fn fail(text: &str) {
     complain(&plain::shortened(&plain::escaped(text), LONGEST));
+}
+
+/// Whether an output is standard output.
+pub(crate) fn is_stdout(path: &Path) -> bool {
+    path == Path::new("-")
 }
 
 /// An error as one line.

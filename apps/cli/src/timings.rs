@@ -1,6 +1,6 @@
 //! `--timings`: how long the steps of a command took. Records of pictures hold no times, so that they are the same in every run.
 
-use crate::report::Context;
+use crate::common_args::Common;
 use belvedere::output;
 use serde_json::{Map, Value, json};
 use std::sync::Mutex;
@@ -34,11 +34,11 @@ impl Timings {
     }
 
     /// Writes the file of `--timings`, if it is asked for.
-    pub(crate) fn write(&self, verb: &str, context: &Context) -> anyhow::Result<()> {
-        let Some(path) = &context.common.timings else { return Ok(()) };
+    pub(crate) fn write(&self, verb: &str, common: &Common) -> anyhow::Result<()> {
+        let Some(path) = &common.timings else { return Ok(()) };
         let parts = self.parts.lock().map(|parts| parts.clone()).unwrap_or_default();
         let total_ms = 1e3 * self.began.elapsed().as_secs_f64();
         let text = output::pretty(&json!({ "verb": verb, "total_ms": total_ms, "parts": parts }))?;
-        Ok(output::write_text(path, &text, context.common.overwrite)?)
+        Ok(output::write_text(path, &text, common.overwrite)?)
     }
 }

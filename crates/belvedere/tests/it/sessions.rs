@@ -85,8 +85,8 @@ fn the_record_of_a_picture_is_of_what_was_read() {
         inputs.iter().map(|i| (i.path.as_path(), i.bytes, i.sha256.as_str())).collect();
     let hash = |text: &str| belvedere::io::sha256(text.as_bytes());
     let [of_scene, of_dem] = [hash(text), hash(grid)];
-    let dem = dem.canonicalize().unwrap();
-    assert_eq!(found, [(&*scene, text.len() as u64, &*of_scene), (&*dem, grid.len() as u64, &*of_dem)]);
+    let [scene, dem] = ["s.toml", "dem.asc"].map(Path::new);
+    assert_eq!(found, [(scene, text.len() as u64, &*of_scene), (dem, grid.len() as u64, &*of_dem)]);
 }
 
 #[test]
