@@ -275,7 +275,7 @@ fn reveal_one(request: &TargetRequest, files: &RevealFiles, context: &Context) -
 }
 
 fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> {
-    crate::look_args::for_models(&args)?;
+    crate::for_models::check(&args)?;
     let out = RevealFiles { out: args.out, before: args.before, report: args.report, scene: args.scene };
     let inputs = args.features.iter().chain([&args.dem]).map(PathBuf::from);
     let inputs: Vec<PathBuf> = inputs.chain(args.rivers.iter().chain(&args.drape).cloned()).collect();
