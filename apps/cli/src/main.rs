@@ -7,6 +7,7 @@ mod city;
 mod common_args;
 mod drafts;
 mod draw_args;
+mod for_models;
 mod goal;
 mod ground_args;
 mod kinds;

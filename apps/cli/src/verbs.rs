@@ -300,7 +300,7 @@ fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> 
     let files: Vec<PathBuf> = [&args.dem].into_iter().chain(&args.features).map(PathBuf::from).collect();
     let models = args.see.is_some() || hold_a_city(&files);
     if models {
-        crate::look_args::for_models(&args)?;
+        crate::for_models::check(&args)?;
     }
     let picture = args.out;
     let to_file = if is_stdout(&picture) { PathBuf::new() } else { picture.clone() };
