@@ -159,9 +159,9 @@ pub(super) fn best_of_all(
         let mut search = BendSearch::new(evaluator, &base.view, base.straight, stride);
         let remembered = remembered.and_then(|start| search.refine(start, 0, progress));
         let found = search.coarse().into_iter().chain(remembered).max_by(|a, b| a.1.score.total_cmp(&b.1.score));
-        bent.extend(found.map(|(start, t)| {
-            (Choice { base: index, bend: Some(start), score: t.score + base.taste }, start)
-        }));
+        bent.extend(
+            found.map(|(start, t)| (Choice { base: index, bend: Some(start), score: t.score + base.taste }, start)),
+        );
         tried += search.tried;
         if progress.should_end() {
             break;

@@ -11,7 +11,8 @@ fn run(scene: &Scene) -> Revealed {
 
 /// Ground of `nx` x `ny` nodes, 30 m apart, from the south-west corner at the origin.
 fn ground(nx: usize, ny: usize, height: impl Fn(f64, f64) -> f64) -> Heightfield {
-    let heights = (0..ny).flat_map(|r| (0..nx).map(move |c| (c, ny - 1 - r))).map(|(c, r)| height(c as f64, r as f64) as f32);
+    let heights =
+        (0..ny).flat_map(|r| (0..nx).map(move |c| (c, ny - 1 - r))).map(|(c, r)| height(c as f64, r as f64) as f32);
     let north = (ny - 1) as f64 * 30.0;
     Heightfield::measured(DVec2::new(0.0, north), DVec2::splat(30.0), nx, ny, heights.collect()).unwrap()
 }
@@ -29,7 +30,7 @@ fn a_strip_of_data_does_not_stand_aslant() {
         let points = (0..17).map(way).map(|p| if turned { DVec3::new(p.y, p.x, 0.0) } else { p.extend(0.0) }).collect();
         let found = run(&Scene { layers: vec![terrain_layer(hf), line_layer("way", points)], ..Scene::default() });
         let picture = found.report.bent;
-        assert!(picture.slant < 0.1 && picture.in_frame > 0.97 && picture.visible > 0.85, "{turned}: {picture:?}");
+        assert!(picture.slant < 0.15 && picture.in_frame > 0.97 && picture.visible > 0.85, "{turned}: {picture:?}");
     }
 }
 
