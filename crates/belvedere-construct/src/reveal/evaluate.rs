@@ -248,6 +248,9 @@ fn rise(nodes: &[(f64, f64)]) -> f64 {
     let (at, height) = (mean(&|n| Some(n.0)), mean(&|n| Some(n.1)));
     let depth = 4.0 * mean(&|n| Some((n.0 - at).abs()));
     let spread = mean(&|n| Some((n.1 - height).powi(2))).sqrt();
+    if !nodes.iter().any(|n| n.0 > at) {
+        return 0.0;
+    }
     let [near, far] = [false, true].map(|beyond| mean(&|n| ((n.0 > at) == beyond).then_some(n.1)));
     (far - near) / spread.max(0.01 * depth).max(1e-9)
 }
