@@ -27,7 +27,7 @@ pub(crate) struct Bookmark {
 }
 
 /// Shows the bar.
-pub(crate) fn bar(ui: &mut Ui, model: &Model, recent: &[PathBuf], bookmarks: &[Bookmark]) -> Option<Choice> {
+pub(crate) fn bar(ui: &mut Ui, model: &mut Model, recent: &[PathBuf], bookmarks: &[Bookmark]) -> Option<Choice> {
     let mut choice = None;
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| {
@@ -58,9 +58,12 @@ pub(crate) fn bar(ui: &mut Ui, model: &Model, recent: &[PathBuf], bookmarks: &[B
             if ui.button("Save as…").clicked() {
                 choice = Some(Choice::Command(Command::SaveAs));
             }
-            ui.separator();
-            if ui.button("Quit").clicked() {
-                choice = Some(Choice::Quit);
+            // A page is closed by its browser, which asks the same question.
+            if cfg!(not(target_family = "wasm")) {
+                ui.separator();
+                if ui.button("Quit").clicked() {
+                    choice = Some(Choice::Quit);
+                }
             }
         });
         ui.menu_button("Edit", |ui| {
@@ -98,6 +101,9 @@ pub(crate) fn bar(ui: &mut Ui, model: &Model, recent: &[PathBuf], bookmarks: &[B
         });
         if ui.button("Help").clicked() {
             choice = Some(Choice::Command(Command::Help));
+        }
+        if ui.ctx().content_rect().width() >= 600.0 {
+            ui.toggle_value(&mut model.look.panel, "Panel").on_hover_text("P");
         }
         let title = &model.document().title;
         let state = if model.editor.is_changed() { "changed" } else { "" };

@@ -54,7 +54,7 @@ impl Panels {
             }
         });
         ui.separator();
-        if model.shown.is_none() && model.opening.is_some() {
+        if model.is_opening() {
             ui.weak("opening");
             return;
         }
