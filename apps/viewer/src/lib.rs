@@ -18,6 +18,7 @@ mod wake;
 mod widgets;
 #[cfg(not(target_family = "wasm"))]
 mod window;
+mod words;
 
 #[cfg(target_family = "wasm")]
 pub use browser::Application;

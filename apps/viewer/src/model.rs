@@ -139,6 +139,8 @@ pub(crate) struct Model {
     /// Progress of opening files, in words; nothing is drawn before the first picture.
     pub(crate) opening: Option<String>,
     before: Option<Before>,
+    /// The document whose picture was given up.
+    stopped: Option<Arc<Document>>,
     /// Whether the scene of before has come back since a new one could not be drawn.
     pub(crate) came_back: bool,
 }
@@ -171,6 +173,7 @@ impl Model {
             system_dialogs: false,
             opening: None,
             before: None,
+            stopped: None,
             came_back: false,
         }
     }
@@ -251,6 +254,11 @@ impl Model {
         });
     }
 
+    /// Size of the picture on the screen, pixels.
+    pub(crate) fn screen_size(&self) -> Option<[u32; 2]> {
+        self.image()
+    }
+
     /// The document's frame on the picture, as shares of its width and height about the middle; more than 1 where it is cut off.
     pub(crate) fn frame_shares(&self) -> Option<[f64; 2]> {
         let image = self.image()?;
@@ -309,6 +317,34 @@ impl Model {
     /// Time for which the picture at rest has been in work, seconds; `None` if none is in work.
     pub(crate) fn works_since(&self) -> Option<f64> {
         (self.waiting == Some(Pace::Resting)).then(|| self.changed.elapsed().as_secs_f64())
+    }
+
+    /// What the picture at rest is at, and its share done, 0..=1.
+    pub(crate) fn progress(&self) -> Option<(String, f64)> {
+        self.painter.progress()
+    }
+
+    /// Gives up the picture at rest that is in work; the last one stays.
+    pub(crate) fn stop(&mut self) {
+        if self.waiting == Some(Pace::Resting) {
+            self.painter.cancel();
+            self.waiting = None;
+            self.stopped = self.ordered.as_ref().map(|ordered| ordered.document.clone());
+            if let Some(before) = self.before.take() {
+                self.come_back(before);
+            }
+        }
+    }
+
+    /// Whether the picture of the current document was given up.
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stopped.as_ref().is_some_and(|document| Arc::ptr_eq(document, self.document())) && self.waiting.is_none()
+    }
+
+    /// Orders the picture that was given up.
+    pub(crate) fn draw_again(&mut self) {
+        self.stopped = None;
+        self.ordered = None;
     }
 
     /// Id of the layer that the picture shows at a position, given as shares of its width and height.
@@ -438,12 +474,14 @@ impl Model {
                 }
                 self.waiting = None;
                 if self.shown.is_none() {
+                    // The words of its file, since that is where it can be mended.
                     self.notices.error(reason.clone());
                     if let Some(before) = self.before.take() {
                         return self.come_back(before);
                     }
                 }
-                self.violated = Some(reason);
+                let own: Vec<&str> = document.layer.iter().map(LayerDoc::id).collect();
+                self.violated = Some(crate::words::in_window_words(&reason, &own));
             }
         }
     }

@@ -25,6 +25,9 @@ pub(crate) struct PictureView {
     textures: [Option<TextureHandle>; 2],
     of: u64,
     hand: Hand,
+    /// Middle of the part that nothing covers, and of its upper edge, in the window.
+    pub(crate) middle: Pos2,
+    pub(crate) middle_top: Pos2,
     /// The clicked point and the id of its layer.
     pub(crate) picked: Option<(DVec3, String)>,
 }
@@ -35,6 +38,7 @@ impl PictureView {
     /// * `free`: the part of it that no menu and no sheet covers, where words are written.
     pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model, free: Rect) {
         let rect = ui.available_rect_before_wrap();
+        (self.middle, self.middle_top) = (free.center(), free.center_top());
         let response = ui.interact(rect, ui.scope_id().with("picture"), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Picture"));
         self.hand.steer(ui, &response, rect, model);
@@ -146,13 +150,8 @@ impl PictureView {
             label(painter, free.right_bottom() + vec2(-8.0, -8.0), Align2::RIGHT_BOTTOM, "bent view");
         }
         let mut top = free.center_top() + vec2(0.0, 8.0);
-        if let Some(opening) = &model.opening {
-            label(painter, top, Align2::CENTER_TOP, opening);
-            top.y += 26.0;
-        }
-        if let Some(since) = model.works_since().filter(|since| *since > PATIENT) {
-            label(painter, top, Align2::CENTER_TOP, &format!("working, {since:.0} s"));
-            top.y += 26.0;
+        if model.opening.is_some() || model.works_since().is_some_and(|since| since > PATIENT) || model.is_stopped() {
+            top.y += 54.0;
         }
         if let Some(waits) = shown.waits {
             label(painter, top, Align2::CENTER_TOP, waits);

@@ -1,9 +1,11 @@
 //! The application as a whole: opening, saving, kept state; panels around the picture.
 
+mod at_work;
 mod from_above;
 mod layout;
 mod opening;
 mod unsaved;
+mod welcome;
 
 use crate::builtin::BUILTIN;
 use crate::files;
@@ -59,6 +61,8 @@ struct Remembered {
     recent: Vec<PathBuf>,
     /// Bookmarks of each scene file.
     bookmarks: BTreeMap<PathBuf, Vec<Bookmark>>,
+    /// Whether the tour was taken or skipped.
+    toured: bool,
 }
 
 /// State of the window that the recovery file holds beside the document.
@@ -96,6 +100,7 @@ pub struct Viewer {
     /// Bookmarks of the scene that comes back if the new one cannot be drawn.
     bookmarks_before: Vec<Bookmark>,
     help: bool,
+    welcome: welcome::Welcome,
     /// Whether the sheet of a small screen is open.
     sheet: bool,
     times: Times,
@@ -141,6 +146,7 @@ impl Viewer {
             may_close: None,
             bookmarks_before: Vec::new(),
             help: false,
+            welcome: welcome::Welcome::default(),
             sheet: false,
             times: Times::default(),
         };
@@ -161,7 +167,7 @@ impl Viewer {
                 };
                 notes.push(format!("The last session did not end as it should; {what}."));
             }
-            Some(_) | None => {}
+            Some(_) | None => viewer.welcome.open = opening.files.is_empty(),
         }
         if !opening.files.is_empty() {
             viewer.open(opening.files.clone());
@@ -287,6 +293,8 @@ impl Viewer {
                     self.remember_bookmarks();
                 }
             }
+            Choice::Step(steps) => self.model.editor.go_to(steps),
+            Choice::Welcome => self.welcome.open = true,
             Choice::Quit => self.go_on_to(ctx, Next::Quit),
         }
     }
@@ -346,13 +354,15 @@ impl eframe::App for Viewer {
         {
             self.command(&ctx, command);
         }
-        self.panels.play(&ctx, &mut self.model);
+        self.panels.play(&ctx, &mut self.model, &self.bookmarks);
         if ctx.content_rect().width() < SMALL {
             self.small(ui);
         } else {
             self.large(ui);
         }
         self.overhead(&ctx);
+        self.welcome(&ctx);
+        self.at_work(&ctx);
         menu::help(&ctx, &mut self.help);
         self.model.notices.show(&ctx);
         self.question(&ctx);

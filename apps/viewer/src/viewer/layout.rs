@@ -25,7 +25,9 @@ impl Viewer {
         }
         if self.model.look.panel {
             let width = PANEL.min(PANEL_SHARE * ctx.content_rect().width());
-            Panel::left("panels").default_size(width).show(ui, |ui| self.panels.show(ui, &mut self.model));
+            Panel::left("panels")
+                .default_size(width)
+                .show(ui, |ui| self.panels.show(ui, &mut self.model, &self.bookmarks));
         }
         CentralPanel::no_frame().show(ui, |ui| {
             let free = ui.available_rect_before_wrap();
@@ -65,7 +67,7 @@ impl Viewer {
                 if self.sheet {
                     ui.allocate_ui(vec2(ui.available_width(), sheet - 12.0), |ui| {
                         ui.set_min_height(sheet - 12.0);
-                        self.panels.show(ui, &mut self.model);
+                        self.panels.show(ui, &mut self.model, &self.bookmarks);
                     });
                 }
             });

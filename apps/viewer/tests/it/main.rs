@@ -3,11 +3,14 @@
 mod authoring;
 mod controls;
 mod files;
+mod film;
+mod layers;
 mod layout;
 mod moving;
 mod screen;
 mod snapshots;
 mod unsaved;
+mod welcome;
 #[cfg(target_os = "linux")]
 mod window;
 

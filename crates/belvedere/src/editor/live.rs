@@ -264,11 +264,15 @@ impl LiveSession {
     /// The session, if it has the layers of a document.
     fn open(&mut self, document: &Document) -> Option<Session> {
         let (opened, session) = (self.opened.as_ref()?, self.session.as_ref()?);
-        let must_see: Vec<bool> = document.layer.iter().map(LayerDoc::must_see).collect();
+        let is_hidden = |layer: &LayerDoc| document.hidden.iter().any(|id| id == layer.id());
+        let must_see: Vec<bool> = document.layer.iter().map(|l| l.must_see() && !is_hidden(l)).collect();
         let layers = session.scene().layers.iter();
         let same = opened.crs == document.crs
             && opened.unit == document.unit
             && opened.representations == document.representations
+            && opened.hidden == document.hidden
+            && (document.hidden.is_empty()
+                || (opened.constructor == document.constructor && opened.animation == document.animation))
             && opened.layer.len() == document.layer.len()
             && session.scene().layers.len() == document.layer.len()
             && opened.layer.iter().zip(&document.layer).all(|(a, b)| a.with_must_see(b.must_see()) == *b);

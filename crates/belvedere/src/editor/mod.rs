@@ -4,6 +4,7 @@
 
 mod beside;
 mod camera;
+mod layers;
 mod live;
 mod object;
 mod painter;
@@ -14,6 +15,7 @@ mod thin;
 
 pub use beside::{THREADS, beside};
 pub use camera::{above_ground, frame_factor, framed, navigation, set_camera};
+pub use layers::{with_layer_renamed, without_layer};
 pub use live::{Judged, LiveSession, Order, Pace, Shown, Sides};
 pub use object::object_at;
 pub use painter::{Answer, Painter};

@@ -48,6 +48,8 @@ struct State {
     yielding: Option<Progress>,
     /// Whether a thread is working.
     at_work: bool,
+    /// What the work is at, and its share done, 0..=1.
+    at: Option<(String, f64)>,
 }
 
 impl Painter {
@@ -77,6 +79,18 @@ impl Painter {
                 let _ = self.outbox.send(Answer::Failed(document, reason));
             }
         }
+    }
+
+    /// Gives up the picture at rest that is being drawn or waits, and its judgement; there is no answer.
+    pub fn cancel(&mut self) {
+        let mut state = self.desk.state();
+        state.give_way();
+        state.order = None;
+    }
+
+    /// What the work is at, in words, and its share done, 0..=1; `None` while nothing tells.
+    pub fn progress(&self) -> Option<(String, f64)> {
+        self.desk.state().at.clone()
     }
 
     /// The next answer, if it has arrived.
@@ -129,7 +143,7 @@ enum Task {
 
 impl Desk {
     /// Performs tasks until there are none.
-    fn work(&self, outbox: &Sender<Answer>) {
+    fn work(self: &Arc<Self>, outbox: &Sender<Answer>) {
         while let Some((task, progress)) = self.next() {
             if let Some(answer) = self.perform(task, &progress) {
                 // A receiver that was dropped has withdrawn its orders, too.
@@ -139,9 +153,15 @@ impl Desk {
         }
     }
 
-    fn next(&self) -> Option<(Task, Progress)> {
+    fn next(self: &Arc<Self>) -> Option<(Task, Progress)> {
         let mut state = self.state();
-        let progress = Progress::silent();
+        let desk = Arc::downgrade(self);
+        let progress = Progress::new(move |stage, share| {
+            if let Some(desk) = desk.upgrade() {
+                desk.state().at = Some((stage.to_owned(), share));
+            }
+        });
+        state.at = None;
         let order = state.order.take();
         let rests = order.as_ref().is_none_or(|order| order.pace == Pace::Resting);
         let task = order.map(Task::Show).or_else(|| state.to_judge.take().map(Task::Judge));

@@ -27,6 +27,12 @@ pub fn step_name(before: &Document, after: &Document) -> String {
     if before.layer != after.layer {
         names.push(layers(&before.layer, &after.layer));
     }
+    if before.hidden != after.hidden {
+        let differs = |a: &Document, b: &Document| a.hidden.iter().find(|id| !b.hidden.contains(id)).cloned();
+        let (hid, shown) = (differs(after, before), differs(before, after));
+        let named = hid.map(|id| format!("hid {id}")).or(shown.map(|id| format!("showed {id}")));
+        names.extend(named.filter(|_| before.layer.len() == after.layer.len()));
+    }
     if before.constructor != after.constructor {
         names.push(constructor(before, after).to_owned());
     }
