@@ -1,5 +1,6 @@
 //! The application: each technique by hand. A thin shell over the facade's editor: panels edit one document, a painter draws it.
 
+mod address;
 #[cfg(target_family = "wasm")]
 mod browser;
 mod builtin;

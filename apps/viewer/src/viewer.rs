@@ -196,6 +196,27 @@ impl Viewer {
         self.model.is_judged()
     }
 
+    /// The view as the end of the page's address.
+    #[cfg(target_family = "wasm")]
+    pub(crate) fn view(&self) -> Option<String> {
+        crate::address::text_of(&self.model.document().camera)
+    }
+
+    /// Shows the view of an address; it counts as the scene's own, so nobody is asked to save it.
+    #[cfg(target_family = "wasm")]
+    pub(crate) fn go(&mut self, address: &str) {
+        let mut document = (**self.model.document()).clone();
+        if crate::address::put(address, &mut document.camera) {
+            let place = self.model.editor.place.clone();
+            if self.model.editor.is_changed() {
+                self.model.edit(|present| *present = document);
+            } else {
+                self.model.editor = Editor::new(document, place);
+            }
+            self.wake.call();
+        }
+    }
+
     /// Wakes the window; called by its workers.
     #[cfg(target_family = "wasm")]
     pub(crate) fn wake(&self) -> &Wake {

@@ -6,7 +6,7 @@ use crate::wake::Wake;
 use belvedere::editor::{Place, THREADS, beside};
 use belvedere::picture::PictureOptions;
 use belvedere::scene::{Progress, RenderOptions};
-use belvedere::scene_file;
+use belvedere::scene_file::{self, OverlayDoc};
 use eframe::egui::{
     self, Align2, Button, Color32, ColorImage, Context, Id, Image, TextureHandle, TextureOptions, Vec2, Window, vec2,
 };
@@ -48,6 +48,9 @@ const TOUR: [(&str, &str); 5] = [
     ),
 ];
 
+/// Number of a card, and the bytes of its picture.
+type Drawn = (usize, Vec<u8>);
+
 /// The welcome and its pictures.
 #[derive(Default)]
 pub(super) struct Welcome {
@@ -55,7 +58,7 @@ pub(super) struct Welcome {
     /// Step of the tour.
     pub(super) tour: Option<usize>,
     pictures: [Option<TextureHandle>; CARDS.len()],
-    drawing: Option<(Receiver<(usize, Vec<u8>)>, Progress)>,
+    drawing: Option<(Receiver<Drawn>, Progress)>,
     is_drawn: bool,
 }
 
@@ -120,6 +123,7 @@ fn picture(scene: usize, folder: Option<&Path>, progress: &Progress) -> Option<V
     let text = text.replace("builtin:massif?seed=7\"", "builtin:massif?seed=7&size=257\"");
     let mut document = scene_file::parse(Path::new("built-in.toml"), &text).ok()?.document;
     document.camera.image = PICTURE.map(|n| n as u32);
+    document.overlay = Some(OverlayDoc { mark: false, ..document.overlay.unwrap_or_default() });
     let session = Place::default().session(document, progress).ok()?;
     let quality = RenderOptions { samples: 4, ..RenderOptions::default() };
     let options = PictureOptions { quality, progress: progress.clone(), ..PictureOptions::default() };
