@@ -59,7 +59,7 @@ impl Display {
     }
 
     fn click(&self, x: u32, y: u32) {
-        self.pointer(&["mousemove", &x.to_string(), &y.to_string(), "sleep", "0.2", "click", "1", "sleep", "0.4"]);
+        self.pointer(&["mousemove", &x.to_string(), &y.to_string(), "sleep", "0.4", "click", "1", "sleep", "1.2"]);
     }
 
     fn drag(&self, [x0, y0]: [u32; 2], [x1, y1]: [u32; 2]) {
