@@ -119,6 +119,7 @@ fn a_preset_is_made_in_a_window_saved_and_drawn_and_a_killed_window_comes_back()
     std::fs::write(place.path("scene.toml"), SCENE).expect("written");
     let mut program = window(&place, &display, &["scene.toml"]);
     written(&place, "open", |state| state["document"]["layer"][0]["id"] == "ground");
+    std::thread::sleep(Duration::from_secs(10)); // The panel can be used from the first picture on.
     let mut operations = 0;
     let mut click = |x, y| {
         operations += 1;
