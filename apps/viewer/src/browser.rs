@@ -52,6 +52,23 @@ impl Application {
         belvedere::output::document_toml(viewer.document()).ok()
     }
 
+    /// Whether the scene has changes that are in no file.
+    pub fn changed(&self) -> bool {
+        self.runner.app_mut::<Viewer>().is_some_and(|viewer| viewer.is_changed())
+    }
+
+    /// The view as the end of the page's address.
+    pub fn view(&self) -> Option<String> {
+        self.runner.app_mut::<Viewer>()?.view()
+    }
+
+    /// Shows the view of an address; nothing happens if it names none.
+    pub fn go(&self, address: &str) {
+        if let Some(mut viewer) = self.runner.app_mut::<Viewer>() {
+            viewer.go(address);
+        }
+    }
+
     /// Message of the panic that stopped the application.
     pub fn failure(&self) -> Option<String> {
         self.runner.panic_summary().map(|summary| summary.message())

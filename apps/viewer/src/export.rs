@@ -1,12 +1,13 @@
 //! Export of a picture of any size, an animation or a report: in the background, with progress and cancellation.
 
 use crate::files::Choosing;
+use crate::menu::Bookmark;
 use crate::model::Model;
 use crate::wake::Wake;
 use belvedere::editor::{Place, beside};
 use belvedere::picture::PictureOptions;
 use belvedere::scene::Progress;
-use belvedere::scene_file::{AnimationDoc, Document, SweepDoc, TurntableDoc};
+use belvedere::scene_file::{AnimationDoc, Document, LayerDoc, PointDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{AnimateRequest, animate};
 use belvedere::verbs::measure::{MeasureOptions, measure};
 use belvedere::{BelvedereError, RendererChoice, output};
@@ -28,16 +29,33 @@ enum Film {
     Sweep,
     /// Once around.
     Turntable,
+    /// Along a line layer.
+    Route,
+    /// Through the bookmarks.
+    Bookmarks,
 }
 
 /// The panel and its running export.
-#[derive(Default)]
 pub(crate) struct Exporter {
     film: Film,
+    /// Duration, seconds, and frames per second; `None`: as the motion needs.
+    seconds: Option<f64>,
+    rate: f64,
+    /// Id of the line layer that is followed.
+    route: Option<String>,
     job: Option<Job>,
     /// What the user chooses an output for, and the open question.
     chosen: Option<(Want, Choosing)>,
 }
+
+impl Default for Exporter {
+    fn default() -> Self {
+        Self { film: Film::default(), seconds: Some(10.0), rate: RATE, route: None, job: None, chosen: None }
+    }
+}
+
+/// Usual frames per second.
+const RATE: f64 = 25.0;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Want {
@@ -59,7 +77,7 @@ struct Job {
 
 impl Exporter {
     /// Shows the panel.
-    pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model) {
+    pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model, bookmarks: &[Bookmark]) {
         let mut image = model.document().camera.image;
         ui.horizontal(|ui| {
             let label = ui.label("Width, pixels");
@@ -71,33 +89,108 @@ impl Exporter {
             model.edit_on(|document| document.camera.image = image);
         }
         let idle = self.job.is_none() && self.chosen.is_none();
+        if let Some([w, h]) = model.screen_size().filter(|size| *size != image)
+            && ui.button("As the window").on_hover_text(format!("{w} x {h} pixels, the shape of the window")).clicked()
+        {
+            model.edit(|document| document.camera.image = [w, h]);
+        }
+        ui.separator();
         ui.add_enabled_ui(idle, |ui| {
             if ui.button("Export picture…").clicked() {
                 self.ask(model, Want::Picture, "picture.png");
             }
             ui.vertical(|ui| {
-                let film = ui.add_enabled(FILMS, Button::new("Export animation…"));
-                let film =
-                    film.on_disabled_hover_text("in a browser there are no films; save the scene and animate it");
-                if film.clicked() {
-                    self.ask(model, Want::Film, "animation.mp4");
+                let why = self.film_lacks(model, bookmarks);
+                let film = ui.add_enabled(FILMS && why.is_none(), Button::new("Export film…"));
+                let why = if FILMS { why.unwrap_or_default() } else { NO_FILMS };
+                if film.on_disabled_hover_text(why).clicked() {
+                    self.ask(model, Want::Film, "film.mp4");
                 }
-                let name = |film: Film| match film {
-                    Film::Scene => "as the scene says",
-                    Film::Sweep => "viewing angle 10 to 80 degrees",
-                    Film::Turntable => "once around",
-                };
-                ComboBox::from_label("Animation").selected_text(name(self.film)).show_ui(ui, |ui| {
-                    for one in [Film::Scene, Film::Sweep, Film::Turntable] {
-                        ui.selectable_value(&mut self.film, one, name(one));
-                    }
-                });
+                self.motion(ui, model);
             });
             if ui.button("Export report…").on_hover_text("what the picture shows of what must be seen").clicked() {
                 self.ask(model, Want::Report, "report.json");
             }
         });
         self.follow(ui);
+    }
+
+    /// Why the chosen film cannot be made.
+    fn film_lacks(&self, model: &Model, bookmarks: &[Bookmark]) -> Option<&'static str> {
+        match self.film {
+            Film::Scene if model.document().animation.is_none() => Some("the scene has no motion; choose another"),
+            Film::Route if lines(model).is_empty() => Some("there is no route"),
+            Film::Bookmarks if bookmarks.len() < 2 => Some("it needs two bookmarks at least: press B at each place"),
+            _ => None,
+        }
+    }
+
+    /// Motion, duration and rate of a film.
+    fn motion(&mut self, ui: &mut Ui, model: &Model) {
+        let name = |film: Film| match film {
+            Film::Scene => "motion of the scene",
+            Film::Sweep => "viewing angle 10 to 80 degrees",
+            Film::Turntable => "once around",
+            Film::Route => "along a route",
+            Film::Bookmarks => "past the bookmarks",
+        };
+        ComboBox::from_label("Film").selected_text(name(self.film)).show_ui(ui, |ui| {
+            for one in [Film::Scene, Film::Route, Film::Bookmarks, Film::Sweep, Film::Turntable] {
+                ui.selectable_value(&mut self.film, one, name(one));
+            }
+        });
+        let lines = lines(model);
+        if self.film == Film::Route && !lines.is_empty() {
+            let route = self.route.take().filter(|route| lines.contains(route)).unwrap_or_else(|| lines[0].clone());
+            let route = self.route.insert(route);
+            ComboBox::from_label("Route").selected_text(route.as_str()).show_ui(ui, |ui| {
+                for line in &lines {
+                    ui.selectable_value(route, line.clone(), line);
+                }
+            });
+        }
+        let mut own = self.seconds.is_some();
+        let words = "otherwise as long as its motion says";
+        if ui.checkbox(&mut own, "duration of the film").on_hover_text(words).changed() {
+            self.seconds = own.then_some(10.0);
+        }
+        ui.horizontal(|ui| {
+            if let Some(seconds) = &mut self.seconds {
+                let label = ui.label("Seconds");
+                ui.add(DragValue::new(seconds).speed(0.1).range(0.1..=3600.0).max_decimals(1)).labelled_by(label.id);
+            }
+            let label = ui.label("Frames per second");
+            ui.add(DragValue::new(&mut self.rate).speed(0.2).range(1.0..=120.0).max_decimals(2)).labelled_by(label.id);
+        });
+        if let Some(seconds) = self.seconds {
+            ui.weak(format!("{} frames", frames(seconds, self.rate)));
+        }
+    }
+
+    /// The chosen motion as the scene file states it; bookmarks are written to a file beside the film.
+    fn animation(&self, path: &Path, bookmarks: &[Bookmark]) -> Result<AnimationDoc, String> {
+        let fps = (FILMS && (self.film != Film::Scene || self.rate != RATE)).then_some(self.rate);
+        let frames = self.seconds.map(|seconds| frames(seconds, self.rate));
+        let plain = AnimationDoc { fps, frames, ..AnimationDoc::default() };
+        Ok(match self.film {
+            Film::Scene => plain,
+            Film::Sweep => {
+                // One step of half a degree per frame, unless the number of frames is stated.
+                let step = frames.map_or(0.5, |frames| 70.0 / f64::from(frames.max(2) - 1));
+                AnimationDoc { sweep: Some(SweepDoc { phi_deg: [10.0, 80.0, step] }), frames: None, ..plain }
+            }
+            Film::Turntable => {
+                let deg_per_s = self.seconds.map_or(36.0, |seconds| 360.0 / seconds);
+                AnimationDoc { turntable: Some(TurntableDoc { deg_per_s }), ..plain }
+            }
+            Film::Route => AnimationDoc { along: self.route.clone(), ..plain },
+            Film::Bookmarks => {
+                let file = path.with_extension("cameras.json");
+                let text = cameras(bookmarks).to_string();
+                output::write_text(&file, &text, true).map_err(|e| e.to_string())?;
+                AnimationDoc { camera: Some(file.display().to_string()), ..plain }
+            }
+        })
     }
 
     fn ask(&mut self, model: &Model, want: Want, name: &str) {
@@ -122,14 +215,14 @@ impl Exporter {
     }
 
     /// Takes the chosen file and the result of the running export, whatever panel is shown.
-    pub(crate) fn poll(&mut self, ctx: &Context, model: &mut Model) {
+    pub(crate) fn poll(&mut self, ctx: &Context, model: &mut Model, bookmarks: &[Bookmark]) {
         if let Some((want, choosing)) = &mut self.chosen
             && let Some(answer) = choosing.answer(ctx)
         {
             let want = *want;
             self.chosen = None;
             match answer {
-                Ok(paths) => paths.iter().take(1).for_each(|path| self.begin(want, path, model, ctx)),
+                Ok(paths) => paths.iter().take(1).for_each(|path| self.begin(want, path, (model, bookmarks), ctx)),
                 Err(reason) => model.notices.error(reason),
             }
         }
@@ -151,17 +244,19 @@ impl Exporter {
         self.job = None;
     }
 
-    fn begin(&mut self, want: Want, path: &Path, model: &mut Model, ctx: &Context) {
-        let (document, place) = ((**model.document()).clone(), model.editor.place.clone());
-        let animation = match self.film {
-            Film::Scene => AnimationDoc::default(),
-            Film::Sweep => {
-                AnimationDoc { sweep: Some(SweepDoc { phi_deg: [10.0, 80.0, 0.5] }), ..AnimationDoc::default() }
-            }
-            Film::Turntable => {
-                AnimationDoc { turntable: Some(TurntableDoc { deg_per_s: 36.0 }), ..AnimationDoc::default() }
-            }
+    fn begin(&mut self, want: Want, path: &Path, (model, bookmarks): (&mut Model, &[Bookmark]), ctx: &Context) {
+        let (document, mut place) = ((**model.document()).clone(), model.editor.place.clone());
+        let animation = match want {
+            Want::Film => self.animation(path, bookmarks),
+            Want::Picture | Want::Report => Ok(AnimationDoc::default()),
         };
+        let animation = match animation {
+            Ok(animation) => animation,
+            Err(reason) => return model.notices.error(reason),
+        };
+        if animation.camera.is_some() {
+            place.roots.allowed.extend(path.parent().map(Path::to_owned));
+        }
         let at = Arc::new(Mutex::new((String::new(), 0.0)));
         let told = at.clone();
         let progress = Progress::new(move |stage, share| {
@@ -187,6 +282,30 @@ impl Exporter {
         }
         self.job = Some(Job { name, progress, at, last: Default::default(), done });
     }
+}
+
+const NO_FILMS: &str = "in a browser there are no films; save the scene and make the film with the command line";
+
+/// Number of frames of a duration in seconds.
+fn frames(seconds: f64, rate: f64) -> u32 {
+    (seconds * rate).round().max(1.0) as u32
+}
+
+/// Ids of the layers that a film can follow.
+fn lines(model: &Model) -> Vec<String> {
+    model.layer_ids(|layer| matches!(layer, LayerDoc::Line(_)))
+}
+
+/// The cameras of the bookmarks as a file of saved cameras states them; those that are given by a rule are left out.
+fn cameras(bookmarks: &[Bookmark]) -> serde_json::Value {
+    let one = |bookmark: &Bookmark| {
+        let camera = &bookmark.camera;
+        let (PointDoc::Scene(eye), Some(PointDoc::Scene(look_at))) = (&camera.eye, &camera.look_at) else {
+            return None;
+        };
+        Some(serde_json::json!({ "eye": eye, "look_at": look_at, "up": camera.up, "fov_y_deg": camera.fov_y_deg }))
+    };
+    bookmarks.iter().filter_map(one).collect()
 }
 
 fn make(

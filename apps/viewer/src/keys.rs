@@ -18,7 +18,7 @@ pub(crate) enum Command {
 }
 
 /// Keys and what they do, for the help window.
-pub(crate) const KEYS: [(&str, &str); 14] = [
+pub(crate) const KEYS: [(&str, &str); 15] = [
     ("Drag, arrow keys", "move over the ground (tool Orbit: turn)"),
     ("Right drag, Shift + arrow keys", "turn and tilt"),
     ("Wheel, pinch, + and -", "nearer and farther"),
@@ -29,6 +29,7 @@ pub(crate) const KEYS: [(&str, &str); 14] = [
     ("F", "show all"),
     ("B", "bookmark"),
     ("T", "renderer and times"),
+    ("P", "panel beside the picture"),
     ("Ctrl O, Ctrl S, Ctrl Shift S", "open, save, save as"),
     ("Ctrl Z, Ctrl Shift Z or Ctrl Y", "undo, redo"),
     ("Tab, Enter", "next control, press it"),
@@ -76,6 +77,7 @@ pub(crate) fn read(ctx: &Context, model: &mut Model) -> Option<Command> {
     look.inset ^= pressed(Key::I);
     look.overhead ^= pressed(Key::O);
     look.statistics ^= pressed(Key::T);
+    look.panel ^= pressed(Key::P);
     if pressed(Key::F) {
         return Some(Command::ShowAll);
     }

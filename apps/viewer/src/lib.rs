@@ -1,5 +1,6 @@
 //! The application: each technique by hand. A thin shell over the facade's editor: panels edit one document, a painter draws it.
 
+mod address;
 #[cfg(target_family = "wasm")]
 mod browser;
 mod builtin;
@@ -19,6 +20,7 @@ mod wake;
 mod widgets;
 #[cfg(not(target_family = "wasm"))]
 mod window;
+mod words;
 
 #[cfg(target_family = "wasm")]
 pub use browser::Application;

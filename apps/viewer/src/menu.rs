@@ -4,7 +4,7 @@ use crate::builtin::BUILTIN;
 use crate::keys::{Command, KEYS};
 use crate::model::Model;
 use belvedere::scene_file::CameraDoc;
-use eframe::egui::{Context, Grid, MenuBar, Ui, Window};
+use eframe::egui::{Context, Grid, MenuBar, RichText, ScrollArea, Ui, Window};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -16,6 +16,9 @@ pub(crate) enum Choice {
     GoTo(usize),
     /// Removes a bookmark.
     Forget(usize),
+    /// Undoes or redoes to that number of steps.
+    Step(usize),
+    Welcome,
     Quit,
 }
 
@@ -27,7 +30,7 @@ pub(crate) struct Bookmark {
 }
 
 /// Shows the bar.
-pub(crate) fn bar(ui: &mut Ui, model: &Model, recent: &[PathBuf], bookmarks: &[Bookmark]) -> Option<Choice> {
+pub(crate) fn bar(ui: &mut Ui, model: &mut Model, recent: &[PathBuf], bookmarks: &[Bookmark]) -> Option<Choice> {
     let mut choice = None;
     MenuBar::new().ui(ui, |ui| {
         ui.menu_button("File", |ui| {
@@ -58,9 +61,12 @@ pub(crate) fn bar(ui: &mut Ui, model: &Model, recent: &[PathBuf], bookmarks: &[B
             if ui.button("Save as…").clicked() {
                 choice = Some(Choice::Command(Command::SaveAs));
             }
-            ui.separator();
-            if ui.button("Quit").clicked() {
-                choice = Some(Choice::Quit);
+            // A page is closed by its browser, which asks the same question.
+            if cfg!(not(target_family = "wasm")) {
+                ui.separator();
+                if ui.button("Quit").clicked() {
+                    choice = Some(Choice::Quit);
+                }
             }
         });
         ui.menu_button("Edit", |ui| {
@@ -72,6 +78,11 @@ pub(crate) fn bar(ui: &mut Ui, model: &Model, recent: &[PathBuf], bookmarks: &[B
             if ui.add_enabled(model.editor.can_redo(), redo).clicked() {
                 choice = Some(Choice::Command(Command::Redo));
             }
+            ui.menu_button("Steps", |ui| {
+                if let Some(steps) = steps(ui, model) {
+                    choice = Some(Choice::Step(steps));
+                }
+            });
         });
         ui.menu_button("Places", |ui| {
             if ui.button("Show all").clicked() {
@@ -96,14 +107,42 @@ pub(crate) fn bar(ui: &mut Ui, model: &Model, recent: &[PathBuf], bookmarks: &[B
                 });
             });
         });
-        if ui.button("Help").clicked() {
-            choice = Some(Choice::Command(Command::Help));
+        ui.menu_button("Help", |ui| {
+            if ui.button("Keys and pointer").clicked() {
+                choice = Some(Choice::Command(Command::Help));
+            }
+            if ui.button("Welcome and examples").clicked() {
+                choice = Some(Choice::Welcome);
+            }
+        });
+        if ui.ctx().content_rect().width() >= 600.0 {
+            ui.toggle_value(&mut model.look.panel, "Panel").on_hover_text("P");
         }
         let title = &model.document().title;
         let state = if model.editor.is_changed() { "changed" } else { "" };
         ui.weak(format!("{title}  {state}"));
     });
     choice
+}
+
+/// The steps of undo, oldest first. Returns the number of steps to go to.
+fn steps(ui: &mut Ui, model: &Model) -> Option<usize> {
+    let (names, done) = model.editor.history();
+    let mut to = None;
+    ui.set_min_width(220.0);
+    ScrollArea::vertical().max_height(420.0).stick_to_bottom(true).show(ui, |ui| {
+        if ui.selectable_label(done == 0, "As it was opened").clicked() {
+            to = Some(0);
+        }
+        for (i, name) in names.iter().enumerate() {
+            let words = format!("{}. {name}", i + 1);
+            let text = if i < done { RichText::new(words) } else { RichText::new(words).weak() };
+            if ui.selectable_label(i + 1 == done, text).clicked() {
+                to = Some(i + 1);
+            }
+        }
+    });
+    to
 }
 
 /// The help window.

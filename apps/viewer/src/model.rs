@@ -1,13 +1,14 @@
 //! State of the application without its window: the document, the last pictures, and how they are viewed.
 
 use crate::notices::Notices;
-use belvedere::core::{DVec2, DVec3, Navigation};
+use belvedere::core::{Aabb, DVec2, DVec3, Navigation, Pinhole, Projection};
 use belvedere::editor::{
-    Answer, Editor, Judged, Order, Pace, Painter, Shown, Sides, above_ground, navigation, object_at, set_camera,
+    Answer, Editor, Judged, Order, Pace, Painter, Shown, Sides, above_ground, frame_factor, navigation, object_at,
+    set_camera,
 };
 use belvedere::scene::Frame;
 use belvedere::scene::Instant as Clock;
-use belvedere::scene_file::{ConstructorKind, Document, LayerDoc, StageDoc};
+use belvedere::scene_file::{CameraDoc, ConstructorKind, Document, LayerDoc, StageDoc};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -51,12 +52,14 @@ pub(crate) struct Look {
     /// Renderer and times.
     pub(crate) statistics: bool,
     pub(crate) tool: Tool,
+    /// The panel beside the picture.
+    pub(crate) panel: bool,
 }
 
 impl Default for Look {
     fn default() -> Self {
         let (compare, tool) = (Compare::default(), Tool::default());
-        Self { bent: true, compare, split: 0.5, inset: false, overhead: false, statistics: false, tool }
+        Self { bent: true, compare, split: 0.5, inset: false, overhead: false, statistics: false, tool, panel: true }
     }
 }
 
@@ -87,6 +90,14 @@ impl PartialEq for Wanted {
         let of = |wanted: &Self| (wanted.image, wanted.sides, wanted.bend, wanted.overhead);
         Arc::ptr_eq(&self.document, &other.document) && of(self) == of(other)
     }
+}
+
+/// What was there before a scene that has no picture yet.
+struct Before {
+    editor: Editor,
+    shown: Option<Box<Shown>>,
+    overhead: Option<(Frame, belvedere::core::View)>,
+    judged: Option<Box<Judged>>,
 }
 
 /// The application without its window.
@@ -127,6 +138,11 @@ pub(crate) struct Model {
     pub(crate) system_dialogs: bool,
     /// Progress of opening files, in words; nothing is drawn before the first picture.
     pub(crate) opening: Option<String>,
+    before: Option<Before>,
+    /// The document whose picture was given up.
+    stopped: Option<Arc<Document>>,
+    /// Whether the scene of before has come back since a new one could not be drawn.
+    pub(crate) came_back: bool,
 }
 
 impl Model {
@@ -156,6 +172,9 @@ impl Model {
             gesture: 0,
             system_dialogs: false,
             opening: None,
+            before: None,
+            stopped: None,
+            came_back: false,
         }
     }
 
@@ -179,18 +198,73 @@ impl Model {
         self.editor.edit_within(self.gesture, change);
     }
 
-    /// Another document in place of this one.
+    /// Another document in place of this one, which comes back if the other cannot be drawn.
     pub(crate) fn replace(&mut self, editor: Editor) {
-        self.editor = editor;
-        (self.shown, self.overhead, self.judged, self.violated) = (None, None, None, None);
-        self.ordered = None;
+        let editor = std::mem::replace(&mut self.editor, editor);
+        let (shown, overhead, judged) = (self.shown.take(), self.overhead.take(), self.judged.take());
+        // A scene that was never drawn is not worth coming back to.
+        if self.before.is_none() {
+            self.before = Some(Before { editor, shown, overhead, judged });
+        }
+        (self.violated, self.ordered) = (None, None);
+    }
+
+    /// Whether a new scene waits for its first picture; until then nothing edits it.
+    pub(crate) fn is_opening(&self) -> bool {
+        self.shown.is_none() && (self.opening.is_some() || self.before.is_some())
+    }
+
+    /// Takes the scene of before again.
+    fn come_back(&mut self, before: Before) {
+        self.editor = before.editor;
+        (self.shown, self.overhead, self.judged) = (before.shown, before.overhead, before.judged);
+        (self.violated, self.ordered) = (None, None);
+        self.pictures += 1;
+        self.came_back = true;
     }
 
     /// The current camera; `None` before the first picture.
     pub(crate) fn camera(&self) -> Option<Navigation> {
         let shown = self.shown.as_ref()?;
         let (written, resolved) = (&self.document().camera, &shown.session.resolved()?.camera);
-        Some(navigation(written, resolved, shown.session.view(), shown.session.scene(), self.image()?))
+        let image = self.image()?;
+        let factor = frame_factor(self.document(), image);
+        Some(navigation(written, resolved, shown.session.view(), shown.session.scene(), (image, factor)))
+    }
+
+    /// The current camera as a document has it; `None` before the first picture.
+    pub(crate) fn camera_doc(&self) -> Option<CameraDoc> {
+        let mut document = (**self.document()).clone();
+        set_camera(&mut document, &self.camera()?);
+        Some(document.camera)
+    }
+
+    /// Moves the camera so that a box fills the document's frame.
+    pub(crate) fn frame(&mut self, bounds: &Aabb) {
+        let document = self.document().clone();
+        let projection = match document.camera.ortho_height_m {
+            Some(height) => Projection::Orthographic { height },
+            None => Projection::Perspective { fov_y: document.camera.fov_y_deg.to_radians() },
+        };
+        let image = document.camera.image;
+        self.begin_gesture();
+        self.move_camera(|camera| {
+            let pinhole = Pinhole { image, projection, ..camera.pinhole.clone() };
+            Navigation { pinhole, target: camera.target }.framing(bounds)
+        });
+    }
+
+    /// Size of the picture on the screen, pixels.
+    pub(crate) fn screen_size(&self) -> Option<[u32; 2]> {
+        self.image()
+    }
+
+    /// The document's frame on the picture, as shares of its width and height about the middle; more than 1 where it is cut off.
+    pub(crate) fn frame_shares(&self) -> Option<[f64; 2]> {
+        let image = self.image()?;
+        let shape = |[w, h]: [u32; 2]| f64::from(w) / f64::from(h);
+        let height = 1.0 / frame_factor(self.document(), image);
+        Some([height * shape(self.document().camera.image) / shape(image), height])
     }
 
     /// Size of the picture that is shown, pixels.
@@ -243,6 +317,34 @@ impl Model {
     /// Time for which the picture at rest has been in work, seconds; `None` if none is in work.
     pub(crate) fn works_since(&self) -> Option<f64> {
         (self.waiting == Some(Pace::Resting)).then(|| self.changed.elapsed().as_secs_f64())
+    }
+
+    /// What the picture at rest is at, and its share done, 0..=1.
+    pub(crate) fn progress(&self) -> Option<(String, f64)> {
+        self.painter.progress()
+    }
+
+    /// Gives up the picture at rest that is in work; the last one stays.
+    pub(crate) fn stop(&mut self) {
+        if self.waiting == Some(Pace::Resting) {
+            self.painter.cancel();
+            self.waiting = None;
+            self.stopped = self.ordered.as_ref().map(|ordered| ordered.document.clone());
+            if let Some(before) = self.before.take() {
+                self.come_back(before);
+            }
+        }
+    }
+
+    /// Whether the picture of the current document was given up.
+    pub(crate) fn is_stopped(&self) -> bool {
+        self.stopped.as_ref().is_some_and(|document| Arc::ptr_eq(document, self.document())) && self.waiting.is_none()
+    }
+
+    /// Orders the picture that was given up.
+    pub(crate) fn draw_again(&mut self) {
+        self.stopped = None;
+        self.ordered = None;
     }
 
     /// Id of the layer that the picture shows at a position, given as shares of its width and height.
@@ -344,7 +446,10 @@ impl Model {
 
     fn take(&mut self, answer: Answer) {
         match answer {
+            // The last picture of a scene that has been replaced.
+            Answer::Shown(shown) if self.before.is_some() && !Arc::ptr_eq(&shown.document, self.document()) => {}
             Answer::Shown(mut shown) => {
+                self.before = None;
                 self.waiting = self.waiting.filter(|pace| *pace != shown.pace);
                 if let Pace::Moving { .. } = shown.pace {
                     self.arrived(&shown.document);
@@ -363,12 +468,20 @@ impl Model {
                 self.shown = Some(shown);
             }
             Answer::Judged(judged) => self.judged = Some(judged),
-            Answer::Failed(reason) => {
+            Answer::Failed(document, reason) => {
+                if self.before.is_some() && !Arc::ptr_eq(&document, self.document()) {
+                    return;
+                }
                 self.waiting = None;
                 if self.shown.is_none() {
+                    // The words of its file, since that is where it can be mended.
                     self.notices.error(reason.clone());
+                    if let Some(before) = self.before.take() {
+                        return self.come_back(before);
+                    }
                 }
-                self.violated = Some(reason);
+                let own: Vec<&str> = document.layer.iter().map(LayerDoc::id).collect();
+                self.violated = Some(crate::words::in_window_words(&reason, &own));
             }
         }
     }

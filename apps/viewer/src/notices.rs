@@ -60,6 +60,11 @@ impl Notices {
         self.add(Notice { text: text.into(), kind: Kind::Note, until: Some(now + STAYS) });
     }
 
+    /// Adds a hint that disappears by itself; its time begins when it is shown.
+    pub(crate) fn tell(&mut self, text: impl Into<String>) {
+        self.add(Notice { text: text.into(), kind: Kind::Note, until: Some(f64::INFINITY) });
+    }
+
     fn add(&mut self, notice: Notice) {
         self.shown.retain(|old| old.text != notice.text);
         self.shown.push(notice);
@@ -70,6 +75,9 @@ impl Notices {
     /// Shows them in the upper right corner.
     pub(crate) fn show(&mut self, ctx: &egui::Context) {
         let now = ctx.input(|input| input.time);
+        for notice in &mut self.shown {
+            notice.until = notice.until.map(|until| until.min(now + STAYS));
+        }
         self.shown.retain(|notice| notice.until.is_none_or(|until| now < until));
         let (mut dismissed, mut top) = (None, 44.0);
         for (i, notice) in self.shown.iter().enumerate() {

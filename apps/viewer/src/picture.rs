@@ -25,24 +25,27 @@ pub(crate) struct PictureView {
     textures: [Option<TextureHandle>; 2],
     of: u64,
     hand: Hand,
+    /// Middle of the part that nothing covers, and of its upper edge, in the window.
+    pub(crate) middle: Pos2,
+    pub(crate) middle_top: Pos2,
     /// The clicked point and the id of its layer.
     pub(crate) picked: Option<(DVec3, String)>,
 }
 
 impl PictureView {
     /// Shows the picture in the rest of the window, and handles pointer and keyboard in it.
-    pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model) {
-        let room = ui.available_rect_before_wrap();
-        let [w, h] = model.document().camera.image.map(|n| n as f32);
-        let scale = (room.width() / w).min(room.height() / h);
-        let rect = Rect::from_center_size(room.center(), vec2(w, h) * scale);
+    ///
+    /// * `free`: the part of it that no menu and no sheet covers, where words are written.
+    pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model, free: Rect) {
+        let rect = ui.available_rect_before_wrap();
+        (self.middle, self.middle_top) = (free.center(), free.center_top());
         let response = ui.interact(rect, ui.scope_id().with("picture"), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Picture"));
         self.hand.steer(ui, &response, rect, model);
         self.order(ui.ctx(), rect, model);
         self.upload(ui.ctx(), model);
-        let painter = ui.painter_at(room);
-        self.paint(&painter, rect, ui.ctx(), model);
+        let painter = ui.painter_at(rect);
+        self.paint(&painter, (rect, free), ui.ctx(), model);
         if response.clicked()
             && let Some(at) = response.interact_pointer_pos()
         {
@@ -55,7 +58,7 @@ impl PictureView {
         };
         let response = response.on_hover_cursor(cursor);
         if let Some(at) = response.hover_pos() {
-            self.tell(&painter, rect, share(rect, at), model);
+            self.tell(&painter, free, share(rect, at), model);
         }
         if model.look.compare == Compare::Split {
             self.bar(ui, rect, model);
@@ -86,7 +89,7 @@ impl PictureView {
         }
     }
 
-    fn paint(&self, painter: &Painter, rect: Rect, ctx: &Context, model: &Model) {
+    fn paint(&self, painter: &Painter, (rect, free): (Rect, Rect), ctx: &Context, model: &Model) {
         let [bent, straight] = &self.textures;
         let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
         let draw = |texture: &Option<TextureHandle>, clip: Rect| {
@@ -106,7 +109,7 @@ impl PictureView {
                 draw(if is_bent { bent } else { straight }, rect);
                 label(
                     painter,
-                    rect.center_top() + vec2(0.0, 8.0),
+                    free.center_top() + vec2(0.0, 8.0),
                     Align2::CENTER_TOP,
                     if is_bent { "bent" } else { "straight" },
                 );
@@ -123,7 +126,7 @@ impl PictureView {
             }
         }
         if model.look.inset && model.look.compare == Compare::Off {
-            let small = Rect::from_min_size(rect.min + vec2(10.0, 10.0), 0.28 * rect.size());
+            let small = Rect::from_min_size(free.min + vec2(10.0, 10.0), 0.28 * rect.size());
             if let Some(texture) = if model.look.bent { straight } else { bent } {
                 painter.image(texture.id(), small, whole, Color32::WHITE);
                 painter.rect_stroke(small, 2.0, Stroke::new(1.5, Color32::WHITE), eframe::egui::StrokeKind::Outside);
@@ -131,35 +134,31 @@ impl PictureView {
                 label(painter, small.center_top() + vec2(0.0, 4.0), Align2::CENTER_TOP, words);
             }
         }
-        self.marks(painter, rect, model);
+        frame_corners(painter, rect, model);
+        self.marks(painter, (rect, free), model);
     }
 
     /// Labels over the picture: state, messages, the picked point.
-    fn marks(&self, painter: &Painter, rect: Rect, model: &Model) {
+    fn marks(&self, painter: &Painter, (rect, free): (Rect, Rect), model: &Model) {
         let Some(shown) = &model.shown else {
             let words = model.violated.as_deref().or(model.opening.as_deref()).unwrap_or("opening the scene");
-            painter.text(rect.center(), Align2::CENTER_CENTER, words, FontId::proportional(15.0), Color32::GRAY);
+            painter.text(free.center(), Align2::CENTER_CENTER, words, FontId::proportional(15.0), Color32::GRAY);
             return;
         };
         let moving = matches!(shown.pace, Pace::Moving { .. });
         if moving && shown.session.view().is_bent() && shown.bent.is_some() {
-            label(painter, rect.right_bottom() + vec2(-8.0, -8.0), Align2::RIGHT_BOTTOM, "bent view");
+            label(painter, free.right_bottom() + vec2(-8.0, -8.0), Align2::RIGHT_BOTTOM, "bent view");
         }
-        let mut top = rect.center_top() + vec2(0.0, 8.0);
-        if let Some(opening) = &model.opening {
-            label(painter, top, Align2::CENTER_TOP, opening);
-            top.y += 26.0;
-        }
-        if let Some(since) = model.works_since().filter(|since| *since > PATIENT) {
-            label(painter, top, Align2::CENTER_TOP, &format!("working, {since:.0} s"));
-            top.y += 26.0;
+        let mut top = free.center_top() + vec2(0.0, 8.0);
+        if model.opening.is_some() || model.works_since().is_some_and(|since| since > PATIENT) || model.is_stopped() {
+            top.y += 54.0;
         }
         if let Some(waits) = shown.waits {
             label(painter, top, Align2::CENTER_TOP, waits);
             top.y += 26.0;
         }
         if let Some(reason) = &model.violated {
-            let galley = painter.layout(reason.clone(), FontId::proportional(13.0), Color32::WHITE, 0.7 * rect.width());
+            let galley = painter.layout(reason.clone(), FontId::proportional(13.0), Color32::WHITE, 0.7 * free.width());
             let frame =
                 Rect::from_center_size(top + vec2(0.0, 0.5 * galley.size().y + 6.0), galley.size() + vec2(20.0, 12.0));
             painter.rect_filled(frame, 4.0, Color32::from_rgb(160, 50, 36));
@@ -176,7 +175,7 @@ impl PictureView {
                 model.latency().unwrap_or_default(),
             );
             // Placed above the mark that is part of the picture.
-            label(painter, rect.right_bottom() + vec2(-8.0, -44.0), Align2::RIGHT_BOTTOM, &words);
+            label(painter, free.right_bottom() + vec2(-8.0, -44.0), Align2::RIGHT_BOTTOM, &words);
         }
         if let Some((point, name)) = &self.picked
             && let Some(at) = image_of(*point, rect, model)
@@ -226,6 +225,30 @@ impl PictureView {
         label(painter, pos2(x - 8.0, rect.top() + 8.0), Align2::RIGHT_TOP, "straight");
         label(painter, pos2(x + 8.0, rect.top() + 8.0), Align2::LEFT_TOP, "bent");
         response.on_hover_cursor(CursorIcon::ResizeHorizontal);
+    }
+}
+
+/// Length of the marks at the corners of the document's frame, points.
+const CORNER: f32 = 14.0;
+/// Share of the picture that the frame leaves out on each side, beyond which its corners are marked.
+const APART: f64 = 0.01;
+
+/// Marks the corners of what an exported picture shows, where the picture in the window shows more.
+fn frame_corners(painter: &Painter, rect: Rect, model: &Model) {
+    let Some([w, h]) = model.frame_shares().filter(|_| model.shown.is_some()) else { return };
+    if w.min(h) > 1.0 - 2.0 * APART {
+        return;
+    }
+    let size = vec2(w.min(1.0) as f32 * rect.width(), h.min(1.0) as f32 * rect.height());
+    let frame = Rect::from_center_size(rect.center(), size).shrink(1.0);
+    for corner in [frame.left_top(), frame.right_top(), frame.right_bottom(), frame.left_bottom()] {
+        let inwards = frame.center() - corner;
+        let ends = [vec2(inwards.x.signum() * CORNER, 0.0), vec2(0.0, inwards.y.signum() * CORNER)];
+        for (width, color) in [(3.0, Color32::from_black_alpha(90)), (1.2, Color32::WHITE)] {
+            for end in ends {
+                painter.line_segment([corner, corner + end], Stroke::new(width, color));
+            }
+        }
     }
 }
 

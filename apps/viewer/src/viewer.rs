@@ -1,28 +1,34 @@
 //! The application as a whole: opening, saving, kept state; panels around the picture.
 
+mod at_work;
+mod from_above;
+mod layout;
+mod opening;
+mod unsaved;
+mod welcome;
+
 use crate::builtin::BUILTIN;
-use crate::consent::{self, Consent, Decision};
+use crate::consent::Consent;
 use crate::files;
 use crate::keys::{self, Command};
 use crate::menu::{self, Bookmark, Choice};
 use crate::model::{Look, Model};
-use crate::panels::{Panels, Tab, set_stage};
-use crate::picture::{PictureView, image_of_frame};
+use crate::panels::{Panels, Tab};
+use crate::picture::PictureView;
 use crate::times::Times;
 use crate::wake::Wake;
-use crate::widgets::overhead::overhead;
 use belvedere::Trust;
-use belvedere::editor::{Editor, Place, Recovery, beside};
+use belvedere::editor::{Editor, Place, Recovery};
 use belvedere::io::fs;
-use belvedere::scene::Progress;
-use belvedere::scene_file::{self, CameraDoc, StageDoc};
-use belvedere::verbs::open_files::{Opened, open_beside, open_trusted};
-use eframe::egui::{self, CentralPanel, Context, Panel, TextureHandle, TextureOptions, Ui, ViewportCommand, Window};
+use belvedere::scene_file::{self, CameraDoc};
+use eframe::egui::{Context, TextureHandle, Ui};
+use layout::SMALL;
+use opening::Pending;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, TryRecvError};
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
+use unsaved::{Next, Unsaved};
 
 /// What to open at the start.
 #[derive(Debug, Clone, Default)]
@@ -59,12 +65,8 @@ struct Remembered {
     recent: Vec<PathBuf>,
     /// Bookmarks of each scene file.
     bookmarks: BTreeMap<PathBuf, Vec<Bookmark>>,
-}
-
-/// A file that is being opened in the background, and the progress in words.
-struct Pending {
-    opened: Receiver<Result<Opened, Refusal>>,
-    at: Arc<Mutex<String>>,
+    /// Whether the tour was taken or skipped.
+    toured: bool,
 }
 
 /// Why files are not opened.
@@ -102,7 +104,17 @@ pub struct Viewer {
     dropped: Option<files::Inputs>,
     chosen_input: Option<files::Choosing>,
     chosen_output: Option<files::Choosing>,
+    /// The question about unsaved changes, and what is done once they are saved.
+    unsaved: Option<Unsaved>,
+    after_saving: Option<Next>,
+    /// The document with which the window may close, whatever is not saved of it.
+    may_close: Option<Arc<scene_file::Document>>,
+    /// Bookmarks of the scene that comes back if the new one cannot be drawn.
+    bookmarks_before: Vec<Bookmark>,
     help: bool,
+    welcome: welcome::Welcome,
+    /// Whether the sheet of a small screen is open.
+    sheet: bool,
     times: Times,
     wake: Wake,
 }
@@ -143,7 +155,13 @@ impl Viewer {
             dropped: None,
             chosen_input: None,
             chosen_output: None,
+            unsaved: None,
+            after_saving: None,
+            may_close: None,
+            bookmarks_before: Vec::new(),
             help: false,
+            welcome: welcome::Welcome::default(),
+            sheet: false,
             times: Times::default(),
         };
         viewer.model.system_dialogs = opening.system_dialogs;
@@ -163,7 +181,7 @@ impl Viewer {
                 };
                 notes.push(format!("The last session did not end as it should; {what}."));
             }
-            Some(_) | None => {}
+            Some(_) | None => viewer.welcome.open = opening.files.is_empty(),
         }
         if !opening.files.is_empty() {
             viewer.open(opening.files.clone());
@@ -182,9 +200,35 @@ impl Viewer {
         self.pending.is_none() && self.model.rests()
     }
 
+    /// Whether files are being opened.
+    pub fn is_opening(&self) -> bool {
+        self.pending.is_some() || self.dropped.is_some() || self.model.is_opening()
+    }
+
     /// Whether the shares on the screen are measured for the current document.
     pub fn is_judged(&self) -> bool {
         self.model.is_judged()
+    }
+
+    /// The view as the end of the page's address.
+    #[cfg(target_family = "wasm")]
+    pub(crate) fn view(&self) -> Option<String> {
+        crate::address::text_of(&self.model.document().camera)
+    }
+
+    /// Shows the view of an address; it counts as the scene's own, so nobody is asked to save it.
+    #[cfg(target_family = "wasm")]
+    pub(crate) fn go(&mut self, address: &str) {
+        let mut document = (**self.model.document()).clone();
+        if crate::address::put(address, &mut document.camera) {
+            let place = self.model.editor.place.clone();
+            if self.model.editor.is_changed() {
+                self.model.edit(|present| *present = document);
+            } else {
+                self.model.editor = Editor::new(document, place);
+            }
+            self.wake.call();
+        }
     }
 
     /// Wakes the window; called by its workers.
@@ -197,43 +241,6 @@ impl Viewer {
     #[cfg(target_family = "wasm")]
     pub(crate) fn times(&self) -> serde_json::Value {
         self.times.report(&self.model)
-    }
-
-    /// Opens files in the background.
-    fn open(&mut self, paths: Vec<PathBuf>) {
-        if let [path] = paths.as_slice() {
-            self.remember(path);
-        }
-        let (outbox, inbox) = std::sync::mpsc::channel();
-        let (allowed, trust, wake) = (self.allowed.clone(), self.trust.clone(), self.wake.clone());
-        let at = Arc::new(Mutex::new("opening".to_owned()));
-        self.model.opening = Some("opening".into());
-        let current = self.model.shown.is_some().then(|| self.model.document().clone());
-        let told = at.clone();
-        let progress = Progress::new(move |stage, share| {
-            // The main thread of a browser must not block on a lock.
-            if let Ok(mut at) = told.try_lock() {
-                *at = format!("opening: {stage}, {:.0} %", 100.0 * share);
-            }
-        });
-        let work = move || {
-            let opened = match (Consent::needed(&paths, &allowed, &trust), &current) {
-                (Some(consent), _) => Err(Refusal::Asks(consent)),
-                (None, Some(current)) => open_beside(current, &paths, &allowed, &trust, &progress).map_err(refusal),
-                (None, None) => {
-                    let editor = open_trusted(&paths, &allowed, &trust, &progress).map_err(refusal);
-                    editor.map(|editor| Opened::Scene(Box::new(editor)))
-                }
-            };
-            let _ = outbox.send(opened);
-            wake.call();
-        };
-        if let Err(e) = beside(work) {
-            self.model.notices.error(e);
-            self.model.opening = None;
-            return;
-        }
-        self.pending = Some(Pending { opened: inbox, at });
     }
 
     fn remember(&mut self, path: &Path) {
@@ -267,115 +274,17 @@ impl Viewer {
     fn replace(&mut self, editor: Editor) {
         let scene = editor.place.scene.as_ref().and_then(|path| fs::canonicalize(path).ok());
         let known = scene.and_then(|scene| self.remembered.bookmarks.get(&scene).cloned());
-        self.bookmarks = known.unwrap_or_default();
+        self.bookmarks_before = std::mem::replace(&mut self.bookmarks, known.unwrap_or_default());
         self.model.replace(editor);
-    }
-
-    /// Takes the files that were chosen, dropped or opened in the background.
-    fn arrivals(&mut self, ctx: &Context) {
-        if let Some(pending) = &self.pending {
-            if let Ok(at) = pending.at.try_lock() {
-                self.model.opening = Some(at.clone());
-            }
-            ctx.request_repaint_after_secs(0.1);
-            match pending.opened.try_recv() {
-                Ok(Ok(Opened::Scene(editor))) => {
-                    self.replace(*editor);
-                    self.pending = None;
-                }
-                Ok(Ok(Opened::Layers(layers, folders))) => {
-                    self.model.editor.add_layers(layers, folders);
-                    self.pending = None;
-                }
-                Ok(Err(Refusal::Reason(reason))) => {
-                    self.model.notices.error(reason);
-                    self.pending = None;
-                }
-                Ok(Err(Refusal::Asks(consent))) => {
-                    self.consent = Some(consent);
-                    self.pending = None;
-                }
-                Err(TryRecvError::Disconnected) => {
-                    self.model
-                        .notices
-                        .error("the file could not be opened: internal error; please report this with the file");
-                    self.pending = None;
-                }
-                Err(TryRecvError::Empty) => {}
-            }
-            if self.pending.is_none() {
-                self.model.opening = None;
-            }
-        }
-        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
-        if !dropped.is_empty() {
-            self.dropped = Some(files::dropped(&dropped));
-        }
-        let dropped = self.dropped.as_ref().and_then(|inbox| inbox.try_recv().ok());
-        let chosen = self.chosen_input.as_mut().and_then(|choosing| choosing.answer(ctx));
-        self.dropped.take_if(|_| dropped.is_some());
-        self.chosen_input.take_if(|_| chosen.is_some());
-        if let Some(answer) = dropped.or(chosen) {
-            match answer {
-                Ok(paths) if paths.is_empty() => {}
-                Ok(paths) => self.open(paths),
-                Err(reason) => self.model.notices.error(reason),
-            }
-        }
-        if let Some(answer) = self.chosen_output.as_mut().and_then(|choosing| choosing.answer(ctx)) {
-            self.chosen_output = None;
-            match answer {
-                Ok(paths) => paths.iter().take(1).for_each(|path| self.save(ctx, path)),
-                Err(reason) => self.model.notices.error(reason),
-            }
-        }
-        if self.dropped.is_some() {
-            ctx.request_repaint_after_secs(0.1);
-        }
-    }
-
-    /// Asks for the consent that a scene lacks, and opens it once it has it.
-    fn ask_for_consent(&mut self, ctx: &Context) {
-        let Some(decision) = self.consent.as_ref().and_then(|consent| consent.show(ctx)) else { return };
-        let Some(consent) = self.consent.take().filter(|_| decision == Decision::Allowed) else { return };
-        if let Err(reason) = consent.give(&mut self.trust) {
-            self.model.notices.error(reason);
-        }
-        self.open(vec![consent.scene]);
-    }
-
-    fn save(&mut self, ctx: &Context, path: &Path) {
-        match self.model.editor.save(path) {
-            Ok(()) => {
-                self.remember(path);
-                // The recovery file is written anew, since it says whether the scene is saved.
-                self.written = None;
-                let mut said = format!("Saved: {}", path.display());
-                match consent::remember(&mut self.trust, path, &self.model.editor.outside()) {
-                    Ok(is_remembered) if is_remembered || self.model.editor.outside().is_empty() => {}
-                    Ok(_) => said += "; it names files outside its folder: the command line needs --allow-root DIR",
-                    Err(reason) => self.model.notices.error(reason),
-                }
-                self.model.notices.say(said, ctx.input(|input| input.time));
-                if let Err(reason) = files::hand_over(path) {
-                    self.model.notices.error(reason);
-                }
-            }
-            Err(e) => self.model.notices.error(e.to_string()),
-        }
-    }
-
-    /// Lets the user choose where to write a scene.
-    fn choose_output(&mut self) {
-        let (folder, system) = (&self.model.editor.place.roots.scene_dir, self.model.system_dialogs);
-        self.chosen_output = Some(files::choose_output(folder, "scene.toml", system));
     }
 
     fn command(&mut self, ctx: &Context, command: Command) {
         match command {
             Command::Open => self.chosen_input = Some(files::choose_input(self.model.system_dialogs)),
             Command::Save => match self.model.editor.place.scene.clone() {
-                Some(path) => self.save(ctx, &path),
+                Some(path) => {
+                    self.save(ctx, &path);
+                }
                 None => self.choose_output(),
             },
             Command::SaveAs => self.choose_output(),
@@ -386,18 +295,16 @@ impl Viewer {
                 self.model.editor.redo();
             }
             Command::Bookmark => {
-                if let Some(camera) = self.model.camera() {
+                if let Some(camera) = self.model.camera_doc() {
                     let taken = |name: &String| self.bookmarks.iter().any(|bookmark| bookmark.name == *name);
                     let name = (1..).map(|n| format!("View {n}")).find(|name| !taken(name)).unwrap_or_default();
-                    let camera = CameraDoc::of(&camera.pinhole, camera.target);
                     self.bookmarks.push(Bookmark { name, camera });
                     self.remember_bookmarks();
                 }
             }
             Command::ShowAll => {
                 if let Some(bounds) = self.model.shown.as_ref().map(|shown| shown.session.scene().bounds()) {
-                    self.model.begin_gesture();
-                    self.model.move_camera(|camera| camera.framing(&bounds));
+                    self.model.frame(&bounds);
                 }
             }
             Command::Help => self.help = !self.help,
@@ -407,7 +314,7 @@ impl Viewer {
     fn choose(&mut self, ctx: &Context, choice: Choice) {
         match choice {
             Choice::Command(command) => self.command(ctx, command),
-            Choice::Builtin(i) => self.replace(builtin(i)),
+            Choice::Builtin(i) => self.go_on_to(ctx, Next::Show(Box::new(builtin(i)))),
             Choice::Recent(path) => self.open(vec![path]),
             Choice::GoTo(i) => {
                 if let Some(bookmark) = self.bookmarks.get(i).cloned() {
@@ -421,55 +328,10 @@ impl Viewer {
                     self.remember_bookmarks();
                 }
             }
-            Choice::Quit => ctx.send_viewport_cmd(ViewportCommand::Close),
+            Choice::Step(steps) => self.model.editor.go_to(steps),
+            Choice::Welcome => self.welcome.open = true,
+            Choice::Quit => self.go_on_to(ctx, Next::Quit),
         }
-    }
-
-    /// Shows the camera from above in a window of its own.
-    fn overhead(&mut self, ctx: &Context) {
-        if !self.model.look.overhead {
-            return;
-        }
-        let mut open = true;
-        let mut edit = None;
-        // In the lower right corner, where the window does not hide the side panel.
-        let corner = ctx.content_rect().right_bottom() - egui::vec2(490.0, 360.0);
-        Window::new("Camera from above").open(&mut open).default_pos(corner).default_width(460.0).show(ctx, |ui| {
-            let Some((frame, view)) = &self.model.overhead else {
-                ui.label("drawing");
-                return;
-            };
-            if self.from_above.as_ref().is_none_or(|(of, _)| *of != self.model.pictures) {
-                let texture = ctx.load_texture("camera from above", image_of_frame(frame), TextureOptions::LINEAR);
-                self.from_above = Some((self.model.pictures, texture));
-            }
-            let Some((_, texture)) = &self.from_above else { return };
-            let turns = match self.model.stage("curved_rays") {
-                Some(StageDoc::CurvedRays(stage)) => stage.turn.clone(),
-                _ => Vec::new(),
-            };
-            edit = overhead(ui, ui.scope_id(), texture.id(), view, &turns);
-            if let Some(reason) = &self.model.violated {
-                ui.colored_label(egui::Color32::from_rgb(170, 50, 40), reason);
-            }
-        });
-        self.model.look.overhead = open;
-        let Some(edit) = edit else { return };
-        if edit.begins {
-            self.model.begin_gesture();
-        }
-        self.model.edit_on(|document| {
-            let stage = document.stage.iter().find_map(|stage| match stage {
-                StageDoc::CurvedRays(stage) => Some(stage.clone()),
-                _ => None,
-            });
-            if let Some(mut stage) = stage
-                && let Some(turn) = stage.turn.get_mut(edit.turn)
-            {
-                edit.apply(turn);
-                set_stage(document, StageDoc::CurvedRays(stage));
-            }
-        });
     }
 
     /// Writes the recovery file some time after the last change.
@@ -498,10 +360,6 @@ impl Viewer {
     }
 }
 
-fn refusal(error: belvedere::BelvedereError) -> Refusal {
-    Refusal::Reason(error.to_string())
-}
-
 /// A built-in scene.
 fn builtin(i: usize) -> Editor {
     let text = BUILTIN.get(i).map_or("", |(_, text)| text);
@@ -521,23 +379,29 @@ impl eframe::App for Viewer {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         self.model.take_answers();
+        if std::mem::take(&mut self.model.came_back) {
+            self.bookmarks = std::mem::take(&mut self.bookmarks_before);
+        }
+        self.closing(&ctx);
         self.arrivals(&ctx);
-        if let Some(command) = keys::read(&ctx, &mut self.model) {
+        if !self.asks()
+            && let Some(command) = keys::read(&ctx, &mut self.model)
+        {
             self.command(&ctx, command);
         }
-        self.panels.play(&ctx, &mut self.model);
-        let choice = Panel::top("menu")
-            .show(ui, |ui| menu::bar(ui, &self.model, &self.remembered.recent, &self.bookmarks))
-            .inner;
-        if let Some(choice) = choice {
-            self.choose(&ctx, choice);
+        self.panels.play(&ctx, &mut self.model, &self.bookmarks);
+        if ctx.content_rect().width() < SMALL {
+            self.small(ui);
+        } else {
+            self.large(ui);
         }
-        Panel::left("panels").default_size(330.0).show(ui, |ui| self.panels.show(ui, &mut self.model));
-        CentralPanel::no_frame().show(ui, |ui| self.picture.show(ui, &mut self.model));
         self.overhead(&ctx);
+        self.welcome(&ctx);
+        self.at_work(&ctx);
         menu::help(&ctx, &mut self.help);
         self.ask_for_consent(&ctx);
         self.model.notices.show(&ctx);
+        self.question(&ctx);
         self.write_down(&ctx);
         self.times.note(&self.model);
     }

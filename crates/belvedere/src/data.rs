@@ -168,6 +168,7 @@ impl Data {
             stylisation: None,
             light: None,
             representations: Default::default(),
+            hidden: Vec::new(),
             layer: self.layers,
             stage,
             constructor: None,

@@ -4,7 +4,7 @@ use crate::resolve::constructor;
 use crate::resolve::motion::Motions;
 use crate::resolve::solving::Memory;
 use crate::resolve::solving::Solving;
-use crate::resolve::{self, LayerRequest, representations, validate};
+use crate::resolve::{self, LayerRequest, hidden, representations, validate};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, Document, EarthDoc, LayerDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc};
 use crate::session::Loaded;
@@ -58,6 +58,7 @@ impl Session {
             }
         }
         validate::document(&source)?;
+        hidden::check(&source)?;
         let scene_dir = source.path().and_then(Path::parent).map(Path::to_owned).unwrap_or_default();
         let trusted = source.path().map(|scene| options.trust.files_of(scene)).unwrap_or_default();
         let roots = Roots { scene_dir, allowed, files: [options.allow_files.clone(), trusted].concat() };
@@ -70,7 +71,8 @@ impl Session {
         let loaded = resolve::load(request, options)?;
         let (title, crs, unit) = (document.title.clone(), loaded.crs, document.unit);
         let representations = representations::of(&source, &roots)?;
-        let scene = Scene { title, crs, unit, layers: loaded.layers, representations };
+        let mut scene = Scene { title, crs, unit, layers: loaded.layers, representations };
+        hidden::apply(&mut scene, document);
         resolve::fill_surfaces(&mut source.document.layer, &scene);
         let (mut scene, mut inputs) = (Arc::new(scene), loaded.inputs);
         let motions = Motions::read(&source, &roots, &scene, &mut inputs)?.map(Arc::new);

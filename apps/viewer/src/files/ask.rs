@@ -16,6 +16,8 @@ pub(super) struct Ask {
     /// Whether an entry is a folder, and its name; folders first.
     entries: Vec<(bool, String)>,
     chosen: Vec<PathBuf>,
+    /// Whether the keyboard is at its field already.
+    has_focus: bool,
 }
 
 impl Ask {
@@ -30,8 +32,14 @@ impl Ask {
     fn new(writes: bool, folder: &Path, name: &str) -> Self {
         let folder =
             if folder.as_os_str().is_empty() { std::env::current_dir().unwrap_or_default() } else { folder.to_owned() };
-        let mut ask =
-            Self { writes, folder: PathBuf::new(), name: name.to_owned(), entries: Vec::new(), chosen: Vec::new() };
+        let mut ask = Self {
+            writes,
+            folder: PathBuf::new(),
+            name: name.to_owned(),
+            entries: Vec::new(),
+            chosen: Vec::new(),
+            has_focus: false,
+        };
         ask.enter(folder);
         ask
     }
@@ -58,6 +66,9 @@ impl Ask {
                 ui.label(self.folder.display().to_string());
                 let label = ui.label("File, or folder to go to");
                 let field = ui.add(TextEdit::singleline(&mut self.name).desired_width(440.0)).labelled_by(label.id);
+                if !std::mem::replace(&mut self.has_focus, true) {
+                    field.request_focus();
+                }
                 let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
                 if self.writes && self.folder.join(self.name.trim()).is_file() {
                     ui.label("This file is there already; it will be replaced.");

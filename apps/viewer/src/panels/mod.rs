@@ -7,6 +7,7 @@ pub(crate) mod spline;
 pub(crate) mod terrain;
 
 use crate::export::Exporter;
+use crate::menu::Bookmark;
 use crate::model::Model;
 use belvedere::scene_file::{Document, StageDoc};
 use eframe::egui::{DragValue, ScrollArea, Slider, Ui};
@@ -47,14 +48,14 @@ pub(crate) struct Panels {
 
 impl Panels {
     /// Shows the chosen one.
-    pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model) {
+    pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model, bookmarks: &[Bookmark]) {
         ui.horizontal_wrapped(|ui| {
             for (tab, name) in Tab::ALL {
                 ui.selectable_value(&mut self.tab, tab, name);
             }
         });
         ui.separator();
-        if model.shown.is_none() && model.opening.is_some() {
+        if model.is_opening() {
             ui.weak("opening");
             return;
         }
@@ -65,15 +66,15 @@ impl Panels {
             Tab::Rays => self.rays.show(ui, model),
             Tab::Terrain => terrain::show(ui, model),
             Tab::Spline => self.spline.show(ui, model),
-            Tab::Export => self.exporter.show(ui, model),
+            Tab::Export => self.exporter.show(ui, model, bookmarks),
         });
     }
 
     /// Advances playing previews and sweeps, and the export.
-    pub(crate) fn play(&mut self, ctx: &eframe::egui::Context, model: &mut Model) {
+    pub(crate) fn play(&mut self, ctx: &eframe::egui::Context, model: &mut Model, bookmarks: &[Bookmark]) {
         self.rays.play(ctx, model);
         self.spline.play(ctx, model);
-        self.exporter.poll(ctx, model);
+        self.exporter.poll(ctx, model, bookmarks);
     }
 }
 

@@ -140,9 +140,31 @@ fn paths(ui: &mut Ui, model: &mut Model, constructor: &ConstructorDoc) {
 /// Keeps something in sight: a layer, a part, a box.
 pub(crate) fn track(model: &mut Model, target: &str) {
     let target = Some(target.to_owned());
+    construct(model, ConstructorDoc { target, ..ConstructorDoc::of(ConstructorKind::TargetTracking) });
+}
+
+/// Whether a stage can stand beside a constructor, which builds turns of its own.
+///
+/// * `solves`: whether the ground is still to be solved.
+fn goes_with(kind: ConstructorKind, stage: &StageDoc, solves: bool) -> bool {
+    let moves = kind == ConstructorKind::PathPreview || kind == ConstructorKind::AutoProbe;
+    match stage {
+        StageDoc::CurvedRays(_) => false,
+        StageDoc::SplineBend(_) | StageDoc::Strip(_) | StageDoc::Relief(_) => !moves,
+        StageDoc::TerrainDisocclusion(_) => !solves,
+    }
+}
+
+/// Chooses a constructor in place of turns by hand and of other bends that it excludes; one step of undo.
+fn construct(model: &mut Model, constructor: ConstructorDoc) {
+    let (before, solves) = (model.document().stage.len(), model.document().solves_terrain());
     model.edit(|document| {
-        document.constructor = Some(ConstructorDoc { target, ..ConstructorDoc::of(ConstructorKind::TargetTracking) });
+        document.stage.retain(|stage| goes_with(constructor.kind, stage, solves));
+        document.constructor = Some(constructor);
     });
+    if model.document().stage.len() < before {
+        model.notices.tell("Bends that do not go with it made way; undo brings them back.");
+    }
 }
 
 fn constructors(ui: &mut Ui, model: &mut Model) {
@@ -167,15 +189,12 @@ fn constructors(ui: &mut Ui, model: &mut Model) {
         );
         if preview.on_disabled_hover_text("needs a line layer").clicked() {
             let path = lines.first().cloned();
-            model.edit(|document| {
-                document.constructor =
-                    Some(ConstructorDoc { path, ..ConstructorDoc::of(ConstructorKind::PathPreview) });
-            });
+            construct(model, ConstructorDoc { path, ..ConstructorDoc::of(ConstructorKind::PathPreview) });
         }
         let probing = kind == ConstructorKind::AutoProbe;
         if ui.selectable_label(probing, "Into what is hidden").on_hover_text("turns are found that show most").clicked()
         {
-            model.edit(|document| document.constructor = Some(ConstructorDoc::of(ConstructorKind::AutoProbe)));
+            construct(model, ConstructorDoc::of(ConstructorKind::AutoProbe));
         }
     });
     if model.look.tool == Tool::Track {
@@ -197,7 +216,10 @@ fn turns(ui: &mut Ui, model: &mut Model) {
             let mut next =
                 stage.clone().unwrap_or(RaysStageDoc { model: RayModel::default(), turn: Vec::new(), split: None });
             next.turn.push(next_turn(&camera, stage.as_ref()));
-            model.edit(|document| set_stage(document, StageDoc::CurvedRays(next)));
+            model.edit(|document| {
+                document.constructor.take_if(|doc| doc.kind != ConstructorKind::Manual);
+                set_stage(document, StageDoc::CurvedRays(next));
+            });
             model.look.overhead = true;
         }
         if stage.is_some() && ui.button("Straight rays").clicked() {

@@ -116,3 +116,28 @@ fn a_turn_gets_a_pivot_line_and_its_sharpness_by_hand() {
         assert_ne!(turn(&harness), before, "{handle}");
     }
 }
+
+#[test]
+fn turns_by_hand_make_way_for_a_preview_in_one_step_that_is_undone() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut harness = app(&opened(&[scene(folder.path())]));
+    settle(&mut harness);
+    press(&mut harness, "Curved rays");
+    press(&mut harness, "Add a turn");
+    settle(&mut harness);
+    let by_hand = harness.state().document().clone();
+    press(&mut harness, "Along a path");
+    settle(&mut harness);
+    let document = harness.state().document().clone();
+    assert!(document.constructor.is_some() && document.stage.is_empty());
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(&mut harness);
+    assert_eq!(*harness.state().document(), by_hand);
+    // The other way round, too.
+    press(&mut harness, "Along a path");
+    settle(&mut harness);
+    press(&mut harness, "Add a turn");
+    settle(&mut harness);
+    let document = harness.state().document().clone();
+    assert!(document.constructor.is_none() && document.stage.len() == 1);
+}

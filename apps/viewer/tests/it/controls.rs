@@ -126,3 +126,25 @@ fn the_picture_keeps_its_size_whatever_the_panel_shows() {
         assert_eq!(harness.get_by_label("Picture").rect(), before, "{tab}");
     }
 }
+
+#[test]
+fn long_work_is_cancelled_and_taken_up_again() {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("scene.toml");
+    let text = include_str!("../../../../scenes/massif_terrain.toml");
+    std::fs::write(&path, text).expect("scene");
+    let mut harness = app(&opened(&[path]));
+    crate::wait_for(&mut harness, "a picture to cancel", |harness| {
+        harness.state().document().solves_terrain() && harness.query_by_label("Cancel").is_some()
+    });
+    // While files are opened there is the same button.
+    crate::wait_for(&mut harness, "the scene", |harness| !harness.state().is_opening());
+    crate::wait_for(&mut harness, "a picture to cancel", |harness| harness.query_by_label("Cancel").is_some());
+    let document = harness.state().document().clone();
+    press(&mut harness, "Cancel");
+    crate::wait_for(&mut harness, "the way back", |harness| harness.query_by_label("Draw again").is_some());
+    assert!(!harness.state().rests(), "nothing was given up");
+    assert_eq!(*harness.state().document(), document, "the scene stays");
+    press(&mut harness, "Draw again");
+    crate::wait_for(&mut harness, "the work again", |harness| harness.query_by_label("Cancel").is_some());
+}

@@ -4,9 +4,14 @@ mod authoring;
 mod consent;
 mod controls;
 mod files;
+mod film;
+mod layers;
+mod layout;
 mod moving;
 mod screen;
 mod snapshots;
+mod unsaved;
+mod welcome;
 #[cfg(target_os = "linux")]
 mod window;
 
@@ -36,6 +41,17 @@ fn settle(harness: &mut Harness<'_, Viewer>) {
         assert!(began.elapsed() < PATIENCE, "no picture");
         harness.step();
         std::thread::sleep(Duration::from_millis(5));
+    }
+    harness.step();
+}
+
+/// Runs frames until a condition holds.
+fn wait_for(harness: &mut Harness<'static, Viewer>, what: &str, holds: impl Fn(&Harness<'static, Viewer>) -> bool) {
+    let began = Instant::now();
+    while !holds(harness) {
+        assert!(began.elapsed() < PATIENCE, "{what} does not come");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(2));
     }
     harness.step();
 }

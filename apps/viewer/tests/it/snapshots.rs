@@ -11,8 +11,12 @@ const PIXELS: usize = 60;
 
 /// The application with a small scene, in a window of 960 x 640 points.
 fn drawn(folder: &std::path::Path) -> Harness<'static, Viewer> {
+    sized(folder, [960.0, 640.0])
+}
+
+fn sized(folder: &std::path::Path, size: [f32; 2]) -> Harness<'static, Viewer> {
     let opening = opened(&[scene(folder)]);
-    let builder = Harness::builder().with_size([960.0, 640.0]).with_max_steps(4).renderer(Screen::default());
+    let builder = Harness::builder().with_size(size).with_max_steps(4).renderer(Screen::default());
     let mut harness = builder.build_eframe(move |cc| Viewer::new(&cc.egui_ctx, &opening));
     settle(&mut harness);
     harness
@@ -71,4 +75,25 @@ fn rays_that_turn_and_the_camera_from_above() {
     press(&mut harness, "Curved rays");
     press(&mut harness, "Add a turn");
     compare(&mut harness, "rays");
+}
+
+#[test]
+fn a_phone_with_the_sheet_open() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut harness = sized(folder.path(), [390.0, 844.0]);
+    press(&mut harness, "Show the panel");
+    judged(&mut harness);
+    compare(&mut harness, "phone");
+}
+
+#[test]
+fn a_question_about_unsaved_changes() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut harness = sized(folder.path(), [800.0, 600.0]);
+    harness.key_press(eframe::egui::Key::ArrowUp);
+    settle(&mut harness);
+    judged(&mut harness);
+    press(&mut harness, "File");
+    press(&mut harness, "Quit");
+    compare(&mut harness, "unsaved");
 }

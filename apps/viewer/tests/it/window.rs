@@ -59,7 +59,7 @@ impl Display {
     }
 
     fn click(&self, x: u32, y: u32) {
-        self.pointer(&["mousemove", &x.to_string(), &y.to_string(), "sleep", "0.2", "click", "1", "sleep", "0.4"]);
+        self.pointer(&["mousemove", &x.to_string(), &y.to_string(), "sleep", "0.4", "click", "1", "sleep", "1.2"]);
     }
 
     fn drag(&self, [x0, y0]: [u32; 2], [x1, y1]: [u32; 2]) {
@@ -119,6 +119,7 @@ fn a_preset_is_made_in_a_window_saved_and_drawn_and_a_killed_window_comes_back()
     std::fs::write(place.path("scene.toml"), SCENE).expect("written");
     let mut program = window(&place, &display, &["scene.toml"]);
     written(&place, "open", |state| state["document"]["layer"][0]["id"] == "ground");
+    std::thread::sleep(Duration::from_secs(10)); // The panel can be used from the first picture on.
     let mut operations = 0;
     let mut click = |x, y| {
         operations += 1;
@@ -163,6 +164,9 @@ fn a_preset_is_made_in_a_window_saved_and_drawn_and_a_killed_window_comes_back()
     std::thread::sleep(Duration::from_secs(10)); // Its first picture is there before it ends, on a busy machine, too.
     display.click(18, 12);
     display.click(30, 172); // quit
+    std::thread::sleep(Duration::from_secs(2));
+    assert!(again.try_wait().expect("status").is_none(), "it ended with changes that are in no file");
+    display.pointer(&["key", "Tab", "sleep", "0.5", "key", "Return"]); // from Save to Discard changes
     let began = Instant::now();
     while again.try_wait().expect("status").is_none() {
         assert!(began.elapsed() < PATIENCE, "it does not end");

@@ -1,7 +1,7 @@
 //! A session that follows a document: everything is resolved again, but unchanged layers are not read again.
 
 use super::thin::{self, Thin};
-use super::{Place, THREADS};
+use super::{Place, THREADS, camera};
 use crate::fallback;
 use crate::overlays::grid;
 use crate::picture::{self, DisplacementReport, PictureOptions};
@@ -89,7 +89,7 @@ pub struct Judged {
     pub document: Arc<Document>,
     /// Pace of the picture's order.
     pub pace: Pace,
-    /// Visible shares by lines of sight.
+    /// Visible shares by lines of sight, of the document's frame.
     pub measures: Measures,
     /// Hidden stretches of the features.
     pub hidden: Vec<HiddenRun>,
@@ -141,7 +141,7 @@ impl LiveSession {
     pub fn show(&mut self, order: &Order, progress: &Progress) -> Result<Shown, BelvedereError> {
         let began = Instant::now();
         let mut document = (*order.document).clone();
-        document.camera.image = order.image;
+        camera::fit(&mut document, order.image);
         let (session, waits) = match order.pace {
             Pace::Moving { .. } => self.moving(document, order, progress)?,
             Pace::Resting => (self.resting(document, order, progress)?, None),
@@ -201,7 +201,8 @@ impl LiveSession {
 
     fn judged(&self, order: &Order, progress: &Progress) -> Result<Option<Judged>, BelvedereError> {
         let Some(session) = &self.shown else { return Ok(None) };
-        let (scene, view) = (session.scene(), session.view());
+        let scene = session.scene();
+        let view = &camera::cut_to_frame(session.view(), &order.document, order.image);
         let target_seen = if order.pace == Pace::Resting { target_seen(session, progress)? } else { None };
         if target_seen.is_none() && !scene.layers.iter().any(|layer| layer.must_see) {
             return Ok(None);
@@ -263,11 +264,15 @@ impl LiveSession {
     /// The session, if it has the layers of a document.
     fn open(&mut self, document: &Document) -> Option<Session> {
         let (opened, session) = (self.opened.as_ref()?, self.session.as_ref()?);
-        let must_see: Vec<bool> = document.layer.iter().map(LayerDoc::must_see).collect();
+        let is_hidden = |layer: &LayerDoc| document.hidden.iter().any(|id| id == layer.id());
+        let must_see: Vec<bool> = document.layer.iter().map(|l| l.must_see() && !is_hidden(l)).collect();
         let layers = session.scene().layers.iter();
         let same = opened.crs == document.crs
             && opened.unit == document.unit
             && opened.representations == document.representations
+            && opened.hidden == document.hidden
+            && (document.hidden.is_empty()
+                || (opened.constructor == document.constructor && opened.animation == document.animation))
             && opened.layer.len() == document.layer.len()
             && session.scene().layers.len() == document.layer.len()
             && opened.layer.iter().zip(&document.layer).all(|(a, b)| a.with_must_see(b.must_see()) == *b);

@@ -4,20 +4,24 @@
 
 mod beside;
 mod camera;
+mod layers;
 mod live;
 mod object;
 mod painter;
 mod place;
 mod rays;
+mod steps;
 mod thin;
 
 pub use beside::{THREADS, beside};
-pub use camera::{above_ground, framed, navigation, set_camera};
+pub use camera::{above_ground, frame_factor, framed, navigation, set_camera};
+pub use layers::{with_layer_renamed, without_layer};
 pub use live::{Judged, LiveSession, Order, Pace, Shown, Sides};
 pub use object::object_at;
 pub use painter::{Answer, Painter};
 pub use place::{Place, Recovered, Recovery};
 pub use rays::{next_turn, sharpness_at, sharpness_knob, with_parallel_planes, with_pivot_line};
+pub use steps::step_name;
 
 use crate::scene_file::{Document, LayerDoc};
 use std::path::PathBuf;
@@ -88,22 +92,32 @@ impl Editor {
             self.present = Arc::new(next);
             self.future.clear();
         } else {
-            self.step(change);
-            self.gesture = Some(gesture);
+            // An edit that changed nothing began no step that the next ones could belong to.
+            self.gesture = self.step(change).then_some(gesture);
         }
     }
 
-    fn step(&mut self, change: impl FnOnce(&mut Document)) {
+    /// Whether anything changed.
+    fn step(&mut self, change: impl FnOnce(&mut Document)) -> bool {
         let mut next = (*self.present).clone();
         change(&mut next);
         if next == *self.present {
-            return;
+            return false;
         }
+        self.drop_empty_step();
         self.past.push(std::mem::replace(&mut self.present, Arc::new(next)));
         if self.past.len() > Self::DEPTH {
             self.past.remove(0);
         }
         self.future.clear();
+        true
+    }
+
+    /// Drops the last step if it changed nothing in the end, such as a drag back to its beginning.
+    fn drop_empty_step(&mut self) {
+        if self.past.last().is_some_and(|before| **before == *self.present) {
+            self.past.pop();
+        }
     }
 
     /// Whether there is a step to undo.
@@ -118,6 +132,7 @@ impl Editor {
 
     /// Undoes the last step; `false` if there is none.
     pub fn undo(&mut self) -> bool {
+        self.drop_empty_step();
         let Some(before) = self.past.pop() else { return false };
         self.future.push(std::mem::replace(&mut self.present, before));
         self.gesture = None;

@@ -2,6 +2,7 @@
 
 use super::beside::{THREADS, beside};
 use super::live::{Judged, LiveSession, Order, Pace, Shown};
+use crate::scene_file::Document;
 use belvedere_scene::Progress;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -14,8 +15,8 @@ pub enum Answer {
     Shown(Box<Shown>),
     /// Visibility of the required features in the last picture.
     Judged(Box<Judged>),
-    /// Why there is no picture, one sentence; the last picture stays.
-    Failed(String),
+    /// Why there is no picture of the document, one sentence; the last picture stays.
+    Failed(Arc<Document>, String),
 }
 
 /// Called from the painter's thread when there is an answer, or when `Painter::answer` should be called.
@@ -47,6 +48,8 @@ struct State {
     yielding: Option<Progress>,
     /// Whether a thread is working.
     at_work: bool,
+    /// What the work is at, and its share done, 0..=1.
+    at: Option<(String, f64)>,
 }
 
 impl Painter {
@@ -63,6 +66,7 @@ impl Painter {
     pub fn order(&mut self, order: Order) {
         let mut state = self.desk.state();
         state.give_way();
+        let document = order.document.clone();
         state.order = Some(order);
         let begins = THREADS && !std::mem::replace(&mut state.at_work, true);
         drop(state);
@@ -72,9 +76,21 @@ impl Painter {
             let (desk, outbox) = (self.desk.clone(), self.outbox.clone());
             if let Err(reason) = beside(move || desk.work(&outbox)) {
                 self.desk.state().at_work = false;
-                let _ = self.outbox.send(Answer::Failed(reason));
+                let _ = self.outbox.send(Answer::Failed(document, reason));
             }
         }
+    }
+
+    /// Gives up the picture at rest that is being drawn or waits, and its judgement; there is no answer.
+    pub fn cancel(&mut self) {
+        let mut state = self.desk.state();
+        state.give_way();
+        state.order = None;
+    }
+
+    /// What the work is at, in words, and its share done, 0..=1; `None` while nothing tells.
+    pub fn progress(&self) -> Option<(String, f64)> {
+        self.desk.state().at.clone()
     }
 
     /// The next answer, if it has arrived.
@@ -127,7 +143,7 @@ enum Task {
 
 impl Desk {
     /// Performs tasks until there are none.
-    fn work(&self, outbox: &Sender<Answer>) {
+    fn work(self: &Arc<Self>, outbox: &Sender<Answer>) {
         while let Some((task, progress)) = self.next() {
             if let Some(answer) = self.perform(task, &progress) {
                 // A receiver that was dropped has withdrawn its orders, too.
@@ -137,9 +153,15 @@ impl Desk {
         }
     }
 
-    fn next(&self) -> Option<(Task, Progress)> {
+    fn next(self: &Arc<Self>) -> Option<(Task, Progress)> {
         let mut state = self.state();
-        let progress = Progress::silent();
+        let desk = Arc::downgrade(self);
+        let progress = Progress::new(move |stage, share| {
+            if let Some(desk) = desk.upgrade() {
+                desk.state().at = Some((stage.to_owned(), share));
+            }
+        });
+        state.at = None;
         let order = state.order.take();
         let rests = order.as_ref().is_none_or(|order| order.pace == Pace::Resting);
         let task = order.map(Task::Show).or_else(|| state.to_judge.take().map(Task::Judge));
@@ -153,7 +175,7 @@ impl Desk {
         let mut session = self.session.lock().unwrap_or_else(PoisonError::into_inner);
         match task {
             Task::Show(order) => {
-                let answer = guarded(|| session.show(&order, progress));
+                let answer = guarded(&order.document, || session.show(&order, progress));
                 let mut state = self.state();
                 if session.has_time_to_judge(order.pace) && !progress.is_cancelled() {
                     state.to_judge = Some(order);
@@ -177,12 +199,13 @@ impl Desk {
 }
 
 /// A picture, or the reason why there is none; `None` if it was cancelled. A panic is a reason too, so that the window lives on.
-fn guarded(show: impl FnOnce() -> Result<Shown, crate::BelvedereError>) -> Option<Answer> {
+fn guarded(document: &Arc<Document>, show: impl FnOnce() -> Result<Shown, crate::BelvedereError>) -> Option<Answer> {
+    let failed = |reason| Some(Answer::Failed(document.clone(), reason));
     match std::panic::catch_unwind(std::panic::AssertUnwindSafe(show)) {
         Ok(Ok(shown)) => Some(Answer::Shown(Box::new(shown))),
         Ok(Err(e)) if e.is_cancelled() => None,
-        Ok(Err(e)) => Some(Answer::Failed(e.to_string())),
-        Err(_) => Some(Answer::Failed("internal error while drawing; please report this with the scene".into())),
+        Ok(Err(e)) => failed(e.to_string()),
+        Err(_) => failed("internal error while drawing; please report this with the scene".into()),
     }
 }
 

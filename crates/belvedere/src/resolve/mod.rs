@@ -13,6 +13,7 @@ mod context;
 pub(crate) mod delta;
 mod dem;
 pub(crate) mod ground;
+pub(crate) mod hidden;
 mod layers;
 mod light;
 mod loader;

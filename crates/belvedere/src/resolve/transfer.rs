@@ -42,6 +42,26 @@ fn one() -> f64 {
     1.0
 }
 
+/// Beginning of a function whose points stand in its name.
+const POINTS: &str = "points ";
+
+/// The points of a function that states them: `VALUE:#rrggbb:OPACITY`, separated by spaces.
+fn listed(list: &str) -> Result<Vec<TransferPoint>, String> {
+    let one = |text: &str| {
+        let parts: Vec<&str> = text.split(':').collect();
+        let (value, opacity) = match parts.as_slice() {
+            [value, _, opacity] => (value.parse().ok(), opacity.parse().ok()),
+            _ => (None, None),
+        };
+        let (Some(value), Some(opacity)) = (value, opacity) else {
+            return Err(format!("transfer point \"{text}\" is not VALUE:#rrggbb:OPACITY, such as 120:#ffcc88:0.4"));
+        };
+        let color = color("color", parts[1]).map_err(|(_, reason)| reason)?;
+        Ok(TransferPoint { value, color, opacity })
+    };
+    list.split_whitespace().map(one).collect()
+}
+
 /// The function that a layer names, fitted to its volume.
 pub(super) fn find(
     loader: &mut Loader<'_>,
@@ -55,6 +75,10 @@ pub(super) fn find(
     if name == WALL {
         // Used until the path is known.
         return Ok(TransferFunction::auto(volume));
+    }
+    if let Some(list) = name.strip_prefix(POINTS) {
+        let made = listed(list).and_then(|points| TransferFunction::new(name, points, 1.0).map_err(|e| e.to_string()));
+        return made.map_err(|reason| loader.fail(index, "transfer", reason));
     }
     let is_file = [".toml", ".json"].iter().any(|e| name.to_ascii_lowercase().ends_with(e));
     if !is_file {

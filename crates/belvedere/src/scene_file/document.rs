@@ -47,6 +47,9 @@ pub struct Document {
     /// are shown everywhere. A section may also name a layer.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub representations: BTreeMap<String, Vec<String>>,
+    /// Ids of layers that are not drawn and hide nothing. What a stage or a constructor follows stays known to it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub hidden: Vec<String>,
     /// Stages in order of application: terrain_disocclusion, strip, relief, spline_bend, curved_rays.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stage: Vec<StageDoc>,
@@ -73,6 +76,7 @@ impl Document {
             stylisation: None,
             layer: Vec::new(),
             representations: BTreeMap::new(),
+            hidden: Vec::new(),
             stage: Vec::new(),
             constructor: None,
             animation: None,
@@ -105,6 +109,8 @@ pub(super) struct Head {
     pub(super) stylisation: Option<super::stylisation::StylisationDoc>,
     #[serde(default)]
     pub(super) representations: BTreeMap<String, Vec<String>>,
+    #[serde(default)]
+    pub(super) hidden: Vec<String>,
     #[serde(default)]
     #[serde(rename = "layer")]
     pub(super) _layer: serde::de::IgnoredAny,

@@ -264,6 +264,7 @@ fn document(root: &Node) -> Result<Document, DocError> {
         overlay: head.overlay,
         stylisation: head.stylisation,
         representations: head.representations,
+        hidden: head.hidden,
         layer: each(root, "layer", layers::LAYER_KINDS, layer)?,
         stage: each(root, "stage", stages::STAGE_KINDS, stage)?,
         constructor: head.constructor,

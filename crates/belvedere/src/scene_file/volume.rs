@@ -16,7 +16,8 @@ pub struct VolumeDoc {
     /// Name of the array in files that have several; by default the first of single values.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub array: Option<String>,
-    /// Colours and opacities by value: `auto`, `solid`, `engine`, `ct-bone`, `ct-soft`, `vessels`, `grey`, or a file; `wall` for the wall
+    /// Colours and opacities by value: `auto`, `solid`, `engine`, `ct-bone`, `ct-soft`, `vessels`, `grey`, a file, or points,
+    /// `points VALUE:#rrggbb:OPACITY ...`; `wall` for the wall
     /// around the path of a preview alone, which is also what `auto` means for a volume that holds most of such a path.
     #[serde(default = "auto")]
     pub transfer: String,
