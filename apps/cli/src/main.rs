@@ -17,6 +17,7 @@ mod pack;
 mod parse;
 mod preset;
 mod report;
+mod reveal;
 mod timings;
 mod trust;
 mod usage;

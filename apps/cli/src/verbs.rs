@@ -2,24 +2,21 @@
 
 use crate::args::{
     AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, DisoccludeArgs, FigureKind, FiguresArgs, MeasureArgs,
-    PickArgs, ProjectArgs, RaysArgs, RenderArgs, RevealArgs, SceneArgs, SchemaArgs, ShowArgs, Verb,
+    PickArgs, ProjectArgs, RaysArgs, RenderArgs, SceneArgs, SchemaArgs, ShowArgs, Verb,
 };
 use crate::draw_args::{CompositingKind, DrawArgs};
 use crate::goal::Goal;
 use crate::ground_args::InfoArgs;
-use crate::kinds::TechniqueKind;
 use crate::outputs::{self, named, png_named};
 use crate::report::{Context, done, is_stdout, print};
 use anyhow::Context as _;
 use belvedere::pick;
-use belvedere::picture::{self, AuxBuffer, AuxFormat, Picture, PictureOptions};
+use belvedere::picture::{self, AuxBuffer, AuxFormat, PictureOptions};
 use belvedere::scene::Compositing;
 use belvedere::scene_file::{AnimationDoc, PaletteDoc, StylisationDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{self, AnimateRequest, Film};
 use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest, WrittenGrid};
-use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
-use belvedere::verbs::reveal_target::{TargetRequest, reveal_target};
-use belvedere::verbs::{check, hold_a_city, info, measure, points};
+use belvedere::verbs::{check, info, measure, points};
 use belvedere::{CameraPicture, DataFiles, Needs, OpenOptions, Session, output, scene_file};
 use belvedere_bench::BenchRequest;
 use std::path::{Path, PathBuf};
@@ -35,7 +32,7 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
         Verb::Project(args) => project(&args, context),
         Verb::Rays(args) => rays(&args, context),
         Verb::Displace(args) => displace(&args, context),
-        Verb::Reveal(args) => reveal_features(args, context),
+        Verb::Reveal(args) => crate::reveal::reveal(args, context),
         Verb::Pick(args) => pick_pixels(&args, context),
         Verb::Measure(args) => measure_scene(&args, context),
         Verb::Demo(args) => demonstrate(&args, context),
@@ -58,7 +55,7 @@ fn ready(out: Option<&PathBuf>, inputs: &[&Path], context: &Context) -> anyhow::
 }
 
 /// A path as text.
-fn as_text(path: &Path) -> String {
+pub(crate) fn as_text(path: &Path) -> String {
     path.to_string_lossy().into_owned()
 }
 
@@ -262,154 +259,6 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
     context.warn(&warnings);
     context.warn(missing.as_slice());
     Ok(if missing.is_some() { Goal::Missed } else { Goal::Reached })
-}
-
-/// Finds what one target in models needs to be visible, and writes the files that were asked for.
-fn reveal_one(request: &TargetRequest, (out, files): (&Path, &RevealFiles), context: &Context) -> anyhow::Result<Goal> {
-    let answer = reveal_target(request, &context.options(Needs::Everything, None))?;
-    let written = answer.write(files, context.common.overwrite)?;
-    delivered(&answer.picture, out, files, context)?;
-    if context.common.json {
-        let mut result = done("reveal", &written, &answer.warnings());
-        result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;
-        context.print(&result)?;
-    } else if !context.common.quiet {
-        context.finish();
-        context.say(&format!("{}\n", answer.summary()), out)?;
-    }
-    context.warn(&answer.warnings());
-    context.warn(&answer.missed());
-    Ok(if answer.missed().is_empty() { Goal::Reached } else { Goal::Missed })
-}
-
-/// After the files of a revealed picture: the picture on standard output if it goes there, its times, and consent for the scene.
-fn delivered(picture: &Picture, out: &Path, files: &RevealFiles, context: &Context) -> anyhow::Result<()> {
-    context.timings.note_picture(&picture.sidecar);
-    if let Some(scene) = &files.scene {
-        context.remember(scene);
-    }
-    if is_stdout(out) {
-        let mut alone = picture.clone();
-        alone.straight = None;
-        outputs::write_stdout(&alone.to_png()?)?;
-    }
-    Ok(())
-}
-
-fn reveal_features(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> {
-    let files: Vec<PathBuf> = [&args.dem].into_iter().chain(&args.features).map(PathBuf::from).collect();
-    let models = args.see.is_some() || hold_a_city(&files);
-    if models {
-        crate::for_models::check(&args)?;
-    }
-    let picture = args.out;
-    let to_file = if is_stdout(&picture) { PathBuf::new() } else { picture.clone() };
-    let out = RevealFiles { out: to_file, before: args.before, report: args.report, scene: args.scene };
-    let inputs = args.features.iter().chain([&args.dem]).map(PathBuf::from);
-    let inputs: Vec<PathBuf> = inputs.chain(args.rivers.iter().chain(&args.drape).cloned()).collect();
-    png_named(&picture)?;
-    out.before.as_deref().map_or(Ok(()), png_named)?;
-    let technique = args.technique.unwrap_or(TechniqueKind::Spline);
-    let follows_rivers = !matches!(technique, TechniqueKind::Spline | TechniqueKind::CurvedRays);
-    anyhow::ensure!(
-        args.rivers.is_empty() || follows_rivers,
-        "--rivers needs --technique terrain, both or auto: rivers are kept from running uphill where the ground moves"
-    );
-    let moves = args.see.is_none() && !matches!(technique, TechniqueKind::Spline | TechniqueKind::CurvedRays);
-    let delta = (moves && !is_stdout(&picture)).then(|| picture::delta_path(&picture));
-    if is_stdout(&picture) {
-        outputs::check_stdout(context)?;
-        anyhow::ensure!(args.drafts.is_none(), "-o -: --drafts prints commands on standard output; name a file");
-    }
-    outputs::check(&out.all().into_iter().chain(delta).collect::<Vec<_>>(), &inputs, context)?;
-    let places = match (args.eye, args.look) {
-        (None, None) => None,
-        (Some(eye), Some(look)) => Some([eye, look]),
-        (Some(_), None) => anyhow::bail!("--eye is given without --look; give both, or neither"),
-        (None, Some(_)) => anyhow::bail!("--look is given without --eye; give both, or neither"),
-    };
-    let appearance = args.look_args.appearance();
-    let quality = |picture: &mut PictureOptions| {
-        picture.quality.threads = context.common.threads;
-        picture.quality.max_bytes = context.common.max_mem.unwrap_or(picture.quality.max_bytes);
-    };
-    if models {
-        if !matches!(
-            args.technique,
-            None | Some(TechniqueKind::Auto | TechniqueKind::CurvedRays | TechniqueKind::Spline)
-        ) {
-            anyhow::bail!(
-                "--see bends rays, or in a city the ground by a spline; give --technique curved_rays or spline, or leave it out"
-            );
-        }
-        let see = args.see.unwrap_or_default();
-        let mut request = TargetRequest {
-            files,
-            see,
-            fallback: args.fallback,
-            transfer: args.transfer,
-            places,
-            appearance,
-            fov_y_deg: args.fov,
-            up: args.up.map(belvedere::core::DVec3::from_array),
-            image: args.size,
-            technique: args.technique.filter(|kind| *kind != TechniqueKind::Auto).map(Into::into),
-            ..TargetRequest::default()
-        };
-        quality(&mut request.picture);
-        if let Some(count) = args.drafts {
-            return crate::drafts::of_target(&request, count, &out.out, context);
-        }
-        return reveal_one(&request, (&picture, &out), context);
-    }
-    let mut request = RevealRequest {
-        data: DataFiles {
-            dem: args.dem,
-            features: args.features,
-            rivers: args.rivers.iter().map(|path| as_text(path)).collect(),
-            crs: args.crs,
-            keep_voids: args.keep_voids,
-            fill_all_voids: args.look_args.fill_voids,
-            hidden: args.look_args.hidden.map(Into::into),
-            drape: args.drape.iter().map(|path| as_text(path)).collect(),
-            labels: args.labels,
-            palette: PaletteDoc::of(args.palette.as_deref().unwrap_or("auto")),
-            no_sea: args.no_sea,
-            area_style: args.area_style,
-            source_crs: args.ground.source_crs,
-            nodata: args.ground.nodata,
-            vertical_unit: args.ground.vertical_unit.map(Into::into),
-            name_field: args.ground.name_field,
-        },
-        places,
-        appearance,
-        fov_y_deg: args.fov,
-        image: args.size,
-        curved_earth: args.curved_earth,
-        technique: technique.into(),
-        no_limits: args.no_limits,
-        ..RevealRequest::default()
-    };
-    quality(&mut request.picture);
-    if let Some(count) = args.drafts {
-        return crate::drafts::drafts(&request, count, &out.out, context);
-    }
-    let answer = reveal::reveal(&request, &context.options(Needs::Everything, None))?;
-    let written = answer.write(&out, context.common.overwrite)?;
-    delivered(&answer.picture, &picture, &out, context)?;
-    if context.common.json {
-        let mut result = done("reveal", &written, &answer.session.warnings());
-        result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;
-        result["shares"] = serde_json::from_str(&output::json(&answer.shares)?)?;
-        result["hidden"] = serde_json::from_str(&output::json(&answer.hidden)?)?;
-        context.print(&result)?;
-    } else if !context.common.quiet {
-        context.finish();
-        context.say(&format!("{}\n", answer.summary()), &picture)?;
-    }
-    context.warn(&answer.session.warnings());
-    context.warn(answer.missed());
-    Ok(if answer.missed().is_empty() { Goal::Reached } else { Goal::Missed })
 }
 
 fn measure_scene(args: &MeasureArgs, context: &Context) -> anyhow::Result<Goal> {

@@ -1,0 +1,195 @@
+//! `reveal`: what the arguments ask for, and the files and lines of the answer.
+
+use crate::args::RevealArgs;
+use crate::goal::Goal;
+use crate::kinds::TechniqueKind;
+use crate::outputs::{self, png_named};
+use crate::report::{Context, done, is_stdout};
+use crate::verbs::as_text;
+use belvedere::picture::{self, Picture, PictureOptions};
+use belvedere::places::Place;
+use belvedere::scene_file::PaletteDoc;
+use belvedere::verbs::hold_a_city;
+use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
+use belvedere::verbs::reveal_target::{TargetRequest, reveal_target};
+use belvedere::{DataFiles, Needs, output};
+use std::path::{Path, PathBuf};
+
+/// Draws a picture in which features, a target in models, or one in a city is visible.
+pub(crate) fn reveal(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> {
+    let files: Vec<PathBuf> = [&args.dem].into_iter().chain(&args.features).map(PathBuf::from).collect();
+    let models = args.see.is_some() || hold_a_city(&files);
+    if models {
+        crate::for_models::check(&args)?;
+    }
+    let to_file = if is_stdout(&args.out) { PathBuf::new() } else { args.out.clone() };
+    let out = RevealFiles {
+        out: to_file,
+        before: args.before.clone(),
+        report: args.report.clone(),
+        scene: args.scene.clone(),
+    };
+    ready(&args, &out, context)?;
+    let places = places(&args)?;
+    match models {
+        true => reveal_target_in(args, (files, places), &out, context),
+        false => reveal_features(args, places, &out, context),
+    }
+}
+
+fn technique(args: &RevealArgs) -> TechniqueKind {
+    args.technique.unwrap_or(TechniqueKind::Spline)
+}
+
+/// Refuses bad outputs and contradictory options before the work starts.
+fn ready(args: &RevealArgs, out: &RevealFiles, context: &Context) -> anyhow::Result<()> {
+    let inputs = args.features.iter().chain([&args.dem]).map(PathBuf::from);
+    let inputs: Vec<PathBuf> = inputs.chain(args.rivers.iter().chain(&args.drape).cloned()).collect();
+    png_named(&args.out)?;
+    out.before.as_deref().map_or(Ok(()), png_named)?;
+    let moves_ground = !matches!(technique(args), TechniqueKind::Spline | TechniqueKind::CurvedRays);
+    anyhow::ensure!(
+        args.rivers.is_empty() || moves_ground,
+        "--rivers needs --technique terrain, both or auto: rivers are kept from running uphill where the ground moves"
+    );
+    let to_stdout = is_stdout(&args.out);
+    let delta = (moves_ground && args.see.is_none() && !to_stdout).then(|| picture::delta_path(&args.out));
+    if to_stdout {
+        outputs::check_stdout(context)?;
+        anyhow::ensure!(args.drafts.is_none(), "-o -: --drafts prints commands on standard output; name a file");
+    }
+    outputs::check(&out.all().into_iter().chain(delta).collect::<Vec<_>>(), &inputs, context)
+}
+
+fn places(args: &RevealArgs) -> anyhow::Result<Option<[Place; 2]>> {
+    match (args.eye, args.look) {
+        (None, None) => Ok(None),
+        (Some(eye), Some(look)) => Ok(Some([eye, look])),
+        (Some(_), None) => anyhow::bail!("--eye is given without --look; give both, or neither"),
+        (None, Some(_)) => anyhow::bail!("--look is given without --eye; give both, or neither"),
+    }
+}
+
+fn quality(picture: &mut PictureOptions, context: &Context) {
+    picture.quality.threads = context.common.threads;
+    picture.quality.max_bytes = context.common.max_mem.unwrap_or(picture.quality.max_bytes);
+}
+
+/// Finds what one target in models or in a city needs to be visible, and writes the files that were asked for.
+fn reveal_target_in(
+    args: RevealArgs,
+    (files, places): (Vec<PathBuf>, Option<[Place; 2]>),
+    out: &RevealFiles,
+    context: &Context,
+) -> anyhow::Result<Goal> {
+    let picture = args.out.clone();
+    if !matches!(args.technique, None | Some(TechniqueKind::Auto | TechniqueKind::CurvedRays | TechniqueKind::Spline)) {
+        anyhow::bail!(
+            "--see bends rays, or in a city the ground by a spline; give --technique curved_rays or spline, or leave it out"
+        );
+    }
+    let see = args.see.unwrap_or_default();
+    let mut request = TargetRequest {
+        files,
+        see,
+        fallback: args.fallback,
+        transfer: args.transfer,
+        places,
+        appearance: args.look_args.appearance(),
+        fov_y_deg: args.fov,
+        up: args.up.map(belvedere::core::DVec3::from_array),
+        image: args.size,
+        technique: args.technique.filter(|kind| *kind != TechniqueKind::Auto).map(Into::into),
+        ..TargetRequest::default()
+    };
+    quality(&mut request.picture, context);
+    if let Some(count) = args.drafts {
+        return crate::drafts::of_target(&request, count, &out.out, context);
+    }
+    let answer = reveal_target(&request, &context.options(Needs::Everything, None))?;
+    let written = answer.write(out, context.common.overwrite)?;
+    delivered(&answer.picture, &picture, out, context)?;
+    if context.common.json {
+        let mut result = done("reveal", &written, &answer.warnings());
+        result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;
+        context.print(&result)?;
+    } else if !context.common.quiet {
+        context.finish();
+        context.say(&format!("{}\n", answer.summary()), &picture)?;
+    }
+    context.warn(&answer.warnings());
+    context.warn(&answer.missed());
+    Ok(if answer.missed().is_empty() { Goal::Reached } else { Goal::Missed })
+}
+
+/// Finds a view and a bend that show features on terrain, and writes the files that were asked for.
+fn reveal_features(
+    args: RevealArgs,
+    places: Option<[Place; 2]>,
+    out: &RevealFiles,
+    context: &Context,
+) -> anyhow::Result<Goal> {
+    let (picture, technique) = (args.out.clone(), technique(&args));
+    let mut request = RevealRequest {
+        data: DataFiles {
+            dem: args.dem,
+            features: args.features,
+            rivers: args.rivers.iter().map(|path| as_text(path)).collect(),
+            crs: args.crs,
+            keep_voids: args.keep_voids,
+            fill_all_voids: args.look_args.fill_voids,
+            hidden: args.look_args.hidden.map(Into::into),
+            drape: args.drape.iter().map(|path| as_text(path)).collect(),
+            labels: args.labels,
+            palette: PaletteDoc::of(args.palette.as_deref().unwrap_or("auto")),
+            no_sea: args.no_sea,
+            area_style: args.area_style,
+            source_crs: args.ground.source_crs,
+            nodata: args.ground.nodata,
+            vertical_unit: args.ground.vertical_unit.map(Into::into),
+            name_field: args.ground.name_field,
+        },
+        places,
+        appearance: args.look_args.appearance(),
+        fov_y_deg: args.fov,
+        image: args.size,
+        curved_earth: args.curved_earth,
+        technique: technique.into(),
+        no_limits: args.no_limits,
+        ..RevealRequest::default()
+    };
+    quality(&mut request.picture, context);
+    if let Some(count) = args.drafts {
+        return crate::drafts::drafts(&request, count, &out.out, context);
+    }
+    let answer = reveal::reveal(&request, &context.options(Needs::Everything, None))?;
+    let written = answer.write(out, context.common.overwrite)?;
+    delivered(&answer.picture, &picture, out, context)?;
+    if context.common.json {
+        let mut result = done("reveal", &written, &answer.session.warnings());
+        result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;
+        result["shares"] = serde_json::from_str(&output::json(&answer.shares)?)?;
+        result["hidden"] = serde_json::from_str(&output::json(&answer.hidden)?)?;
+        context.print(&result)?;
+    } else if !context.common.quiet {
+        context.finish();
+        context.say(&format!("{}\n", answer.summary()), &picture)?;
+    }
+    context.warn(&answer.session.warnings());
+    context.warn(answer.missed());
+    Ok(if answer.missed().is_empty() { Goal::Reached } else { Goal::Missed })
+}
+
+/// After the files of a revealed picture: the picture on standard output if it goes there, its times, and consent for the scene.
+fn delivered(picture: &Picture, out: &Path, files: &RevealFiles, context: &Context) -> anyhow::Result<()> {
+    context.timings.note_picture(&picture.sidecar);
+    if let Some(scene) = &files.scene {
+        context.remember(scene);
+    }
+    if is_stdout(out) {
+        let mut alone = picture.clone();
+        alone.straight = None;
+        outputs::write_stdout(&alone.to_png()?)?;
+    }
+    Ok(())
+}
