@@ -118,7 +118,10 @@ fn header<'a>(words: &mut std::iter::Peekable<impl Iterator<Item = &'a [u8]>>) -
         };
         let count = || {
             let valid = value.fract() == 0.0 && (2.0..=MAX_SIDE).contains(&value);
-            valid.then_some(value as usize).ok_or(format!("{key} is {value}, it must be a whole number in 2..=1000000"))
+            valid.then_some(value as usize).ok_or(format!(
+                "{key} is {}, it must be a whole number in 2..=1000000",
+                belvedere_core::plain::number(value)
+            ))
         };
         match key.as_str() {
             "ncols" => out.cols = Some(count()?),

@@ -73,7 +73,7 @@ pub fn load_volume(path: &Path, request: &VolumeRequest) -> Result<Loaded<Volume
     let (bytes, file) = InputFile::read(path)?;
     let source = Source { path, bytes: &bytes, request };
     let loaded = match () {
-        () if name.ends_with(".vti") => vti::read(&source).map_err(|e| explain(format(e)))?,
+        () if name.ends_with(".vti") => vti::read(&source).map_err(format)?,
         () if is_nrrd || name.ends_with(".nhdr") => nrrd::read(&source).map_err(explain)?,
         () if name.ends_with(".raw") || name.ends_with(".raw.gz") => raw::read(&source).map_err(format)?,
         () => {

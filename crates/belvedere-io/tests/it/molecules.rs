@@ -181,13 +181,13 @@ fn broken_files_say_where_and_what() {
     let with = |from: &str, to: &str| ATOMS.replace(from, to);
     let cif = |from: &str, to: &str| CIF.replace(from, to);
     for (name, text, said) in [
-        ("a.pdb", String::new(), "it holds no atom"),
+        ("a.pdb", String::new(), "is empty"),
         ("a.pdb", with("11.104", "11.1x4"), "line 3: x is \"11.1x4\", a number is needed in columns 31 to 38"),
         ("a.pdb", with("11.104", "   nan"), "line 3: x is \"nan\""),
         ("a.pdb", with("  6.134  -6.504  1.00  0.00           N", ""), "line 3: the line of an atom has 39 columns"),
         ("a.pdb", with(" N   ALA", " N\u{e9}  ALA"), "letters beyond ASCII"),
         ("a.pdb", with("  11.104", "99999999"), "beyond the 1000000 angstrom"),
-        ("a.cif", String::new(), "it holds no atom"),
+        ("a.cif", String::new(), "is empty"),
         ("a.cif", cif("_atom_site.Cartn_z\n", "_atom_site.other\n"), "have no _atom_site.Cartn_z"),
         ("a.cif", cif("18.935", "?"), "line 23: x is \"?\", a number is needed"),
         ("a.cif", cif("18.935 ", ""), "values for 15 columns"),

@@ -202,7 +202,7 @@ fn other_and_broken_files_are_one_clear_error() {
         ("a.gpx", b"<gpx><trk><trkseg>", "ends inside <trkseg>"),
         ("a.gpx", b"<gpx><trk></gpx>", "well-formed"),
         ("a.gpx", b"<?xml version='1.0'?>", "no XML element"),
-        ("a.txt", b"hello", "is not routes, areas or points: GPX"),
+        ("a.txt", b"hello", "not routes, areas or points: GPX"),
         ("a.json", b"[1,2]", "\"type\""),
         ("a.json", b"{\"type\":\"CityJSON\"}", "CityJSON"),
         ("a.json", b"{\"type\":\"Point\",\"coordinates\":[1,\"x\"]}", "two or three numbers"),

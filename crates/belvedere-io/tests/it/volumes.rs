@@ -279,7 +279,7 @@ fn what_is_not_supported_or_damaged_is_one_clear_error() {
         ("h.nrrd", head.replace("3 4 5", huge) + "encoding: gzip\n\nxx", "declares"),
         ("i.nhdr", format!("{head}encoding: raw\ndata file: ../../secret\n"), "not a file below its own folder"),
         ("j.nhdr", format!("{head}encoding: raw\ndata file: LIST\na\nb\n\n"), "several files"),
-        ("k.nrrd", String::new(), "no NRRD file"),
+        ("k.nrrd", String::new(), "no NRRD"),
         ("l.vti", "<VTKFile type=\"PolyData\"></VTKFile>".into(), "no VTK XML file of type ImageData"),
         (
             "m.vti",
