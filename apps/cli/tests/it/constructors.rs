@@ -236,6 +236,8 @@ fn curved_rays_show_more_of_a_route_than_straight_ones() {
         massif,
         "--technique",
         "curved_rays",
+        "--eye=6000,3200,+300",
+        "--look=3200,3200",
         "--size",
         "160x90",
         "-o",

@@ -113,7 +113,7 @@ fn bad_places_are_refused_with_the_grammar() {
         (reveal("8.03,46.0,1900", "8.03"), "1 parts"),
         (reveal("8.3,46.0,+20", "8.03,46.035"), "--eye: "),
         (reveal("8.03,46.0,1900", "9.5,46.035"), "--look: "),
-        (place.fails(&[&args[..], &["--eye", "8.03,46.0,1900"]].concat()), "belong together"),
+        (place.fails(&[&args[..], &["--eye", "8.03,46.0,1900"]].concat()), "--eye is given without --look"),
     ] {
         assert!(line.contains(words), "{line}");
     }

@@ -86,7 +86,7 @@ fn strips_that_cannot_be_say_why() {
     refuses(&bare("path = [[5, 5]]"), "7: the route has 1 points and is 0 long");
     refuses(
         &bare("path = [[0, 0], [900, 0]]\nhalf_width_m = 0"),
-        "8: half_width is 0, it must be in 0.000001..=1000000000",
+        "8: half_width_m is 0, it must be in 0.000001..=1000000000",
     );
     refuses(&bare("path = [[0, 0], [900, 0]]\nshare = 2"), "8: share is 2, it must be in 0..=1");
     let hairpin = "path = [[0, 0], [3000, 0], [3300, 200], [3000, 400], [0, 400]]\nsmoothing_m = 60";
