@@ -61,7 +61,7 @@ const LINES: &[(&str, &str, &str)] = &[
     ("render scene.toml -o x.png --overhead --grid", "--grid", "render scene.toml -o x.png --overhead"),
     ("render scene.toml -o x.png --overhead --outside auto", "--outside", "render scene.toml -o x.png --outside auto"),
     ("reveal dem.asc route.gpx", "--out", ""),
-    ("reveal dem.asc -o x.png", "FEATURES", ""),
+    ("reveal dem.asc -o x.png", "no features", ""),
     ("reveal dem.asc route.gpx -o x.png --eye 10.006,45.995,1500", "--look", ""),
     ("reveal dem.asc route.gpx -o x.png --look 10.006,46.009", "--eye", ""),
     ("reveal dem.asc route.gpx -o x.png --eye 10.006,45.995,1500 --look 10.006", "--look", ""),
