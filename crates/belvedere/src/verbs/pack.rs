@@ -26,7 +26,7 @@ const MAX_BYTES: u64 = 1 << 30;
 /// Request for a package.
 #[derive(Debug, Clone, Default)]
 pub struct PackRequest {
-    /// A scene file, or data as [`open_files`] takes them; empty = the built-in scenes.
+    /// A scene file, or data as [`open_files`](super::open_files::open_files) takes them; empty = the built-in scenes.
     pub files: Vec<PathBuf>,
     /// Folders beside that of a scene file from which its files may come.
     pub allowed: Vec<PathBuf>,
