@@ -10,6 +10,8 @@ pub(crate) fn check(args: &RevealArgs) -> anyhow::Result<()> {
         ("--hidden", look.hidden.is_some()),
         ("--exaggeration", look.exaggeration.is_some()),
         ("--fill-voids", look.fill_voids),
+        ("--drape", !args.drape.is_empty()),
+        ("--labels", args.labels),
         ("--keep-voids", args.keep_voids),
         ("--palette", args.palette.is_some()),
         ("--no-sea", args.no_sea),

@@ -4,7 +4,7 @@ use crate::common_args::Common;
 use crate::timings::Timings;
 use belvedere::core::{PinholeError, plain};
 use belvedere::scene::Progress;
-use belvedere::{BelvedereError, Needs, OpenOptions, Session, Trust, Warning, trust};
+use belvedere::{BelvedereError, Needs, OpenOptions, Session, Trust, Warning};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -196,10 +196,8 @@ impl Context {
     }
 
     /// Remembers that a scene that this command wrote may read the files that it was made from: the user gave or allowed them.
-    pub(crate) fn remember(&self, scene: &Path) {
-        let remembered = trust::outside(scene, &self.common.allow_root)
-            .and_then(|outside| self.trust.remember(scene, &outside.files));
-        if let Err(e) = remembered {
+    pub(crate) fn remember(&self, scene: &Path, session: &Session) {
+        if let Err(e) = self.trust.remember(scene, &session.outside(scene)) {
             self.warn(&[format!(
                 "{}: its files are not remembered: {e}; it opens with --allow-root DIR",
                 scene.display()

@@ -12,7 +12,7 @@ use belvedere::scene_file::PaletteDoc;
 use belvedere::verbs::hold_a_city;
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
 use belvedere::verbs::reveal_target::{TargetRequest, reveal_target};
-use belvedere::{DataFiles, Needs, output};
+use belvedere::{DataFiles, Needs, Session, output};
 use std::path::{Path, PathBuf};
 
 /// Draws a picture in which features, a target in models, or one in a city is visible.
@@ -44,7 +44,9 @@ fn technique(args: &RevealArgs) -> TechniqueKind {
 /// Refuses bad outputs and contradictory options before the work starts.
 fn ready(args: &RevealArgs, out: &RevealFiles, context: &Context) -> anyhow::Result<()> {
     let inputs = args.features.iter().chain([&args.dem]).map(PathBuf::from);
-    let inputs: Vec<PathBuf> = inputs.chain(args.rivers.iter().chain(&args.drape).cloned()).collect();
+    let named = [&args.see, &args.palette, &args.transfer].into_iter().flatten().map(PathBuf::from);
+    let inputs = inputs.chain(args.rivers.iter().chain(&args.drape).cloned()).chain(named);
+    let inputs: Vec<PathBuf> = inputs.collect();
     png_named(&args.out)?;
     out.before.as_deref().map_or(Ok(()), png_named)?;
     let moves_ground = !matches!(technique(args), TechniqueKind::Spline | TechniqueKind::CurvedRays);
@@ -108,7 +110,7 @@ fn reveal_target_in(
     }
     let answer = reveal_target(&request, &context.options(Needs::Everything, None))?;
     let written = answer.write(out, context.common.overwrite)?;
-    delivered(&answer.picture, &picture, out, context)?;
+    delivered((&answer.picture, &answer.session), &picture, out, context)?;
     if context.common.json {
         let mut result = done("reveal", &written, &answer.warnings());
         result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;
@@ -164,7 +166,7 @@ fn reveal_features(
     }
     let answer = reveal::reveal(&request, &context.options(Needs::Everything, None))?;
     let written = answer.write(out, context.common.overwrite)?;
-    delivered(&answer.picture, &picture, out, context)?;
+    delivered((&answer.picture, &answer.session), &picture, out, context)?;
     if context.common.json {
         let mut result = done("reveal", &written, &answer.session.warnings());
         result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;
@@ -181,10 +183,15 @@ fn reveal_features(
 }
 
 /// After the files of a revealed picture: the picture on standard output if it goes there, its times, and consent for the scene.
-fn delivered(picture: &Picture, out: &Path, files: &RevealFiles, context: &Context) -> anyhow::Result<()> {
+fn delivered(
+    (picture, session): (&Picture, &Session),
+    out: &Path,
+    files: &RevealFiles,
+    context: &Context,
+) -> anyhow::Result<()> {
     context.timings.note_picture(&picture.sidecar);
     if let Some(scene) = &files.scene {
-        context.remember(scene);
+        context.remember(scene, session);
     }
     if is_stdout(out) {
         let mut alone = picture.clone();

@@ -17,7 +17,7 @@ pub(crate) fn report(error: &clap::Error) -> ExitCode {
         let _ = error.print();
         return ExitCode::SUCCESS;
     }
-    let given: Vec<String> = std::env::args().skip(1).collect();
+    let given: Vec<String> = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
     let cli = Cli::command();
     let (command, names) = meant(&cli, &given);
     let help = [&["belvedere"], &names[..], &["--help"]].concat().join(" ");

@@ -427,7 +427,7 @@ fn show(args: &ShowArgs, context: &Context) -> anyhow::Result<Goal> {
     let text = if json { output::document_json(&document)? } else { output::document_toml(&document)? };
     context.deliver("show", args.out.as_deref(), &text, &session.warnings())?;
     if let Some(path) = out {
-        context.remember(path);
+        context.remember(path, &session);
     }
     Ok(Goal::Reached)
 }

@@ -15,7 +15,7 @@ pub(crate) fn text_of(camera: &CameraDoc) -> Option<String> {
 #[cfg_attr(not(target_family = "wasm"), allow(dead_code))]
 pub(crate) fn put(text: &str, camera: &mut CameraDoc) -> bool {
     let Some(list) = text.trim_start_matches('#').strip_prefix("view=") else { return false };
-    let numbers: Vec<f64> = list.split(',').filter_map(|number| number.parse().ok()).collect();
+    let Ok(numbers) = list.split(',').map(str::parse).collect::<Result<Vec<f64>, _>>() else { return false };
     let [x, y, z, to_x, to_y, to_z, fov] = numbers[..] else { return false };
     let is_camera = numbers.iter().all(|number| number.is_finite()) && fov > 0.0 && fov < 180.0;
     if !is_camera {
@@ -42,7 +42,7 @@ mod tests {
         assert!(put(&format!("#{address}"), &mut other));
         assert_eq!(other, camera);
         for nonsense in
-            ["", "#about", "view=1,2,3", "view=1,2,3,4,5,6,190", "view=1,2,3,4,5,NaN,30", "view=a,2,3,4,5,6,30"]
+            ["", "#about", "view=1,2,3", "view=1,2,3,4,5,6,190", "view=1,2,3,4,5,NaN,30", "view=1,a,2,3,4,5,6,30"]
         {
             assert!(!put(nonsense, &mut other), "{nonsense}");
         }

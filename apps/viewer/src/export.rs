@@ -162,15 +162,26 @@ impl Exporter {
             let label = ui.label("Frames per second");
             ui.add(DragValue::new(&mut self.rate).speed(0.2).range(1.0..=120.0).max_decimals(2)).labelled_by(label.id);
         });
-        if let Some(seconds) = self.seconds {
-            ui.weak(format!("{} frames", frames(seconds, self.rate)));
+        match self.seconds {
+            _ if self.is_scenes_own() => {
+                drop(ui.weak("Length and rate of the scene's own motion until you change them."))
+            }
+            Some(seconds) => drop(ui.weak(format!("{} frames", frames(seconds, self.rate)))),
+            None => {}
         }
+    }
+
+    /// Whether the film has the length and rate of the scene's own motion: others were not asked for.
+    fn is_scenes_own(&self) -> bool {
+        let usual = Self::default();
+        self.film == Film::Scene && (!FILMS || (self.rate, self.seconds) == (usual.rate, usual.seconds))
     }
 
     /// The chosen motion as the scene file states it; bookmarks are written to a file beside the film.
     fn animation(&self, path: &Path, bookmarks: &[Bookmark]) -> Result<AnimationDoc, String> {
-        let fps = (FILMS && (self.film != Film::Scene || self.rate != RATE)).then_some(self.rate);
-        let frames = self.seconds.map(|seconds| frames(seconds, self.rate));
+        let own = self.is_scenes_own();
+        let fps = (FILMS && !own).then_some(self.rate);
+        let frames = self.seconds.filter(|_| !own).map(|seconds| frames(seconds, self.rate));
         let plain = AnimationDoc { fps, frames, ..AnimationDoc::default() };
         Ok(match self.film {
             Film::Scene => plain,

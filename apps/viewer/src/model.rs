@@ -209,6 +209,11 @@ impl Model {
         (self.violated, self.ordered) = (None, None);
     }
 
+    /// Keeps the scene although it may not be drawn: it is all that is left of an earlier session.
+    pub(crate) fn stay(&mut self) {
+        self.before = None;
+    }
+
     /// Whether a new scene waits for its first picture; until then nothing edits it.
     pub(crate) fn is_opening(&self) -> bool {
         self.shown.is_none() && (self.opening.is_some() || self.before.is_some())

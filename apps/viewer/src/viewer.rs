@@ -168,6 +168,7 @@ impl Viewer {
         match left {
             Some(left) if opening.files.is_empty() => {
                 viewer.replace(left.editor);
+                viewer.model.stay();
                 let extra: Extra = serde_json::from_value(left.extra).unwrap_or_default();
                 (viewer.model.look, viewer.panels.tab) = (extra.look, extra.tab);
                 viewer.bookmarks = extra.bookmarks;

@@ -76,6 +76,8 @@ fn check_writable(folder: &Path, output: &Path) -> Result<(), BelvedereError> {
             let _ = std::fs::remove_file(&probe);
             Ok(())
         }
+        // What another run left there was written.
+        Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists => Ok(()),
         Err(e) => {
             let reason = format!("cannot be written: folder {}: {e}; choose another folder", folder.display());
             Err(BelvedereError::Output { path: output.to_owned(), reason })

@@ -326,6 +326,21 @@ impl Session {
         Some(description.resolved.seen_from(&folder_of(path), &description.roots))
     }
 
+    /// Files that this session may read and that lie outside the folder of a scene file at `path`, canonical paths: a copy of the scene there
+    /// needs consent for them.
+    pub fn outside(&self, path: &Path) -> Vec<PathBuf> {
+        let Some(Description { resolved, roots, .. }) = &self.resolved.description else { return Vec::new() };
+        let there = Roots { scene_dir: folder_of(path), ..Roots::default() };
+        let mut files = Vec::new();
+        resolved.clone().for_each_path(&mut |name| {
+            let allowed = roots.resolve(name).ok().map(|file| split_table(&file).0.to_owned());
+            files.extend(allowed.filter(|file| !there.is_beside(file)));
+        });
+        files.sort();
+        files.dedup();
+        files
+    }
+
     /// Name of the scene file, or the title of the scene, for reports.
     pub(crate) fn name(&self) -> String {
         let name = self.path().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());

@@ -118,6 +118,21 @@ fn routes_through_a_city_are_seen_with_and_without_an_elevation_model() {
 }
 
 #[test]
+fn a_file_that_must_be_seen_is_an_input_and_reports_name_it_without_its_folder() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("mine")).expect("folder");
+    place.write("town.osm", &map());
+    let [from, to] = [degrees([10.0, 2.0 * STEP - 4.0]), degrees([100.0, 2.0 * STEP - 4.0])];
+    place.write("mine/way.geojson", &format!("{{\"type\":\"LineString\",\"coordinates\":[{from:?},{to:?}]}}"));
+    let see = ["reveal", "town.osm", "--see", "mine/way.geojson", "-o", "x.png", "--size", "64x36", "--overwrite"];
+    assert!(place.fails(&[&see[..], &["--report", "mine/way.geojson"]].concat()).contains("input"));
+    place.ok(&[&see[..], &["--report", "r.json", "--scene", "r.toml"]].concat());
+    assert_eq!(report(&place)["see"], "way.geojson");
+    let scene = String::from_utf8(read(&place.path("r.toml"))).expect("UTF-8");
+    assert!(scene.contains("title = \"way.geojson revealed\""), "{scene}");
+}
+
+#[test]
 fn footprints_are_a_city_for_the_lines_beside_them() {
     let place = Place::new();
     let ring = |x: f64, y: f64| {

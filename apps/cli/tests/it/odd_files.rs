@@ -107,3 +107,14 @@ fn names_from_files_do_not_steer_the_terminal() {
     let said = place.ok(&["check", "s.toml"]);
     assert!(!said.contains('\u{1b}') && said.contains("\\u{1b}[31mevil"), "{said}");
 }
+
+#[cfg(unix)]
+#[test]
+fn words_that_are_no_text_are_refused_in_one_line() {
+    use std::os::unix::ffi::OsStrExt;
+    let place = Place::new();
+    let scene = std::ffi::OsStr::from_bytes(b"\xff.toml");
+    let out = place.command(&["render"]).arg(scene).arg("--bogus").output().expect("the program starts");
+    let said = String::from_utf8(out.stderr).expect("UTF-8");
+    assert!(out.status.code() == Some(2) && said.lines().count() == 1 && said.contains("--bogus"), "{said}");
+}

@@ -98,6 +98,18 @@ fn scenes_that_moved_that_name_other_files_or_that_are_not_remembered_are_refuse
 }
 
 #[test]
+fn a_copy_of_a_scene_gets_no_consent_for_files_that_the_scene_may_not_read() {
+    let place = place();
+    // `show` does not read meshes.
+    let mesh = "[[layer]]\nid = 'a'\nkind = 'mesh'\nsource = '../data/a.obj'\n";
+    place.write("out/s.toml", &format!("{BARE}{mesh}"));
+    place.ok(&["show", "out/s.toml", "-o", "elsewhere/t.toml"]);
+    assert!(place.fails(&["check", "elsewhere/t.toml"]).contains("leaves the folder"));
+    place.ok(&["show", "out/s.toml", "-o", "elsewhere/t.toml", "--allow-root", "data", "--overwrite"]);
+    place.ok(&["check", "elsewhere/t.toml"]);
+}
+
+#[test]
 fn a_scene_is_trusted_listed_and_forgotten() {
     let place = place();
     let mesh = "[[layer]]\nid = 'a'\nkind = 'mesh'\nsource = ";

@@ -1,7 +1,6 @@
 //! Edits of the list of layers.
 
-use crate::scene_file::{self, Document};
-use serde_json::Value;
+use crate::scene_file::{self, Document, layer_names};
 use std::path::Path;
 
 /// The document with another id for a layer, wherever it is named: by stages, sections, constructors, animations and representations.
@@ -22,14 +21,21 @@ pub fn with_layer_renamed(document: &Document, from: &str, to: &str) -> Result<D
             layer["id"] = to.into();
         }
     }
-    for key in ["representations", "hidden", "stage", "constructor", "animation"] {
+    for key in ["stage", "constructor", "animation"] {
         if let Some(part) = value.get_mut(key) {
-            replace(part, from, to);
+            layer_names::each(part, &mut |text| {
+                if let Some(rest) = layer_names::rest(text, from) {
+                    *text = format!("{to}{rest}");
+                }
+            });
         }
     }
-    scene_file::parse(Path::new("scene.json"), &value.to_string())
+    let mut renamed = scene_file::parse(Path::new("scene.json"), &value.to_string())
         .map(|source| source.document)
-        .map_err(|e| e.to_string())
+        .map_err(|e| e.to_string())?;
+    let lists = renamed.representations.values_mut().chain([&mut renamed.hidden]);
+    lists.flatten().filter(|member| *member == from).for_each(|member| *member = to.to_owned());
+    Ok(renamed)
 }
 
 /// The document without a layer; what named it by itself is removed with it.
@@ -38,31 +44,10 @@ pub fn without_layer(document: &Document, id: &str) -> Document {
     next.layer.retain(|layer| layer.id() != id);
     next.hidden.retain(|other| other != id);
     next.representations.values_mut().for_each(|members| members.retain(|member| member != id));
-    let named = [format!("\"{id}\""), format!("\"{id}/")];
-    let names = |part: String| named.iter().any(|name| part.contains(name));
-    if next.constructor.as_ref().is_some_and(|doc| names(serde_json::to_string(doc).unwrap_or_default())) {
-        next.constructor = None;
-    }
-    if next.animation.as_ref().is_some_and(|doc| names(serde_json::to_string(doc).unwrap_or_default())) {
-        next.animation = None;
-    }
-    next.stage.retain(|stage| !names(serde_json::to_string(stage).unwrap_or_default()));
+    next.constructor.take_if(|doc| layer_names::is_named_by(doc, id));
+    next.animation.take_if(|doc| layer_names::is_named_by(doc, id));
+    next.stage.retain(|stage| !layer_names::is_named_by(stage, id));
     next
-}
-
-/// Replaces texts that name a layer: the id alone, `ID/NUMBER`, `ID:KIND`.
-fn replace(value: &mut Value, from: &str, to: &str) {
-    match value {
-        Value::String(text) => {
-            let rest = text.strip_prefix(from);
-            if let Some(rest) = rest.filter(|rest| rest.is_empty() || rest.starts_with(['/', ':'])) {
-                *text = format!("{to}{rest}");
-            }
-        }
-        Value::Array(list) => list.iter_mut().for_each(|item| replace(item, from, to)),
-        Value::Object(map) => map.values_mut().for_each(|item| replace(item, from, to)),
-        _ => {}
-    }
 }
 
 #[cfg(test)]
@@ -86,6 +71,17 @@ mod tests {
         assert_eq!(with_layer_renamed(&renamed, "the trail", "way").expect("back"), document());
         for taken in ["huts", " ", "way"] {
             assert!(with_layer_renamed(&document(), "way", taken).is_err(), "{taken:?}");
+        }
+    }
+
+    #[test]
+    fn ids_that_are_words_of_the_format_are_told_from_them() {
+        for word in ["strip", "target", "along", "kind", "target_tracking"] {
+            let renamed = with_layer_renamed(&document(), "huts", word).expect("renamed");
+            assert_eq!(renamed.representations["near"], ["way", word]);
+            assert_eq!(with_layer_renamed(&renamed, word, "huts").expect("back"), document(), "{word}");
+            let less = without_layer(&renamed, word);
+            assert!(less.constructor.is_some() && less.stage.len() == 1 && less.layer.len() == 1, "{word}");
         }
     }
 

@@ -24,7 +24,7 @@ pub use rays::{next_turn, sharpness_at, sharpness_knob, with_parallel_planes, wi
 pub use steps::step_name;
 
 use crate::scene_file::{Document, LayerDoc};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// An edited document with its undo history.
@@ -147,6 +147,13 @@ impl Editor {
         true
     }
 
+    /// Adapts the names of files in all steps to another folder of the scene file.
+    pub(crate) fn name_from(&mut self, folder: &Path) {
+        let roots = &self.place.roots;
+        let steps = self.past.iter_mut().chain(&mut self.future).chain([&mut self.present]);
+        steps.for_each(|step| *step = Arc::new(step.seen_from(folder, roots)));
+    }
+
     /// Marks the current document as saved.
     pub(crate) fn mark_saved(&mut self) {
         self.saved = Some(self.present.clone());
@@ -159,7 +166,7 @@ mod tests {
 
     fn editor() -> Editor {
         let text = "format = 1\n[camera]\neye = [0, 0, 10]\nlook_at = [0, 1, 0]\n";
-        let source = crate::scene_file::parse(std::path::Path::new("s.toml"), text).expect("scene");
+        let source = crate::scene_file::parse(Path::new("s.toml"), text).expect("scene");
         Editor::new(source.document, Place::default())
     }
 

@@ -68,6 +68,8 @@ impl Editor {
         output::check(path, &files, true)?;
         output::write_text(path, &output::document_toml(&document)?, true)?;
         if folder != self.place.roots.scene_dir {
+            // In the new folder a name may lead to another file.
+            self.name_from(&folder);
             let old = std::mem::replace(&mut self.place.roots.scene_dir, folder);
             if !old.as_os_str().is_empty() {
                 self.place.roots.allowed.push(old);

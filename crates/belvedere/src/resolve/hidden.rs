@@ -1,7 +1,7 @@
 //! Layers that are not drawn.
 
 use crate::BelvedereError;
-use crate::scene_file::{Document, SourceDocument, suggestion};
+use crate::scene_file::{Document, SourceDocument, layer_names, suggestion};
 use belvedere_scene::{BoxLayer, LayerKind, Representation, Scene};
 
 /// Name of the representation that no section shows.
@@ -30,13 +30,12 @@ pub(crate) fn apply(scene: &mut Scene, document: &Document) {
     if document.hidden.is_empty() {
         return;
     }
-    let followed = serde_json::to_string(&(&document.stage, &document.constructor, &document.animation));
-    let followed = followed.unwrap_or_default();
+    let followers = (&document.stage, &document.constructor, &document.animation);
     let is_hidden = |id: &String| document.hidden.contains(id);
     for layer in scene.layers.iter_mut().filter(|layer| is_hidden(&layer.id)) {
         layer.must_see = false;
         let moves = document.layer.iter().any(|doc| *doc.id() == *layer.id && doc.motion().is_some());
-        let is_followed = moves || followed.contains(&format!("\"{}", layer.id));
+        let is_followed = moves || layer_names::is_named_by(&followers, &layer.id);
         if !matches!(layer.kind, LayerKind::Terrain(_)) && !is_followed {
             layer.kind = LayerKind::Boxes(BoxLayer::default());
         }

@@ -9,6 +9,7 @@ mod document;
 mod fallback;
 mod intent;
 mod json;
+pub(crate) mod layer_names;
 mod layers;
 mod mesh;
 mod molecule;

@@ -56,7 +56,10 @@ impl Trust {
         let Ok(scene) = fs::canonicalize(scene) else { return Vec::new() };
         let given = self.given.iter().filter(|(of, _)| *of == scene).flat_map(|(_, files)| files.clone());
         let remembered = self.list().into_iter().filter(|entry| entry.scene == scene).flat_map(|entry| entry.files);
-        given.chain(remembered).collect()
+        let mut files: Vec<PathBuf> = given.chain(remembered).collect();
+        files.sort();
+        files.dedup();
+        files
     }
 
     /// Allows a scene to read files until the program ends.
@@ -79,13 +82,16 @@ impl Trust {
         let Some(record) = &self.record else { return Ok(false) };
         let scene = fs::canonicalize(scene).map_err(|e| belvedere_io::IoError::os(scene, e))?;
         let known = self.list().into_iter().find(|entry| entry.scene == scene);
-        let now = Trusted { scene, files: files.to_vec() };
-        if known.as_ref() == Some(&now) || (known.is_none() && files.is_empty()) {
+        let mut files = files.to_vec();
+        files.sort();
+        files.dedup();
+        let now = Trusted { scene, files };
+        if known.as_ref() == Some(&now) || (known.is_none() && now.files.is_empty()) {
             return Ok(true);
         }
         record::change(record, |entries| {
             entries.retain(|entry| entry.scene != now.scene);
-            entries.extend((!files.is_empty()).then(|| now.clone()));
+            entries.extend((!now.files.is_empty()).then(|| now.clone()));
         })?;
         Ok(true)
     }

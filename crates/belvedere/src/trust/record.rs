@@ -13,7 +13,7 @@ const MOST_BYTES: usize = 1 << 20;
 /// Most scenes.
 const MOST_SCENES: usize = 500;
 /// Tries for the lock, and the time between two of them.
-const TRIES: (usize, Duration) = (100, Duration::from_millis(20));
+const TRIES: (usize, Duration) = (if cfg!(test) { 3000 } else { 150 }, Duration::from_millis(20));
 
 /// A scene, and the files outside its folder that it may read; canonical paths.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -119,7 +119,7 @@ fn lock(path: &Path) -> io::Result<Option<File>> {
             Err(TryLockError::Error(_)) => return Ok(None),
         }
     }
-    Err(io::Error::other("another program holds it; try again"))
+    Err(io::Error::other("another program is changing it; try again"))
 }
 
 #[cfg(unix)]

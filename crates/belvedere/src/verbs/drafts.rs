@@ -52,7 +52,7 @@ pub fn drafts(request: &RevealRequest, count: usize, options: &OpenOptions) -> R
         return Err(BelvedereError::Target(format!("{count} drafts were asked for; give 1 to {MOST_DRAFTS}")));
     }
     if request.viewpoint.is_some() || request.places.is_some() {
-        return Err(BelvedereError::Setting("drafts choose their views themselves; leave eye and look out".into()));
+        return Err(BelvedereError::Target("drafts choose their views themselves; leave eye and look out".into()));
     }
     let mut data = request.data.load(false, options)?;
     let search = search_options(request, &mut data)?;

@@ -399,7 +399,7 @@ impl TargetAnswer {
         let sidecar = &self.picture.sidecar;
         let report = TargetReport {
             program: &sidecar.program,
-            see: &self.see,
+            see: target_scene::shown_name(&self.see),
             target: &self.place,
             report: self.report,
             technique: self.technique,

@@ -16,7 +16,7 @@ const CANDIDATES: usize = 48;
 /// [`reveal_target`] make the same picture.
 ///
 /// # Errors
-/// [`BelvedereError::Setting`] unless `count` is 1 to [`MOST_DRAFTS`] and no view is given, also by a scene file; those of
+/// [`BelvedereError::Target`] unless `count` is 1 to [`MOST_DRAFTS`] and no view is given, also by a scene file; those of
 /// [`reveal_target`].
 pub fn target_drafts(
     request: &TargetRequest,
@@ -24,13 +24,13 @@ pub fn target_drafts(
     options: &OpenOptions,
 ) -> Result<DraftsAnswer, BelvedereError> {
     if !(1..=MOST_DRAFTS).contains(&count) {
-        return Err(BelvedereError::Setting(format!("{count} drafts were asked for; give 1 to {MOST_DRAFTS}")));
+        return Err(BelvedereError::Target(format!("{count} drafts were asked for; give 1 to {MOST_DRAFTS}")));
     }
     let opened = Opened::of(request, options)?;
-    if request.viewpoint.is_some() || opened.session.path().is_some() {
+    if request.viewpoint.is_some() || request.places.is_some() || opened.session.path().is_some() {
         let reason =
             "drafts choose their views themselves; leave eye and look out, and give data instead of a scene file";
-        return Err(BelvedereError::Setting(reason.into()));
+        return Err(BelvedereError::Target(reason.into()));
     }
     let mut views: Vec<View> = Vec::new();
     for view in opened.views(Some(CANDIDATES))? {

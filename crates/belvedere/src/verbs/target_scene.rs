@@ -168,7 +168,10 @@ pub(super) fn open(request: &TargetRequest, options: &OpenOptions) -> Result<(Se
     }
     let unit = unit_of(&layers);
     let camera = CameraDoc::looking(DVec3::new(0.0, -1.0, 0.0), DVec3::ZERO);
-    let title = if request.see.is_empty() { "Revealed".into() } else { format!("{} revealed", request.see) };
+    let title = match shown_name(&request.see) {
+        "" => "Revealed".into(),
+        see => format!("{see} revealed"),
+    };
     let document = Document { title, crs: crs.into(), unit, layer: layers, ..Document::seen_by(camera) };
     Ok((Session::from_document(SourceDocument::new(document), &options)?, meant))
 }
@@ -180,6 +183,12 @@ fn is_scene(path: &Path) -> Result<bool, BelvedereError> {
         return Ok(ends("toml"));
     }
     Ok(!is_city(path)? && belvedere_io::readable(path)?.is_none())
+}
+
+/// What must be seen as titles and reports name it: a file by its name alone.
+pub(super) fn shown_name(see: &str) -> &str {
+    let file = seen_file(see).is_some().then(|| Path::new(see).file_name().and_then(|name| name.to_str()));
+    file.flatten().unwrap_or(see)
 }
 
 /// The file that `--see` names, if it names one.

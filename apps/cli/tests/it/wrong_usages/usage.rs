@@ -8,7 +8,7 @@ use std::sync::{LazyLock, Mutex};
 use std::time::{Duration, Instant};
 
 /// No wrong usage may take longer; no measurement, for other work of the machine must not matter.
-const SOON: Duration = Duration::from_secs(30);
+const SOON: Duration = Duration::from_secs(120);
 
 /// Words and files of a usage.
 type Key = (Vec<String>, Vec<(String, Option<Vec<u8>>)>);

@@ -294,7 +294,7 @@ impl Drawing<'_> {
                 && following.loses_walker(frame, &picture.view, ground.walker_m)
             {
                 following.adjustments[frame].aim = ground.walker_m;
-                aimed = true;
+                (aimed, tries) = (true, 0);
                 *memory = before.clone();
                 continue;
             }
