@@ -49,11 +49,28 @@ pub(crate) fn one_line(error: &anyhow::Error) -> String {
     };
     for cause in error.chain().skip(1).map(words) {
         // Errors that show their cause themselves also name it as their source.
-        if !text.contains(&cause) {
+        if !shows(&text, &cause) {
             text = format!("{text}: {cause}");
         }
     }
+    let text = beside(&text);
     text.split('\n').map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ")
+}
+
+/// Whether a text holds a cause, whose file it may name in another way.
+fn shows(text: &str, cause: &str) -> bool {
+    let of_file = cause.split_once(": ").filter(|(file, _)| Path::new(file).is_absolute());
+    text.contains(cause) || of_file.is_some_and(|(_, reason)| text.contains(reason))
+}
+
+/// A text in which files below the working folder are named from there, as users name them.
+fn beside(text: &str) -> String {
+    match std::env::current_dir().and_then(std::fs::canonicalize) {
+        Ok(here) if here.parent().is_some() => {
+            text.replace(&format!("{}{}", here.display(), std::path::MAIN_SEPARATOR), "")
+        }
+        _ => text.to_owned(),
+    }
 }
 
 /// An error of the library as a message for the command line, which names the options that lift it.

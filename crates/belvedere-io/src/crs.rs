@@ -22,9 +22,7 @@ use std::sync::Arc;
 #[non_exhaustive]
 pub enum CrsError {
     /// The code is in no table.
-    #[error(
-        "EPSG:{code} is not a known projected or geographic 2D system; give the code of one (for example 4326 or 32631)"
-    )]
+    #[error("EPSG:{code} is not a known projected or geographic 2D system; give the code of one (for example 32632)")]
     UnknownCode {
         /// The code.
         code: u32,

@@ -100,16 +100,24 @@ fn terrain_intent(source: &SourceDocument) -> Result<(), BelvedereError> {
 fn layer_sources(layer: &LayerDoc) -> Result<(), Complaint> {
     match layer {
         LayerDoc::Line(l) if l.source.is_some() == l.route.is_some() => {
-            Err(("source", "a line layer needs either source or route".into()))
+            Err(("source", one_of("source", "route", l.source.is_some())))
         }
         LayerDoc::City(l) if l.loa > 2 => Err((
             "loa",
             format!("loa is {}, it must be 0 (as it is), 1 (blocks) or 2 (blocks between main streets)", l.loa),
         )),
         LayerDoc::Boxes(l) if l.source.is_some() == l.boxes.is_some() => {
-            Err(("source", "a boxes layer needs either source or boxes".into()))
+            Err(("source", one_of("source", "boxes", l.source.is_some())))
         }
         _ => Ok(()),
+    }
+}
+
+/// The complaint about two keys of which one is needed.
+fn one_of(a: &str, b: &str, both: bool) -> String {
+    match both {
+        true => format!("{a} and {b} are both given; keep one"),
+        false => format!("neither {a} nor {b} is given; give one"),
     }
 }
 

@@ -268,10 +268,18 @@ impl Answer {
         let length = said.trim_end().chars().count();
         fault(length > 500, format!("{length} characters"));
         fault(said.trim_end().chars().any(char::is_control), "holds a control character".into());
+        fault(says_twice(said), "says the same twice".into());
+        fault(said.contains(std::env::temp_dir().to_string_lossy().as_ref()), "tells the working folder".into());
         fault(self.took > SOON, format!("took {:.1} s", self.took.as_secs_f64()));
         for word in CODE.iter().filter(|word| said.contains(**word)) {
             fault(true, format!("speaks of {word:?}"));
         }
         faults
     }
+}
+
+/// Whether forty characters stand in a text twice.
+fn says_twice(text: &str) -> bool {
+    let starts: Vec<usize> = text.char_indices().map(|(at, _)| at).collect();
+    starts.iter().zip(starts.iter().skip(40)).any(|(&from, &to)| text[to..].contains(&text[from..to]))
 }
