@@ -10,6 +10,7 @@ mod draw_args;
 mod for_models;
 mod goal;
 mod ground_args;
+mod inputs;
 mod kinds;
 mod look_args;
 mod outputs;

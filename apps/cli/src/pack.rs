@@ -21,7 +21,7 @@ pub(crate) struct PackArgs {
 }
 
 pub(crate) fn pack_scene(args: PackArgs, context: &Context) -> anyhow::Result<Goal> {
-    crate::view::exist(&args.files)?;
+    crate::inputs::exist(&args.files)?;
     outputs::check_folder(&args.out, context)?;
     let request = PackRequest {
         trust: context.trust.clone(),

@@ -2,10 +2,10 @@
 
 use crate::args::RevealArgs;
 use crate::goal::Goal;
+use crate::inputs::as_text;
 use crate::kinds::TechniqueKind;
 use crate::outputs::{self, png_named};
 use crate::report::{Context, done, is_stdout};
-use crate::verbs::as_text;
 use belvedere::picture::{self, Picture, PictureOptions};
 use belvedere::places::Place;
 use belvedere::scene_file::PaletteDoc;

@@ -7,6 +7,7 @@ use crate::args::{
 use crate::draw_args::{CompositingKind, DrawArgs};
 use crate::goal::Goal;
 use crate::ground_args::InfoArgs;
+use crate::inputs::as_text;
 use crate::outputs::{self, named, png_named};
 use crate::report::{Context, done, is_stdout, print};
 use anyhow::Context as _;
@@ -52,11 +53,6 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
 fn ready(out: Option<&PathBuf>, inputs: &[&Path], context: &Context) -> anyhow::Result<()> {
     let inputs: Vec<PathBuf> = inputs.iter().map(|p| p.to_path_buf()).collect();
     outputs::check(&outputs::file(out).cloned().into_iter().collect::<Vec<_>>(), &inputs, context)
-}
-
-/// A path as text.
-pub(crate) fn as_text(path: &Path) -> String {
-    path.to_string_lossy().into_owned()
 }
 
 fn answer(verb: &str, session: &Session, out: Option<&PathBuf>, text: &str, context: &Context) -> anyhow::Result<Goal> {

@@ -2,6 +2,7 @@
 
 use crate::args::ViewArgs;
 use crate::goal::Goal;
+use crate::inputs;
 use crate::report::Context;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -13,7 +14,7 @@ const PROGRAM: &str = "belvedere-view";
 /// Starts the application and ends with its status.
 pub(crate) fn view(args: &ViewArgs, context: &Context) -> anyhow::Result<Goal> {
     // Files that do not exist are reported on standard error rather than in a window.
-    exist(&args.files)?;
+    inputs::exist(&args.files)?;
     let mut command = Command::new(program());
     for root in &context.common.allow_root {
         command.arg("--allow-root").arg(root);
@@ -32,15 +33,6 @@ pub(crate) fn view(args: &ViewArgs, context: &Context) -> anyhow::Result<Goal> {
     }
     // The application has printed its reason.
     exit(status.code().unwrap_or(2))
-}
-
-/// Refuses files that do not exist.
-pub(crate) fn exist(files: &[PathBuf]) -> anyhow::Result<()> {
-    for file in files {
-        let is_there = belvedere::io::split_table(file).0.exists();
-        anyhow::ensure!(is_there, "{}: there is no such file; check the name", file.display());
-    }
-    Ok(())
 }
 
 /// The application beside this program, else the one on the PATH.

@@ -8,6 +8,7 @@ pub mod crs;
 pub mod drape;
 mod error;
 pub mod esri_ascii;
+mod features;
 pub mod formats;
 pub mod fs;
 pub mod geotiff;
@@ -31,6 +32,7 @@ pub mod volume;
 pub use city::{CityFile, load_city};
 pub use drape::{DrapeRequest, load_drape};
 pub use error::{IoError, json_fault, said};
+pub use features::load_vectors;
 pub use geotiff::GeoTiff;
 pub use input::{InputFile, sha256, sha256_of_file};
 pub use loaded::Loaded;
@@ -42,7 +44,5 @@ pub use raster::{Affine, Alpha, CrsKind, Limits, Photometric, Raster, RasterInfo
 pub use recognise::{Recognised, readable, recognise};
 pub use table::{join_table, split_table};
 pub use terrain::{CrsChoice, LoadedTerrain, ResampleError, TerrainRequest, load_terrain};
-pub use vector::{
-    Geometry, VectorFeature, Vectors, Vertex, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain,
-};
+pub use vector::{Geometry, VectorFeature, Vectors, Vertex, areas_on_terrain, lines_on_terrain, points_on_terrain};
 pub use volume::{ByteOrder, Number, RawLayout, VolumeFile, VolumeRequest, load_volume};

@@ -2,7 +2,8 @@
 
 use crate::reveal::assert_bars;
 use belvedere_construct::{RevealMemory, RevealOptions, reveal};
-use belvedere_io::vector::{lines_on_terrain, load_vectors};
+use belvedere_io::load_vectors;
+use belvedere_io::vector::lines_on_terrain;
 use belvedere_io::{TerrainRequest, load_terrain};
 use belvedere_scene::{LayerKind, Progress, Scene};
 use belvedere_testkit::synthetic::{line_layer, terrain_layer};

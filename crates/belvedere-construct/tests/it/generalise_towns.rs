@@ -2,7 +2,8 @@
 
 use belvedere_core::DVec2;
 use belvedere_io::crs::{CoordinateSystem, Transform, utm_epsg};
-use belvedere_io::vector::{Geometry, Vectors, Vertex, load_vectors};
+use belvedere_io::load_vectors;
+use belvedere_io::vector::{Geometry, Vectors, Vertex};
 use belvedere_scene::city::{Building, City, HeightSource, Polygon, Way, WayClass};
 use belvedere_testkit::Random;
 use std::path::Path;

@@ -31,7 +31,7 @@ use crate::formats::Reader;
 use crate::packed::content_for;
 use crate::table::split_table;
 use crate::text::text_of;
-use crate::vector::load_vectors;
+use crate::vector;
 use crate::{InputFile, IoError, Limits, Loaded, fs, recognise};
 use belvedere_scene::City;
 use std::borrow::Cow;
@@ -77,7 +77,7 @@ pub fn load_city(path: &Path, lod: Option<&str>, limits: &Limits) -> Result<Load
         };
         return Ok(loaded.with_file(file));
     }
-    let Loaded { value, warnings, files } = load_vectors(path)?;
+    let Loaded { value, warnings, files } = vector::load(path, &|_, _| Ok(None))?;
     let mut loaded = footprints::city(value)?;
     loaded.warnings.splice(0..0, warnings);
     Ok(Loaded { files, ..loaded })

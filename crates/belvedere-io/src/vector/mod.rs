@@ -16,11 +16,10 @@ pub use gpx::track_times;
 pub use names::name_field;
 pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
 
-use crate::city::{OSM, osm_vectors};
 use crate::crs::CoordinateSystem;
 use crate::formats::Reader;
 use crate::packed::content_for;
-use crate::recognise::{self, explain, not_a};
+use crate::recognise::{explain, not_a};
 use crate::table::split_table;
 use crate::text::text_of;
 use crate::{InputFile, IoError, Loaded, fs};
@@ -135,18 +134,16 @@ impl Vectors {
     }
 }
 
-/// Reads a GPX, GeoJSON, shapefile, file of OpenStreetMap or (with the feature `geopackage`) GeoPackage; the content decides which, not the name.
-///
-/// * `path`: for a GeoPackage optionally with the wanted table appended, see [`crate::split_table`]; by default all of its tables are read.
-///
-/// # Errors
-/// [`IoError`]: unreadable, none of the formats, broken, without any vertex, or in an unknown coordinate system.
-pub fn load_vectors(path: &Path) -> Result<Loaded<Vectors>, IoError> {
+/// A reader of further formats: `None` for files of none of them.
+pub(crate) type Other<'a> = &'a dyn Fn(&Path, &[u8]) -> Result<Option<Loaded<Vectors>>, IoError>;
+
+/// As [`crate::load_vectors`], by `other` where it reads the file.
+pub(crate) fn load(path: &Path, other: Other<'_>) -> Result<Loaded<Vectors>, IoError> {
     let path = match split_table(path) {
         (_, Some(_)) => path.to_owned(),
         (file, None) => content_for(file, MAX_BYTES, Reader::Features)?,
     };
-    let mut loaded = load_known(&path).map_err(explain)?;
+    let mut loaded = load_known(&path, other).map_err(explain)?;
     let mut found = Phantoms::default();
     phantom::drop_zeros(&mut loaded.value, &mut found);
     if loaded.value.format != "GPX" {
@@ -159,7 +156,7 @@ pub fn load_vectors(path: &Path) -> Result<Loaded<Vectors>, IoError> {
     Ok(loaded)
 }
 
-fn load_known(path: &Path) -> Result<Loaded<Vectors>, IoError> {
+fn load_known(path: &Path, other: Other<'_>) -> Result<Loaded<Vectors>, IoError> {
     let (path, table) = split_table(path);
     let size = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     if size > MAX_BYTES {
@@ -170,9 +167,8 @@ fn load_known(path: &Path) -> Result<Loaded<Vectors>, IoError> {
         ));
     }
     let (bytes, file) = InputFile::read(path)?;
-    let osm = recognise::of_content(path)?.filter(|format| OSM.contains(&format.name));
-    if let Some(format) = osm {
-        return Ok(osm_vectors(path, &bytes, format.name)?.with_file(file));
+    if let Some(loaded) = other(path, &bytes)? {
+        return Ok(loaded.with_file(file));
     }
     #[cfg(feature = "geopackage")]
     if bytes.starts_with(geopackage::MAGIC) {

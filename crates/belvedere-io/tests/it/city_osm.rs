@@ -1,7 +1,7 @@
 //! OpenStreetMap's PBF: files made here byte by byte, broken ones, and a real extract.
 
 use crate::support_files::Folder;
-use belvedere_io::vector::load_vectors;
+use belvedere_io::load_vectors;
 use belvedere_io::{CityFile, Limits, Loaded, load_city};
 use belvedere_scene::{HeightSource, LandCover, WayClass};
 use belvedere_testkit::data;

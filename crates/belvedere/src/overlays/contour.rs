@@ -1,7 +1,6 @@
 //! The outline of a target: a line where the picture shows it, dashes where something hides it.
 
 use super::highlight::{border, regions, spread};
-use crate::fallback::in_sight::Mask;
 use belvedere_composite::canvas::Canvas;
 use belvedere_core::DVec2;
 use belvedere_scene::{Color, Frame};
@@ -16,14 +15,16 @@ const OPENED: f64 = 1.0;
 const DASH: f64 = 6.0;
 
 /// Draws the outline.
-pub(crate) fn draw(frame: &mut Frame, mask: &Mask) {
+///
+/// * `own`: whether a pixel is one of the target's, row by row; `seen`: whether the picture shows the target there.
+pub(crate) fn draw(frame: &mut Frame, own: &[bool], seen: &[bool]) {
     let scale = (frame.height as f64 / 720.0).max(0.4);
     let width = frame.width;
     let dash = (scale * DASH).max(2.0);
     let [close, open] = [CLOSED, OPENED].map(|px| (px * scale).round() as usize);
-    let region = regions(&mask.own, width, close, open);
+    let region = regions(own, width, close, open);
     // The outline of a region with gaps may lie beside the target.
-    let seen = spread(&mask.seen, width, close + 1, true);
+    let seen = spread(seen, width, close + 1, true);
     let is_inked = |i: usize| {
         let (x, y) = ((i % width) as f64, (i / width) as f64);
         seen[i] || (((x + y) / dash) as usize).is_multiple_of(2) && ((x - y) / dash).floor().rem_euclid(2.0) < 0.5

@@ -59,7 +59,7 @@ impl Picture {
             let mask = Mask::of(target, frame, &own, above.as_ref());
             *share = mask.share();
             if has_others {
-                contour::draw(frame, &mask);
+                contour::draw(frame, &mask.own, &mask.seen);
             }
         }
         Ok(Some(shares))

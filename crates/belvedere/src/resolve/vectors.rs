@@ -6,8 +6,9 @@ use crate::BelvedereError;
 use crate::scene_file::{LayerDoc, Paths};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_io::city::is_meant;
+use belvedere_io::load_vectors;
 use belvedere_io::vector::{
-    AreaKind, Geometry, Vectors, area_kind, areas_on_terrain, lines_on_terrain, load_vectors, points_on_terrain,
+    AreaKind, Geometry, Vectors, area_kind, areas_on_terrain, lines_on_terrain, points_on_terrain,
 };
 use belvedere_io::{IoError, Loaded};
 use belvedere_scene::{AreaFeature, AreaSurface, Crs, Heightfield, LineFeature, PointFeature};

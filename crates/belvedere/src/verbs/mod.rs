@@ -22,6 +22,7 @@ mod reveal_files;
 pub mod reveal_target;
 pub mod target_drafts;
 mod target_names;
+mod target_request;
 mod target_scene;
 mod target_views;
 mod written_rivers;

@@ -2,7 +2,7 @@
 
 use crate::BelvedereError;
 use crate::scene_file::suggestion;
-use belvedere_io::vector::load_vectors;
+use belvedere_io::load_vectors;
 use belvedere_io::{CityFile, Limits, load_city};
 use serde::Serialize;
 use std::collections::BTreeMap;

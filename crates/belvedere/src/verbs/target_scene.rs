@@ -2,8 +2,8 @@
 
 use super::model_layers::{layer, set_transfer, unit_of};
 use super::open_files::ground;
-use super::reveal_target::TargetRequest;
 use super::target_names::{is_building, known_names};
+use super::target_request::TargetRequest;
 use crate::data::features_of;
 use crate::places::Place;
 use crate::resolve::vectors::{FeatureKind, kinds_of};
@@ -15,7 +15,7 @@ use belvedere_construct::sample_features;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_io::city::{is_city, is_meant};
 use belvedere_io::formats::Reader;
-use belvedere_io::vector::load_vectors;
+use belvedere_io::load_vectors;
 use belvedere_io::{Limits, join_table, load_city, split_table};
 use belvedere_scene::molecule::Selection;
 use belvedere_scene::{LayerKind, Scene};
