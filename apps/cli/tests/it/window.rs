@@ -15,10 +15,22 @@ fn view(place: &Place, application: Option<&str>, args: &[&str]) -> (Option<i32>
         let path = place.write("belvedere-view", script);
         std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o755)).expect("may be run");
     }
-    let out = Command::new(program).current_dir(place.path("")).arg("view").args(args).env("PATH", "").output();
-    let out = out.expect("the program starts");
     let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
-    (out.status.code(), text(out.stdout), text(out.stderr))
+    // A test that starts a program at the moment of the copy holds the file open for writing until its program runs.
+    for _ in 0..100 {
+        match Command::new(&program).current_dir(place.path("")).arg("view").args(args).env("PATH", "").output() {
+            Ok(out) => {
+                let said = text(out.stderr);
+                if !said.contains("busy") {
+                    return (out.status.code(), text(out.stdout), said);
+                }
+            }
+            Err(e) if e.kind() == std::io::ErrorKind::ExecutableFileBusy => {}
+            Err(e) => panic!("the program does not start: {e}"),
+        }
+        std::thread::sleep(std::time::Duration::from_millis(100));
+    }
+    panic!("the program stays busy");
 }
 
 #[test]
