@@ -64,7 +64,8 @@ impl Viewer {
                 if ui.add_sized([ui.available_width(), GRIP - 4.0], Button::new(name)).clicked() {
                     self.sheet = !self.sheet;
                 }
-                if self.sheet {
+                // A sheet that was opened just now has room from the next picture on.
+                if sheet > 0.0 {
                     ui.allocate_ui(vec2(ui.available_width(), sheet - 12.0), |ui| {
                         ui.set_min_height(sheet - 12.0);
                         self.panels.show(ui, &mut self.model, &self.bookmarks);
