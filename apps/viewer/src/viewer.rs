@@ -182,7 +182,8 @@ impl Viewer {
                 };
                 notes.push(format!("The last session did not end as it should; {what}."));
             }
-            Some(_) | None => viewer.welcome.open = opening.files.is_empty(),
+            // A page has no thread to draw the cards on, and shows its own scene.
+            Some(_) | None => viewer.welcome.open = opening.files.is_empty() && !cfg!(target_family = "wasm"),
         }
         if !opening.files.is_empty() {
             viewer.open(opening.files.clone());

@@ -168,7 +168,7 @@ fn files_that_are_dropped_on_the_page_are_opened_and_what_is_saved_is_downloaded
     }
     let opened = |scene: &Value| scene.as_str().is_some_and(|text| text.contains("dem.tif"));
     let scene = page.wait("belvedere.application.scene()", opened);
-    assert!(scene.as_str().is_some_and(|text| text.contains("must_see = true") && text.contains("spline_bend")));
+    assert!(scene.as_str().is_some_and(|text| text.contains("must_see = true") && text.contains("route.gpx")));
     times(&mut page, rests);
     let downloads = place.path().join("downloads");
     page.call("Browser.setDownloadBehavior", json!({ "behavior": "allow", "downloadPath": downloads }));
