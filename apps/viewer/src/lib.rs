@@ -8,6 +8,7 @@ mod consent;
 mod export;
 mod files;
 mod keys;
+mod language;
 mod menu;
 mod model;
 mod notices;

@@ -2,6 +2,7 @@
 
 use crate::builtin::BUILTIN;
 use crate::keys::{Command, KEYS};
+use crate::language::{fill, tr};
 use crate::model::Model;
 use belvedere::scene_file::CameraDoc;
 use eframe::egui::{Context, Grid, MenuBar, RichText, ScrollArea, Ui, Window};
@@ -33,7 +34,7 @@ pub(crate) struct Bookmark {
 pub(crate) fn bar(ui: &mut Ui, model: &mut Model, recent: &[PathBuf], bookmarks: &[Bookmark]) -> Option<Choice> {
     let mut choice = None;
     MenuBar::new().ui(ui, |ui| {
-        ui.menu_button("File", |ui| {
+        ui.menu_button(tr("File"), |ui| {
             if ui.button("Open…").clicked() {
                 choice = Some(Choice::Command(Command::Open));
             }
@@ -100,7 +101,7 @@ pub(crate) fn bar(ui: &mut Ui, model: &mut Model, recent: &[PathBuf], bookmarks:
             ui.add_enabled_ui(!bookmarks.is_empty(), |ui| {
                 ui.menu_button("Remove a bookmark", |ui| {
                     for (i, bookmark) in bookmarks.iter().enumerate() {
-                        if ui.button(format!("Remove {}", bookmark.name)).clicked() {
+                        if ui.button(fill(tr("Remove {0}"), &[&bookmark.name])).clicked() {
                             choice = Some(Choice::Forget(i));
                         }
                     }
