@@ -1,6 +1,7 @@
 //! OpenStreetMap: buildings, streets, railways, rivers and land cover from tagged ways and multipolygons.
 
 mod features;
+mod pbf;
 mod read;
 
 pub(crate) use features::vectors;

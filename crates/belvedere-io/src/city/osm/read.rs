@@ -1,10 +1,10 @@
 //! Reading of OpenStreetMap's files: PBF, XML and the JSON of Overpass.
 
+use super::pbf::Blobs;
 use super::{Line, Map, Relation, Tags, is_wanted};
 use crate::IoError;
 use crate::text::text_of;
 use glam::DVec2;
-use osmpbf::{Element, ElementReader, RelMemberType};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use serde::Deserialize;
@@ -18,11 +18,7 @@ impl Map {
     /// [`IoError::Format`]: damaged.
     pub(super) fn of_file(path: &Path, bytes: &[u8], format: &str) -> Result<Self, IoError> {
         let read = match format {
-            "OSM PBF" => {
-                // The reader panics on an unknown kind of a member.
-                let read = std::panic::catch_unwind(|| Self::of_pbf(bytes));
-                read.unwrap_or_else(|_| Err("its blocks contradict themselves".into()))
-            }
+            "OSM PBF" => Self::of_pbf(bytes),
             "OSM XML" => Objects::of_xml(&text_of(bytes, &mut Vec::new())).map(Objects::map),
             _ => Objects::of_json(bytes).map(Objects::map),
         };
@@ -31,28 +27,16 @@ impl Map {
 
     /// Relations come after ways and ways after nodes, so the file is read three times and only what is used is kept.
     fn of_pbf(bytes: &[u8]) -> Result<Self, String> {
-        let each =
-            |what: &mut dyn FnMut(Element<'_>)| ElementReader::new(bytes).for_each(what).map_err(|e| e.to_string());
+        let blobs = Blobs::of_file(bytes)?;
         let mut map = Self::default();
-        each(&mut |element| {
-            let Element::Relation(relation) = element else { return };
-            let ways = relation.members().filter(|m| m.member_type == RelMemberType::Way).map(|m| m.member_id);
-            map.relation(Relation { id: relation.id(), tags: owned(relation.tags()), ways: ways.collect() });
-        })?;
+        let take = |found: Vec<Relation>| found.into_iter().for_each(|relation| map.relation(relation));
+        blobs.each(|block| block.relations().map(|(id, tags, ways)| Relation { id, tags, ways }).collect(), take)?;
         let members = map.members();
-        each(&mut |element| {
-            let Element::Way(way) = element else { return };
-            map.way(way.id(), Line { tags: owned(way.tags()), nodes: way.refs().collect() }, &members);
-        })?;
+        let take = |found: Vec<_>| found.into_iter().for_each(|(id, line)| map.way(id, line, &members));
+        blobs.each(|block| block.ways().map(|(id, tags, nodes)| (id, Line { tags, nodes })).collect(), take)?;
         let wanted = map.corners();
-        each(&mut |element| {
-            let (id, lon, lat) = match element {
-                Element::Node(node) => (node.id(), node.lon(), node.lat()),
-                Element::DenseNode(node) => (node.id(), node.lon(), node.lat()),
-                _ => return,
-            };
-            map.node(id, DVec2::new(lon, lat), &wanted);
-        })?;
+        let take = |found: Vec<_>| found.into_iter().for_each(|(id, at)| map.node(id, at, &wanted));
+        blobs.each(|block| block.nodes().collect(), take)?;
         Ok(map)
     }
 
@@ -84,10 +68,6 @@ impl Map {
             self.nodes.insert(id, at);
         }
     }
-}
-
-fn owned<'t>(tags: impl Iterator<Item = (&'t str, &'t str)>) -> Tags {
-    tags.map(|(k, v)| (k.to_owned(), v.to_owned())).collect()
 }
 
 /// Everything that a text holds.
