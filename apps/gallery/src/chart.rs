@@ -1,11 +1,10 @@
 //! Charts with axes and a legend.
 
+use crate::chart_canvas::ChartCanvas;
 use crate::sheet::Pixels;
 use anyhow::{Result, anyhow};
-use belvedere::composite::canvas;
 pub(crate) use plotters::prelude::SeriesLabelPosition;
 use plotters::prelude::*;
-use plotters::style::{FontStyle, register_font};
 
 /// Size of charts of a page of their own, pixels.
 pub(crate) const WIDE: [u32; 2] = [1280, 560];
@@ -48,15 +47,15 @@ pub(crate) struct Chart {
 
 /// The chart as a picture of `width` x `height` pixels.
 pub(crate) fn draw(chart: &Chart, [width, height]: [u32; 2]) -> Result<Pixels> {
-    register_font(LETTERS, FontStyle::Normal, canvas::FONT_BYTES).map_err(|_| anyhow!("the font cannot be read"))?;
-    let mut bytes = vec![255u8; (width * height * 3) as usize];
-    plot(chart, (width, height), &mut bytes)
+    let (width, height) = (width as usize, height as usize);
+    let mut pixels = vec![[255u8; 3]; width * height];
+    plot(chart, ChartCanvas::new(&mut pixels, width))
         .map_err(|e| anyhow!("the chart \"{}\" cannot be drawn: {e}", chart.title))?;
-    Ok((width as usize, height as usize, bytes.as_chunks::<3>().0.to_vec()))
+    Ok((width, height, pixels))
 }
 
-fn plot(chart: &Chart, size: (u32, u32), bytes: &mut [u8]) -> Result<(), Box<dyn std::error::Error>> {
-    let area = BitMapBackend::with_buffer(bytes, size).into_drawing_area();
+fn plot(chart: &Chart, canvas: ChartCanvas<'_>) -> Result<(), Box<dyn std::error::Error>> {
+    let area = canvas.into_drawing_area();
     area.fill(&WHITE)?;
     let all = || chart.curves.iter().flat_map(|c| &c.points).filter(|p| p.0.is_finite() && p.1.is_finite());
     let (mut x, mut y) = ([f64::INFINITY, f64::NEG_INFINITY], [f64::INFINITY, f64::NEG_INFINITY]);

@@ -3,6 +3,7 @@
 
 mod algorithms;
 mod chart;
+mod chart_canvas;
 mod compare;
 mod curved;
 mod demo;

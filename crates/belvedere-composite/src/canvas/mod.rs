@@ -1,9 +1,10 @@
 //! Drawing over a finished picture: rectangles, lines and letters, anti-aliased in linear light.
 
+mod font;
 mod polygon;
 mod text;
 
-pub use text::{FONT_BYTES, TextSize, can_set, text_size};
+pub use text::{TextSize, can_set, text_size};
 
 use crate::color::{encode, linear};
 use belvedere_core::{DVec2, polygon::to_segment};

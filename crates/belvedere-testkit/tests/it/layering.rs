@@ -58,7 +58,11 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
         &["belvedere-core", "belvedere-scene", "belvedere-sight"],
         &["geo", "glam", "rayon", "serde", "thiserror"],
     ),
-    ("belvedere-composite", &["belvedere-core", "belvedere-scene"], &["ab_glyph", "glam", "rayon"]),
+    (
+        "belvedere-composite",
+        &["belvedere-core", "belvedere-scene"],
+        &["ab_glyph_rasterizer", "glam", "harfrust", "rayon", "skrifa"],
+    ),
     (
         "belvedere-cpu",
         &["belvedere-composite", "belvedere-core", "belvedere-scene", "belvedere-sight"],
@@ -80,7 +84,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
         &["glam", "rayon", "schemars", "serde", "serde_json", "strsim", "thiserror", "toml", "tracing"],
     ),
     ("belvedere-bench", &["belvedere"], &["anyhow", "rayon", "serde"]),
-    ("belvedere-gallery", &["belvedere"], &["anyhow", "plotters", "serde"]),
+    ("belvedere-gallery", &["belvedere"], &["anyhow", "plotters", "plotters-backend", "serde"]),
     (
         "belvedere-viewer",
         &["belvedere"],
