@@ -136,6 +136,11 @@ fn option_for(error: &BelvedereError) -> Option<&'static str> {
         }
         BelvedereError::Io(belvedere::io::IoError::Exists { .. }) => "; give --overwrite to replace it",
         BelvedereError::Render(belvedere::scene::RenderError::TooLarge { .. }) => " (--size, --samples, --max-mem)",
+        BelvedereError::Io(belvedere::io::IoError::Format { reason, .. }) | BelvedereError::Memory(reason)
+            if belvedere::io::budget::is_refusal(reason) =>
+        {
+            " (--max-mem)"
+        }
         BelvedereError::RayEnd { .. } => "; give a larger --far",
         BelvedereError::NoRayEnd => "; give --far or camera.far",
         BelvedereError::FramesThere { resumable: true, .. } => {

@@ -1,5 +1,6 @@
 //! `disocclude`: writes an elevation model on which features are visible from an eye.
 
+use crate::guard::guarded;
 use super::in_time;
 use super::level_lakes::LevelLakes;
 use super::written_rivers::run_downhill;
@@ -185,6 +186,10 @@ impl DisoccludeFiles {
 /// [`BelvedereError::FieldOfView`], [`BelvedereError::Position`], [`BelvedereError::EyeIsTarget`], [`BelvedereError::Setting`],
 /// [`BelvedereError::Disocclusion`]; those of the loaders.
 pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Disoccluded, BelvedereError> {
+    guarded(|| disoccluded(request, options))
+}
+
+fn disoccluded(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Disoccluded, BelvedereError> {
     intent::check(&request.parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
     let mut settings = intent::settings(&request.parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
     let mut data = DataFiles { keep_voids: !request.fill_voids, ..request.data.clone() }.load(true, options)?;

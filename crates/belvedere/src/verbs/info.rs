@@ -7,6 +7,7 @@ pub use super::molecule_info::MoleculeInfo;
 pub use city::CityInfo;
 pub use volume::VolumeInfo;
 
+use crate::guard::guarded;
 use crate::BelvedereError;
 use crate::resolve::builtin;
 use crate::scene_file::VerticalUnit;
@@ -264,6 +265,10 @@ pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereEr
 /// # Errors
 /// [`BelvedereError::Io`] with the reason.
 pub fn describe_as(name: &str, request: &InfoRequest, progress: &Progress) -> Result<FileInfo, BelvedereError> {
+    guarded(|| described(name, request, progress))
+}
+
+fn described(name: &str, request: &InfoRequest, progress: &Progress) -> Result<FileInfo, BelvedereError> {
     if name.starts_with("builtin:") {
         return built_in(name);
     }

@@ -1,5 +1,6 @@
 //! `reveal`: draws a picture of terrain in which routes and other features are visible.
 
+use crate::guard::guarded;
 use super::appearance::{Appearance, Taller, is_exaggeration};
 use super::in_time;
 pub use super::reveal_files::RevealFiles;
@@ -216,6 +217,10 @@ struct ReportFile<'a> {
 /// [`BelvedereError::FieldOfView`], [`BelvedereError::Position`], [`BelvedereError::Construct`] if no view is possible, else as
 /// [`Session::open`] and [`Session::render`].
 pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAnswer, BelvedereError> {
+    guarded(|| revealed(request, options))
+}
+
+fn revealed(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAnswer, BelvedereError> {
     if !request.data.rivers.is_empty() && matches!(request.technique, Technique::Spline | Technique::CurvedRays) {
         let reason = "rivers are kept from running uphill where the ground moves, which this technique does not do; \
                       ask for technique terrain, both or auto";

@@ -1,6 +1,7 @@
 //! `reveal --see`: draws a picture in which one target in models or in a city is visible, by rays that bend around its occluders, or by a
 //! spline where it lies on the ground.
 
+use crate::guard::guarded;
 use super::appearance::Appearance;
 pub use super::target_request::TargetRequest;
 use super::target_scene::{self, Meant, Targets};
@@ -128,6 +129,10 @@ impl Opened {
 /// # Errors
 /// [`BelvedereError::Target`] if there is no such target, else as [`Session::open`] and [`Session::render`].
 pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnswer, BelvedereError> {
+    guarded(|| revealed(request, options))
+}
+
+fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnswer, BelvedereError> {
     let mut opened = Opened::of(request, options)?;
     let (view, said) = given(&opened.session, request, opened.lens, opened.up)?;
     opened.session.loaded.warnings.extend(said);

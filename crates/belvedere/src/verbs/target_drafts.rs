@@ -1,5 +1,6 @@
 //! `reveal --see --drafts`: several views of the same target on one sheet.
 
+use crate::guard::guarded;
 use super::drafts::{Draft, DraftsAnswer, MOST_DRAFTS};
 use super::reveal::{FinalShares, Viewpoint};
 use super::reveal_target::{Opened, TargetRequest, reveal_target};
@@ -19,6 +20,14 @@ const CANDIDATES: usize = 48;
 /// [`BelvedereError::Target`] unless `count` is 1 to [`MOST_DRAFTS`] and no view is given, also by a scene file; those of
 /// [`reveal_target`].
 pub fn target_drafts(
+    request: &TargetRequest,
+    count: usize,
+    options: &OpenOptions,
+) -> Result<DraftsAnswer, BelvedereError> {
+    guarded(|| drafted(request, count, options))
+}
+
+fn drafted(
     request: &TargetRequest,
     count: usize,
     options: &OpenOptions,
