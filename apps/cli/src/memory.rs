@@ -10,6 +10,8 @@ use belvedere::io::budget;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::io::Write;
+use std::path::PathBuf;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicI64, Ordering};
 
 /// Bytes that a thread takes or frees before it tells the others.
@@ -20,6 +22,8 @@ const OWN: u64 = 16 << 20;
 static HELD: AtomicI64 = AtomicI64::new(0);
 static MOST: AtomicI64 = AtomicI64::new(i64::MAX);
 static ENDING: AtomicBool = AtomicBool::new(false);
+/// The working folder, below which files are named from there.
+static FOLDER: OnceLock<PathBuf> = OnceLock::new();
 
 thread_local! {
     /// Bytes taken or freed by this thread that [`HELD`] does not know of.
@@ -36,6 +40,9 @@ static ALLOCATOR: Counted = Counted;
 pub(crate) fn begin(most: Option<u64>) {
     budget::set(most.unwrap_or(0));
     budget::count_by(held);
+    if let Ok(folder) = std::env::current_dir() {
+        let _ = FOLDER.set(folder);
+    }
     let bytes = budget::bytes();
     MOST.store(i64::try_from(bytes.saturating_sub(OWN).max(bytes / 2)).unwrap_or(i64::MAX), Ordering::Relaxed);
 }
@@ -66,30 +73,39 @@ fn size(bytes: usize) -> i64 {
     i64::try_from(bytes).unwrap_or(i64::MAX / 4)
 }
 
+/// Ends the process, unless another thread does: then this one goes on, for it may hold what that one waits for.
+fn over(bytes: usize) {
+    if !ENDING.swap(true, Ordering::SeqCst) {
+        end(bytes, false);
+    }
+}
+
 /// Says in one line what failed, and ends the process with 2.
 #[cold]
 fn end(bytes: usize, refused: bool) -> ! {
-    if ENDING.swap(true, Ordering::SeqCst) {
-        // Another thread says it.
-        loop {
-            std::thread::park();
-        }
-    }
     let mib = |b: u64| b.div_ceil(1 << 20);
     let mut err = std::io::stderr().lock();
     let _ = write!(err, "belvedere: ");
     budget::file_in_work(|file| {
-        if let Some(file) = file {
-            let _ = write!(err, "{}: ", file.display());
+        let inside =
+            |file| FOLDER.get().and_then(|folder| std::path::Path::strip_prefix(file, folder).ok()).unwrap_or(file);
+        if let Some(name) = file.and_then(|file| inside(file).to_str()) {
+            for c in name.chars().map(|c| if c.is_control() { '?' } else { c }) {
+                let _ = write!(err, "{c}");
+            }
+            let _ = write!(err, ": ");
         }
     });
-    let (more, used, budget) = (mib(bytes as u64), mib(held()), budget::bytes() >> 20);
-    let why = if refused { "the machine does not give them" } else { "the budget of memory is" };
+    // What failed is counted already.
+    let used = held().saturating_sub(bytes as u64);
+    let (more, used, most) = (mib(bytes as u64), mib(used), budget::bytes() >> 20);
+    let _ = write!(err, "{more} MiB are needed beside {used} MiB in use, ");
     let _ = if refused {
-        writeln!(err, "{more} MiB more are needed beside {used} MiB in use, {why}; close other programs, or use a smaller file, --size or --samples")
+        write!(err, "and the machine does not give them; close other programs")
     } else {
-        writeln!(err, "{more} MiB more are needed beside {used} MiB in use, {why} {budget} MiB; allow more memory (--max-mem), or use a smaller file, --size or --samples")
+        write!(err, "the budget of memory is {most} MiB; allow more memory (--max-mem)")
     };
+    let _ = writeln!(err, ", or use a smaller file, --size or --samples");
     std::process::exit(2)
 }
 
@@ -98,7 +114,7 @@ fn end(bytes: usize, refused: bool) -> ! {
 unsafe impl GlobalAlloc for Counted {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         if !count(size(layout.size())) {
-            end(layout.size(), false);
+            over(layout.size());
         }
         // SAFETY: the caller's promises are those of `System`.
         checked(unsafe { System.alloc(layout) }, layout.size())
@@ -106,7 +122,7 @@ unsafe impl GlobalAlloc for Counted {
 
     unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
         if !count(size(layout.size())) {
-            end(layout.size(), false);
+            over(layout.size());
         }
         // SAFETY: as in `alloc`.
         checked(unsafe { System.alloc_zeroed(layout) }, layout.size())
@@ -115,7 +131,7 @@ unsafe impl GlobalAlloc for Counted {
     unsafe fn realloc(&self, block: *mut u8, layout: Layout, new_size: usize) -> *mut u8 {
         // Both blocks may exist for a moment.
         if !count(size(new_size) - size(layout.size())) {
-            end(new_size, false);
+            over(new_size.saturating_sub(layout.size()));
         }
         // SAFETY: as in `alloc`; `block` came from `System`.
         checked(unsafe { System.realloc(block, layout, new_size) }, new_size)
@@ -130,8 +146,14 @@ unsafe impl GlobalAlloc for Counted {
 
 /// The block, unless the system gave none.
 fn checked(block: *mut u8, bytes: usize) -> *mut u8 {
-    if block.is_null() && !ENDING.load(Ordering::Relaxed) {
-        end(bytes, true);
+    if block.is_null() {
+        if !ENDING.swap(true, Ordering::SeqCst) {
+            end(bytes, true);
+        }
+        // Another thread ends the process.
+        loop {
+            std::thread::park();
+        }
     }
     block
 }

@@ -136,9 +136,7 @@ fn option_for(error: &BelvedereError) -> Option<&'static str> {
         }
         BelvedereError::Io(belvedere::io::IoError::Exists { .. }) => "; give --overwrite to replace it",
         BelvedereError::Render(belvedere::scene::RenderError::TooLarge { .. }) => " (--size, --samples, --max-mem)",
-        BelvedereError::Io(belvedere::io::IoError::Format { reason, .. }) | BelvedereError::Memory(reason)
-            if belvedere::io::budget::is_refusal(reason) =>
-        {
+        BelvedereError::Io(_) | BelvedereError::Memory(_) if belvedere::io::budget::is_refusal(&error.to_string()) => {
             " (--max-mem)"
         }
         BelvedereError::RayEnd { .. } => "; give a larger --far",

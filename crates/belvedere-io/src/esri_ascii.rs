@@ -7,7 +7,9 @@ mod numbers;
 
 use crate::fs::sidecar;
 use crate::text::text_of;
-use crate::{Affine, InputFile, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs, budget, fs};
+use crate::{
+    Affine, InputFile, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs, budget, fs,
+};
 use belvedere_core::{Warning, WarningKind};
 use std::path::Path;
 

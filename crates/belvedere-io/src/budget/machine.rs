@@ -84,7 +84,8 @@ mod tests {
     #[test]
     fn limits_are_read() {
         assert_eq!(kib("MemFree: 1 kB\nMemAvailable:   2048 kB\n", "MemAvailable:"), Some(2 << 20));
-        let limits = |word: &str| format!("Max processes  7 8 processes\nMax address space     {word}   unlimited  bytes\n");
+        let limits =
+            |word: &str| format!("Max processes  7 8 processes\nMax address space     {word}   unlimited  bytes\n");
         assert_eq!(address_space(&limits("4294967296")), Some(4 << 30));
         assert_eq!(address_space(&limits("unlimited")), None);
         assert!(of_machine() >= LEAST);

@@ -91,7 +91,9 @@ pub fn room<T>(what: &str, count: usize) -> Result<Vec<T>, String> {
     let mut out = Vec::new();
     match out.try_reserve_exact(count) {
         Ok(()) => Ok(out),
-        Err(_) => Err(format!("{what} needs {} MiB, which this machine does not give; {REMEDY}", peak.div_ceil(1 << 20))),
+        Err(_) => {
+            Err(format!("{what} needs {} MiB, which this machine does not give; {REMEDY}", peak.div_ceil(1 << 20)))
+        }
     }
 }
 

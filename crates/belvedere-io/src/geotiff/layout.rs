@@ -333,7 +333,10 @@ impl Layout {
             let first = (plane * self.chunks[1] + row) * self.chunks[0];
             self.offsets.get(first + cols.start..first + cols.end).unwrap_or(&[])
         };
-        (0..planes).flat_map(move |plane| rows.clone().map(move |row| (plane, row))).flat_map(move |(p, r)| line(p, r)).copied()
+        (0..planes)
+            .flat_map(move |plane| rows.clone().map(move |row| (plane, row)))
+            .flat_map(move |(p, r)| line(p, r))
+            .copied()
     }
 
     /// Bytes of the samples of a `cols` x `rows` window in memory.

@@ -132,7 +132,8 @@ impl Window<'_> {
         let in_rows = threads.saturating_mul(self.part()? as u64);
         let at_once = (layout.chunks[0] as u64).saturating_mul(layout.chunks[1] as u64).min(in_rows);
         let expansion = if layout.stored.bits() < 8 { 8 / layout.stored.bits() } else { 1 };
-        let buffers = chunk.saturating_mul(at_once).saturating_mul(1 + expansion).saturating_add(Shared::MOST_BYTES.min(out));
+        let buffers =
+            chunk.saturating_mul(at_once).saturating_mul(1 + expansion).saturating_add(Shared::MOST_BYTES.min(out));
         self.limits.check(out.saturating_add(buffers))?;
         let size = layout.stored.sample_type().size() as u64;
         usize::try_from(out / size).map_err(|_| "is too large for this machine".to_owned())

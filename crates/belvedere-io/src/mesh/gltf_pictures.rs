@@ -46,7 +46,8 @@ impl<'p> Pictures<'p> {
             Err(e) => {
                 let path = self.path.unwrap_or(Path::new(""));
                 let text = format!("picture {}: {e}; it is left out", texture.index());
-                self.refused = self.refused.take().or(budget::is_refusal(&e).then(|| format!("picture {}: {e}", texture.index())));
+                self.refused =
+                    self.refused.take().or(budget::is_refusal(&e).then(|| format!("picture {}: {e}", texture.index())));
                 self.warnings.push(Warning::new(WarningKind::Ignored, text).in_file(path));
                 None
             }

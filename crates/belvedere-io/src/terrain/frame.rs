@@ -7,7 +7,8 @@ type Run = [u32; 3];
 ///
 /// Memory: an eighth of a byte for each sample, and the runs of samples that wait.
 pub(super) fn at_edge(heights: &[f32], cols: usize, rows: usize, value: f32) -> usize {
-    let mut flood = Flood { heights, cols, value, seen: vec![0; heights.len().div_ceil(64)], count: 0, waiting: Vec::new() };
+    let mut flood =
+        Flood { heights, cols, value, seen: vec![0; heights.len().div_ceil(64)], count: 0, waiting: Vec::new() };
     for row in 0..rows {
         if row == 0 || row + 1 == rows {
             flood.row(row, 0, cols);
@@ -85,8 +86,7 @@ mod tests {
                     || (r > 0 && seen[i - cols])
                     || (r + 1 < rows && seen[i + cols])
             };
-            let next: Vec<usize> =
-                (0..heights.len()).filter(|&i| !seen[i] && heights[i] == value && near(i)).collect();
+            let next: Vec<usize> = (0..heights.len()).filter(|&i| !seen[i] && heights[i] == value && near(i)).collect();
             if next.is_empty() {
                 return seen.iter().filter(|s| **s).count();
             }
@@ -105,7 +105,11 @@ mod tests {
             let (cols, rows) = (2 + random() as usize % 20, 2 + random() as usize % 20);
             let share = 1 + random() % 9;
             let heights: Vec<f32> = (0..cols * rows).map(|_| f32::from(u8::from(random() % 10 < share))).collect();
-            assert_eq!(at_edge(&heights, cols, rows, 0.0), slowly(&heights, cols, rows, 0.0), "{cols} x {rows}: {heights:?}");
+            assert_eq!(
+                at_edge(&heights, cols, rows, 0.0),
+                slowly(&heights, cols, rows, 0.0),
+                "{cols} x {rows}: {heights:?}"
+            );
         }
     }
 }

@@ -6,7 +6,8 @@ use crate::formats::{Reader, ends};
 use crate::fs::File;
 use crate::packed::content;
 use crate::{
-    Affine, GeoTiff, IoError, Limits, Loaded, Photometric, Raster, RasterInfo, Samples, SourceCrs, budget, esri_ascii, hgt,
+    Affine, GeoTiff, IoError, Limits, Loaded, Photometric, Raster, RasterInfo, Samples, SourceCrs, budget, esri_ascii,
+    hgt,
 };
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Progress;

@@ -1,10 +1,10 @@
 //! `disocclude`: writes an elevation model on which features are visible from an eye.
 
-use crate::guard::guarded;
 use super::in_time;
 use super::level_lakes::LevelLakes;
 use super::written_rivers::run_downhill;
 use crate::data::DataFiles;
+use crate::guard::guarded;
 use crate::output::{self, pretty};
 use crate::picture::{self, PictureOptions};
 use crate::places::{Place, PlaceFinder};
@@ -209,6 +209,7 @@ fn disoccluded(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Dis
     data.warnings.extend(moved_eye.as_ref().map(|(_, said)| said.clone()));
     let view = camera.view(camera.target.extend(camera.eye.z), None)?;
     let solving = options.progress.before(WRITING);
+    crate::resolve::terrain::ask(&data.scene)?;
     let solved = solver.solve(&data.scene, &view, &mut TerrainMemory::default(), &solving)?;
     data.warnings.extend(intent::remarks(&solved, &data.scene));
     let lakes = LevelLakes::new(&solved.stage, &solved.report, &data.scene);

@@ -1,7 +1,7 @@
 //! `reveal --drafts`: several views of the same features on one sheet, to choose from.
 
-use crate::guard::guarded;
 use super::reveal::{FinalShares, RevealRequest, Viewpoint, reveal, search_options, taller};
+use crate::guard::guarded;
 use crate::overlays::badge;
 use crate::{BelvedereError, OpenOptions};
 use belvedere_construct::measure::percent;

@@ -7,8 +7,8 @@ pub use super::molecule_info::MoleculeInfo;
 pub use city::CityInfo;
 pub use volume::VolumeInfo;
 
-use crate::guard::guarded;
 use crate::BelvedereError;
+use crate::guard::guarded;
 use crate::resolve::builtin;
 use crate::scene_file::VerticalUnit;
 use belvedere_core::DVec2;

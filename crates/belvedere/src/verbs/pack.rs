@@ -1,8 +1,8 @@
 //! Packs a scene, its files and the application into a folder that any web server can host.
 
-use crate::guard::guarded;
 use super::open_files::open_trusted;
 use crate::editor::{Editor, Place};
+use crate::guard::guarded;
 use crate::{BelvedereError, Trust, output};
 use belvedere_io::{InputFile, IoError, atomic, fs, split_table};
 use belvedere_scene::Progress;

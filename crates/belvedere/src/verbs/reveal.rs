@@ -1,10 +1,10 @@
 //! `reveal`: draws a picture of terrain in which routes and other features are visible.
 
-use crate::guard::guarded;
 use super::appearance::{Appearance, Taller, is_exaggeration};
 use super::in_time;
 pub use super::reveal_files::RevealFiles;
 use crate::data::{Data, DataFiles};
+use crate::guard::guarded;
 use crate::picture::{DisplacementReport, Picture, PictureOptions, TerrainRecord};
 use crate::places::{Place, PlaceFinder};
 use crate::resolve::ground::earth_radius;

@@ -1,11 +1,11 @@
 //! `reveal --see`: draws a picture in which one target in models or in a city is visible, by rays that bend around its occluders, or by a
 //! spline where it lies on the ground.
 
-use crate::guard::guarded;
 use super::appearance::Appearance;
 pub use super::target_request::TargetRequest;
 use super::target_scene::{self, Meant, Targets};
 use super::{city_views, target_views};
+use crate::guard::guarded;
 use crate::picture::{Picture, PictureOptions, TargetPlace};
 use crate::places::{Place, PlaceHeight};
 use crate::resolve::rays::sidestep_stage;

@@ -11,9 +11,9 @@ pub use film::Film;
 pub use manifest::{FrameGround, FrameRecord, FrameTerrain, Manifest, Settings, frame_name};
 pub use overlay::MarkerRecord;
 
-use crate::guard::guarded;
 use crate::camera_path::CameraPath;
 use crate::film::{Adjustment, DrawnGround};
+use crate::guard::guarded;
 use crate::output;
 use crate::picture::{self, PictureOptions};
 use crate::record::ViewRecord;

@@ -2,10 +2,10 @@
 
 mod read;
 
-use crate::guard::guarded;
 use crate::city_blocks;
 use crate::city_map::overview::{Panel, overview};
 use crate::city_map::{MapPicture, bounds, map_picture};
+use crate::guard::guarded;
 use crate::names::PublicNames;
 use crate::record::{self, InputFile};
 use crate::{BelvedereError, output};
