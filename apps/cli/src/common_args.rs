@@ -22,7 +22,7 @@ pub(crate) struct Common {
     /// Worker threads; 0 = all cores
     #[arg(long, global = true, help_heading = "Every command", default_value_t = 0, value_name = "N", allow_negative_numbers = true, value_parser = parse_threads)]
     pub(crate) threads: usize,
-    /// Limit of memory for one picture and for the samples of one file, such as 2GiB or 800MiB
+    /// Budget of memory for the whole command, such as 2GiB or 800MiB; by default three quarters of what the machine has free
     #[arg(long, global = true, help_heading = "Every command", value_name = "SIZE", allow_negative_numbers = true, value_parser = parse_bytes)]
     pub(crate) max_mem: Option<u64>,
     /// Limit of time for the whole command (animate and view: for solving the ground of each picture); when it is reached the best

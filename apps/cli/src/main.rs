@@ -13,6 +13,7 @@ mod ground_args;
 mod inputs;
 mod kinds;
 mod look_args;
+mod memory;
 mod outputs;
 mod pack;
 mod parse;
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(e) => return usage::report(&e),
     };
+    memory::begin(cli.common.max_mem);
     let worker = std::thread::Builder::new().stack_size(STACK_BYTES).spawn(|| run(cli));
     match worker.map(std::thread::JoinHandle::join) {
         Ok(Ok(code)) => code,
@@ -59,6 +61,7 @@ fn broken(panic: &(dyn std::any::Any + Send)) -> ExitCode {
 }
 
 fn run(cli: Cli) -> ExitCode {
+    belvedere::threads::start();
     let context = Context::new(cli.common, cli.verb.makes_many_pictures());
     let verb = cli.verb.name();
     match verbs::run(cli.verb, &context).and_then(|goal| context.timings.write(verb, &context.common).map(|()| goal)) {

@@ -136,6 +136,9 @@ fn option_for(error: &BelvedereError) -> Option<&'static str> {
         }
         BelvedereError::Io(belvedere::io::IoError::Exists { .. }) => "; give --overwrite to replace it",
         BelvedereError::Render(belvedere::scene::RenderError::TooLarge { .. }) => " (--size, --samples, --max-mem)",
+        BelvedereError::Io(_) | BelvedereError::Memory(_) if belvedere::io::budget::is_refusal(&error.to_string()) => {
+            " (--max-mem)"
+        }
         BelvedereError::RayEnd { .. } => "; give a larger --far",
         BelvedereError::NoRayEnd => "; give --far or camera.far",
         BelvedereError::FramesThere { resumable: true, .. } => {

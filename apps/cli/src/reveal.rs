@@ -74,7 +74,7 @@ fn places(args: &RevealArgs) -> anyhow::Result<Option<[Place; 2]>> {
 
 fn quality(picture: &mut PictureOptions, context: &Context) {
     picture.quality.threads = context.common.threads;
-    picture.quality.max_bytes = context.common.max_mem.unwrap_or(picture.quality.max_bytes);
+    picture.quality.max_bytes = belvedere::io::budget::bytes();
 }
 
 /// Finds what one target in models or in a city needs to be visible, and writes the files that were asked for.

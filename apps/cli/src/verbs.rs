@@ -76,7 +76,7 @@ fn request(args: &DrawArgs, context: &Context) -> PictureOptions {
     request.quality.lod_px = args.lod;
     request.stylisation = args.stylise.then(|| StylisationDoc::usual().strengths().unwrap_or_default());
     request.progress = context.progress.clone();
-    request.quality.max_bytes = context.common.max_mem.unwrap_or(request.quality.max_bytes);
+    request.quality.max_bytes = belvedere::io::budget::bytes();
     request
 }
 

@@ -4,7 +4,7 @@ use crate::crs::{CoordinateSystem, Transform};
 use crate::formats::ends;
 use crate::packed::content;
 use crate::terrain::{Geometry, GridMap, Link, stated_system};
-use crate::{Affine, GeoTiff, InputFile, IoError, Limits, Loaded, Raster, SourceCrs, esri_ascii, fs, png};
+use crate::{Affine, GeoTiff, InputFile, IoError, Limits, Loaded, Raster, SourceCrs, budget, esri_ascii, fs, png};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Crs, Drape, Heightfield, Progress};
 use glam::DVec2;
@@ -129,6 +129,7 @@ enum Source {
 impl Source {
     fn open(path: &Path, request: &DrapeRequest, warnings: &mut Vec<Warning>) -> Result<Self, IoError> {
         let path = &content(path, request.limits.max_bytes, &|p| ends(p, &[".tif", ".tiff", ".png"]))?;
+        let _work = budget::work_on(path);
         let mut magic = [0u8; 8];
         let mut file = fs::File::open(path).map_err(|e| IoError::os(path, e))?;
         let got = std::io::Read::read(&mut file, &mut magic).map_err(|e| IoError::os(path, e))?;
@@ -204,7 +205,9 @@ impl Source {
 impl Picture {
     fn of(raster: &Raster) -> Result<Self, IoError> {
         let info = &raster.info;
-        let pixels = raster.to_rgba().map_err(|reason| IoError::format(&info.path, reason))?;
+        let failed = |reason| IoError::format(&info.path, reason);
+        budget::ask("the picture", 4 * info.width as u64 * info.height as u64).map_err(failed)?;
+        let pixels = raster.to_rgba().map_err(failed)?;
         let model_from_pixel = info.pixel_to_model.unwrap_or(Affine([1.0, 0.0, 0.0, 0.0, -1.0, 0.0]));
         Ok(Self { pixels, width: info.width, height: info.height, model_from_pixel })
     }

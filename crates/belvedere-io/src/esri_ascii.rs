@@ -7,7 +7,9 @@ mod numbers;
 
 use crate::fs::sidecar;
 use crate::text::text_of;
-use crate::{Affine, InputFile, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs, fs};
+use crate::{
+    Affine, InputFile, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs, budget, fs,
+};
 use belvedere_core::{Warning, WarningKind};
 use std::path::Path;
 
@@ -38,7 +40,9 @@ struct Header {
 pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
     let bad = |reason: String| IoError::format(path, reason);
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
-    limits.check(length).map_err(bad)?;
+    let _work = budget::work_on(path);
+    // The text, and of at least two bytes each the values.
+    limits.check(length.saturating_mul(3)).map_err(bad)?;
     let (bytes, file) = InputFile::read(path)?;
     let (text, odd_numbers) = numbers::plain(&bytes);
     let mut words = text.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty()).peekable();
@@ -55,7 +59,7 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
     if expected > bytes.len() {
         return Err(bad(too_few(cols, rows, bytes.len() / 2)));
     }
-    let mut values = Vec::with_capacity(expected);
+    let mut values = budget::room("the raster", expected).map_err(bad)?;
     for word in words.by_ref().take(expected) {
         let is_void = header.nodata_word.as_deref() == Some(word) || numbers::is_no_number(word);
         let parsed = if is_void { Some(f32::NAN) } else { numbers::parse(word) };

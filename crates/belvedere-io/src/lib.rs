@@ -2,6 +2,7 @@
 
 pub mod atomic;
 mod base64;
+pub mod budget;
 pub mod city;
 pub mod city_write;
 pub mod crs;

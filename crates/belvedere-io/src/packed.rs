@@ -2,7 +2,7 @@
 
 use crate::formats::{self, Reader, ends};
 use crate::fs::{names_in, unpacked_size};
-use crate::{IoError, Limits};
+use crate::{IoError, budget};
 use std::path::{Path, PathBuf};
 
 /// Names that an error lists.
@@ -85,7 +85,7 @@ pub(crate) fn content_for(path: &Path, most: u64, reader: Reader) -> Result<Path
 /// # Errors
 /// As those of loaders for archives: no file that is read, or several.
 pub fn inside(path: &Path) -> Result<PathBuf, IoError> {
-    let most = Limits::default().max_bytes;
+    let most = budget::bytes();
     let is_read = |p: &Path| formats::of_name(p).is_some_and(|format| format.reader.is_some()) && !ends(p, &[".txt"]);
     let may_be = |p: &Path| is_read(p) || ends(p, &[".json", ".jsonl", ".gml"]);
     let picture = |p: &Path| may_be(p) || ends(p, &[".png", ".txt", ".xml"]);

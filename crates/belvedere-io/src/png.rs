@@ -1,7 +1,7 @@
 //! PNG pictures with provenance in text chunks.
 
 use crate::fs::File;
-use crate::{Alpha, IoError, Limits, Photometric, Raster, RasterInfo, SampleType, Samples, atomic};
+use crate::{Alpha, IoError, Limits, Photometric, Raster, RasterInfo, SampleType, Samples, atomic, budget};
 use png::{BitDepth, ColorType, Compression, Encoder, Filter, SrgbRenderingIntent};
 use std::io::{self, BufReader, Write};
 use std::path::Path;
@@ -122,8 +122,11 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Raster, IoError> {
     decoder.set_transformations(png::Transformations::normalize_to_color8() | png::Transformations::ALPHA);
     let mut reader = decoder.read_info().map_err(bad)?;
     let (width, height) = (reader.info().width as usize, reader.info().height as usize);
-    limits.check(4 * width as u64 * height as u64).map_err(|reason| IoError::format(path, reason))?;
-    let mut samples = vec![0; reader.output_buffer_size().unwrap_or(0)];
+    // Samples, and colours made of them.
+    limits.check(8 * width as u64 * height as u64).map_err(|reason| IoError::format(path, reason))?;
+    let size = reader.output_buffer_size().unwrap_or(0);
+    let mut samples = budget::room("the picture", size).map_err(|reason| IoError::format(path, reason))?;
+    samples.resize(size, 0);
     let frame = reader.next_frame(&mut samples).map_err(bad)?;
     samples.truncate(frame.buffer_size());
     let mut info = RasterInfo::new(path, width, height, SampleType::U8);

@@ -1,5 +1,6 @@
 //! Rasters as every loader returns them: samples, georeference and no-data value.
 
+use crate::budget;
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::path::PathBuf;
@@ -450,29 +451,26 @@ impl Raster {
 /// Bounds on the memory of a loader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Limits {
-    /// Most bytes of decoded samples held at once.
+    /// Most bytes at the peak of the work; what the process holds counts where it is counted, see [`budget::count_by`].
     pub max_bytes: u64,
 }
 
 impl Default for Limits {
-    /// 4 GiB.
+    /// [`budget::bytes`].
     fn default() -> Self {
-        Self { max_bytes: 4 << 30 }
+        Self { max_bytes: budget::bytes() }
     }
 }
 
 impl Limits {
-    /// One sentence if `bytes` are more than allowed.
+    /// One sentence if a raster whose reading takes `bytes` is more than allowed.
     pub fn check(&self, bytes: u64) -> Result<(), String> {
-        if bytes <= self.max_bytes {
-            return Ok(());
-        }
-        let mib = |b: u64| b.div_ceil(1 << 20);
-        Err(format!(
-            "the raster needs {} MiB decoded, more than {} MiB; allow more memory, or use a smaller level or window",
-            mib(bytes),
-            self.max_bytes >> 20
-        ))
+        self.ask("the raster", bytes)
+    }
+
+    /// One sentence if work on `what` that takes `bytes` is more than allowed.
+    pub fn ask(&self, what: &str, bytes: u64) -> Result<(), String> {
+        budget::ask_of(self.max_bytes, what, bytes)
     }
 }
 
@@ -523,13 +521,5 @@ mod tests {
         info.photometric = Photometric::GrayInverted;
         let raster = Raster { info, samples: Samples::U8(vec![0, 100, 255]), mask: None };
         assert_eq!(raster.to_rgba().unwrap(), [[255, 255, 255, 255], [155, 155, 155, 255], [0, 0, 0, 255]]);
-    }
-
-    #[test]
-    fn what_just_fits_is_allowed() {
-        let limits = Limits { max_bytes: 3 << 20 };
-        assert_eq!(limits.check(3 << 20), Ok(()));
-        let text = limits.check((3 << 20) + 1).unwrap_err();
-        assert!(text.contains("needs 4 MiB") && text.contains("more than 3 MiB"), "{text}");
     }
 }

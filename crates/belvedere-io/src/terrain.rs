@@ -5,6 +5,7 @@
 //! measured and bounded (see [`ResampleError`]). Voids stay voids unless they are filled, and filled nodes are marked.
 
 mod fill;
+mod frame;
 mod grid_map;
 mod original;
 mod resample;

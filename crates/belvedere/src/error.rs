@@ -191,6 +191,15 @@ pub enum BelvedereError {
     /// Terrain could not be solved.
     #[error(transparent)]
     Disocclusion(#[from] belvedere_disocclusion::DisocclusionError),
+    /// A library failed in a way that it does not report.
+    #[error("internal error ({what}); please report this with the command line and the files")]
+    Internal {
+        /// First line of its message.
+        what: String,
+    },
+    /// Work that needs more memory than the budget has left, see [`belvedere_io::budget`].
+    #[error("{0}")]
+    Memory(String),
     /// Cancelled.
     #[error(transparent)]
     Cancelled(#[from] belvedere_scene::Cancelled),

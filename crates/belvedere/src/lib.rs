@@ -36,6 +36,7 @@ pub mod editor;
 mod error;
 pub mod fallback;
 mod film;
+mod guard;
 mod names;
 mod open;
 mod options;
@@ -50,6 +51,7 @@ pub mod scene_file;
 mod session;
 pub mod sun;
 mod targets;
+pub mod threads;
 pub mod trust;
 pub mod verbs;
 

@@ -1,5 +1,6 @@
 //! Opens scene files and documents as sessions.
 
+use crate::guard::guarded;
 use crate::resolve::constructor;
 use crate::resolve::motion::Motions;
 use crate::resolve::solving::Memory;
@@ -20,7 +21,7 @@ impl Session {
     /// # Errors
     /// Every [`BelvedereError`]; mistakes in the file come with their line.
     pub fn open(path: &Path, options: &OpenOptions) -> Result<Self, BelvedereError> {
-        Self::from_document(scene_file::read(path)?, options)
+        guarded(|| Self::from_document(scene_file::read(path)?, options))
     }
 
     /// Opens a scene from its text (TOML, or JSON if it starts with `{`); `path` gives the folder of its files.
@@ -36,7 +37,11 @@ impl Session {
     ///
     /// # Errors
     /// As [`Session::open`].
-    pub fn from_document(mut source: SourceDocument, options: &OpenOptions) -> Result<Self, BelvedereError> {
+    pub fn from_document(source: SourceDocument, options: &OpenOptions) -> Result<Self, BelvedereError> {
+        guarded(|| Self::opened(source, options))
+    }
+
+    fn opened(mut source: SourceDocument, options: &OpenOptions) -> Result<Self, BelvedereError> {
         let document = &mut source.document;
         let mut allowed = options.allow_roots.clone();
         document.camera.image = options.image.unwrap_or(document.camera.image);

@@ -13,6 +13,8 @@ mod geopackage;
 mod layers;
 mod light_and_tints;
 mod marks;
+#[cfg(target_os = "linux")]
+mod memory;
 mod meshes;
 mod molecules;
 mod numbers;

@@ -32,7 +32,7 @@ use crate::packed::content_for;
 use crate::table::split_table;
 use crate::text::text_of;
 use crate::vector;
-use crate::{InputFile, IoError, Limits, Loaded, fs, recognise};
+use crate::{InputFile, IoError, Limits, Loaded, budget, fs, recognise};
 use belvedere_scene::City;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -67,7 +67,8 @@ pub fn load_city(path: &Path, lod: Option<&str>, limits: &Limits) -> Result<Load
     let whole = split_table(path).0;
     let size = fs::metadata(whole).map_err(|e| IoError::os(whole, e))?.len();
     // A tree of JSON takes several times the bytes of its text.
-    limits.check(size.saturating_mul(8)).map_err(|reason| IoError::format(path, reason.replace("raster", "city")))?;
+    limits.ask("the city", size.saturating_mul(8)).map_err(|reason| IoError::format(path, reason))?;
+    let _work = budget::work_on(whole);
     if let Some(model) = model(path)? {
         let (bytes, file) = InputFile::read(path)?;
         let loaded = match model {

@@ -1,7 +1,7 @@
 //! Pictures on the faces of city models: PNG and JPEG beside the model or below its folder.
 
 use crate::mesh::{neighbour, picture};
-use crate::{InputFile, Limits};
+use crate::{InputFile, Limits, budget};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{City, CityFace, FacePicture, Texture, Wrap};
 use glam::Vec2;
@@ -55,8 +55,17 @@ impl PictureList {
 
     /// Reads the pictures that the faces of a city wear; faces whose picture cannot be read get none. Returns the files read
     /// and warnings about missing ones.
-    pub(super) fn load(self, city: &mut City, path: &Path, limits: &Limits) -> (Vec<InputFile>, Vec<Warning>) {
-        let (mut files, mut warnings, mut room) = (Vec::new(), Vec::new(), limits.max_bytes);
+    ///
+    /// # Errors
+    /// A sentence, if a picture needs more memory than `limits` leave.
+    pub(super) fn load(
+        self,
+        city: &mut City,
+        path: &Path,
+        limits: &Limits,
+    ) -> Result<(Vec<InputFile>, Vec<Warning>), String> {
+        let (mut files, mut warnings) = (Vec::new(), Vec::new());
+        let mut refused: Option<String> = None;
         let (mut read, mut missing) = (HashMap::<u32, Option<u32>>::new(), BTreeMap::<String, (String, usize)>::new());
         let mut bare = 0;
         let faces = city.buildings.iter_mut().flat_map(|b| &mut b.faces);
@@ -64,14 +73,14 @@ impl PictureList {
             let Some(worn) = &mut face.picture else { continue };
             let number = *read.entry(worn.number).or_insert_with(|| {
                 let (name, wrap) = self.named.get(worn.number as usize)?;
-                match decoded(path, name, *wrap, room) {
-                    Ok((texture, file, bytes)) => {
-                        room = room.saturating_sub(bytes);
+                match decoded(path, name, *wrap, &picture::beside(limits, &city.pictures)) {
+                    Ok((texture, file)) => {
                         files.push(file);
                         city.pictures.push(Arc::new(texture));
                         Some(city.pictures.len() as u32 - 1)
                     }
                     Err(e) => {
+                        refused = refused.take().or(budget::is_refusal(&e).then(|| format!("picture {name:?}: {e}")));
                         missing.insert(name.clone(), (e, 0));
                         None
                     }
@@ -84,6 +93,9 @@ impl PictureList {
                     face.picture = None;
                 }
             }
+        }
+        if let Some(reason) = refused {
+            return Err(reason);
         }
         if !missing.is_empty() {
             let told: Vec<String> = missing.iter().take(TOLD).map(|(name, (e, _))| format!("{name:?}: {e}")).collect();
@@ -100,15 +112,11 @@ impl PictureList {
         }
         let odd = "faces go without their picture: its places do not fit their vertices";
         warnings.extend(Warning::counted(WarningKind::Ignored, self.odd, odd));
-        (files, warnings)
+        Ok((files, warnings))
     }
 }
 
-fn decoded(path: &Path, name: &str, wrap: [Wrap; 2], room: u64) -> Result<(Texture, InputFile, u64), String> {
-    let limits = Limits { max_bytes: room };
-    let (bytes, file) = neighbour(path, name, &limits)?;
-    let texture = picture::read(&bytes, wrap, &limits)?;
-    // With the mip pyramid.
-    let held = 6 * texture.size().iter().product::<usize>() as u64;
-    Ok((texture, file, held))
+fn decoded(path: &Path, name: &str, wrap: [Wrap; 2], limits: &Limits) -> Result<(Texture, InputFile), String> {
+    let (bytes, file) = neighbour(path, name, limits)?;
+    Ok((picture::read(&bytes, wrap, limits)?, file))
 }

@@ -15,6 +15,7 @@ pub use packed::{File, Metadata, canonicalize, metadata, read, read_to_string, s
 pub(crate) use packed::{archive_of, names_in, unpacked_size};
 
 mod beside;
+mod bounded;
 #[cfg(any(test, target_family = "wasm"))]
 #[cfg_attr(not(target_family = "wasm"), allow(dead_code, unreachable_pub))]
 mod memory;

@@ -3,7 +3,9 @@
 //!
 //! The unpacked size is bounded: no more than [`MOST_BYTES`], and of entries of ZIP archives no more than they state.
 
+use super::bounded::{read_up_to, too_large};
 use super::plain;
+use crate::budget;
 use flate2::read::MultiGzDecoder;
 use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -238,6 +240,8 @@ fn unpacked(archive: &Path, entry: &str) -> io::Result<Arc<[u8]>> {
     {
         return Ok(bytes.clone());
     }
+    // The last one makes room for the next.
+    *kept() = None;
     let bytes: Arc<[u8]> = unpack(archive, entry)?.into();
     if bytes.len() <= KEPT_BYTES {
         *kept() = Some((key, stamp, bytes.clone()));
@@ -247,33 +251,32 @@ fn unpacked(archive: &Path, entry: &str) -> io::Result<Arc<[u8]>> {
 
 fn unpack(archive: &Path, entry: &str) -> io::Result<Vec<u8>> {
     let packed = read(archive)?;
-    let mut out = Vec::new();
+    // It is held twice for a moment, and read by a loader.
+    let most = MOST_BYTES.min(budget::left() / 2);
+    let failed = |e: io::Error| if e.kind() == io::ErrorKind::OutOfMemory { e } else { damaged(archive, e) };
     if packed.starts_with(GZIP) {
         if entry != name_in_gzip(archive, &packed) {
             return Err(missing(archive, entry));
         }
-        MultiGzDecoder::new(packed.as_slice())
-            .take(MOST_BYTES + 1)
-            .read_to_end(&mut out)
-            .map_err(|e| damaged(archive, e))?;
+        read_up_to(MultiGzDecoder::new(packed.as_slice()), most, archive, entry).map_err(failed)
     } else if packed.starts_with(ZIP) || packed.starts_with(EMPTY_ZIP) {
         let mut zip = zip::ZipArchive::new(Cursor::new(packed)).map_err(|e| damaged(archive, e))?;
         let found = zip.by_name(entry).map_err(|e| match e {
             zip::result::ZipError::FileNotFound => missing(archive, entry),
             e => of_zip(archive, e),
         })?;
-        let stated = found.size().min(MOST_BYTES);
-        found.take(stated + 1).read_to_end(&mut out).map_err(|e| damaged(archive, e))?;
-        if out.len() as u64 != stated && stated < MOST_BYTES {
+        let stated = found.size();
+        if stated > most {
+            return Err(too_large(archive, entry, most));
+        }
+        let out = read_up_to(found.take(stated + 1), most, archive, entry).map_err(failed)?;
+        if out.len() as u64 != stated {
             return Err(damaged(archive, format!("{entry} is not of the {stated} bytes that it states")));
         }
+        Ok(out)
     } else {
-        return Err(io::Error::from(io::ErrorKind::NotADirectory));
+        Err(io::Error::from(io::ErrorKind::NotADirectory))
     }
-    if out.len() as u64 > MOST_BYTES {
-        return Err(damaged(archive, format!("{entry} has more than {} MiB", MOST_BYTES >> 20)));
-    }
-    Ok(out)
 }
 
 const GZIP: &[u8] = b"\x1f\x8b";

@@ -2,6 +2,7 @@
 
 use super::ifd::{Container, Ifd, tag};
 use crate::raster::SampleType;
+use std::ops::Range;
 
 /// Compression of the chunks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -323,6 +324,19 @@ impl Layout {
         let index = (plane * self.chunks[1] + row) * self.chunks[0] + col;
         let (at, count) = (*self.offsets.get(index)?, *self.counts.get(index)?);
         (at != 0 && count != 0).then_some((at, count))
+    }
+
+    /// Positions in the file of the chunks of these columns and rows of chunks, in all planes.
+    pub(super) fn positions(&self, cols: Range<usize>, rows: Range<usize>) -> impl Iterator<Item = u64> {
+        let planes = if self.planar { self.bands } else { 1 };
+        let line = move |plane: usize, row: usize| {
+            let first = (plane * self.chunks[1] + row) * self.chunks[0];
+            self.offsets.get(first + cols.start..first + cols.end).unwrap_or(&[])
+        };
+        (0..planes)
+            .flat_map(move |plane| rows.clone().map(move |row| (plane, row)))
+            .flat_map(move |(p, r)| line(p, r))
+            .copied()
     }
 
     /// Bytes of the samples of a `cols` x `rows` window in memory.

@@ -9,6 +9,7 @@ mod ifd;
 mod layout;
 mod meta;
 mod read;
+mod shared;
 mod source;
 mod write;
 

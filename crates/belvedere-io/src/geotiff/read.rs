@@ -3,10 +3,12 @@
 use super::codec::Scratch;
 use super::ifd::Container;
 use super::layout::Layout;
+use super::shared::Shared;
 use crate::raster::{Limits, SampleType, Samples};
 use belvedere_scene::Progress;
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A sample in memory.
@@ -30,6 +32,41 @@ macro_rules! cell {
     )*};
 }
 cell!(i8, u8, i16, u16, i32, u32, i64, u64, f32, f64);
+
+/// Bytes of decoded chunks of one row that wait to be copied.
+const PART_BYTES: u64 = 16 << 20;
+
+/// Where the samples of a chunk are.
+enum Decoded {
+    /// Nowhere: the file leaves it out.
+    LeftOut,
+    /// In the scratch.
+    Own,
+    /// Taken out of the scratch.
+    Kept(Vec<u8>),
+    /// With other chunks of the same place in the file.
+    Shared(Arc<[u8]>),
+}
+
+impl Decoded {
+    /// Frees the scratch.
+    fn kept(self, scratch: &mut Scratch) -> Self {
+        match self {
+            Self::Own => Self::Kept(std::mem::take(&mut scratch.out)),
+            other => other,
+        }
+    }
+
+    /// The samples; `None` for a chunk that the file leaves out.
+    fn bytes<'a>(&'a self, scratch: &'a Scratch) -> Option<&'a [u8]> {
+        match self {
+            Self::LeftOut => None,
+            Self::Own => Some(&scratch.out),
+            Self::Kept(bytes) => Some(bytes),
+            Self::Shared(bytes) => Some(bytes),
+        }
+    }
+}
 
 /// What to read of one image.
 pub(super) struct Window<'a> {
@@ -76,8 +113,9 @@ impl Window<'_> {
             rest = after;
         }
         let (total, done) = (bands.len(), AtomicUsize::new(0));
+        let shared = Shared::of(layout, &self.cols, &self.rows);
         bands.into_par_iter().try_for_each_init(Scratch::default, |scratch, (chunk_row, band)| {
-            self.chunk_row(scratch, chunk_row, band)?;
+            self.chunk_row(scratch, &shared, chunk_row, band)?;
             let done = done.fetch_add(1, Ordering::Relaxed) + 1;
             self.progress.tick("reading raster", done as f64 / total as f64).map_err(|e| e.to_string())
         })?;
@@ -89,12 +127,23 @@ impl Window<'_> {
         let layout = self.layout;
         let out = layout.decoded_bytes(self.cols.len(), self.rows.len())?;
         let chunk = layout.chunk_bytes(layout.chunk_height)?;
-        let at_once = (layout.chunks[0] as u64 * layout.chunks[1] as u64).min(rayon::current_num_threads() as u64);
+        let threads = rayon::current_num_threads() as u64;
+        // Every thread may work on a row of chunks, and on a part of it.
+        let in_rows = threads.saturating_mul(self.part()? as u64);
+        let at_once = (layout.chunks[0] as u64).saturating_mul(layout.chunks[1] as u64).min(in_rows);
         let expansion = if layout.stored.bits() < 8 { 8 / layout.stored.bits() } else { 1 };
-        let buffers = chunk.saturating_mul(at_once).saturating_mul(1 + expansion);
+        let buffers =
+            chunk.saturating_mul(at_once).saturating_mul(1 + expansion).saturating_add(Shared::MOST_BYTES.min(out));
         self.limits.check(out.saturating_add(buffers))?;
         let size = layout.stored.sample_type().size() as u64;
         usize::try_from(out / size).map_err(|_| "is too large for this machine".to_owned())
+    }
+
+    /// Chunks of a row that are decoded before they are copied: few, so that wide images do not need twice their memory.
+    fn part(&self) -> Result<usize, String> {
+        let chunk = self.layout.chunk_bytes(self.layout.chunk_height)?.max(1);
+        let most = (PART_BYTES / chunk).clamp(1, 4 * rayon::current_num_threads() as u64);
+        Ok((most as usize).min(self.layout.chunks[0].saturating_mul(self.layout.bands)).max(1))
     }
 
     /// Rows of the image that chunk row `chunk_row` gives to the window.
@@ -104,41 +153,56 @@ impl Window<'_> {
     }
 
     /// Decodes all chunks of a chunk row into `band`, which holds their rows of the window.
-    fn chunk_row<T: Cell>(&self, scratch: &mut Scratch, chunk_row: usize, band: &mut [T]) -> Result<(), String> {
+    fn chunk_row<T: Cell>(
+        &self,
+        scratch: &mut Scratch,
+        shared: &Shared,
+        chunk_row: usize,
+        band: &mut [T],
+    ) -> Result<(), String> {
         let layout = self.layout;
         let planes = if layout.planar { layout.bands } else { 1 };
         let cols = self.cols.start / layout.chunk_width..self.cols.end.div_ceil(layout.chunk_width);
         if cols.len() * planes == 1 {
-            let decoded = self.chunk(scratch, 0, chunk_row, cols.start)?;
-            self.copy(band, 0, chunk_row, cols.start, decoded.then_some(&scratch.out[..]));
+            let decoded = self.chunk(scratch, shared, 0, chunk_row, cols.start)?;
+            self.copy(band, 0, chunk_row, cols.start, decoded.bytes(scratch));
             return Ok(());
         }
         let chunks: Vec<[usize; 2]> = (0..planes).flat_map(|p| cols.clone().map(move |c| [p, c])).collect();
-        // Few chunks at a time, so that wide images do not need twice their memory.
-        for part in chunks.chunks(4 * rayon::current_num_threads()) {
-            let decoded: Vec<Option<Vec<u8>>> = part
+        for part in chunks.chunks(self.part()?) {
+            let decoded: Vec<Decoded> = part
                 .par_iter()
                 .map_init(Scratch::default, |scratch, &[plane, col]| {
-                    let decoded = self.chunk(scratch, plane, chunk_row, col)?;
-                    Ok(decoded.then(|| std::mem::take(&mut scratch.out)))
+                    let decoded = self.chunk(scratch, shared, plane, chunk_row, col)?;
+                    Ok(decoded.kept(scratch))
                 })
                 .collect::<Result<_, String>>()?;
-            for (&[plane, col], bytes) in part.iter().zip(&decoded) {
-                self.copy(band, plane, chunk_row, col, bytes.as_deref());
+            for (&[plane, col], decoded) in part.iter().zip(&decoded) {
+                self.copy(band, plane, chunk_row, col, decoded.bytes(scratch));
             }
         }
         Ok(())
     }
 
-    /// Decodes one chunk into `scratch.out`; `false` if the file leaves it out.
-    fn chunk(&self, scratch: &mut Scratch, plane: usize, row: usize, col: usize) -> Result<bool, String> {
+    /// Decodes one chunk into `scratch.out`, unless it is shared and decoded already.
+    fn chunk(
+        &self,
+        scratch: &mut Scratch,
+        shared: &Shared,
+        plane: usize,
+        row: usize,
+        col: usize,
+    ) -> Result<Decoded, String> {
         let layout = self.layout;
         if self.progress.is_cancelled() {
             return Err("cancelled".to_owned());
         }
-        let Some((at, count)) = layout.chunk(plane, row, col) else { return Ok(false) };
+        let Some((at, count)) = layout.chunk(plane, row, col) else { return Ok(Decoded::LeftOut) };
         let name = || format!("{} in row {}, column {}", layout.kind(), row + 1, col + 1);
         let rows = layout.rows_in(row);
+        if let Some(known) = shared.get((at, rows)) {
+            return Ok(Decoded::Shared(known));
+        }
         let count = match layout.compression {
             super::layout::Compression::None => count.min(layout.chunk_bytes(rows)?),
             _ => count,
@@ -146,7 +210,8 @@ impl Window<'_> {
         self.container.source.read_into(at, count, layout.kind(), &mut scratch.raw)?;
         let result = scratch.decode(layout, self.container.big_endian, rows);
         result.map_err(|reason| format!("{} {reason}", name()))?;
-        Ok(true)
+        shared.keep((at, rows), &scratch.out);
+        Ok(Decoded::Own)
     }
 
     /// Copies what the window needs of a chunk, or the fill value.

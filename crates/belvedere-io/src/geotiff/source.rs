@@ -1,7 +1,7 @@
 //! Bytes of a file at a position, from disk or memory.
 
 use crate::fs::File;
-use crate::input;
+use crate::{budget, input};
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -32,7 +32,7 @@ impl Source {
         if meta.len() > WHOLE {
             return Ok(Self { len: meta.len(), inner: Inner::File(Mutex::new(file)) });
         }
-        let mut bytes = Vec::with_capacity(meta.len() as usize);
+        let mut bytes = budget::room("the file", meta.len() as usize).map_err(std::io::Error::other)?;
         file.take(meta.len()).read_to_end(&mut bytes)?;
         Ok(Self::bytes(bytes))
     }

@@ -3,7 +3,7 @@
 use super::{neighbour, picture};
 use crate::base64;
 use crate::fs::percent_decoded;
-use crate::{InputFile, Limits};
+use crate::{InputFile, Limits, budget};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Texture, Wrap};
 use gltf::image::Source;
@@ -21,6 +21,8 @@ pub(super) struct Pictures<'p> {
     known: HashMap<usize, Option<u32>>,
     pub(super) textures: Vec<Arc<Texture>>,
     pub(super) files: Vec<InputFile>,
+    /// Why a picture was refused for want of memory.
+    pub(super) refused: Option<String>,
     /// One sentence each.
     pub(super) warnings: Vec<Warning>,
 }
@@ -44,6 +46,8 @@ impl<'p> Pictures<'p> {
             Err(e) => {
                 let path = self.path.unwrap_or(Path::new(""));
                 let text = format!("picture {}: {e}; it is left out", texture.index());
+                self.refused =
+                    self.refused.take().or(budget::is_refusal(&e).then(|| format!("picture {}: {e}", texture.index())));
                 self.warnings.push(Warning::new(WarningKind::Ignored, text).in_file(path));
                 None
             }
@@ -59,7 +63,8 @@ impl<'p> Pictures<'p> {
             WrappingMode::ClampToEdge => Wrap::Clamp,
             WrappingMode::MirroredRepeat => Wrap::Mirror,
         });
-        let decode = |bytes: &[u8]| picture::read(bytes, wrap, &self.limits);
+        let limits = picture::beside(&self.limits, &self.textures);
+        let decode = |bytes: &[u8]| picture::read(bytes, wrap, &limits);
         match texture.source().source() {
             Source::View { view, .. } => {
                 let end = view.offset().checked_add(view.length());
@@ -72,7 +77,7 @@ impl<'p> Pictures<'p> {
                     return Ok((decode(&bytes.ok_or("it is no base64; the file is damaged")?)?, None));
                 }
                 let path = self.path.unwrap_or(Path::new(""));
-                let (bytes, file) = neighbour(path, &percent_decoded(uri), &self.limits)?;
+                let (bytes, file) = neighbour(path, &percent_decoded(uri), &limits)?;
                 Ok((decode(&bytes)?, Some(file)))
             }
         }

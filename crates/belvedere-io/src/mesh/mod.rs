@@ -13,7 +13,7 @@ use crate::formats::Reader;
 use crate::fs::{beside, spellings};
 use crate::packed::content;
 use crate::recognise::{explain, not_a};
-use crate::{InputFile, IoError, Limits, Loaded, fs};
+use crate::{InputFile, IoError, Limits, Loaded, budget, fs};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Color, MeshColors, Texturing};
 use glam::DVec3;
@@ -57,6 +57,7 @@ pub fn load_mesh(path: &Path, limits: &Limits) -> Result<Loaded<MeshFile>, IoErr
         "gltf" | "glb" => gltf::read,
         _ => return Err(not_a(path, "a mesh that this version reads: OBJ, PLY, STL, glTF or GLB")),
     };
+    let _work = budget::work_on(path);
     let bytes = read_bytes(path, limits)?;
     let mut loaded = read(path, &bytes, limits).map_err(explain)?.with_file(InputFile::of(path, &bytes));
     let mesh = &mut loaded.value;
@@ -77,7 +78,7 @@ pub fn load_mesh(path: &Path, limits: &Limits) -> Result<Loaded<MeshFile>, IoErr
 fn read_bytes(path: &Path, limits: &Limits) -> Result<Vec<u8>, IoError> {
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     // Vertices and triangles take at most a few times the bytes that a file spends on them.
-    limits.check(length.saturating_mul(6)).map_err(|reason| IoError::format(path, reason.replace("raster", "mesh")))?;
+    limits.ask("the mesh", length.saturating_mul(6)).map_err(|reason| IoError::format(path, reason))?;
     fs::read(path).map_err(|e| IoError::os(path, e))
 }
 

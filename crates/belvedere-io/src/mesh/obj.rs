@@ -1,7 +1,7 @@
 //! Wavefront OBJ, with the diffuse colours and pictures of its MTL file, its objects and groups as parts.
 
 use super::{MeshFile, color, neighbour, obj_text, picture};
-use crate::{InputFile, IoError, Limits, Loaded};
+use crate::{InputFile, IoError, Limits, Loaded, budget};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Color, MeshColors, Texture, Texturing};
 use glam::{DVec3, Vec2};
@@ -65,6 +65,9 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
     for model in models {
         builder.add(path, &model, &mut materials)?;
     }
+    if let Some(reason) = materials.refused.take() {
+        return Err(IoError::format(path, reason));
+    }
     warnings.append(&mut materials.warnings);
     let mut files = files.into_inner();
     files.append(&mut materials.files);
@@ -81,12 +84,14 @@ struct Materials<'p> {
     textures: Vec<Arc<Texture>>,
     files: Vec<InputFile>,
     warnings: Vec<Warning>,
+    /// Why a picture was refused for want of memory.
+    refused: Option<String>,
 }
 
 impl<'p> Materials<'p> {
     fn new(path: &'p Path, list: Vec<tobj::Material>, limits: &'p Limits) -> Self {
         let (known, textures, files, warnings) = (HashMap::new(), Vec::new(), Vec::new(), Vec::new());
-        Self { path, limits, list, known, textures, files, warnings }
+        Self { path, limits, list, known, textures, files, warnings, refused: None }
     }
 
     /// Colour and picture of a material; where it has a picture and no colour, white.
@@ -111,8 +116,9 @@ impl<'p> Materials<'p> {
     }
 
     fn read(&mut self, name: &str) -> Option<u32> {
-        let read = neighbour(self.path, name, self.limits)
-            .and_then(|(bytes, file)| Ok((picture::read(&bytes, Default::default(), self.limits)?, file)));
+        let limits = picture::beside(self.limits, &self.textures);
+        let read = neighbour(self.path, name, &limits)
+            .and_then(|(bytes, file)| Ok((picture::read(&bytes, Default::default(), &limits)?, file)));
         match read {
             Ok((texture, file)) => {
                 self.textures.push(Arc::new(texture));
@@ -120,6 +126,7 @@ impl<'p> Materials<'p> {
                 Some(self.textures.len() as u32 - 1)
             }
             Err(e) => {
+                self.refused = self.refused.take().or(budget::is_refusal(&e).then(|| format!("picture {name:?}: {e}")));
                 let text = format!("picture {name:?}: {e}; it is left out");
                 self.warnings.push(Warning::new(WarningKind::Ignored, text).in_file(self.path));
                 None

@@ -1,12 +1,15 @@
 //! Pictures on meshes: PNG and JPEG.
 
-use crate::Limits;
+use crate::{Limits, budget};
 use belvedere_scene::{Texture, Wrap};
 use std::io::Cursor;
+use std::sync::Arc;
 use zune_jpeg::zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions};
 
 /// Longest side that is read, pixels.
 const LARGEST: usize = 16_384;
+/// Bytes of a pixel at the peak of decoding.
+const PEAK: u64 = 12;
 
 /// Decodes a picture; an error states what is wrong and what to do.
 pub(crate) fn read(bytes: &[u8], wrap: [Wrap; 2], limits: &Limits) -> Result<Texture, String> {
@@ -20,14 +23,24 @@ pub(crate) fn read(bytes: &[u8], wrap: [Wrap; 2], limits: &Limits) -> Result<Tex
     Texture::new(width, height, pixels, wrap).ok_or_else(|| "has no pixels; it is damaged".into())
 }
 
+/// What `limits` leave beside pictures that were read.
+pub(crate) fn beside(limits: &Limits, read: &[Arc<Texture>]) -> Limits {
+    if budget::held() > 0 {
+        return *limits;
+    }
+    // With the mip pyramid.
+    let taken: u64 = read.iter().map(|t| 6 * t.size().iter().product::<usize>() as u64).sum();
+    Limits { max_bytes: limits.max_bytes.saturating_sub(taken) }
+}
+
 type Pixels = (usize, usize, Vec<[u8; 4]>);
 
 fn fits(width: usize, height: usize, limits: &Limits) -> Result<(), String> {
     if width > LARGEST || height > LARGEST {
         return Err(format!("has {width} x {height} pixels, at most {LARGEST} a side are read; make it smaller"));
     }
-    // With the mip pyramid.
-    limits.check(6 * width as u64 * height as u64).map_err(|reason| format!("is too large: {reason}"))
+    // Samples as decoded, pixels, and the mip pyramid.
+    limits.ask("a picture", PEAK * width as u64 * height as u64).map_err(|reason| format!("is too large: {reason}"))
 }
 
 fn png(bytes: &[u8], limits: &Limits) -> Result<Pixels, String> {
@@ -38,7 +51,9 @@ fn png(bytes: &[u8], limits: &Limits) -> Result<Pixels, String> {
     let mut reader = decoder.read_info().map_err(bad)?;
     let (width, height) = (reader.info().width as usize, reader.info().height as usize);
     fits(width, height, limits)?;
-    let mut samples = vec![0; reader.output_buffer_size().unwrap_or(0)];
+    let size = reader.output_buffer_size().unwrap_or(0);
+    let mut samples = budget::room("a picture", size)?;
+    samples.resize(size, 0);
     let frame = reader.next_frame(&mut samples).map_err(bad)?;
     samples.truncate(frame.buffer_size());
     let pixels = match frame.color_type {

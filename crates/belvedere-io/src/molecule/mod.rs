@@ -6,7 +6,7 @@ mod sites;
 
 use crate::formats::Reader;
 use crate::packed::content;
-use crate::{InputFile, IoError, Limits, Loaded, fs};
+use crate::{InputFile, IoError, Limits, Loaded, budget, fs};
 use belvedere_scene::Molecule;
 use std::path::Path;
 
@@ -33,10 +33,10 @@ pub struct MoleculeFile {
 pub fn load_molecule(path: &Path, limits: &Limits) -> Result<Loaded<MoleculeFile>, IoError> {
     let path = &content(path, limits.max_bytes, &|p| Reader::Molecule.reads(p))?;
     let bad = |reason: String| IoError::format(path, reason);
-    let too_large = |reason: String| bad(reason.replace("raster", "molecule"));
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
-    // An atom takes a few times the bytes of its line.
-    limits.check(length.saturating_mul(4)).map_err(too_large)?;
+    let _work = budget::work_on(path);
+    // The text, and atoms and bonds, which take a few times the bytes of their lines.
+    limits.ask("the molecule", length.saturating_mul(5)).map_err(bad)?;
     let (bytes, file) = InputFile::read(path)?;
     let text = String::from_utf8_lossy(&bytes);
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();

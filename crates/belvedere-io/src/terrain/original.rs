@@ -92,7 +92,7 @@ impl OriginalTerrain {
     /// As [`super::load_terrain`].
     pub fn in_scene(&self, request: &TerrainRequest, progress: &Progress) -> Result<Loaded<LoadedTerrain>, IoError> {
         let mut warnings = Vec::new();
-        let source = source::within(self.source.clone(), request.max_nodes, 1.0, &mut warnings);
+        let source = source::copied_within(&self.source, request.max_nodes, &mut warnings);
         super::in_scene(Loaded::new(vec![source], warnings), request, progress)
     }
 

@@ -1,12 +1,13 @@
 //! Reading the sources of a terrain: samples as heights in metres, voids as NaN.
 
-use super::{CrsChoice, TerrainRequest, sentinels};
+use super::{CrsChoice, TerrainRequest, frame, sentinels};
 use crate::crs::CoordinateSystem;
 use crate::formats::{Reader, ends};
 use crate::fs::File;
 use crate::packed::content;
 use crate::{
-    Affine, GeoTiff, IoError, Limits, Loaded, Photometric, Raster, RasterInfo, Samples, SourceCrs, esri_ascii, hgt,
+    Affine, GeoTiff, IoError, Limits, Loaded, Photometric, Raster, RasterInfo, Samples, SourceCrs, budget, esri_ascii,
+    hgt,
 };
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Progress;
@@ -127,11 +128,12 @@ pub(crate) fn meant(path: &Path, limits: &Limits) -> Result<PathBuf, IoError> {
 fn read_one(
     path: &Path,
     request: &TerrainRequest,
-    budget: usize,
+    most_nodes: usize,
     progress: &Progress,
 ) -> Result<Loaded<SourceGrid>, IoError> {
     let path = &meant(path, &request.limits)?;
-    let Loaded { value: (mut raster, factor), mut warnings, files } = read_raster(path, request, budget, progress)?;
+    let _work = budget::work_on(path);
+    let Loaded { value: (mut raster, factor), mut warnings, files } = read_raster(path, request, most_nodes, progress)?;
     if let Some(nodata) = request.nodata {
         raster.info.nodata = Some(nodata);
     }
@@ -145,6 +147,8 @@ fn read_one(
         warnings.push(Warning::new(WarningKind::Ignored, text).with("bands", bands as f64).in_file(path));
     }
     let mut heights = heights(&raster);
+    raster.samples = Samples::U8(Vec::new());
+    raster.mask = None;
     let absurd = void_absurd(&mut heights);
     let beyond = format!(
         "samples beyond +-{MAX_HEIGHT_M:.0} m are taken as voids; nodata of its layer, or --nodata, says what they are if the file does not"
@@ -171,7 +175,7 @@ fn read_one(
     let is_elsewhere = request.source_crs.is_none() && is_of_another_body(&raster.info.crs);
     let path = path.to_owned();
     let grid = SourceGrid { path, cols, rows, heights, model_from_index, system, is_elsewhere, samples, voids };
-    Ok(Loaded { value: within(grid, budget, factor, &mut warnings), warnings, files })
+    Ok(Loaded { value: within(grid, most_nodes, factor, &mut warnings), warnings, files })
 }
 
 /// A source of at most `budget` nodes; `factor`: ratio of its spacing to that of the file.
@@ -190,6 +194,18 @@ pub(super) fn within(mut grid: SourceGrid, budget: usize, factor: f64, warnings:
         warnings.push(warning.in_file(&grid.path));
     }
     grid
+}
+
+/// As [`within`], of a source that is kept.
+pub(super) fn copied_within(grid: &SourceGrid, most_nodes: usize, warnings: &mut Vec<Warning>) -> SourceGrid {
+    let Some(k) = thinning(grid.cols, grid.rows, most_nodes) else { return grid.clone() };
+    let (heights, cols, rows) = thin(&grid.heights, grid.cols, grid.rows, k);
+    let SourceGrid { path, system, .. } = grid;
+    let (path, system) = (path.clone(), system.clone());
+    let model_from_index = grid.model_from_index.after_scale_and_shift(k as f64, k as f64, 0.0, 0.0);
+    let (is_elsewhere, samples, voids) = (grid.is_elsewhere, grid.samples, grid.voids);
+    let small = SourceGrid { path, cols, rows, heights, model_from_index, system, is_elsewhere, samples, voids };
+    within(small, most_nodes, k as f64, warnings)
 }
 
 /// The raster, and the ratio of its spacing to that of the file.
@@ -230,6 +246,12 @@ fn read_tiff(
     let levels = tiff.levels();
     // the largest level within the budget, else the smallest there is
     let level = (0..levels).find(|&l| nodes(l) <= budget).unwrap_or(levels - 1);
+    // Samples, heights, and marks of heights that were looked at.
+    let info = tiff.level_info(level).unwrap_or_else(|| tiff.info().clone());
+    let stored = info.bands as u64 * info.sample_type.size() as u64;
+    let pixels = info.width as u64 * info.height as u64;
+    let peak = pixels.saturating_mul(stored + 5);
+    request.limits.check(peak).map_err(|reason| IoError::format(path, reason))?;
     let (raster, file) = rayon::join(|| tiff.read(level, progress), || tiff.input());
     let raster = raster?;
     let factor = tiff.info().width as f64 / raster.info.width as f64;
@@ -388,10 +410,6 @@ fn looks_geographic(info: &RasterInfo, to_model: &Affine) -> bool {
 
 /// Warns about a frame of one value around the data: it may be voids that the file does not declare, or sea, so the heights stay.
 fn warn_about_frame(path: &Path, heights: &[f32], cols: usize, rows: usize, warnings: &mut Vec<Warning>) {
-    let border = |i: usize| {
-        let (c, r) = (i % cols, i / cols);
-        c == 0 || r == 0 || c == cols - 1 || r == rows - 1
-    };
     let corners = [0, cols - 1, (rows - 1) * cols, rows * cols - 1].map(|i| heights[i]);
     let Some(value) = corners.into_iter().find(|v| v.is_finite() && corners.iter().filter(|w| *w == v).count() >= 2)
     else {
@@ -402,28 +420,7 @@ fn warn_about_frame(path: &Path, heights: &[f32], cols: usize, rows: usize, warn
     if known().any(|h| *h < value) && known().any(|h| *h > value) {
         return;
     }
-    let mut seen = vec![false; heights.len()];
-    let mut stack: Vec<usize> = (0..heights.len()).filter(|&i| border(i) && heights[i] == value).collect();
-    for &i in &stack {
-        seen[i] = true;
-    }
-    let mut count = 0usize;
-    while let Some(i) = stack.pop() {
-        count += 1;
-        let (c, r) = (i % cols, i / cols);
-        let around = [
-            (c > 0).then(|| i - 1),
-            (c + 1 < cols).then_some(i + 1),
-            (r > 0).then(|| i - cols),
-            (r + 1 < rows).then_some(i + cols),
-        ];
-        for k in around.into_iter().flatten() {
-            if !seen[k] && heights[k] == value {
-                seen[k] = true;
-                stack.push(k);
-            }
-        }
-    }
+    let count = frame::at_edge(heights, cols, rows, value);
     let share = count as f64 / heights.len() as f64;
     if share >= FRAME_SHARE && count < heights.len() {
         let text = format!(

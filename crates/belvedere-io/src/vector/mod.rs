@@ -22,7 +22,7 @@ use crate::packed::content_for;
 use crate::recognise::{explain, not_a};
 use crate::table::split_table;
 use crate::text::text_of;
-use crate::{InputFile, IoError, Loaded, fs};
+use crate::{InputFile, IoError, Loaded, budget, fs};
 use glam::DVec2;
 use phantom::Phantoms;
 use std::collections::BTreeMap;
@@ -30,6 +30,8 @@ use std::path::{Path, PathBuf};
 
 /// Largest file read, bytes.
 const MAX_BYTES: u64 = 1 << 30;
+/// Bytes that reading takes for each byte of a file.
+const TIMES: u64 = 6;
 /// Most characters kept of one property.
 const MAX_PROPERTY_CHARS: usize = 1000;
 
@@ -166,6 +168,9 @@ fn load_known(path: &Path, other: Other<'_>) -> Result<Loaded<Vectors>, IoError>
             format!("is {mib} MiB large, the limit is 1024 MiB; cut out the part you need"),
         ));
     }
+    let _work = budget::work_on(path);
+    // The bytes, their text, and what is made of them.
+    budget::ask("the file", size.saturating_mul(TIMES)).map_err(|reason| IoError::format(path, reason))?;
     let (bytes, file) = InputFile::read(path)?;
     if let Some(loaded) = other(path, &bytes)? {
         return Ok(loaded.with_file(file));

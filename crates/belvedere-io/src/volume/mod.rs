@@ -13,7 +13,7 @@ pub use raw::RawLayout;
 use crate::formats::Reader;
 use crate::packed::content;
 use crate::recognise::explain;
-use crate::{InputFile, IoError, Limits, Loaded, fs};
+use crate::{InputFile, IoError, Limits, Loaded, budget, fs};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::VoxelValues;
 use flate2::read::MultiGzDecoder;
@@ -69,7 +69,8 @@ pub fn load_volume(path: &Path, request: &VolumeRequest) -> Result<Loaded<Volume
     let is_nrrd = crate::recognise::ending(path) == "nrrd";
     let format = |reason: String| IoError::format(path, reason);
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
-    request.limits.check(length).map_err(|reason| format(reason.replace("raster", "volume")))?;
+    let _work = budget::work_on(path);
+    request.limits.ask("the volume", length).map_err(format)?;
     let (bytes, file) = InputFile::read(path)?;
     let source = Source { path, bytes: &bytes, request };
     let loaded = match () {
@@ -111,16 +112,15 @@ impl Source<'_> {
                 if packed { " compressed ones, which cannot be as many" } else { "" }
             ));
         }
-        // Samples, and the values made of them.
-        let held = bytes.saturating_mul(2);
-        self.request.limits.check(held).map_err(|reason| reason.replace("raster", "volume"))?;
+        let peak = (bytes / number.bytes() as u64).saturating_mul(number.peak_bytes());
+        self.request.limits.ask("the volume", peak)?;
         usize::try_from(bytes).map_err(|_| format!("its {bytes} bytes are more than this machine can address"))
     }
 }
 
 /// Exactly `expected` bytes out of a gzip stream.
 fn gunzip(packed: &[u8], expected: usize) -> Result<Vec<u8>, String> {
-    let mut out = Vec::new();
+    let mut out = budget::room("the volume", expected.saturating_add(64))?;
     let limit = expected as u64 + 1;
     MultiGzDecoder::new(packed).take(limit).read_to_end(&mut out).map_err(|e| {
         format!("its gzip data cannot be read ({e}) after {} of {expected} bytes; it is damaged", out.len())

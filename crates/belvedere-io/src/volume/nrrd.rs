@@ -27,7 +27,7 @@ pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, IoError> {
         Some(name) => {
             let path = detached(source, name).map_err(bad)?;
             let length = fs::metadata(&path).map_err(|e| IoError::os(&path, e))?.len();
-            source.request.limits.check(length).map_err(|reason| bad(reason.replace("raster", "volume")))?;
+            source.request.limits.ask("the volume", length).map_err(bad)?;
             let (bytes, file) = InputFile::read(&path)?;
             files.push(file);
             Cow::Owned(bytes)

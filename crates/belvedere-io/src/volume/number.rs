@@ -99,6 +99,19 @@ impl Number {
         }
     }
 
+    /// Bytes that a sample takes at the peak of decoding: as stored, and the values made of it.
+    pub(super) fn peak_bytes(self) -> u64 {
+        match self {
+            Self::UInt8 => 1,
+            Self::Int8 => 3,
+            Self::Int16 | Self::UInt16 => 4,
+            Self::Float32 => 8,
+            Self::Float64 => 12,
+            Self::Int32 | Self::UInt32 => 16,
+            Self::Int64 | Self::UInt64 => 20,
+        }
+    }
+
     /// Decodes samples from bytes, a whole number of samples.
     pub(super) fn decode(self, bytes: Vec<u8>, order: ByteOrder) -> (VoxelValues, Changed) {
         macro_rules! each {

@@ -2,6 +2,7 @@
 
 use super::ByteOrder;
 use crate::base64::Base64;
+use crate::budget;
 use flate2::{Decompress, FlushDecompress, Status};
 
 /// Source of the bytes.
@@ -80,7 +81,8 @@ impl Stream<'_> {
             ));
         }
         let sizes = self.lengths(count as usize, wide, order)?;
-        let mut out = vec![0; expected];
+        let mut out = budget::room("the volume", expected)?;
+        out.resize(expected, 0);
         let mut at = 0;
         for (i, packed) in sizes.iter().enumerate() {
             let packed = usize::try_from(*packed).ok().filter(|n| *n <= self.at_most());

@@ -2,6 +2,7 @@
 
 mod atomic;
 mod bad_cities;
+mod budget;
 mod cities;
 mod city_gml;
 mod city_osm;

@@ -6,6 +6,7 @@ use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, Sidecar, TerrainRec
 use super::volume_record::VolumeRecord;
 use crate::bodies::RigidLayers;
 use crate::fallback::{self, FallbackPlan, FallbackRecord};
+use crate::guard::guarded;
 use crate::overlays::{badge, camera, curve_inset, ghost, grid, heat, highlight, thin};
 use crate::record::{self, InputFile, ViewRecord};
 use crate::scene_file::HighlightMark;
@@ -23,7 +24,7 @@ impl Session {
     /// [`BelvedereError::Cancelled`].
     pub fn render(&self, options: &PictureOptions) -> Result<Picture, BelvedereError> {
         let inputs = self.public_names().inputs(&record::inputs(&self.inputs())?);
-        draw(self, options, inputs, &options.progress)
+        guarded(|| draw(self, options, inputs, &options.progress))
     }
 }
 
@@ -105,6 +106,7 @@ pub(crate) fn draw_view(
     let exact = !request.aux.is_empty();
     let stylisation = request.stylisation.unwrap_or(session.resolved.stylisation);
     let mut options = RenderOptions { aux: Aux { world, exact }, stylisation, ..request.quality.clone() };
+    options.max_bytes = options.max_bytes.saturating_sub(belvedere_io::budget::held());
     options.overlay.under.extend(grid::wanted(scene, grid));
     let draw = |scene: &Scene, view: &View| {
         let job = RenderJob { scene, view, light: session.light(), options: &options, progress };

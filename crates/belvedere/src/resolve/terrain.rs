@@ -110,6 +110,15 @@ const DRAWING: f64 = 3.0;
 /// Share of the remaining time for adjusting the camera.
 const ADJUSTING: f64 = 0.4;
 
+/// Bytes of a node of the ground while it is solved, at least: its cell, heights, moves, and the systems of the smooth pass.
+const NODE_BYTES: u64 = 64;
+
+/// Asks for the memory of solving the ground of a scene.
+pub(crate) fn ask(scene: &Scene) -> Result<(), BelvedereError> {
+    let nodes = scene.terrain().map_or(0, |t| t.cols() as u64 * t.rows() as u64);
+    belvedere_io::budget::ask("solving the ground", nodes * NODE_BYTES).map_err(BelvedereError::Memory)
+}
+
 /// Solves the intent for the picture of `base` (earth and later stages).
 pub(super) fn solve(
     settings: TerrainSettings,
@@ -125,6 +134,7 @@ pub(super) fn solve(
     if let Some(seconds) = solving.time_step_s {
         solver = solver.with_time_step(seconds);
     }
+    ask(scene)?;
     Ok(solver.solve(scene, base, &mut solving.memory.terrain, &solving.progress.before(DRAWING))?)
 }
 

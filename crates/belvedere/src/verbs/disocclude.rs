@@ -4,6 +4,7 @@ use super::in_time;
 use super::level_lakes::LevelLakes;
 use super::written_rivers::run_downhill;
 use crate::data::DataFiles;
+use crate::guard::guarded;
 use crate::output::{self, pretty};
 use crate::picture::{self, PictureOptions};
 use crate::places::{Place, PlaceFinder};
@@ -185,6 +186,10 @@ impl DisoccludeFiles {
 /// [`BelvedereError::FieldOfView`], [`BelvedereError::Position`], [`BelvedereError::EyeIsTarget`], [`BelvedereError::Setting`],
 /// [`BelvedereError::Disocclusion`]; those of the loaders.
 pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Disoccluded, BelvedereError> {
+    guarded(|| disoccluded(request, options))
+}
+
+fn disoccluded(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Disoccluded, BelvedereError> {
     intent::check(&request.parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
     let mut settings = intent::settings(&request.parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
     let mut data = DataFiles { keep_voids: !request.fill_voids, ..request.data.clone() }.load(true, options)?;
@@ -204,6 +209,7 @@ pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<
     data.warnings.extend(moved_eye.as_ref().map(|(_, said)| said.clone()));
     let view = camera.view(camera.target.extend(camera.eye.z), None)?;
     let solving = options.progress.before(WRITING);
+    crate::resolve::terrain::ask(&data.scene)?;
     let solved = solver.solve(&data.scene, &view, &mut TerrainMemory::default(), &solving)?;
     data.warnings.extend(intent::remarks(&solved, &data.scene));
     let lakes = LevelLakes::new(&solved.stage, &solved.report, &data.scene);

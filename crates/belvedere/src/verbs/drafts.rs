@@ -1,6 +1,7 @@
 //! `reveal --drafts`: several views of the same features on one sheet, to choose from.
 
 use super::reveal::{FinalShares, RevealRequest, Viewpoint, reveal, search_options, taller};
+use crate::guard::guarded;
 use crate::overlays::badge;
 use crate::{BelvedereError, OpenOptions};
 use belvedere_construct::measure::percent;
@@ -48,6 +49,10 @@ pub struct DraftsAnswer {
 /// # Errors
 /// [`BelvedereError::Target`] unless `count` is 1 to [`MOST_DRAFTS`] and no view is given; those of [`reveal`].
 pub fn drafts(request: &RevealRequest, count: usize, options: &OpenOptions) -> Result<DraftsAnswer, BelvedereError> {
+    guarded(|| drafted(request, count, options))
+}
+
+fn drafted(request: &RevealRequest, count: usize, options: &OpenOptions) -> Result<DraftsAnswer, BelvedereError> {
     if !(1..=MOST_DRAFTS).contains(&count) {
         return Err(BelvedereError::Target(format!("{count} drafts were asked for; give 1 to {MOST_DRAFTS}")));
     }

@@ -8,6 +8,7 @@ pub use city::CityInfo;
 pub use volume::VolumeInfo;
 
 use crate::BelvedereError;
+use crate::guard::guarded;
 use crate::resolve::builtin;
 use crate::scene_file::VerticalUnit;
 use belvedere_core::DVec2;
@@ -264,6 +265,10 @@ pub fn describe(name: &str, progress: &Progress) -> Result<FileInfo, BelvedereEr
 /// # Errors
 /// [`BelvedereError::Io`] with the reason.
 pub fn describe_as(name: &str, request: &InfoRequest, progress: &Progress) -> Result<FileInfo, BelvedereError> {
+    guarded(|| described(name, request, progress))
+}
+
+fn described(name: &str, request: &InfoRequest, progress: &Progress) -> Result<FileInfo, BelvedereError> {
     if name.starts_with("builtin:") {
         return built_in(name);
     }

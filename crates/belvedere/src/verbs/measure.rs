@@ -1,5 +1,6 @@
 //! `measure`: visibility of the required features in a scene's picture.
 
+use crate::guard::guarded;
 use crate::{BelvedereError, RendererChoice, Session};
 pub use belvedere_construct::MeasureOptions;
 use belvedere_construct::Measures;
@@ -57,6 +58,15 @@ pub(super) fn shares(measures: &Measures, terrain: Option<&TerrainReport>) -> Op
 /// # Errors
 /// [`BelvedereError::Construct`] if nothing must be seen, [`BelvedereError::UnderGround`].
 pub fn measure(
+    session: &Session,
+    options: &MeasureOptions,
+    renderer: RendererChoice,
+    progress: &Progress,
+) -> Result<MeasureReport, BelvedereError> {
+    guarded(|| measured(session, options, renderer, progress))
+}
+
+fn measured(
     session: &Session,
     options: &MeasureOptions,
     renderer: RendererChoice,

@@ -2,6 +2,7 @@
 
 use super::open_files::open_trusted;
 use crate::editor::{Editor, Place};
+use crate::guard::guarded;
 use crate::{BelvedereError, Trust, output};
 use belvedere_io::{InputFile, IoError, atomic, fs, split_table};
 use belvedere_scene::Progress;
@@ -72,6 +73,10 @@ pub struct Packed {
 /// [`BelvedereError`] of a scene that cannot be opened; [`BelvedereError::Output`] if the application is missing, or the
 /// files are too large for a page; [`IoError::Exists`] for existing files.
 pub fn pack(request: &PackRequest, progress: &Progress) -> Result<Packed, BelvedereError> {
+    guarded(|| packed(request, progress))
+}
+
+fn packed(request: &PackRequest, progress: &Progress) -> Result<Packed, BelvedereError> {
     let application = application_files(&request.application)?;
     let names = application.iter().map(|(name, _)| name.as_path()).chain([Path::new(BUNDLE)]);
     if request.out.is_dir() {

@@ -4,6 +4,7 @@ use super::appearance::{Appearance, Taller, is_exaggeration};
 use super::in_time;
 pub use super::reveal_files::RevealFiles;
 use crate::data::{Data, DataFiles};
+use crate::guard::guarded;
 use crate::picture::{DisplacementReport, Picture, PictureOptions, TerrainRecord};
 use crate::places::{Place, PlaceFinder};
 use crate::resolve::ground::earth_radius;
@@ -216,6 +217,10 @@ struct ReportFile<'a> {
 /// [`BelvedereError::FieldOfView`], [`BelvedereError::Position`], [`BelvedereError::Construct`] if no view is possible, else as
 /// [`Session::open`] and [`Session::render`].
 pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAnswer, BelvedereError> {
+    guarded(|| revealed(request, options))
+}
+
+fn revealed(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAnswer, BelvedereError> {
     if !request.data.rivers.is_empty() && matches!(request.technique, Technique::Spline | Technique::CurvedRays) {
         let reason = "rivers are kept from running uphill where the ground moves, which this technique does not do; \
                       ask for technique terrain, both or auto";

@@ -5,6 +5,7 @@ use super::appearance::Appearance;
 pub use super::target_request::TargetRequest;
 use super::target_scene::{self, Meant, Targets};
 use super::{city_views, target_views};
+use crate::guard::guarded;
 use crate::picture::{Picture, PictureOptions, TargetPlace};
 use crate::places::{Place, PlaceHeight};
 use crate::resolve::rays::sidestep_stage;
@@ -128,6 +129,10 @@ impl Opened {
 /// # Errors
 /// [`BelvedereError::Target`] if there is no such target, else as [`Session::open`] and [`Session::render`].
 pub fn reveal_target(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnswer, BelvedereError> {
+    guarded(|| revealed(request, options))
+}
+
+fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnswer, BelvedereError> {
     let mut opened = Opened::of(request, options)?;
     let (view, said) = given(&opened.session, request, opened.lens, opened.up)?;
     opened.session.loaded.warnings.extend(said);

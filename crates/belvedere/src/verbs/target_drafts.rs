@@ -3,6 +3,7 @@
 use super::drafts::{Draft, DraftsAnswer, MOST_DRAFTS};
 use super::reveal::{FinalShares, Viewpoint};
 use super::reveal_target::{Opened, TargetRequest, reveal_target};
+use crate::guard::guarded;
 use crate::{BelvedereError, OpenOptions};
 use belvedere_construct::rays::{AroundOptions, bend_around};
 use belvedere_core::{DVec3, Projection, View};
@@ -23,6 +24,10 @@ pub fn target_drafts(
     count: usize,
     options: &OpenOptions,
 ) -> Result<DraftsAnswer, BelvedereError> {
+    guarded(|| drafted(request, count, options))
+}
+
+fn drafted(request: &TargetRequest, count: usize, options: &OpenOptions) -> Result<DraftsAnswer, BelvedereError> {
     if !(1..=MOST_DRAFTS).contains(&count) {
         return Err(BelvedereError::Target(format!("{count} drafts were asked for; give 1 to {MOST_DRAFTS}")));
     }

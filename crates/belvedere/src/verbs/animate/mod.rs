@@ -13,6 +13,7 @@ pub use overlay::MarkerRecord;
 
 use crate::camera_path::CameraPath;
 use crate::film::{Adjustment, DrawnGround};
+use crate::guard::guarded;
 use crate::output;
 use crate::picture::{self, PictureOptions};
 use crate::record::ViewRecord;
@@ -84,6 +85,10 @@ pub fn outputs(out: &Path) -> Result<(PathBuf, Option<PathBuf>), BelvedereError>
 /// [`BelvedereError::Interrupted`] if cancelled, [`BelvedereError::Frame`] for a frame that cannot be drawn,
 /// [`BelvedereError::FramesThere`] if the folder holds another animation.
 pub fn animate(session: &Session, request: &AnimateRequest, progress: &Progress) -> Result<Animation, BelvedereError> {
+    guarded(|| animated(session, request, progress))
+}
+
+fn animated(session: &Session, request: &AnimateRequest, progress: &Progress) -> Result<Animation, BelvedereError> {
     let (folder, film) = outputs(&request.out)?;
     if let Some(film) = &film {
         output::check(film, &session.input_paths(), request.overwrite || request.resume)?;

@@ -5,6 +5,7 @@ mod read;
 use crate::city_blocks;
 use crate::city_map::overview::{Panel, overview};
 use crate::city_map::{MapPicture, bounds, map_picture};
+use crate::guard::guarded;
 use crate::names::PublicNames;
 use crate::record::{self, InputFile};
 use crate::{BelvedereError, output};
@@ -65,6 +66,10 @@ struct Record<'a> {
 /// # Errors
 /// [`BelvedereError::Io`], [`BelvedereError::Crs`], [`BelvedereError::Generalise`].
 pub fn generalise(request: &GeneraliseRequest, progress: &Progress) -> Result<GeneralisedCity, BelvedereError> {
+    guarded(|| generalised(request, progress))
+}
+
+fn generalised(request: &GeneraliseRequest, progress: &Progress) -> Result<GeneralisedCity, BelvedereError> {
     progress.tick("read", 0.0)?;
     let read::Read { city, epsg, inputs, warnings } = read::read(&request.city, &request.roads)?;
     let mut generalised = belvedere_construct::generalise::generalise(&city, &request.settings, progress)?;
