@@ -14,7 +14,7 @@ use std::time::Duration;
 /// Exit code of an interrupted program: 128 and the number of the signal, as of shells.
 pub(crate) const CODE: u8 = 130;
 /// Time in which the work may end by itself.
-const GRACE: Duration = Duration::from_millis(700);
+const GRACE: Duration = Duration::from_millis(500);
 
 /// Whether a thread ends the process.
 static ENDING: AtomicBool = AtomicBool::new(false);

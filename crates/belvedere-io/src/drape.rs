@@ -2,9 +2,9 @@
 
 use crate::crs::{CoordinateSystem, Transform};
 use crate::formats::ends;
+use crate::fs::read_sidecar;
 use crate::packed::content;
 use crate::terrain::{Geometry, GridMap, Link, stated_system};
-use crate::fs::read_sidecar;
 use crate::{Affine, GeoTiff, InputFile, IoError, Limits, Loaded, Raster, SourceCrs, esri_ascii, fs, png};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Crs, Drape, Heightfield, Progress};

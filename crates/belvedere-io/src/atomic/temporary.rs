@@ -149,7 +149,9 @@ mod tests {
     fn names_tell_the_process() {
         assert_eq!(process_of(".out.png.belvedere-123-aB3dE.tmp"), Some(123));
         assert_eq!(process_of(".belvedere-7-0.tmp"), Some(7));
-        for name in ["out.belvedere-1-a.tmp", ".a.belvedere-1-a.png", ".a.belvedere-x-a.tmp", ".a.tmp", ".belvedere-5.tmp"] {
+        for name in
+            ["out.belvedere-1-a.tmp", ".a.belvedere-1-a.png", ".a.belvedere-x-a.tmp", ".a.tmp", ".belvedere-5.tmp"]
+        {
             assert_eq!(process_of(name), None, "{name}");
         }
     }

@@ -2,6 +2,7 @@
 
 use super::{archive_of, canonicalize, metadata};
 use crate::IoError;
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// The file that stands beside `path` under the same name with another ending, in small or capital letters, with the ending of `path` or
@@ -23,10 +24,12 @@ pub(crate) fn sidecar(path: &Path, ending: &str) -> Option<PathBuf> {
 /// The bytes of a file that stands beside `path`, as [`sidecar`] finds it.
 ///
 /// # Errors
-/// [`IoError::Format`] for a link that leads out of the folder, and for more than `most` bytes; [`IoError::Os`].
+/// [`IoError::Os`], also for a link that leads out of the folder; [`IoError::Format`] for more than `most` bytes.
 pub(crate) fn read_sidecar(path: &Path, file: &Path, most: u64) -> Result<Vec<u8>, IoError> {
     if !lies_below(path, file) {
-        return Err(IoError::format(file, "is a link that leads out of its folder; put the file itself there"));
+        // No fault of the format: that is looked for in the file.
+        let reason = "is a link that leads out of its folder; put the file itself there";
+        return Err(IoError::os(file, io::Error::new(io::ErrorKind::PermissionDenied, reason)));
     }
     let size = metadata(file).map_err(|e| IoError::os(file, e))?.len();
     if size > most {
@@ -46,7 +49,7 @@ fn lies_below(path: &Path, file: &Path) -> bool {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match (canonicalize(folder), canonicalize(file)) {
         (Ok(folder), Ok(file)) => file.starts_with(folder),
-        (_, found) => found.is_err_and(|e| e.kind() == std::io::ErrorKind::NotFound),
+        (_, found) => found.is_err_and(|e| e.kind() == io::ErrorKind::NotFound),
     }
 }
 
@@ -61,7 +64,10 @@ pub(crate) fn beside(path: &Path, name: &str) -> Result<PathBuf, String> {
     }
     let file = path.parent().unwrap_or(Path::new("")).join(relative);
     if !lies_below(path, &file) {
-        return Err(format!("it names {}, a link that leads out of its folder; put the file itself there", shown(name)));
+        return Err(format!(
+            "it names {}, a link that leads out of its folder; put the file itself there",
+            shown(name)
+        ));
     }
     Ok(file)
 }

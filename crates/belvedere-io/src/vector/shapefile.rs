@@ -1,7 +1,8 @@
 //! ESRI shapefiles: points, multipoints, polylines and polygons, with Z and M, names from the .dbf, system from the .prj.
 
 use super::{
-    Geometry, MAX_BYTES, VectorFeature, Vectors, Vertex, certainly_not_degrees, name_of, not_degrees, rings, shorten, vertex,
+    Geometry, MAX_BYTES, VectorFeature, Vectors, Vertex, certainly_not_degrees, name_of, not_degrees, rings, shorten,
+    vertex,
 };
 use crate::crs::CoordinateSystem;
 use crate::fs::{read_sidecar, sidecar};

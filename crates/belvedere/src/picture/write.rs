@@ -137,7 +137,8 @@ impl Picture {
     fn text(&self) -> Result<Vec<(&'static str, String)>, BelvedereError> {
         let mut text = vec![("Software", self.sidecar.program.clone())];
         if !self.sidecar.title.is_empty() {
-            text.push(("Title", self.sidecar.title.clone()));
+            // Other programs print it.
+            text.push(("Title", belvedere_core::plain::escaped(&self.sidecar.title).into_owned()));
         }
         if let Some(note) = &self.sidecar.note {
             text.push(("Comment", note.clone()));

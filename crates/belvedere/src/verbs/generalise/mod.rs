@@ -141,12 +141,7 @@ impl GeneralisedCity {
         belvedere_io::atomic::together(|| self.write_each(folder, overwrite, progress))
     }
 
-    fn write_each(
-        &self,
-        folder: &Path,
-        overwrite: bool,
-        progress: &Progress,
-    ) -> Result<Vec<PathBuf>, BelvedereError> {
+    fn write_each(&self, folder: &Path, overwrite: bool, progress: &Progress) -> Result<Vec<PathBuf>, BelvedereError> {
         std::fs::create_dir_all(folder).map_err(|e| belvedere_io::IoError::os(folder, e))?;
         let inputs: Vec<PathBuf> = self.inputs.iter().map(|i| i.path.clone()).collect();
         let files = files(folder, self.epsg);

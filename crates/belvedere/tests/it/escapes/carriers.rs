@@ -19,7 +19,8 @@ pub(super) struct Carrier {
 pub(super) const CAMERA: &str = "[camera]\neye = [0, -300, 100]\nlook_at = [0, 0, 0]\nimage = [64, 48]\n";
 
 const GRID: &str = "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 2 3\n4 5 6\n7 8 9\n";
-const LINE: &str = r#"{"type":"Feature","properties":{"name":"CANARY"},"geometry":{"type":"LineString","coordinates":[[1,2],[9,9]]}}"#;
+const LINE: &str =
+    r#"{"type":"Feature","properties":{"name":"CANARY"},"geometry":{"type":"LineString","coordinates":[[1,2],[9,9]]}}"#;
 const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n";
 
 fn none(_: &str) -> Vec<(&'static str, Vec<u8>)> {
@@ -109,22 +110,22 @@ pub(super) const CARRIERS: &[Carrier] = &[
     named("source of boxes", "geojson", || text(LINE), |name| layer("boxes", name, "")),
     named("source of a mesh", "obj", || text(OBJ), |name| layer("mesh", name, "")),
     named("source of a city", "json", || city("t.png"), |name| layer("city", name, "")),
-    named("source of a molecule", "pdb", || text("HEADER    CANARY\n"), |name| layer("molecule", name, "")),
+    named(
+        "source of a molecule",
+        "pdb",
+        || text("HEADER    CANARY\n"),
+        |name| "unit = \"angstrom\"\n".to_owned() + &layer("molecule", name, ""),
+    ),
     named("source of a volume", "nrrd", || text("NRRD0004\n# CANARY\n"), |name| layer("volume", name, "")),
     named(
         "transfer of a volume",
         "json",
         || text("{\"CANARY\": 1}"),
-        |name| {
-            layer("volume", "builtin:engine", &format!("transfer = {}", quoted(name)))
-        },
+        |name| layer("volume", "builtin:engine", &format!("transfer = {}", quoted(name))),
     ),
-    named(
-        "drape",
-        "png",
-        picture,
-        |name| layer("terrain", "builtin:massif?seed=7", &format!("drape = {}", quoted(name))),
-    ),
+    named("drape", "png", picture, |name| {
+        layer("terrain", "builtin:massif?seed=7", &format!("drape = {}", quoted(name)))
+    }),
     named(
         "palette",
         "cpt",

@@ -6,9 +6,9 @@
 
 mod carriers;
 
+use belvedere::scene::Progress;
 use belvedere::verbs::pack::{APPLICATION, PackRequest, pack};
 use belvedere::{OpenOptions, Session};
-use belvedere::scene::Progress;
 use carriers::{CARRIERS, Carrier, SIDECARS};
 use std::fs::{self, File, FileTimes};
 use std::os::unix::fs::symlink;
