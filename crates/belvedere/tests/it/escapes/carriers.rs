@@ -124,13 +124,13 @@ pub(super) const CARRIERS: &[Carrier] = &[
         |name| layer("volume", "builtin:engine", &format!("transfer = {}", quoted(name))),
     ),
     named("drape", "png", picture, |name| {
-        layer("terrain", "builtin:massif?seed=7", &format!("drape = {}", quoted(name)))
+        layer("terrain", "builtin:massif?size=33", &format!("drape = {}", quoted(name)))
     }),
     named(
         "palette",
         "cpt",
         || text("CANARY"),
-        |name| layer("terrain", "builtin:massif?seed=7", &format!("style = {{ palette = {} }}", quoted(name))),
+        |name| layer("terrain", "builtin:massif?size=33", &format!("style = {{ palette = {} }}", quoted(name))),
     ),
     named(
         "presets of a bend",
@@ -138,7 +138,7 @@ pub(super) const CARRIERS: &[Carrier] = &[
         || text("{\"CANARY\": 1}"),
         |name| {
             let stage = format!("[[stage]]\nkind = \"spline_bend\"\npresets = {}\n", quoted(name));
-            layer("terrain", "builtin:massif?seed=7", "") + &stage
+            layer("terrain", "builtin:massif?size=33", "") + &stage
         },
     ),
     Carrier {
@@ -252,6 +252,6 @@ pub(super) const SIDECARS: &[Carrier] = &[
         ending: "pgw",
         content: || text("CANARY"),
         files: |_| vec![("d.png", picture())],
-        scene: |_| layer("terrain", "builtin:massif?seed=7", "drape = \"d.png\""),
+        scene: |_| layer("terrain", "builtin:massif?size=33", "drape = \"d.png\""),
     },
 ];

@@ -17,7 +17,7 @@ use std::process::Command;
 use std::time::{Duration, Instant, SystemTime};
 
 /// Time for one scene.
-const SOON: Duration = Duration::from_secs(10);
+const SOON: Duration = Duration::from_secs(60);
 
 /// `inside/` with the scene, and beside it `outside/` with the file that must not be read.
 struct Folders {
