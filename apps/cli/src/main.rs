@@ -11,6 +11,7 @@ mod for_models;
 mod goal;
 mod ground_args;
 mod inputs;
+mod interrupt;
 mod kinds;
 mod look_args;
 mod memory;
@@ -62,12 +63,20 @@ fn broken(panic: &(dyn std::any::Any + Send)) -> ExitCode {
 
 fn run(cli: Cli) -> ExitCode {
     belvedere::threads::start();
-    let context = Context::new(cli.common, cli.verb.makes_many_pictures());
     let verb = cli.verb.name();
-    match verbs::run(cli.verb, &context).and_then(|goal| context.timings.write(verb, &context.common).map(|()| goal)) {
+    let context = Context::new(cli.common, verb, cli.verb.makes_many_pictures());
+    let end =
+        verbs::run(cli.verb, &context).and_then(|goal| context.timings.write(verb, &context.common).map(|()| goal));
+    interrupt::claim_end();
+    match end {
         Ok(goal) => {
             context.finish();
             if goal.is_missed() && context.common.strict { ExitCode::from(1) } else { ExitCode::SUCCESS }
+        }
+        Err(e) if context.progress.is_cancelled() => {
+            context.finish();
+            report::fail(&interrupt::told(&e, verb));
+            ExitCode::from(interrupt::CODE)
         }
         Err(e) => {
             context.finish();

@@ -63,6 +63,7 @@ pub(crate) fn check_stdout(context: &Context) -> anyhow::Result<()> {
 
 /// Writes bytes on standard output; a closed pipe is not an error.
 pub(crate) fn write_stdout(bytes: &[u8]) -> anyhow::Result<()> {
+    crate::interrupt::note_stdout();
     let mut out = std::io::stdout().lock();
     match out.write_all(bytes).and_then(|()| out.flush()) {
         Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(anyhow::anyhow!("standard output: {e}")),

@@ -7,7 +7,6 @@ use belvedere::scene::Progress;
 use belvedere::{BelvedereError, Needs, OpenOptions, Session, Trust, Warning};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -36,9 +35,6 @@ pub(crate) fn is_stdout(path: &Path) -> bool {
 
 /// An error as one line.
 pub(crate) fn one_line(error: &anyhow::Error) -> String {
-    if error.downcast_ref::<BelvedereError>().is_some_and(BelvedereError::is_cancelled) {
-        return "cancelled; nothing was written".into();
-    }
     let mut text = error.to_string();
     if let Some(library) = error.downcast_ref::<BelvedereError>().filter(|e| e.to_string() == text) {
         text = in_options(library);
@@ -53,7 +49,7 @@ pub(crate) fn one_line(error: &anyhow::Error) -> String {
             text = format!("{text}: {cause}");
         }
     }
-    let text = beside(&text);
+    let text = relative(&text);
     text.split('\n').map(str::trim).filter(|l| !l.is_empty()).collect::<Vec<_>>().join("; ")
 }
 
@@ -64,7 +60,7 @@ fn shows(text: &str, cause: &str) -> bool {
 }
 
 /// A text in which files below the working folder are named from there, as users name them.
-fn beside(text: &str) -> String {
+pub(crate) fn relative(text: &str) -> String {
     match std::env::current_dir().and_then(std::fs::canonicalize) {
         Ok(here) if here.parent().is_some() => {
             text.replace(&format!("{}{}", here.display(), std::path::MAIN_SEPARATOR), "")
@@ -161,10 +157,10 @@ pub(crate) struct Context {
 }
 
 impl Context {
-    /// Installs Ctrl-C (once: stop cleanly; twice: stop at once) and the progress bar.
+    /// Installs Ctrl-C, see [`interrupt`](crate::interrupt), and the progress bar.
     ///
-    /// * `many_pictures`: the time limit applies to each picture, not to the whole command.
-    pub(crate) fn new(common: Common, many_pictures: bool) -> Self {
+    /// * `verb`: its name. `many_pictures`: the time limit applies to each picture, not to the whole command.
+    pub(crate) fn new(common: Common, verb: &'static str, many_pictures: bool) -> Self {
         let bar: Arc<Mutex<Option<indicatif::ProgressBar>>> = Arc::default();
         let progress = match (common.quiet, std::io::stderr().is_terminal()) {
             (true, _) => Progress::silent(),
@@ -176,13 +172,7 @@ impl Context {
             Some(seconds) => progress.limited(Duration::from_secs_f64(seconds)).begin(),
             None => progress,
         };
-        let flag = progress.cancel_flag();
-        // Without a handler Ctrl-C still ends the process, only less politely.
-        let _ = ctrlc::set_handler(move || {
-            if flag.swap(true, Ordering::SeqCst) {
-                std::process::exit(2);
-            }
-        });
+        crate::interrupt::install(progress.cancel_flag(), verb);
         let trust = if common.no_remember { Trust::default() } else { Trust::of_user() };
         Self { common, progress, trust, timings: Timings::begin(), bar }
     }

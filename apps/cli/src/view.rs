@@ -3,6 +3,7 @@
 use crate::args::ViewArgs;
 use crate::goal::Goal;
 use crate::inputs;
+use crate::interrupt;
 use crate::report::Context;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -32,7 +33,8 @@ pub(crate) fn view(args: &ViewArgs, context: &Context) -> anyhow::Result<Goal> {
         return Ok(Goal::Reached);
     }
     // The application has printed its reason.
-    exit(status.code().unwrap_or(2))
+    let interrupted = context.progress.is_cancelled().then_some(i32::from(interrupt::CODE));
+    exit(interrupted.or(status.code()).unwrap_or(2))
 }
 
 /// The application beside this program, else the one on the PATH.

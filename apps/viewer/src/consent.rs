@@ -1,11 +1,12 @@
 //! Asks whether a scene may read files outside its folder.
 
 use belvedere::Trust;
-use eframe::egui::{Context, Window};
+use belvedere::core::plain;
+use eframe::egui::{Context, ScrollArea, Window};
 use std::path::{Path, PathBuf};
 
-/// Files that are listed, at most.
-const MOST: usize = 8;
+/// Height of the list of files, points; longer lists scroll.
+const LIST: f32 = 220.0;
 
 /// A scene that waits for the user's consent.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -48,12 +49,12 @@ impl Consent {
                 ui.set_width(480.0);
                 let name = self.scene.file_name().unwrap_or_default().to_string_lossy();
                 ui.label(format!("{name} names files that do not lie in its folder:"));
-                for file in self.files.iter().take(MOST) {
-                    ui.label(file.display().to_string());
-                }
-                if self.files.len() > MOST {
-                    ui.label(format!("and {} more", self.files.len() - MOST));
-                }
+                ScrollArea::vertical().max_height(LIST).auto_shrink([false, true]).show(ui, |ui| {
+                    for file in &self.files {
+                        // Names come from files.
+                        ui.label(plain::escaped(&file.display().to_string()));
+                    }
+                });
                 ui.label("Allow this if you know where the scene comes from. It is remembered for this scene and these files.");
                 ui.horizontal(|ui| {
                     let allow = if self.files.len() == 1 { "Allow this file" } else { "Allow these files" };

@@ -196,8 +196,13 @@ impl Exporter {
             }
             Film::Route => AnimationDoc { along: self.route.clone(), ..plain },
             Film::Bookmarks => {
-                let file = path.with_extension("cameras.json");
+                let stem = path.file_stem().unwrap_or_default().to_string_lossy();
                 let text = cameras(bookmarks).to_string();
+                let mut file = path.with_extension("cameras.json");
+                // Cameras of an earlier film stay.
+                if std::fs::read_to_string(&file).is_ok_and(|earlier| earlier != text) {
+                    file = crate::files::free_name(path.parent().unwrap_or(Path::new("")), &stem, "cameras.json");
+                }
                 output::write_text(&file, &text, true).map_err(|e| e.to_string())?;
                 AnimationDoc { camera: Some(file.display().to_string()), ..plain }
             }
@@ -336,9 +341,10 @@ fn make(
         }
         Want::Film => {
             let out = path.to_owned();
+            let cameras = animation.camera.as_deref().filter(|name| name.ends_with(".cameras.json")).map(PathBuf::from);
             let request = AnimateRequest { animation, picture, out, resume: false, overwrite: true };
             let made = animate(&session, &request, progress)?;
-            Ok(vec![made.folder])
+            Ok([made.folder].into_iter().chain(cameras).collect())
         }
         Want::Report => {
             let report = measure(&session, &MeasureOptions::default(), RendererChoice::Cpu, progress)?;

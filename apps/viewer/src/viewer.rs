@@ -175,7 +175,8 @@ impl Viewer {
                 notes.push("The last session did not end as it should; here is its last state.".into());
             }
             Some(mut left) if left.editor.is_changed() => {
-                let kept = opening.state.clone().unwrap_or_default().join("recovered.toml");
+                // What an earlier session left stays.
+                let kept = files::free_name(&opening.state.clone().unwrap_or_default(), "recovered", "toml");
                 let what = match left.editor.save(&kept) {
                     Ok(()) => format!("its unsaved scene is kept in {}", kept.display()),
                     Err(e) => format!("its unsaved scene could not be kept: {e}"),

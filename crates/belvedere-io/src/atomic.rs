@@ -1,10 +1,18 @@
-//! Atomic writing: a file exists complete or not at all.
+//! Atomic writing: a file exists complete or not at all, and files that belong together appear together.
+
+#[cfg(not(target_family = "wasm"))]
+mod ledger;
+#[cfg(not(target_family = "wasm"))]
+mod temporary;
 
 use crate::{IoError, fs};
 use std::io::{self, Write};
 use std::path::Path;
+
 #[cfg(not(target_family = "wasm"))]
-use tempfile::NamedTempFile;
+pub use ledger::{abandon, contents_of, together, written};
+#[cfg(not(target_family = "wasm"))]
+pub use temporary::Temporary;
 
 /// Fails at once if [`write_atomic`] could not write `path`: it exists and `overwrite` is false, it is a folder, or its
 /// folder does not exist. Ask before long work.
@@ -39,7 +47,8 @@ pub fn check_output(path: &Path, overwrite: bool) -> Result<(), IoError> {
 
 /// Writes `path` through a temporary file beside it: complete, flushed to the disk (file and folder) and then renamed, so
 /// that nobody ever sees half a file. Without `overwrite` an existing file stays, even one that appears during the work.
-/// The temporary file is removed if `write` fails. A device or pipe (such as `/dev/stdout`) is written directly.
+/// The temporary file is removed if `write` fails; one that a killed program left is removed by the next that writes into the folder.
+/// A device or pipe (such as `/dev/stdout`) is written directly. Inside [`together`] the file appears at its end.
 ///
 /// # Errors
 /// [`IoError::Exists`] if the file is there and may not be replaced; [`IoError::Format`] for a folder;
@@ -58,17 +67,13 @@ pub fn write_atomic(
         let mut device = std::fs::OpenOptions::new().write(true).open(&target).map_err(os)?;
         return write(&mut device).and_then(|()| device.flush()).map_err(os);
     }
-    let mut out = io::BufWriter::with_capacity(1 << 16, temporary_beside(&target).map_err(os)?);
-    write(&mut out).map_err(os)?;
-    let file = out.into_inner().map_err(|e| os(e.into_error()))?;
-    file.as_file().sync_all().map_err(os)?;
-    let published = if overwrite { file.persist(&target) } else { file.persist_noclobber(&target) };
-    published.map_err(|e| match e.error.kind() {
-        io::ErrorKind::AlreadyExists => IoError::Exists { path: target.clone() },
-        _ => os(e.error),
-    })?;
-    sync_folder(folder_of(&target));
-    Ok(())
+    let temporary = Temporary::beside(&target).map_err(os)?;
+    let mut out = io::BufWriter::with_capacity(1 << 16, temporary.file());
+    let written = write(&mut out).and_then(|()| out.flush());
+    // What is left in the buffer after an error is not written.
+    drop(out.into_parts());
+    written.map_err(os)?;
+    temporary.publish(overwrite)
 }
 
 /// Writes a file in memory: complete, or not at all.
@@ -86,24 +91,26 @@ pub fn write_atomic(
     write(&mut bytes).and_then(|()| fs::write(path, bytes)).map_err(|e| IoError::os(path, e))
 }
 
+/// As on a file system, where files that belong together appear together.
+///
+/// # Errors
+/// Those of `work`.
+#[cfg(target_family = "wasm")]
+pub fn together<T, E: From<IoError>>(work: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
+    work()
+}
+
+/// Where the bytes of an output are.
+#[cfg(target_family = "wasm")]
+pub fn contents_of(path: &Path) -> std::path::PathBuf {
+    path.to_owned()
+}
+
 fn folder_of(path: &Path) -> &Path {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     }
-}
-
-/// A hidden temporary file beside `target`, with the permissions of any new file.
-#[cfg(not(target_family = "wasm"))]
-fn temporary_beside(target: &Path) -> io::Result<NamedTempFile> {
-    // a long name plus the ending could pass the system's limit
-    let name = target.file_name().unwrap_or_default().to_string_lossy();
-    let prefix: String = [".", &name].concat().chars().take(40).collect();
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(&prefix).suffix(".tmp");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)); // less the umask
-    builder.tempfile_in(folder_of(target))
 }
 
 #[cfg(unix)]

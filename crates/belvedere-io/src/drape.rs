@@ -2,6 +2,7 @@
 
 use crate::crs::{CoordinateSystem, Transform};
 use crate::formats::ends;
+use crate::fs::read_sidecar;
 use crate::packed::content;
 use crate::terrain::{Geometry, GridMap, Link, stated_system};
 use crate::{Affine, GeoTiff, InputFile, IoError, Limits, Loaded, Raster, SourceCrs, budget, esri_ascii, fs, png};
@@ -420,7 +421,8 @@ fn world_file(path: &Path) -> Result<Option<Affine>, IoError> {
         if !fs::metadata(&world).is_ok_and(|m| m.is_file() && m.len() < 1 << 16) {
             continue;
         }
-        let text = fs::read_to_string(&world).map_err(|e| IoError::os(&world, e))?;
+        let text = read_sidecar(path, &world, 1 << 16)?;
+        let text = String::from_utf8_lossy(&text);
         let numbers: Vec<f64> = text.split_whitespace().map_while(|w| w.parse().ok()).collect();
         let &[a, d, b, e, c, f] = numbers.as_slice() else {
             let reason = format!("a world file has six numbers, this one starts with {}; correct it", numbers.len());

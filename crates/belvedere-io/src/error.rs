@@ -38,7 +38,7 @@ pub fn said(error: &std::io::Error) -> String {
     use std::io::ErrorKind;
     match error.kind() {
         // Errors of our own, as of archives, have texts of their own.
-        _ if error.raw_os_error().is_none() => error.to_string(),
+        _ if error.get_ref().is_some() => error.to_string(),
         ErrorKind::NotFound => "there is no such file; check the name".into(),
         ErrorKind::IsADirectory => "is a folder; give a file".into(),
         ErrorKind::NotADirectory => "a part of the path is a file where a folder is needed; check the name".into(),

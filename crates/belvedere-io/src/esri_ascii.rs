@@ -5,7 +5,7 @@
 
 mod numbers;
 
-use crate::fs::sidecar;
+use crate::fs::{read_sidecar, sidecar};
 use crate::text::text_of;
 use crate::{
     Affine, InputFile, IoError, Limits, Loaded, Raster, RasterInfo, SampleType, Samples, SourceCrs, budget, fs,
@@ -152,7 +152,7 @@ pub(crate) fn prj_beside(path: &Path) -> Result<SourceCrs, IoError> {
     let Some(prj) = sidecar(path, "prj").filter(|p| fs::metadata(p).is_ok_and(|m| m.len() < 1 << 20)) else {
         return Ok(SourceCrs::Unknown);
     };
-    let text = text_of(&fs::read(&prj).map_err(|e| IoError::os(&prj, e))?, &mut Vec::new());
+    let text = text_of(&read_sidecar(path, &prj, 1 << 20)?, &mut Vec::new());
     let text = text.trim();
     Ok(if text.is_empty() { SourceCrs::Unknown } else { SourceCrs::Wkt(text.to_owned()) })
 }

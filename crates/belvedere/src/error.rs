@@ -136,7 +136,7 @@ pub enum BelvedereError {
         resumable: bool,
     },
     /// An animation was cancelled between frames or in one.
-    #[error("cancelled after {done} of {frames} frames in {}", folder.display())]
+    #[error("interrupted after {done} of {frames} frames in {}", folder.display())]
     Interrupted {
         /// Frames that are finished.
         done: usize,

@@ -97,17 +97,30 @@ impl PublicNames {
     }
 }
 
-/// The end of a path that tells it from the others: its name, with folders before it where others have the same name.
+/// The end of a path that tells it from the others: its name, with folders before it where others have the same name. The name of a
+/// user is not told: where only that would tell two files apart a number stands for their folders.
 fn shortest(path: &Path, all: &[&PathBuf]) -> String {
     let parts: Vec<_> = path.components().collect();
-    let end = |n: usize| parts[parts.len() - n..].iter().collect::<PathBuf>();
+    let end = |n: usize| parts[parts.len() - n.min(parts.len())..].iter().collect::<PathBuf>();
     let is_its_own = |n: &usize| all.iter().filter(|other| **other != path && other.ends_with(end(*n))).count() == 0;
-    let n = (1..parts.len()).find(is_its_own).unwrap_or(1);
-    let names: Vec<String> = parts[parts.len() - n.min(parts.len())..]
-        .iter()
-        .map(|part| part.as_os_str().to_string_lossy().into_owned())
-        .collect();
-    names.join("/")
+    let told = parts.len().saturating_sub(of_a_user(path)).max(1);
+    let n = (1..=told).filter(|n| *n < parts.len()).find(is_its_own);
+    let names: Vec<String> =
+        end(n.unwrap_or(1)).components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect();
+    let name = names.join("/");
+    let same = |other: &&&PathBuf| other.file_name() == path.file_name();
+    let number = all.iter().filter(same).position(|other| *other == path).filter(|_| n.is_none());
+    number.map_or(name.clone(), |number| format!("{}/{name}", number + 1))
+}
+
+/// Number of the first parts of a path up to the name of a user.
+fn of_a_user(path: &Path) -> usize {
+    let homes = ["home", "users"];
+    let parts = path.components().map(|part| part.as_os_str().to_string_lossy().to_lowercase());
+    let by_name = parts.take(4).position(|part| homes.contains(&part.as_str())).map_or(0, |at| at + 2);
+    let home = ["HOME", "USERPROFILE"].iter().find_map(std::env::var_os).map(PathBuf::from);
+    let own = home.filter(|home| path.starts_with(home)).map_or(0, |home| home.components().count());
+    by_name.max(own)
 }
 
 /// `text` with `name` in place of `path` wherever a path can begin.
@@ -149,6 +162,16 @@ mod tests {
         let [said] = &names.warnings(&[warning])[..] else { panic!("one warning") };
         assert_eq!((said.text(), said.subject()), ("layer \"g\": y.tif: 3 holes; z.shp has no .prj", Some("y.tif")));
         assert_eq!(said.kind(), WarningKind::Ignored);
+    }
+
+    #[test]
+    fn names_of_users_are_not_told() {
+        let all =
+            ["/home/ann/dem.tif", "/home/bob/dem.tif", "/home/bob/a/dem.tif", "/Users/eve/dem.tif", "/data/dem.tif"];
+        let all = all.map(PathBuf::from);
+        let all: Vec<&PathBuf> = all.iter().collect();
+        let names: Vec<String> = all.iter().map(|path| shortest(path, &all)).collect();
+        assert_eq!(names, ["1/dem.tif", "2/dem.tif", "a/dem.tif", "4/dem.tif", "data/dem.tif"]);
     }
 
     #[test]

@@ -51,7 +51,11 @@ pub(crate) fn days_since_j2000(time: &str) -> Option<f64> {
     let (date, rest) = time.trim().split_once(['T', 't', ' '])?;
     let (clock, offset_minutes) = split_offset(rest)?;
     let [year, month, day] = numbers::<3>(date, '-')?;
-    if !(1..=12).contains(&(month as i64)) || !(1.0..=31.0).contains(&day) || !(1900.0..=2100.0).contains(&year) {
+    let is_day = [year, month, day].iter().all(|n| n.fract() == 0.0)
+        && (1900.0..=2100.0).contains(&year)
+        && (1.0..=12.0).contains(&month)
+        && (1..=days_of(year as i64, month as usize)).contains(&(day as i64));
+    if !is_day {
         return None;
     }
     let [hour, minute, second] =
@@ -65,6 +69,12 @@ pub(crate) fn days_since_j2000(time: &str) -> Option<f64> {
         365 * y + y.div_euclid(4) - y.div_euclid(100) + y.div_euclid(400) + (306 * m + 5) / 10 + day as i64 - 1;
     let minutes = hour * 60.0 + minute + second / 60.0 - offset_minutes;
     Some((day_number - J2000_DAY) as f64 + (minutes - 720.0) / 1440.0)
+}
+
+/// Number of days of a month, 1 to 12.
+fn days_of(year: i64, month: usize) -> i64 {
+    let is_leap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+    [31, 28 + i64::from(is_leap), 31, 30, 31, 30, 31, 31, 30, 31, 30, 31][month - 1]
 }
 
 /// The time `days` after J2000.0 to the minute, such as `2026-07-01T15:00Z`.
@@ -110,6 +120,13 @@ mod tests {
         assert_eq!(days_since_j2000("2000-03-01T12:00:00Z"), Some(60.0));
         assert_eq!(days_since_j2000("2001-01-01T12:00:00Z"), Some(366.0));
         assert_eq!(days_since_j2000("2000-01-01T14:00:00+02:00"), Some(0.0));
+        for (day, exists) in [("2024-02-29", true), ("2000-02-29", true), ("2026-02-29", false), ("2100-02-29", false)]
+        {
+            assert_eq!(days_since_j2000(&format!("{day}T12:00Z")).is_some(), exists, "{day}");
+        }
+        for bad in ["2026-02-31T12:00:00Z", "2026-04-31T12:00:00Z", "2026-06-00T12:00:00Z", "2026-02-1.5T12:00:00Z"] {
+            assert_eq!(days_since_j2000(bad), None, "{bad}");
+        }
         for bad in ["yesterday", "2026-13-01T00:00:00Z", "2026-07-01", "2026-07-01T15:00:00", "2026-07-01T25:00:00Z"] {
             assert_eq!(days_since_j2000(bad), None, "{bad}");
             assert!(check_time(bad).is_err_and(|e| e.contains(bad) && e.contains("+02:00")), "{bad}");

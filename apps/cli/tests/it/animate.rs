@@ -125,7 +125,7 @@ fn a_cancelled_animation_goes_on() {
     assert!(Command::new("kill").args(["-INT", &pid]).status().expect("kill runs").success());
     let out = child.wait_with_output().expect("it ends");
     let said = String::from_utf8_lossy(&out.stderr).into_owned();
-    assert_eq!(out.status.code(), Some(2), "{said}");
+    assert_eq!(out.status.code(), Some(130), "{said}");
     assert!(said.contains("of 400 frames") && said.contains("--resume"), "{said}");
     let record = record(&place.path("out"));
     let done = record["done"].as_u64().expect("a count") as usize;
@@ -212,19 +212,27 @@ fn the_film_is_made_by_ffmpeg_if_there_is_one() {
     // A stand-in that refuses the first encoder and writes its arguments into the film.
     ffmpeg(
         &bin,
-        "case \"$*\" in *libx264*) echo no such encoder >&2; exit 1;; esac\nfor last; do :; done\necho \"$*\" > \"$last\"\n",
+        "case \"$*\" in *libx264*) echo no such encoder >&2; exit 1;; esac\nfor last; do :; done\necho \"$PWD $*\" > \"${last#file:}\"\n",
     );
     let made = film("a.mp4", &["--resume"]);
     assert_eq!(made.status.code(), Some(0), "{}", String::from_utf8_lossy(&made.stderr));
     let arguments = String::from_utf8(super::read(&place.path("a.mp4"))).expect("UTF-8");
-    for part in ["-framerate 12", "a.frames/frame_%05d.png", "-frames:v 2", "mpeg4"] {
+    for part in ["a.frames -", "-framerate 12", "-i frame_%05d.png", "-frames:v 2", "mpeg4", " file:/"] {
         assert!(arguments.contains(part), "{part}: {arguments}");
     }
+    // To ffmpeg a percent sign in a pattern stands for a number, and a colon ends the name of a protocol.
+    let made = film("a%03d:b.mp4", &[]);
+    assert_eq!(made.status.code(), Some(0), "{}", String::from_utf8_lossy(&made.stderr));
+    let arguments = String::from_utf8(super::read(&place.path("a%03d:b.mp4"))).expect("UTF-8");
+    assert!(arguments.contains("a%03d:b.frames -") && arguments.contains("-i frame_%05d.png"), "{arguments}");
     assert!(!film("a.mp4", &[]).status.success(), "an existing film is not replaced unasked");
     ffmpeg(&bin, "echo disk is tired >&2; exit 1\n");
     let broken = film("b.mp4", &[]);
     assert!(String::from_utf8_lossy(&broken.stderr).contains("disk is tired"));
     assert!(!place.path("b.mp4").exists());
+    let told = film("n%d:o p.mp4", &[]);
+    let told = String::from_utf8_lossy(&told.stderr).into_owned();
+    assert!(told.contains("-i 'file:n%%d:o p.frames/frame_%05d.png'") && told.contains("'file:n%d:o p.mp4'"), "{told}");
 }
 
 #[cfg(unix)]

@@ -3,6 +3,7 @@
 mod animate;
 mod areas;
 mod bad_scenes;
+mod broken_off;
 mod cities;
 mod city_targets;
 mod constructors;

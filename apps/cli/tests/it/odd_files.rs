@@ -45,8 +45,8 @@ fn ctrl_c_ends_cleanly() {
     std::thread::sleep(Duration::from_millis(300));
     std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
     let out = child.wait_with_output().expect("it ends");
-    assert_eq!(out.status.code(), Some(2));
-    assert_eq!(String::from_utf8_lossy(&out.stderr), "belvedere: cancelled; nothing was written\n");
+    assert_eq!(out.status.code(), Some(130));
+    assert_eq!(String::from_utf8_lossy(&out.stderr), "belvedere: interrupted; nothing was written\n");
     let left: Vec<_> = std::fs::read_dir(place.path(".")).expect("folder").collect();
     assert!(left.is_empty(), "{left:?}");
 }

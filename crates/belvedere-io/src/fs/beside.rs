@@ -1,5 +1,8 @@
 //! Files that another file names.
 
+use super::{archive_of, canonicalize, metadata};
+use crate::IoError;
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// The file that stands beside `path` under the same name with another ending, in small or capital letters, with the ending of `path` or
@@ -15,19 +18,63 @@ pub(crate) fn sidecar(path: &Path, ending: &str) -> Option<PathBuf> {
         path.with_file_name(name)
     };
     let named = endings.iter().map(|e| path.with_extension(e)).chain(endings.iter().map(longer));
-    named.into_iter().find(|p| super::metadata(p).is_ok_and(|m| m.is_file()))
+    named.into_iter().find(|p| metadata(p).is_ok_and(|m| m.is_file()))
 }
 
-/// Path of a file that the file `path` names; refused if it is remote, absolute or leads out of the folder.
+/// The bytes of a file that stands beside `path`, as [`sidecar`] finds it.
+///
+/// # Errors
+/// [`IoError::Os`], also for a link that leads out of the folder; [`IoError::Format`] for more than `most` bytes.
+pub(crate) fn read_sidecar(path: &Path, file: &Path, most: u64) -> Result<Vec<u8>, IoError> {
+    if !lies_below(path, file) {
+        // No fault of the format: that is looked for in the file.
+        let reason = "is a link that leads out of its folder; put the file itself there";
+        return Err(IoError::os(file, io::Error::new(io::ErrorKind::PermissionDenied, reason)));
+    }
+    let size = metadata(file).map_err(|e| IoError::os(file, e))?.len();
+    if size > most {
+        let reason = format!("has {size} bytes, at most {most} are read; it is damaged or something else");
+        return Err(IoError::format(file, reason));
+    }
+    super::read(file).map_err(|e| IoError::os(file, e))
+}
+
+/// Whether `file` lies in the folder of `path` or below, after links are followed; also if there is no such file.
+fn lies_below(path: &Path, file: &Path) -> bool {
+    // Entries of one archive are no links, and there are none in memory.
+    let same_archive = archive_of(path) != path && archive_of(path) == archive_of(file);
+    if same_archive || cfg!(target_family = "wasm") {
+        return true;
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match (canonicalize(folder), canonicalize(file)) {
+        (Ok(folder), Ok(file)) => file.starts_with(folder),
+        (_, found) => found.is_err_and(|e| e.kind() == io::ErrorKind::NotFound),
+    }
+}
+
+/// Path of a file that the file `path` names; refused if it is remote, absolute or leads out of the folder, also by a link.
 pub(crate) fn beside(path: &Path, name: &str) -> Result<PathBuf, String> {
     let relative = Path::new(name);
     let stays =
         relative.components().all(|c| matches!(c, std::path::Component::Normal(_) | std::path::Component::CurDir));
     if name.is_empty() || name.contains(':') || name.contains('\\') || !stays {
-        let shown: String = name.chars().take(60).collect();
-        return Err(format!("it names {shown:?}, which is not a file below its own folder; put the file beside it"));
+        let name = shown(name);
+        return Err(format!("it names {name}, which is not a file below its own folder; put the file beside it"));
     }
-    Ok(path.parent().unwrap_or(Path::new("")).join(relative))
+    let file = path.parent().unwrap_or(Path::new("")).join(relative);
+    if !lies_below(path, &file) {
+        return Err(format!(
+            "it names {}, a link that leads out of its folder; put the file itself there",
+            shown(name)
+        ));
+    }
+    Ok(file)
+}
+
+/// A name as messages quote it.
+fn shown(name: &str) -> String {
+    format!("{:?}", name.chars().take(60).collect::<String>())
 }
 
 /// Other spellings of the name of a file that another file names: without quotes, with percent signs decoded, with slashes for backslashes,

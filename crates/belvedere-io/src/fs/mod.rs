@@ -10,7 +10,7 @@ use memory as plain;
 #[cfg(target_family = "wasm")]
 pub use memory::{remove_file, write};
 
-pub(crate) use beside::{beside, percent_decoded, sidecar, spellings};
+pub(crate) use beside::{beside, percent_decoded, read_sidecar, sidecar, spellings};
 pub use packed::{File, Metadata, canonicalize, metadata, read, read_to_string, symlink_metadata};
 pub(crate) use packed::{archive_of, names_in, unpacked_size};
 
@@ -20,3 +20,4 @@ mod bounded;
 #[cfg_attr(not(target_family = "wasm"), allow(dead_code, unreachable_pub))]
 mod memory;
 mod packed;
+mod regular;

@@ -4,7 +4,7 @@
 //! The unpacked size is bounded: no more than [`MOST_BYTES`], and of entries of ZIP archives no more than they state.
 
 use super::bounded::{read_up_to, too_large};
-use super::plain;
+use super::{plain, regular};
 use crate::budget;
 use flate2::read::MultiGzDecoder;
 use std::io::{self, Cursor, Read, Seek, SeekFrom};
@@ -67,14 +67,15 @@ impl Metadata {
 }
 
 impl File {
-    /// Opens a file to be read.
+    /// Opens a regular file to be read.
     ///
     /// # Errors
-    /// As those of [`std::fs::File::open`]; [`io::ErrorKind::InvalidData`] if an archive cannot be unpacked.
+    /// As those of [`std::fs::File::open`]; [`io::ErrorKind::InvalidData`] if an archive cannot be unpacked; [`io::ErrorKind::InvalidInput`] for a
+    /// pipe, a device or a socket.
     pub fn open(path: impl AsRef<Path>) -> io::Result<Self> {
         match within(path.as_ref()) {
             Some((archive, entry)) => unpacked(&archive, &entry).map(|bytes| Self::Packed(Cursor::new(bytes))),
-            None => plain::File::open(path).map(Self::Plain),
+            None => regular::open(path.as_ref()).map(Self::Plain),
         }
     }
 
@@ -148,14 +149,15 @@ pub fn canonicalize(path: impl AsRef<Path>) -> io::Result<PathBuf> {
     }
 }
 
-/// All the bytes of a file.
+/// All the bytes of a regular file.
 ///
 /// # Errors
-/// As those of [`std::fs::read`]; [`io::ErrorKind::InvalidData`] if an archive cannot be unpacked.
+/// As those of [`std::fs::read`]; [`io::ErrorKind::InvalidData`] if an archive cannot be unpacked; [`io::ErrorKind::InvalidInput`] for a pipe, a
+/// device or a socket.
 pub fn read(path: impl AsRef<Path>) -> io::Result<Vec<u8>> {
     match within(path.as_ref()) {
         Some((archive, entry)) => unpacked(&archive, &entry).map(|bytes| bytes.to_vec()),
-        None => plain::read(path),
+        None => regular::read(path.as_ref()),
     }
 }
 

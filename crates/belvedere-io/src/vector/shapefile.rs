@@ -1,35 +1,35 @@
 //! ESRI shapefiles: points, multipoints, polylines and polygons, with Z and M, names from the .dbf, system from the .prj.
 
 use super::{
-    Geometry, VectorFeature, Vectors, Vertex, certainly_not_degrees, name_of, not_degrees, rings, shorten, vertex,
+    Geometry, MAX_BYTES, VectorFeature, Vectors, Vertex, certainly_not_degrees, name_of, not_degrees, rings, shorten,
+    vertex,
 };
 use crate::crs::CoordinateSystem;
-use crate::fs::sidecar;
+use crate::fs::{read_sidecar, sidecar};
 use crate::text::{table_encoding, text_of};
-use crate::{IoError, Loaded, fs};
+use crate::{IoError, Loaded};
 use belvedere_core::{Warning, WarningKind};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// File code 9994, big-endian.
 pub(super) const MAGIC: [u8; 4] = [0, 0, 0x27, 0x0a];
+/// Largest file of a coordinate system or code page, bytes.
+const SMALL: u64 = 1 << 20;
 
 pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError> {
     let fail = |reason: String| IoError::format(path, reason);
     let mut warnings = Vec::new();
-    let index = sidecar(path, "shx").and_then(|p| fs::read(p).ok()).and_then(|bytes| read_index(&bytes));
+    let index = beside(path, "shx", MAX_BYTES)?.and_then(|(_, bytes)| read_index(&bytes));
     let shapes = read_shapes(bytes, index.as_deref(), &mut warnings).map_err(fail)?;
     let count = shapes.len();
-    let code_page = sidecar(path, "cpg").and_then(|p| fs::read(p).ok());
-    let code_page = code_page.map(|bytes| String::from_utf8_lossy(&bytes).into_owned());
-    let table = match sidecar(path, "dbf") {
-        Some(p) => {
-            read_dbf(&fs::read(&p).map_err(|e| IoError::os(&p, e))?, code_page.as_deref()).unwrap_or_else(|reason| {
-                let text = format!("{}: {reason}; features stay without names", p.display());
-                warnings.push(Warning::new(WarningKind::Ignored, text));
-                Vec::new()
-            })
-        }
+    let code_page = beside(path, "cpg", SMALL)?.map(|(_, bytes)| String::from_utf8_lossy(&bytes).into_owned());
+    let table = match beside(path, "dbf", MAX_BYTES)? {
+        Some((p, bytes)) => read_dbf(&bytes, code_page.as_deref()).unwrap_or_else(|reason| {
+            let text = format!("{}: {reason}; features stay without names", p.display());
+            warnings.push(Warning::new(WarningKind::Ignored, text));
+            Vec::new()
+        }),
         None => Vec::new(),
     };
     if !table.is_empty() && table.len() != count {
@@ -59,6 +59,12 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError
     Ok(Loaded::new(value, warnings))
 }
 
+/// Path and bytes of the file beside a shapefile that has this ending, if there is one.
+fn beside(path: &Path, ending: &str, most: u64) -> Result<Option<(PathBuf, Vec<u8>)>, IoError> {
+    let found = sidecar(path, ending);
+    found.map(|file| read_sidecar(path, &file, most).map(|bytes| (file, bytes))).transpose()
+}
+
 /// The system, and whether a .prj states it.
 fn system_of(
     path: &Path,
@@ -66,8 +72,7 @@ fn system_of(
     warnings: &mut Vec<Warning>,
 ) -> Result<(CoordinateSystem, bool), IoError> {
     let bad = not_degrees(features);
-    let text = |prj: &PathBuf| fs::read(prj).map(|b| text_of(&b, &mut Vec::new())).map_err(|e| IoError::os(prj, e));
-    let stated = sidecar(path, "prj").map(|prj| text(&prj).map(|text| (prj, text))).transpose()?;
+    let stated = beside(path, "prj", SMALL)?.map(|(prj, bytes)| (prj, text_of(&bytes, &mut Vec::new())));
     if let Some((prj, text)) = stated.filter(|(_, text)| !text.trim().is_empty()) {
         let crs = CoordinateSystem::from_text(&text).map_err(|e| IoError::format(&prj, e.to_string()))?;
         return match bad.filter(|_| crs.is_geographic()) {

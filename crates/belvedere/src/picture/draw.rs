@@ -50,6 +50,7 @@ pub(crate) fn draw(
     let sidecar = Sidecar {
         program: format!("belvedere {}", crate::VERSION),
         renderer: request.renderer.of(session).name(),
+        picture_sha256: None,
         note: displacement.map(|d| note(&view, &d, session.scene().unit)),
         stages: view.stages().iter().map(|s| s.name()).collect(),
         overlay,

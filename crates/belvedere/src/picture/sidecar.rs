@@ -108,6 +108,9 @@ pub struct Sidecar {
     pub program: String,
     /// Name of the renderer.
     pub renderer: &'static str,
+    /// sha256 of the picture file, where the record is written beside one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub picture_sha256: Option<String>,
     /// Note that the picture is bent, if it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,

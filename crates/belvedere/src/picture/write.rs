@@ -7,6 +7,7 @@ use crate::BelvedereError;
 use crate::output;
 use crate::overlays::badge;
 use crate::scene_file::StageDoc;
+use belvedere_io::atomic;
 use belvedere_io::png::{self, Channels};
 use belvedere_scene::Frame;
 use std::path::{Path, PathBuf};
@@ -33,16 +34,25 @@ pub fn outputs(out: &Path, request: &PictureOptions, solves: bool) -> Vec<PathBu
 }
 
 impl Picture {
-    /// Writes the picture, its record and its buffers, each in one piece.
+    /// Writes the picture, its record and its buffers, each in one piece; they get their names together. The record holds the hash of the
+    /// picture, which tells whether they belong together.
     ///
     /// # Errors
     /// [`BelvedereError::Io`].
     pub fn write(&self, out: &Path, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
+        atomic::together(|| self.write_each(out, overwrite))
+    }
+
+    fn write_each(&self, out: &Path, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
         let mut written = vec![out.to_owned(), sibling(out, ".json")];
         let solved = self.with_delta(out, overwrite, &mut written)?;
         let this = solved.as_ref().unwrap_or(self);
         this.write_png(out, overwrite)?;
-        output::write_text(&written[1], &output::pretty(&this.sidecar)?, overwrite)?;
+        let mut sidecar = this.sidecar.clone();
+        // A device keeps nothing that could be read again.
+        let place = atomic::contents_of(out);
+        sidecar.picture_sha256 = place.is_file().then(|| belvedere_io::sha256_of_file(&place)).transpose()?;
+        output::write_text(&written[1], &output::pretty(&sidecar)?, overwrite)?;
         if self.aux_format == AuxFormat::Exr && !self.aux.is_empty() {
             let path = out.with_extension("exr");
             buffers::write(&self.frame, (&self.view, &self.rigid), &self.aux, &path, overwrite)?;
@@ -72,7 +82,7 @@ impl Picture {
         for stage in this.sidecar.scene.iter_mut().flat_map(|scene| &mut scene.stage) {
             if let StageDoc::TerrainDisocclusion(doc) = stage {
                 doc.delta = path.file_name().and_then(|n| n.to_str()).map(str::to_owned);
-                doc.delta_sha256 = Some(belvedere_io::sha256_of_file(&path)?);
+                doc.delta_sha256 = Some(belvedere_io::sha256_of_file(&atomic::contents_of(&path))?);
             }
         }
         written.push(path);
@@ -127,7 +137,8 @@ impl Picture {
     fn text(&self) -> Result<Vec<(&'static str, String)>, BelvedereError> {
         let mut text = vec![("Software", self.sidecar.program.clone())];
         if !self.sidecar.title.is_empty() {
-            text.push(("Title", self.sidecar.title.clone()));
+            // Other programs print it.
+            text.push(("Title", belvedere_core::plain::escaped(&self.sidecar.title).into_owned()));
         }
         if let Some(note) = &self.sidecar.note {
             text.push(("Comment", note.clone()));
@@ -195,7 +206,7 @@ fn npy<const B: usize>(
         header.push(' ');
     }
     header.push('\n');
-    Ok(belvedere_io::atomic::write_atomic(path, overwrite, |out| {
+    Ok(atomic::write_atomic(path, overwrite, |out| {
         out.write_all(b"\x93NUMPY\x01\x00")?;
         out.write_all(&(header.len() as u16).to_le_bytes())?;
         out.write_all(header.as_bytes())?;

@@ -122,9 +122,28 @@ fn lock(path: &Path) -> io::Result<Option<File>> {
     Err(io::Error::other("another program is changing it; try again"))
 }
 
+/// Whether the file is of this user, and no other may write it.
 #[cfg(unix)]
 fn is_private(meta: &std::fs::Metadata) -> bool {
-    std::os::unix::fs::MetadataExt::mode(meta) & 0o022 == 0
+    use std::os::unix::fs::MetadataExt;
+    meta.mode() & 0o022 == 0 && owner_of_new_files().is_some_and(|own| own == meta.uid())
+}
+
+/// The user as whom this process makes files.
+#[cfg(unix)]
+fn owner_of_new_files() -> Option<u32> {
+    use std::os::unix::fs::MetadataExt;
+    use std::sync::OnceLock;
+    static OWNER: OnceLock<Option<u32>> = OnceLock::new();
+    *OWNER.get_or_init(|| {
+        let probe = std::env::temp_dir().join(format!(".belvedere-{}-owner.tmp", std::process::id()));
+        let _ = std::fs::remove_file(&probe);
+        let made = OpenOptions::new().write(true).create_new(true).open(&probe);
+        let owner = made.and_then(|file| file.metadata()).map(|meta| meta.uid()).ok();
+        let _ = std::fs::remove_file(&probe);
+        // Without a place for files the process itself tells, where the system shows it as a folder.
+        owner.or_else(|| std::fs::metadata("/proc/self").ok().map(|meta| meta.uid()))
+    })
 }
 
 #[cfg(not(unix))]

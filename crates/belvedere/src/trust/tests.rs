@@ -76,6 +76,11 @@ fn the_record_is_private_and_worth_nothing_if_others_may_write_it() {
     assert!(trust.list().is_empty());
     trust.remember(&scene, &[root.join("data/a.obj")]).expect("written");
     assert_eq!((mode(&path), trust.list().len()), (0o600, 1));
+    // Only the superuser can give a file away.
+    match std::os::unix::fs::chown(&path, Some(12_345), None) {
+        Ok(()) => assert!(trust.list().is_empty(), "the record is another user's"),
+        Err(e) => assert_eq!(e.kind(), std::io::ErrorKind::PermissionDenied),
+    }
 }
 
 #[test]

@@ -441,6 +441,15 @@ impl Disoccluded {
         overwrite: bool,
         progress: &Progress,
     ) -> Result<Vec<PathBuf>, BelvedereError> {
+        belvedere_io::atomic::together(|| self.write_each(files, overwrite, progress))
+    }
+
+    fn write_each(
+        &self,
+        files: &DisoccludeFiles,
+        overwrite: bool,
+        progress: &Progress,
+    ) -> Result<Vec<PathBuf>, BelvedereError> {
         let stage = &self.solved.stage;
         let [dem, delta] = &self.rasters;
         write_geotiff(&files.out, dem, overwrite)?;

@@ -95,6 +95,11 @@ fn packed(request: &PackRequest, progress: &Progress) -> Result<Packed, Belveder
         return Err(BelvedereError::Output { path: request.out.clone(), reason });
     }
     bundle.threads = application.iter().any(|(name, _)| name.starts_with(THREADS));
+    // A page of the old list and new files would be neither.
+    let list = request.out.join(BUNDLE);
+    if request.overwrite && list.is_file() {
+        std::fs::remove_file(&list).map_err(|e| IoError::os(&list, e))?;
+    }
     let mut application_bytes = 0;
     for (name, bytes) in &application {
         // A visitor loads only one of the two applications.
@@ -137,7 +142,9 @@ fn names_below(root: &Path, folder: &Path, names: &mut Vec<PathBuf>) {
         let name = folder.join(entry.file_name());
         match entry.file_type() {
             Ok(kind) if kind.is_dir() => names_below(root, &name, names),
-            _ => names.push(name),
+            Ok(kind) if kind.is_file() => names.push(name),
+            // A link would copy a file of elsewhere into the page.
+            _ => {}
         }
     }
 }

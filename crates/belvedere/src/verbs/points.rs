@@ -219,7 +219,8 @@ fn read_list<T>(path: &Path, shape: &str, read: &dyn Fn(&Node) -> Result<T, Stri
 fn list<T>(path: &Path, shape: &str, read: &dyn Fn(&Node) -> Result<T, String>) -> Result<Vec<T>, BelvedereError> {
     let fail = |reason: String| BelvedereError::Points { path: path.to_owned(), reason };
     let mut text = Vec::new();
-    belvedere_io::fs::File::open(path)
+    // Named by the user, who may send them by a pipe.
+    std::fs::File::open(path)
         .and_then(|f| f.take(MAX_POINT_BYTES + 1).read_to_end(&mut text))
         .map_err(|e| belvedere_io::IoError::os(path, e))?;
     if text.len() as u64 > MAX_POINT_BYTES {

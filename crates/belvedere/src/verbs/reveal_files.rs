@@ -3,6 +3,7 @@
 use crate::output::{self, document_toml, pretty};
 use crate::picture::Picture;
 use crate::{BelvedereError, Session};
+use belvedere_io::atomic;
 use belvedere_io::png::{self, Channels};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -39,8 +40,22 @@ impl RevealFiles {
         !self.out.as_os_str().is_empty()
     }
 
-    /// Writes the files of a picture; returns their names.
+    /// Writes the files of a picture, which get their names together; returns them.
     pub(super) fn write(
+        &self,
+        picture: &Picture,
+        session: &Session,
+        report: &impl Serialize,
+        overwrite: bool,
+    ) -> Result<Vec<PathBuf>, BelvedereError> {
+        let written = atomic::together(|| self.write_each(picture, session, report, overwrite))?;
+        if overwrite && self.writes_pictures() && !written.contains(&self.pair()) {
+            remove_old(&self.pair())?;
+        }
+        Ok(written)
+    }
+
+    fn write_each(
         &self,
         picture: &Picture,
         session: &Session,
@@ -65,9 +80,6 @@ impl RevealFiles {
         if let Some(path) = &self.before {
             let frame = picture.straight.as_ref().unwrap_or(&picture.frame);
             draw(path, [frame.width, frame.height], &frame.color, &title[..1])?;
-        }
-        if !differs && overwrite {
-            remove_old(&self.pair())?;
         }
         if let Some(path) = &self.report {
             output::write_text(path, &pretty(report)?, overwrite)?;

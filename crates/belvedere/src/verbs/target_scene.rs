@@ -124,7 +124,13 @@ pub(super) fn open(request: &TargetRequest, options: &OpenOptions) -> Result<(Se
     let mut options = options.clone();
     let mut map = Map { see: request.see.clone(), ..Map::default() };
     let mut models: Vec<LayerDoc> = Vec::new();
-    for file in request.files.iter().chain(seen_file(&request.see).as_ref()) {
+    // A file that is given as data, too, is read once.
+    let is_given = |seen: &PathBuf| {
+        let table = |path: &Path| split_table(path).1.map(str::to_owned);
+        request.files.iter().any(|file| same_file(file, seen) && table(file) == table(seen))
+    };
+    let seen = seen_file(&request.see).filter(|seen| !is_given(seen));
+    for file in request.files.iter().chain(seen.as_ref()) {
         if file.to_str().is_some_and(|name| name.starts_with("builtin:")) {
             models.push(layer(file, &models)?);
             continue;

@@ -2,7 +2,9 @@
 
 use super::manifest::frame_name;
 use crate::BelvedereError;
+use belvedere_io::atomic::Temporary;
 use belvedere_scene::{Cancelled, Progress};
+use std::ffi::OsString;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -36,22 +38,25 @@ pub(super) fn make(
     fps: f64,
     progress: &Progress,
 ) -> Result<Film, BelvedereError> {
-    let pattern = folder.join(frame_name(0).replace("00000", "%05d"));
-    let command = format!("ffmpeg -framerate {fps} -i {} -pix_fmt yuv420p {}", pattern.display(), out.display());
-    let temporary = out.with_extension(format!("{}.tmp.mp4", std::process::id()));
+    let pattern = frame_name(0).replace("00000", "%05d");
+    let command = by_hand(out, folder, &pattern, fps);
+    let temporary = Temporary::beside(out).map_err(|e| belvedere_io::IoError::os(out, e))?;
+    let film = std::path::absolute(temporary.path()).map_err(|e| belvedere_io::IoError::os(out, e))?;
     let mut complaint = String::new();
     for encoder in ENCODERS {
         let mut ffmpeg = Command::new("ffmpeg");
         ffmpeg.args(["-nostdin", "-hide_banner", "-loglevel", "error", "-y", "-framerate", &fps.to_string()]);
-        ffmpeg.args(["-start_number", "0", "-i"]).arg(&pattern).args(["-frames:v", &frames.to_string()]);
+        // In the folder of the frames: in a pattern, % and digits would stand for numbers, and a colon ends the name of a protocol.
+        ffmpeg.current_dir(folder).args(["-f", "image2", "-start_number", "0", "-i", &pattern]);
+        ffmpeg.args(["-frames:v", &frames.to_string()]);
         // Encoders need even widths and heights.
         ffmpeg.args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2"]).args(encoder);
         ffmpeg.args(["-pix_fmt", "yuv420p", "-movflags", "+faststart", "-map_metadata", "-1"]);
-        ffmpeg.args(["-fflags", "+bitexact", "-flags:v", "+bitexact"]).arg(&temporary);
+        ffmpeg.args(["-fflags", "+bitexact", "-flags:v", "+bitexact", "-f", "mp4"]).arg(as_file(&film));
         let ran = run(&mut ffmpeg, progress);
         match ran {
             Ok((true, _)) => {
-                std::fs::rename(&temporary, out).map_err(|e| belvedere_io::IoError::os(out, e))?;
+                temporary.publish(true)?;
                 return Ok(Film::Made(out.to_owned()));
             }
             Ok((false, said)) => complaint = said,
@@ -62,17 +67,33 @@ pub(super) fn make(
                 );
                 return Ok(Film::Missing { reason, command });
             }
-            Err(Failure::Cancelled) => {
-                let _ = std::fs::remove_file(&temporary);
-                return Err(Cancelled.into());
-            }
+            Err(Failure::Cancelled) => return Err(Cancelled.into()),
             Err(Failure::Other(said)) => complaint = said,
         }
-        let _ = std::fs::remove_file(&temporary);
     }
     let last = complaint.lines().rfind(|l| !l.trim().is_empty()).unwrap_or("it gave no reason").trim();
     let reason = format!("ffmpeg could not make {} ({last}); the frames are in {}", out.display(), folder.display());
     Ok(Film::Missing { reason, command })
+}
+
+/// A path that ffmpeg takes for a file, whatever its name.
+fn as_file(path: &Path) -> OsString {
+    let mut name = OsString::from("file:");
+    name.push(path);
+    name
+}
+
+/// The command that encodes the frames, for the shell of the user.
+fn by_hand(out: &Path, folder: &Path, pattern: &str, fps: f64) -> String {
+    let frames = PathBuf::from(folder.display().to_string().replace('%', "%%")).join(pattern);
+    let quoted = |path: &Path| {
+        let name = as_file(path).to_string_lossy().into_owned();
+        let plain = name.chars().all(|c| c.is_alphanumeric() || "/._-%:".contains(c));
+        // Names with a colon are no plain files to ffmpeg.
+        let short = name.strip_prefix("file:").filter(|name| !name.contains(':')).unwrap_or(&name);
+        if plain { short.to_owned() } else { format!("'{}'", short.replace('\'', "'\\''")) }
+    };
+    format!("ffmpeg -framerate {fps} -i {} -pix_fmt yuv420p {}", quoted(&frames), quoted(out))
 }
 
 enum Failure {

@@ -189,7 +189,7 @@ impl Manifest {
     pub(super) fn read(folder: &Path) -> Result<Option<Self>, BelvedereError> {
         let path = folder.join(NAME);
         let refuse = |reason: String| BelvedereError::Output { path: path.clone(), reason };
-        match std::fs::read_to_string(&path) {
+        match belvedere_io::fs::read_to_string(&path) {
             Ok(text) => serde_json::from_str(&text).map(Some).map_err(|e| {
                 refuse(format!("is no record of an animation ({e}); remove the folder, or choose another"))
             }),

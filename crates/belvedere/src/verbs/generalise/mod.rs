@@ -143,6 +143,10 @@ impl GeneralisedCity {
     /// # Errors
     /// [`BelvedereError::Io`], [`BelvedereError::Output`], [`BelvedereError::Cancelled`].
     pub fn write(&self, folder: &Path, overwrite: bool, progress: &Progress) -> Result<Vec<PathBuf>, BelvedereError> {
+        belvedere_io::atomic::together(|| self.write_each(folder, overwrite, progress))
+    }
+
+    fn write_each(&self, folder: &Path, overwrite: bool, progress: &Progress) -> Result<Vec<PathBuf>, BelvedereError> {
         std::fs::create_dir_all(folder).map_err(|e| belvedere_io::IoError::os(folder, e))?;
         let inputs: Vec<PathBuf> = self.inputs.iter().map(|i| i.path.clone()).collect();
         let files = files(folder, self.epsg);

@@ -1,0 +1,78 @@
+//! Ctrl-C: the work ends within a second, whatever it is at, and the user is told what was written.
+//!
+//! Work that looks at the flag of cancellation ends by itself. Other work, as reading a large file, is given [`GRACE`], and then the process ends:
+//! outputs are written beside their names and renamed, so that they are whole at any moment. A second Ctrl-C ends the process at once.
+
+use crate::report;
+use belvedere::BelvedereError;
+use belvedere::io::atomic;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+/// Exit code of an interrupted program: 128 and the number of the signal, as of shells.
+pub(crate) const CODE: u8 = 130;
+/// Time in which the work may end by itself.
+const GRACE: Duration = Duration::from_millis(500);
+
+/// Whether a thread ends the process.
+static ENDING: AtomicBool = AtomicBool::new(false);
+/// Whether a picture is written on standard output.
+static ON_STDOUT: AtomicBool = AtomicBool::new(false);
+
+/// Sets what Ctrl-C does.
+pub(crate) fn install(flag: Arc<AtomicBool>, verb: &'static str) {
+    // Without a handler Ctrl-C still ends the process, only less politely.
+    let _ = ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::SeqCst) {
+            end(verb);
+        }
+        let later = std::thread::Builder::new().spawn(move || {
+            std::thread::sleep(GRACE);
+            end(verb);
+        });
+        if later.is_err() {
+            end(verb);
+        }
+    });
+}
+
+/// Lets the calling thread alone end the process: another one that wants to waits for that end.
+pub(crate) fn claim_end() {
+    while ENDING.swap(true, Ordering::SeqCst) {
+        std::thread::park();
+    }
+}
+
+/// Notes that a picture is written on standard output.
+pub(crate) fn note_stdout() {
+    ON_STDOUT.store(true, Ordering::SeqCst);
+}
+
+fn end(verb: &str) {
+    claim_end();
+    report::fail(&said(&atomic::abandon(), verb));
+    std::process::exit(i32::from(CODE));
+}
+
+/// What is told of work that ended by itself.
+pub(crate) fn told(error: &anyhow::Error, verb: &str) -> String {
+    match error.downcast_ref() {
+        Some(BelvedereError::Interrupted { .. }) => report::one_line(error),
+        _ => said(&atomic::abandon(), verb),
+    }
+}
+
+/// * `written`: the outputs, the oldest first.
+fn said(written: &[PathBuf], verb: &str) -> String {
+    let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
+    let files = match names.as_slice() {
+        [] if ON_STDOUT.load(Ordering::SeqCst) => "standard output may hold a part of the picture".into(),
+        [] => "nothing was written".into(),
+        [.., last] if names.len() > 4 => format!("{} files were written, the last of them {last}", names.len()),
+        names => format!("written before: {}", names.join(", ")),
+    };
+    let resume = if verb == "animate" && !names.is_empty() { "; the same command with --resume goes on" } else { "" };
+    report::relative(&format!("interrupted; {files}{resume}"))
+}
