@@ -26,6 +26,12 @@ impl Wake {
         self.0.request_repaint();
     }
 
+    /// Requests a frame; on the page's own thread only.
+    #[cfg(target_family = "wasm")]
+    pub(crate) fn now(&self) {
+        self.0.request_repaint();
+    }
+
     /// Requests a frame if a worker has asked for one; the page calls this often.
     #[cfg(target_family = "wasm")]
     pub(crate) fn pass_on(&self) {
