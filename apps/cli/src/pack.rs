@@ -66,8 +66,8 @@ pub(crate) fn pack_scene(args: PackArgs, context: &Context) -> anyhow::Result<Go
 /// The script that builds the application, in the repository.
 const BUILD: &str = "apps/viewer/web/build";
 
-/// Where the application for browsers lies: as given, named by the environment, installed beside the program as releases have it, or built
-/// in the repository of the program. And the one command that builds it there.
+/// Where the application for browsers lies: as given, named by the environment, installed beside the program, or built in the repository of the
+/// program. And the one command that builds it there.
 fn application(given: Option<PathBuf>) -> (PathBuf, String) {
     let program = std::env::current_exe().and_then(|program| program.canonicalize()).unwrap_or_default();
     let beside = program.parent().unwrap_or(Path::new("."));
@@ -83,7 +83,7 @@ fn application(given: Option<PathBuf>) -> (PathBuf, String) {
     };
     let remedy = match script {
         Some(script) => format!("this command builds it: {}{into}", script.display()),
-        None => format!("releases bring it; in a copy of the repository this command builds it: {BUILD}{into}"),
+        None => format!("in a copy of the repository this command builds it: {BUILD}{into}"),
     };
     (folder, remedy)
 }

@@ -66,7 +66,9 @@ impl Page {
         let attached = page.call("Target.attachToTarget", json!({ "targetId": target, "flatten": true }));
         page.session = attached["sessionId"].as_str().expect("session").to_owned();
         for domain in ["Runtime", "Log", "Page", "DOM", "Accessibility", "Performance"] {
-            page.call(&format!("{domain}.enable"), json!({}));
+            // Times are those of the page's thread, whatever else the machine does.
+            let params = if domain == "Performance" { json!({ "timeDomain": "threadTicks" }) } else { json!({}) };
+            page.call(&format!("{domain}.enable"), params);
         }
         let size = json!({ "width": PAGE[0], "height": PAGE[1], "deviceScaleFactor": 1, "mobile": false });
         page.call("Emulation.setDeviceMetricsOverride", size);

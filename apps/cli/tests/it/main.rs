@@ -18,6 +18,7 @@ mod molecules;
 mod numbers;
 mod odd_files;
 mod outputs;
+mod packed;
 mod pick;
 mod pictures;
 mod places;

@@ -56,7 +56,9 @@ async fn picked() -> Result<Vec<PathBuf>, String> {
     let Some(promise) = promise else { return Ok(Vec::new()) };
     let files = JsFuture::from(promise).await.map_err(|e| failed(&e))?;
     if files.is_null() {
-        return Err(tr("the browser opens its dialog only just after a press: press Open again, or drop the files").into());
+        return Err(
+            tr("the browser opens its dialog only just after a press: press Open again, or drop the files").into()
+        );
     }
     let files = Array::from(&files);
     let kept = files.iter().map(|file| {

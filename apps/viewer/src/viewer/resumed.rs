@@ -108,7 +108,9 @@ impl Viewer {
         if missing.len() > LISTED {
             list = fill(tr("{0} and {1} more"), &[&list, &(missing.len() - LISTED)]);
         }
-        let words = tr("The scene that you had open needs files that the browser does not have any more: {0}. Drop them on the page, and it comes back.");
+        let words = tr(
+            "The scene that you had open needs files that the browser does not have any more: {0}. Drop them on the page, and it comes back.",
+        );
         self.model.notices.error(fill(words, &[&list]));
     }
 
@@ -140,9 +142,13 @@ impl Viewer {
     /// * `is_full`: whether there is no room for them; else the browser refuses.
     pub(crate) fn tell_not_kept(&mut self, is_full: bool) {
         let words = if is_full {
-            tr("The browser has no room to keep this file: open it again when the page has been loaded again. All else goes on.")
+            tr(
+                "The browser has no room to keep this file: open it again when the page has been loaded again. All else goes on.",
+            )
         } else {
-            tr("The browser keeps no files here, as in a private window: open them again when the page has been loaded again. All else goes on.")
+            tr(
+                "The browser keeps no files here, as in a private window: open them again when the page has been loaded again. All else goes on.",
+            )
         };
         self.model.notices.error(words);
     }
