@@ -1,8 +1,8 @@
 //! The application on a web page.
 
-mod mirror;
 pub(crate) mod page;
 
+use crate::mirror::{self, Mirror};
 use crate::{Opening, Viewer};
 use belvedere::io::fs;
 use std::path::PathBuf;
@@ -41,7 +41,8 @@ impl Application {
         let opening = Opening { files: open.into_iter().map(PathBuf::from).collect(), left, ..Opening::default() };
         let make: eframe::AppCreator<'static> = Box::new(move |cc| {
             cc.egui_ctx.enable_accesskit();
-            cc.egui_ctx.add_plugin(mirror::Mirror::default());
+            let tell = |update: &str| drop(page::call("mirror", &[&update.into()]));
+            cc.egui_ctx.add_plugin(Mirror::new(tell));
             Ok(Box::new(Viewer::new(&cc.egui_ctx, &opening)))
         });
         self.runner.start(canvas, eframe::WebOptions::default(), make).await

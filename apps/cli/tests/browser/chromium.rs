@@ -128,6 +128,26 @@ impl Page {
         answer["result"]["value"].take()
     }
 
+    /// Loads the page again. A page that nobody has pressed since it was loaded may not ask.
+    ///
+    /// * `asks`: whether it asks before it is left.
+    pub(super) fn reload(&mut self, asks: bool) {
+        let asked = self.asked + u32::from(asks);
+        self.value("window.stays = true");
+        self.call("Page.reload", json!({}));
+        if self.may_leave || !asks {
+            self.wait("window.stays ?? null", Value::is_null);
+        } else {
+            // The question comes some time after the answer.
+            let began = Instant::now();
+            while self.asked < asked && began.elapsed() < PATIENCE {
+                self.value("window.stays");
+            }
+            assert_eq!(self.value("window.stays"), true, "it is loaded although it may not be left");
+        }
+        assert_eq!(self.asked, asked, "how often it asked");
+    }
+
     /// Waits until a script has a value that passes.
     pub(super) fn wait(&mut self, script: &str, passes: impl Fn(&Value) -> bool) -> Value {
         let began = Instant::now();

@@ -118,8 +118,7 @@ fn drawn_and_dragged(isolated: bool) {
     assert!(page.screenshot() != before, "the picture does not follow the pointer");
     // What was done is there again when the page is loaded again.
     let left = page.value("belvedere.application.scene()");
-    page.call("Page.reload", json!({}));
-    assert_eq!(page.asked, 1, "it asks before what is not saved is left");
+    page.reload(true);
     page.wait("window.belvedere?.application.scene() ?? null", |scene| *scene == left);
     let mut each: Vec<f64> =
         times["input_to_picture_ms"].as_array().expect("times").iter().filter_map(Value::as_f64).collect();
@@ -196,10 +195,9 @@ fn files_that_are_dropped_on_the_page_are_opened_and_what_is_saved_is_downloaded
     }
     assert_eq!(std::fs::read_to_string(&saved).expect("scene"), scene.as_str().expect("scene"));
     // The browser keeps the files for the tab, until it is told to forget them.
-    page.call("Page.reload", json!({}));
+    page.reload(false);
     page.wait("window.belvedere?.application.scene() ?? null", |shown| *shown == scene);
     times(&mut page, rests);
-    assert_eq!(page.asked, 0, "it asks although all is saved");
     page.press("File");
     page.press("Forget my files");
     let words = |page: &mut Page| page.accessible().into_iter().map(|(_, name, _)| name).collect::<Vec<_>>().join("\n");
@@ -211,7 +209,7 @@ fn files_that_are_dropped_on_the_page_are_opened_and_what_is_saved_is_downloaded
         }
     };
     says(&mut page, "has forgotten your files");
-    page.call("Page.reload", json!({}));
+    page.reload(false);
     says(&mut page, "any more: dem.tif, route.gpx.");
     page.drop_files(&[&dem]);
     says(&mut page, "any more: route.gpx.");

@@ -1,6 +1,5 @@
 //! The tree of accessibility, told to the page, which mirrors it in its elements (web/mirror.js), and the actions that come back.
 
-use super::page;
 use eframe::egui::accesskit::{Action, ActionData, ActionRequest, Live, Node, NodeId, Role, Toggled, TreeId};
 use eframe::egui::{Context, Event, FullOutput, Plugin, RawInput};
 use serde_json::{Value, json};
@@ -15,7 +14,7 @@ thread_local! {
 /// Asks for an action in the next frame; `None` if it is none.
 ///
 /// * `text`, `number`: the value for the actions of these names.
-pub(super) fn ask(id: &str, action: &str, text: Option<String>, number: Option<f64>) -> Option<()> {
+pub(crate) fn ask(id: &str, action: &str, text: Option<String>, number: Option<f64>) -> Option<()> {
     let (action, data) = match action {
         "click" => (Action::Click, None),
         "focus" => (Action::Focus, None),
@@ -31,10 +30,17 @@ pub(super) fn ask(id: &str, action: &str, text: Option<String>, number: Option<f
 }
 
 /// The tree as the page has it.
-#[derive(Default)]
-pub(super) struct Mirror {
+pub(crate) struct Mirror {
     nodes: HashMap<NodeId, Node>,
     focus: Option<NodeId>,
+    tell: Box<dyn Fn(&str) + Send + Sync>,
+}
+
+impl Mirror {
+    /// * `tell`: takes what has changed, as JSON.
+    pub(crate) fn new(tell: impl Fn(&str) + Send + Sync + 'static) -> Self {
+        Self { nodes: HashMap::new(), focus: None, tell: Box::new(tell) }
+    }
 }
 
 impl Plugin for Mirror {
@@ -59,7 +65,7 @@ impl Plugin for Mirror {
         if !changed.is_empty() || !gone.is_empty() || self.focus != Some(update.focus) {
             let (root, focus) = (name_of(&root), name_of(&update.focus));
             let text = json!({ "root": root, "focus": focus, "nodes": changed, "gone": gone }).to_string();
-            page::call("mirror", &[&text.into()]);
+            (self.tell)(&text);
         }
         (self.nodes, self.focus) = (nodes, Some(update.focus));
     }
@@ -143,4 +149,87 @@ fn role(node: &Node) -> Option<&'static str> {
         Role::Label => return None,
         _ => return node.label().map(|_| "group"),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::{Slider, Ui};
+    use std::sync::{Arc, Mutex};
+
+    /// A window with two controls, and what the page was told.
+    struct Page {
+        ctx: Context,
+        told: Arc<Mutex<Vec<Value>>>,
+        pressed: u32,
+        angle: f64,
+    }
+
+    impl Page {
+        fn new() -> Self {
+            let (ctx, told) = (Context::default(), Arc::new(Mutex::new(Vec::new())));
+            let outbox = told.clone();
+            ctx.enable_accesskit();
+            ctx.add_plugin(Mirror::new(move |text| {
+                outbox.lock().expect("lock").push(serde_json::from_str(text).expect("JSON"));
+            }));
+            Self { ctx, told, pressed: 0, angle: 40.0 }
+        }
+
+        /// One frame; what was told in it.
+        fn frame(&mut self, has_button: bool) -> Vec<Value> {
+            let _ = self.ctx.clone().run_ui(RawInput::default(), |ui: &mut Ui| {
+                if has_button && ui.button("Press").clicked() {
+                    self.pressed += 1;
+                }
+                ui.add(Slider::new(&mut self.angle, 5.0..=120.0).text("angle"));
+            });
+            std::mem::take(&mut *self.told.lock().expect("lock"))
+        }
+
+        /// Frames until nothing changes any more; all that was told.
+        fn rest(&mut self, has_button: bool) -> Vec<Value> {
+            let mut all = Vec::new();
+            for _ in 0..20 {
+                let told = self.frame(has_button);
+                if told.is_empty() && !all.is_empty() {
+                    return all;
+                }
+                all.extend(told);
+            }
+            panic!("it never rests: {all:?}")
+        }
+    }
+
+    fn find(told: &[Value], role: &str) -> Value {
+        let nodes = told.iter().rev().flat_map(|update| update["nodes"].as_array().expect("nodes"));
+        nodes.into_iter().find(|node| node["role"] == role).unwrap_or_else(|| panic!("no {role} in {told:?}")).clone()
+    }
+
+    #[test]
+    fn controls_are_told_once_and_what_is_done_to_their_elements_is_done_to_them() {
+        let mut page = Page::new();
+        let told = page.rest(true);
+        let (button, slider) = (find(&told, "button"), find(&told, "slider"));
+        assert_eq!(
+            (&button["name"], &slider["number"], &slider["max"]),
+            (&"Press".into(), &40.0.into(), &120.0.into())
+        );
+        assert!(button["place"][2].as_f64() > Some(10.0), "{button}");
+        let name = told
+            .iter()
+            .flat_map(|update| update["nodes"].as_array().expect("nodes"))
+            .find(|node| slider["named_by"].as_array().is_some_and(|ids| ids.contains(&node["id"])));
+        assert_eq!(name.expect("a name")["value"], "angle");
+        let id = |node: &Value| node["id"].as_str().expect("an id").to_owned();
+        assert!(ask(&id(&button), "click", None, None).is_some());
+        page.frame(true);
+        assert_eq!(page.pressed, 1);
+        assert!(ask(&id(&slider), "number", None, Some(55.5)).is_some());
+        let told = page.rest(true);
+        assert_eq!((page.angle, &find(&told, "slider")["number"]), (55.5, &55.5.into()));
+        assert!(ask(&id(&button), "dance", None, None).is_none() && ask("x", "click", None, None).is_none());
+        let told = page.rest(false);
+        assert!(told.iter().any(|update| update["gone"].as_array().is_some_and(|gone| gone.contains(&button["id"]))));
+    }
 }
