@@ -20,7 +20,7 @@ pub(crate) struct PackArgs {
     pub(crate) app: Option<PathBuf>,
     /// Draw on all cores of the visitor: needs a server that sends the two headers in the file `_headers`
     #[arg(long)]
-    pub(crate) threads: bool,
+    pub(crate) all_cores: bool,
 }
 
 pub(crate) fn pack_scene(args: PackArgs, context: &Context) -> anyhow::Result<Goal> {
@@ -32,7 +32,7 @@ pub(crate) fn pack_scene(args: PackArgs, context: &Context) -> anyhow::Result<Go
         files: args.files,
         allowed: context.common.allow_root.clone(),
         application,
-        threads: args.threads,
+        threads: args.all_cores,
         remedy,
         out: args.out,
         overwrite: context.common.overwrite,
@@ -47,7 +47,7 @@ pub(crate) fn pack_scene(args: PackArgs, context: &Context) -> anyhow::Result<Go
     } else if !context.common.quiet {
         let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
         let shown = out.display();
-        let next = match args.threads {
+        let next = match args.all_cores {
             true => "put the folder on a web server that sends the headers in its file _headers".to_owned(),
             false => format!(
                 "put the folder on any web server; to try it: python3 -m http.server --bind 127.0.0.1 -d {shown}"
@@ -71,19 +71,13 @@ const BUILD: &str = "apps/viewer/web/build";
 fn application(given: Option<PathBuf>) -> (PathBuf, String) {
     let program = std::env::current_exe().and_then(|program| program.canonicalize()).unwrap_or_default();
     let beside = program.parent().unwrap_or(Path::new("."));
-    let script = beside.join("../..").join(BUILD).canonicalize().ok();
+    let in_repository = beside.join("../..").join(BUILD).is_file();
     let places = ["web", "../share/belvedere/web", "../web/app"].map(|place| beside.join(place));
     let named = given.or_else(|| std::env::var_os("BELVEDERE_WEB_APP").map(PathBuf::from));
     let found = named.clone().or_else(|| places.iter().find(|place| place.join("index.html").is_file()).cloned());
     // Without a folder the script builds into the last of the places.
-    let folder = found.unwrap_or_else(|| if script.is_some() { places[2].clone() } else { places[0].clone() });
-    let into = match (&script, &named) {
-        (Some(_), None) => String::new(),
-        _ => format!(" {}", std::path::absolute(&folder).unwrap_or_else(|_| folder.clone()).display()),
-    };
-    let remedy = match script {
-        Some(script) => format!("this command builds it: {}{into}", script.display()),
-        None => format!("in a copy of the repository this command builds it: {BUILD}{into}"),
-    };
+    let folder = found.unwrap_or_else(|| if in_repository { places[2].clone() } else { places[0].clone() });
+    let into = if in_repository && named.is_none() { String::new() } else { format!(" {}", folder.display()) };
+    let remedy = format!("in a copy of the repository this command builds it: {BUILD}{into}");
     (folder, remedy)
 }

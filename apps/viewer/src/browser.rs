@@ -42,7 +42,8 @@ impl Application {
         let make: eframe::AppCreator<'static> = Box::new(move |cc| {
             cc.egui_ctx.enable_accesskit();
             let tell = |update: &str| drop(page::call("mirror", &[&update.into()]));
-            cc.egui_ctx.add_plugin(Mirror::new(tell));
+            let rest = |time: f64| drop(page::call("rest_for", &[&time.into()]));
+            cc.egui_ctx.add_plugin(Mirror::new(tell, rest));
             Ok(Box::new(Viewer::new(&cc.egui_ctx, &opening)))
         });
         self.runner.start(canvas, eframe::WebOptions::default(), make).await

@@ -34,12 +34,13 @@ pub(crate) struct Mirror {
     nodes: HashMap<NodeId, Node>,
     focus: Option<NodeId>,
     tell: Box<dyn Fn(&str) + Send + Sync>,
+    rest: Box<dyn Fn(f64) + Send + Sync>,
 }
 
 impl Mirror {
-    /// * `tell`: takes what has changed, as JSON.
-    pub(crate) fn new(tell: impl Fn(&str) + Send + Sync + 'static) -> Self {
-        Self { nodes: HashMap::new(), focus: None, tell: Box::new(tell) }
+    /// * `tell`: takes what has changed, as JSON. `rest`: takes the time until the next frame, milliseconds.
+    pub(crate) fn new(tell: impl Fn(&str) + Send + Sync + 'static, rest: impl Fn(f64) + Send + Sync + 'static) -> Self {
+        Self { nodes: HashMap::new(), focus: None, tell: Box::new(tell), rest: Box::new(rest) }
     }
 }
 
@@ -53,6 +54,8 @@ impl Plugin for Mirror {
     }
 
     fn output_hook(&mut self, ctx: &Context, output: &mut FullOutput) {
+        let delays = output.viewport_output.values().map(|viewport| viewport.repaint_delay.as_secs_f64());
+        (self.rest)(1e3 * delays.fold(f64::MAX, f64::min).min(1e9));
         let Some(update) = output.platform_output.accesskit_update.take() else { return };
         let Some(root) = update.tree.map(|tree| tree.root) else { return };
         // The pieces of which a text is set say nothing beyond it.
@@ -161,6 +164,7 @@ mod tests {
     struct Page {
         ctx: Context,
         told: Arc<Mutex<Vec<Value>>>,
+        rests: Arc<Mutex<f64>>,
         pressed: u32,
         angle: f64,
     }
@@ -170,10 +174,13 @@ mod tests {
             let (ctx, told) = (Context::default(), Arc::new(Mutex::new(Vec::new())));
             let outbox = told.clone();
             ctx.enable_accesskit();
-            ctx.add_plugin(Mirror::new(move |text| {
-                outbox.lock().expect("lock").push(serde_json::from_str(text).expect("JSON"));
-            }));
-            Self { ctx, told, pressed: 0, angle: 40.0 }
+            let rests = Arc::new(Mutex::new(0.0));
+            let rest = rests.clone();
+            ctx.add_plugin(Mirror::new(
+                move |text| outbox.lock().expect("lock").push(serde_json::from_str(text).expect("JSON")),
+                move |time| *rest.lock().expect("lock") = time,
+            ));
+            Self { ctx, told, rests, pressed: 0, angle: 40.0 }
         }
 
         /// One frame; what was told in it.
@@ -192,7 +199,7 @@ mod tests {
             let mut all = Vec::new();
             for _ in 0..20 {
                 let told = self.frame(has_button);
-                if told.is_empty() && !all.is_empty() {
+                if told.is_empty() && !all.is_empty() && *self.rests.lock().expect("lock") > 1e3 {
                     return all;
                 }
                 all.extend(told);

@@ -7,6 +7,40 @@ const word = document.getElementById("word"), text = document.getElementById("te
 const canvas = document.getElementById("canvas");
 const fail = (what) => { text.textContent = what; share.hidden = true; word.hidden = false; };
 
+// The application asks for every frame of the screen, for ever. Between changes it gets one a second.
+const LONGEST_MS = 1000, AWAKE_MS = 250, HELD = -1;
+const request = window.requestAnimationFrame.bind(window), cancel = window.cancelAnimationFrame.bind(window);
+let held = null, released = 0, timer = 0, rests_until = 0, awake_until = 0;
+const release = () => {
+  clearTimeout(timer);
+  if (held) released = request(held);
+  held = null;
+};
+const wake = () => {
+  awake_until = performance.now() + AWAKE_MS;
+  release();
+};
+// Nothing changes for so long, milliseconds.
+const rest_for = (time) => { rests_until = performance.now() + Math.min(time, LONGEST_MS); };
+window.requestAnimationFrame = (draw) => {
+  const left = rests_until - performance.now();
+  if (left <= 0 && performance.now() >= awake_until) rests_until = performance.now() + LONGEST_MS;
+  if (left <= 0 || performance.now() < awake_until) return request(draw);
+  held = draw;
+  timer = setTimeout(release, left);
+  return HELD;
+};
+window.cancelAnimationFrame = (id) => {
+  if (id !== HELD) return cancel(id);
+  clearTimeout(timer);
+  if (!held) cancel(released);
+  held = null;
+};
+const EVENTS = "pointerdown pointermove pointerup pointercancel pointerleave mousemove mouseleave touchstart touchmove touchend touchcancel wheel " +
+  "keydown keyup input compositionstart compositionend focus blur copy cut paste dragenter dragover dragleave drop resize visibilitychange hashchange";
+for (const kind of EVENTS.split(" ")) addEventListener(kind, wake, { capture: true, passive: true });
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", wake);
+
 // What the tab remembers; a browser may refuse it.
 const place = `belvedere ${location.pathname}`;
 const remembered = (name) => { try { return sessionStorage.getItem(name); } catch { return null; } };
@@ -44,7 +78,7 @@ try {
   const answer = await fetch("bundle.json");
   const bundle = answer.ok ? await answer.json() : { title: "", open: [], files: [] };
   if (bundle.threads && !crossOriginIsolated) {
-    throw new Error("this page was packed for many threads, and its server does not send the two headers in the file _headers; pack it without --threads");
+    throw new Error("this page was packed for many threads, and its server does not send the two headers in the file _headers; pack it without --all-cores");
   }
   const threads = bundle.threads ? Math.max(2, navigator.hardwareConcurrency ?? 2) : 0;
   const { default: init, Application, initThreadPool } = await import("./belvedere.js");
@@ -78,6 +112,8 @@ try {
     },
     forget: () => void kept?.retain(() => false),
     mirror: (update) => mirror.take(update),
+    wake,
+    rest_for,
   };
 
   // What was being done in this tab comes back, whether it was loaded again or crashed.

@@ -52,7 +52,7 @@ fn pack(application: &Path, files: &[&Path], out: &Path) -> Value {
 fn pack_with(application: &Path, files: &[&Path], out: &Path, threads: bool) -> Value {
     let mut command = Command::new(env!("CARGO_BIN_EXE_belvedere"));
     command.arg("pack").args(files).arg("-o").arg(out).arg("--app").arg(application).arg("--json");
-    command.args(threads.then_some("--threads"));
+    command.args(threads.then_some("--all-cores"));
     let output = command.output().expect("the program starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice::<Value>(&output.stdout).expect("a report")["report"].take()

@@ -28,7 +28,7 @@ fn pack(place: &Place, out: &str, more: &[&str]) -> Value {
 #[test]
 fn a_folder_holds_one_application() {
     let place = with_application();
-    for (out, more, word, threads) in [("plain", &[][..], "one", false), ("fast", &["--threads"][..], "many", true)] {
+    for (out, more, word, threads) in [("plain", &[][..], "one", false), ("fast", &["--all-cores"][..], "many", true)] {
         let report = &pack(&place, out, more)["report"];
         let bundle: Value = serde_json::from_slice(&read(&place.path(&format!("{out}/bundle.json")))).expect("JSON");
         assert_eq!((&bundle["threads"], &report["bundle"]["threads"]), (&threads.into(), &threads.into()));
@@ -70,11 +70,11 @@ fn a_missing_application_is_said_with_the_one_command_that_builds_it() {
     let place = with_application();
     std::fs::remove_dir_all(place.path("app/threads")).expect("removed");
     for (app, more, what) in [
-        ("app", &["--threads"][..], "holds no application for browsers with many threads"),
+        ("app", &["--all-cores"][..], "holds no application for browsers with many threads"),
         ("gone", &[][..], "holds no application for browsers (index.html"),
     ] {
         let said = place.fails(&[&["pack", "-o", "page", "--app", app], more].concat());
-        let command = format!("apps/viewer/web/build {}", place.path(app).display());
+        let command = format!("apps/viewer/web/build {app}");
         assert!(said.contains(what) && said.ends_with(&command), "{said}");
         assert!(!place.path("page").exists(), "{said}");
     }
