@@ -10,6 +10,8 @@ mod files;
 mod keys;
 mod language;
 mod menu;
+#[cfg(any(target_family = "wasm", test))]
+mod mirror;
 mod model;
 mod notices;
 mod panels;

@@ -20,6 +20,9 @@ pub(crate) enum Choice {
     /// Undoes or redoes to that number of steps.
     Step(usize),
     Welcome,
+    /// The browser forgets the files that it keeps.
+    #[cfg(target_family = "wasm")]
+    ForgetFiles,
     Quit,
 }
 
@@ -61,6 +64,15 @@ pub(crate) fn bar(ui: &mut Ui, model: &mut Model, recent: &[PathBuf], bookmarks:
             }
             if ui.button("Save as…").clicked() {
                 choice = Some(Choice::Command(Command::SaveAs));
+            }
+            #[cfg(target_family = "wasm")]
+            {
+                ui.separator();
+                let forget = ui.button(tr("Forget my files"));
+                let why = tr("The browser keeps the files that you open until another scene is opened.");
+                if forget.on_hover_text(why).clicked() {
+                    choice = Some(Choice::ForgetFiles);
+                }
             }
             // A page is closed by its browser, which asks the same question.
             if cfg!(not(target_family = "wasm")) {

@@ -4,6 +4,7 @@ mod at_work;
 mod from_above;
 mod layout;
 mod opening;
+mod resumed;
 mod unsaved;
 mod welcome;
 
@@ -43,6 +44,8 @@ pub struct Opening {
     pub state: Option<PathBuf>,
     /// Whether files are chosen in windows of the system, if it has any; else in windows of the application.
     pub system_dialogs: bool,
+    /// State of an earlier run as a page keeps it; the scene of it comes instead of the files, if all its own files are there.
+    pub left: Option<String>,
 }
 
 impl Opening {
@@ -100,6 +103,8 @@ pub struct Viewer {
     /// Last content of the recovery file, and the time since which the state differs from it.
     written: Option<(Arc<scene_file::Document>, Extra)>,
     dirty_since: Option<f64>,
+    /// What a page keeps for the time when it is loaded again.
+    resumed: resumed::Resumed,
     pending: Option<Pending>,
     dropped: Option<files::Inputs>,
     chosen_input: Option<files::Choosing>,
@@ -151,6 +156,7 @@ impl Viewer {
             recovery,
             written: None,
             dirty_since: None,
+            resumed: resumed::Resumed::new(!opening.files.is_empty()),
             pending: None,
             dropped: None,
             chosen_input: None,
@@ -183,10 +189,10 @@ impl Viewer {
                 };
                 notes.push(format!("The last session did not end as it should; {what}."));
             }
-            // A page has no thread to draw the cards on, and shows its own scene.
-            Some(_) | None => viewer.welcome.open = opening.files.is_empty() && !cfg!(target_family = "wasm"),
+            Some(_) | None => viewer.welcome.open = opening.files.is_empty() && opening.left.is_none(),
         }
-        if !opening.files.is_empty() {
+        let is_resumed = opening.left.as_deref().is_some_and(|text| viewer.resume(text));
+        if !is_resumed && !opening.files.is_empty() {
             viewer.open(opening.files.clone());
         }
         notes.into_iter().for_each(|note| viewer.model.notices.error(note));
@@ -201,6 +207,12 @@ impl Viewer {
     /// Whether the picture on the screen is that of the document, in full.
     pub fn rests(&self) -> bool {
         self.pending.is_none() && self.model.rests()
+    }
+
+    /// Whether there is a picture.
+    #[cfg(target_family = "wasm")]
+    pub(crate) fn is_drawn(&self) -> bool {
+        self.model.pictures > 0
     }
 
     /// Whether files are being opened.
@@ -278,6 +290,7 @@ impl Viewer {
         let scene = editor.place.scene.as_ref().and_then(|path| fs::canonicalize(path).ok());
         let known = scene.and_then(|scene| self.remembered.bookmarks.get(&scene).cloned());
         self.bookmarks_before = std::mem::replace(&mut self.bookmarks, known.unwrap_or_default());
+        self.resumed.another();
         self.model.replace(editor);
     }
 
@@ -333,6 +346,8 @@ impl Viewer {
             }
             Choice::Step(steps) => self.model.editor.go_to(steps),
             Choice::Welcome => self.welcome.open = true,
+            #[cfg(target_family = "wasm")]
+            Choice::ForgetFiles => self.forget_files(ctx),
             Choice::Quit => self.go_on_to(ctx, Next::Quit),
         }
     }

@@ -22,15 +22,24 @@ impl Wake {
         // Web workers cannot reach the window: the page polls this flag.
         #[cfg(all(target_family = "wasm", target_feature = "atomics"))]
         NEWS.store(true, Ordering::Release);
-        #[cfg(not(all(target_family = "wasm", target_feature = "atomics")))]
+        #[cfg(all(target_family = "wasm", not(target_feature = "atomics")))]
+        self.now();
+        #[cfg(not(target_family = "wasm"))]
         self.0.request_repaint();
+    }
+
+    /// Requests a frame; on the page's own thread only.
+    #[cfg(target_family = "wasm")]
+    pub(crate) fn now(&self) {
+        self.0.request_repaint();
+        crate::browser::page::call("wake", &[]);
     }
 
     /// Requests a frame if a worker has asked for one; the page calls this often.
     #[cfg(target_family = "wasm")]
     pub(crate) fn pass_on(&self) {
         if NEWS.swap(false, Ordering::AcqRel) {
-            self.0.request_repaint();
+            self.now();
         }
     }
 }

@@ -21,6 +21,9 @@ pub(super) struct Page {
     calls: u64,
     /// What the page complained about.
     pub(super) complaints: Vec<String>,
+    /// Whether the page may be left when it asks, and how often it asked.
+    pub(super) may_leave: bool,
+    pub(super) asked: u32,
 }
 
 impl Page {
@@ -57,12 +60,15 @@ impl Page {
                 }
             }
         });
-        let mut page = Self { browser, to, from, session: String::new(), calls: 0, complaints: Vec::new() };
+        let (session, complaints) = (String::new(), Vec::new());
+        let mut page = Self { browser, to, from, session, calls: 0, complaints, may_leave: true, asked: 0 };
         let target = page.call("Target.createTarget", json!({ "url": "about:blank" }))["targetId"].clone();
         let attached = page.call("Target.attachToTarget", json!({ "targetId": target, "flatten": true }));
         page.session = attached["sessionId"].as_str().expect("session").to_owned();
-        for domain in ["Runtime", "Log", "Page"] {
-            page.call(&format!("{domain}.enable"), json!({}));
+        for domain in ["Runtime", "Log", "Page", "DOM", "Accessibility", "Performance"] {
+            // Times are those of the page's thread, whatever else the machine does.
+            let params = if domain == "Performance" { json!({ "timeDomain": "threadTicks" }) } else { json!({}) };
+            page.call(&format!("{domain}.enable"), params);
         }
         let size = json!({ "width": PAGE[0], "height": PAGE[1], "deviceScaleFactor": 1, "mobile": false });
         page.call("Emulation.setDeviceMetricsOverride", size);
@@ -71,17 +77,12 @@ impl Page {
 
     /// Calls a method of the protocol and waits for its result.
     pub(super) fn call(&mut self, method: &str, params: Value) -> Value {
-        self.calls += 1;
-        let mut message = json!({ "id": self.calls, "method": method, "params": params });
-        if !self.session.is_empty() {
-            message["sessionId"] = self.session.as_str().into();
-        }
-        write!(self.to, "{message}\0").and_then(|()| self.to.flush()).expect("the browser listens");
+        let call = self.send(method, params);
         loop {
             let answer = self.from.recv_timeout(PATIENCE).expect("the browser answers");
-            if answer["id"] == self.calls {
-                // A page that is being loaded again has no value for the moment.
-                let ends = method == "Runtime.evaluate" && answer["error"]["code"] == -32000;
+            if answer["id"] == call {
+                // A page that is being loaded again has no value for the moment, and no elements.
+                let ends = answer["error"]["code"] == -32000;
                 assert!(ends || answer["error"].is_null(), "{method}: {}", answer["error"]);
                 return answer["result"].clone();
             }
@@ -89,9 +90,25 @@ impl Page {
         }
     }
 
-    /// Errors of the console, of scripts and of what was loaded.
+    /// Sends a call; answers its number.
+    fn send(&mut self, method: &str, params: Value) -> u64 {
+        self.calls += 1;
+        let mut message = json!({ "id": self.calls, "method": method, "params": params });
+        if !self.session.is_empty() {
+            message["sessionId"] = self.session.as_str().into();
+        }
+        write!(self.to, "{message}\0").and_then(|()| self.to.flush()).expect("the browser listens");
+        self.calls
+    }
+
+    /// Errors of the console, of scripts and of what was loaded; the question whether the page may be left.
     fn listen(&mut self, event: &Value) {
         let params = &event["params"];
+        if event["method"] == "Page.javascriptDialogOpening" {
+            assert_eq!(params["type"], "beforeunload", "{params}");
+            self.asked += 1;
+            self.send("Page.handleJavaScriptDialog", json!({ "accept": self.may_leave }));
+        }
         let complains = match event["method"].as_str() {
             Some("Runtime.exceptionThrown") => true,
             Some("Runtime.consoleAPICalled") => params["type"] == "error",
@@ -109,6 +126,26 @@ impl Page {
         let mut answer = self.call("Runtime.evaluate", params);
         assert!(answer["exceptionDetails"].is_null(), "{script}: {}", answer["exceptionDetails"]);
         answer["result"]["value"].take()
+    }
+
+    /// Loads the page again. A page that nobody has pressed since it was loaded may not ask.
+    ///
+    /// * `asks`: whether it asks before it is left.
+    pub(super) fn reload(&mut self, asks: bool) {
+        let asked = self.asked + u32::from(asks);
+        self.value("window.stays = true");
+        self.call("Page.reload", json!({}));
+        if self.may_leave || !asks {
+            self.wait("window.stays ?? null", Value::is_null);
+        } else {
+            // The question comes some time after the answer.
+            let began = Instant::now();
+            while self.asked < asked && began.elapsed() < PATIENCE {
+                self.value("window.stays");
+            }
+            assert_eq!(self.value("window.stays"), true, "it is loaded although it may not be left");
+        }
+        assert_eq!(self.asked, asked, "how often it asked");
     }
 
     /// Waits until a script has a value that passes.
@@ -130,6 +167,73 @@ impl Page {
         let pressed = i32::from(what != "mouseReleased");
         let params = json!({ "type": what, "x": x, "y": y, "button": "left", "buttons": pressed, "clickCount": 1 });
         self.call("Input.dispatchMouseEvent", params);
+    }
+
+    /// A key is pressed.
+    ///
+    /// * `modifiers`: 0, or 2 for Ctrl, 8 for Shift.
+    pub(super) fn key(&mut self, key: &str, code: &str, number: u32, modifiers: u32) {
+        for kind in ["rawKeyDown", "keyUp"] {
+            let params = json!({ "type": kind, "modifiers": modifiers, "key": key, "code": code, "windowsVirtualKeyCode": number });
+            self.call("Input.dispatchKeyEvent", params);
+        }
+    }
+
+    /// Files are dropped on the middle of the page.
+    pub(super) fn drop_files(&mut self, files: &[&Path]) {
+        for step in ["dragEnter", "dragOver", "drop"] {
+            let data = json!({ "items": [], "files": files, "dragOperationsMask": 1 });
+            let params = json!({ "type": step, "x": PAGE[0] / 2, "y": PAGE[1] / 2, "data": data });
+            self.call("Input.dispatchDragEvent", params);
+        }
+    }
+
+    /// Roles and names in the browser's tree of accessibility, and its numbers of the elements.
+    pub(super) fn accessible(&mut self) -> Vec<(String, String, Value)> {
+        let tree = self.call("Accessibility.getFullAXTree", json!({}));
+        let text = |node: &Value, key: &str| node[key]["value"].as_str().unwrap_or_default().to_owned();
+        let nodes = tree["nodes"].as_array().into_iter().flatten().filter(|node| node["ignored"] == false);
+        nodes.map(|node| (text(node, "role"), text(node, "name"), node["backendDOMNodeId"].clone())).collect()
+    }
+
+    /// Waits for the element of a role and a name, as a screen reader finds it, and calls a function of the page with it.
+    pub(super) fn with(&mut self, role: &str, name: &str, function: &str) {
+        let began = Instant::now();
+        loop {
+            let nodes = self.accessible();
+            if let Some((_, _, node)) = nodes.iter().find(|(r, n, _)| r == role && n == name) {
+                let found = self.call("DOM.resolveNode", json!({ "backendNodeId": node }));
+                if let Some(object) = found["object"]["objectId"].as_str() {
+                    let params = json!({ "objectId": object, "functionDeclaration": function, "userGesture": true });
+                    self.call("Runtime.callFunctionOn", params);
+                    return;
+                }
+            }
+            let there: Vec<String> = nodes.into_iter().map(|(role, name, _)| format!("{role} {name}")).collect();
+            assert!(began.elapsed() < PATIENCE, "there is no {role} {name}, but {there:?}; {:?}", self.complaints);
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+
+    /// Presses a button as a screen reader does.
+    pub(super) fn press(&mut self, name: &str) {
+        self.with("button", name, "function () { this.click(); }");
+    }
+
+    /// Share of a core that the page's thread works while nobody does anything.
+    pub(super) fn load_at_rest(&mut self, time: Duration) -> f64 {
+        let mut metric = || {
+            let metrics = self.call("Performance.getMetrics", json!({}));
+            let value = |name: &str| {
+                let metrics = metrics["metrics"].as_array().into_iter().flatten();
+                metrics.filter(|metric| metric["name"] == name).find_map(|metric| metric["value"].as_f64())
+            };
+            [value("TaskDuration"), value("Timestamp")].map(|value| value.expect("a metric"))
+        };
+        let before = metric();
+        std::thread::sleep(time);
+        let after = metric();
+        (after[0] - before[0]) / (after[1] - before[1])
     }
 
     /// The page as a PNG, in base 64.

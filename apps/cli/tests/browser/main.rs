@@ -4,6 +4,7 @@
 #![allow(clippy::print_stderr)]
 
 mod chromium;
+mod mixed;
 mod server;
 
 use chromium::{PAGE, Page};
@@ -14,6 +15,9 @@ use std::time::{Duration, Instant};
 
 /// How long the picture is dragged.
 const DRAG: Duration = Duration::from_secs(10);
+/// How long the page is watched at rest, and the share of a core that it may take then.
+const AT_REST: Duration = Duration::from_secs(5);
+const MOST_AT_REST: f64 = 0.02;
 const TIMES: &str = "window.belvedere?.application.times() ?? null";
 
 /// Folder of the application; `None`, said loudly, where it was not built.
@@ -41,8 +45,14 @@ fn browser(place: &Path) -> Option<Page> {
 
 /// Packs files; answers the report.
 fn pack(application: &Path, files: &[&Path], out: &Path) -> Value {
+    pack_with(application, files, out, false)
+}
+
+/// The same, for many threads if asked.
+fn pack_with(application: &Path, files: &[&Path], out: &Path, threads: bool) -> Value {
     let mut command = Command::new(env!("CARGO_BIN_EXE_belvedere"));
     command.arg("pack").args(files).arg("-o").arg(out).arg("--app").arg(application).arg("--json");
+    command.args(threads.then_some("--all-cores"));
     let output = command.output().expect("the program starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice::<Value>(&output.stdout).expect("a report")["report"].take()
@@ -73,11 +83,12 @@ fn drawn_and_dragged(isolated: bool) {
     let Some(application) = application() else { return };
     let Some(mut page) = browser(place.path()) else { return };
     let site = place.path().join("site");
-    let report = pack(&application, &[], &site);
-    if isolated && report["bundle"]["threads"] == false {
+    if isolated && !application.join("threads").is_dir() {
         eprintln!("SKIPPED: many threads are not tried; the application was built without them");
         return;
     }
+    let report = pack_with(&application, &[], &site, isolated);
+    assert!(!site.join("threads").exists(), "a folder holds one application");
     let began = Instant::now();
     let address = server::serve(site, isolated);
     page.call("Page.navigate", json!({ "url": address }));
@@ -85,7 +96,12 @@ fn drawn_and_dragged(isolated: bool) {
     let threads = page.value("belvedere.threads");
     assert_eq!(threads.as_u64() > Some(0), isolated, "{threads} threads");
     let first_ms = began.elapsed().as_millis();
+    page.with("button", "Two side streets", "function () {}");
+    page.press("Close window");
     times(&mut page, rests);
+    std::thread::sleep(Duration::from_millis(500));
+    let load = page.load_at_rest(AT_REST);
+    assert!(load < MOST_AT_REST, "the page works {:.1} % of the time at rest", 100.0 * load);
     let before = page.screenshot();
     let middle = PAGE.map(|n| f64::from(n) / 2.0);
     page.pointer("mouseMoved", middle);
@@ -102,7 +118,7 @@ fn drawn_and_dragged(isolated: bool) {
     assert!(page.screenshot() != before, "the picture does not follow the pointer");
     // What was done is there again when the page is loaded again.
     let left = page.value("belvedere.application.scene()");
-    page.call("Page.reload", json!({}));
+    page.reload(true);
     page.wait("window.belvedere?.application.scene() ?? null", |scene| *scene == left);
     let mut each: Vec<f64> =
         times["input_to_picture_ms"].as_array().expect("times").iter().filter_map(Value::as_f64).collect();
@@ -112,11 +128,12 @@ fn drawn_and_dragged(isolated: bool) {
     assert_eq!(page.value("belvedere.application.failure() ?? null"), Value::Null);
     eprintln!(
         "browser, {threads} workers: application {} bytes; first picture {first_ms} ms after the address; {} pictures in {DRAG:?}, input to picture \
-         median {:.0} ms, 95 % {:.0} ms; in full {rest_ms:.0} ms after the last change",
+         median {:.0} ms, 95 % {:.0} ms; in full {rest_ms:.0} ms after the last change; {:.2} % of a core at rest",
         report["application_bytes"],
         each.len(),
         each[each.len() / 2],
-        each[each.len() * 95 / 100]
+        each[each.len() * 95 / 100],
+        100.0 * load
     );
 }
 
@@ -140,7 +157,7 @@ fn a_packed_terrain_and_its_route_are_drawn_as_the_command_line_draws_them() {
         Command::new(env!("CARGO_BIN_EXE_belvedere")).arg("render").arg(&scene).arg("-o").arg(&picture).output();
     let drawn = drawn.expect("the program starts");
     assert!(drawn.status.success(), "{}", String::from_utf8_lossy(&drawn.stderr));
-    let address = server::serve(site, false);
+    let address = server::serve(site, true);
     page.call("Page.navigate", json!({ "url": address }));
     times(&mut page, rests);
     let shown = page.value("belvedere.application.scene()");
@@ -162,20 +179,14 @@ fn files_that_are_dropped_on_the_page_are_opened_and_what_is_saved_is_downloaded
     let address = server::serve(site, false);
     page.call("Page.navigate", json!({ "url": address }));
     times(&mut page, rests);
-    for step in ["dragEnter", "dragOver", "drop"] {
-        let data = json!({ "items": [], "files": [dem, route], "dragOperationsMask": 1 });
-        page.call("Input.dispatchDragEvent", json!({ "type": step, "x": 700, "y": 400, "data": data }));
-    }
+    page.drop_files(&[&dem, &route]);
     let opened = |scene: &Value| scene.as_str().is_some_and(|text| text.contains("dem.tif"));
     let scene = page.wait("belvedere.application.scene()", opened);
     assert!(scene.as_str().is_some_and(|text| text.contains("must_see = true") && text.contains("route.gpx")));
     times(&mut page, rests);
     let downloads = place.path().join("downloads");
     page.call("Browser.setDownloadBehavior", json!({ "behavior": "allow", "downloadPath": downloads }));
-    for kind in ["keyDown", "keyUp"] {
-        let key = json!({ "type": kind, "modifiers": 2, "key": "s", "code": "KeyS", "windowsVirtualKeyCode": 83 });
-        page.call("Input.dispatchKeyEvent", key);
-    }
+    page.key("s", "KeyS", 83, 2);
     let saved = downloads.join("scene.toml");
     let began = Instant::now();
     while !saved.exists() {
@@ -183,5 +194,35 @@ fn files_that_are_dropped_on_the_page_are_opened_and_what_is_saved_is_downloaded
         times(&mut page, |_| true);
     }
     assert_eq!(std::fs::read_to_string(&saved).expect("scene"), scene.as_str().expect("scene"));
+    // The browser keeps the files for the tab, until it is told to forget them.
+    page.reload(false);
+    page.wait("window.belvedere?.application.scene() ?? null", |shown| *shown == scene);
+    times(&mut page, rests);
+    page.press("File");
+    page.press("Forget my files");
+    let words = |page: &mut Page| page.accessible().into_iter().map(|(_, name, _)| name).collect::<Vec<_>>().join("\n");
+    let says = |page: &mut Page, what: &str| {
+        let began = Instant::now();
+        while !words(page).contains(what) {
+            assert!(began.elapsed() < DRAG, "it does not say {what}: {}", words(page));
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    };
+    says(&mut page, "has forgotten your files");
+    page.reload(false);
+    says(&mut page, "any more: dem.tif, route.gpx.");
+    page.drop_files(&[&dem]);
+    says(&mut page, "any more: route.gpx.");
+    page.drop_files(&[&route]);
+    page.wait("window.belvedere?.application.scene() ?? null", |shown| *shown == scene);
+    times(&mut page, rests);
+    // Another scene needs none of them.
+    page.press("File");
+    page.press("Built-in scenes");
+    page.press("Massif, a bent panorama");
+    let kept = "new Promise((done) => { const open = indexedDB.open('belvedere'); open.onsuccess = () => { \
+        const keys = open.result.transaction('files').objectStore('files').getAllKeys(); \
+        keys.onsuccess = () => { open.result.close(); done(keys.result.length); }; }; })";
+    page.wait(kept, |count| *count == 0);
     assert_eq!(page.complaints, Vec::<String>::new());
 }

@@ -21,6 +21,7 @@ mod molecules;
 mod numbers;
 mod odd_files;
 mod outputs;
+mod packed;
 mod pick;
 mod pictures;
 mod places;

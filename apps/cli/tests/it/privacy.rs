@@ -91,7 +91,7 @@ fn nothing_that_is_written_tells_the_folder_of_the_data() {
     run(&["render", absolute.to_str().expect("UTF-8"), "-o", "out/abs.png", "--allow-root", &root]);
     let app = place.path("app");
     std::fs::create_dir(&app).expect("folder");
-    ["index.html", "belvedere.js", "belvedere_bg.wasm"]
+    ["index.html", "page.css", "page.js", "kept.js", "mirror.js", "belvedere.js", "belvedere_bg.wasm"]
         .iter()
         .for_each(|n| std::fs::write(app.join(n), "x").expect("file"));
     run(&["pack", "out/s.toml", "-o", "out/page", "--app", "app"]);

@@ -1,13 +1,15 @@
 //! Files in a browser: given by the user into memory, handed back as downloads.
 
 use super::Inputs;
+use crate::browser::page;
+use crate::language::{fill, tr};
 use belvedere::io::fs;
 use eframe::egui::{Context, DroppedFileHandle};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{self, Sender, TryRecvError};
 use wasm_bindgen::{JsCast, JsValue};
-use wasm_bindgen_futures::spawn_local;
-use web_sys::js_sys::{Array, Uint8Array};
+use wasm_bindgen_futures::{JsFuture, spawn_local};
+use web_sys::js_sys::{Array, Promise, Uint8Array};
 use web_sys::{Blob, HtmlAnchorElement, Url};
 
 /// A pending question for files.
@@ -41,12 +43,30 @@ pub(crate) fn choose_output(folder: &Path, name: &str, _: bool) -> Choosing {
 /// Lets the user choose a scene, or data.
 pub(crate) fn choose_input(_: bool) -> Choosing {
     Choosing(later(|outbox| async move {
-        let mut paths = Vec::new();
-        for file in rfd::AsyncFileDialog::new().pick_files().await.unwrap_or_default() {
-            paths.push(keep(&file.file_name(), Ok(file.read().await)));
-        }
-        let _ = outbox.send(paths.into_iter().collect());
+        let _ = outbox.send(picked().await);
     }))
+}
+
+/// Files that the user picks in the browser's dialog; none if it is cancelled.
+async fn picked() -> Result<Vec<PathBuf>, String> {
+    let failed = |e: &JsValue| {
+        fill(tr("the files could not be read: {0}"), &[&e.as_string().unwrap_or_else(|| format!("{e:?}"))])
+    };
+    let promise: Option<Promise> = page::call("choose", &[]).and_then(|value| value.dyn_into().ok());
+    let Some(promise) = promise else { return Ok(Vec::new()) };
+    let files = JsFuture::from(promise).await.map_err(|e| failed(&e))?;
+    if files.is_null() {
+        return Err(
+            tr("the browser opens its dialog only just after a press: press Open again, or drop the files").into()
+        );
+    }
+    let files = Array::from(&files);
+    let kept = files.iter().map(|file| {
+        let pair = Array::from(&file);
+        let bytes = pair.get(1).dyn_into::<Uint8Array>().map(|bytes| bytes.to_vec());
+        keep(&pair.get(0).as_string().unwrap_or_default(), bytes.map_err(|e| format!("{e:?}")))
+    });
+    kept.collect()
 }
 
 /// Files that were dropped on the page.
@@ -67,11 +87,13 @@ fn later<F: Future<Output = ()> + 'static>(work: impl FnOnce(Sender<Result<Vec<P
     inbox
 }
 
-/// Puts a file into memory.
+/// Puts a file into memory, and lets the browser keep it.
 fn keep(name: &str, bytes: Result<Vec<u8>, String>) -> Result<PathBuf, String> {
     let path = PathBuf::from(name);
     let bytes = bytes.map_err(|e| format!("{name} could not be read: {e}"))?;
+    let copy = Uint8Array::from(bytes.as_slice());
     fs::write(&path, bytes).map_err(|e| format!("{name} could not be kept: {e}"))?;
+    page::call("given", &[&name.into(), &copy]);
     Ok(path)
 }
 

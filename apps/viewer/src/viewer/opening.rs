@@ -118,14 +118,8 @@ impl Viewer {
         if let Some(answer) = dropped.or(chosen) {
             match answer {
                 Ok(paths) if paths.is_empty() => {}
-                Ok(paths) => {
-                    if cfg!(target_family = "wasm") {
-                        self.model.notices.tell(
-                            "The page forgets these files when it is loaded again or closed; open them again then.",
-                        );
-                    }
-                    self.open(paths);
-                }
+                Ok(_) if self.resumes(ctx) => {}
+                Ok(paths) => self.open(paths),
                 Err(reason) => self.model.notices.error(reason),
             }
         }

@@ -115,6 +115,21 @@ pub struct Recovered {
     pub extra: serde_json::Value,
 }
 
+impl Recovered {
+    /// The state of an application as text, where it has no recovery file, as in a browser.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Text`] if the document or the further state cannot be written.
+    pub fn text_of(editor: &Editor, extra: serde_json::Value) -> Result<String, BelvedereError> {
+        output::pretty(&Left::of(editor, extra)?)
+    }
+
+    /// The state that [`Recovered::text_of`] wrote; `None` for other text. Its document comes back even if its file holds another.
+    pub fn of_text(text: &str) -> Option<Self> {
+        recovered(text, false)
+    }
+}
+
 #[derive(Serialize, Deserialize)]
 struct Left {
     scene: Option<PathBuf>,
@@ -126,6 +141,21 @@ struct Left {
     document: serde_json::Value,
     #[serde(default)]
     extra: serde_json::Value,
+}
+
+impl Left {
+    fn of(editor: &Editor, extra: serde_json::Value) -> Result<Self, BelvedereError> {
+        let document = serde_json::to_value(&**editor.document());
+        Ok(Self {
+            scene: editor.place.scene.clone(),
+            scene_dir: editor.place.roots.scene_dir.clone(),
+            allowed: editor.place.roots.allowed.clone(),
+            files: editor.place.roots.files.clone(),
+            changed: editor.is_changed(),
+            document: document.map_err(|e| BelvedereError::Text { what: "the document", reason: e.to_string() })?,
+            extra,
+        })
+    }
 }
 
 impl Recovery {
@@ -147,7 +177,7 @@ impl Recovery {
             let held = File::create(&lock).map_err(os(&lock))?;
             match held.try_lock() {
                 Ok(()) => {
-                    let left = std::fs::read_to_string(&file).ok().and_then(|text| recovered(&text));
+                    let left = std::fs::read_to_string(&file).ok().and_then(|text| recovered(&text, true));
                     return Ok((Self { file, _lock: held, lock }, left));
                 }
                 Err(TryLockError::WouldBlock) => {}
@@ -165,17 +195,7 @@ impl Recovery {
     /// # Errors
     /// [`BelvedereError::Io`].
     pub fn write(&self, editor: &Editor, extra: serde_json::Value) -> Result<(), BelvedereError> {
-        let document = serde_json::to_value(&**editor.document());
-        let left = Left {
-            scene: editor.place.scene.clone(),
-            scene_dir: editor.place.roots.scene_dir.clone(),
-            allowed: editor.place.roots.allowed.clone(),
-            files: editor.place.roots.files.clone(),
-            changed: editor.is_changed(),
-            document: document.map_err(|e| BelvedereError::Text { what: "the document", reason: e.to_string() })?,
-            extra,
-        };
-        output::write_text(&self.file, &output::pretty(&left)?, true)
+        output::write_text(&self.file, &output::pretty(&Left::of(editor, extra)?)?, true)
     }
 
     /// Removes the recovery file at the proper end of the application.
@@ -185,7 +205,8 @@ impl Recovery {
     }
 }
 
-fn recovered(text: &str) -> Option<Recovered> {
+/// * `file_counts`: whether a scene without changes is what its file holds now.
+fn recovered(text: &str, file_counts: bool) -> Option<Recovered> {
     let left: Left = serde_json::from_str(text).ok()?;
     let parsed: Document = scene_file::parse(Path::new("state.json"), &left.document.to_string()).ok()?.document;
     let roots = Roots { scene_dir: left.scene_dir, allowed: left.allowed, files: left.files };
@@ -199,7 +220,7 @@ fn recovered(text: &str) -> Option<Recovered> {
         }
         // The document was never saved, or its file is gone: this is the only copy.
         (true, None) => Editor::unsaved(parsed, place),
-        (false, saved) => Editor::new(saved.unwrap_or(parsed), place),
+        (false, saved) => Editor::new(saved.filter(|_| file_counts).unwrap_or(parsed), place),
     };
     Some(Recovered { editor, extra: left.extra })
 }
@@ -251,6 +272,25 @@ mod tests {
         assert!(left.is_changed() && left.document().title == "changed");
         left.save(&dir.path().join("t.toml")).expect("saved");
         assert!(left.is_saved() && !left.is_changed());
+    }
+
+    #[test]
+    fn the_state_comes_back_from_text_with_its_changes_and_without_its_file() {
+        let dir = tempfile::tempdir().expect("folder");
+        let mut editor = Editor::open(&scene(dir.path()), vec!["elsewhere".into()]).expect("scene");
+        for changed in [false, true] {
+            let text = Recovered::text_of(&editor, serde_json::json!({ "tool": 3 })).expect("text");
+            let left = Recovered::of_text(&text).expect("state");
+            assert_eq!(left.editor.document(), editor.document());
+            assert_eq!((left.editor.is_changed(), &left.extra["tool"]), (changed, &3.into()));
+            assert_eq!(left.editor.place.roots.allowed, editor.place.roots.allowed);
+            editor.edit(|d| d.title = "changed".into());
+        }
+        editor.mark_saved();
+        let text = Recovered::text_of(&editor, serde_json::Value::Null).expect("text");
+        let left = Recovered::of_text(&text).expect("state").editor;
+        assert!(left.document().title == "changed" && !left.is_changed(), "the file holds an older document");
+        assert!(Recovered::of_text("no state").is_none());
     }
 
     #[test]

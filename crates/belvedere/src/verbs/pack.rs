@@ -10,13 +10,14 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
-/// The files of the application.
-pub const APPLICATION: [&str; 3] = ["index.html", "belvedere.js", "belvedere_bg.wasm"];
+/// The files of the page, for any application.
+const PAGE: [&str; 5] = ["index.html", "page.css", "page.js", "kept.js", "mirror.js"];
+/// The files of an application.
+const PROGRAM: [&str; 2] = ["belvedere.js", "belvedere_bg.wasm"];
 /// Folder of the multi-threaded application, if it was built.
 const THREADS: &str = "threads";
-/// Header file for servers that support it (such as Netlify and Cloudflare Pages): lets workers share memory.
-const HEADERS: (&str, &str) =
-    ("_headers", "/*\n  Cross-Origin-Opener-Policy: same-origin\n  Cross-Origin-Embedder-Policy: require-corp\n");
+/// Header file for servers that support it (such as Netlify and Cloudflare Pages).
+const HEADERS: &str = "_headers";
 /// List of the packed files, which the page reads first.
 pub const BUNDLE: &str = "bundle.json";
 /// Folder of the scene and its files.
@@ -33,8 +34,13 @@ pub struct PackRequest {
     pub allowed: Vec<PathBuf>,
     /// Consent that was given to the scene file.
     pub trust: Trust,
-    /// Folder with the files of the application ([`APPLICATION`]).
+    /// Folder with the page, and the application with one thread and with many, as `apps/viewer/web/build` makes it.
     pub application: PathBuf,
+    /// Whether the page gets the application for many threads, which needs a server that sends two headers; else the one for one thread,
+    /// which runs on any.
+    pub threads: bool,
+    /// How the application is made, for the message that it is missing.
+    pub remedy: String,
     /// The folder to be made.
     pub out: PathBuf,
     /// Whether existing files may be replaced.
@@ -46,7 +52,7 @@ pub struct PackRequest {
 pub struct Bundle {
     /// Title of the scene.
     pub title: String,
-    /// Whether there is a multi-threaded application, too.
+    /// Whether the application is the one for many threads.
     pub threads: bool,
     /// Names of the files to open.
     pub open: Vec<String>,
@@ -77,7 +83,7 @@ pub fn pack(request: &PackRequest, progress: &Progress) -> Result<Packed, Belved
 }
 
 fn packed(request: &PackRequest, progress: &Progress) -> Result<Packed, BelvedereError> {
-    let application = application_files(&request.application)?;
+    let application = application_files(request)?;
     let names = application.iter().map(|(name, _)| name.as_path()).chain([Path::new(BUNDLE)]);
     if request.out.is_dir() {
         names.into_iter().try_for_each(|name| atomic::check_output(&request.out.join(name), request.overwrite))?;
@@ -94,7 +100,7 @@ fn packed(request: &PackRequest, progress: &Progress) -> Result<Packed, Belveder
         );
         return Err(BelvedereError::Output { path: request.out.clone(), reason });
     }
-    bundle.threads = application.iter().any(|(name, _)| name.starts_with(THREADS));
+    bundle.threads = request.threads;
     // A page of the old list and new files would be neither.
     let list = request.out.join(BUNDLE);
     if request.overwrite && list.is_file() {
@@ -102,8 +108,7 @@ fn packed(request: &PackRequest, progress: &Progress) -> Result<Packed, Belveder
     }
     let mut application_bytes = 0;
     for (name, bytes) in &application {
-        // A visitor loads only one of the two applications.
-        application_bytes += if name.starts_with(THREADS) { 0 } else { bytes.len() as u64 };
+        application_bytes += bytes.len() as u64;
         put(&request.out.join(name), bytes, request.overwrite)?;
     }
     for (i, (file, bytes)) in bundle.files.iter().zip(&contents).enumerate() {
@@ -115,24 +120,48 @@ fn packed(request: &PackRequest, progress: &Progress) -> Result<Packed, Belveder
     Ok(Packed { folder: request.out.clone(), bundle, application_bytes, scene_bytes })
 }
 
-/// Files of the application: names relative to its folder, and contents.
-fn application_files(folder: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>, BelvedereError> {
-    let mut names: Vec<PathBuf> = APPLICATION.into_iter().map(PathBuf::from).collect();
-    names_below(folder, Path::new(THREADS), &mut names);
-    let read = |name: PathBuf| match fs::read(folder.join(&name)) {
+/// Files of the page and of its one application: names relative to its folder, and contents.
+fn application_files(request: &PackRequest) -> Result<Vec<(PathBuf, Vec<u8>)>, BelvedereError> {
+    let folder = &request.application;
+    let program = if request.threads { folder.join(THREADS) } else { folder.clone() };
+    let mut names: Vec<PathBuf> = PROGRAM.into_iter().map(PathBuf::from).collect();
+    // The scripts that start the threads.
+    if request.threads {
+        names_below(&program, Path::new("snippets"), &mut names);
+    }
+    let page = PAGE.into_iter().map(|name| (folder, PathBuf::from(name)));
+    let read = |(from, name): (&PathBuf, PathBuf)| match fs::read(from.join(&name)) {
         Ok(bytes) => Ok((name, bytes)),
         Err(e) => Err(BelvedereError::Output {
             path: folder.to_owned(),
             reason: format!(
-                "holds no application for browsers ({}: {}); build it with apps/viewer/web/build",
+                "holds no application for browsers{} ({}: {}); {}",
+                if request.threads && from == &program { " with many threads" } else { "" },
                 name.display(),
-                belvedere_io::said(&e)
+                belvedere_io::said(&e),
+                request.remedy
             ),
         }),
     };
-    let mut files = names.into_iter().map(read).collect::<Result<Vec<_>, _>>()?;
-    files.push((HEADERS.0.into(), HEADERS.1.into()));
+    let mut files: Vec<_> =
+        page.chain(names.into_iter().map(|name| (&program, name))).map(read).collect::<Result<_, _>>()?;
+    let headers = headers(files.first().map_or(&[], |(_, page)| page), request.threads);
+    files.push((HEADERS.into(), headers.into_bytes()));
     Ok(files)
+}
+
+/// The header file: the page's own policy again, and what lets workers share memory.
+fn headers(page: &[u8], threads: bool) -> String {
+    let page = String::from_utf8_lossy(page);
+    let policy = page.split_once("Content-Security-Policy\" content=\"").and_then(|(_, rest)| rest.split_once('"'));
+    let mut text = "/*\n  X-Content-Type-Options: nosniff\n  Referrer-Policy: no-referrer\n".to_owned();
+    if let Some((policy, _)) = policy {
+        text += &format!("  Content-Security-Policy: {policy}\n");
+    }
+    if threads {
+        text += "  Cross-Origin-Opener-Policy: same-origin\n  Cross-Origin-Embedder-Policy: require-corp\n";
+    }
+    text
 }
 
 /// Adds the names of all files below a folder, if it exists.
