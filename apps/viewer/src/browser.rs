@@ -29,7 +29,11 @@ impl Application {
     ///
     /// * `open`: names of the files to open; empty = the first built-in scene.
     pub async fn start(&self, canvas: HtmlCanvasElement, open: Vec<String>) -> Result<(), JsValue> {
-        let opening = Opening { files: open.into_iter().map(PathBuf::from).collect(), ..Opening::default() };
+        let opening = Opening {
+            files: open.into_iter().map(PathBuf::from).collect(),
+            language: Opening::usual_language(),
+            ..Opening::default()
+        };
         let make: eframe::AppCreator<'static> = Box::new(move |cc| Ok(Box::new(Viewer::new(&cc.egui_ctx, &opening))));
         self.runner.start(canvas, eframe::WebOptions::default(), make).await
     }

@@ -15,6 +15,7 @@ mod notices;
 mod panels;
 mod picture;
 mod pointer;
+mod settings;
 mod times;
 mod viewer;
 mod wake;

@@ -32,6 +32,7 @@ mod native {
             trust: if args.no_remember { Trust::default() } else { Trust::of_user() },
             state: Opening::usual_state(),
             system_dialogs: true,
+            language: Opening::usual_language(),
         };
         // Windows require the main thread. Documents are read on other threads.
         let failure = match std::panic::catch_unwind(|| belvedere_viewer::run(&opening)) {

@@ -1,5 +1,6 @@
 //! State of the application without its window: the document, the last pictures, and how they are viewed.
 
+use crate::language::tr;
 use crate::notices::Notices;
 use belvedere::core::{Aabb, DVec2, DVec3, Navigation, Pinhole, Projection};
 use belvedere::editor::{
@@ -281,7 +282,7 @@ impl Model {
     pub(crate) fn move_camera<E>(&mut self, change: impl FnOnce(&Navigation) -> Result<Navigation, E>) {
         if self.document().constructor.as_ref().is_some_and(|doc| doc.kind == ConstructorKind::PathPreview) {
             self.notices.note(
-                "The preview along a path has a camera of its own; bend rays by hand to move it.",
+                tr("The preview along a path has a camera of its own; bend rays by hand to move it."),
                 self.moved_on_at,
             );
             return;

@@ -7,6 +7,7 @@ pub(crate) mod spline;
 pub(crate) mod terrain;
 
 use crate::export::Exporter;
+use crate::language::{later, tr};
 use crate::menu::Bookmark;
 use crate::model::Model;
 use belvedere::scene_file::{Document, StageDoc};
@@ -28,12 +29,12 @@ pub(crate) enum Tab {
 
 impl Tab {
     const ALL: [(Self, &'static str); 6] = [
-        (Self::Layers, "Layers"),
-        (Self::Look, "Look"),
-        (Self::Rays, "Curved rays"),
-        (Self::Terrain, "Terrain"),
-        (Self::Spline, "Spline"),
-        (Self::Export, "Export"),
+        (Self::Layers, later("Layers")),
+        (Self::Look, later("Look")),
+        (Self::Rays, later("Curved rays")),
+        (Self::Terrain, later("Terrain")),
+        (Self::Spline, later("Spline")),
+        (Self::Export, later("Export")),
     ];
 }
 
@@ -51,12 +52,12 @@ impl Panels {
     pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model, bookmarks: &[Bookmark]) {
         ui.horizontal_wrapped(|ui| {
             for (tab, name) in Tab::ALL {
-                ui.selectable_value(&mut self.tab, tab, name);
+                ui.selectable_value(&mut self.tab, tab, tr(name));
             }
         });
         ui.separator();
         if model.is_opening() {
-            ui.weak("opening");
+            ui.weak(tr("opening"));
             return;
         }
         // The width that the user gave the panel is kept, whatever its content.

@@ -1,6 +1,7 @@
 //! The camera from above in a window of its own.
 
 use super::Viewer;
+use crate::language::tr;
 use crate::panels::set_stage;
 use crate::picture::image_of_frame;
 use crate::widgets::overhead::overhead;
@@ -17,9 +18,9 @@ impl Viewer {
         let mut edit = None;
         // In the lower right corner, where the window does not hide the side panel.
         let corner = ctx.content_rect().right_bottom() - egui::vec2(490.0, 360.0);
-        Window::new("Camera from above").open(&mut open).default_pos(corner).default_width(460.0).show(ctx, |ui| {
+        Window::new(tr("Camera from above")).open(&mut open).default_pos(corner).default_width(460.0).show(ctx, |ui| {
             let Some((frame, view)) = &self.model.overhead else {
-                ui.label("drawing");
+                ui.label(tr("drawing"));
                 return;
             };
             if self.from_above.as_ref().is_none_or(|(of, _)| *of != self.model.pictures) {

@@ -1,15 +1,19 @@
 //! The application driven by its accessibility tree, as a screen reader sees it.
 
+mod accessible;
 mod authoring;
 mod consent;
 mod controls;
 mod files;
 mod film;
+mod languages;
 mod layers;
 mod layout;
 mod moving;
+mod rest;
 mod screen;
 mod snapshots;
+mod sources;
 mod unsaved;
 mod welcome;
 #[cfg(target_os = "linux")]

@@ -1,0 +1,134 @@
+//! What a screen reader is told: each control has a role and a name, and no two are called the same.
+
+use crate::{app, opened, press, settle};
+use belvedere_viewer::{Opening, Viewer};
+use eframe::egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::NodeT;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+type Window = Harness<'static, Viewer>;
+
+/// Roles of what a user acts on.
+const CONTROLS: [Role; 11] = [
+    Role::Button,
+    Role::DefaultButton,
+    Role::CheckBox,
+    Role::RadioButton,
+    Role::Slider,
+    Role::SpinButton,
+    Role::ComboBox,
+    Role::TextInput,
+    Role::MultilineTextInput,
+    Role::ColorWell,
+    Role::Link,
+];
+
+/// Role and name of each control on the screen.
+fn controls(harness: &Window) -> Vec<(Role, String)> {
+    let nodes = harness.root().children_recursive().collect::<Vec<_>>();
+    let of = |node: &egui_kittest::Node<'_>| {
+        let node = node.accesskit_node();
+        let role = node.role();
+        CONTROLS.contains(&role).then(|| (role, node.label().unwrap_or_default().trim().to_owned()))
+    };
+    nodes.iter().filter_map(of).collect()
+}
+
+/// Notes controls without a name, and those that share role and name.
+fn look(harness: &mut Window, place: &str, wrong: &mut BTreeSet<String>) {
+    // Headings unfold in a few frames.
+    (0..12).for_each(|_| harness.step());
+    let all = controls(harness);
+    assert!(all.len() > 5, "{place}: {all:?}");
+    for (i, (role, name)) in all.iter().enumerate() {
+        if name.is_empty() {
+            wrong.insert(format!("{place}: a {role:?} without a name after {:?}", i.checked_sub(1).map(|i| &all[i])));
+        } else if all[..i].contains(&(*role, name.clone())) {
+            wrong.insert(format!("{place}: two {role:?} are called {name:?}"));
+        }
+    }
+}
+
+/// A scene with a layer of each kind that is drawn quickly, a turn, and a spline with presets of its own.
+fn everything(folder: &Path) -> PathBuf {
+    let file = |name: &str, geometry: &str| {
+        let feature = format!(r#"{{"type":"Feature","properties":{{"name":"{name}"}},"geometry":{geometry}}}"#);
+        let text = format!(r#"{{"type":"FeatureCollection","features":[{feature}]}}"#);
+        std::fs::write(folder.join(format!("{name}.geojson")), text).expect("written");
+    };
+    file("hut", r#"{"type":"Point","coordinates":[100,200]}"#);
+    file("wood", r#"{"type":"Polygon","coordinates":[[[0,0],[900,0],[900,900],[0,900],[0,0]]]}"#);
+    let layer = |kind: &str, id: &str, source: &str| {
+        format!("[[layer]]\nkind = \"{kind}\"\nid = \"{id}\"\nsource = \"{source}\"\n")
+    };
+    let massif = "builtin:massif?seed=7&size=129";
+    let layers = [
+        layer("terrain", "ground", massif),
+        layer("line", "trail", massif),
+        layer("point", "huts", "hut.geojson"),
+        layer("area", "woods", "wood.geojson"),
+        layer("molecule", "dna", "builtin:dna?pairs=2&seed=7"),
+    ];
+    let text = format!(
+        "format = 1\ntitle = \"All\"\ncrs = \"local\"\n[camera]\neye = [6000.0, -5200.0, 3600.0]\nlook_at = [0.0, 0.0, 300.0]\n\
+         image = [64, 36]\n{}[[stage]]\nkind = \"spline_bend\"\npresets = \"progressive\"\n",
+        layers.concat()
+    );
+    let path = folder.join("all.toml");
+    std::fs::write(&path, text).expect("scene");
+    path
+}
+
+#[test]
+fn controls_of_all_panels_and_menus_have_names_of_their_own() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut wrong = BTreeSet::new();
+    let mut harness = app(&opened(&[everything(folder.path())]));
+    settle(&mut harness);
+    for layer in ["ground", "trail", "huts", "woods", "dna"] {
+        press(&mut harness, &format!("Style of {layer}"));
+    }
+    look(&mut harness, "Layers", &mut wrong);
+    for panel in ["Look", "Spline", "Terrain", "Export"] {
+        press(&mut harness, panel);
+        look(&mut harness, panel, &mut wrong);
+    }
+    press(&mut harness, "The ground makes way");
+    press(&mut harness, "Terrain");
+    settle(&mut harness);
+    look(&mut harness, "Terrain that makes way", &mut wrong);
+    press(&mut harness, "Curved rays");
+    press(&mut harness, "Add a turn");
+    settle(&mut harness);
+    look(&mut harness, "Curved rays", &mut wrong);
+    press(&mut harness, "Along a path");
+    settle(&mut harness);
+    look(&mut harness, "Along a path", &mut wrong);
+    for menu in ["File", "Edit", "Places", "View", "Help"] {
+        press(&mut harness, menu);
+        look(&mut harness, menu, &mut wrong);
+        harness.key_press(eframe::egui::Key::Escape);
+        harness.step();
+    }
+    press(&mut harness, "Help");
+    press(&mut harness, "Keys and pointer");
+    look(&mut harness, "Keys", &mut wrong);
+    press(&mut harness, "File");
+    press(&mut harness, "Open…");
+    look(&mut harness, "Files", &mut wrong);
+    assert!(wrong.is_empty(), "\n{}", wrong.into_iter().collect::<Vec<_>>().join("\n"));
+}
+
+#[test]
+fn controls_of_the_welcome_and_of_a_phone_have_names_of_their_own() {
+    let mut wrong = BTreeSet::new();
+    let mut harness = app(&Opening::default());
+    settle(&mut harness);
+    look(&mut harness, "Welcome", &mut wrong);
+    harness.set_size(eframe::egui::vec2(390.0, 844.0));
+    settle(&mut harness);
+    look(&mut harness, "Welcome on a phone", &mut wrong);
+    assert!(wrong.is_empty(), "\n{}", wrong.into_iter().collect::<Vec<_>>().join("\n"));
+}
