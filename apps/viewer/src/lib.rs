@@ -16,6 +16,7 @@ mod panels;
 mod picture;
 mod pointer;
 mod settings;
+mod theme;
 mod times;
 mod viewer;
 mod wake;

@@ -6,7 +6,7 @@ use crate::language::{fill, heard, tr};
 use crate::model::Model;
 use crate::settings::Settings;
 use belvedere::scene_file::CameraDoc;
-use eframe::egui::{Context, Grid, MenuBar, RichText, ScrollArea, Ui, Window};
+use eframe::egui::{Context, Grid, Label, MenuBar, RichText, ScrollArea, Ui, Window};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -129,7 +129,7 @@ pub(crate) fn bar(
         }
         let title = &model.document().title;
         let state = if model.editor.is_changed() { tr("changed") } else { "" };
-        ui.weak(format!("{title}  {state}"));
+        ui.add(Label::new(RichText::new(format!("{title}  {state}")).weak()).truncate());
     });
     choice
 }

@@ -4,6 +4,7 @@ use super::Viewer;
 use crate::language::tr;
 use crate::panels::set_stage;
 use crate::picture::image_of_frame;
+use crate::theme;
 use crate::widgets::overhead::overhead;
 use belvedere::scene_file::StageDoc;
 use eframe::egui::{self, Context, TextureOptions, Window};
@@ -34,7 +35,7 @@ impl Viewer {
             };
             edit = overhead(ui, ui.scope_id(), texture.id(), view, &turns);
             if let Some(reason) = &self.model.violated {
-                ui.colored_label(egui::Color32::from_rgb(170, 50, 40), reason);
+                ui.colored_label(theme::readable(theme::PROBLEM, ui.visuals().dark_mode), reason);
             }
         });
         self.model.look.overhead = open;

@@ -3,13 +3,14 @@
 use super::Viewer;
 use crate::builtin::BUILTIN;
 use crate::language::{fill, later, tr};
+use crate::theme;
 use crate::wake::Wake;
 use belvedere::editor::{Place, THREADS, beside};
 use belvedere::picture::PictureOptions;
 use belvedere::scene::{Progress, RenderOptions};
 use belvedere::scene_file::{self, OverlayDoc};
 use eframe::egui::{
-    self, Align2, Button, Color32, ColorImage, Context, Id, Image, TextureHandle, TextureOptions, Vec2, Window, vec2,
+    self, Align2, Button, ColorImage, Context, Id, Image, TextureHandle, TextureOptions, Vec2, Window, vec2,
 };
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -191,7 +192,7 @@ impl Viewer {
                             Some(texture) => {
                                 Button::image(Image::new((texture.id(), CARD)).alt_text(tr(name))).min_size(CARD)
                             }
-                            None => Button::new(tr(name)).min_size(CARD).fill(Color32::from_gray(70)),
+                            None => Button::new(tr(name)).min_size(CARD).fill(theme::blank(ui.visuals().dark_mode)),
                         };
                         let response = ui.add(button.frame_when_inactive(false));
                         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, *name));

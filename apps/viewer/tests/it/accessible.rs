@@ -85,10 +85,14 @@ fn everything(folder: &Path) -> PathBuf {
 fn controls_of_all_panels_and_menus_have_names_of_their_own() {
     let folder = tempfile::tempdir().expect("folder");
     let mut wrong = BTreeSet::new();
-    let mut harness = app(&opened(&[everything(folder.path())]));
+    let opening = opened(&[everything(folder.path())]);
+    // Tall enough for all of a panel, since what is scrolled out of sight is not told.
+    let builder = Harness::builder().with_size([640.0, 2400.0]).with_max_steps(4);
+    let mut harness = builder.build_eframe(move |cc| Viewer::new(&cc.egui_ctx, &opening));
     settle(&mut harness);
     for layer in ["ground", "trail", "huts", "woods", "dna"] {
         press(&mut harness, &format!("Style of {layer}"));
+        (0..12).for_each(|_| harness.step());
     }
     look(&mut harness, "Layers", &mut wrong);
     for panel in ["Look", "Spline", "Terrain", "Export"] {

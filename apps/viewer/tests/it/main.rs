@@ -10,10 +10,12 @@ mod languages;
 mod layers;
 mod layout;
 mod moving;
+mod narrow;
 mod rest;
 mod screen;
 mod snapshots;
 mod sources;
+mod tasks;
 mod unsaved;
 mod welcome;
 #[cfg(target_os = "linux")]

@@ -99,8 +99,8 @@ fn color(ui: &mut Ui, name: &str, text: &mut String) -> bool {
     let changed = ui
         .horizontal(|ui| {
             let response = ui.color_edit_button_srgb(&mut rgb).on_hover_text(name);
-            ui.label(name);
-            response.changed()
+            let label = ui.label(name);
+            response.labelled_by(label.id).changed()
         })
         .inner;
     if changed {
