@@ -80,6 +80,8 @@ const EASE: f64 = 0.6;
 struct Wanted {
     document: Arc<Document>,
     image: [u32; 2],
+    /// Pixels per point of the window.
+    density: f64,
     sides: Sides,
     /// Share of the bend, 0..=1.
     bend: f64,
@@ -88,7 +90,7 @@ struct Wanted {
 
 impl PartialEq for Wanted {
     fn eq(&self, other: &Self) -> bool {
-        let of = |wanted: &Self| (wanted.image, wanted.sides, wanted.bend, wanted.overhead);
+        let of = |wanted: &Self| (wanted.image, wanted.density, wanted.sides, wanted.bend, wanted.overhead);
         Arc::ptr_eq(&self.document, &other.document) && of(self) == of(other)
     }
 }
@@ -135,6 +137,8 @@ pub(crate) struct Model {
     /// Width of moving pictures as a share of the full width in pixels.
     pub(crate) coarseness: f64,
     gesture: u64,
+    /// Pixels of the picture per point of the window: lines, marks and names are that many times as large.
+    pub(crate) density: f64,
     /// Whether files are chosen in windows of the system.
     pub(crate) system_dialogs: bool,
     /// Progress of opening files, in words; nothing is drawn before the first picture.
@@ -171,6 +175,7 @@ impl Model {
             moved_on_at: f64::NEG_INFINITY,
             coarseness: 1.0,
             gesture: 0,
+            density: 1.0,
             system_dialogs: false,
             opening: None,
             before: None,
@@ -400,7 +405,14 @@ impl Model {
         }
         self.ease(now);
         let (sides, bend) = self.sides();
-        let wanted = Wanted { document: self.document().clone(), image, sides, bend, overhead: self.look.overhead };
+        let wanted = Wanted {
+            document: self.document().clone(),
+            image,
+            density: self.density,
+            sides,
+            bend,
+            overhead: self.look.overhead,
+        };
         if self.ordered.as_ref() != Some(&wanted) {
             (self.changed_at, self.changed) = (now, Clock::now());
             self.rested = false;
@@ -437,7 +449,8 @@ impl Model {
     }
 
     fn send(&mut self, wanted: Wanted, image: [u32; 2], pace: Pace) {
-        let Wanted { document, sides, bend, overhead, .. } = wanted;
+        let Wanted { document, density, sides, bend, overhead, .. } = wanted;
+        self.painter.set_density(density);
         let place = self.editor.place.clone();
         self.waiting = Some(pace);
         self.painter.order(Order { document, place, image, pace, sides, bend, overhead });

@@ -69,7 +69,9 @@ impl PictureView {
     /// Orders the picture at the resolution of the screen, within the limit of pixels.
     fn order(&self, ctx: &Context, rect: Rect, model: &mut Model) {
         let size = rect.size() * ctx.pixels_per_point();
-        let size = size * (MOST_PIXELS / (size.x * size.y)).sqrt().min(1.0);
+        let fewer = (MOST_PIXELS / (size.x * size.y)).sqrt().min(1.0);
+        let size = size * fewer;
+        model.density = f64::from(ctx.pixels_per_point() * fewer);
         let image = [size.x, size.y].map(|n| (n.round() as u32).max(16));
         let now = ctx.input(|input| input.time);
         if let Some(again) = model.order(image, now) {

@@ -84,7 +84,7 @@ fn handling(ui: &mut Ui, model: &mut Model, (index, id): (usize, &str), is_hidde
         response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, &name));
         response.on_hover_text(name).clicked()
     };
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         let (sign, name) = if is_hidden { (tr("Show"), tr("Show {0}")) } else { (tr("Hide"), tr("Hide {0}")) };
         if button(ui, true, sign, fill(name, &[&id])) {
             model.edit(|document| match is_hidden {

@@ -17,7 +17,7 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
         ui.selectable_value(&mut look.tool, Tool::Orbit, tr("Orbit"));
     });
     ui.checkbox(&mut look.bent, tr("Bent"));
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.label(tr("Compare"));
         ui.selectable_value(&mut look.compare, Compare::Off, tr("One picture"));
         ui.selectable_value(&mut look.compare, Compare::Split, tr("Split"));

@@ -1,5 +1,6 @@
 //! What a screen reader is told: each control has a role and a name, and no two are called the same.
 
+use crate::layers::alone;
 use crate::{app, opened, press, settle};
 use belvedere_viewer::{Opening, Viewer};
 use eframe::egui::accesskit::Role;
@@ -69,7 +70,6 @@ fn everything(folder: &Path) -> PathBuf {
         layer("line", "trail", massif),
         layer("point", "huts", "hut.geojson"),
         layer("area", "woods", "wood.geojson"),
-        layer("molecule", "dna", "builtin:dna?pairs=2&seed=7"),
     ];
     let text = format!(
         "format = 1\ntitle = \"All\"\ncrs = \"local\"\n[camera]\neye = [6000.0, -5200.0, 3600.0]\nlook_at = [0.0, 0.0, 300.0]\n\
@@ -90,7 +90,7 @@ fn controls_of_all_panels_and_menus_have_names_of_their_own() {
     let builder = Harness::builder().with_size([640.0, 2400.0]).with_max_steps(4);
     let mut harness = builder.build_eframe(move |cc| Viewer::new(&cc.egui_ctx, &opening));
     settle(&mut harness);
-    for layer in ["ground", "trail", "huts", "woods", "dna"] {
+    for layer in ["ground", "trail", "huts", "woods"] {
         press(&mut harness, &format!("Style of {layer}"));
         (0..12).for_each(|_| harness.step());
     }
@@ -122,6 +122,22 @@ fn controls_of_all_panels_and_menus_have_names_of_their_own() {
     press(&mut harness, "File");
     press(&mut harness, "Open…");
     look(&mut harness, "Files", &mut wrong);
+    assert!(wrong.is_empty(), "\n{}", wrong.into_iter().collect::<Vec<_>>().join("\n"));
+}
+
+#[test]
+fn controls_of_molecules_and_volumes_have_names_of_their_own() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut wrong = BTreeSet::new();
+    for (unit, layer) in [
+        ("angstrom", "kind = \"molecule\"\nsource = \"builtin:dna?pairs=2&seed=7\"\nstyle = { color = \"#8090a0\" }\n"),
+        ("voxel", "kind = \"volume\"\nsource = \"builtin:engine\"\n"),
+    ] {
+        let mut harness = app(&opened(&[alone(folder.path(), unit, layer)]));
+        settle(&mut harness);
+        press(&mut harness, "Style of it");
+        look(&mut harness, unit, &mut wrong);
+    }
     assert!(wrong.is_empty(), "\n{}", wrong.into_iter().collect::<Vec<_>>().join("\n"));
 }
 

@@ -65,7 +65,7 @@ fn panels_hold_their_words_in_german_and_french() {
                 let seen = harness.get_by_label(picture).rect();
                 let share = seen.area() / (size[0] * size[1]);
                 assert!(share >= 0.6, "{language}, {panel}: the picture has {share} of the window");
-                let room = if is_small { whole } else { whole.with_max_x(seen.left()) };
+                let room = if is_small { whole } else { whole.with_min_y(seen.top()).with_max_x(seen.left()) };
                 look(&mut harness, &format!("{language} {size:?} {panel}"), room, &mut wrong);
             }
             let menu = if language == "de" { "Ansicht" } else { "Affichage" };
@@ -80,7 +80,8 @@ fn panels_hold_their_words_in_german_and_french() {
 fn the_welcome_holds_its_words_in_german_and_french() {
     let mut wrong = Vec::new();
     for (language, ..) in TONGUES {
-        let mut harness = window(language, [800.0, 600.0], Opening::default());
+        let opening = Opening { language: language.into(), ..Opening::default() };
+        let mut harness = crate::app(&opening);
         for size in [[800.0, 600.0], [390.0, 844.0]] {
             harness.set_size(size.into());
             let whole = Rect::from_min_size(eframe::egui::Pos2::ZERO, size.into());
