@@ -80,7 +80,7 @@ impl Exporter {
     /// Shows the panel.
     pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model, bookmarks: &[Bookmark]) {
         let mut image = model.document().camera.image;
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let label = ui.label(tr("Width, pixels"));
             ui.add(DragValue::new(&mut image[0]).range(16..=16384)).labelled_by(label.id);
             let label = ui.label(tr("Height, pixels"));
@@ -164,7 +164,7 @@ impl Exporter {
         if ui.checkbox(&mut own, tr("duration of the film")).on_hover_text(words).changed() {
             self.seconds = own.then_some(10.0);
         }
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             if let Some(seconds) = &mut self.seconds {
                 let label = ui.label(tr("Seconds"));
                 ui.add(DragValue::new(seconds).speed(0.1).range(0.1..=3600.0).max_decimals(1)).labelled_by(label.id);

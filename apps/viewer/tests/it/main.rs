@@ -4,6 +4,7 @@ mod accessible;
 mod authoring;
 mod consent;
 mod controls;
+mod density;
 mod files;
 mod film;
 mod languages;

@@ -28,8 +28,10 @@ fn look(harness: &mut Window, place: &str, room: Rect, wrong: &mut Vec<String>) 
     for node in harness.root().children_recursive() {
         let told = node.accesskit_node();
         let words = told.label().or(told.value()).unwrap_or_default();
-        let is_shown =
-            matches!(told.role(), Role::Label | Role::Button | Role::CheckBox | Role::ComboBox | Role::Slider);
+        let is_shown = matches!(
+            told.role(),
+            Role::Label | Role::Button | Role::CheckBox | Role::ComboBox | Role::Slider | Role::SpinButton
+        );
         if !is_shown || words.is_empty() {
             continue;
         }
@@ -65,7 +67,7 @@ fn panels_hold_their_words_in_german_and_french() {
                 let seen = harness.get_by_label(picture).rect();
                 let share = seen.area() / (size[0] * size[1]);
                 assert!(share >= 0.6, "{language}, {panel}: the picture has {share} of the window");
-                let room = if is_small { whole } else { whole.with_min_y(seen.top()).with_max_x(seen.left()) };
+                let room = if is_small { whole } else { whole.with_min_y(seen.top()).with_max_x(seen.left() - 7.0) };
                 look(&mut harness, &format!("{language} {size:?} {panel}"), room, &mut wrong);
             }
             let menu = if language == "de" { "Ansicht" } else { "Affichage" };

@@ -1,6 +1,6 @@
 //! Four tasks of a newcomer, done by nothing but the names that the window tells a screen reader; their actions are counted.
 
-use crate::{app, opened, wait_for};
+use crate::{opened, wait_for};
 use belvedere::scene_file::{LayerDoc, PresetsDoc, StageDoc};
 use belvedere_viewer::{Opening, Viewer};
 use eframe::egui::{DroppedFile, Event, Key, Modifiers, accesskit::Role};
@@ -36,7 +36,9 @@ struct Person {
 
 impl Person {
     fn before(opening: &Opening) -> Self {
-        let mut harness = app(opening);
+        let opening = opening.clone();
+        let builder = Harness::builder().with_size([900.0, 760.0]).with_max_steps(4);
+        let mut harness = builder.build_eframe(move |cc| Viewer::new(&cc.egui_ctx, &opening));
         (0..3).for_each(|_| harness.step());
         Self { harness, actions: Vec::new(), waited: Duration::ZERO }
     }
@@ -45,7 +47,8 @@ impl Person {
         self.actions.push(name.to_owned());
         let named: Vec<_> = self.harness.get_all_by_label(name).collect();
         let is_text = |node: &&egui_kittest::Node<'_>| node.accesskit_node().role() == Role::Label;
-        let control = named.iter().find(|node| !is_text(node)).unwrap_or(&named[0]);
+        // What lies over the rest, such as an open list, comes last.
+        let control = named.iter().rev().find(|node| !is_text(node)).unwrap_or(&named[0]);
         control.click();
         (0..8).for_each(|_| self.harness.step());
     }
@@ -139,7 +142,7 @@ fn a_preset_of_three_sections_is_made_for_a_city() {
     person.press("Presets");
     person.press("progressive");
     person.wait_for_picture();
-    while sections(&person.harness).len() < 3 {
+    for _ in sections(&person.harness).len()..3 {
         person.press("Split the last section");
         person.wait_for_picture();
     }
