@@ -304,7 +304,8 @@ fn one(ui: &mut Ui, model: &mut Model, n: usize, turn: &TurnDoc, next: &mut Turn
                 let mut value = now[axis];
                 let field =
                     eframe::egui::DragValue::new(&mut value).speed(speed).max_decimals(2).prefix(format!("{letter} "));
-                let response = ui.add(field).on_hover_text(format!("{name} {n}, {letter}"));
+                let whole = format!("{name} {n}, {letter}");
+                let response = ui.add(field).accessible_name(whole.as_str()).on_hover_text(whole);
                 if let Some(value) = super::changed(model, &response, value) {
                     part(next)[axis] = value;
                 }

@@ -26,6 +26,9 @@ const CONTROLS: [Role; 11] = [
     Role::Link,
 ];
 
+/// Buttons that each window has in its bar; the name of the window tells which.
+const OF_WINDOWS: [&str; 2] = ["Close window", "Hide"];
+
 /// Role and name of each control on the screen.
 fn controls(harness: &Window) -> Vec<(Role, String)> {
     let nodes = harness.root().children_recursive().collect::<Vec<_>>();
@@ -46,7 +49,7 @@ fn look(harness: &mut Window, place: &str, wrong: &mut BTreeSet<String>) {
     for (i, (role, name)) in all.iter().enumerate() {
         if name.is_empty() {
             wrong.insert(format!("{place}: a {role:?} without a name after {:?}", i.checked_sub(1).map(|i| &all[i])));
-        } else if all[..i].contains(&(*role, name.clone())) {
+        } else if !OF_WINDOWS.contains(&name.as_str()) && all[..i].contains(&(*role, name.clone())) {
             wrong.insert(format!("{place}: two {role:?} are called {name:?}"));
         }
     }
@@ -88,15 +91,13 @@ fn controls_of_all_panels_and_menus_have_names_of_their_own() {
         look(&mut harness, panel, &mut wrong);
     }
     press(&mut harness, "Terrain");
+    // No picture is waited for: not all bends go together.
     press(&mut harness, "The ground makes way");
-    settle(&mut harness);
     look(&mut harness, "Terrain that makes way", &mut wrong);
     press(&mut harness, "Curved rays");
     press(&mut harness, "Add a turn");
-    settle(&mut harness);
     look(&mut harness, "Curved rays", &mut wrong);
     press(&mut harness, "Along a path");
-    settle(&mut harness);
     look(&mut harness, "Along a path", &mut wrong);
     for menu in ["File", "Edit", "Places", "View", "Help"] {
         press(&mut harness, menu);
