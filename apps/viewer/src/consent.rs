@@ -1,5 +1,6 @@
 //! Asks whether a scene may read files outside its folder.
 
+use crate::language::{fill, tr};
 use belvedere::Trust;
 use belvedere::core::plain;
 use eframe::egui::{Context, ScrollArea, Window};
@@ -42,26 +43,26 @@ impl Consent {
     pub(crate) fn show(&self, ctx: &Context) -> Option<Decision> {
         let mut decision = None;
         let room = ctx.content_rect();
-        Window::new("Files outside the folder of the scene")
+        Window::new(tr("Files outside the folder of the scene"))
             .collapsible(false)
             .default_pos(room.center() - eframe::egui::vec2(240.0, 120.0))
             .show(ctx, |ui| {
                 ui.set_width(480.0);
                 let name = self.scene.file_name().unwrap_or_default().to_string_lossy();
-                ui.label(format!("{name} names files that do not lie in its folder:"));
+                ui.label(fill(tr("{0} names files that do not lie in its folder:"), &[&name]));
                 ScrollArea::vertical().max_height(LIST).auto_shrink([false, true]).show(ui, |ui| {
                     for file in &self.files {
                         // Names come from files.
                         ui.label(plain::escaped(&file.display().to_string()));
                     }
                 });
-                ui.label("Allow this if you know where the scene comes from. It is remembered for this scene and these files.");
+                ui.label(tr("Allow this if you know where the scene comes from. It is remembered for this scene and these files."));
                 ui.horizontal(|ui| {
-                    let allow = if self.files.len() == 1 { "Allow this file" } else { "Allow these files" };
+                    let allow = tr(if self.files.len() == 1 { "Allow this file" } else { "Allow these files" });
                     if ui.button(allow).clicked() {
                         decision = Some(Decision::Allowed);
                     }
-                    if ui.button("Do not open").clicked() {
+                    if ui.button(tr("Do not open")).clicked() {
                         decision = Some(Decision::Refused);
                     }
                 });
@@ -84,7 +85,7 @@ impl Consent {
 /// # Errors
 /// One sentence, if it cannot be remembered; the consent holds in this window.
 pub(crate) fn remember(trust: &mut Trust, scene: &Path, files: &[PathBuf]) -> Result<bool, String> {
-    let said = |e: belvedere::BelvedereError| format!("the consent is not remembered: {e}");
+    let said = |e: belvedere::BelvedereError| fill(tr("the consent is not remembered: {0}"), &[&e]);
     trust.give(scene, files).map_err(said)?;
     trust.remember(scene, files).map_err(said)
 }

@@ -1,6 +1,7 @@
 //! Export of a picture of any size, an animation or a report: in the background, with progress and cancellation.
 
 use crate::files::Choosing;
+use crate::language::{fill, heard, later, tr};
 use crate::menu::Bookmark;
 use crate::model::Model;
 use crate::wake::Wake;
@@ -79,10 +80,10 @@ impl Exporter {
     /// Shows the panel.
     pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model, bookmarks: &[Bookmark]) {
         let mut image = model.document().camera.image;
-        ui.horizontal(|ui| {
-            let label = ui.label("Width, pixels");
+        ui.horizontal_wrapped(|ui| {
+            let label = ui.label(tr("Width, pixels"));
             ui.add(DragValue::new(&mut image[0]).range(16..=16384)).labelled_by(label.id);
-            let label = ui.label("Height, pixels");
+            let label = ui.label(tr("Height, pixels"));
             ui.add(DragValue::new(&mut image[1]).range(16..=16384)).labelled_by(label.id);
         });
         if image != model.document().camera.image {
@@ -90,25 +91,32 @@ impl Exporter {
         }
         let idle = self.job.is_none() && self.chosen.is_none();
         if let Some([w, h]) = model.screen_size().filter(|size| *size != image)
-            && ui.button("As the window").on_hover_text(format!("{w} x {h} pixels, the shape of the window")).clicked()
+            && ui
+                .button(tr("As the window"))
+                .on_hover_text(fill(tr("{0} x {1} pixels, the shape of the window"), &[&w, &h]))
+                .clicked()
         {
             model.edit(|document| document.camera.image = [w, h]);
         }
         ui.separator();
         ui.add_enabled_ui(idle, |ui| {
-            if ui.button("Export picture…").clicked() {
+            if ui.button(tr("Export picture…")).clicked() {
                 self.ask(model, Want::Picture, "picture.png");
             }
             ui.vertical(|ui| {
                 let why = self.film_lacks(model, bookmarks);
-                let film = ui.add_enabled(FILMS && why.is_none(), Button::new("Export film…"));
-                let why = if FILMS { why.unwrap_or_default() } else { NO_FILMS };
+                let film = ui.add_enabled(FILMS && why.is_none(), Button::new(tr("Export film…")));
+                let why = if FILMS { why.unwrap_or_default() } else { tr(NO_FILMS) };
                 if film.on_disabled_hover_text(why).clicked() {
                     self.ask(model, Want::Film, "film.mp4");
                 }
                 self.motion(ui, model);
             });
-            if ui.button("Export report…").on_hover_text("what the picture shows of what must be seen").clicked() {
+            if ui
+                .button(tr("Export report…"))
+                .on_hover_text(tr("what the picture shows of what must be seen"))
+                .clicked()
+            {
                 self.ask(model, Want::Report, "report.json");
             }
         });
@@ -118,9 +126,11 @@ impl Exporter {
     /// Why the chosen film cannot be made.
     fn film_lacks(&self, model: &Model, bookmarks: &[Bookmark]) -> Option<&'static str> {
         match self.film {
-            Film::Scene if model.document().animation.is_none() => Some("the scene has no motion; choose another"),
-            Film::Route if lines(model).is_empty() => Some("there is no route"),
-            Film::Bookmarks if bookmarks.len() < 2 => Some("it needs two bookmarks at least: press B at each place"),
+            Film::Scene if model.document().animation.is_none() => Some(tr("the scene has no motion; choose another")),
+            Film::Route if lines(model).is_empty() => Some(tr("there is no route")),
+            Film::Bookmarks if bookmarks.len() < 2 => {
+                Some(tr("it needs two bookmarks at least: press B at each place"))
+            }
             _ => None,
         }
     }
@@ -128,13 +138,13 @@ impl Exporter {
     /// Motion, duration and rate of a film.
     fn motion(&mut self, ui: &mut Ui, model: &Model) {
         let name = |film: Film| match film {
-            Film::Scene => "motion of the scene",
-            Film::Sweep => "viewing angle 10 to 80 degrees",
-            Film::Turntable => "once around",
-            Film::Route => "along a route",
-            Film::Bookmarks => "past the bookmarks",
+            Film::Scene => tr("motion of the scene"),
+            Film::Sweep => tr("viewing angle 10 to 80 degrees"),
+            Film::Turntable => tr("once around"),
+            Film::Route => tr("along a route"),
+            Film::Bookmarks => tr("past the bookmarks"),
         };
-        ComboBox::from_label("Film").selected_text(name(self.film)).show_ui(ui, |ui| {
+        ComboBox::from_label(tr("Film")).selected_text(name(self.film)).show_ui(ui, |ui| {
             for one in [Film::Scene, Film::Route, Film::Bookmarks, Film::Sweep, Film::Turntable] {
                 ui.selectable_value(&mut self.film, one, name(one));
             }
@@ -143,30 +153,30 @@ impl Exporter {
         if self.film == Film::Route && !lines.is_empty() {
             let route = self.route.take().filter(|route| lines.contains(route)).unwrap_or_else(|| lines[0].clone());
             let route = self.route.insert(route);
-            ComboBox::from_label("Route").selected_text(route.as_str()).show_ui(ui, |ui| {
+            ComboBox::from_label(tr("Route")).selected_text(route.as_str()).show_ui(ui, |ui| {
                 for line in &lines {
                     ui.selectable_value(route, line.clone(), line);
                 }
             });
         }
         let mut own = self.seconds.is_some();
-        let words = "otherwise as long as its motion says";
-        if ui.checkbox(&mut own, "duration of the film").on_hover_text(words).changed() {
+        let words = tr("otherwise as long as its motion says");
+        if ui.checkbox(&mut own, tr("duration of the film")).on_hover_text(words).changed() {
             self.seconds = own.then_some(10.0);
         }
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             if let Some(seconds) = &mut self.seconds {
-                let label = ui.label("Seconds");
+                let label = ui.label(tr("Seconds"));
                 ui.add(DragValue::new(seconds).speed(0.1).range(0.1..=3600.0).max_decimals(1)).labelled_by(label.id);
             }
-            let label = ui.label("Frames per second");
+            let label = ui.label(tr("Frames per second"));
             ui.add(DragValue::new(&mut self.rate).speed(0.2).range(1.0..=120.0).max_decimals(2)).labelled_by(label.id);
         });
         match self.seconds {
             _ if self.is_scenes_own() => {
-                drop(ui.weak("Length and rate of the scene's own motion until you change them."))
+                drop(ui.weak(tr("Length and rate of the scene's own motion until you change them.")))
             }
-            Some(seconds) => drop(ui.weak(format!("{} frames", frames(seconds, self.rate)))),
+            Some(seconds) => drop(ui.weak(fill(tr("Frames: {0}"), &[&frames(seconds, self.rate)]))),
             None => {}
         }
     }
@@ -222,9 +232,9 @@ impl Exporter {
             job.last = at.clone();
         }
         let (stage, share) = &job.last;
-        ui.label(format!("{}: {stage}", job.name));
+        ui.label(format!("{}: {}", tr(job.name), heard(stage)));
         ui.add(ProgressBar::new(*share as f32).show_percentage());
-        if ui.button("Cancel export").clicked() {
+        if ui.button(tr("Cancel export")).clicked() {
             job.progress.cancel_flag().store(true, Ordering::Relaxed);
         }
         ui.ctx().request_repaint_after_secs(0.1);
@@ -247,15 +257,15 @@ impl Exporter {
         match job.done.try_recv() {
             Ok(Ok(written)) => {
                 let names: Vec<String> = written.iter().map(|path| path.display().to_string()).collect();
-                model.notices.say(format!("Written: {}", names.join(", ")), now);
+                model.notices.say(fill(tr("Written: {0}"), &[&names.join(", ")]), now);
                 for reason in written.iter().filter_map(|path| crate::files::hand_over(path).err()) {
                     model.notices.error(reason);
                 }
             }
-            Ok(Err(e)) if e.is_cancelled() => model.notices.say("Export cancelled", now),
+            Ok(Err(e)) if e.is_cancelled() => model.notices.say(tr("Export cancelled"), now),
             Ok(Err(e)) => model.notices.error(e.to_string()),
             Err(mpsc::TryRecvError::Empty) => return,
-            Err(mpsc::TryRecvError::Disconnected) => model.notices.error("the export ended without a word"),
+            Err(mpsc::TryRecvError::Disconnected) => model.notices.error(tr("the export ended without a word")),
         }
         self.job = None;
     }
@@ -288,9 +298,9 @@ impl Exporter {
             wake.call();
         };
         let name = match want {
-            Want::Picture => "Picture",
-            Want::Film => "Animation",
-            Want::Report => "Report",
+            Want::Picture => later("Picture"),
+            Want::Film => later("Animation"),
+            Want::Report => later("Report"),
         };
         if let Err(e) = beside(work) {
             model.notices.error(e);
@@ -300,7 +310,7 @@ impl Exporter {
     }
 }
 
-const NO_FILMS: &str = "in a browser there are no films; save the scene and make the film with the command line";
+const NO_FILMS: &str = later("in a browser there are no films; save the scene and make the film with the command line");
 
 /// Number of frames of a duration in seconds.
 fn frames(seconds: f64, rate: f64) -> u32 {

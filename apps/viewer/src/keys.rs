@@ -1,5 +1,6 @@
 //! The keyboard: everything that the pointer can do to the camera, and the commands of the menu.
 
+use crate::language::later;
 use crate::model::{Compare, Model};
 use belvedere::core::{DVec3, Navigation};
 use eframe::egui::{Context, Key, Modifiers};
@@ -19,21 +20,21 @@ pub(crate) enum Command {
 
 /// Keys and what they do, for the help window.
 pub(crate) const KEYS: [(&str, &str); 15] = [
-    ("Drag, arrow keys", "move over the ground (tool Orbit: turn)"),
-    ("Right drag, Shift + arrow keys", "turn and tilt"),
-    ("Wheel, pinch, + and -", "nearer and farther"),
-    ("Space", "straight or bent"),
-    ("C", "compare: one picture, split, flicker"),
-    ("I", "straight picture in a corner"),
-    ("O", "camera from above"),
-    ("F", "show all"),
-    ("B", "bookmark"),
-    ("T", "renderer and times"),
-    ("P", "panel beside the picture"),
-    ("Ctrl O, Ctrl S, Ctrl Shift S", "open, save, save as"),
-    ("Ctrl Z, Ctrl Shift Z or Ctrl Y", "undo, redo"),
-    ("Tab, Enter", "next control, press it"),
-    ("F1", "this help"),
+    (later("Drag, arrow keys"), later("move over the ground (tool Orbit: turn)")),
+    (later("Right drag, Shift + arrow keys"), later("turn and tilt")),
+    (later("Wheel, pinch, + and -"), later("nearer and farther")),
+    (later("Space"), later("straight or bent")),
+    ("C", later("compare: one picture, split, flicker")),
+    ("I", later("straight picture in a corner")),
+    ("O", later("camera from above")),
+    ("F", later("show all")),
+    ("B", later("bookmark")),
+    ("T", later("renderer and times")),
+    ("P", later("panel beside the picture")),
+    (later("Ctrl O, Ctrl S, Ctrl Shift S"), later("open, save, save as")),
+    (later("Ctrl Z, Ctrl Shift Z or Ctrl Y"), later("undo, redo")),
+    (later("Tab, Enter"), later("next control, press it")),
+    ("F1", later("this help")),
 ];
 
 /// Steps of the arrow keys as a share of the distance to the target; angle of a turn, radians; factor of a zoom.

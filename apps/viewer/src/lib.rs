@@ -17,6 +17,8 @@ mod notices;
 mod panels;
 mod picture;
 mod pointer;
+mod settings;
+mod theme;
 mod times;
 mod viewer;
 mod wake;

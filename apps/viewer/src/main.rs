@@ -33,6 +33,7 @@ mod native {
             state: Opening::usual_state(),
             system_dialogs: true,
             left: None,
+            language: Opening::usual_language(),
         };
         // Windows require the main thread. Documents are read on other threads.
         let failure = match std::panic::catch_unwind(|| belvedere_viewer::run(&opening)) {

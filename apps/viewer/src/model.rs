@@ -1,5 +1,6 @@
 //! State of the application without its window: the document, the last pictures, and how they are viewed.
 
+use crate::language::tr;
 use crate::notices::Notices;
 use belvedere::core::{Aabb, DVec2, DVec3, Navigation, Pinhole, Projection};
 use belvedere::editor::{
@@ -79,6 +80,8 @@ const EASE: f64 = 0.6;
 struct Wanted {
     document: Arc<Document>,
     image: [u32; 2],
+    /// Pixels per point of the window.
+    density: f64,
     sides: Sides,
     /// Share of the bend, 0..=1.
     bend: f64,
@@ -87,7 +90,7 @@ struct Wanted {
 
 impl PartialEq for Wanted {
     fn eq(&self, other: &Self) -> bool {
-        let of = |wanted: &Self| (wanted.image, wanted.sides, wanted.bend, wanted.overhead);
+        let of = |wanted: &Self| (wanted.image, wanted.density, wanted.sides, wanted.bend, wanted.overhead);
         Arc::ptr_eq(&self.document, &other.document) && of(self) == of(other)
     }
 }
@@ -134,6 +137,8 @@ pub(crate) struct Model {
     /// Width of moving pictures as a share of the full width in pixels.
     pub(crate) coarseness: f64,
     gesture: u64,
+    /// Pixels of the picture per point of the window: lines, marks and names are that many times as large.
+    pub(crate) density: f64,
     /// Whether files are chosen in windows of the system.
     pub(crate) system_dialogs: bool,
     /// Progress of opening files, in words; nothing is drawn before the first picture.
@@ -170,6 +175,7 @@ impl Model {
             moved_on_at: f64::NEG_INFINITY,
             coarseness: 1.0,
             gesture: 0,
+            density: 1.0,
             system_dialogs: false,
             opening: None,
             before: None,
@@ -281,7 +287,7 @@ impl Model {
     pub(crate) fn move_camera<E>(&mut self, change: impl FnOnce(&Navigation) -> Result<Navigation, E>) {
         if self.document().constructor.as_ref().is_some_and(|doc| doc.kind == ConstructorKind::PathPreview) {
             self.notices.note(
-                "The preview along a path has a camera of its own; bend rays by hand to move it.",
+                tr("The preview along a path has a camera of its own; bend rays by hand to move it."),
                 self.moved_on_at,
             );
             return;
@@ -399,7 +405,14 @@ impl Model {
         }
         self.ease(now);
         let (sides, bend) = self.sides();
-        let wanted = Wanted { document: self.document().clone(), image, sides, bend, overhead: self.look.overhead };
+        let wanted = Wanted {
+            document: self.document().clone(),
+            image,
+            density: self.density,
+            sides,
+            bend,
+            overhead: self.look.overhead,
+        };
         if self.ordered.as_ref() != Some(&wanted) {
             (self.changed_at, self.changed) = (now, Clock::now());
             self.rested = false;
@@ -436,7 +449,8 @@ impl Model {
     }
 
     fn send(&mut self, wanted: Wanted, image: [u32; 2], pace: Pace) {
-        let Wanted { document, sides, bend, overhead, .. } = wanted;
+        let Wanted { document, density, sides, bend, overhead, .. } = wanted;
+        self.painter.set_density(density);
         let place = self.editor.place.clone();
         self.waiting = Some(pace);
         self.painter.order(Order { document, place, image, pace, sides, bend, overhead });

@@ -1,5 +1,7 @@
 //! Messages to the user: dismissed by the user or after a time.
 
+use crate::language::{fill, tr};
+use crate::theme;
 use eframe::egui;
 
 /// What a message is.
@@ -13,9 +15,9 @@ enum Kind {
 impl Kind {
     fn heading(self) -> (&'static str, egui::Color32) {
         match self {
-            Self::Problem => ("Problem", egui::Color32::from_rgb(190, 60, 40)),
-            Self::Done => ("Done", egui::Color32::from_rgb(40, 120, 80)),
-            Self::Note => ("Note", egui::Color32::from_rgb(50, 110, 180)),
+            Self::Problem => (tr("Problem"), theme::PROBLEM),
+            Self::Done => (tr("Done"), theme::DONE),
+            Self::Note => (tr("Note"), theme::NOTE),
         }
     }
 }
@@ -90,8 +92,8 @@ impl Notices {
                 .show(ctx, |ui| {
                     ui.set_max_width(380.0);
                     ui.horizontal(|ui| {
-                        ui.colored_label(color, heading);
-                        if ui.small_button(format!("Dismiss {}", i + 1)).clicked() {
+                        ui.colored_label(theme::readable(color, ui.visuals().dark_mode), heading);
+                        if ui.small_button(fill(tr("Dismiss {0}"), &[&(i + 1)])).clicked() {
                             dismissed = Some(i);
                         }
                     });

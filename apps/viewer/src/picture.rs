@@ -1,5 +1,6 @@
 //! The picture on the screen: shown, compared, navigated, picked.
 
+use crate::language::{fill, heard, tr};
 use crate::model::{Compare, Model, Tool};
 use crate::pointer::{Hand, share};
 use belvedere::core::{DVec2, DVec3};
@@ -40,7 +41,7 @@ impl PictureView {
         let rect = ui.available_rect_before_wrap();
         (self.middle, self.middle_top) = (free.center(), free.center_top());
         let response = ui.interact(rect, ui.scope_id().with("picture"), Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Picture"));
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, tr("Picture")));
         self.hand.steer(ui, &response, rect, model);
         self.order(ui.ctx(), rect, model);
         self.upload(ui.ctx(), model);
@@ -68,7 +69,9 @@ impl PictureView {
     /// Orders the picture at the resolution of the screen, within the limit of pixels.
     fn order(&self, ctx: &Context, rect: Rect, model: &mut Model) {
         let size = rect.size() * ctx.pixels_per_point();
-        let size = size * (MOST_PIXELS / (size.x * size.y)).sqrt().min(1.0);
+        let fewer = (MOST_PIXELS / (size.x * size.y)).sqrt().min(1.0);
+        let size = size * fewer;
+        model.density = f64::from(ctx.pixels_per_point() * fewer);
         let image = [size.x, size.y].map(|n| (n.round() as u32).max(16));
         let now = ctx.input(|input| input.time);
         if let Some(again) = model.order(image, now) {
@@ -111,7 +114,7 @@ impl PictureView {
                     painter,
                     free.center_top() + vec2(0.0, 8.0),
                     Align2::CENTER_TOP,
-                    if is_bent { "bent" } else { "straight" },
+                    tr(if is_bent { "bent" } else { "straight" }),
                 );
                 ctx.request_repaint_after_secs(0.1);
             }
@@ -130,7 +133,7 @@ impl PictureView {
             if let Some(texture) = if model.look.bent { straight } else { bent } {
                 painter.image(texture.id(), small, whole, Color32::WHITE);
                 painter.rect_stroke(small, 2.0, Stroke::new(1.5, Color32::WHITE), eframe::egui::StrokeKind::Outside);
-                let words = if model.look.bent { "straight view" } else { "bent view" };
+                let words = tr(if model.look.bent { "straight view" } else { "bent view" });
                 label(painter, small.center_top() + vec2(0.0, 4.0), Align2::CENTER_TOP, words);
             }
         }
@@ -141,20 +144,20 @@ impl PictureView {
     /// Labels over the picture: state, messages, the picked point.
     fn marks(&self, painter: &Painter, (rect, free): (Rect, Rect), model: &Model) {
         let Some(shown) = &model.shown else {
-            let words = model.violated.as_deref().or(model.opening.as_deref()).unwrap_or("opening the scene");
+            let words = model.violated.as_deref().or(model.opening.as_deref()).unwrap_or(tr("opening the scene"));
             painter.text(free.center(), Align2::CENTER_CENTER, words, FontId::proportional(15.0), Color32::GRAY);
             return;
         };
         let moving = matches!(shown.pace, Pace::Moving { .. });
         if moving && shown.session.view().is_bent() && shown.bent.is_some() {
-            label(painter, free.right_bottom() + vec2(-8.0, -8.0), Align2::RIGHT_BOTTOM, "bent view");
+            label(painter, free.right_bottom() + vec2(-8.0, -8.0), Align2::RIGHT_BOTTOM, tr("bent view"));
         }
         let mut top = free.center_top() + vec2(0.0, 8.0);
         if model.opening.is_some() || model.works_since().is_some_and(|since| since > PATIENT) || model.is_stopped() {
             top.y += 54.0;
         }
         if let Some(waits) = shown.waits {
-            label(painter, top, Align2::CENTER_TOP, waits);
+            label(painter, top, Align2::CENTER_TOP, &heard(waits));
             top.y += 26.0;
         }
         if let Some(reason) = &model.violated {
@@ -166,13 +169,18 @@ impl PictureView {
         }
         if model.look.statistics {
             let stats = shown.bent.as_ref().or(shown.straight.as_ref()).map(|frame| &frame.stats);
-            let words = format!(
-                "CPU renderer · {:.0} ms, drawing {:.0} ms · {} triangles · {:.0} % of the pixels' width · input to picture {:.0} ms",
-                shown.milliseconds,
-                stats.map_or(0.0, |s| s.milliseconds),
-                stats.map_or(0, |s| s.triangles_drawn),
-                if moving { 100.0 * model.coarseness } else { 100.0 },
-                model.latency().unwrap_or_default(),
+            let whole = |value: f64| format!("{value:.0}");
+            let words = fill(
+                tr(
+                    "CPU renderer · {0} ms, drawing {1} ms · {2} triangles · {3} % of the pixels' width · input to picture {4} ms",
+                ),
+                &[
+                    &whole(shown.milliseconds),
+                    &whole(stats.map_or(0.0, |s| s.milliseconds)),
+                    &stats.map_or(0, |s| s.triangles_drawn),
+                    &whole(if moving { 100.0 * model.coarseness } else { 100.0 }),
+                    &whole(model.latency().unwrap_or_default()),
+                ],
             );
             // Placed above the mark that is part of the picture.
             label(painter, free.right_bottom() + vec2(-8.0, -44.0), Align2::RIGHT_BOTTOM, &words);
@@ -214,7 +222,7 @@ impl PictureView {
         let x = rect.left() + model.look.split * rect.width();
         let grip = Rect::from_center_size(pos2(x, rect.center().y), vec2(14.0, rect.height()));
         let response = ui.interact(grip, ui.scope_id().with("split"), Sense::drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, "Bar between straight and bent"));
+        response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, tr("Bar between straight and bent")));
         if response.dragged()
             && let Some(at) = response.interact_pointer_pos()
         {
@@ -222,8 +230,8 @@ impl PictureView {
         }
         let painter = ui.painter();
         painter.vline(x, rect.y_range(), Stroke::new(2.0, Color32::WHITE));
-        label(painter, pos2(x - 8.0, rect.top() + 8.0), Align2::RIGHT_TOP, "straight");
-        label(painter, pos2(x + 8.0, rect.top() + 8.0), Align2::LEFT_TOP, "bent");
+        label(painter, pos2(x - 8.0, rect.top() + 8.0), Align2::RIGHT_TOP, tr("straight"));
+        label(painter, pos2(x + 8.0, rect.top() + 8.0), Align2::LEFT_TOP, tr("bent"));
         response.on_hover_cursor(CursorIcon::ResizeHorizontal);
     }
 }
@@ -265,7 +273,10 @@ fn image_of(point: DVec3, rect: Rect, model: &Model) -> Option<Pos2> {
 /// Position and height in the scene's own system.
 pub(crate) fn coordinates(point: DVec3, unit: Unit) -> String {
     match unit {
-        Unit::Metre => format!("E {:.0}  N {:.0}  height {:.0} m", point.x, point.y, point.z),
+        Unit::Metre => {
+            let [e, n, height] = point.to_array().map(|value| format!("{value:.0}"));
+            fill(tr("E {0}  N {1}  height {2} m"), &[&e, &n, &height])
+        }
         _ => format!("x {:.2}  y {:.2}  z {:.2}", point.x, point.y, point.z),
     }
 }

@@ -12,10 +12,12 @@ use crate::builtin::BUILTIN;
 use crate::consent::Consent;
 use crate::files;
 use crate::keys::{self, Command};
+use crate::language::{fill, tr};
 use crate::menu::{self, Bookmark, Choice};
 use crate::model::{Look, Model};
 use crate::panels::{Panels, Tab};
 use crate::picture::PictureView;
+use crate::settings::Settings;
 use crate::times::Times;
 use crate::wake::Wake;
 use belvedere::Trust;
@@ -46,6 +48,8 @@ pub struct Opening {
     pub system_dialogs: bool,
     /// State of an earlier run as a page keeps it; the scene of it comes instead of the files, if all its own files are there.
     pub left: Option<String>,
+    /// Language of the system as a tag such as `de_CH.UTF-8`; empty: English.
+    pub language: String,
 }
 
 impl Opening {
@@ -53,6 +57,11 @@ impl Opening {
     #[cfg(not(target_family = "wasm"))]
     pub fn usual_state() -> Option<PathBuf> {
         files::state_folder()
+    }
+
+    /// The language of the system, or of the browser; empty if it states none.
+    pub fn usual_language() -> String {
+        crate::language::of_system()
     }
 }
 
@@ -94,6 +103,7 @@ pub struct Viewer {
     picture: PictureView,
     from_above: Option<(u64, TextureHandle)>,
     bookmarks: Vec<Bookmark>,
+    settings: Settings,
     remembered: Remembered,
     allowed: Vec<PathBuf>,
     trust: Trust,
@@ -127,12 +137,13 @@ pub struct Viewer {
 impl Viewer {
     /// Opens the given files. After an instance that did not end properly its scene is restored, or kept in a file if others are opened.
     pub fn new(ctx: &Context, opening: &Opening) -> Self {
+        let settings = Settings::new(ctx, opening.state.clone(), opening.language.clone());
         let wake = Wake::new(ctx);
         let mut notes = Vec::new();
         let (recovery, left) = match opening.state.as_deref().map(Recovery::claim) {
             Some(Ok((recovery, left))) => (Some(recovery), left),
             Some(Err(e)) => {
-                notes.push(format!("what you do is not written down for the case of a crash: {e}"));
+                notes.push(fill(tr("what you do is not written down for the case of a crash: {0}"), &[&e]));
                 (None, None)
             }
             None => (None, None),
@@ -148,6 +159,7 @@ impl Viewer {
             picture: PictureView::default(),
             from_above: None,
             bookmarks: Vec::new(),
+            settings,
             remembered: opening.state.as_deref().map_or_else(Remembered::default, remembered),
             allowed: opening.allowed.clone(),
             trust: opening.trust.clone(),
@@ -178,16 +190,22 @@ impl Viewer {
                 let extra: Extra = serde_json::from_value(left.extra).unwrap_or_default();
                 (viewer.model.look, viewer.panels.tab) = (extra.look, extra.tab);
                 viewer.bookmarks = extra.bookmarks;
-                notes.push("The last session did not end as it should; here is its last state.".into());
+                notes.push(tr("The last session did not end as it should; here is its last state.").into());
             }
             Some(mut left) if left.editor.is_changed() => {
                 // What an earlier session left stays.
                 let kept = files::free_name(&opening.state.clone().unwrap_or_default(), "recovered", "toml");
-                let what = match left.editor.save(&kept) {
-                    Ok(()) => format!("its unsaved scene is kept in {}", kept.display()),
-                    Err(e) => format!("its unsaved scene could not be kept: {e}"),
-                };
-                notes.push(format!("The last session did not end as it should; {what}."));
+                notes.push(match left.editor.save(&kept) {
+                    Ok(()) => {
+                        let words = tr("The last session did not end as it should; its unsaved scene is kept in {0}.");
+                        fill(words, &[&kept.display()])
+                    }
+                    Err(e) => {
+                        let words =
+                            tr("The last session did not end as it should; its unsaved scene could not be kept: {0}.");
+                        fill(words, &[&e])
+                    }
+                });
             }
             Some(_) | None => viewer.welcome.open = opening.files.is_empty() && opening.left.is_none(),
         }
@@ -313,7 +331,7 @@ impl Viewer {
             Command::Bookmark => {
                 if let Some(camera) = self.model.camera_doc() {
                     let taken = |name: &String| self.bookmarks.iter().any(|bookmark| bookmark.name == *name);
-                    let name = (1..).map(|n| format!("View {n}")).find(|name| !taken(name)).unwrap_or_default();
+                    let name = (1..).map(|n| fill(tr("View {0}"), &[&n])).find(|name| !taken(name)).unwrap_or_default();
                     self.bookmarks.push(Bookmark { name, camera });
                     self.remember_bookmarks();
                 }
@@ -373,7 +391,9 @@ impl Viewer {
         self.written = Some((self.model.document().clone(), extra));
         self.dirty_since = None;
         if let Err(e) = recovery.write(&self.model.editor, beside) {
-            self.model.notices.error(format!("what you do could not be written down for the case of a crash: {e}"));
+            self.model
+                .notices
+                .error(fill(tr("what you do could not be written down for the case of a crash: {0}"), &[&e]));
         }
     }
 }
@@ -396,6 +416,7 @@ fn remembered(folder: &Path) -> Remembered {
 impl eframe::App for Viewer {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
+        self.settings.speak();
         self.model.take_answers();
         if std::mem::take(&mut self.model.came_back) {
             self.bookmarks = std::mem::take(&mut self.bookmarks_before);

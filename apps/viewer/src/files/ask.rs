@@ -1,5 +1,6 @@
 //! Files chosen in a window of our own, where the system has none for it.
 
+use crate::language::tr;
 use eframe::egui::{Button, Context, Key, ScrollArea, TextEdit, Ui, Window};
 use std::path::{Path, PathBuf};
 
@@ -56,7 +57,7 @@ impl Ask {
     /// Shows the window. Returns the chosen files, empty after a cancellation; `None` while the window is open.
     pub(super) fn show(&mut self, ctx: &Context) -> Option<Vec<PathBuf>> {
         let mut answer = None;
-        let title = if self.writes { "Write to a file" } else { "Open files" };
+        let title = tr(if self.writes { "Write to a file" } else { "Open files" });
         let room = ctx.content_rect();
         Window::new(title)
             .collapsible(false)
@@ -64,23 +65,23 @@ impl Ask {
             .show(ctx, |ui| {
                 ui.set_width(460.0);
                 ui.label(self.folder.display().to_string());
-                let label = ui.label("File, or folder to go to");
+                let label = ui.label(tr("File, or folder to go to"));
                 let field = ui.add(TextEdit::singleline(&mut self.name).desired_width(440.0)).labelled_by(label.id);
                 if !std::mem::replace(&mut self.has_focus, true) {
                     field.request_focus();
                 }
                 let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
                 if self.writes && self.folder.join(self.name.trim()).is_file() {
-                    ui.label("This file is there already; it will be replaced.");
+                    ui.label(tr("This file is there already; it will be replaced."));
                 }
                 self.list(ui);
                 ui.horizontal(|ui| {
-                    let go = if self.writes { "Write" } else { "Open" };
+                    let go = tr(if self.writes { "Write" } else { "Open" });
                     let ready = !self.name.trim().is_empty() || !self.chosen.is_empty();
                     if ui.add_enabled(ready, Button::new(go)).clicked() || (entered && ready) {
                         answer = self.decide();
                     }
-                    if ui.button("Cancel").clicked() || ui.input(|input| input.key_pressed(Key::Escape)) {
+                    if ui.button(tr("Cancel")).clicked() || ui.input(|input| input.key_pressed(Key::Escape)) {
                         answer = Some(Vec::new());
                     }
                 });
@@ -92,7 +93,7 @@ impl Ask {
         let mut to = None;
         ScrollArea::vertical().max_height(240.0).auto_shrink(false).show(ui, |ui| {
             if let Some(parent) = self.folder.parent()
-                && ui.selectable_label(false, "one folder up").clicked()
+                && ui.selectable_label(false, tr("one folder up")).clicked()
             {
                 to = Some(parent.to_owned());
             }

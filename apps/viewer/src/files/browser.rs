@@ -90,9 +90,9 @@ fn later<F: Future<Output = ()> + 'static>(work: impl FnOnce(Sender<Result<Vec<P
 /// Puts a file into memory, and lets the browser keep it.
 fn keep(name: &str, bytes: Result<Vec<u8>, String>) -> Result<PathBuf, String> {
     let path = PathBuf::from(name);
-    let bytes = bytes.map_err(|e| format!("{name} could not be read: {e}"))?;
+    let bytes = bytes.map_err(|e| fill(tr("{0} could not be read: {1}"), &[&name, &e]))?;
     let copy = Uint8Array::from(bytes.as_slice());
-    fs::write(&path, bytes).map_err(|e| format!("{name} could not be kept: {e}"))?;
+    fs::write(&path, bytes).map_err(|e| fill(tr("{0} could not be kept: {1}"), &[&name, &e]))?;
     page::call("given", &[&name.into(), &copy]);
     Ok(path)
 }
@@ -101,7 +101,7 @@ fn keep(name: &str, bytes: Result<Vec<u8>, String>) -> Result<PathBuf, String> {
 pub(crate) fn hand_over(path: &Path) -> Result<(), String> {
     let bytes = fs::read(path).map_err(|e| e.to_string())?;
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    download(&name, &bytes).map_err(|e| format!("{name} could not be handed over: {e:?}"))
+    download(&name, &bytes).map_err(|e| fill(tr("{0} could not be handed over: {1}"), &[&name, &format!("{e:?}")]))
 }
 
 fn download(name: &str, bytes: &[u8]) -> Result<(), JsValue> {

@@ -4,6 +4,7 @@ mod style;
 mod volume;
 
 use super::percent;
+use crate::language::{fill, heard, tr};
 use crate::model::Model;
 use belvedere::Warning;
 use belvedere::editor::{with_layer_renamed, without_layer};
@@ -15,13 +16,13 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
     let document = model.document().clone();
     let mut title = document.title.clone();
     ui.horizontal(|ui| {
-        let label = ui.label("Title");
+        let label = ui.label(tr("Title"));
         if ui.text_edit_singleline(&mut title).labelled_by(label.id).changed() {
             model.edit_on(|document| document.title = title);
         }
     });
     if document.layer.is_empty() {
-        ui.label("There is no layer. Drop a GeoTIFF and a GPX on the window, or open a scene.");
+        ui.label(tr("There is no layer. Drop a GeoTIFF and a GPX on the window, or open a scene."));
     }
     for (index, layer) in document.layer.iter().enumerate() {
         ui.separator();
@@ -31,9 +32,9 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
     if !warnings.is_empty() {
         warnings.sort_by_key(Warning::kind);
         ui.separator();
-        CollapsingHeader::new(format!("Warnings ({})", warnings.len())).show(ui, |ui| {
+        CollapsingHeader::new(fill(tr("Warnings ({0})"), &[&warnings.len()])).show(ui, |ui| {
             for alike in warnings.chunk_by(|a, b| a.kind() == b.kind()) {
-                ui.weak(alike[0].kind().name());
+                ui.weak(heard(alike[0].kind().name()));
                 alike.iter().for_each(|warning| drop(ui.label(warning.text())));
             }
         });
@@ -49,26 +50,27 @@ fn one(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDoc) {
         } else {
             ui.strong(id);
         }
-        ui.weak(layer.kind());
+        ui.weak(heard(layer.kind()));
     });
     if let Some([seen, in_frame]) = shares(model, id).filter(|_| !is_hidden) {
-        ui.label(format!("{} visible, {} in the frame", percent(Some(seen)), percent(Some(in_frame))));
+        ui.label(fill(tr("{0} visible, {1} in the frame"), &[&percent(Some(seen)), &percent(Some(in_frame))]));
     }
     handling(ui, model, (index, id), is_hidden);
     if !matches!(layer, LayerDoc::Terrain(_)) {
         let mut must_see = layer.must_see();
-        if ui.checkbox(&mut must_see, format!("{id} must be seen")).changed() {
+        if ui.checkbox(&mut must_see, fill(tr("{0} must be seen"), &[&id])).changed() {
             model.edit(|d| d.layer[index] = d.layer[index].with_must_see(must_see));
         }
     }
     if let Some(mut rigid) = layer.rigid() {
-        let words =
-            "Each building, box or part keeps its shape where space bends: walls stay straight, nothing of it folds.";
-        if ui.checkbox(&mut rigid, format!("{id} is rigid")).on_hover_text(words).changed() {
+        let words = tr(
+            "Each building, box or part keeps its shape where space bends: walls stay straight, nothing of it folds.",
+        );
+        if ui.checkbox(&mut rigid, fill(tr("{0} is rigid"), &[&id])).on_hover_text(words).changed() {
             model.edit(|d| d.layer[index] = d.layer[index].with_rigid(rigid));
         }
     }
-    CollapsingHeader::new(format!("Style of {id}")).show(ui, |ui| {
+    CollapsingHeader::new(fill(tr("Style of {0}"), &[&id])).show(ui, |ui| {
         name_field(ui, model, id);
         style::show(ui, model, index, layer);
     });
@@ -82,21 +84,21 @@ fn handling(ui: &mut Ui, model: &mut Model, (index, id): (usize, &str), is_hidde
         response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, &name));
         response.on_hover_text(name).clicked()
     };
-    ui.horizontal(|ui| {
-        let (sign, name) = if is_hidden { ("Show", format!("Show {id}")) } else { ("Hide", format!("Hide {id}")) };
-        if button(ui, true, sign, name) {
+    ui.horizontal_wrapped(|ui| {
+        let (sign, name) = if is_hidden { (tr("Show"), tr("Show {0}")) } else { (tr("Hide"), tr("Hide {0}")) };
+        if button(ui, true, sign, fill(name, &[&id])) {
             model.edit(|document| match is_hidden {
                 true => document.hidden.retain(|other| other != id),
                 false => document.hidden.push(id.to_owned()),
             });
         }
-        if button(ui, index > 0, "Up", format!("Move {id} up")) {
+        if button(ui, index > 0, tr("Up"), fill(tr("Move {0} up"), &[&id])) {
             model.edit(|document| document.layer.swap(index, index - 1));
         }
-        if button(ui, index < last, "Down", format!("Move {id} down")) {
+        if button(ui, index < last, tr("Down"), fill(tr("Move {0} down"), &[&id])) {
             model.edit(|document| document.layer.swap(index, index + 1));
         }
-        if button(ui, true, "Remove", format!("Remove {id}")) {
+        if button(ui, true, tr("Remove"), fill(tr("Remove {0}"), &[&id])) {
             model.edit(|document| *document = without_layer(document, id));
         }
     });
@@ -107,7 +109,7 @@ fn name_field(ui: &mut Ui, model: &mut Model, id: &str) {
     let key = ui.scope_id().with(("name", id));
     let mut name = ui.data(|data| data.get_temp::<String>(key)).unwrap_or_else(|| id.to_owned());
     ui.horizontal(|ui| {
-        let label = ui.label(format!("name of {id}"));
+        let label = ui.label(fill(tr("name of {0}"), &[&id]));
         let field = ui.text_edit_singleline(&mut name).labelled_by(label.id);
         if !field.lost_focus() {
             ui.data_mut(|data| data.insert_temp(key, name));

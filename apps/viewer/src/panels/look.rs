@@ -1,6 +1,7 @@
 //! How the picture is drawn and compared: marks, stylisation, light, projection.
 
 use super::slider;
+use crate::language::tr;
 use crate::model::{Compare, Model, Tool};
 use belvedere::scene_file::{
     HighlightMark, Inset, LightDoc, OverlayDoc, StylisationDoc, SwitchOrLength, SwitchOrStrength,
@@ -11,20 +12,20 @@ use eframe::egui::Ui;
 pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
     let look = &mut model.look;
     ui.horizontal(|ui| {
-        ui.label("Pointer");
-        ui.selectable_value(&mut look.tool, Tool::Map, "Map");
-        ui.selectable_value(&mut look.tool, Tool::Orbit, "Orbit");
+        ui.label(tr("Pointer"));
+        ui.selectable_value(&mut look.tool, Tool::Map, tr("Map"));
+        ui.selectable_value(&mut look.tool, Tool::Orbit, tr("Orbit"));
     });
-    ui.checkbox(&mut look.bent, "Bent");
-    ui.horizontal(|ui| {
-        ui.label("Compare");
-        ui.selectable_value(&mut look.compare, Compare::Off, "One picture");
-        ui.selectable_value(&mut look.compare, Compare::Split, "Split");
-        ui.selectable_value(&mut look.compare, Compare::Flicker, "Flicker");
+    ui.checkbox(&mut look.bent, tr("Bent"));
+    ui.horizontal_wrapped(|ui| {
+        ui.label(tr("Compare"));
+        ui.selectable_value(&mut look.compare, Compare::Off, tr("One picture"));
+        ui.selectable_value(&mut look.compare, Compare::Split, tr("Split"));
+        ui.selectable_value(&mut look.compare, Compare::Flicker, tr("Flicker"));
     });
-    ui.checkbox(&mut look.inset, "True view in a corner");
-    ui.checkbox(&mut look.overhead, "Camera from above");
-    ui.checkbox(&mut look.statistics, "Renderer and times");
+    ui.checkbox(&mut look.inset, tr("True view in a corner"));
+    ui.checkbox(&mut look.overhead, tr("Camera from above"));
+    ui.checkbox(&mut look.statistics, tr("Renderer and times"));
     ui.separator();
     marks(ui, model);
     ui.separator();
@@ -33,7 +34,7 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
     light(ui, model);
     ui.separator();
     let fov = model.document().camera.fov_y_deg;
-    if let Some(fov) = slider(ui, model, "field of view, degrees", fov, 5.0..=120.0, "from top to bottom") {
+    if let Some(fov) = slider(ui, model, tr("field of view, degrees"), fov, 5.0..=120.0, tr("from top to bottom")) {
         model.edit_on(|document| document.camera.fov_y_deg = fov);
     }
 }
@@ -42,21 +43,22 @@ fn marks(ui: &mut Ui, model: &mut Model) {
     let before = model.document().overlay.clone().unwrap_or_default();
     let mut overlay = before.clone();
     let mut grid = !matches!(overlay.grid, None | Some(SwitchOrLength::Switch(false)));
-    if ui.checkbox(&mut grid, "Grid on the ground").changed() {
+    if ui.checkbox(&mut grid, tr("Grid on the ground")).changed() {
         overlay.grid = grid.then_some(SwitchOrLength::Switch(true));
     }
-    ui.checkbox(&mut overlay.heatmap, "Heat map of what was moved");
-    ui.checkbox(&mut overlay.ghost, "Straight picture faintly over it");
-    ui.checkbox(&mut overlay.mark, "Mark on bent pictures");
+    ui.checkbox(&mut overlay.heatmap, tr("Heat map of what was moved"));
+    ui.checkbox(&mut overlay.ghost, tr("Straight picture faintly over it"));
+    ui.checkbox(&mut overlay.mark, tr("Mark on bent pictures"));
     let mut curve = overlay.inset.is_some();
-    if ui.checkbox(&mut curve, "Curve in a corner").on_hover_text("where a spline bends the picture").changed() {
+    if ui.checkbox(&mut curve, tr("Curve in a corner")).on_hover_text(tr("where a spline bends the picture")).changed()
+    {
         overlay.inset = curve.then_some(Inset::Curve);
     }
     for (mark, name) in [
-        (HighlightMark::Shift, "How far it moved in the picture"),
-        (HighlightMark::Stages, "Which stage moved it"),
-        (HighlightMark::Revealed, "Outline of what is revealed"),
-        (HighlightMark::GhostBox, "Box where it would be"),
+        (HighlightMark::Shift, tr("How far it moved in the picture")),
+        (HighlightMark::Stages, tr("Which stage moved it")),
+        (HighlightMark::Revealed, tr("Outline of what is revealed")),
+        (HighlightMark::GhostBox, tr("Box where it would be")),
     ] {
         let mut on = overlay.highlight.contains(&mark);
         if ui.checkbox(&mut on, name).changed() {
@@ -85,7 +87,7 @@ fn stylisation(ui: &mut Ui, model: &mut Model) {
     let before = model.document().stylisation.unwrap_or_default();
     let mut style = before;
     let is_on = |value: Option<SwitchOrStrength>| !matches!(value, None | Some(SwitchOrStrength::Switch(false)));
-    for (value, name) in [(&mut style.edges, "Edges"), (&mut style.unsharp, "Shade behind what stands out")] {
+    for (value, name) in [(&mut style.edges, tr("Edges")), (&mut style.unsharp, tr("Shade behind what stands out"))] {
         let mut on = is_on(*value);
         if ui.checkbox(&mut on, name).changed() {
             *value = on.then_some(SwitchOrStrength::Switch(true));
@@ -108,11 +110,11 @@ fn light(ui: &mut Ui, model: &mut Model) {
         }
     };
     let azimuth = light.azimuth_deg.unwrap_or(315.0);
-    set(ui, "sun from, degrees", azimuth, 0.0..=360.0, "clockwise from north", |l, v| l.azimuth_deg = Some(v));
+    set(ui, tr("sun from, degrees"), azimuth, 0.0..=360.0, tr("clockwise from north"), |l, v| l.azimuth_deg = Some(v));
     let altitude = light.altitude_deg.unwrap_or(45.0);
-    set(ui, "sun high, degrees", altitude, 1.0..=90.0, "over the horizon", |l, v| l.altitude_deg = Some(v));
+    set(ui, tr("sun high, degrees"), altitude, 1.0..=90.0, tr("over the horizon"), |l, v| l.altitude_deg = Some(v));
     let mut shadows = light.shadows;
-    if ui.checkbox(&mut shadows, "Shadows").changed() {
+    if ui.checkbox(&mut shadows, tr("Shadows")).changed() {
         model.edit(|document| document.light = Some(LightDoc { shadows, ..light }));
     }
 }

@@ -7,6 +7,7 @@ pub(crate) mod spline;
 pub(crate) mod terrain;
 
 use crate::export::Exporter;
+use crate::language::{later, tr};
 use crate::menu::Bookmark;
 use crate::model::Model;
 use belvedere::scene_file::{Document, StageDoc};
@@ -28,12 +29,12 @@ pub(crate) enum Tab {
 
 impl Tab {
     const ALL: [(Self, &'static str); 6] = [
-        (Self::Layers, "Layers"),
-        (Self::Look, "Look"),
-        (Self::Rays, "Curved rays"),
-        (Self::Terrain, "Terrain"),
-        (Self::Spline, "Spline"),
-        (Self::Export, "Export"),
+        (Self::Layers, later("Layers")),
+        (Self::Look, later("Look")),
+        (Self::Rays, later("Curved rays")),
+        (Self::Terrain, later("Terrain")),
+        (Self::Spline, later("Spline")),
+        (Self::Export, later("Export")),
     ];
 }
 
@@ -51,12 +52,12 @@ impl Panels {
     pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model, bookmarks: &[Bookmark]) {
         ui.horizontal_wrapped(|ui| {
             for (tab, name) in Tab::ALL {
-                ui.selectable_value(&mut self.tab, tab, name);
+                ui.selectable_value(&mut self.tab, tab, tr(name));
             }
         });
         ui.separator();
         if model.is_opening() {
-            ui.weak("opening");
+            ui.weak(tr("opening"));
             return;
         }
         // The width that the user gave the panel is kept, whatever its content.
@@ -87,7 +88,10 @@ pub(crate) fn set_stage(document: &mut Document, stage: StageDoc) {
     document.stage.insert(at, stage);
 }
 
-/// A slider with its name before it; its drag is one step of undo. Returns the new value.
+/// Width of the number and the name beside a slider, points.
+const BESIDE_SLIDER: f32 = 190.0;
+
+/// A slider with its name beside it; its drag is one step of undo. Returns the new value.
 pub(crate) fn slider(
     ui: &mut Ui,
     model: &mut Model,
@@ -97,7 +101,15 @@ pub(crate) fn slider(
     help: &str,
 ) -> Option<f64> {
     let mut now = value;
-    let response = ui.add(Slider::new(&mut now, range).text(name)).on_hover_text(help);
+    let response = ui
+        .scope(|ui| {
+            // In a narrow panel the slider leaves its name the room.
+            let rest = ui.available_width() - BESIDE_SLIDER;
+            ui.spacing_mut().slider_width = rest.clamp(0.6 * ui.spacing().slider_width, ui.spacing().slider_width);
+            ui.add(Slider::new(&mut now, range).text(name))
+        })
+        .inner
+        .on_hover_text(help);
     changed(model, &response, now)
 }
 

@@ -1,6 +1,7 @@
 //! Curved rays: turns by hand, constructors that find them.
 
 use super::{number, set_stage, slider};
+use crate::language::{fill, tr};
 use crate::model::{Model, Tool};
 use belvedere::core::DVec3;
 use belvedere::core::map::curved_rays::{Model as RayModel, Sharpness};
@@ -33,7 +34,7 @@ impl RaysPanel {
                 self.preview(ui, model, &constructor);
             }
             Some(constructor) if constructor.kind == ConstructorKind::TargetTracking => {
-                let target = constructor.target.as_deref().unwrap_or("nothing chosen");
+                let target = constructor.target.as_deref().unwrap_or(tr("nothing chosen"));
                 let judged = model.judged.as_ref().filter(|_| model.is_judged());
                 ui.label(in_sight(target, judged.and_then(|judged| judged.target_seen)));
             }
@@ -41,7 +42,7 @@ impl RaysPanel {
         }
         if let Some(reason) = &model.violated {
             ui.separator();
-            ui.strong("Not possible like this");
+            ui.strong(tr("Not possible like this"));
             ui.label(reason);
         }
         ui.separator();
@@ -58,16 +59,21 @@ impl RaysPanel {
         };
         paths(ui, model, constructor);
         let position = constructor.position_m.unwrap_or(0.0);
-        if let Some(value) = slider(ui, model, "position", position, 0.0..=length, "along the path") {
+        if let Some(value) = slider(ui, model, tr("position"), position, 0.0..=length, tr("along the path")) {
             put(model, &|doc| doc.position_m = Some(value));
         }
         let ahead = constructor.preview_m.unwrap_or(0.25 * length);
-        if let Some(value) =
-            slider(ui, model, "preview", ahead, 0.01 * length..=length, "length of the path ahead that is shown")
-        {
+        if let Some(value) = slider(
+            ui,
+            model,
+            tr("preview"),
+            ahead,
+            0.01 * length..=length,
+            tr("length of the path ahead that is shown"),
+        ) {
             put(model, &|doc| doc.preview_m = Some(value));
         }
-        let name = if self.playing { "Pause preview" } else { "Play preview" };
+        let name = tr(if self.playing { "Pause preview" } else { "Play preview" });
         if ui.button(name).clicked() {
             self.playing = !self.playing;
             self.played_at = ui.input(|input| input.time);
@@ -77,7 +83,7 @@ impl RaysPanel {
                 put(model, &|doc| doc.position_m = Some(0.0));
             }
         }
-        ui.weak("The preview has a camera of its own.");
+        ui.weak(tr("The preview has a camera of its own."));
     }
 
     /// Advances the played preview along the path.
@@ -105,9 +111,9 @@ impl RaysPanel {
 /// * `seen`: measured visible share, 0..=1.
 fn in_sight(target: &str, seen: Option<f64>) -> String {
     match seen {
-        Some(share) if share >= WHOLE => format!("In sight: {target}"),
-        Some(share) => format!("{target}: {:.1} % of it is in sight", 100.0 * share),
-        None => format!("To be kept in sight: {target}"),
+        Some(share) if share >= WHOLE => fill(tr("In sight: {0}"), &[&target]),
+        Some(share) => fill(tr("{0}: {1} % of it is in sight"), &[&target, &format!("{:.1}", 100.0 * share)]),
+        None => fill(tr("To be kept in sight: {0}"), &[&target]),
     }
 }
 
@@ -126,7 +132,7 @@ fn paths(ui: &mut Ui, model: &mut Model, constructor: &ConstructorDoc) {
     let lines = model.layer_ids(|layer| matches!(layer, LayerDoc::Line(_)));
     let Some(path) = constructor.path.as_ref().filter(|path| lines.len() > 1 && lines.contains(path)) else { return };
     let mut chosen = path.clone();
-    ComboBox::from_label("Path").selected_text(&chosen).show_ui(ui, |ui| {
+    ComboBox::from_label(tr("Path")).selected_text(&chosen).show_ui(ui, |ui| {
         for line in &lines {
             ui.selectable_value(&mut chosen, line.clone(), line);
         }
@@ -163,21 +169,21 @@ fn construct(model: &mut Model, constructor: ConstructorDoc) {
         document.constructor = Some(constructor);
     });
     if model.document().stage.len() < before {
-        model.notices.tell("Bends that do not go with it made way; undo brings them back.");
+        model.notices.tell(tr("Bends that do not go with it made way; undo brings them back."));
     }
 }
 
 fn constructors(ui: &mut Ui, model: &mut Model) {
     let kind = model.document().constructor.as_ref().map_or(ConstructorKind::Manual, |constructor| constructor.kind);
-    ui.label("Rays are bent");
+    ui.label(tr("Rays are bent"));
     ui.horizontal_wrapped(|ui| {
-        if ui.selectable_label(kind == ConstructorKind::Manual, "By hand").clicked() {
+        if ui.selectable_label(kind == ConstructorKind::Manual, tr("By hand")).clicked() {
             model.edit(|document| document.constructor = None);
         }
         let tracking = kind == ConstructorKind::TargetTracking;
         if ui
-            .selectable_label(tracking, "To keep something in sight")
-            .on_hover_text("then click it in the picture")
+            .selectable_label(tracking, tr("To keep something in sight"))
+            .on_hover_text(tr("then click it in the picture"))
             .clicked()
         {
             model.look.tool = Tool::Track;
@@ -185,20 +191,23 @@ fn constructors(ui: &mut Ui, model: &mut Model) {
         let lines = model.layer_ids(|layer| matches!(layer, LayerDoc::Line(_)));
         let preview = ui.add_enabled(
             !lines.is_empty(),
-            eframe::egui::Button::selectable(kind == ConstructorKind::PathPreview, "Along a path"),
+            eframe::egui::Button::selectable(kind == ConstructorKind::PathPreview, tr("Along a path")),
         );
-        if preview.on_disabled_hover_text("needs a line layer").clicked() {
+        if preview.on_disabled_hover_text(tr("needs a line layer")).clicked() {
             let path = lines.first().cloned();
             construct(model, ConstructorDoc { path, ..ConstructorDoc::of(ConstructorKind::PathPreview) });
         }
         let probing = kind == ConstructorKind::AutoProbe;
-        if ui.selectable_label(probing, "Into what is hidden").on_hover_text("turns are found that show most").clicked()
+        if ui
+            .selectable_label(probing, tr("Into what is hidden"))
+            .on_hover_text(tr("turns are found that show most"))
+            .clicked()
         {
             construct(model, ConstructorDoc::of(ConstructorKind::AutoProbe));
         }
     });
     if model.look.tool == Tool::Track {
-        ui.label("Click what has to stay in sight.");
+        ui.label(tr("Click what has to stay in sight."));
     }
 }
 
@@ -210,7 +219,7 @@ fn turns(ui: &mut Ui, model: &mut Model) {
     };
     ui.horizontal(|ui| {
         let camera = model.camera();
-        if ui.add_enabled(camera.is_some(), eframe::egui::Button::new("Add a turn")).clicked()
+        if ui.add_enabled(camera.is_some(), eframe::egui::Button::new(tr("Add a turn"))).clicked()
             && let Some(camera) = camera
         {
             let mut next =
@@ -222,7 +231,7 @@ fn turns(ui: &mut Ui, model: &mut Model) {
             });
             model.look.overhead = true;
         }
-        if stage.is_some() && ui.button("Straight rays").clicked() {
+        if stage.is_some() && ui.button(tr("Straight rays")).clicked() {
             model.edit(|document| document.stage.retain(|stage| stage.kind() != KIND));
         }
     });
@@ -236,10 +245,10 @@ fn turns(ui: &mut Ui, model: &mut Model) {
             Some(last) => Some(DVec3::from_array(stage.turn[last].viewpoint)),
             None => eye,
         };
-        CollapsingHeader::new(format!("Turn {}", index + 1)).default_open(index == 0).show(ui, |ui| {
+        CollapsingHeader::new(fill(tr("Turn {0}"), &[&(index + 1)])).default_open(index == 0).show(ui, |ui| {
             one(ui, model, index + 1, turn, &mut next.turn[index]);
             planes(ui, model, (index + 1, before), turn, &mut next.turn[index]);
-            if ui.button(format!("Remove turn {}", index + 1)).clicked() {
+            if ui.button(fill(tr("Remove turn {0}"), &[&(index + 1)])).clicked() {
                 removed = Some(index);
             }
         });
@@ -258,14 +267,14 @@ fn turns(ui: &mut Ui, model: &mut Model) {
 
 fn ray_model(ui: &mut Ui, model: &mut Model, stage: &RaysStageDoc) {
     let name = |one: RayModel| match one {
-        RayModel::Modified => "modified",
-        RayModel::Original => "original",
+        RayModel::Modified => tr("modified"),
+        RayModel::Original => tr("original"),
         RayModel::C0 => "C0",
         RayModel::C2 => "C2",
-        RayModel::Circular => "circular",
+        RayModel::Circular => tr("circular"),
     };
     let mut chosen = stage.model;
-    ComboBox::from_label("Model of the transition").selected_text(name(chosen)).show_ui(ui, |ui| {
+    ComboBox::from_label(tr("Model of the transition")).selected_text(name(chosen)).show_ui(ui, |ui| {
         for one in [RayModel::Modified, RayModel::Original, RayModel::C0, RayModel::C2, RayModel::Circular] {
             ui.selectable_value(&mut chosen, one, name(one));
         }
@@ -282,10 +291,10 @@ fn one(ui: &mut Ui, model: &mut Model, n: usize, turn: &TurnDoc, next: &mut Turn
     let speed = 0.004 * reach;
     type Part = fn(&mut TurnDoc) -> &mut [f64; 3];
     let rows: [(&str, &str, Part); 4] = [
-        ("viewpoint", "where the rays come from behind the turn", |t| &mut t.viewpoint),
-        ("first plane", "a point of the plane where the rays begin to bend", |t| &mut t.t0),
-        ("bend point", "where the rays bend most", |t| &mut t.t1),
-        ("last plane", "a point of the plane from which they run straight again", |t| &mut t.t2),
+        (tr("viewpoint"), tr("where the rays come from behind the turn"), |t| &mut t.viewpoint),
+        (tr("first plane"), tr("a point of the plane where the rays begin to bend"), |t| &mut t.t0),
+        (tr("bend point"), tr("where the rays bend most"), |t| &mut t.t1),
+        (tr("last plane"), tr("a point of the plane from which they run straight again"), |t| &mut t.t2),
     ];
     for (name, help, part) in rows {
         let now = *part(&mut turn.clone());
@@ -295,7 +304,8 @@ fn one(ui: &mut Ui, model: &mut Model, n: usize, turn: &TurnDoc, next: &mut Turn
                 let mut value = now[axis];
                 let field =
                     eframe::egui::DragValue::new(&mut value).speed(speed).max_decimals(2).prefix(format!("{letter} "));
-                let response = ui.add(field).on_hover_text(format!("{name} {n}, {letter}"));
+                let whole = format!("{name} {n}, {letter}");
+                let response = ui.add(field).accessible_name(whole.as_str()).on_hover_text(whole);
                 if let Some(value) = super::changed(model, &response, value) {
                     part(next)[axis] = value;
                 }
@@ -309,8 +319,8 @@ fn one(ui: &mut Ui, model: &mut Model, n: usize, turn: &TurnDoc, next: &mut Turn
 /// * `before`: the viewpoint before it.
 fn planes(ui: &mut Ui, model: &mut Model, (n, before): (usize, Option<DVec3>), turn: &TurnDoc, next: &mut TurnDoc) {
     let mut pivots = turn.line.is_some();
-    let help = "planes that share a line turn the picture about it; else they are parallel";
-    let pivot = ui.checkbox(&mut pivots, format!("pivot line of turn {n}")).on_hover_text(help);
+    let help = tr("planes that share a line turn the picture about it; else they are parallel");
+    let pivot = ui.checkbox(&mut pivots, fill(tr("pivot line of turn {0}"), &[&n])).on_hover_text(help);
     if pivot.changed() {
         model.begin_gesture();
         let before = before.unwrap_or(DVec3::from_array(turn.viewpoint));
@@ -322,12 +332,13 @@ fn planes(ui: &mut Ui, model: &mut Model, (n, before): (usize, Option<DVec3>), t
         _ => 1.0,
     };
     let mut own = !matches!(turn.m, Sharpness::Value(_));
-    if ui.checkbox(&mut own, format!("sharpness of turn {n} by its bend point")).changed() {
+    if ui.checkbox(&mut own, fill(tr("sharpness of turn {0} by its bend point"), &[&n])).changed() {
         model.begin_gesture();
         next.m = if own { Sharpness::Bend } else { Sharpness::Value(value) };
     }
     if !own
-        && let Some(value) = number(ui, model, &format!("sharpness {n}"), value, 0.02, "0.2 to 20; larger is sharper")
+        && let Some(value) =
+            number(ui, model, &fill(tr("sharpness {0}"), &[&n]), value, 0.02, tr("0.2 to 20; larger is sharper"))
     {
         next.m = Sharpness::Value(value.clamp(0.2, 20.0));
     }

@@ -1,6 +1,7 @@
 //! Multi-perspective views: presets over the viewing angle, their curves, sections and representations.
 
 use super::{number, set_stage};
+use crate::language::{fill, heard, tr};
 use crate::model::Model;
 use crate::widgets::curve::curve;
 use crate::widgets::ruler::{RANGE, RulerEdit, ruler};
@@ -37,15 +38,15 @@ impl SplinePanel {
         };
         builtins(ui, model, stage.as_ref());
         let Some(stage) = stage else {
-            ui.label("Choose presets to bend the picture along a spline over the ground.");
+            ui.label(tr("Choose presets to bend the picture along a spline over the ground."));
             return;
         };
-        if ui.button("No spline").clicked() {
+        if ui.button(tr("No spline")).clicked() {
             model.edit(|document| document.stage.retain(|stage| stage.kind() != KIND));
             return;
         }
         let Some(presets) = presets_of(model, &stage) else {
-            ui.label("The presets come from a file that is not open yet.");
+            ui.label(tr("The presets come from a file that is not open yet."));
             return;
         };
         self.chosen = self.chosen.min(presets.presets.len().saturating_sub(1));
@@ -58,7 +59,11 @@ impl SplinePanel {
         };
         self.chosen = self.chosen.min(presets.presets.len().saturating_sub(1));
         let Some(preset) = presets.presets.get(self.chosen) else { return };
-        ui.strong(if preset.name.is_empty() { format!("Preset {}", self.chosen + 1) } else { preset.name.clone() });
+        ui.strong(if preset.name.is_empty() {
+            fill(tr("Preset {0}"), &[&(self.chosen + 1)])
+        } else {
+            preset.name.clone()
+        });
         let Some(drawing) = sketch(&presets, preset.phi, distance_of(model)) else { return };
         let id = ui.scope_id().with(("curve", self.chosen));
         if let Some(edit) = curve(ui, id, &drawing) {
@@ -84,31 +89,35 @@ impl SplinePanel {
                 if begins {
                     model.begin_gesture();
                 }
-                let to = self.within("the viewing angle", to, RANGE);
+                let to = self.within(tr("the viewing angle"), to, RANGE);
                 self.change(model, presets, PresetChange::Phi(to));
             }
             None => {}
         }
         ui.horizontal_wrapped(|ui| {
             if let Some(phi) = phi {
-                ui.label(format!("camera {phi:.1}°"));
-                if ui.button("Capture camera").on_hover_text("the preset is for the angle of the camera").clicked() {
+                ui.label(fill(tr("camera {0}°"), &[&format!("{phi:.1}")]));
+                if ui
+                    .button(tr("Capture camera"))
+                    .on_hover_text(tr("the preset is for the angle of the camera"))
+                    .clicked()
+                {
                     self.step(model, presets, PresetChange::Phi((10.0 * phi).round() / 10.0));
                 }
                 let name = free_name(presets);
-                if ui.button("Copy for this camera").clicked() {
+                if ui.button(tr("Copy for this camera")).clicked() {
                     self.step(model, presets, PresetChange::Duplicate { name, phi: (10.0 * phi).round() / 10.0 });
                     self.chosen = presets.presets.len();
                 }
             }
-            if ui.button("Mirror").on_hover_text("near and far change places").clicked() {
+            if ui.button(tr("Mirror")).on_hover_text(tr("near and far change places")).clicked() {
                 self.step(model, presets, PresetChange::Mirror);
             }
-            if presets.presets.len() > 1 && ui.button("Remove preset").clicked() {
+            if presets.presets.len() > 1 && ui.button(tr("Remove preset")).clicked() {
                 self.step(model, presets, PresetChange::Remove);
             }
-            let name = if self.playing { "Pause sweep" } else { "Play sweep" };
-            if ui.button(name).on_hover_text("the camera tilts through the viewing angles").clicked() {
+            let name = tr(if self.playing { "Pause sweep" } else { "Play sweep" });
+            if ui.button(name).on_hover_text(tr("the camera tilts through the viewing angles")).clicked() {
                 self.playing = !self.playing;
                 self.played_at = ui.input(|input| input.time);
                 model.begin_gesture();
@@ -119,7 +128,7 @@ impl SplinePanel {
     /// The sections, near to far, each a place to drop a representation on.
     fn sections(&mut self, ui: &mut Ui, model: &mut Model, presets: &PresetDocument) {
         let preset = &presets.presets[self.chosen];
-        ui.label("Sections, near to far: drop a representation on one");
+        ui.label(tr("Sections, near to far: drop a representation on one"));
         let mut change = None;
         ui.horizontal_wrapped(|ui| {
             for (i, section) in preset.sections.iter().enumerate() {
@@ -152,16 +161,19 @@ impl SplinePanel {
                 let response = ui
                     .dnd_drag_source(id, name.clone(), |ui| {
                         let button = eframe::egui::Button::new(dark(name.clone())).fill(color_of(name));
-                        ui.add(button.wrap_mode(TextWrapMode::Extend))
+                        let shown = ui.add(button.wrap_mode(TextWrapMode::Extend));
+                        // The control is what is dragged; this is its text.
+                        shown.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
                     })
                     .response;
-                response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Representation {name}")));
+                response
+                    .widget_info(|| WidgetInfo::labeled(Role::Button, true, fill(tr("Representation {0}"), &[name])));
             }
         });
         // The same for the keyboard.
         for (i, section) in preset.sections.iter().enumerate() {
             let mut to = section.clone();
-            ComboBox::from_label(format!("Section {}", i + 1)).selected_text(&to).show_ui(ui, |ui| {
+            ComboBox::from_label(fill(tr("Section {0}"), &[&(i + 1)])).selected_text(&to).show_ui(ui, |ui| {
                 for name in &known {
                     ui.selectable_value(&mut to, name.clone(), name);
                 }
@@ -171,10 +183,10 @@ impl SplinePanel {
             }
         }
         ui.horizontal(|ui| {
-            if ui.button("Split the last section").clicked() {
+            if ui.button(tr("Split the last section")).clicked() {
                 change = Some(PresetChange::Split(preset.sections.len()));
             }
-            if preset.sections.len() > 1 && ui.button("Join the last two").clicked() {
+            if preset.sections.len() > 1 && ui.button(tr("Join the last two")).clicked() {
                 change = Some(PresetChange::Merge(preset.sections.len() - 1));
             }
         });
@@ -186,26 +198,28 @@ impl SplinePanel {
     fn numbers(&mut self, ui: &mut Ui, model: &mut Model, presets: &PresetDocument) {
         let preset = presets.presets[self.chosen].clone();
         if let Some(tau) =
-            number(ui, model, "holds within ± degrees", preset.tau, 0.1, "half width of the range of angles")
+            number(ui, model, tr("holds within ± degrees"), preset.tau, 0.1, tr("half width of the range of angles"))
         {
-            let tau = self.within("the range of angles", tau, [0.0, 90.0]);
+            let tau = self.within(tr("the range of angles"), tau, [0.0, 90.0]);
             self.change(model, presets, PresetChange::Tau(tau));
         }
         let own = preset.fov_y_deg;
         let mut has = own.is_some();
-        if ui.checkbox(&mut has, "field of view of its own").changed() {
+        if ui.checkbox(&mut has, tr("field of view of its own")).changed() {
             self.step(model, presets, PresetChange::FieldOfView(has.then_some(45.0)));
         }
         if let Some(fov) = own
-            && let Some(fov) = number(ui, model, "field of view", fov, 0.2, "degrees")
+            && let Some(fov) = number(ui, model, tr("field of view"), fov, 0.2, tr("degrees"))
         {
-            let fov = self.within("the field of view", fov, [0.05, 170.0]);
+            let fov = self.within(tr("the field of view"), fov, [0.05, 170.0]);
             self.change(model, presets, PresetChange::FieldOfView(Some(fov)));
         }
         for (i, tag) in preset.tags.iter().enumerate() {
-            let name = format!("transition of tag {}", i + 1);
-            if let Some(delta) = number(ui, model, &name, tag.delta, 0.002, "half width, share of the curve's length") {
-                let delta = self.within("the half width of a transition", delta, [0.0, 0.5]);
+            let name = fill(tr("transition of tag {0}"), &[&(i + 1)]);
+            if let Some(delta) =
+                number(ui, model, &name, tag.delta, 0.002, tr("half width, share of the curve's length"))
+            {
+                let delta = self.within(tr("the half width of a transition"), delta, [0.0, 0.5]);
                 self.change(model, presets, PresetChange::TagWidth(i + 1, delta));
             }
         }
@@ -240,7 +254,8 @@ impl SplinePanel {
     /// A value clamped to its limits; a message is kept for the next change if it was clamped.
     fn within(&mut self, what: &str, value: f64, [least, most]: [f64; 2]) -> f64 {
         let stopped = !(least..=most).contains(&value);
-        self.stopped = stopped.then(|| format!("{what} stops at its limit: {least} to {most} are possible"));
+        self.stopped =
+            stopped.then(|| fill(tr("{0} stops at its limit: {1} to {2} are possible"), &[&what, &least, &most]));
         value.clamp(least, most)
     }
 
@@ -288,13 +303,13 @@ fn presets_of(model: &Model, stage: &SplineStageDoc) -> Option<PresetDocument> {
 fn builtins(ui: &mut Ui, model: &mut Model, stage: Option<&SplineStageDoc>) {
     let shown = match stage.map(|stage| &stage.presets) {
         Some(PresetsDoc::Named(name)) => name.as_str(),
-        Some(PresetsDoc::Inline(_)) => "edited",
-        None => "none",
+        Some(PresetsDoc::Inline(_)) => tr("edited"),
+        None => tr("none"),
     };
     let mut chosen = None;
-    ComboBox::from_label("Presets").selected_text(shown).show_ui(ui, |ui| {
+    ComboBox::from_label(tr("Presets")).selected_text(shown).show_ui(ui, |ui| {
         for builtin in BUILTINS.iter() {
-            if ui.selectable_label(shown == builtin.name, builtin.name).on_hover_text(builtin.effect).clicked() {
+            if ui.selectable_label(shown == builtin.name, builtin.name).on_hover_text(heard(builtin.effect)).clicked() {
                 chosen = Some(builtin.name);
             }
         }

@@ -1,6 +1,7 @@
 //! Terrain disocclusion: required features, limits of the displacement, what stays hidden.
 
 use super::{percent, set_stage, slider};
+use crate::language::{fill, tr};
 use crate::model::Model;
 use belvedere::core::DVec3;
 use belvedere::editor::Judged;
@@ -17,13 +18,13 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
         _ => None,
     };
     let mut moves = stage.is_some();
-    if ui.checkbox(&mut moves, "The ground makes way").changed() {
+    if ui.checkbox(&mut moves, tr("The ground makes way")).changed() {
         model.edit(|document| match moves {
             true => set_stage(document, StageDoc::TerrainDisocclusion(TerrainStageDoc::default())),
             false => document.stage.retain(|stage| stage.kind() != KIND),
         });
     }
-    ui.label("for:");
+    ui.label(tr("for:"));
     let document = model.document().clone();
     for (index, layer) in document.layer.iter().enumerate() {
         if matches!(layer, LayerDoc::Line(_) | LayerDoc::Area(_) | LayerDoc::Point(_)) {
@@ -57,16 +58,16 @@ fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {
         model.edit_on(|document| set_stage(document, StageDoc::TerrainDisocclusion(next)));
     };
     if stage.delta.is_some() {
-        ui.label("The ground was solved before and comes from a file; uncheck and check to solve it here.");
+        ui.label(tr("The ground was solved before and comes from a file; uncheck and check to solve it here."));
         return;
     }
     let name = |mode: SolverMode| match mode {
-        SolverMode::Paper => "as published",
-        SolverMode::PaperQp => "as published, then a quadratic program",
-        SolverMode::Qp => "a quadratic program",
+        SolverMode::Paper => tr("as published"),
+        SolverMode::PaperQp => tr("as published, then a quadratic program"),
+        SolverMode::Qp => tr("a quadratic program"),
     };
     let mut mode = stage.mode.unwrap_or(SolverMode::Qp);
-    ComboBox::from_label("Solver").selected_text(name(mode)).show_ui(ui, |ui| {
+    ComboBox::from_label(tr("Solver")).selected_text(name(mode)).show_ui(ui, |ui| {
         for one in [SolverMode::Qp, SolverMode::PaperQp, SolverMode::Paper] {
             ui.selectable_value(&mut mode, one, name(one));
         }
@@ -84,29 +85,31 @@ fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {
     });
     let usual = resolved.unwrap_or_default();
     let moved = stage.adjust_viewpoint.unwrap_or(1.0);
-    let help = "left: the camera moves a little where that saves ground; right: only the ground moves";
-    if let Some(value) = slider(ui, model, "camera or ground", moved, 0.0..=1.0, help) {
+    let help = tr("left: the camera moves a little where that saves ground; right: only the ground moves");
+    if let Some(value) = slider(ui, model, tr("camera or ground"), moved, 0.0..=1.0, help) {
         put(model, &|stage| stage.adjust_viewpoint = (value < 1.0).then_some(value));
     }
     let w = stage.w.or(usual.w).unwrap_or_default();
-    if let Some(value) = slider(ui, model, "smoothness w", w, 0.02..=2.0, "smaller: wider and gentler") {
+    if let Some(value) = slider(ui, model, tr("smoothness w"), w, 0.02..=2.0, tr("smaller: wider and gentler")) {
         put(model, &|stage| stage.w = Some(value));
     }
     let eta = stage.eta.or(usual.eta).unwrap_or_default();
     if let Some(value) =
-        slider(ui, model, "weight eta", eta, 0.0..=1.0, "mountains that are kept, against those that are moved")
+        slider(ui, model, tr("weight eta"), eta, 0.0..=1.0, tr("mountains that are kept, against those that are moved"))
     {
         put(model, &|stage| stage.eta = Some(value));
     }
     let rise = stage.rise_limit_m.or(usual.rise_limit_m).unwrap_or_default();
-    if let Some(value) = slider(ui, model, "rise at most, m", rise, 0.0..=2000.0, "most that the ground may rise") {
+    if let Some(value) =
+        slider(ui, model, tr("rise at most, m"), rise, 0.0..=2000.0, tr("most that the ground may rise"))
+    {
         put(model, &|stage| stage.rise_limit_m = Some(value));
     }
     let margin = stage.margin_m.or(usual.margin_m).unwrap_or_default();
-    if let Some(value) = slider(ui, model, "clearance, m", margin, 0.0..=50.0, "of the lines of sight") {
+    if let Some(value) = slider(ui, model, tr("clearance, m"), margin, 0.0..=50.0, tr("of the lines of sight")) {
         put(model, &|stage| stage.margin_m = Some(value));
     }
-    if ui.button("Usual values").clicked() {
+    if ui.button(tr("Usual values")).clicked() {
         model.begin_gesture();
         put(model, &|stage| *stage = TerrainStageDoc::default());
     }
@@ -115,36 +118,38 @@ fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {
 /// Before and after, and what stays hidden.
 fn shares(ui: &mut Ui, model: &mut Model) {
     let Some(judged) = model.judged.as_ref().filter(|judged| !judged.measures.features.is_empty()) else {
-        ui.label("Visible shares appear when something must be seen and the view rests.");
+        ui.label(tr("Visible shares appear when something must be seen and the view rests."));
         return;
     };
     let measures = &judged.measures;
     for (name, of) in [
-        ("lines", &measures.lines),
-        ("areas", &measures.areas),
-        ("points", &measures.points),
-        ("surfaces", &measures.surfaces),
+        (tr("lines"), &measures.lines),
+        (tr("areas"), &measures.areas),
+        (tr("points"), &measures.points),
+        (tr("surfaces"), &measures.surfaces),
     ] {
         if let Some(of) = of {
-            let [before, after] = [&of.straight, &of.bent]
-                .map(|side| format!("{} ({} in the frame)", percent(side.visible_share), percent(side.in_frame_share)));
-            ui.label(format!("{name}: {before} visible straight, {after} bent"));
+            let [before, after] = [&of.straight, &of.bent].map(|side| {
+                fill(tr("{0} ({1} in the frame)"), &[&percent(side.visible_share), &percent(side.in_frame_share)])
+            });
+            ui.label(fill(tr("{0}: {1} visible straight, {2} bent"), &[&name, &before, &after]));
         }
     }
     if let Some((shown, moved)) = model.shown.as_ref().and_then(|shown| Some((shown, shown.displacement?))) {
         let most = moved.most(shown.session.scene().unit);
-        ui.label(format!("What is in the picture was moved by up to {most}."));
+        ui.label(fill(tr("What is in the picture was moved by up to {0}."), &[&most]));
     }
     if judged.hidden.is_empty() {
-        ui.label("Nothing in the picture that must be seen is hidden.");
+        ui.label(tr("Nothing in the picture that must be seen is hidden."));
         return;
     }
-    ui.label(format!("Still hidden ({}):", judged.hidden.len()));
+    ui.label(fill(tr("Still hidden ({0}):"), &[&judged.hidden.len()]));
     let mut go_to = None;
     for (i, run) in judged.hidden.iter().take(40).enumerate() {
         let name = if run.name.is_empty() { &run.layer_id } else { &run.name };
-        let from = run.from_m.map_or_else(String::new, |from| format!(" from {:.1} km", from / 1000.0));
-        if ui.button(format!("{}. {name}{from}", i + 1)).on_hover_text("Look there").clicked() {
+        let from =
+            run.from_m.map_or_else(String::new, |from| fill(tr(" from {0} km"), &[&format!("{:.1}", from / 1000.0)]));
+        if ui.button(format!("{}. {name}{from}", i + 1)).on_hover_text(tr("Look there")).clicked() {
             go_to = Some(run.at);
         }
     }

@@ -1,6 +1,7 @@
 //! Work that takes long: what it is at, and a button to stop it.
 
 use super::Viewer;
+use crate::language::{heard, tr};
 use belvedere::editor::THREADS;
 use eframe::egui::{Align2, Area, Context, Frame, Id, Order, ProgressBar, vec2};
 
@@ -16,10 +17,12 @@ impl Viewer {
             (Some(opening), _) => (opening.clone(), None),
             (None, Some(since)) => {
                 let at = self.model.progress().filter(|(stage, _)| !stage.is_empty());
-                let what = at.as_ref().map_or("working", |(stage, _)| stage.as_str());
+                let what = at.as_ref().map_or_else(|| tr("working").to_owned(), |(stage, _)| heard(stage));
                 (format!("{what}, {since:.0} s"), at.map(|(_, share)| share as f32))
             }
-            (None, None) if self.model.is_stopped() => ("Stopped: the picture is older than the scene".into(), None),
+            (None, None) if self.model.is_stopped() => {
+                (tr("Stopped: the picture is older than the scene").into(), None)
+            }
             (None, None) => return,
         };
         let at = self.picture.middle_top + vec2(0.0, 10.0);
@@ -31,9 +34,9 @@ impl Viewer {
                 ui.horizontal(|ui| {
                     ui.label(words);
                     if self.model.is_stopped() && opening.is_none() {
-                        again = ui.button("Draw again").clicked();
+                        again = ui.button(tr("Draw again")).clicked();
                     } else if THREADS {
-                        cancelled = ui.button("Cancel").clicked();
+                        cancelled = ui.button(tr("Cancel")).clicked();
                     }
                 });
                 if let Some(share) = share {

@@ -1,8 +1,10 @@
 //! The camera from above in a window of its own.
 
 use super::Viewer;
+use crate::language::tr;
 use crate::panels::set_stage;
 use crate::picture::image_of_frame;
+use crate::theme;
 use crate::widgets::overhead::overhead;
 use belvedere::scene_file::StageDoc;
 use eframe::egui::{self, Context, TextureOptions, Window};
@@ -17,9 +19,9 @@ impl Viewer {
         let mut edit = None;
         // In the lower right corner, where the window does not hide the side panel.
         let corner = ctx.content_rect().right_bottom() - egui::vec2(490.0, 360.0);
-        Window::new("Camera from above").open(&mut open).default_pos(corner).default_width(460.0).show(ctx, |ui| {
+        Window::new(tr("Camera from above")).open(&mut open).default_pos(corner).default_width(460.0).show(ctx, |ui| {
             let Some((frame, view)) = &self.model.overhead else {
-                ui.label("drawing");
+                ui.label(tr("drawing"));
                 return;
             };
             if self.from_above.as_ref().is_none_or(|(of, _)| *of != self.model.pictures) {
@@ -33,7 +35,7 @@ impl Viewer {
             };
             edit = overhead(ui, ui.scope_id(), texture.id(), view, &turns);
             if let Some(reason) = &self.model.violated {
-                ui.colored_label(egui::Color32::from_rgb(170, 50, 40), reason);
+                ui.colored_label(theme::readable(theme::PROBLEM, ui.visuals().dark_mode), reason);
             }
         });
         self.model.look.overhead = open;

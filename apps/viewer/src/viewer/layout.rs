@@ -1,6 +1,7 @@
 //! Arrangement of the window: a panel beside the picture, or, on a small screen, a sheet over it.
 
 use super::Viewer;
+use crate::language::tr;
 use crate::menu;
 use eframe::egui::{Align2, Area, Button, CentralPanel, Frame, Id, Order, Panel, Rect, Ui, pos2, vec2};
 
@@ -18,7 +19,7 @@ impl Viewer {
     pub(super) fn large(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
         let choice = Panel::top("menu")
-            .show(ui, |ui| menu::bar(ui, &mut self.model, &self.remembered.recent, &self.bookmarks))
+            .show(ui, |ui| menu::bar(ui, &mut self.model, &mut self.settings, &self.remembered.recent, &self.bookmarks))
             .inner;
         if let Some(choice) = choice {
             self.choose(&ctx, choice);
@@ -46,7 +47,7 @@ impl Viewer {
         let choice = top.show(&ctx, |ui| {
             Frame::side_top_panel(ui.style()).show(ui, |ui| {
                 ui.set_width(room.width() - 16.0);
-                menu::bar(ui, &mut self.model, &self.remembered.recent, &self.bookmarks)
+                menu::bar(ui, &mut self.model, &mut self.settings, &self.remembered.recent, &self.bookmarks)
             })
         });
         if let Some(choice) = choice.inner.inner {
@@ -60,7 +61,7 @@ impl Viewer {
         bottom.show(&ctx, |ui| {
             Frame::side_top_panel(ui.style()).show(ui, |ui| {
                 ui.set_width(room.width() - 16.0);
-                let name = if self.sheet { "Hide the panel" } else { "Show the panel" };
+                let name = tr(if self.sheet { "Hide the panel" } else { "Show the panel" });
                 if ui.add_sized([ui.available_width(), GRIP - 4.0], Button::new(name)).clicked() {
                     self.sheet = !self.sheet;
                 }

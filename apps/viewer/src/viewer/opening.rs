@@ -4,6 +4,7 @@ use super::unsaved::Next;
 use super::{Refusal, Viewer};
 use crate::consent::{self, Consent, Decision};
 use crate::files;
+use crate::language::{fill, tr};
 use belvedere::editor::beside;
 use belvedere::scene::Progress;
 use belvedere::verbs::open_files::{Opened, open_beside, open_trusted};
@@ -28,13 +29,14 @@ impl Viewer {
         }
         let (outbox, inbox) = std::sync::mpsc::channel();
         let (allowed, trust, wake) = (self.allowed.clone(), self.trust.clone(), self.wake.clone());
-        let at = Arc::new(Mutex::new("opening".to_owned()));
+        let at = Arc::new(Mutex::new(tr("opening").to_owned()));
         let current = self.model.shown.is_some().then(|| self.model.document().clone());
-        let told = at.clone();
+        // Other threads do not know the language.
+        let (told, words) = (at.clone(), tr("opening: {0}, {1} %"));
         let progress = Progress::new(move |stage, share| {
             // The main thread of a browser must not block on a lock.
             if let Ok(mut at) = told.try_lock() {
-                *at = format!("opening: {stage}, {:.0} %", 100.0 * share);
+                *at = fill(words, &[&stage, &format!("{:.0}", 100.0 * share)]);
             }
         });
         let cancel = progress.clone();
@@ -59,7 +61,7 @@ impl Viewer {
             return;
         }
         self.cancel_opening();
-        self.model.opening = Some("opening".into());
+        self.model.opening = Some(tr("opening").into());
         self.pending = Some(Pending { opened: inbox, at, progress: cancel });
     }
 
@@ -98,7 +100,7 @@ impl Viewer {
                 Err(TryRecvError::Disconnected) => {
                     self.model
                         .notices
-                        .error("the file could not be opened: internal error; please report this with the file");
+                        .error(tr("the file could not be opened: internal error; please report this with the file"));
                     self.pending = None;
                 }
                 Err(TryRecvError::Empty) => {}
@@ -161,10 +163,10 @@ impl Viewer {
                 self.remember(path);
                 // The recovery file is written anew, since it says whether the scene is saved.
                 self.written = None;
-                let mut said = format!("Saved: {}", path.display());
+                let mut said = fill(tr("Saved: {0}"), &[&path.display()]);
                 match consent::remember(&mut self.trust, path, &self.model.editor.outside()) {
                     Ok(is_remembered) if is_remembered || self.model.editor.outside().is_empty() => {}
-                    Ok(_) => said += "; it names files outside its folder: the command line needs --allow-root DIR",
+                    Ok(_) => said += tr("; it names files outside its folder: the command line needs --allow-root DIR"),
                     Err(reason) => self.model.notices.error(reason),
                 }
                 self.model.notices.say(said, ctx.input(|input| input.time));

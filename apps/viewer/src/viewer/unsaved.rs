@@ -1,6 +1,7 @@
 //! The question about changes that are not saved, before anything takes the scene away.
 
 use super::Viewer;
+use crate::language::{fill, tr};
 use belvedere::editor::Editor;
 use eframe::egui::{Button, Context, Id, Key, Modal, ViewportCommand};
 use std::sync::Arc;
@@ -74,30 +75,30 @@ impl Viewer {
         let Some(unsaved) = &mut self.unsaved else { return };
         let mut answer = None;
         let title = match self.model.editor.document().title.as_str() {
-            "" => "This scene",
+            "" => tr("This scene"),
             title => title,
         };
-        let then = match unsaved.next {
-            Next::Quit => "quit",
-            Next::Show(_) => "open the other scene",
+        let [saving, discarding] = match unsaved.next {
+            Next::Quit => [tr("save, then quit"), tr("quit; the changes are lost")],
+            Next::Show(_) => [tr("save, then open the other scene"), tr("open the other scene; the changes are lost")],
         };
         let modal = Modal::new(Id::unique("unsaved")).show(ctx, |ui| {
             ui.set_max_width(340.0);
-            ui.heading("Save the changes?");
-            ui.label(format!("{title} has changes that are in no file."));
+            ui.heading(tr("Save the changes?"));
+            ui.label(fill(tr("{0} has changes that are in no file."), &[&title]));
             ui.add_space(8.0);
             ui.horizontal_wrapped(|ui| {
-                let save = ui.add(Button::new("Save"));
+                let save = ui.add(Button::new(tr("Save")));
                 if !std::mem::replace(&mut unsaved.has_focus, true) {
                     save.request_focus();
                 }
-                if save.on_hover_text(format!("save, then {then}")).clicked() {
+                if save.on_hover_text(saving).clicked() {
                     answer = Some(Answer::Save);
                 }
-                if ui.button("Discard changes").on_hover_text(format!("{then}; the changes are lost")).clicked() {
+                if ui.button(tr("Discard changes")).on_hover_text(discarding).clicked() {
                     answer = Some(Answer::Discard);
                 }
-                if ui.button("Cancel").clicked() || ui.input(|input| input.key_pressed(Key::Escape)) {
+                if ui.button(tr("Cancel")).clicked() || ui.input(|input| input.key_pressed(Key::Escape)) {
                     answer = Some(Answer::Cancel);
                 }
             });

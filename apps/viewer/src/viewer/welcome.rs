@@ -2,13 +2,15 @@
 
 use super::Viewer;
 use crate::builtin::BUILTIN;
+use crate::language::{fill, later, tr};
+use crate::theme;
 use crate::wake::Wake;
 use belvedere::editor::{Place, THREADS, beside};
 use belvedere::picture::PictureOptions;
 use belvedere::scene::{Progress, RenderOptions};
 use belvedere::scene_file::{self, OverlayDoc};
 use eframe::egui::{
-    self, Align2, Button, Color32, ColorImage, Context, Id, Image, TextureHandle, TextureOptions, Vec2, Window, vec2,
+    self, Align2, Button, ColorImage, Context, Id, Image, TextureHandle, TextureOptions, Vec2, Window, vec2,
 };
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -16,11 +18,11 @@ use std::sync::mpsc::{self, Receiver};
 
 /// Examples: number of the built-in scene, and what it shows.
 const CARDS: [(usize, &str, &str); 5] = [
-    (0, "A panorama", "near from above, far upright"),
-    (3, "Behind a pass", "rays bend down into the valley"),
-    (4, "Two side streets", "rays turn round the corners"),
-    (6, "A canyon ahead", "the river round its bends"),
-    (8, "Inside an engine", "rays bend over its wall"),
+    (0, later("A panorama"), later("near from above, far upright")),
+    (3, later("Behind a pass"), later("rays bend down into the valley")),
+    (4, later("Two side streets"), later("rays turn round the corners")),
+    (6, later("A canyon ahead"), later("the river round its bends")),
+    (8, later("Inside an engine"), later("rays bend over its wall")),
 ];
 /// Size of a card's picture, pixels.
 const PICTURE: [usize; 2] = [240, 136];
@@ -30,21 +32,30 @@ const CARD: Vec2 = vec2(132.0, 75.0);
 /// Steps of the tour.
 const TOUR: [(&str, &str); 5] = [
     (
-        "Move",
-        "Drag the ground to move over it, right-drag to turn and tilt, turn the wheel to come nearer. Arrow keys and Shift do the same.",
-    ),
-    ("Straight and bent", "Space changes between the straight view and the bent one. C compares both side by side."),
-    (
-        "What must be seen",
-        "In the panel Layers each layer says how much of it the picture shows. Mark what must be seen.",
+        later("Move"),
+        later(
+            "Drag the ground to move over it, right-drag to turn and tilt, turn the wheel to come nearer. Arrow keys and Shift do the same.",
+        ),
     ),
     (
-        "Three ways to bend",
-        "Terrain lets the ground make way, Spline bends it like a panorama, Curved rays leads the view round corners.",
+        later("Straight and bent"),
+        later("Space changes between the straight view and the bent one. C compares both side by side."),
     ),
     (
-        "Keep it",
-        "Ctrl S saves the scene, Export writes pictures and films. Edit lists all steps, and each can be undone.",
+        later("What must be seen"),
+        later("In the panel Layers each layer says how much of it the picture shows. Mark what must be seen."),
+    ),
+    (
+        later("Three ways to bend"),
+        later(
+            "Terrain lets the ground make way, Spline bends it like a panorama, Curved rays leads the view round corners.",
+        ),
+    ),
+    (
+        later("Keep it"),
+        later(
+            "Ctrl S saves the scene, Export writes pictures and films. Edit lists all steps, and each can be undone.",
+        ),
     ),
 ];
 
@@ -158,38 +169,38 @@ impl Viewer {
         let small = ctx.content_rect().width() < super::SMALL;
         let columns = if small { 2 } else { CARDS.len() };
         let middle = if small { ctx.content_rect().center() } else { self.picture.middle };
-        let window = Window::new("Welcome").open(&mut open).collapsible(false).resizable(false);
+        let window = Window::new(tr("Welcome")).open(&mut open).collapsible(false).resizable(false);
         let window = window.pivot(Align2::CENTER_CENTER).default_pos(middle);
         let window = if small { window.fixed_pos(middle) } else { window };
         window.show(ctx, |ui| {
             ui.vertical_centered(|ui| {
-                ui.heading("Drop an elevation model and a track");
-                ui.label("on the window: it finds a view in which the track is seen.");
+                ui.heading(tr("Drop an elevation model and a track"));
+                ui.label(tr("on the window: it finds a view in which the track is seen."));
                 ui.horizontal(|ui| {
-                    asks = ui.button("Open files…").clicked();
-                    let name = if self.remembered.toured { "Tour" } else { "Take the tour, one minute" };
+                    asks = ui.button(tr("Open files…")).clicked();
+                    let name = tr(if self.remembered.toured { "Tour" } else { "Take the tour, one minute" });
                     tours = ui.button(name).clicked();
                 });
             });
             ui.separator();
-            ui.label("Or begin with an example:");
+            ui.label(tr("Or begin with an example:"));
             egui::Grid::new("cards").num_columns(columns).spacing([8.0, 8.0]).show(ui, |ui| {
                 for (card, (scene, name, what)) in CARDS.iter().enumerate() {
                     ui.vertical(|ui| {
                         ui.set_width(CARD.x);
                         let button = match &self.welcome.pictures[card] {
                             Some(texture) => {
-                                Button::image(Image::new((texture.id(), CARD)).alt_text(*name)).min_size(CARD)
+                                Button::image(Image::new((texture.id(), CARD)).alt_text(tr(name))).min_size(CARD)
                             }
-                            None => Button::new(*name).min_size(CARD).fill(Color32::from_gray(70)),
+                            None => Button::new(tr(name)).min_size(CARD).fill(theme::blank(ui.visuals().dark_mode)),
                         };
                         let response = ui.add(button.frame_when_inactive(false));
                         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, *name));
                         if response.clicked() {
                             chosen = Some(*scene);
                         }
-                        ui.strong(*name);
-                        ui.label(*what);
+                        ui.strong(tr(name));
+                        ui.label(tr(what));
                     });
                     if (card + 1) % columns == 0 {
                         ui.end_row();
@@ -219,20 +230,20 @@ impl Viewer {
         let Some(step) = self.welcome.tour else { return };
         let Some((title, text)) = TOUR.get(step) else { return };
         let mut next = Some(step);
-        Window::new("Tour")
+        Window::new(tr("Tour"))
             .id(Id::unique("tour"))
             .collapsible(false)
             .resizable(false)
             .anchor(Align2::RIGHT_BOTTOM, [-16.0, -60.0])
             .show(ctx, |ui| {
                 ui.set_max_width(300.0);
-                ui.strong(format!("{} of {}: {title}", step + 1, TOUR.len()));
-                ui.label(*text);
+                ui.strong(fill(tr("{0} of {1}: {2}"), &[&(step + 1), &TOUR.len(), &tr(title)]));
+                ui.label(tr(text));
                 ui.horizontal(|ui| {
-                    if ui.button(if step + 1 < TOUR.len() { "Next" } else { "Done" }).clicked() {
+                    if ui.button(tr(if step + 1 < TOUR.len() { "Next" } else { "Done" })).clicked() {
                         next = (step + 1 < TOUR.len()).then_some(step + 1);
                     }
-                    if step + 1 < TOUR.len() && ui.button("Skip the tour").clicked() {
+                    if step + 1 < TOUR.len() && ui.button(tr("Skip the tour")).clicked() {
                         next = None;
                     }
                 });

@@ -1,6 +1,7 @@
 //! The curve of a preset: control points, tags and transition widths to drag, the eye and what it sees.
 
 use super::nudged;
+use crate::language::{fill, tr};
 use belvedere::core::DVec2;
 use belvedere::core::presets::edit::PresetChange;
 use belvedere::verbs::preset::{Sketch, SketchTag};
@@ -59,7 +60,7 @@ impl Scale {
 /// Draws the curve and lets it be dragged.
 pub(crate) fn curve(ui: &mut Ui, id: Id, sketch: &Sketch) -> Option<CurveEdit> {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Curve of the preset"));
+    response.widget_info(|| WidgetInfo::labeled(Role::Group, true, tr("Curve of the preset")));
     // The scale is kept during a drag, or the curve would move away from the pointer.
     let key = id.with("scale");
     let dragging = ui.input(|input| input.pointer.any_down());
@@ -72,7 +73,7 @@ pub(crate) fn curve(ui: &mut Ui, id: Id, sketch: &Sketch) -> Option<CurveEdit> {
     draw(&painter, &scale, sketch);
     let mut edit = None;
     for (i, point) in sketch.control.iter().enumerate() {
-        let response = handle(ui, id.with(("point", i)), scale.at(*point), &format!("Control point {}", i + 1));
+        let response = handle(ui, id.with(("point", i)), scale.at(*point), &fill(tr("Control point {0}"), &[&(i + 1)]));
         painter.circle_filled(scale.at(*point), if response.hovered() { 6.0 } else { 4.5 }, INK);
         if let Some(to) = dragged_to(&response) {
             let to = scale.back(to) - sketch.pinned_by;
@@ -103,7 +104,7 @@ fn tag_handles(
     painter: &Painter,
 ) -> Option<CurveEdit> {
     let at = scale.at(tag.at);
-    let response = handle(ui, id.with(("tag", i)), at, &format!("Tag {}", i + 1));
+    let response = handle(ui, id.with(("tag", i)), at, &fill(tr("Tag {0}"), &[&(i + 1)]));
     let r = if response.hovered() { 7.0 } else { 5.5 };
     let diamond = [vec2(0.0, -r), vec2(r, 0.0), vec2(0.0, r), vec2(-r, 0.0)].map(|d| at + d);
     painter.add(Shape::convex_polygon(diamond.to_vec(), TAG, Stroke::new(1.0, Color32::WHITE)));
@@ -120,7 +121,7 @@ fn tag_handles(
     }
     let end = nearest(sketch, tag.share + tag.half_width);
     let knob = scale.at(end.at + 0.05 * end.normal);
-    let response = handle(ui, id.with(("width", i)), knob, &format!("Transition width of tag {}", i + 1));
+    let response = handle(ui, id.with(("width", i)), knob, &fill(tr("Transition width of tag {0}"), &[&(i + 1)]));
     painter.line_segment([scale.at(end.at), knob], Stroke::new(1.0, TAG));
     painter.circle_filled(knob, if response.hovered() { 5.0 } else { 3.5 }, TAG);
     let width = |share: f64| PresetChange::TagWidth(i + 1, (share - tag.share).abs().clamp(0.0, 1.0));
@@ -159,7 +160,13 @@ fn draw(painter: &Painter, scale: &Scale, sketch: &Sketch) {
         let eye = scale.at(sketch.eye);
         painter.add(Shape::convex_polygon(vec![eye, low, high], EYE.gamma_multiply(0.1), Stroke::NONE));
         painter.circle_filled(eye, 5.0, EYE);
-        painter.text(eye + vec2(8.0, 0.0), eframe::egui::Align2::LEFT_CENTER, "eye", FontId::proportional(12.0), EYE);
+        painter.text(
+            eye + vec2(8.0, 0.0),
+            eframe::egui::Align2::LEFT_CENTER,
+            tr("eye"),
+            FontId::proportional(12.0),
+            EYE,
+        );
     }
     for pair in sketch.control.windows(2) {
         painter.line_segment([scale.at(pair[0]), scale.at(pair[1])], Stroke::new(1.0, FAINT));

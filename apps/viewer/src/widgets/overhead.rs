@@ -1,6 +1,7 @@
 //! The camera from above: its picture, and handles on viewpoints, planes and bend points.
 
 use super::nudged;
+use crate::language::{fill, later, tr};
 use belvedere::core::map::curved_rays::Sharpness;
 use belvedere::core::{DVec2, DVec3, View};
 use belvedere::editor::{sharpness_at, sharpness_knob};
@@ -62,7 +63,7 @@ pub(crate) fn overhead(
     let [w, h] = view.pinhole().image.map(|n| n as f32);
     let width = ui.available_width();
     let (rect, response) = ui.allocate_exact_size(vec2(width, width * h / w), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Camera from above"));
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, tr("Camera from above")));
     let painter = ui.painter_at(rect);
     painter.image(texture, rect, Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0)), Color32::WHITE);
     let at = |p: DVec3| {
@@ -102,18 +103,18 @@ pub(crate) fn overhead(
             painter.line_segment([a, b], Stroke::new(1.0, COLORS[7]));
         }
         let parts = [
-            (Part::Viewpoint, "Viewpoint", Some(DVec3::from_array(turn.viewpoint))),
-            (Part::First, "First plane", Some(DVec3::from_array(turn.t0))),
-            (Part::Bend, "Bend point", Some(DVec3::from_array(turn.t1))),
-            (Part::Last, "Last plane", Some(DVec3::from_array(turn.t2))),
-            (Part::Normal, "Bend direction", normal),
-            (Part::Line, "Pivot line", line),
-            (Part::LineDirection, "Direction of the pivot line", along),
-            (Part::Sharpness, "Sharpness", Some(knob)),
+            (Part::Viewpoint, later("Viewpoint of turn {0}"), Some(DVec3::from_array(turn.viewpoint))),
+            (Part::First, later("First plane of turn {0}"), Some(DVec3::from_array(turn.t0))),
+            (Part::Bend, later("Bend point of turn {0}"), Some(DVec3::from_array(turn.t1))),
+            (Part::Last, later("Last plane of turn {0}"), Some(DVec3::from_array(turn.t2))),
+            (Part::Normal, later("Bend direction of turn {0}"), normal),
+            (Part::Line, later("Pivot line of turn {0}"), line),
+            (Part::LineDirection, later("Direction of the pivot line of turn {0}"), along),
+            (Part::Sharpness, later("Sharpness of turn {0}"), Some(knob)),
         ];
         for ((part, name, place), color) in parts.into_iter().zip(COLORS) {
             let Some((place, spot)) = place.and_then(|p| Some((p, at(p)?))) else { continue };
-            let label = format!("{name} of turn {}", i + 1);
+            let label = fill(tr(name), &[&(i + 1)]);
             // A part outside the picture has its handle at the edge.
             let handle = rect.shrink(8.0).clamp(spot);
             let own = id.with((i, name));

@@ -1,6 +1,8 @@
 //! The angle ruler: presets over the range of viewing angles, and the viewing angle of the camera.
 
-use eframe::egui::{Align2, Color32, FontId, Id, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use crate::language::{fill, tr};
+use crate::theme;
+use eframe::egui::{Align2, FontId, Id, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 const HEIGHT: f32 = 52.0;
 /// Range of angles, degrees.
@@ -25,11 +27,11 @@ pub(crate) fn ruler(
     phi: Option<f64>,
 ) -> Option<RulerEdit> {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Viewing angles"));
+    response.widget_info(|| WidgetInfo::labeled(Role::Group, true, tr("Viewing angles")));
     let inner = rect.shrink2(vec2(12.0, 0.0));
     let x_of = |phi: f64| inner.left() + ((phi - RANGE[0]) / (RANGE[1] - RANGE[0])) as f32 * inner.width();
     let painter = ui.painter_at(rect);
-    let ink = ui.visuals().text_color();
+    let (ink, is_dark) = (ui.visuals().text_color(), ui.visuals().dark_mode);
     let y = rect.center().y;
     painter.hline(inner.x_range(), y, Stroke::new(1.5, ink));
     for degrees in (0..=90).step_by(15) {
@@ -41,7 +43,7 @@ pub(crate) fn ruler(
         painter.vline(
             x_of(phi.clamp(RANGE[0], RANGE[1])),
             y - 18.0..=y + 8.0,
-            Stroke::new(2.0, Color32::from_rgb(30, 96, 170)),
+            Stroke::new(2.0, theme::readable(theme::CAMERA, is_dark)),
         );
     }
     let mut edit = None;
@@ -50,12 +52,12 @@ pub(crate) fn ruler(
         let target = eframe::egui::Rect::from_center_size(at, vec2(16.0, 18.0));
         let response = ui.interact(target, id.with(("preset", i)), Sense::click_and_drag());
         let label = if name.is_empty() {
-            format!("Preset {} at {phi:.0}°", i + 1)
+            fill(tr("Preset {0} at {1}°"), &[&(i + 1), &format!("{phi:.0}")])
         } else {
-            format!("Preset {name} at {phi:.0}°")
+            fill(tr("Preset {0} at {1}°"), &[name, &format!("{phi:.0}")])
         };
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
-        let color = if i == chosen { Color32::from_rgb(190, 96, 10) } else { ink };
+        let color = if i == chosen { theme::readable(theme::CHOSEN, is_dark) } else { ink };
         painter.circle_filled(at, if response.hovered() || i == chosen { 6.5 } else { 5.0 }, color);
         if response.clicked() {
             edit = Some(RulerEdit::Choose(i));

@@ -75,7 +75,7 @@ fn layers_are_hidden_ordered_named_and_removed_and_each_is_undone() {
 }
 
 /// A scene of one layer.
-fn alone(folder: &Path, unit: &str, layer: &str) -> std::path::PathBuf {
+pub(crate) fn alone(folder: &Path, unit: &str, layer: &str) -> std::path::PathBuf {
     let path = folder.join("alone.toml");
     let text = format!(
         "format = 1\nunit = \"{unit}\"\n[camera]\neye = [80.0, -260.0, 104.0]\nlook_at = [80.0, 60.0, 56.0]\nimage = [160, 90]\n[[layer]]\nid = \"it\"\n{layer}"

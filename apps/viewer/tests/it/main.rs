@@ -1,15 +1,22 @@
 //! The application driven by its accessibility tree, as a screen reader sees it.
 
+mod accessible;
 mod authoring;
 mod consent;
 mod controls;
+mod density;
 mod files;
 mod film;
+mod languages;
 mod layers;
 mod layout;
 mod moving;
+mod narrow;
+mod rest;
 mod screen;
 mod snapshots;
+mod sources;
+mod tasks;
 mod unsaved;
 mod welcome;
 #[cfg(target_os = "linux")]

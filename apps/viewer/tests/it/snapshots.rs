@@ -58,6 +58,18 @@ fn a_preset_and_its_curve() {
 }
 
 #[test]
+fn a_preset_and_its_curve_in_light_colours() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut harness = drawn(folder.path());
+    press(&mut harness, "View");
+    press(&mut harness, "Light");
+    press(&mut harness, "Spline");
+    press(&mut harness, "Presets");
+    press(&mut harness, "progressive");
+    compare(&mut harness, "light");
+}
+
+#[test]
 fn terrain_that_makes_way() {
     let folder = tempfile::tempdir().expect("folder");
     let mut harness = drawn(folder.path());

@@ -95,6 +95,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
             "serde",
             "serde_json",
             "thiserror",
+            "toml",
             "wasm-bindgen",
             "wasm-bindgen-futures",
             "wasm-bindgen-rayon",

@@ -123,6 +123,8 @@ pub struct LiveSession {
     judged_at: Option<Instant>,
     ground: Ground,
     thin: Thin,
+    /// Pixels per point of the screen; `None`: 1.
+    density: Option<f64>,
 }
 
 /// Displaced ground during a motion.
@@ -134,6 +136,13 @@ struct Ground {
 }
 
 impl LiveSession {
+    /// Draws lines, marks and names that many times as large from now on.
+    ///
+    /// * `density`: pixels of the picture per point of the screen, more than 0.
+    pub fn set_density(&mut self, density: f64) {
+        self.density = Some(density).filter(|density| density.is_finite() && *density > 0.0);
+    }
+
     /// Resolves the order's document and draws it.
     ///
     /// # Errors
@@ -149,19 +158,27 @@ impl LiveSession {
         session.check_drawable()?;
         self.shown = Some(session.clone());
         let (mut bent, mut straight, mut displacement) = (None, None, None);
+        let density = self.density.unwrap_or(1.0);
         match order.pace {
             Pace::Moving { detail_px } => {
-                let scene = self.thin.scene(session.loaded.scene.clone(), 1.0 / detail_px);
+                let scene = self.thin.scene(session.loaded.scene.clone(), density / detail_px);
                 if order.sides != Sides::Straight {
-                    bent = Some(quick(&session, &scene, &eased(session.view(), order.bend), detail_px, progress)?);
+                    bent = Some(quick(
+                        &session,
+                        &scene,
+                        &eased(session.view(), order.bend),
+                        [detail_px, density],
+                        progress,
+                    )?);
                 }
                 if order.sides != Sides::Bent {
-                    straight = Some(quick(&session, &scene, &session.view().straightened(), detail_px, progress)?);
+                    straight =
+                        Some(quick(&session, &scene, &session.view().straightened(), [detail_px, density], progress)?);
                 }
             }
             Pace::Resting => {
                 let mut side = |plain: bool| {
-                    let request = PictureOptions { straight: plain, ..PictureOptions::default() };
+                    let request = PictureOptions { straight: plain, density, ..PictureOptions::default() };
                     let drawn = picture::draw_view(&session, &request, progress)?;
                     displacement = displacement.or(drawn.displacement);
                     Ok::<_, BelvedereError>(Some(drawn.frame))
@@ -376,7 +393,7 @@ fn quick(
     session: &Session,
     scene: &Scene,
     view: &View,
-    detail_px: f64,
+    [detail_px, density]: [f64; 2],
     progress: &Progress,
 ) -> Result<Frame, BelvedereError> {
     let mut options = RenderOptions {
@@ -388,7 +405,7 @@ fn quick(
     let plan = if view.is_bent() { fallback::of_session(session, view)? } else { None };
     let scene = plan.as_ref().map_or(scene, |plan| plan.scene());
     let grid = grid::wanted(scene, grid::stated(&session.resolved.overlay));
-    options.overlay.under.extend(grid.into_iter().map(|line| thin::line(line, 1.0 / detail_px)));
+    options.overlay.under.extend(grid.into_iter().map(|line| thin::line(line, density / detail_px)));
     let draw = |scene: &Scene, view: &View| {
         let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
         Ok::<_, BelvedereError>(session.renderer.render(&job)?)
@@ -405,7 +422,7 @@ fn target_seen(session: &Session, progress: &Progress) -> Result<Option<f64>, Be
         return Ok(None);
     }
     let view = session.view();
-    let frame = quick(session, session.scene(), view, 1.0, progress)?;
+    let frame = quick(session, session.scene(), view, [1.0, 1.0], progress)?;
     let options = RenderOptions { samples: 1, ..RenderOptions::default() };
     let draw = |scene: &Scene, view: &View| {
         let job = RenderJob { scene, view, light: session.light(), options: &options, progress };

@@ -48,6 +48,8 @@ struct State {
     yielding: Option<Progress>,
     /// Whether a thread is working.
     at_work: bool,
+    /// Pixels of the picture per point of the screen; 0: not told.
+    density: f64,
     /// What the work is at, and its share done, 0..=1.
     at: Option<(String, f64)>,
 }
@@ -79,6 +81,13 @@ impl Painter {
                 let _ = self.outbox.send(Answer::Failed(document, reason));
             }
         }
+    }
+
+    /// Lets the pictures that are ordered from now on have lines, marks and names that many times as large.
+    ///
+    /// * `density`: pixels of the picture per point of the screen, more than 0.
+    pub fn set_density(&mut self, density: f64) {
+        self.desk.state().density = density;
     }
 
     /// Gives up the picture at rest that is being drawn or waits, and its judgement; there is no answer.
@@ -175,6 +184,7 @@ impl Desk {
         let mut session = self.session.lock().unwrap_or_else(PoisonError::into_inner);
         match task {
             Task::Show(order) => {
+                session.set_density(self.state().density);
                 let answer = guarded(&order.document, || session.show(&order, progress));
                 let mut state = self.state();
                 if session.has_time_to_judge(order.pace) && !progress.is_cancelled() {

@@ -42,28 +42,30 @@ pub(crate) fn moved(moved: f64, unit: Unit) -> String {
 }
 
 /// Draws the mark into the lower right corner: a ray that bends over a hill, and its words.
-pub(crate) fn draw(canvas: &mut Canvas<'_>, words: &str) {
+/// * `scale`: its size in multiples of the usual one.
+pub(crate) fn draw(canvas: &mut Canvas<'_>, words: &str, scale: f64) {
     let size = canvas.size();
-    let box_size = DVec2::new(BESIDE + text_size(LETTERS_PX, words).width, 24.0);
-    let lo = size - box_size - MARGIN;
-    canvas.rect(lo, lo + box_size, 5.0, PAPER);
-    let at = |x: f64, y: f64| lo + DVec2::new(8.0 + x, 4.0 + y);
+    let letters = scale * LETTERS_PX;
+    let box_size = DVec2::new(scale * BESIDE + text_size(letters, words).width, scale * 24.0);
+    let lo = size - box_size - scale * MARGIN;
+    canvas.rect(lo, lo + box_size, scale * 5.0, PAPER);
+    let at = |x: f64, y: f64| lo + scale * DVec2::new(8.0 + x, 4.0 + y);
     let hill: Vec<DVec2> = (0..=14)
         .map(|i| {
             let x = 4.0 + f64::from(i);
             at(x, 15.0 - 7.5 * (-((x - 11.0) / 3.4).powi(2)).exp())
         })
         .collect();
-    canvas.line(&hill, 1.4, Color::rgb(120, 128, 120));
+    canvas.line(&hill, scale * 1.4, Color::rgb(120, 128, 120));
     let ray: Vec<DVec2> = (0..=20)
         .map(|i| {
             let x = f64::from(i);
             at(x, 4.0 + 0.5 * (((x - 9.0) / 3.0).exp() + 1.0).ln() * 1.9)
         })
         .collect();
-    canvas.line(&ray, 1.8, Color::rgb(213, 94, 0));
-    canvas.disc(ray[0], 2.2, INK);
-    canvas.text(lo + DVec2::new(36.0, 0.5 * box_size.y + 0.36 * LETTERS_PX), LETTERS_PX, words, INK, None);
+    canvas.line(&ray, scale * 1.8, Color::rgb(213, 94, 0));
+    canvas.disc(ray[0], scale * 2.2, INK);
+    canvas.text(lo + DVec2::new(scale * 36.0, 0.5 * box_size.y + 0.36 * letters), letters, words, INK, None);
 }
 
 /// Adds a strip with titles below pictures side by side: text and left edge of each. Narrow pictures are unchanged.

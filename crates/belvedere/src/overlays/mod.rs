@@ -10,6 +10,7 @@ pub(crate) mod heat;
 pub(crate) mod highlight;
 pub(crate) mod ring;
 pub(crate) mod thin;
+pub(crate) mod widths;
 
 use belvedere_scene::Color;
 

@@ -7,7 +7,7 @@ use super::volume_record::VolumeRecord;
 use crate::bodies::RigidLayers;
 use crate::fallback::{self, FallbackPlan, FallbackRecord};
 use crate::guard::guarded;
-use crate::overlays::{badge, camera, curve_inset, ghost, grid, heat, highlight, thin};
+use crate::overlays::{badge, camera, curve_inset, ghost, grid, heat, highlight, thin, widths};
 use crate::record::{self, InputFile, ViewRecord};
 use crate::scene_file::HighlightMark;
 use crate::{BelvedereError, CameraPicture, Session};
@@ -108,8 +108,9 @@ pub(crate) fn draw_view(
     let stylisation = request.stylisation.unwrap_or(session.resolved.stylisation);
     let mut options = RenderOptions { aux: Aux { world, exact }, stylisation, ..request.quality.clone() };
     options.max_bytes = options.max_bytes.saturating_sub(belvedere_io::budget::held());
-    options.overlay.under.extend(grid::wanted(scene, grid));
+    options.overlay.under.extend(grid::wanted(scene, grid).into_iter().map(|line| widths::line(line, request.density)));
     let draw = |scene: &Scene, view: &View| {
+        let scene = &*widths::scaled(scene, request.density);
         let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
         Ok::<_, BelvedereError>(request.renderer.of(session).render(&job)?)
     };
@@ -152,10 +153,11 @@ pub(crate) fn draw_view(
         ghost::draw(&mut frame, straight, scene);
     }
     let displacement = view.is_bent().then(|| displacement::measure(&view, &rigid, &frame));
+    let room = |pixels: usize| (pixels as f64 / request.density) as usize;
     let mark = match displacement {
-        _ if !wanted.mark || request.no_mark || !badge::fits(frame.width, frame.height) => None,
+        _ if !wanted.mark || request.no_mark || !badge::fits(room(frame.width), room(frame.height)) => None,
         _ if request.steady_mark => Some(badge::WORDS.to_owned()),
-        moved => moved.map(|moved| badge::words(frame.width, moved.max_m, scene.unit)),
+        moved => moved.map(|moved| badge::words(room(frame.width), moved.max_m, scene.unit)),
     };
     let mut canvas = Canvas::new(&mut frame.color, frame.width);
     if let Some(most) = heatmap_max {
@@ -168,7 +170,7 @@ pub(crate) fn draw_view(
     let figure = wanted.inset.and_then(|inset| Some((inset, curve_inset::CurveFigure::of(&view)?)));
     let inset = figure.filter(|(_, figure)| curve_inset::draw(&mut canvas, figure)).map(|(inset, _)| inset);
     if let Some(words) = &mark {
-        badge::draw(&mut canvas, words);
+        badge::draw(&mut canvas, words, request.density);
     }
     let overlay = OverlayRecord {
         edges: (stylisation.edges > 0.0).then_some(stylisation.edges),

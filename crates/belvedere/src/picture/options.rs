@@ -39,6 +39,9 @@ pub struct PictureOptions {
     pub steady_mark: bool,
     /// Draws a picture of the camera instead of the picture that it takes.
     pub camera: Option<CameraPicture>,
+    /// Widths of lines and marks and heights of names, in multiples of those that the scene states: pixels per point of a
+    /// screen. 1 for pictures that are written.
+    pub density: f64,
     /// Progress and cancellation.
     pub progress: Progress,
 }
@@ -61,6 +64,7 @@ impl Default for PictureOptions {
             no_mark: false,
             steady_mark: false,
             camera: None,
+            density: 1.0,
             progress: Progress::default(),
         }
     }

@@ -1,5 +1,6 @@
 //! Transfer function of a volume: its curve of opacity over the histogram of the voxels.
 
+use crate::language::{fill, tr};
 use crate::model::Model;
 use belvedere::scene::volume::TRANSFER_NAMES;
 use belvedere::scene::{LayerKind, TransferPoint, VolumeLayer};
@@ -16,8 +17,8 @@ const COUNTED: usize = 400_000;
 
 /// Shows names to choose and the curve; `transfer` is the text of the document.
 pub(super) fn show(ui: &mut Ui, model: &Model, id: &str, transfer: &mut String) {
-    let shown = if transfer.starts_with("points ") { "own curve" } else { transfer.as_str() }.to_owned();
-    ComboBox::from_label(format!("colours of {id}")).selected_text(shown).show_ui(ui, |ui| {
+    let shown = if transfer.starts_with("points ") { tr("own curve") } else { transfer.as_str() }.to_owned();
+    ComboBox::from_label(fill(tr("colours of {0}"), &[&id])).selected_text(shown).show_ui(ui, |ui| {
         for name in TRANSFER_NAMES {
             ui.selectable_value(transfer, (*name).to_owned(), *name);
         }
@@ -29,7 +30,7 @@ pub(super) fn show(ui: &mut Ui, model: &Model, id: &str, transfer: &mut String) 
     if let Some(points) = curve(ui, ui.scope_id().with(("transfer", id)), volume, &points) {
         *transfer = text(&points);
     }
-    ui.weak("Drag a point up or down, left or right. Double click: a new point, or one less.");
+    ui.weak(tr("Drag a point up or down, left or right. Double click: a new point, or one less."));
 }
 
 /// The points of a text that states them.
@@ -55,7 +56,7 @@ fn text(points: &[TransferPoint]) -> String {
 /// Draws histogram and curve and lets the points be dragged. Returns the changed points.
 fn curve(ui: &mut Ui, id: Id, volume: &VolumeLayer, points: &[TransferPoint]) -> Option<Vec<TransferPoint>> {
     let (rect, whole) = ui.allocate_exact_size(vec2(ui.available_width().min(420.0), HEIGHT), Sense::click());
-    whole.widget_info(|| WidgetInfo::labeled(Role::Group, true, "Histogram and opacity"));
+    whole.widget_info(|| WidgetInfo::labeled(Role::Group, true, tr("Histogram and opacity")));
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 3.0, Color32::from_rgb(250, 250, 248));
     let room = rect.shrink2(vec2(8.0, 8.0));
@@ -82,7 +83,7 @@ fn curve(ui: &mut Ui, id: Id, volume: &VolumeLayer, points: &[TransferPoint]) ->
     let mut next = None;
     for (i, spot) in line.iter().enumerate() {
         let own = ui.interact(Rect::from_center_size(*spot, vec2(16.0, 16.0)), id.with(i), Sense::click_and_drag());
-        own.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Opacity point {}", i + 1)));
+        own.widget_info(|| WidgetInfo::labeled(Role::Button, true, fill(tr("Opacity point {0}"), &[&(i + 1)])));
         let color = points[i].color;
         let fill = Color32::from_rgb(color.r, color.g, color.b);
         painter.circle(*spot, if own.hovered() { 6.5 } else { 5.0 }, fill, Stroke::new(1.2, Color32::from_gray(30)));

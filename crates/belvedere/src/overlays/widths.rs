@@ -1,0 +1,76 @@
+//! Widths of lines and marks, and heights of names, in a picture whose pixels are smaller or larger than those of the scene.
+
+use belvedere_scene::{LayerKind, OverlayLine, Scene};
+use std::borrow::Cow;
+
+/// Letters smaller than this cannot be read, pixels.
+const LEGIBLE_PX: f64 = 7.0;
+/// Height of the letters of a grid, pixels, about.
+const GRID_PX: f64 = 14.0;
+
+/// Whether a scene has anything whose width is stated in pixels.
+pub(crate) fn has_any(scene: &Scene) -> bool {
+    let has = |kind: &LayerKind| matches!(kind, LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_));
+    scene.layers.iter().any(|layer| has(&layer.kind))
+}
+
+/// The scene with all widths and heights times `scale`; itself where nothing changes. Letters that cannot be read are left out.
+pub(crate) fn scaled(scene: &Scene, scale: f64) -> Cow<'_, Scene> {
+    if scale == 1.0 || !has_any(scene) {
+        return Cow::Borrowed(scene);
+    }
+    let mut scene = scene.clone();
+    let letters = |px: Option<f64>| px.map(|px| px * scale).filter(|px| *px >= LEGIBLE_PX);
+    for layer in &mut scene.layers {
+        match &mut layer.kind {
+            LayerKind::Line(line) => {
+                (line.width_px, line.label_px) = (line.width_px * scale, letters(line.label_px));
+                // Distances are written as large as the letters of a grid.
+                line.markers = line.markers.filter(|_| GRID_PX * scale >= LEGIBLE_PX);
+            }
+            LayerKind::Area(area) => area.width_px *= scale,
+            LayerKind::Point(point) => {
+                (point.size_px, point.style.label_px) = (point.size_px * scale, letters(point.style.label_px));
+            }
+            _ => {}
+        }
+    }
+    Cow::Owned(scene)
+}
+
+/// A line of the grid with the same scaling.
+pub(crate) fn line(line: OverlayLine, scale: f64) -> OverlayLine {
+    let label = if GRID_PX * scale >= LEGIBLE_PX { line.label } else { String::new() };
+    OverlayLine { width_px: line.width_px * scale, label, ..line }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_scene::{Color, Layer, LineLayer, PointLayer, PointStyle};
+
+    fn layer(kind: LayerKind) -> Layer {
+        Layer { id: "it".into(), must_see: true, kind }
+    }
+
+    #[test]
+    fn twice_as_many_pixels_per_point_make_lines_and_names_twice_as_large() {
+        let mut way = LineLayer::new(Vec::new(), Color::rgb(1, 2, 3));
+        (way.width_px, way.label_px) = (3.0, Some(12.0));
+        let style = PointStyle { label_px: Some(13.0), ..PointStyle::default() };
+        let mut huts = PointLayer::new(Vec::new(), Color::rgb(1, 2, 3));
+        (huts.size_px, huts.style) = (8.0, style);
+        let scene =
+            Scene { layers: vec![layer(LayerKind::Line(way)), layer(LayerKind::Point(huts))], ..Scene::default() };
+        assert!(matches!(scaled(&scene, 1.0), Cow::Borrowed(_)));
+        let wide = scaled(&scene, 2.0);
+        let [LayerKind::Line(line), LayerKind::Point(point)] = [&wide.layers[0].kind, &wide.layers[1].kind] else {
+            panic!("other layers")
+        };
+        assert_eq!((line.width_px, line.label_px), (6.0, Some(24.0)));
+        assert_eq!((point.size_px, point.style.label_px), (16.0, Some(26.0)));
+        let thin = scaled(&scene, 0.5);
+        let LayerKind::Line(line) = &thin.layers[0].kind else { panic!("no line") };
+        assert_eq!((line.width_px, line.label_px), (1.5, None), "letters of 6 pixels cannot be read");
+    }
+}
