@@ -1,6 +1,7 @@
 //! State of the application without its window: the document, the last pictures, and how they are viewed.
 
 use crate::notices::Notices;
+use belvedere::core::presets::PresetDocument;
 use belvedere::core::{Aabb, DVec2, DVec3, Navigation, Pinhole, Projection};
 use belvedere::editor::{
     Answer, Editor, Judged, Order, Pace, Painter, Shown, Sides, above_ground, frame_factor, navigation, object_at,
@@ -34,6 +35,15 @@ pub(crate) enum Tool {
     Orbit,
     /// Picks what is to be kept in sight.
     Track,
+}
+
+/// What the open panel edits, and the picture has handles for.
+#[derive(Debug, Clone)]
+pub(crate) enum Handles {
+    /// Turns of curved rays.
+    Turns,
+    /// A preset of the spline, by its position.
+    Preset(Box<PresetDocument>, usize),
 }
 
 /// How the scene is viewed; not part of the document.
@@ -114,6 +124,8 @@ pub(crate) struct Model {
     pub(crate) overhead: Option<(Frame, belvedere::core::View)>,
     /// Measured visibility of the last picture that was judged.
     pub(crate) judged: Option<Box<Judged>>,
+    /// What the open panel edits in the picture; forgotten with every frame.
+    pub(crate) handles: Option<Handles>,
     /// Why the current document cannot be drawn.
     pub(crate) violated: Option<String>,
     ordered: Option<Wanted>,
@@ -157,6 +169,7 @@ impl Model {
             pictures: 0,
             overhead: None,
             judged: None,
+            handles: None,
             violated: None,
             ordered: None,
             waiting: None,

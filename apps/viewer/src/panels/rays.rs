@@ -1,7 +1,7 @@
 //! Curved rays: turns by hand, constructors that find them.
 
 use super::{number, set_stage, slider};
-use crate::model::{Model, Tool};
+use crate::model::{Handles, Model, Tool};
 use belvedere::core::DVec3;
 use belvedere::core::map::curved_rays::{Model as RayModel, Sharpness};
 use belvedere::editor::{next_turn, with_parallel_planes, with_pivot_line};
@@ -46,6 +46,7 @@ impl RaysPanel {
         }
         ui.separator();
         turns(ui, model);
+        model.handles = Some(Handles::Turns);
     }
 
     /// Position and length of a preview.

@@ -5,11 +5,14 @@ mod consent;
 mod controls;
 mod files;
 mod film;
+mod handles;
 mod layers;
 mod layout;
 mod moving;
+mod presets;
 mod screen;
 mod snapshots;
+mod styles;
 mod unsaved;
 mod welcome;
 #[cfg(target_os = "linux")]
