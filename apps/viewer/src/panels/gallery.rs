@@ -18,8 +18,10 @@ use std::sync::mpsc::{self, Receiver};
 /// Size of a picture, pixels.
 const PICTURE: [u32; 2] = [192, 108];
 /// Least width of a card, and height of its name, points.
-const LEAST: f32 = 90.0;
+const LEAST: f32 = 86.0;
 const NAME: f32 = 18.0;
+/// Room for the bar of the panel, points.
+const BAR: f32 = 10.0;
 /// Galleries that are kept, for steps back.
 const KEPT: usize = 4;
 /// Step of the camera, in its distance from what it looks at, within which the pictures hold.
@@ -76,7 +78,7 @@ impl Galleries {
         self.is_open = true;
         let mut chosen = None;
         let gap = ui.spacing().item_spacing.x;
-        let room = ui.available_width().max(LEAST);
+        let room = (ui.available_width() - BAR).max(LEAST);
         let columns = ((room + gap) / (LEAST + gap)).floor().clamp(1.0, 4.0);
         let width = ((room + gap) / columns - gap).floor();
         let [w, h] = PICTURE.map(|n| n as f32);

@@ -80,7 +80,7 @@ fn row(
         let style = ui.menu_button(tr("Own style"), |ui| {
             ui.label(tr("A copy of the layer is shown here alone. Change its style under Layers."));
             for id in model.layer_ids(|_| true) {
-                if ui.button(&id).clicked() {
+                if ui.button(fill(tr("Copy of {0}"), &[&id])).clicked() {
                     match with_own_style(model.document(), presets, [chosen, i], &id) {
                         Ok((next, copy)) => {
                             model.notices.tell(&fill(tr("{0} is a layer of its own now."), &[&copy]));

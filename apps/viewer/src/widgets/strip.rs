@@ -6,6 +6,8 @@ use belvedere::core::presets::edit::PresetChange;
 use eframe::egui::{Align2, Color32, CursorIcon, FontId, Id, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 const HEIGHT: f32 = 34.0;
+/// Room for the bar of the panel, points.
+const BAR: f32 = 10.0;
 /// Width of the part of a border that takes the pointer, points.
 const GRAB: f32 = 14.0;
 /// Step of the arrow keys, share of the curve's length.
@@ -29,7 +31,8 @@ pub(crate) fn strip(
     borders: &[f64],
     color: impl Fn(&str) -> Color32,
 ) -> Option<StripEdit> {
-    let (rect, whole) = ui.allocate_exact_size(vec2(ui.available_width().min(520.0), HEIGHT), Sense::hover());
+    let (rect, whole) =
+        ui.allocate_exact_size(vec2((ui.available_width() - BAR).clamp(60.0, 520.0), HEIGHT), Sense::hover());
     whole.widget_info(|| WidgetInfo::labeled(Role::Group, true, tr("Sections, near to far")));
     let at = |u: f64| rect.left() + u.clamp(0.0, 1.0) as f32 * rect.width();
     let painter = ui.painter_at(rect.expand(2.0));

@@ -90,8 +90,10 @@ fn handles_are_those_of_the_open_panel_and_leave_the_rest_of_the_picture_to_the_
     let at = find(&harness, "Picture").rect().center() + vec2(180.0, 120.0);
     harness.drag_at(at);
     harness.step();
-    harness.hover_at(at + vec2(20.0, 10.0));
-    harness.step();
+    for by in [vec2(10.0, 5.0), vec2(20.0, 10.0)] {
+        harness.hover_at(at + by);
+        harness.step();
+    }
     harness.drop_at(at + vec2(20.0, 10.0));
     settle(&mut harness);
     let after = harness.state().document().clone();

@@ -11,6 +11,19 @@ use std::path::{Path, PathBuf};
 
 type Window = Harness<'static, Viewer>;
 
+/// Scrolls the panel to a control and presses it.
+fn reach(harness: &mut Window, name: &str) {
+    scroll(harness, name);
+    press(harness, name);
+}
+
+fn scroll(harness: &mut Window, name: &str) {
+    find(harness, name).scroll_to_me();
+    for _ in 0..20 {
+        harness.step();
+    }
+}
+
 fn presets(harness: &Window) -> Option<PresetsDoc> {
     harness.state().document().stage.iter().find_map(|stage| match stage {
         StageDoc::SplineBend(stage) => Some(stage.presets.clone()),
@@ -83,13 +96,14 @@ fn a_city_gets_a_preset_with_three_sections_by_three_presses_and_a_drag() {
     press(&mut harness, "Spline");
     press(&mut harness, "progressive");
     settle(&mut harness);
-    press(&mut harness, "Three sections of town: buildings, blocks, main blocks");
+    reach(&mut harness, "Three sections of town: buildings, blocks, main blocks");
     settle(&mut harness);
     let (shown, borders) = sections(&harness);
     assert_eq!(shown, ["town", "town, blocks", "town, main blocks"]);
     let loas: Vec<u8> = harness.state().document().layer.iter().filter_map(level).collect();
     assert_eq!(loas, [0, 1, 2]);
     // The nearer border is dragged to the left, in one step.
+    scroll(&mut harness, "Border 1 of the sections");
     let border = find(&harness, "Border 1 of the sections").rect().center();
     harness.drag_at(border);
     harness.step();
@@ -126,21 +140,21 @@ fn sections_are_split_removed_and_given_a_style_of_their_own() {
     press(&mut harness, "Spline");
     press(&mut harness, "progressive");
     settle(&mut harness);
-    press(&mut harness, "Split section 1 in two");
+    reach(&mut harness, "Split section 1 in two");
     settle(&mut harness);
     assert_eq!(sections(&harness).0, ["all", "all"]);
-    press(&mut harness, "Style of its own for section 2");
+    reach(&mut harness, "Style of its own for section 2");
     for _ in 0..10 {
         harness.step();
     }
-    press(&mut harness, "ground");
+    press(&mut harness, "Copy of ground");
     settle(&mut harness);
     assert_eq!(sections(&harness).0, ["ground", "ground, section 2"]);
     let document = harness.state().document().clone();
     assert_eq!(document.layer[1].id(), "ground, section 2");
     harness.key_press(Key::Escape);
     harness.step();
-    press(&mut harness, "Remove section 1");
+    reach(&mut harness, "Remove section 1");
     settle(&mut harness);
     assert_eq!(sections(&harness).0, ["ground, section 2"], "its neighbour takes its place");
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
