@@ -83,7 +83,7 @@ fn row(
                 if ui.button(fill(tr("Copy of {0}"), &[&id])).clicked() {
                     match with_own_style(model.document(), presets, [chosen, i], &id) {
                         Ok((next, copy)) => {
-                            model.notices.tell(&fill(tr("{0} is a layer of its own now."), &[&copy]));
+                            model.notices.tell(fill(tr("{0} is a layer of its own now."), &[&copy]));
                             edit = Some(SectionEdit::Document(Box::new(next)));
                         }
                         Err(reason) => model.notices.error(reason),

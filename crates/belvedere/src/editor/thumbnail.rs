@@ -6,7 +6,11 @@ use super::{Place, camera};
 use crate::resolve::solving::Memory;
 use crate::scene_file::Document;
 use crate::{BelvedereError, OpenOptions, Session};
-use belvedere_scene::{Frame, Progress};
+use belvedere_scene::{Frame, LayerKind, Progress};
+use std::sync::Arc;
+
+/// Least width of a line, pixels.
+const LEAST_PX: f64 = 1.2;
 
 /// Draws small pictures of documents that have the layers of a session, which are not read again.
 ///
@@ -39,7 +43,17 @@ impl Thumbnails {
         camera::fit(&mut document, image);
         let session = self.session.edited(document, &self.options, &mut Memory::default())?;
         session.check_drawable()?;
-        let scene = Thin::default().scene(session.loaded.scene.clone(), self.scale);
+        let mut scene = Thin::default().scene(session.loaded.scene.clone(), self.scale);
+        if self.scale < 1.0 {
+            // The rim of a line thinner than a pixel would be all that is seen of it.
+            for layer in &mut Arc::make_mut(&mut scene).layers {
+                match &mut layer.kind {
+                    LayerKind::Line(line) => (line.casing, line.width_px) = (None, line.width_px.max(LEAST_PX)),
+                    LayerKind::Point(point) => point.style.casing = None,
+                    _ => {}
+                }
+            }
+        }
         quick(&session, &scene, session.view(), 1.0, progress)
     }
 }

@@ -109,8 +109,8 @@ fn size_features(doc: &SizeByDoc, stated: Stated<'_>, files: &mut [Vectors]) -> 
     Ok(())
 }
 
-fn each(draws: Draws, files: &mut [Vectors], mut change: impl FnMut(&mut VectorFeature)) {
-    files.iter_mut().flat_map(|f| &mut f.features).filter(|f| draws(&f.geometry)).for_each(|f| change(f));
+fn each(draws: Draws, files: &mut [Vectors], change: impl FnMut(&mut VectorFeature)) {
+    files.iter_mut().flat_map(|f| &mut f.features).filter(|f| draws(&f.geometry)).for_each(change);
 }
 
 /// The property of that name, however it is capitalised.
