@@ -101,7 +101,7 @@ fn time(
 fn with_route(mut scene: Scene) -> Result<Scene> {
     let Some(terrain) = scene.terrain() else { return Ok(scene) };
     let route = valley_route(terrain, 7)?;
-    let feature = |points| LineFeature { name: "route".into(), points };
+    let feature = |points| LineFeature { style: None, name: "route".into(), points };
     let features = drape_polyline(terrain, &route).parts.into_iter().map(feature).collect();
     let line = LineLayer::new(features, Color::rgb(215, 48, 31));
     scene.layers.push(Layer { id: "route".into(), must_see: true, kind: LayerKind::Line(line) });

@@ -135,7 +135,7 @@ pub(crate) fn with_lines(
 ) -> Session {
     let mut scene = session.scene().clone();
     let layer = |(id, lines, color, width_px): (&str, Vec<Vec<DVec3>>, _, _)| {
-        let feature = |points| LineFeature { name: String::new(), points };
+        let feature = |points| LineFeature { style: None, name: String::new(), points };
         let features = lines.into_iter().map(feature).collect();
         let layer = LineLayer { width_px, hidden: Hidden::Show, lift_m: 0.0, ..LineLayer::new(features, color) };
         Layer { id: id.to_owned(), must_see: false, kind: LayerKind::Line(layer) }
@@ -147,7 +147,8 @@ pub(crate) fn with_lines(
 /// The session with named points, drawn over everything.
 pub(crate) fn with_points(session: &Session, points: &[(&str, DVec3)], color: Color) -> Session {
     let mut scene = session.scene().clone();
-    let feature = |(name, position): &(&str, DVec3)| PointFeature { name: (*name).to_owned(), position: *position };
+    let feature =
+        |(name, position): &(&str, DVec3)| PointFeature { style: None, name: (*name).to_owned(), position: *position };
     let layer = PointLayer {
         features: points.iter().map(feature).collect(),
         color,

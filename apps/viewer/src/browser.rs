@@ -38,7 +38,12 @@ impl Application {
         open: Vec<String>,
         left: Option<String>,
     ) -> Result<(), JsValue> {
-        let opening = Opening { files: open.into_iter().map(PathBuf::from).collect(), left, language: Opening::usual_language(), ..Opening::default() };
+        let opening = Opening {
+            files: open.into_iter().map(PathBuf::from).collect(),
+            left,
+            language: Opening::usual_language(),
+            ..Opening::default()
+        };
         let make: eframe::AppCreator<'static> = Box::new(move |cc| {
             cc.egui_ctx.enable_accesskit();
             let tell = |update: &str| drop(page::call("mirror", &[&update.into()]));

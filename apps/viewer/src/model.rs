@@ -2,6 +2,7 @@
 
 use crate::language::tr;
 use crate::notices::Notices;
+use belvedere::core::presets::PresetDocument;
 use belvedere::core::{Aabb, DVec2, DVec3, Navigation, Pinhole, Projection};
 use belvedere::editor::{
     Answer, Editor, Judged, Order, Pace, Painter, Shown, Sides, above_ground, frame_factor, navigation, object_at,
@@ -35,6 +36,15 @@ pub(crate) enum Tool {
     Orbit,
     /// Picks what is to be kept in sight.
     Track,
+}
+
+/// What the open panel edits, and the picture has handles for.
+#[derive(Debug, Clone)]
+pub(crate) enum Handles {
+    /// Turns of curved rays.
+    Turns,
+    /// A preset of the spline, by its position.
+    Preset(Box<PresetDocument>, usize),
 }
 
 /// How the scene is viewed; not part of the document.
@@ -117,6 +127,8 @@ pub(crate) struct Model {
     pub(crate) overhead: Option<(Frame, belvedere::core::View)>,
     /// Measured visibility of the last picture that was judged.
     pub(crate) judged: Option<Box<Judged>>,
+    /// What the open panel edits in the picture; forgotten with every frame.
+    pub(crate) handles: Option<Handles>,
     /// Why the current document cannot be drawn.
     pub(crate) violated: Option<String>,
     ordered: Option<Wanted>,
@@ -162,6 +174,7 @@ impl Model {
             pictures: 0,
             overhead: None,
             judged: None,
+            handles: None,
             violated: None,
             ordered: None,
             waiting: None,

@@ -1,5 +1,7 @@
 //! The picture on the screen: shown, compared, navigated, picked.
 
+mod handles;
+
 use crate::language::{fill, heard, tr};
 use crate::model::{Compare, Model, Tool};
 use crate::pointer::{Hand, share};
@@ -61,9 +63,12 @@ impl PictureView {
         if let Some(at) = response.hover_pos() {
             self.tell(&painter, free, share(rect, at), model);
         }
-        if model.look.compare == Compare::Split {
-            self.bar(ui, rect, model);
+        match model.look.compare {
+            Compare::Split => self.bar(ui, rect, model),
+            Compare::Off => handles::show(ui, rect, model),
+            Compare::Flicker => {}
         }
+        model.handles = None;
     }
 
     /// Orders the picture at the resolution of the screen, within the limit of pixels.

@@ -233,6 +233,11 @@ impl Viewer {
         self.model.pictures > 0
     }
 
+    /// Whether every preset in the panel of the spline has its picture of the scene, or the reason why there is none.
+    pub fn shows_presets(&self) -> bool {
+        !self.panels.is_drawing()
+    }
+
     /// Whether files are being opened.
     pub fn is_opening(&self) -> bool {
         self.pending.is_some() || self.dropped.is_some() || self.model.is_opening()

@@ -1,7 +1,7 @@
 //! Errors in the words of the window instead of those of scene files.
 
 /// Keys of scene files that errors name, and what the window calls them.
-const WORDS: [(&str, &str); 36] = [
+const WORDS: [(&str, &str); 39] = [
     ("terrain_disocclusion", "ground that makes way"),
     ("curved_rays", "curved rays"),
     ("spline_bend", "spline"),
@@ -23,6 +23,9 @@ const WORDS: [(&str, &str); 36] = [
     ("solver_nodes", "nodes of the solver"),
     ("position_m", "position along the path"),
     ("preview_m", "length of the preview"),
+    ("color_by", "coloured by"),
+    ("width_by", "width by"),
+    ("size_by", "size by"),
     ("width_px", "width"),
     ("size_px", "size"),
     ("label_px", "height of the letters"),

@@ -66,7 +66,7 @@ pub fn canyon(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
     let title = format!("Canyon {seed}: a river between its walls");
     let layers = vec![
         ground_layer(terrain, PaletteName::Desert.into()),
-        line_layer("river", LineFeature { name: "River".into(), points }),
+        line_layer("river", LineFeature { style: None, name: "River".into(), points }),
     ];
     let camera = SuggestedCamera { title: title.clone(), eye, look_at, fov_y: 45f64.to_radians() };
     Ok((Scene { title, crs: Crs::Local, unit: Unit::Metre, layers, ..Scene::default() }, camera))

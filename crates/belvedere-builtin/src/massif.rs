@@ -46,7 +46,7 @@ pub fn massif(seed: u64, size: usize) -> Result<(Scene, SuggestedCamera), Builti
     if let Some(lake) = lake {
         layers.push(lake_layer(lake));
     }
-    layers.push(line_layer("trail", LineFeature { name: "Trail over the pass".into(), points }));
+    layers.push(line_layer("trail", LineFeature { style: None, name: "Trail over the pass".into(), points }));
     Ok((Scene { title, crs: Crs::Local, unit: Unit::Metre, layers, ..Scene::default() }, camera))
 }
 
@@ -64,7 +64,7 @@ fn lake_layer(lake: Lake) -> Layer {
         id: "lake".into(),
         must_see: false,
         kind: LayerKind::Area(AreaLayer {
-            features: vec![AreaFeature { name: "Lake".into(), rings }],
+            features: vec![AreaFeature { style: None, name: "Lake".into(), rings }],
             fill: Color::rgb(74, 133, 168),
             outline: Some(Color::rgb(42, 88, 120)),
             width_px: 1.0,

@@ -65,10 +65,10 @@ pub fn street(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
             let ring =
                 vec![DVec2::new(x[0], y[0]), DVec2::new(x[1], y[0]), DVec2::new(x[1], y[1]), DVec2::new(x[0], y[1])];
             if random.unit() < 0.05 {
-                parks.push(AreaFeature { name: format!("Park {}", parks.len() + 1), rings: vec![ring] });
+                parks.push(AreaFeature { style: None, name: format!("Park {}", parks.len() + 1), rings: vec![ring] });
                 continue;
             }
-            blocks.push(AreaFeature { name: format!("Block {col}-{row}"), rings: vec![ring] });
+            blocks.push(AreaFeature { style: None, name: format!("Block {col}-{row}"), rings: vec![ring] });
             build_block(&mut random, *x, *y, &mut towers);
         }
     }
@@ -81,7 +81,7 @@ pub fn street(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
         area_layer("blocks", blocks, Color::rgb(222, 217, 207)),
         area_layer("parks", parks, Color::rgb(146, 178, 120)),
         Layer { id: "towers".into(), must_see: false, kind: LayerKind::Boxes(BoxLayer::new(towers)) },
-        line_layer("route", LineFeature { name: "Route through town".into(), points }),
+        line_layer("route", LineFeature { style: None, name: "Route through town".into(), points }),
     ];
     let camera = SuggestedCamera { title: title.clone(), eye, look_at, fov_y: 45f64.to_radians() };
     Ok((Scene { title, crs: Crs::Local, unit: Unit::Metre, layers, ..Scene::default() }, camera))

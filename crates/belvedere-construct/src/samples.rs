@@ -221,7 +221,7 @@ mod tests {
         let flat = |xy: DVec2, amount: f64| {
             Some(Sample { p_world: xy.extend(0.0), lift: 0.0, amount, surface: None, triangle: None })
         };
-        area_samples(&AreaFeature { name: String::new(), rings }, (5.0, 20.0, None), &flat)
+        area_samples(&AreaFeature { style: None, name: String::new(), rings }, (5.0, 20.0, None), &flat)
     }
 
     #[test]

@@ -62,8 +62,10 @@ fn main() -> Result<(), Failure> {
             for seed in [7, 8] {
                 let way = valley_route(&loaded.heightfield, seed)?;
                 let parts = drape_polyline(&loaded.heightfield, &way).parts;
-                let features =
-                    parts.into_iter().map(|points| LineFeature { name: format!("route {seed}"), points }).collect();
+                let features = parts
+                    .into_iter()
+                    .map(|points| LineFeature { style: None, name: format!("route {seed}"), points })
+                    .collect();
                 layers.push((if seed == 7 { "route7" } else { "route8" }, line(features)));
             }
         }

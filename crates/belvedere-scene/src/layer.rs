@@ -1,6 +1,8 @@
 //! Layers and their styles.
 
-use crate::{Color, DistanceMarkers, Heightfield, Hidden, MeshLayer, MoleculeLayer, PointStyle, Ramp, VolumeLayer};
+use crate::{
+    Color, DistanceMarkers, FeatureStyle, Heightfield, Hidden, MeshLayer, MoleculeLayer, PointStyle, Ramp, VolumeLayer,
+};
 use belvedere_core::{Aabb, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -133,6 +135,8 @@ impl TerrainLayer {
 pub struct LineFeature {
     /// Name, possibly empty.
     pub name: String,
+    /// Style of its own; `None` = that of its layer.
+    pub style: Option<FeatureStyle>,
     /// Vertices, scene coordinates, draped on the terrain (z = ground) and densified to its spacing; at least 2.
     pub points: Vec<DVec3>,
 }
@@ -180,6 +184,8 @@ impl LineLayer {
 pub struct AreaFeature {
     /// Name, possibly empty.
     pub name: String,
+    /// Style of its own; `None` = that of its layer.
+    pub style: Option<FeatureStyle>,
     /// Rings, outer first, then holes; x and y in scene coordinates, closed implicitly.
     pub rings: Vec<Vec<DVec2>>,
 }
@@ -265,6 +271,8 @@ pub struct AreaLayer {
 pub struct PointFeature {
     /// Name, possibly empty.
     pub name: String,
+    /// Style of its own; `None` = that of its layer.
+    pub style: Option<FeatureStyle>,
     /// Position, scene coordinates, z = ground.
     pub position: DVec3,
 }

@@ -41,7 +41,7 @@ pub use layer::{
     PaletteName, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
 };
 pub use light::Light;
-pub use mark::{DistanceMarkers, Hidden, PointStyle, Symbol};
+pub use mark::{DistanceMarkers, FeatureStyle, Hidden, PointStyle, Symbol};
 pub use mesh::{Mesh, MeshColors, MeshError, MeshLayer, triangle_lattice};
 pub use molecule::{Molecule, MoleculeLayer, MoleculeStyle};
 pub use motion::{Motion, MotionError};

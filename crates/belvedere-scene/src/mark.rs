@@ -55,6 +55,21 @@ impl Default for PointStyle {
     }
 }
 
+/// Style of one feature, where it differs from that of its layer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FeatureStyle {
+    /// Colour, or fill of an area; `None` = that of the layer.
+    pub color: Option<Color>,
+    /// Width of a line or diameter of a point in those of its layer, > 0; areas ignore it.
+    pub scale: f64,
+}
+
+impl Default for FeatureStyle {
+    fn default() -> Self {
+        Self { color: None, scale: 1.0 }
+    }
+}
+
 /// Distance between marks along a line.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum DistanceMarkers {

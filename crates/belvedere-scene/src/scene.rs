@@ -74,7 +74,8 @@ impl Scene {
             Some(terrain) => drape_polyline(terrain, line).parts,
             None => vec![line.iter().map(|p| p.extend(0.0)).collect()],
         };
-        let features = parts.into_iter().map(|points| LineFeature { name: String::new(), points }).collect();
+        let features =
+            parts.into_iter().map(|points| LineFeature { style: None, name: String::new(), points }).collect();
         let kind = LayerKind::Line(LineLayer::new(features, Color::rgb(215, 48, 31)));
         self.layers.push(Layer { id: id.into(), must_see: true, kind });
         self

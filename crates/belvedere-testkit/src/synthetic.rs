@@ -43,7 +43,7 @@ pub fn terrain_layer(heightfield: Heightfield) -> Layer {
 
 /// A line that must be visible.
 pub fn line_layer(id: &str, points: Vec<DVec3>) -> Layer {
-    let features = vec![LineFeature { name: id.into(), points }];
+    let features = vec![LineFeature { style: None, name: id.into(), points }];
     let kind = LayerKind::Line(LineLayer::new(features, Color::rgb(200, 30, 30)));
     Layer { id: id.into(), must_see: true, kind }
 }
@@ -51,7 +51,7 @@ pub fn line_layer(id: &str, points: Vec<DVec3>) -> Layer {
 /// A point that must be visible.
 pub fn point_layer(id: &str, position: DVec3) -> Layer {
     let kind = LayerKind::Point(PointLayer {
-        features: vec![PointFeature { name: id.into(), position }],
+        features: vec![PointFeature { style: None, name: id.into(), position }],
         color: Color::rgb(200, 30, 30),
         size_px: 8.0,
         hidden: Hidden::Fade,

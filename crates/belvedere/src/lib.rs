@@ -71,6 +71,7 @@ pub use options::{Needs, OpenOptions};
 pub use overlays::camera::CameraPicture;
 pub use overlays::highlight::{GhostRecord, HighlightRecord, PartRecord};
 pub use picture::{DisplacementReport, Picture, PictureOptions, RendererChoice, Sidecar};
+pub use resolve::by_property;
 pub use session::Session;
 pub use trust::Trust;
 

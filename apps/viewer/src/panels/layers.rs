@@ -1,5 +1,9 @@
 //! Layers: what is there, in which order, what must be seen, how it is drawn.
 
+mod by_property;
+mod fields;
+mod marks;
+mod paint;
 mod style;
 mod volume;
 

@@ -1,8 +1,10 @@
 //! Panels: each shows one part of the document and edits it. No algorithm lives here.
 
+mod gallery;
 pub(crate) mod layers;
 pub(crate) mod look;
 pub(crate) mod rays;
+mod sections;
 pub(crate) mod spline;
 pub(crate) mod terrain;
 
@@ -69,6 +71,11 @@ impl Panels {
             Tab::Spline => self.spline.show(ui, model),
             Tab::Export => self.exporter.show(ui, model, bookmarks),
         });
+    }
+
+    /// Whether pictures of presets are still to be drawn.
+    pub(crate) fn is_drawing(&self) -> bool {
+        self.spline.is_drawing()
     }
 
     /// Advances playing previews and sweeps, and the export.

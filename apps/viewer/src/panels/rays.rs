@@ -2,7 +2,7 @@
 
 use super::{number, set_stage, slider};
 use crate::language::{fill, tr};
-use crate::model::{Model, Tool};
+use crate::model::{Handles, Model, Tool};
 use belvedere::core::DVec3;
 use belvedere::core::map::curved_rays::{Model as RayModel, Sharpness};
 use belvedere::editor::{next_turn, with_parallel_planes, with_pivot_line};
@@ -47,6 +47,7 @@ impl RaysPanel {
         }
         ui.separator();
         turns(ui, model);
+        model.handles = Some(Handles::Turns);
     }
 
     /// Position and length of a preview.

@@ -1,15 +1,17 @@
 //! Multi-perspective views: presets over the viewing angle, their curves, sections and representations.
 
-use super::{number, set_stage};
+use super::gallery::{Galleries, variant};
+use super::number;
+use super::sections::{self, SectionEdit};
 use crate::language::{fill, heard, tr};
-use crate::model::Model;
+use crate::model::{Handles, Model};
 use crate::widgets::curve::curve;
 use crate::widgets::ruler::{RANGE, RulerEdit, ruler};
+use belvedere::core::presets::PresetDocument;
 use belvedere::core::presets::edit::{PresetChange, PresetOperation};
-use belvedere::core::presets::{BUILTINS, PresetDocument};
 use belvedere::scene_file::{PresetsDoc, SplineStageDoc, StageDoc};
 use belvedere::verbs::preset::{sketch, viewing_angle};
-use eframe::egui::{Color32, ComboBox, Context, Id, Role, Sense, TextStyle, TextWrapMode, Ui, WidgetInfo, WidgetText};
+use eframe::egui::{CollapsingHeader, Context, Ui};
 
 const KIND: &str = "spline_bend";
 /// Speed of a played sweep, degrees per second.
@@ -18,6 +20,7 @@ const SWEEP: f64 = 12.0;
 /// State of the panel.
 #[derive(Debug, Default)]
 pub(crate) struct SplinePanel {
+    galleries: Galleries,
     /// Position of the edited preset in the document.
     chosen: usize,
     playing: bool,
@@ -36,7 +39,7 @@ impl SplinePanel {
             Some(StageDoc::SplineBend(stage)) => Some(stage.clone()),
             _ => None,
         };
-        builtins(ui, model, stage.as_ref());
+        self.builtins(ui, model, stage.as_ref());
         let Some(stage) = stage else {
             ui.label(tr("Choose presets to bend the picture along a spline over the ground."));
             return;
@@ -77,6 +80,27 @@ impl SplinePanel {
         }
         self.sections(ui, model, &presets);
         self.numbers(ui, model, &presets);
+        model.handles = Some(Handles::Preset(Box::new(presets), self.chosen));
+    }
+
+    /// The built-in documents, as pictures of this scene.
+    fn builtins(&mut self, ui: &mut Ui, model: &mut Model, stage: Option<&SplineStageDoc>) {
+        let present = match stage.map(|stage| &stage.presets) {
+            Some(PresetsDoc::Named(name)) => Some(name.as_str()),
+            _ => None,
+        };
+        let galleries = &mut self.galleries;
+        let shown = CollapsingHeader::new(tr("Presets")).default_open(true).show(ui, |ui| galleries.show(ui, present));
+        if let Some(builtin) = shown.body_returned.flatten() {
+            self.chosen = 0;
+            let next = variant(model.document(), builtin.name);
+            model.edit(|document| *document = next);
+        }
+    }
+
+    /// Whether pictures of presets are still to be drawn.
+    pub(crate) fn is_drawing(&self) -> bool {
+        self.galleries.is_drawing()
     }
 
     /// The ruler, and the operations on whole presets.
@@ -125,73 +149,23 @@ impl SplinePanel {
         });
     }
 
-    /// The sections, near to far, each a place to drop a representation on.
+    /// The sections, near to far.
     fn sections(&mut self, ui: &mut Ui, model: &mut Model, presets: &PresetDocument) {
-        let preset = &presets.presets[self.chosen];
-        ui.label(tr("Sections, near to far: drop a representation on one"));
-        let mut change = None;
-        ui.horizontal_wrapped(|ui| {
-            for (i, section) in preset.sections.iter().enumerate() {
-                let text = dark(format!("{}. {section}", i + 1));
-                let response = ui.add(eframe::egui::Button::new(text).fill(color_of(section)).sense(Sense::click()));
-                if let Some(dropped) = response.dnd_release_payload::<String>() {
-                    change = Some(PresetChange::Section(i + 1, (*dropped).clone()));
+        match sections::show(ui, model, presets, self.chosen) {
+            Some(SectionEdit::Preset(changes, begins)) => {
+                if begins {
+                    model.begin_gesture();
                 }
-                if response.dnd_hover_payload::<String>().is_some() {
-                    response.highlight();
+                let mut presets = presets.clone();
+                for change in changes {
+                    self.change(model, &presets, change);
+                    if let Some(StageDoc::SplineBend(stage)) = model.stage(KIND) {
+                        presets = presets_of(model, stage).unwrap_or(presets);
+                    }
                 }
             }
-        });
-        let mut known: Vec<String> = vec!["all".into()];
-        known.extend(model.document().representations.keys().cloned());
-        known.extend(model.layer_ids(|_| true));
-        ui.horizontal_wrapped(|ui| {
-            for name in &known {
-                let id = Id::unique(("representation", name));
-                let galley = WidgetText::from(dark(name.clone())).into_galley(
-                    ui,
-                    Some(TextWrapMode::Extend),
-                    f32::INFINITY,
-                    TextStyle::Button,
-                );
-                // What is dragged does not go to the next row by itself.
-                if ui.available_size_before_wrap().x < galley.size().x + 2.0 * ui.spacing().button_padding.x {
-                    ui.end_row();
-                }
-                let response = ui
-                    .dnd_drag_source(id, name.clone(), |ui| {
-                        let button = eframe::egui::Button::new(dark(name.clone())).fill(color_of(name));
-                        let shown = ui.add(button.wrap_mode(TextWrapMode::Extend));
-                        // The control is what is dragged; this is its text.
-                        shown.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
-                    })
-                    .response;
-                response
-                    .widget_info(|| WidgetInfo::labeled(Role::Button, true, fill(tr("Representation {0}"), &[name])));
-            }
-        });
-        // The same for the keyboard.
-        for (i, section) in preset.sections.iter().enumerate() {
-            let mut to = section.clone();
-            ComboBox::from_label(fill(tr("Section {0}"), &[&(i + 1)])).selected_text(&to).show_ui(ui, |ui| {
-                for name in &known {
-                    ui.selectable_value(&mut to, name.clone(), name);
-                }
-            });
-            if to != *section {
-                change = Some(PresetChange::Section(i + 1, to));
-            }
-        }
-        ui.horizontal(|ui| {
-            if ui.button(tr("Split the last section")).clicked() {
-                change = Some(PresetChange::Split(preset.sections.len()));
-            }
-            if preset.sections.len() > 1 && ui.button(tr("Join the last two")).clicked() {
-                change = Some(PresetChange::Merge(preset.sections.len() - 1));
-            }
-        });
-        if let Some(change) = change {
-            self.step(model, presets, change);
+            Some(SectionEdit::Document(next)) => model.edit(|document| *document = *next),
+            None => {}
         }
     }
 
@@ -259,8 +233,9 @@ impl SplinePanel {
         value.clamp(least, most)
     }
 
-    /// Advances the sweep: up and down through the viewing angles.
+    /// Draws missing pictures of presets, and advances the sweep: up and down through the viewing angles.
     pub(crate) fn play(&mut self, ctx: &Context, model: &mut Model) {
+        self.galleries.draw(ctx, model);
         if !self.playing {
             return;
         }
@@ -299,31 +274,6 @@ fn presets_of(model: &Model, stage: &SplineStageDoc) -> Option<PresetDocument> {
     }
 }
 
-/// The built-in documents, by what they do.
-fn builtins(ui: &mut Ui, model: &mut Model, stage: Option<&SplineStageDoc>) {
-    let shown = match stage.map(|stage| &stage.presets) {
-        Some(PresetsDoc::Named(name)) => name.as_str(),
-        Some(PresetsDoc::Inline(_)) => tr("edited"),
-        None => tr("none"),
-    };
-    let mut chosen = None;
-    ComboBox::from_label(tr("Presets")).selected_text(shown).show_ui(ui, |ui| {
-        for builtin in BUILTINS.iter() {
-            if ui.selectable_label(shown == builtin.name, builtin.name).on_hover_text(heard(builtin.effect)).clicked() {
-                chosen = Some(builtin.name);
-            }
-        }
-    });
-    if let Some(name) = chosen {
-        let presets = PresetsDoc::Named(name.to_owned());
-        let next = match stage {
-            Some(stage) => SplineStageDoc { presets, ..stage.clone() },
-            None => SplineStageDoc { presets, pivot: None, plane: None },
-        };
-        model.edit(|document| set_stage(document, StageDoc::SplineBend(next)));
-    }
-}
-
 /// Distance of the camera from the pivot of the spline.
 fn distance_of(model: &Model) -> Option<f64> {
     let stages = model.shown.as_ref()?.session.view().stages();
@@ -336,18 +286,4 @@ fn distance_of(model: &Model) -> Option<f64> {
 fn free_name(presets: &PresetDocument) -> String {
     let taken = |name: &str| presets.presets.iter().any(|p| p.name == name);
     (1..).map(|n| format!("preset {n}")).find(|name| !taken(name)).unwrap_or_default()
-}
-
-/// Text on a muted colour.
-fn dark(text: String) -> eframe::egui::RichText {
-    eframe::egui::RichText::new(text).color(Color32::from_rgb(30, 34, 44))
-}
-
-/// A muted colour derived from a name.
-fn color_of(name: &str) -> Color32 {
-    let hash = name.bytes().fold(7u32, |hash, byte| hash.wrapping_mul(31).wrapping_add(u32::from(byte)));
-    let palette =
-        [[205, 222, 240], [226, 216, 190], [210, 232, 206], [240, 212, 204], [224, 208, 236], [204, 232, 232]];
-    let [r, g, b] = palette[hash as usize % palette.len()];
-    Color32::from_rgb(r, g, b)
 }

@@ -3,11 +3,12 @@
 pub(crate) mod curve;
 pub(crate) mod overhead;
 pub(crate) mod ruler;
+pub(crate) mod strip;
 
 use eframe::egui::{EventFilter, Key, Response, Ui};
 
 /// Steps of the arrow keys, right and up, on a handle that has the focus, which a click gives it.
-fn nudged(ui: &Ui, response: &Response) -> Option<[f64; 2]> {
+pub(crate) fn nudged(ui: &Ui, response: &Response) -> Option<[f64; 2]> {
     if response.clicked() {
         response.request_focus();
     }

@@ -16,7 +16,6 @@ fn a_progressive_preset_is_made_from_the_template_saved_and_drawn_elsewhere() {
     let mut done = || operations += 1;
     press(&mut harness, "Spline");
     done();
-    press(&mut harness, "Presets");
     press(&mut harness, "progressive");
     done();
     settle(&mut harness);
@@ -60,7 +59,6 @@ fn a_preset_is_copied_for_another_angle_and_taken_away_again() {
     let mut harness = app(&opened(&[scene(folder.path())]));
     settle(&mut harness);
     press(&mut harness, "Spline");
-    press(&mut harness, "Presets");
     press(&mut harness, "progressive");
     settle(&mut harness);
     let presets = |harness: &egui_kittest::Harness<'_, belvedere_viewer::Viewer>| {

@@ -52,8 +52,14 @@ fn a_preset_and_its_curve() {
     let folder = tempfile::tempdir().expect("folder");
     let mut harness = drawn(folder.path());
     press(&mut harness, "Spline");
-    press(&mut harness, "Presets");
     press(&mut harness, "progressive");
+    settle(&mut harness);
+    let began = Instant::now();
+    while !harness.state().shows_presets() {
+        assert!(began.elapsed() < PATIENCE, "no pictures of presets");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
     compare(&mut harness, "spline");
 }
 

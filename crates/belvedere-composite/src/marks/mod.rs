@@ -1,5 +1,6 @@
 //! Lines, outlines, points and names, drawn over the surfaces.
 
+mod alike;
 mod dash;
 mod distance;
 mod face;
@@ -18,10 +19,11 @@ use crate::color::{Packed, linear};
 use crate::drawn::{Drawn, Pass};
 use crate::screen::{BAND, Screen};
 use crate::sections::Sections;
+use alike::alike;
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{
-    AreaLayer, Color, Hidden, LayerKind, LineLayer, Overlay, OverlayLine, OverlayPoint, PointLayer, PointStyle,
-    RenderJob, Scene, Symbol,
+    AreaLayer, Color, Hidden, LayerKind, LineFeature, LineLayer, Overlay, OverlayLine, OverlayPoint, PointFeature,
+    PointLayer, PointStyle, RenderJob, Scene, Symbol,
 };
 use face::Face;
 use label::{LabelRequest, Labels};
@@ -73,12 +75,12 @@ impl Marks {
             match &layer.kind {
                 LayerKind::Line(l) => {
                     let l = &*builder.shown_lines(i, l);
-                    sheets.push(builder.line_layer(l, id));
+                    sheets.extend(builder.line_sheets(l, id));
                     sheets.extend(builder.distances(l, id, &mut requests));
                     requests.extend(builder.line_names(l));
                 }
                 LayerKind::Area(a) => sheets.extend(builder.outlines(a, id)),
-                LayerKind::Point(p) => sheets.push(builder.points(&builder.shown_points(i, p), id, &mut requests)),
+                LayerKind::Point(p) => sheets.extend(builder.points(&builder.shown_points(i, p), id, &mut requests)),
                 _ => {}
             }
         }
@@ -162,12 +164,15 @@ impl<'a> MarkBuilder<'a> {
 }
 
 impl MarkBuilder<'_> {
-    fn line_layer(&self, layer: &LineLayer, id: u32) -> StrokeLayer {
-        let half_px = 0.5 * width_or_none(layer.width_px);
-        let casing_px = layer.casing.map(|_| casing_of(half_px));
-        let style = Style { half_px, casing_px, hidden: layer.hidden, lift_m: layer.lift_m };
-        let paths = layer.features.par_iter().map(|f| path::drape(self.scene, &f.points, layer.lift_m)).collect();
-        self.sheet(paths, style, inks(layer.color, layer.casing, layer.hidden), id)
+    fn line_sheets(&self, layer: &LineLayer, id: u32) -> Vec<StrokeLayer> {
+        let sheet = |group: alike::Alike<'_, LineFeature>| {
+            let half_px = 0.5 * width_or_none(group.scale * layer.width_px);
+            let casing_px = layer.casing.map(|_| casing_of(half_px));
+            let style = Style { half_px, casing_px, hidden: layer.hidden, lift_m: layer.lift_m };
+            let paths = group.features.par_iter().map(|f| path::drape(self.scene, &f.points, layer.lift_m)).collect();
+            self.sheet(paths, style, inks(group.color, layer.casing, layer.hidden), id)
+        };
+        alike(&layer.features, layer.color, |f| f.style).into_iter().map(sheet).collect()
     }
 
     fn outlines(&self, layer: &AreaLayer, id: u32) -> Option<StrokeLayer> {
@@ -296,11 +301,22 @@ impl MarkBuilder<'_> {
         Some(StrokeLayer::new(strokes, inks, id, self.screen.height as usize, BAND))
     }
 
-    fn points(&self, layer: &PointLayer, id: u32, requests: &mut Vec<LabelRequest>) -> StrokeLayer {
-        let half_px = 0.5 * width_or_none(layer.size_px);
+    fn points(&self, layer: &PointLayer, id: u32, requests: &mut Vec<LabelRequest>) -> Vec<StrokeLayer> {
+        let sheet = |group| self.points_alike(layer, group, id, requests);
+        alike(&layer.features, layer.color, |f| f.style).into_iter().map(sheet).collect()
+    }
+
+    fn points_alike(
+        &self,
+        layer: &PointLayer,
+        group: alike::Alike<'_, PointFeature>,
+        id: u32,
+        requests: &mut Vec<LabelRequest>,
+    ) -> StrokeLayer {
+        let half_px = 0.5 * width_or_none(group.scale * layer.size_px);
         let PointStyle { symbol, casing, label_px } = layer.style;
         let marker = Marker { symbol, half_px, casing: casing.is_some(), hidden: layer.hidden };
-        let found: Vec<(Vec<Stroke>, Vec<DVec2>)> = layer
+        let found: Vec<(Vec<Stroke>, Vec<DVec2>)> = group
             .features
             .par_iter()
             .map(|feature| {
@@ -312,14 +328,14 @@ impl MarkBuilder<'_> {
             })
             .collect();
         let mut strokes = Vec::new();
-        for (feature, (s, named)) in layer.features.iter().zip(found) {
+        for (feature, (s, named)) in group.features.iter().zip(found) {
             strokes.extend(s);
             let Some(size_px) = label_px.filter(|_| !feature.name.trim().is_empty()) else { continue };
             requests.extend(
-                named.into_iter().map(|at| label_request(feature.name.trim(), at, marker, size_px, layer.color)),
+                named.into_iter().map(|at| label_request(feature.name.trim(), at, marker, size_px, group.color)),
             );
         }
-        StrokeLayer::new(strokes, inks(layer.color, casing, layer.hidden), id, self.screen.height as usize, BAND)
+        StrokeLayer::new(strokes, inks(group.color, casing, layer.hidden), id, self.screen.height as usize, BAND)
     }
 
     fn overlay_point(&self, point: &OverlayPoint, requests: &mut Vec<LabelRequest>) -> StrokeLayer {

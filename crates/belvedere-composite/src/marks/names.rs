@@ -5,7 +5,7 @@ use crate::marks::label::LabelRequest;
 use crate::marks::visibility::{Run, Station};
 use crate::marks::{MarkBuilder, Style, casing_of, darker, path, width_or_none};
 use belvedere_core::DVec2;
-use belvedere_scene::{Hidden, LineLayer};
+use belvedere_scene::{Color, Hidden, LineLayer};
 use rayon::prelude::*;
 
 /// Margin between a name and the rim of the picture, pixels.
@@ -26,31 +26,34 @@ impl MarkBuilder<'_> {
         let Some(size_px) = layer.label_px else { return Vec::new() };
         let half_px = 0.5 * width_or_none(layer.width_px);
         let style = Style { half_px, casing_px: None, hidden: layer.hidden, lift_m: layer.lift_m };
-        let stretches: Vec<(&str, Option<Stretch>)> = layer
+        let stretches: Vec<(&str, Color, Option<Stretch>)> = layer
             .features
             .par_iter()
             .filter(|f| !f.name.trim().is_empty())
-            .map(|f| (f.name.trim(), self.longest(&path::drape(self.scene, &f.points, layer.lift_m), style)))
+            .map(|f| {
+                let color = f.style.and_then(|own| own.color).unwrap_or(layer.color);
+                (f.name.trim(), color, self.longest(&path::drape(self.scene, &f.points, layer.lift_m), style))
+            })
             .collect();
-        let mut names: Vec<(&str, Stretch)> = Vec::new();
-        for (name, stretch) in stretches {
+        let mut names: Vec<(&str, Color, Stretch)> = Vec::new();
+        for (name, color, stretch) in stretches {
             let Some(stretch) = stretch else { continue };
-            match names.iter_mut().find(|(n, _)| *n == name) {
-                Some((_, best)) if stretch.length > best.length => *best = stretch,
+            match names.iter_mut().find(|(n, ..)| *n == name) {
+                Some(best) if stretch.length > best.2.length => *best = (name, color, stretch),
                 Some(_) => {}
-                None => names.push((name, stretch)),
+                None => names.push((name, color, stretch)),
             }
         }
-        names.retain(|(name, s)| s.length >= LEAST_SHARE * text_size(size_px, name).width);
+        names.retain(|(name, _, s)| s.length >= LEAST_SHARE * text_size(size_px, name).width);
         // Names of lines with longer visible stretches are placed first.
-        names.sort_by(|a, b| b.1.length.total_cmp(&a.1.length).then(a.0.cmp(b.0)));
+        names.sort_by(|a, b| b.2.length.total_cmp(&a.2.length).then(a.0.cmp(b.0)));
         let side = casing_of(half_px);
-        let label_request = |(name, s): (&str, Stretch)| LabelRequest {
+        let label_request = |(name, color, s): (&str, Color, Stretch)| LabelRequest {
             text: name.to_owned(),
             at: s.middle,
             marker: [side; 2],
             size_px,
-            color: darker(layer.color),
+            color: darker(color),
             leader: false,
         };
         names.into_iter().map(label_request).collect()

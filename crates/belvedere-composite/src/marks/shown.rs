@@ -23,7 +23,7 @@ impl MarkBuilder<'_> {
         let stretches = |f: &LineFeature| -> Vec<LineFeature> {
             let runs = f.points.chunk_by(|a, b| is_shown(*a) == is_shown(*b));
             let runs = runs.filter(|run| run.len() > 1 && is_shown(run[0]));
-            runs.map(|run| LineFeature { name: f.name.clone(), points: run.to_vec() }).collect()
+            runs.map(|run| LineFeature { style: f.style, name: f.name.clone(), points: run.to_vec() }).collect()
         };
         let features = layer.features.iter().flat_map(stretches).collect();
         Cow::Owned(LineLayer { features, ..layer.clone() })

@@ -98,10 +98,10 @@ fn picture(hidden: Hidden, edges: f32, name: &str) -> (Frame, Pinhole) {
     let lens = Projection::Perspective { fov_y: 0.9 };
     let pinhole = Pinhole::look_at(EYE, DVec3::ZERO, DVec3::Z, lens, [320, 240], 1.0, None).expect("a camera");
     let points = [-30.0, 30.0].map(|x| DVec3::new(x, BEHIND, HEIGHT)).to_vec();
-    let mut route = LineLayer::new(vec![LineFeature { name: String::new(), points }], Color::rgb(0, 0, 0));
+    let mut route = LineLayer::new(vec![LineFeature { style: None, name: String::new(), points }], Color::rgb(0, 0, 0));
     (route.hidden, route.lift_m) = (hidden, 0.0);
     let hut = PointLayer {
-        features: vec![PointFeature { name: name.to_owned(), position: DVec3::new(22.0, BEHIND, -12.0) }],
+        features: vec![PointFeature { style: None, name: name.to_owned(), position: DVec3::new(22.0, BEHIND, -12.0) }],
         color: Color::rgb(200, 0, 0),
         size_px: 9.0,
         style: PointStyle { symbol: Symbol::Dot, casing: None, label_px: Some(14.0) },

@@ -36,6 +36,7 @@ fn scene(rigid: bool, towers_must_be_seen: bool) -> Scene {
     let flat =
         Heightfield::measured(DVec2::new(-300.0, 400.0), DVec2::splat(10.0), 61, 71, vec![0.0; 61 * 71]).unwrap();
     let street = |r: i32| LineFeature {
+        style: None,
         name: format!("street {r}"),
         points: vec![
             DVec3::new(-150.0, 60.0 * f64::from(r) + 22.0, 0.0),

@@ -107,8 +107,11 @@ fn lines_end_where_the_line_of_sight_says_and_move_with_the_camera() {
 }
 
 fn summits() -> PointLayer {
-    let feature =
-        |name: &str, x: f64, y: f64, z: f64| PointFeature { name: name.into(), position: DVec3::new(x, y, z) };
+    let feature = |name: &str, x: f64, y: f64, z: f64| PointFeature {
+        style: None,
+        name: name.into(),
+        position: DVec3::new(x, y, z),
+    };
     PointLayer {
         features: vec![feature("Crest", 0.0, 0.0, 60.0), feature("Behind", 120.0, 150.0, 0.2)],
         color: Color::rgb(90, 20, 140),

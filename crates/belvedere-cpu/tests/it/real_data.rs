@@ -60,7 +60,7 @@ fn route(hf: &Heightfield) -> Option<belvedere_scene::LineLayer> {
                 points.extend(hf.height_at(p).map(|z| p.extend(z)));
             }
         }
-        out.features.push(LineFeature { name: String::new(), points });
+        out.features.push(LineFeature { style: None, name: String::new(), points });
     }
     Some(out)
 }
@@ -72,6 +72,7 @@ fn lakes() -> Option<AreaLayer> {
         r.as_array().into_iter().flatten().filter_map(|p| Some(metric(p[0].as_f64()?, p[1].as_f64()?))).collect()
     };
     let polygon = |p: &serde_json::Value| AreaFeature {
+        style: None,
         name: String::new(),
         rings: p.as_array().into_iter().flatten().map(ring).collect(),
     };

@@ -13,7 +13,11 @@ fn full_scene() -> Scene {
     let hf = hills(100, 12.0, 150.0, 4);
     let on = |x: f64, y: f64| DVec2::new(x, y).extend(hf.surface_at(DVec2::new(x, y)).expect("on the hills"));
     let route = (0..200).map(|i| on(-500.0 + 5.0 * f64::from(i), 80.0 * (f64::from(i) * 0.07).sin())).collect();
-    let points = (0..9).map(|i| PointFeature { name: String::new(), position: on(-400.0 + 90.0 * f64::from(i), 60.0) });
+    let points = (0..9).map(|i| PointFeature {
+        style: None,
+        name: String::new(),
+        position: on(-400.0 + 90.0 * f64::from(i), 60.0),
+    });
     let shape = BoxShape { base: on(50.0, 0.0), size: DVec3::splat(60.0), yaw: 0.4, color: Color::rgb(200, 190, 180) };
     let points = PointLayer {
         features: points.collect(),

@@ -65,7 +65,7 @@ pub(crate) fn options(samples: u32) -> RenderOptions {
 
 pub(crate) fn line(points: Vec<DVec3>, hidden: Hidden) -> LineLayer {
     LineLayer {
-        features: vec![LineFeature { name: String::new(), points }],
+        features: vec![LineFeature { style: None, name: String::new(), points }],
         color: Color::rgb(215, 48, 31),
         width_px: 3.0,
         casing: Some(Color::rgb(255, 255, 255)),

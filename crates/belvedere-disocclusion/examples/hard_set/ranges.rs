@@ -88,7 +88,7 @@ fn route(ground: &Heightfield) -> Result<Vec<Layer>, Failure> {
         }
     }
     let parts = drape_polyline(ground, &way?).parts;
-    let features = parts.into_iter().map(|points| LineFeature { name: "route".into(), points }).collect();
+    let features = parts.into_iter().map(|points| LineFeature { style: None, name: "route".into(), points }).collect();
     let kind = LayerKind::Line(LineLayer::new(features, Color::rgb(215, 48, 31)));
     Ok(vec![Layer { id: "route".into(), must_see: true, kind }])
 }

@@ -8,7 +8,7 @@ use belvedere_scene::{Color, Hidden, Layer, LayerKind, LineFeature, LineLayer, S
 fn line(field: &Field, path: &[[f64; 2]]) -> Scene {
     let points = path.iter().map(|&g| field.scene_from_grid(DVec2::from(g)).extend(0.0)).collect();
     let kind = LayerKind::Line(LineLayer {
-        features: vec![LineFeature { name: String::new(), points }],
+        features: vec![LineFeature { style: None, name: String::new(), points }],
         color: Color::rgb(0, 0, 0),
         width_px: 1.0,
         casing: None,

@@ -22,7 +22,7 @@ fn scene_point(field: &Field, g: [f64; 2]) -> DVec2 {
 
 fn lines(field: &Field, features: &[&[[f64; 2]]]) -> Scene {
     let path = |f: &[[f64; 2]]| f.iter().map(|&g| scene_point(field, g).extend(0.0)).collect();
-    let features = features.iter().map(|f| LineFeature { name: String::new(), points: path(f) }).collect();
+    let features = features.iter().map(|f| LineFeature { style: None, name: String::new(), points: path(f) }).collect();
     let color = Color::rgb(0, 0, 0);
     let kind = LayerKind::Line(LineLayer {
         features,
@@ -39,7 +39,8 @@ fn lines(field: &Field, features: &[&[[f64; 2]]]) -> Scene {
 
 fn area(field: &Field, rings: &[&[[f64; 2]]]) -> Scene {
     let ring = |r: &[[f64; 2]]| r.iter().map(|&g| scene_point(field, g)).collect();
-    let features = vec![AreaFeature { name: String::new(), rings: rings.iter().map(|r| ring(r)).collect() }];
+    let features =
+        vec![AreaFeature { style: None, name: String::new(), rings: rings.iter().map(|r| ring(r)).collect() }];
     let kind = LayerKind::Area(AreaLayer {
         features,
         fill: Color::rgb(0, 0, 0),
@@ -146,7 +147,7 @@ fn landmarks_are_themselves_and_layers_that_need_not_be_seen_have_no_points() {
     let field = field();
     let position = scene_point(&field, [7.25, 3.5]).extend(0.0);
     let kind = LayerKind::Point(PointLayer {
-        features: vec![PointFeature { name: "hut".into(), position }],
+        features: vec![PointFeature { style: None, name: "hut".into(), position }],
         color: Color::rgb(0, 0, 0),
         size_px: 3.0,
         style: belvedere_scene::PointStyle::default(),

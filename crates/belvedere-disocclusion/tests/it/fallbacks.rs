@@ -15,7 +15,7 @@ fn scene(cols: usize, rows: usize, height: impl Fn(usize, usize) -> f64, points:
     let heights = (0..cols * rows).map(|i| height(i % cols, i / cols) as f32).collect();
     let states = vec![NodeState::Measured; cols * rows];
     let hf = Heightfield::new(DVec2::ZERO, DVec2::splat(SPACING), cols, rows, heights, states).unwrap();
-    let place = |g: &DVec2| PointFeature { name: String::new(), position: at(*g, 0.0) };
+    let place = |g: &DVec2| PointFeature { style: None, name: String::new(), position: at(*g, 0.0) };
     let features = points.iter().map(place).collect();
     let color = Color::rgb(0, 0, 0);
     let (style, hidden) = (PointStyle::default(), Hidden::Fade);

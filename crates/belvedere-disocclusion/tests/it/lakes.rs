@@ -61,7 +61,7 @@ impl Case {
         let lens = Projection::Perspective { fov_y: 40f64.to_radians() };
         let toward = eye + DVec3::new(0.0, 1.0, -0.15);
         let view = View::straight(Pinhole::look_at(eye, toward, DVec3::Z, lens, [640, 360], 1.0, None).unwrap());
-        let features = rings.map(|r| AreaFeature { name: "lake".into(), rings: vec![r] }).to_vec();
+        let features = rings.map(|r| AreaFeature { style: None, name: "lake".into(), rings: vec![r] }).to_vec();
         let kind = LayerKind::Area(AreaLayer {
             features,
             fill: Color::rgb(0, 0, 200),

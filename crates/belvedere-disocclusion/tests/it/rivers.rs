@@ -188,7 +188,7 @@ fn a_lake_on_a_river_stays_level_and_the_river_runs_downhill() {
     let flat = Heightfield::new(hf.north_west(), hf.spacing(), NODES, NODES, heights, states).unwrap();
     let ring = |k: i32| middle + 275.0 * DVec2::from_angle(f64::from(k) * std::f64::consts::TAU / 40.0);
     let kind = LayerKind::Area(AreaLayer {
-        features: vec![AreaFeature { name: "lake".into(), rings: vec![(0..40).map(ring).collect()] }],
+        features: vec![AreaFeature { style: None, name: "lake".into(), rings: vec![(0..40).map(ring).collect()] }],
         fill: Color::rgb(0, 0, 200),
         outline: None,
         width_px: 1.0,

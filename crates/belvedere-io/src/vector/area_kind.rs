@@ -270,6 +270,7 @@ mod tests {
         let corner = |x: f64, y: f64| Vertex { xy: DVec2::new(x, y), z: None };
         let ring = vec![corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)];
         let feature = |tags: &&[(&str, &str)]| VectorFeature {
+            style: None,
             name: String::new(),
             properties: tags.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect(),
             geometry: Geometry::Polygons(vec![vec![ring.clone()]]),

@@ -213,7 +213,12 @@ impl Reader {
             self.without_geometry += 1;
             return Ok(());
         }
-        self.features.push(VectorFeature { name: name_of(properties), properties: properties.clone(), geometry });
+        self.features.push(VectorFeature {
+            style: None,
+            name: name_of(properties),
+            properties: properties.clone(),
+            geometry,
+        });
         Ok(())
     }
 

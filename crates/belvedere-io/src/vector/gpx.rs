@@ -322,7 +322,7 @@ impl Parser {
     fn push(&mut self, kind: &str, geometry: Geometry) {
         let mut properties = std::mem::take(&mut self.properties);
         properties.insert("kind".into(), kind.into());
-        self.features.push(VectorFeature { name: std::mem::take(&mut self.name), properties, geometry });
+        self.features.push(VectorFeature { style: None, name: std::mem::take(&mut self.name), properties, geometry });
     }
 }
 

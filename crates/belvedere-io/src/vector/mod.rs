@@ -23,6 +23,7 @@ use crate::recognise::{explain, not_a};
 use crate::table::split_table;
 use crate::text::text_of;
 use crate::{InputFile, IoError, Loaded, budget, fs};
+use belvedere_scene::FeatureStyle;
 use glam::DVec2;
 use phantom::Phantoms;
 use std::collections::BTreeMap;
@@ -82,6 +83,8 @@ pub struct VectorFeature {
     pub name: String,
     /// Properties that are not null, as text.
     pub properties: BTreeMap<String, String>,
+    /// Style that the features of a scene made of it have; readers give none.
+    pub style: Option<FeatureStyle>,
     /// Shape.
     pub geometry: Geometry,
 }

@@ -49,9 +49,11 @@ pub fn lines_on_terrain(
                     None => vec![without_repeats(part)],
                 };
                 let name = || feature.name.clone();
-                features.extend(
-                    parts.into_iter().filter(|p| p.len() >= 2).map(|points| LineFeature { name: name(), points }),
-                );
+                features.extend(parts.into_iter().filter(|p| p.len() >= 2).map(|points| LineFeature {
+                    style: feature.style,
+                    name: name(),
+                    points,
+                }));
             }
             lines_lost += usize::from(features.len() == before);
         }
@@ -115,7 +117,7 @@ pub fn areas_on_terrain(
             if misses {
                 outside += 1;
             } else {
-                features.push(AreaFeature { name: feature.name.clone(), rings });
+                features.push(AreaFeature { style: feature.style, name: feature.name.clone(), rings });
             }
         }
     }
@@ -154,7 +156,11 @@ pub fn points_on_terrain(
                 Some(terrain) => terrain.surface_at(xy),
                 None => Some(v.z.unwrap_or(0.0)),
             };
-            features.extend(z.map(|z| PointFeature { name: feature.name.clone(), position: xy.extend(z) }));
+            features.extend(z.map(|z| PointFeature {
+                style: feature.style,
+                name: feature.name.clone(),
+                position: xy.extend(z),
+            }));
         }
     }
     if seen == 0 {

@@ -318,6 +318,7 @@ mod tests {
             crs: crate::crs::CoordinateSystem::wgs84().expect("known"),
             crs_stated: true,
             features: vec![super::super::VectorFeature {
+                style: None,
                 name: String::new(),
                 properties: Default::default(),
                 geometry: Geometry::Lines(vec![short]),

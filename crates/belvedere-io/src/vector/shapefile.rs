@@ -42,7 +42,7 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError
     for shape in shapes {
         let properties = table.next().unwrap_or_default();
         if let Some(geometry) = shape {
-            features.push(VectorFeature { name: name_of(&properties), properties, geometry });
+            features.push(VectorFeature { style: None, name: name_of(&properties), properties, geometry });
         }
     }
     if features.is_empty() {

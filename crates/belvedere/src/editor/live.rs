@@ -6,6 +6,8 @@ use crate::fallback;
 use crate::overlays::grid;
 use crate::picture::{self, DisplacementReport, PictureOptions};
 use crate::resolve::solving::Memory;
+use crate::resolve::{hidden, representations};
+use crate::scene_file::paths::Roots;
 use crate::scene_file::{ConstructorKind, Document, LayerDoc, SourceDocument, StageDoc};
 use crate::session::{Loaded, Resolved};
 use crate::{BelvedereError, CameraPicture, OpenOptions, Session};
@@ -233,7 +235,7 @@ impl LiveSession {
     /// Resolves a document with all solvers.
     fn resting(&mut self, document: Document, order: &Order, progress: &Progress) -> Result<Session, BelvedereError> {
         let options = options(order, progress);
-        let session = match self.open(&document) {
+        let session = match self.open(&document, &options)? {
             Some(session) => {
                 let (began, mut memory) = (Instant::now(), self.memory.of_path());
                 let session = session.edited(document.clone(), &options, &mut memory)?;
@@ -261,7 +263,7 @@ impl LiveSession {
         let is_preview = document.constructor.as_ref().is_some_and(|doc| doc.kind == ConstructorKind::PathPreview);
         let in_time = constructs && !solves && (is_preview || self.constructing <= SOLVE_WITHIN);
         let options = OpenOptions { unsolved: !in_time, ..options(order, progress) };
-        let Some(session) = self.open(&document) else {
+        let Some(session) = self.open(&document, &options)? else {
             let session = self.reopened(&document, &options)?;
             self.session = Some(session.clone());
             return Ok((session, solves.then_some(GROUND).or((constructs && !in_time).then_some(RAYS))));
@@ -278,8 +280,29 @@ impl LiveSession {
         Ok((session, (constructs && !in_time).then_some(RAYS)))
     }
 
+    /// The session, if it has the layers of a document, with the representations that its sections name.
+    fn open(&mut self, document: &Document, options: &OpenOptions) -> Result<Option<Session>, BelvedereError> {
+        let Some(session) = self.with_layers(document) else { return Ok(None) };
+        // Sections name layers, too: each such name is a representation.
+        let roots =
+            Roots { allowed: options.allow_roots.clone(), files: options.allow_files.clone(), ..Roots::default() };
+        let mut named = Scene {
+            representations: representations::of(&SourceDocument::new(document.clone()), &roots)?,
+            ..Scene::default()
+        };
+        hidden::apply(&mut named, document);
+        if named.representations == session.scene().representations {
+            return Ok(Some(session));
+        }
+        let scene = Scene { representations: named.representations, ..session.scene().clone() };
+        let loaded = Loaded { scene: Arc::new(scene), ..session.loaded.clone() };
+        let session = Session { loaded, ..session };
+        self.session = Some(session.clone());
+        Ok(Some(session))
+    }
+
     /// The session, if it has the layers of a document.
-    fn open(&mut self, document: &Document) -> Option<Session> {
+    fn with_layers(&mut self, document: &Document) -> Option<Session> {
         let (opened, session) = (self.opened.as_ref()?, self.session.as_ref()?);
         let is_hidden = |layer: &LayerDoc| document.hidden.iter().any(|id| id == layer.id());
         let must_see: Vec<bool> = document.layer.iter().map(|l| l.must_see() && !is_hidden(l)).collect();
@@ -371,7 +394,12 @@ fn with_ground(session: Session, ground: Stage) -> Result<Session, BelvedereErro
 }
 
 fn options(order: &Order, progress: &Progress) -> OpenOptions {
-    let roots = &order.place.roots;
+    options_for(&order.place, progress)
+}
+
+/// Options that open a document as the application does.
+pub(super) fn options_for(place: &Place, progress: &Progress) -> OpenOptions {
+    let roots = &place.roots;
     let folder = Some(&roots.scene_dir).filter(|dir| !dir.as_os_str().is_empty());
     OpenOptions {
         allow_roots: folder.into_iter().chain(&roots.allowed).cloned().collect(),
@@ -389,7 +417,7 @@ fn eased(view: &View, share: f64) -> View {
 /// Draws with one sample per pixel, level of detail, and no marks that need further pictures.
 ///
 /// * `scene`: the session's scene with thinner lines for the coarse picture.
-fn quick(
+pub(super) fn quick(
     session: &Session,
     scene: &Scene,
     view: &View,
@@ -477,6 +505,27 @@ mod tests {
         let alone = LiveSession::default().show(&order(&text(4900.0), Pace::Resting), &progress).expect("picture");
         let color = |shown: &Shown| shown.bent.as_ref().map(|frame| frame.color.clone());
         assert!(color(&settled) == color(&alone), "what was remembered changes the picture");
+    }
+
+    #[test]
+    fn a_section_that_names_another_layer_is_drawn_as_in_a_new_session() {
+        let text = |section: &str| {
+            format!(
+                "format = 1\n[camera]\neye = [-120.0, -900.0, 330.0]\nlook_at = [0.0, -100.0, 0.0]\n\
+                 [[layer]]\nid = 'town'\nkind = 'city'\nsource = 'builtin:town?seed=7&size=800'\n\
+                 [[layer]]\nid = 'blocks'\nkind = 'city'\nloa = 1\nsource = 'builtin:town?seed=7&size=800'\n\
+                 [[stage]]\nkind = 'spline_bend'\npresets = {{ version = 1, units = 'distance', presets = [{{ phi = 40, s = -0.5, e = 2, \
+                 control = [[0, 0], [0.3, 0], [0.7, 0], [1, 0]], tags = [{{ u = 0.5, delta = 0.05 }}], \
+                 sections = ['{section}', 'blocks'] }}] }}\n"
+            )
+        };
+        let progress = Progress::silent();
+        let mut live = LiveSession::default();
+        let color = |shown: Shown| shown.bent.map(|frame| frame.color);
+        let first = color(live.show(&order(&text("blocks"), Pace::Resting), &progress).expect("picture"));
+        let edited = color(live.show(&order(&text("town"), Pace::Resting), &progress).expect("picture"));
+        let alone = LiveSession::default().show(&order(&text("town"), Pace::Resting), &progress).expect("picture");
+        assert!(edited == color(alone) && edited != first, "the section still shows what it showed before");
     }
 
     #[test]

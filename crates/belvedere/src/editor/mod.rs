@@ -10,8 +10,10 @@ mod object;
 mod painter;
 mod place;
 mod rays;
+mod sections;
 mod steps;
 mod thin;
+mod thumbnail;
 
 pub use beside::{THREADS, beside};
 pub use camera::{above_ground, frame_factor, framed, navigation, set_camera};
@@ -21,7 +23,9 @@ pub use object::object_at;
 pub use painter::{Answer, Painter};
 pub use place::{Place, Recovered, Recovery};
 pub use rays::{next_turn, sharpness_at, sharpness_knob, with_parallel_planes, with_pivot_line};
+pub use sections::{with_levels, with_own_style};
 pub use steps::step_name;
+pub use thumbnail::Thumbnails;
 
 use crate::scene_file::{Document, LayerDoc};
 use std::path::{Path, PathBuf};

@@ -2,7 +2,7 @@
 
 use super::ground::Ground;
 use super::loader::Loader;
-use super::{builtin, vectors};
+use super::{builtin, by_property, vectors};
 use crate::BelvedereError;
 use crate::record::AreaRecord;
 use crate::scene_file::{AreaDoc, AreaStyleDoc, LayerDoc, Paths, SurfaceDoc};
@@ -17,7 +17,7 @@ pub(super) fn layer(
     doc: &AreaDoc,
     ground: &Ground<'_>,
 ) -> Result<LayerKind, BelvedereError> {
-    let (features, found) = match &doc.source {
+    let (mut features, found) = match &doc.source {
         Paths::One(name) if builtin::is_name(name) => {
             let (features, surface) = loader.builtin(index, name, |kind| match kind {
                 LayerKind::Area(layer) => Some((layer.features.clone(), layer.surface)),
@@ -38,12 +38,14 @@ pub(super) fn layer(
     }
     let AreaKind { surface, why } = stated.unwrap_or(found);
     loader.areas.push(AreaRecord { layer: doc.id.clone(), kind: surface.name(), areas: features.len(), why });
+    let fill = match &style.color {
+        Some(color) => loader.color(index, color)?,
+        None => surface.color(),
+    };
+    features.iter_mut().for_each(|f| f.style = by_property::as_opaque_as(fill, f.style));
     Ok(LayerKind::Area(AreaLayer {
         features,
-        fill: match &style.color {
-            Some(color) => loader.color(index, color)?,
-            None => surface.color(),
-        },
+        fill,
         outline: match &style.outline {
             Some(color) => loader.optional_color(index, color)?,
             None => surface.outline(),

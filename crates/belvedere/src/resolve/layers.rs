@@ -2,7 +2,7 @@
 
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
-use super::{areas, boxes, builtin, city, dem, mesh, molecule, sea, vectors, volume};
+use super::{areas, boxes, builtin, by_property, city, dem, mesh, molecule, sea, vectors, volume};
 use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
@@ -240,7 +240,7 @@ fn line(
     doc: &LineDoc,
     ground: &Ground<'_>,
 ) -> Result<LayerKind, BelvedereError> {
-    let features = match (&doc.source, &doc.route) {
+    let mut features = match (&doc.source, &doc.route) {
         (_, Some(doc)) => vec![route(loader, index, doc, ground)?],
         (Some(Paths::One(name)), None) if builtin::is_name(name) => loader.builtin(index, name, |kind| match kind {
             LayerKind::Line(layer) => Some(layer.features.clone()),
@@ -257,9 +257,11 @@ fn line(
         let said = vectors::unset_names(features.iter().map(|f| f.name.as_str()));
         loader.note(index, said);
     }
+    let color = loader.color(index, &style.color)?;
+    features.iter_mut().for_each(|f| f.style = by_property::as_opaque_as(color, f.style));
     Ok(LayerKind::Line(LineLayer {
         features,
-        color: loader.color(index, &style.color)?,
+        color,
         width_px: style.width_px,
         casing: loader.optional_color(index, &style.casing)?,
         hidden: style.hidden,
@@ -302,7 +304,7 @@ fn route(
     if points.len() < 2 {
         return Err(loader.fail(index, "route", "the route has no length; move from and to apart"));
     }
-    Ok(LineFeature { name: "generated route".into(), points })
+    Ok(LineFeature { style: None, name: "generated route".into(), points })
 }
 
 /// A point layer.
@@ -312,7 +314,7 @@ fn point(
     doc: &PointLayerDoc,
     ground: &Ground<'_>,
 ) -> Result<LayerKind, BelvedereError> {
-    let features = vectors::points(loader, index, &doc.source, ground)?;
+    let mut features = vectors::points(loader, index, &doc.source, ground)?;
     if features.is_empty() {
         return Err(loader.fail(index, "source", "no point lies on the terrain; check that the source covers it"));
     }
@@ -321,9 +323,11 @@ fn point(
         let said = vectors::unset_names(features.iter().map(|f| f.name.as_str()));
         loader.note(index, said);
     }
+    let color = loader.color(index, &style.color)?;
+    features.iter_mut().for_each(|f| f.style = by_property::as_opaque_as(color, f.style));
     Ok(LayerKind::Point(PointLayer {
         features,
-        color: loader.color(index, &style.color)?,
+        color,
         size_px: style.size_px,
         style: PointStyle {
             symbol: style.symbol,

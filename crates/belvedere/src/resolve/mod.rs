@@ -3,6 +3,7 @@
 mod areas;
 mod boxes;
 pub(crate) mod builtin;
+pub mod by_property;
 mod camera;
 mod centreline;
 mod city;

@@ -5,8 +5,8 @@ use crate::BelvedereError;
 use crate::overlays::highlight;
 use crate::scene_file::Fallback;
 use crate::scene_file::{
-    AnimationDoc, AutoOrLength, ConstructorDoc, ConstructorKind, LayerDoc, SourceDocument, StageDoc, SwitchOrLength,
-    suggestion,
+    AnimationDoc, AutoOrLength, ConstructorDoc, ConstructorKind, LayerDoc, Paths, SourceDocument, StageDoc,
+    SwitchOrLength, suggestion,
 };
 use belvedere_core::plain::number;
 use belvedere_scene::Unit;
@@ -29,6 +29,10 @@ pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
             return Err(fail("kind", format!("layer \"{}\": {reason}", layer.id())));
         }
         layer_sources(layer).map_err(|(key, reason)| fail(key, format!("layer \"{}\": {reason}", layer.id())))?;
+        by_property(layer).map_err(|(keys, reason)| {
+            let keys: Vec<&str> = ["layer", &at, "style"].into_iter().chain(keys).collect();
+            source.error(&keys, format!("layer \"{}\": {reason}", layer.id()))
+        })?;
         layer_style(layer).map_err(|(key, reason)| {
             source.error(&["layer", &at, "style", key], format!("layer \"{}\": {reason}", layer.id()))
         })?;
@@ -111,6 +115,27 @@ fn layer_sources(layer: &LayerDoc) -> Result<(), Complaint> {
         }
         _ => Ok(()),
     }
+}
+
+/// Styles by a property: the keys that lead to the mistake, and the reason.
+fn by_property(layer: &LayerDoc) -> Result<(), (Vec<&'static str>, String)> {
+    let made = match layer {
+        LayerDoc::Line(l) => l.route.is_some() || l.source.as_ref().is_some_and(is_builtin),
+        LayerDoc::Area(l) => is_builtin(&l.source),
+        LayerDoc::Point(l) => is_builtin(&l.source),
+        _ => false,
+    };
+    match super::by_property::key_of(layer).filter(|_| made) {
+        Some(key) => {
+            Err((vec![key], format!("{key} needs a file, for what is generated has no properties; remove it")))
+        }
+        None => super::by_property::check_layer(layer)
+            .map_err(|(table, (key, reason))| (vec![table, key], format!("{table}: {reason}"))),
+    }
+}
+
+fn is_builtin(source: &Paths) -> bool {
+    source.as_slice().iter().any(|name| super::builtin::is_name(name))
 }
 
 /// The complaint about two keys of which one is needed.

@@ -1,5 +1,6 @@
 //! Lines, areas and points from files, draped on the terrain.
 
+use super::by_property;
 use super::ground::Ground;
 use super::loader::Loader;
 use crate::BelvedereError;
@@ -137,7 +138,7 @@ fn all<T>(
     on_terrain: OnTerrain<T>,
     mut inspect: impl FnMut(&Vectors),
 ) -> Result<Vec<T>, BelvedereError> {
-    let mut features = Vec::new();
+    let mut read = Vec::new();
     for (name, file) in paths.as_slice().iter().zip(loader.files(index, "source", paths)?) {
         loader.options.progress.tick("reading features", 0.0)?;
         let known = loader.vectors.get_mut(&file).map(|known| {
@@ -156,6 +157,12 @@ fn all<T>(
             kept(&mut vectors, &select).map_err(|reason| loader.fail(index, "select", reason))?;
         }
         stand(loader, index, &mut vectors);
+        read.push(vectors);
+    }
+    // Classes are those of all files together.
+    by_property::style(loader, index, &mut read)?;
+    let mut features = Vec::new();
+    for vectors in read {
         let found = on_terrain(&vectors, ground.crs, ground.terrain)?;
         features.extend(loader.take(index, found));
     }

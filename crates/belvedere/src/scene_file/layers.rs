@@ -1,5 +1,6 @@
 //! Layers of the scene document.
 
+use super::by_property::{ColorByDoc, SizeByDoc};
 use super::city::CityDoc;
 use super::common::{Paths, TransformDoc, is_false};
 use super::mesh::MeshDoc;
@@ -321,8 +322,14 @@ impl<'de> Deserialize<'de> for PositionDoc {
 pub struct LineStyleDoc {
     /// `#rrggbb` or `#rrggbbaa`.
     pub color: String,
+    /// Colour by a property of the file, in place of `color`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color_by: Option<ColorByDoc>,
     /// Width on screen, pixels, in (0, 100].
     pub width_px: f64,
+    /// Width by a property of the file, in place of `width_px`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub width_by: Option<SizeByDoc>,
     /// Colour of the casing, or `none`.
     pub casing: String,
     /// What happens to hidden parts.
@@ -342,7 +349,9 @@ impl Default for LineStyleDoc {
     fn default() -> Self {
         Self {
             color: "#d7301f".into(),
+            color_by: None,
             width_px: 3.0,
+            width_by: None,
             casing: "#ffffff".into(),
             hidden: Hidden::Dash,
             lift_m: 1.0,
@@ -400,6 +409,9 @@ pub struct AreaStyleDoc {
     /// Fill, `#rrggbb` or `#rrggbbaa`; by default that of the surface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub color: Option<String>,
+    /// Fill by a property of the file, in place of `color`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color_by: Option<ColorByDoc>,
     /// Outline colour, or `none`; by default that of the surface.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outline: Option<String>,
@@ -419,7 +431,16 @@ pub struct AreaStyleDoc {
 
 impl Default for AreaStyleDoc {
     fn default() -> Self {
-        Self { color: None, outline: None, width_px: 1.5, water: None, surface: None, hidden: Hidden::Cut, lift_m: 1.0 }
+        Self {
+            color: None,
+            color_by: None,
+            outline: None,
+            width_px: 1.5,
+            water: None,
+            surface: None,
+            hidden: Hidden::Cut,
+            lift_m: 1.0,
+        }
     }
 }
 
@@ -448,6 +469,9 @@ pub struct PointLayerDoc {
 pub struct PointStyleDoc {
     /// `#rrggbb` or `#rrggbbaa`.
     pub color: String,
+    /// Colour by a property of the file, in place of `color`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color_by: Option<ColorByDoc>,
     /// Shape.
     pub symbol: Symbol,
     /// Colour of the rim, or `none`.
@@ -458,6 +482,9 @@ pub struct PointStyleDoc {
     pub label_px: f64,
     /// Diameter on screen, pixels, in (0, 200].
     pub size_px: f64,
+    /// Diameter by a property of the file, in place of `size_px`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub size_by: Option<SizeByDoc>,
     /// What happens to hidden points.
     pub hidden: Hidden,
     /// Height above ground, metres, in [0, 1000].
@@ -468,11 +495,13 @@ impl Default for PointStyleDoc {
     fn default() -> Self {
         Self {
             color: "#6a3d9a".into(),
+            color_by: None,
             symbol: Symbol::Dot,
             casing: "#ffffff".into(),
             labels: false,
             label_px: 13.0,
             size_px: 8.0,
+            size_by: None,
             hidden: Hidden::Fade,
             lift_m: 1.0,
         }

@@ -1,5 +1,6 @@
 //! Scene files: TOML or JSON to a [`Document`], with mistakes named by file, line and nearest valid key.
 
+mod by_property;
 mod choices;
 mod city;
 mod common;
@@ -25,6 +26,7 @@ mod stylisation;
 mod toml_tree;
 mod volume;
 
+pub use by_property::{ColorByDoc, ScaleName, SizeByDoc, StepsDoc};
 pub use choices::choices;
 pub use city::{CityDoc, CityStyleDoc};
 pub use common::{Paths, PlaneDoc, TransformDoc};

@@ -1,11 +1,13 @@
 //! Style of a layer.
 
+use super::paint::{color, opacity};
+use super::{by_property, fields, marks};
 use crate::language::{fill, heard, later, tr};
 use crate::model::Model;
 use belvedere::scene::Hidden;
 use belvedere::scene::molecule::Representation;
 use belvedere::scene_file::{LayerDoc, MoleculeStyleDoc, PaletteDoc, PaletteName};
-use eframe::egui::{Color32, ComboBox, DragValue, Slider, Ui};
+use eframe::egui::{ComboBox, DragValue, Ui};
 
 /// Shows the style of a layer.
 pub(super) fn show(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDoc) {
@@ -19,24 +21,45 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDo
             ui.checkbox(&mut l.style.sea, fill(tr("sea of {0}"), &[&id]));
         }
         LayerDoc::Line(l) => {
+            let reading = fields::of(ui, model, layer);
             color(ui, &fill(tr("colour of {0}"), &[&id]), &mut l.style.color);
+            by_property::colors(ui, &id, &reading, &mut l.style.color_by, &l.style.color);
             opacity(ui, &id, &mut l.style.color);
             width(ui, &fill(tr("width of {0}, pixels"), &[&id]), &mut l.style.width_px);
+            let words = [fill(tr("width of {0} by"), &[&id]), tr("nothing: one width").to_owned()];
+            by_property::sizes(ui, words, &reading, &mut l.style.width_by);
+            marks::casing(ui, &id, &mut l.style.casing);
+            marks::distances(ui, &id, &mut l.style.distance_markers_m);
             labels(ui, &id, (&mut l.style.labels, &mut l.style.label_px));
+            if l.style.labels {
+                by_property::names(ui, &id, &reading, &mut l.name_field);
+            }
             hidden(ui, &id, &mut l.style.hidden);
         }
         LayerDoc::Area(l) => {
             let mut text = l.style.color.clone().unwrap_or_else(|| "#8fb4cc".into());
             if color(ui, &fill(tr("colour of {0}"), &[&id]), &mut text) | opacity(ui, &id, &mut text) {
-                l.style.color = Some(text);
+                l.style.color = Some(text.clone());
             }
+            let reading = fields::of(ui, model, layer);
+            by_property::colors(ui, &id, &reading, &mut l.style.color_by, &text);
+            marks::outline(ui, &id, &mut l.style.outline);
             width(ui, &fill(tr("outline of {0}, pixels"), &[&id]), &mut l.style.width_px);
         }
         LayerDoc::Point(l) => {
+            let reading = fields::of(ui, model, layer);
+            marks::symbol(ui, &id, &mut l.style.symbol);
             color(ui, &fill(tr("colour of {0}"), &[&id]), &mut l.style.color);
+            by_property::colors(ui, &id, &reading, &mut l.style.color_by, &l.style.color);
             opacity(ui, &id, &mut l.style.color);
             width(ui, &fill(tr("size of {0}, pixels"), &[&id]), &mut l.style.size_px);
+            let words = [fill(tr("size of {0} by"), &[&id]), tr("nothing: one size").to_owned()];
+            by_property::sizes(ui, words, &reading, &mut l.style.size_by);
+            marks::casing(ui, &id, &mut l.style.casing);
             labels(ui, &id, (&mut l.style.labels, &mut l.style.label_px));
+            if l.style.labels {
+                by_property::names(ui, &id, &reading, &mut l.name_field);
+            }
             hidden(ui, &id, &mut l.style.hidden);
         }
         LayerDoc::Boxes(l) => {
@@ -91,45 +114,6 @@ fn occlusion(ui: &mut Ui, id: &str, value: &mut Option<f64>) {
             ui.add(DragValue::new(reach).speed(0.5).range(0.01..=1e4)).labelled_by(label.id);
         }
     });
-}
-
-fn color(ui: &mut Ui, name: &str, text: &mut String) -> bool {
-    let now = opaque(text);
-    let mut rgb = [now.r(), now.g(), now.b()];
-    let changed = ui
-        .horizontal(|ui| {
-            let response = ui.color_edit_button_srgb(&mut rgb).on_hover_text(name);
-            let label = ui.label(name);
-            response.labelled_by(label.id).changed()
-        })
-        .inner;
-    if changed {
-        let alpha = text.get(7..9).unwrap_or_default().to_owned();
-        *text = format!("#{:02x}{:02x}{:02x}{alpha}", rgb[0], rgb[1], rgb[2]);
-    }
-    changed
-}
-
-/// A colour without its opacity.
-fn opaque(text: &str) -> Color32 {
-    text.get(..7).and_then(|text| Color32::from_hex(text).ok()).unwrap_or(Color32::GRAY)
-}
-
-/// Opacity of a colour, percent.
-fn opacity(ui: &mut Ui, id: &str, text: &mut String) -> bool {
-    let now = opaque(text);
-    let alpha = text.get(7..9).and_then(|digits| u8::from_str_radix(digits, 16).ok()).unwrap_or(255);
-    let mut percent = (f64::from(alpha) / 2.55).round();
-    let response = ui.add(Slider::new(&mut percent, 0.0..=100.0).suffix(" %").text(fill(tr("opacity of {0}"), &[&id])));
-    if response.changed() {
-        let [r, g, b, _] = now.to_array();
-        let alpha = (percent * 2.55).round().clamp(0.0, 255.0) as u8;
-        *text = format!("#{r:02x}{g:02x}{b:02x}");
-        if alpha < 255 {
-            *text += &format!("{alpha:02x}");
-        }
-    }
-    response.changed()
 }
 
 /// Whether names are written, and how large.

@@ -185,10 +185,13 @@ impl<'a> TerrainShade<'a> {
             return None;
         }
         let print = print();
-        let areas = areas.into_iter().map(|(a, border)| (a, border.inside / print.along(border.across)));
-        let areas = areas.filter(|(_, inside)| *inside > -0.5);
-        let areas = areas.map(|(a, inside)| (a, inside, self.share_of(shader, a, xy)));
-        let areas: Vec<_> = areas.filter(|(_, _, shown)| *shown > 0.0).collect();
+        let areas = areas.into_iter().map(|(a, border)| {
+            let paint = a.paint_of(border.feature);
+            (a, paint, border.inside / print.along(border.across))
+        });
+        let areas = areas.filter(|(_, _, inside)| *inside > -0.5);
+        let areas = areas.map(|(a, paint, inside)| (a, paint, inside, self.share_of(shader, a, xy)));
+        let areas: Vec<_> = areas.filter(|(.., shown)| *shown > 0.0).collect();
         let drapes = self.drapes.iter().map(|d| d.at(xy, &print)).filter(|(_, alpha)| *alpha > 0.0);
         let drapes: Vec<_> = drapes.collect();
         let sun = self.sun_on(shader, xy, &print);
@@ -205,12 +208,12 @@ impl<'a> TerrainShade<'a> {
         // A photograph contains light already, so only half of ours is applied.
         let mut light = self.light_of(&lit, sun).lerp(Rgb::splat(0.95 * (0.5 + 0.5 * sun)), 0.5 * draped);
         let (mut id, mut water) = (None, 0.0f32);
-        for (a, inside, shown) in areas {
+        for (a, (color, alpha), inside, shown) in areas {
             if inside >= 0.0 && shown >= 0.5 {
                 id = Some(a.layer);
             }
-            let share = (0.5 + inside).clamp(0.0, 1.0) as f32 * a.alpha * shown;
-            albedo = albedo.lerp(fill(a, xy, inside as f32, &print), share);
+            let share = (0.5 + inside).clamp(0.0, 1.0) as f32 * alpha * shown;
+            albedo = albedo.lerp(fill(a, color, xy, inside as f32, &print), share);
             match a.surface {
                 AreaSurface::Water | AreaSurface::Sea => water += share * (1.0 - water),
                 AreaSurface::Glacier => {
@@ -234,16 +237,16 @@ impl<'a> TerrainShade<'a> {
 
 /// Colour of an area at a point.
 /// * `inside`: distance from the border inwards, pixels.
-fn fill(area: &AreaMap, xy: DVec2, inside: f32, print: &Footprint) -> Rgb {
+fn fill(area: &AreaMap, color: Rgb, xy: DVec2, inside: f32, print: &Footprint) -> Rgb {
     // The rim is about a pixel and a half wide.
     let rim = if area.has_outline { 0.0 } else { 1.0 - smoothstep(0.6, 2.2, inside) };
     match area.surface {
-        AreaSurface::Plain | AreaSurface::Outline | AreaSurface::Park => area.fill,
+        AreaSurface::Plain | AreaSurface::Outline | AreaSurface::Park => color,
         // Shore line.
-        AreaSurface::Water | AreaSurface::Sea => area.fill * (1.0 - 0.45 * rim),
-        AreaSurface::Forest => area.fill * (1.0 + 0.22 * stipple(xy, print.length())),
+        AreaSurface::Water | AreaSurface::Sea => color * (1.0 - 0.45 * rim),
+        AreaSurface::Forest => color * (1.0 + 0.22 * stipple(xy, print.length())),
         AreaSurface::Glacier => {
-            let ice = area.fill * (1.0 + 0.035 * stipple(xy, print.length()));
+            let ice = color * (1.0 + 0.035 * stipple(xy, print.length()));
             ice.lerp(linear([96, 156, 205]), 0.7 * rim)
         }
     }

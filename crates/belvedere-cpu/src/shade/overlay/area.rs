@@ -2,15 +2,17 @@
 
 use belvedere_composite::color::{Rgb, linear};
 use belvedere_core::{DVec2, polygon};
-use belvedere_scene::{AreaLayer, AreaSurface};
+use belvedere_scene::{AreaFeature, AreaLayer, AreaSurface, Color};
 
 /// An area layer ready for look-up per pixel.
 #[derive(Debug)]
 pub(crate) struct AreaMap {
     /// Index of the layer in the scene.
     pub(crate) layer: u32,
-    pub(crate) fill: Rgb,
-    pub(crate) alpha: f32,
+    /// Fill and its opacity.
+    paint: (Rgb, f32),
+    /// The same of each feature, where some have their own; else empty.
+    own_paint: Vec<(Rgb, f32)>,
     pub(crate) surface: AreaSurface,
     pub(crate) has_outline: bool,
     min: DVec2,
@@ -43,6 +45,8 @@ pub(crate) struct Border {
     pub(crate) inside: f64,
     /// Unit vector towards it.
     pub(crate) across: DVec2,
+    /// The feature that holds the point, or the nearest one.
+    pub(crate) feature: u32,
 }
 
 impl AreaMap {
@@ -61,8 +65,8 @@ impl AreaMap {
         let cell = DVec2::new(extent.x / size[0] as f64, extent.y / size[1] as f64);
         let mut map = Self {
             layer,
-            fill: linear([area.fill.r, area.fill.g, area.fill.b]),
-            alpha: f32::from(area.fill.a) / 255.0,
+            paint: paint(area.fill),
+            own_paint: own_paint(area),
             surface: area.surface,
             has_outline: area.outline.is_some(),
             min,
@@ -125,30 +129,53 @@ impl AreaMap {
 
     /// The nearest border; infinitely far where no edge is near.
     pub(crate) fn border(&self, p: DVec2) -> Border {
-        let far = |inside: f64| Border { inside, across: DVec2::X };
+        let far = |inside: f64, feature: u32| Border { inside, across: DVec2::X, feature };
         let g = (p - self.min) * self.per_cell;
         let reach = 0.3;
         let [w, h] = self.size.map(|n| n as f64);
         if !(g.x >= -reach && g.y >= -reach && g.x <= w + reach && g.y <= h + reach) {
-            return far(f64::NEG_INFINITY);
+            return far(f64::NEG_INFINITY, 0);
         }
         let (x, y) = ((g.x.max(0.0) as usize).min(self.size[0] - 1), (g.y.max(0.0) as usize).min(self.size[1] - 1));
         let cell = self.cells[y * self.size[0] + x];
         let list = |[a, b]: [u32; 2]| a as usize..b as usize;
         let (features, edges) = (&self.features[list(cell.features)], &self.edges[list(cell.edges)]);
         if edges.is_empty() {
-            return far(if features.is_empty() { f64::NEG_INFINITY } else { f64::INFINITY });
+            return match features.first() {
+                Some(&feature) => far(f64::INFINITY, feature),
+                None => far(f64::NEG_INFINITY, 0),
+            };
         }
         let centre = self.min + DVec2::new(x as f64 + 0.5, y as f64 + 0.5) * self.cell;
-        let ways = edges.iter().map(|e| polygon::to_segment(p, e.a, e.b));
-        let nearest = ways.min_by(|a, b| a.length_squared().total_cmp(&b.length_squared())).unwrap_or(DVec2::INFINITY);
+        let ways = edges.iter().map(|e| (polygon::to_segment(p, e.a, e.b), e.feature));
+        let nearest = ways.min_by(|a, b| a.0.length_squared().total_cmp(&b.0.length_squared()));
+        let (nearest, beside) = nearest.unwrap_or((DVec2::INFINITY, 0));
         let parity = |feature: u32| {
             let crossed = edges.iter().filter(|e| e.feature == feature && crosses(centre, p, e.a, e.b)).count();
             features.contains(&feature) ^ (crossed % 2 == 1)
         };
-        let inside = features.iter().any(|&f| parity(f)) || edges.iter().any(|e| parity(e.feature));
-        let depth = nearest.length();
-        Border { inside: if inside { depth } else { -depth }, across: nearest.normalize_or(DVec2::X) }
+        let holder = features.iter().copied().chain(edges.iter().map(|e| e.feature)).find(|&f| parity(f));
+        let (depth, across) = (nearest.length(), nearest.normalize_or(DVec2::X));
+        Border { inside: if holder.is_some() { depth } else { -depth }, across, feature: holder.unwrap_or(beside) }
+    }
+
+    /// Fill of a feature, and its opacity.
+    #[inline]
+    pub(crate) fn paint_of(&self, feature: u32) -> (Rgb, f32) {
+        self.own_paint.get(feature as usize).copied().unwrap_or(self.paint)
+    }
+}
+
+fn paint(fill: Color) -> (Rgb, f32) {
+    (linear([fill.r, fill.g, fill.b]), f32::from(fill.a) / 255.0)
+}
+
+/// Paint of every feature, if some have a colour of their own.
+fn own_paint(area: &AreaLayer) -> Vec<(Rgb, f32)> {
+    let own = |f: &AreaFeature| f.style.and_then(|style| style.color);
+    match area.features.iter().any(|f| own(f).is_some()) {
+        true => area.features.iter().map(|f| paint(own(f).unwrap_or(area.fill))).collect(),
+        false => Vec::new(),
     }
 }
 
@@ -176,11 +203,11 @@ fn crosses(p: DVec2, q: DVec2, a: DVec2, b: DVec2) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere_scene::{AreaFeature, Color, Hidden};
+    use belvedere_scene::Hidden;
 
     fn layer(rings: Vec<Vec<DVec2>>) -> AreaLayer {
         AreaLayer {
-            features: vec![AreaFeature { name: String::new(), rings }],
+            features: vec![AreaFeature { style: None, name: String::new(), rings }],
             fill: Color::rgb(1, 2, 3),
             outline: None,
             width_px: 1.0,

@@ -69,7 +69,7 @@ pub(crate) fn case(hf: Heightfield, seed: u64, image: [u32; 2]) -> Case {
     let [l, h] = square;
     let ring = vec![l, DVec2::new(h.x, l.y), h, DVec2::new(l.x, h.y)];
     let area = LayerKind::Area(AreaLayer {
-        features: vec![AreaFeature { name: "field".into(), rings: vec![ring] }],
+        features: vec![AreaFeature { style: None, name: "field".into(), rings: vec![ring] }],
         fill: Color::rgb(0, 0, 0),
         outline: None,
         width_px: 1.0,

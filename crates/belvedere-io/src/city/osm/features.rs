@@ -66,5 +66,5 @@ fn flat(points: &[DVec2]) -> Vec<Vertex> {
 fn feature(id: String, tags: &Tags, geometry: Geometry) -> VectorFeature {
     let mut properties = tags.clone();
     properties.insert("id".into(), id);
-    VectorFeature { name: attributes::name(tags), properties, geometry }
+    VectorFeature { style: None, name: attributes::name(tags), properties, geometry }
 }

@@ -104,8 +104,12 @@ fn rows(database: &Database, table: &Table) -> Result<(Vec<VectorFeature>, Odd),
         let properties: BTreeMap<String, String> =
             values.iter().filter_map(|(name, value)| property(name, value)).collect();
         let name = name_of(&properties);
-        let feature =
-            |geometry: Geometry| VectorFeature { name: name.clone(), properties: properties.clone(), geometry };
+        let feature = |geometry: Geometry| VectorFeature {
+            style: None,
+            name: name.clone(),
+            properties: properties.clone(),
+            geometry,
+        };
         features.extend(geometries.into_iter().map(feature));
         Ok(())
     })?;
