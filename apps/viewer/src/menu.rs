@@ -1,11 +1,11 @@
 //! The menu bar: files, undo steps, bookmarks.
 
 use crate::builtin::BUILTIN;
-use crate::keys::{Command, KEYS};
+use crate::keys::{self, Command};
 use crate::language::{fill, tr};
 use crate::model::Model;
 use belvedere::scene_file::CameraDoc;
-use eframe::egui::{Context, Grid, MenuBar, RichText, ScrollArea, Ui, Window};
+use eframe::egui::{Button, Context, Grid, MenuBar, RichText, Role, ScrollArea, Ui, WidgetInfo, Window};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -19,8 +19,6 @@ pub(crate) enum Choice {
     Forget(usize),
     /// Undoes or redoes to that number of steps.
     Step(usize),
-    Welcome,
-    Quit,
 }
 
 /// A camera kept under a name.
@@ -30,54 +28,25 @@ pub(crate) struct Bookmark {
     pub(crate) camera: CameraDoc,
 }
 
+/// An entry with its keys at its right. Returns whether it was chosen.
+fn item(ui: &mut Ui, command: Command, enabled: bool) -> bool {
+    let (words, keys) = (keys::words(command), keys::shortcut(ui.ctx(), command));
+    let response = ui.add_enabled(enabled, Button::new(words).shortcut_text(keys));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, words));
+    response.clicked()
+}
+
 /// Shows the bar.
 pub(crate) fn bar(ui: &mut Ui, model: &mut Model, recent: &[PathBuf], bookmarks: &[Bookmark]) -> Option<Choice> {
     let mut choice = None;
     MenuBar::new().ui(ui, |ui| {
-        ui.menu_button(tr("File"), |ui| {
-            if ui.button("Open…").clicked() {
-                choice = Some(Choice::Command(Command::Open));
-            }
-            ui.menu_button("Built-in scenes", |ui| {
-                for (i, (name, _)) in BUILTIN.iter().enumerate() {
-                    if ui.button(*name).clicked() {
-                        choice = Some(Choice::Builtin(i));
-                    }
-                }
-            });
-            ui.menu_button("Recent files", |ui| {
-                if recent.is_empty() {
-                    ui.weak("none yet");
-                }
-                for path in recent {
-                    if ui.button(path.display().to_string()).clicked() {
-                        choice = Some(Choice::Recent(path.clone()));
-                    }
-                }
-            });
-            ui.separator();
-            if ui.button("Save").clicked() {
-                choice = Some(Choice::Command(Command::Save));
-            }
-            if ui.button("Save as…").clicked() {
-                choice = Some(Choice::Command(Command::SaveAs));
-            }
-            // A page is closed by its browser, which asks the same question.
-            if cfg!(not(target_family = "wasm")) {
-                ui.separator();
-                if ui.button("Quit").clicked() {
-                    choice = Some(Choice::Quit);
-                }
-            }
-        });
+        ui.menu_button(tr("File"), |ui| choice = file(ui, recent));
         ui.menu_button("Edit", |ui| {
-            let undo = eframe::egui::Button::new("Undo");
-            if ui.add_enabled(model.editor.can_undo(), undo).clicked() {
-                choice = Some(Choice::Command(Command::Undo));
-            }
-            let redo = eframe::egui::Button::new("Redo");
-            if ui.add_enabled(model.editor.can_redo(), redo).clicked() {
-                choice = Some(Choice::Command(Command::Redo));
+            let can = [model.editor.can_undo(), model.editor.can_redo()];
+            for (command, can) in [Command::Undo, Command::Redo].into_iter().zip(can) {
+                if item(ui, command, can) {
+                    choice = Some(Choice::Command(command));
+                }
             }
             ui.menu_button("Steps", |ui| {
                 if let Some(steps) = steps(ui, model) {
@@ -85,43 +54,81 @@ pub(crate) fn bar(ui: &mut Ui, model: &mut Model, recent: &[PathBuf], bookmarks:
                 }
             });
         });
-        ui.menu_button("Places", |ui| {
-            if ui.button("Show all").clicked() {
-                choice = Some(Choice::Command(Command::ShowAll));
-            }
-            if ui.button("Bookmark this view").clicked() {
-                choice = Some(Choice::Command(Command::Bookmark));
-            }
-            ui.separator();
-            for (i, bookmark) in bookmarks.iter().enumerate() {
-                if ui.button(&bookmark.name).clicked() {
-                    choice = Some(Choice::GoTo(i));
-                }
-            }
-            ui.add_enabled_ui(!bookmarks.is_empty(), |ui| {
-                ui.menu_button("Remove a bookmark", |ui| {
-                    for (i, bookmark) in bookmarks.iter().enumerate() {
-                        if ui.button(fill(tr("Remove {0}"), &[&bookmark.name])).clicked() {
-                            choice = Some(Choice::Forget(i));
-                        }
-                    }
-                });
-            });
-        });
+        ui.menu_button("Places", |ui| choice = places(ui, bookmarks).or(choice.take()));
         ui.menu_button("Help", |ui| {
-            if ui.button("Keys and pointer").clicked() {
-                choice = Some(Choice::Command(Command::Help));
-            }
-            if ui.button("Welcome and examples").clicked() {
-                choice = Some(Choice::Welcome);
+            for command in [Command::Help, Command::Welcome] {
+                if item(ui, command, true) {
+                    choice = Some(Choice::Command(command));
+                }
             }
         });
         if ui.ctx().content_rect().width() >= 600.0 {
-            ui.toggle_value(&mut model.look.panel, "Panel").on_hover_text("P");
+            ui.toggle_value(&mut model.look.panel, "Panel").on_hover_text(keys::shortcut(ui.ctx(), Command::Panel));
         }
         let title = &model.document().title;
         let state = if model.editor.is_changed() { "changed" } else { "" };
         ui.weak(format!("{title}  {state}"));
+    });
+    choice
+}
+
+fn file(ui: &mut Ui, recent: &[PathBuf]) -> Option<Choice> {
+    let mut choice = None;
+    if item(ui, Command::Open, true) {
+        choice = Some(Choice::Command(Command::Open));
+    }
+    ui.menu_button("Built-in scenes", |ui| {
+        for (i, (name, _)) in BUILTIN.iter().enumerate() {
+            if ui.button(*name).clicked() {
+                choice = Some(Choice::Builtin(i));
+            }
+        }
+    });
+    ui.menu_button("Recent files", |ui| {
+        if recent.is_empty() {
+            ui.weak("none yet");
+        }
+        for path in recent {
+            if ui.button(path.display().to_string()).clicked() {
+                choice = Some(Choice::Recent(path.clone()));
+            }
+        }
+    });
+    ui.separator();
+    // A page is closed by its browser, which asks the same question.
+    let quit = cfg!(not(target_family = "wasm")).then_some(Command::Quit);
+    for command in [Some(Command::Save), Some(Command::SaveAs), quit].into_iter().flatten() {
+        if command == Command::Quit {
+            ui.separator();
+        }
+        if item(ui, command, true) {
+            choice = Some(Choice::Command(command));
+        }
+    }
+    choice
+}
+
+fn places(ui: &mut Ui, bookmarks: &[Bookmark]) -> Option<Choice> {
+    let mut choice = None;
+    for command in [Command::Find, Command::ShowAll, Command::Measure, Command::Bookmark, Command::Bookmarks] {
+        if item(ui, command, true) {
+            choice = Some(Choice::Command(command));
+        }
+    }
+    ui.separator();
+    for (i, bookmark) in bookmarks.iter().enumerate() {
+        if ui.button(&bookmark.name).clicked() {
+            choice = Some(Choice::GoTo(i));
+        }
+    }
+    ui.add_enabled_ui(!bookmarks.is_empty(), |ui| {
+        ui.menu_button("Remove a bookmark", |ui| {
+            for (i, bookmark) in bookmarks.iter().enumerate() {
+                if ui.button(fill(tr("Remove {0}"), &[&bookmark.name])).clicked() {
+                    choice = Some(Choice::Forget(i));
+                }
+            }
+        });
     });
     choice
 }
@@ -148,13 +155,16 @@ fn steps(ui: &mut Ui, model: &Model) -> Option<usize> {
 
 /// The help window.
 pub(crate) fn help(ctx: &Context, open: &mut bool) {
+    let rows = if *open { keys::help(ctx) } else { Vec::new() };
     Window::new("Keys and pointer").open(open).resizable(false).show(ctx, |ui| {
-        Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
-            for (keys, what) in KEYS {
-                ui.strong(keys);
-                ui.label(what);
-                ui.end_row();
-            }
+        ScrollArea::vertical().max_height(ctx.content_rect().height() - 90.0).show(ui, |ui| {
+            Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
+                for (keys, what) in rows {
+                    ui.strong(keys);
+                    ui.label(what);
+                    ui.end_row();
+                }
+            });
         });
     });
 }

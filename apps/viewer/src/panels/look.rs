@@ -1,6 +1,7 @@
 //! How the picture is drawn and compared: marks, stylisation, light, projection.
 
 use super::slider;
+use crate::language::tr;
 use crate::model::{Compare, Model, Tool};
 use belvedere::scene_file::{
     HighlightMark, Inset, LightDoc, OverlayDoc, StylisationDoc, SwitchOrLength, SwitchOrStrength,
@@ -14,6 +15,8 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
         ui.label("Pointer");
         ui.selectable_value(&mut look.tool, Tool::Map, "Map");
         ui.selectable_value(&mut look.tool, Tool::Orbit, "Orbit");
+        let help = tr("lengths along the ground, climb and area");
+        ui.selectable_value(&mut look.tool, Tool::Measure, tr("Measure")).on_hover_text(help);
     });
     ui.checkbox(&mut look.bent, "Bent");
     ui.horizontal(|ui| {

@@ -87,7 +87,10 @@ pub(crate) fn set_stage(document: &mut Document, stage: StageDoc) {
     document.stage.insert(at, stage);
 }
 
-/// A slider with its name before it; its drag is one step of undo. Returns the new value.
+/// Least width of the value of a slider, points.
+const VALUE: f32 = 54.0;
+
+/// A slider with its name after it; its drag is one step of undo. Returns the new value.
 pub(crate) fn slider(
     ui: &mut Ui,
     model: &mut Model,
@@ -97,7 +100,12 @@ pub(crate) fn slider(
     help: &str,
 ) -> Option<f64> {
     let mut now = value;
-    let response = ui.add(Slider::new(&mut now, range).text(name)).on_hover_text(help);
+    let slider = ui.scope(|ui| {
+        // The name stays where it is whatever number of digits the value has.
+        ui.spacing_mut().interact_size.x = VALUE;
+        ui.add(Slider::new(&mut now, range).text(name))
+    });
+    let response = slider.inner.on_hover_text(help);
     changed(model, &response, now)
 }
 

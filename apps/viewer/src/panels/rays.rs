@@ -14,6 +14,9 @@ const PLAY: f64 = 0.25;
 /// Share of the previewed length that is still ahead when playing ends, since nothing is left to show at the end of a path.
 const AHEAD: f64 = 0.25;
 
+/// Size of the field of a coordinate, points; the same for any number of digits.
+const COORDINATE: [f32; 2] = [92.0, 20.0];
+
 /// Visible share from which on a target counts as in sight.
 const WHOLE: f64 = 0.99;
 
@@ -39,13 +42,14 @@ impl RaysPanel {
             }
             _ => {}
         }
+        ui.separator();
+        turns(ui, model);
+        // Below everything, so that nothing moves under a pointer that drags.
         if let Some(reason) = &model.violated {
             ui.separator();
             ui.strong("Not possible like this");
             ui.label(reason);
         }
-        ui.separator();
-        turns(ui, model);
     }
 
     /// Position and length of a preview.
@@ -295,7 +299,7 @@ fn one(ui: &mut Ui, model: &mut Model, n: usize, turn: &TurnDoc, next: &mut Turn
                 let mut value = now[axis];
                 let field =
                     eframe::egui::DragValue::new(&mut value).speed(speed).max_decimals(2).prefix(format!("{letter} "));
-                let response = ui.add(field).on_hover_text(format!("{name} {n}, {letter}"));
+                let response = ui.add_sized(COORDINATE, field).on_hover_text(format!("{name} {n}, {letter}"));
                 if let Some(value) = super::changed(model, &response, value) {
                     part(next)[axis] = value;
                 }

@@ -61,14 +61,11 @@ impl SplinePanel {
         ui.strong(if preset.name.is_empty() { format!("Preset {}", self.chosen + 1) } else { preset.name.clone() });
         let Some(drawing) = sketch(&presets, preset.phi, distance_of(model)) else { return };
         let id = ui.scope_id().with(("curve", self.chosen));
-        if let Some(edit) = curve(ui, id, &drawing) {
+        if let Some(edit) = curve(ui, id, &drawing, self.clamped.as_deref()) {
             if edit.begins {
                 model.begin_gesture();
             }
             self.change(model, &presets, edit.change);
-        }
-        if let Some(clamped) = &self.clamped {
-            ui.colored_label(ui.visuals().warn_fg_color, clamped);
         }
         self.sections(ui, model, &presets);
         self.numbers(ui, model, &presets);
