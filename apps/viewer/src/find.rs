@@ -182,7 +182,9 @@ impl Find {
             let hint = tr("name, or place as 46.5N,11.3E");
             let width = (ui.available_width() - close).max(80.0);
             let field = ui.add(TextEdit::singleline(&mut self.text).hint_text(hint).desired_width(width));
-            field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, tr("Find")));
+            let text = &self.text;
+            let label = || Some(tr("Find").to_owned());
+            field.widget_info(|| WidgetInfo { label: label(), ..WidgetInfo::text_edit(true, text, text, hint) });
             if !std::mem::replace(&mut self.has_focus, true) {
                 field.request_focus();
             }
@@ -202,7 +204,8 @@ impl Find {
         ScrollArea::vertical().max_height(height.clamp(60.0, 360.0)).show(ui, |ui| {
             for (i, hit) in answer.hits.iter().enumerate() {
                 let (name, kind) = self.words(hit, bookmarks);
-                let button = Button::selectable(i == self.chosen, name.as_str()).right_text(RichText::new(&kind).weak());
+                let button =
+                    Button::selectable(i == self.chosen, name.as_str()).right_text(RichText::new(&kind).weak());
                 let response = ui.add(button.truncate().min_size(vec2(ui.available_width(), 0.0)));
                 let label = if kind.is_empty() { name } else { format!("{name}, {kind}") };
                 response.widget_info(|| WidgetInfo::selected(Role::Button, true, i == self.chosen, &label));
@@ -219,7 +222,11 @@ impl Find {
         }
         if answer.total > answer.hits.len() {
             ui.weak(fill(tr("{0} of {1}"), &[&answer.hits.len(), &answer.total]));
-        } else if answer.hits.is_empty() && !answer.text.trim().is_empty() && answer.said.is_none() && self.index.is_some() {
+        } else if answer.hits.is_empty()
+            && !answer.text.trim().is_empty()
+            && answer.said.is_none()
+            && self.index.is_some()
+        {
             ui.weak(tr("nothing has that name"));
         }
         clicked
@@ -234,7 +241,8 @@ impl Find {
                 (bookmarks.get(*i).map_or_else(String::new, |one| one.name.clone()), tr("bookmark").to_owned())
             }
             Hit::Thing(i) => {
-                let Some((index, thing)) = self.index.as_ref().and_then(|(_, index)| Some((index, index.get(*i)?))) else {
+                let Some((index, thing)) = self.index.as_ref().and_then(|(_, index)| Some((index, index.get(*i)?)))
+                else {
                     return Default::default();
                 };
                 let layer = index.layer_of(thing);

@@ -187,13 +187,19 @@ mod tests {
 
     #[test]
     fn no_key_has_two_meanings_and_no_command_two_rows() {
-        let mut keys: Vec<KeyboardShortcut> = COMMANDS.iter().flat_map(|entry| entry.keys).copied().chain(STEERING).collect();
+        let mut keys: Vec<KeyboardShortcut> =
+            COMMANDS.iter().flat_map(|entry| entry.keys).copied().chain(STEERING).collect();
         let all = keys.len();
         keys.sort_by_key(|keys| format!("{keys:?}"));
         keys.dedup();
         assert_eq!(keys.len(), all, "a key is there twice");
         for entry in &COMMANDS {
-            assert_eq!(COMMANDS.iter().filter(|other| other.command == entry.command).count(), 1, "{:?}", entry.command);
+            assert_eq!(
+                COMMANDS.iter().filter(|other| other.command == entry.command).count(),
+                1,
+                "{:?}",
+                entry.command
+            );
             assert_eq!(COMMANDS.iter().filter(|other| other.words == entry.words).count(), 1, "{}", entry.words);
         }
     }

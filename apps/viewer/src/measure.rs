@@ -4,12 +4,12 @@ use crate::language::{fill, tr};
 use crate::model::{Model, Tool};
 use crate::picture::{coordinates, image_of};
 use crate::pointer::share;
-use belvedere::core::{DVec2, DVec3, Stage};
+use belvedere::core::{DVec2, DVec3};
 use belvedere::editor::{Lengths, ground_way, lengths, lengths_geojson};
 use belvedere::scene::{LayerKind, Scene, Unit};
 use eframe::egui::{
-    Align, Align2, Area, Color32, Context, CursorIcon, FontId, Frame, Grid, Id, Key, Layout, Modifiers, Order, Painter,
-    Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
+    Align, Align2, Area, Color32, Context, CursorIcon, FontId, Frame, Grid, Id, Key, Layout, Mesh, Modifiers, Order,
+    Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
 
 /// Width and height of the profile, points.
@@ -101,7 +101,8 @@ impl Measure {
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
             let radius = if response.hovered() || response.dragged() { 6.5 } else { 5.0 };
             ui.painter().circle(at, radius, INK, Stroke::new(2.0, Color32::WHITE));
-            ends |= response.double_clicked();
+            // The second click of a double click meets the point that the first has set.
+            ends |= response.clicked() && i + 1 == self.points.len();
             if response.dragged()
                 && response.drag_delta() != vec2(0.0, 0.0)
                 && let Some(to) = response.interact_pointer_pos()
@@ -127,6 +128,8 @@ impl Measure {
         area.show(ctx, |ui| {
             Frame::popup(ui.style()).show(ui, |ui| {
                 ui.set_width(PROFILE[0].min(free.width() - 40.0));
+                // The panel leaves the picture as much room as it can.
+                (ui.spacing_mut().interact_size.y, ui.spacing_mut().item_spacing) = (15.0, vec2(6.0, 2.0));
                 ui.strong(tr("Measured"));
                 match &self.of {
                     Some((of, _)) if self.points.len() > 1 => figures(ui, of, model),
@@ -142,21 +145,21 @@ impl Measure {
         let mut clears = false;
         ui.horizontal_wrapped(|ui| {
             if let (Some(scene), false) = (scene, self.points.is_empty()) {
-                if ui.button(tr("Copy as text")).clicked() {
+                if ui.small_button(tr("Copy as text")).clicked() {
                     ui.ctx().copy_text(self.text(scene));
                 }
-                if ui.button(tr("Copy as GeoJSON")).clicked() {
+                if ui.small_button(tr("Copy as GeoJSON")).clicked() {
                     ui.ctx().copy_text(lengths_geojson(scene, &self.points, false).to_string());
                 }
-                if self.points.len() > 2 && ui.button(tr("Copy the area as GeoJSON")).clicked() {
+                if self.points.len() > 2 && ui.small_button(tr("Copy the area as GeoJSON")).clicked() {
                     ui.ctx().copy_text(lengths_geojson(scene, &self.points, true).to_string());
                 }
-                if ui.button(tr("Remove the last point")).clicked() {
+                if ui.small_button(tr("Remove the last point")).clicked() {
                     self.points.pop();
                     self.of = None;
                 }
             }
-            clears = ui.button(tr("Close the measurement")).clicked();
+            clears = ui.small_button(tr("Close the measurement")).clicked();
         });
         if clears {
             (self.points, self.of) = (Vec::new(), None);
@@ -208,7 +211,7 @@ fn drawn_way(scene: &Scene, points: &[DVec3]) -> Vec<DVec3> {
 fn rows(of: &Lengths, unit: Unit) -> Vec<(&'static str, String)> {
     let along = of.along_ground.map(|length| (tr("along the ground"), long(length, unit)));
     let area = of.area.map(|area| (tr("area in plan"), wide(area)));
-    let climb = [(tr("climb"), of.climb), (tr("descent"), of.descent)].map(|(name, by)| (name, long(by, unit)));
+    let climb = [(tr("climb"), of.climb), (tr("descent"), of.descent)].map(|(name, by)| (name, high(by, unit)));
     let straight = (tr("straight"), long(of.straight, unit));
     along.into_iter().chain([straight]).chain(climb).chain(area).collect()
 }
@@ -221,6 +224,11 @@ fn long(length: f64, unit: Unit) -> String {
         Unit::Angstrom => format!("{length:.2} Å"),
         Unit::Voxel => fill(tr("{0} voxels"), &[&format!("{length:.1}")]),
     }
+}
+
+/// A height in the unit of the scene: metres stay metres.
+fn high(height: f64, unit: Unit) -> String {
+    if unit == Unit::Metre { format!("{height:.0} m") } else { long(height, unit) }
 }
 
 /// An area in metres or kilometres.
@@ -239,7 +247,7 @@ fn figures(ui: &mut Ui, of: &Lengths, model: &Model) {
         }
     });
     profile(ui, of, unit);
-    if shown.session.view().stages().iter().any(Stage::moves_ground) {
+    if shown.session.view().stages().iter().any(|stage| stage.moves_ground()) {
         ui.weak(tr("Lengths are of the true ground, not of the moved one."));
     } else if shown.session.view().is_bent() {
         ui.weak(tr("Lengths are of true space, not of the bent picture."));
@@ -253,8 +261,8 @@ fn figures(ui: &mut Ui, of: &Lengths, model: &Model) {
 fn profile(ui: &mut Ui, of: &Lengths, unit: Unit) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), PROFILE[1]), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, tr("Height profile")));
-    let [low, high] = of.profile.iter().fold([f64::MAX, f64::MIN], |[low, high], p| [low.min(p[1]), high.max(p[1])]);
-    let (far, span) = (of.profile.last().map_or(0.0, |p| p[0]), (high - low).max(1e-9));
+    let [low, most] = of.profile.iter().fold([f64::MAX, f64::MIN], |[low, most], p| [low.min(p[1]), most.max(p[1])]);
+    let (far, span) = (of.profile.last().map_or(0.0, |p| p[0]), (most - low).max(1e-9));
     if far <= 0.0 {
         return;
     }
@@ -265,14 +273,21 @@ fn profile(ui: &mut Ui, of: &Lengths, unit: Unit) {
     };
     let painter = ui.painter_at(rect);
     let line: Vec<Pos2> = of.profile.iter().map(at).collect();
-    for pair in line.windows(2) {
-        let column = vec![pair[0], pair[1], pos2(pair[1].x, plot.bottom()), pos2(pair[0].x, plot.bottom())];
-        painter.add(Shape::convex_polygon(column, INK.gamma_multiply(0.18), Stroke::NONE));
+    let mut below = Mesh::default();
+    for (i, top) in (0u32..).zip(&line) {
+        below.colored_vertex(*top, INK.gamma_multiply(0.2));
+        below.colored_vertex(pos2(top.x, plot.bottom()), INK.gamma_multiply(0.2));
+        if i > 0 {
+            below.add_triangle(2 * i - 2, 2 * i - 1, 2 * i);
+            below.add_triangle(2 * i - 1, 2 * i, 2 * i + 1);
+        }
     }
+    painter.add(below);
     painter.add(Shape::line(line, Stroke::new(1.6, INK)));
     let color = ui.visuals().text_color();
-    for (value, corner, align) in [(high, rect.left_top(), Align2::LEFT_TOP), (low, rect.left_bottom(), Align2::LEFT_BOTTOM)] {
-        painter.text(corner, align, long(value, unit), FontId::proportional(10.5), color);
+    let ends = [(most, rect.left_top(), Align2::LEFT_TOP), (low, rect.left_bottom(), Align2::LEFT_BOTTOM)];
+    for (value, corner, align) in ends {
+        painter.text(corner, align, high(value, unit), FontId::proportional(10.5), color);
     }
     painter.text(rect.right_bottom(), Align2::RIGHT_BOTTOM, long(far, unit), FontId::proportional(10.5), color);
 }

@@ -211,7 +211,8 @@ impl PictureView {
             let at = response.interact_pointer_pos();
             self.place = at.and_then(|at| model.world_at(share(rect, at)));
         }
-        let (Some(point), Some(unit)) = (self.place, model.shown.as_ref().map(|shown| shown.session.scene().unit)) else {
+        let (Some(point), Some(unit)) = (self.place, model.shown.as_ref().map(|shown| shown.session.scene().unit))
+        else {
             return;
         };
         response.context_menu(|ui| {

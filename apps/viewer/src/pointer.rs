@@ -12,8 +12,8 @@ const WHEEL: f64 = 260.0;
 const ONE_GESTURE: f64 = 0.6;
 /// Way of two fingers together, points, change of their distance, as a logarithm, and turn, radians, from which on it is known what they do.
 const TOGETHER: f32 = 10.0;
-const APART: f32 = 0.05;
-const TURNED: f32 = 0.08;
+const APART: f32 = 0.08;
+const TURNED: f32 = 0.14;
 
 /// A drag in the picture.
 #[derive(Debug, Clone, Default)]
@@ -123,7 +123,8 @@ impl Hand {
     fn touch(&mut self, ui: &Ui, response: &Response, (rect, touch): (Rect, MultiTouchInfo), model: &mut Model) {
         let middle = touch.center_pos;
         if self.fingers.is_none() {
-            let is_here = rect.contains(middle) && ui.ctx().layer_id_at(middle).is_none_or(|id| id == response.layer_id);
+            let is_here =
+                rect.contains(middle) && ui.ctx().layer_id_at(middle).is_none_or(|id| id == response.layer_id);
             let Some(camera) = model.camera().filter(|_| is_here) else { return };
             let about = model.world_at(share(rect, middle)).unwrap_or(camera.target);
             self.fingers = Some(Fingers { about, so_far: [0.0; 3], does: None });

@@ -52,7 +52,6 @@ impl Viewer {
     /// The window of the bookmarks.
     pub(super) fn bookmark_window(&mut self, ctx: &Context) {
         let mut open = self.lists_bookmarks;
-        let before: Vec<String> = self.bookmarks.iter().map(|bookmark| bookmark.name.clone()).collect();
         let (mut change, mut renamed) = (None, false);
         let corner = self.picture.middle_top + eframe::egui::vec2(-150.0, 60.0);
         Window::new(tr("Bookmarks")).open(&mut open).resizable(false).default_pos(corner).show(ctx, |ui| {
@@ -63,11 +62,8 @@ impl Viewer {
             ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
                 Grid::new("bookmarks").num_columns(5).show(ui, |ui| {
                     for (i, bookmark) in self.bookmarks.iter_mut().enumerate() {
-                        let field = ui.add(TextEdit::singleline(&mut bookmark.name).desired_width(130.0));
-                        let label = fill(tr("Name of bookmark {0}"), &[&(i + 1)]);
-                        field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, &label));
-                        renamed |= field.lost_focus();
-                        let name = before[i].as_str();
+                        renamed |= name_field(ui, i, &mut bookmark.name);
+                        let name = bookmark.name.as_str();
                         for (enabled, sign, label, what) in [
                             (true, tr("Go"), tr("Go to {0}"), Change::GoTo(i)),
                             (i > 0, tr("Up"), tr("Move {0} up"), Change::Swap(i.saturating_sub(1))),
@@ -94,15 +90,29 @@ impl Viewer {
             None => {}
         }
         if renamed {
-            for (bookmark, before) in self.bookmarks.iter_mut().zip(&before) {
-                // A name that was cleared comes back.
-                if bookmark.name.trim().is_empty() {
-                    bookmark.name.clone_from(before);
-                }
-            }
             self.remember_bookmarks();
         }
     }
+}
+
+/// A field for a name, which is taken when the field is left, unless it is empty. Returns whether it changed.
+fn name_field(ui: &mut Ui, i: usize, name: &mut String) -> bool {
+    let key = ui.scope_id().with(("bookmark", i));
+    let mut text = ui.data(|data| data.get_temp::<String>(key)).unwrap_or_else(|| name.clone());
+    let field = ui.add_sized([150.0, 20.0], TextEdit::singleline(&mut text));
+    let label = fill(tr("Name of bookmark {0}"), &[&(i + 1)]);
+    let shown = text.clone();
+    field.widget_info(|| WidgetInfo { label: Some(label.clone()), ..WidgetInfo::text_edit(true, &shown, &shown, "") });
+    if field.has_focus() {
+        ui.data_mut(|data| data.insert_temp(key, text));
+        return false;
+    }
+    ui.data_mut(|data| data.remove::<String>(key));
+    let changes = field.lost_focus() && !text.trim().is_empty() && text != *name;
+    if changes {
+        *name = text;
+    }
+    changes
 }
 
 fn button(ui: &mut Ui, enabled: bool, sign: &str, name: &str) -> bool {

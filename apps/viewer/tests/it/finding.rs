@@ -24,7 +24,7 @@ fn huts(folder: &Path) -> PathBuf {
     let all: Vec<String> = all.into_iter().map(feature).collect();
     let json = format!(r#"{{"type":"FeatureCollection","features":[{}]}}"#, all.join(","));
     std::fs::write(folder.join("huts.geojson"), json).expect("huts");
-    let layer = "[[layer]]\nkind = \"point\"\nid = \"huts\"\nsource = \"huts.geojson\"\ncrs = \"local\"\n";
+    let layer = "[[layer]]\nkind = \"point\"\nid = \"huts\"\nsource = \"huts.geojson\"\n";
     std::fs::write(&path, text + layer).expect("scene");
     path
 }

@@ -1,6 +1,7 @@
 //! The application driven by its accessibility tree, as a screen reader sees it.
 
 mod authoring;
+mod bookmarks;
 mod consent;
 mod controls;
 mod files;
@@ -13,6 +14,7 @@ mod measuring;
 mod moving;
 mod screen;
 mod snapshots;
+mod steady;
 mod unsaved;
 mod welcome;
 #[cfg(target_os = "linux")]

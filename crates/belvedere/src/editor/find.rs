@@ -43,7 +43,9 @@ impl NameIndex {
         let mut things = Vec::new();
         for (index, layer) in scene.layers.iter().enumerate() {
             let bounds = match &layer.kind {
-                LayerKind::Area(area) => area.features.iter().fold(Aabb::EMPTY, |all, f| all.union(on(scene, &f.rings))),
+                LayerKind::Area(area) => {
+                    area.features.iter().fold(Aabb::EMPTY, |all, f| all.union(on(scene, &f.rings)))
+                }
                 _ => layer.bounds(),
             };
             let named = |(name, bounds)| Named { name, layer: index, bounds };
@@ -291,7 +293,10 @@ pub fn atoms_in(scene: &Scene, text: &str) -> Option<Aabb> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere_scene::{Color, LineFeature, LineLayer, PointFeature, PointLayer, PointStyle};
+    use belvedere_scene::molecule::{Atom, Element, ModelTransform, Molecule, MoleculeStyle, Residue};
+    use belvedere_scene::{
+        BoxLayer, BoxShape, Color, LineFeature, LineLayer, PointFeature, PointLayer, PointStyle, Unit,
+    };
     use std::time::{Duration, Instant};
 
     fn points(names: impl Iterator<Item = String>) -> Scene {
@@ -299,7 +304,8 @@ mod tests {
         let features = names.enumerate().map(feature).collect();
         let color = Color::rgb(0, 0, 0);
         let (size_px, style, hidden, lift_m) = (5.0, PointStyle::default(), Default::default(), 0.0);
-        Scene::default().with_layer("huts", LayerKind::Point(PointLayer { features, color, size_px, style, hidden, lift_m }))
+        Scene::default()
+            .with_layer("huts", LayerKind::Point(PointLayer { features, color, size_px, style, hidden, lift_m }))
     }
 
     fn names<'i>(index: &'i NameIndex, text: &str) -> Vec<&'i str> {
@@ -322,13 +328,49 @@ mod tests {
 
     #[test]
     fn pieces_of_a_line_with_one_name_are_one_thing() {
-        let piece = |x: f64| LineFeature { name: "Inn".into(), points: vec![DVec3::new(x, 0.0, 5.0), DVec3::new(x + 1.0, 2.0, 5.0)] };
+        let piece = |x: f64| LineFeature {
+            name: "Inn".into(),
+            points: vec![DVec3::new(x, 0.0, 5.0), DVec3::new(x + 1.0, 2.0, 5.0)],
+        };
         let line = LineLayer::new(vec![piece(0.0), piece(7.0)], Color::rgb(0, 0, 0));
         let index = NameIndex::of(&Scene::default().with_layer("rivers", LayerKind::Line(line)));
         let found = index.search("inn", 5);
         assert_eq!(found.total, 1);
         let bounds = index.get(found.best[0]).expect("it").bounds;
         assert_eq!((bounds.min, bounds.max), (DVec3::new(0.0, 0.0, 5.0), DVec3::new(8.0, 2.0, 5.0)));
+    }
+
+    #[test]
+    fn residues_chains_and_boxes_have_names_and_selections_of_atoms_are_found() {
+        let residue = |chain: &str, number: i32, name: &str| Residue {
+            name: name.into(),
+            number,
+            chain: chain.into(),
+            ..Residue::default()
+        };
+        let residues = vec![residue("A", 12, "ALA"), residue("A", 120, "GLY"), residue("B", 12, "HOH")];
+        let atom = |i: usize| Atom {
+            serial: i as i64,
+            name: "CA".into(),
+            element: Element::from_symbol("C").expect("carbon"),
+            residue: i as u32,
+            position: DVec3::new(20.0 * i as f64, 0.0, 0.0),
+        };
+        let molecule = Molecule::new((0..3).map(atom).collect(), residues, &[]).expect("molecule");
+        let style = MoleculeStyle::default();
+        let layer = MoleculeLayer::new(molecule, &style, ModelTransform::default()).expect("layer");
+        let shape = BoxShape { base: DVec3::ZERO, size: DVec3::ONE, yaw: 0.0, color: Color::rgb(0, 0, 0) };
+        let scene = Scene { unit: Unit::Angstrom, ..Scene::default() }
+            .with_layer("protein", LayerKind::Molecule(Box::new(layer)))
+            .with_layer("towers", LayerKind::Boxes(BoxLayer::new(vec![shape])));
+        let index = NameIndex::of(&scene);
+        assert_eq!(names(&index, "a:12"), ["A:12 ALA", "A:120 GLY"]);
+        assert_eq!((names(&index, "chain b"), names(&index, "towers/1")), (vec!["chain B"], vec!["towers/1"]));
+        let bounds = index.get(index.search("A:120", 1).best[0]).expect("it").bounds;
+        assert!(bounds.center().distance(DVec3::new(20.0, 0.0, 0.0)) < 1e-9 && bounds.max.x > 21.0);
+        let selected = atoms_in(&scene, "resn ALA or resi 120").expect("atoms");
+        assert!((selected.center().x - 10.0).abs() < 1.0, "{selected:?}");
+        assert!(atoms_in(&scene, "resn XYZ").is_none() && atoms_in(&scene, "1,2,3").is_none());
     }
 
     #[test]

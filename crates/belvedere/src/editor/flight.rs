@@ -163,7 +163,10 @@ mod tests {
     #[test]
     fn a_flight_over_a_wall_stays_above_it_and_ends_where_it_should() {
         let scene = walled();
-        let (from, to) = (camera([5000.0, 1000.0, 200.0], [5000.0, 2500.0, 0.0]), camera([5000.0, 9000.0, 150.0], [4800.0, 7500.0, 0.0]));
+        let (from, to) = (
+            camera([5000.0, 1000.0, 200.0], [5000.0, 2500.0, 0.0]),
+            camera([5000.0, 9000.0, 150.0], [4800.0, 7500.0, 0.0]),
+        );
         let flight = Flight::new(from.clone(), to.clone(), &scene);
         assert_eq!((flight.at(0.0), flight.at(1.0)), (from, to));
         let ground = scene.terrain().expect("ground");
@@ -196,7 +199,10 @@ mod tests {
     #[test]
     fn a_long_thing_is_shown_whole() {
         let bounds = Aabb::of([DVec3::new(1000.0, 1000.0, 0.0), DVec3::new(9000.0, 4000.0, 100.0)]);
-        let after = shown_whole(&camera([5000.0, 1000.0, 900.0], [5000.0, 2500.0, 0.0]), &bounds, &walled()).expect("a camera");
-        assert!(bounds.corners().iter().all(|&c| after.pinhole.project(c).is_ok_and(|(p, _)| after.pinhole.contains(p))));
+        let after =
+            shown_whole(&camera([5000.0, 1000.0, 900.0], [5000.0, 2500.0, 0.0]), &bounds, &walled()).expect("a camera");
+        assert!(
+            bounds.corners().iter().all(|&c| after.pinhole.project(c).is_ok_and(|(p, _)| after.pinhole.contains(p)))
+        );
     }
 }

@@ -121,7 +121,8 @@ pub fn lengths_geojson(scene: &Scene, points: &[DVec3], closed: bool) -> Value {
         Crs::Epsg(_) => ground.lon_lat(p.truncate()).map(|lon_lat| [rounded(lon_lat.x), rounded(lon_lat.y), p.z]),
     };
     let geographic: Option<Vec<[f64; 3]>> = points.iter().map(place).collect();
-    let system = if geographic.is_some() && ground.crs != Crs::Local { "OGC:CRS84".to_owned() } else { ground.crs.to_string() };
+    let system =
+        if geographic.is_some() && ground.crs != Crs::Local { "OGC:CRS84".to_owned() } else { ground.crs.to_string() };
     let mut chain = geographic.unwrap_or_else(|| points.iter().map(|p| p.to_array()).collect());
     let closes = closed && points.len() >= 3;
     let geometry = match chain.as_slice() {
@@ -166,8 +167,10 @@ mod tests {
     use super::*;
 
     fn hills() -> Scene {
-        let heights = (0..61 * 81).map(|i| (60.0 * (f64::from(i % 81) / 6.0).sin() * (f64::from(i / 81) / 9.0).cos()) as f32);
-        let ground = Heightfield::measured(DVec2::new(-400.0, 1800.0), DVec2::new(25.0, 30.0), 81, 61, heights.collect());
+        let heights =
+            (0..61 * 81).map(|i| (60.0 * (f64::from(i % 81) / 6.0).sin() * (f64::from(i / 81) / 9.0).cos()) as f32);
+        let ground =
+            Heightfield::measured(DVec2::new(-400.0, 1800.0), DVec2::new(25.0, 30.0), 81, 61, heights.collect());
         Scene::default().with_terrain("ground", ground.expect("ground"))
     }
 
@@ -195,7 +198,8 @@ mod tests {
     #[test]
     fn lengths_along_the_ground_are_those_of_many_small_steps() {
         let scene = hills();
-        let points = [[-390.0, 20.0, 0.0], [1500.0, 1700.0, 0.0], [1333.0, 210.0, 0.0], [-100.0, 210.0, 0.0]].map(DVec3::from_array);
+        let points = [[-390.0, 20.0, 0.0], [1500.0, 1700.0, 0.0], [1333.0, 210.0, 0.0], [-100.0, 210.0, 0.0]]
+            .map(DVec3::from_array);
         let of = lengths(&scene, &points);
         let [length, climb, descent] = by_small_steps(&scene, &points);
         let along = of.along_ground.expect("ground everywhere");
@@ -209,7 +213,8 @@ mod tests {
     #[test]
     fn areas_are_in_plan_and_gaps_are_not_walked_over() {
         let scene = hills();
-        let square = [[0.0, 0.0, 5.0], [300.0, 0.0, 90.0], [300.0, 200.0, 7.0], [0.0, 200.0, 0.0]].map(DVec3::from_array);
+        let square =
+            [[0.0, 0.0, 5.0], [300.0, 0.0, 90.0], [300.0, 200.0, 7.0], [0.0, 200.0, 0.0]].map(DVec3::from_array);
         assert_eq!(lengths(&scene, &square).area, Some(60_000.0));
         assert_eq!(lengths(&scene, &square[..2]).area, None);
         let beyond = [square[0], DVec3::new(5000.0, 0.0, 0.0)];
@@ -220,7 +225,8 @@ mod tests {
 
     #[test]
     fn a_chain_is_written_as_geojson_in_the_system_of_its_scene() {
-        let points = [[500_000.0, 4_649_776.0, 3.0], [501_000.0, 4_649_776.0, 3.0], [500_000.0, 4_650_776.0, 3.0]].map(DVec3::from_array);
+        let points = [[500_000.0, 4_649_776.0, 3.0], [501_000.0, 4_649_776.0, 3.0], [500_000.0, 4_650_776.0, 3.0]]
+            .map(DVec3::from_array);
         let here = Scene { crs: Crs::Epsg(32633), ..Scene::default() };
         let line = lengths_geojson(&here, &points, false);
         let geometry = &line["features"][0]["geometry"];
