@@ -1,9 +1,9 @@
-//! The keyboard: everything that the pointer can do to the camera, and the commands of the menu.
+//! The keyboard: one table of commands with their keys, which the menus, the help and the keyboard itself use, and steering by keys.
 
-use crate::language::later;
-use crate::model::{Compare, Model};
+use crate::language::{later, tr};
+use crate::model::Model;
 use belvedere::core::{DVec3, Navigation};
-use eframe::egui::{Context, Key, Modifiers};
+use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
 
 /// A command of the application.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -11,31 +11,123 @@ pub(crate) enum Command {
     Open,
     Save,
     SaveAs,
+    Quit,
     Undo,
     Redo,
-    Bookmark,
+    Find,
     ShowAll,
+    Measure,
+    Bookmark,
+    Bookmarks,
+    Bent,
+    Compare,
+    Inset,
+    Overhead,
+    Statistics,
+    Panel,
     Help,
+    Welcome,
 }
 
-/// Keys and what they do, for the help window.
-pub(crate) const KEYS: [(&str, &str); 15] = [
+/// A command, its words in menus and help, and its keys; the menus show the first.
+struct Entry {
+    command: Command,
+    words: &'static str,
+    keys: &'static [KeyboardShortcut],
+}
+
+const fn entry(command: Command, words: &'static str, keys: &'static [KeyboardShortcut]) -> Entry {
+    Entry { command, words, keys }
+}
+
+const fn with(modifiers: Modifiers, key: Key) -> KeyboardShortcut {
+    KeyboardShortcut::new(modifiers, key)
+}
+
+const fn plain(key: Key) -> KeyboardShortcut {
+    with(Modifiers::NONE, key)
+}
+
+const CTRL: Modifiers = Modifiers::COMMAND;
+const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+/// All commands.
+const COMMANDS: [Entry; 19] = [
+    entry(Command::Open, later("Open…"), &[with(CTRL, Key::O)]),
+    entry(Command::Save, later("Save"), &[with(CTRL, Key::S)]),
+    entry(Command::SaveAs, later("Save as…"), &[with(CTRL_SHIFT, Key::S)]),
+    entry(Command::Quit, later("Quit"), &[with(CTRL, Key::Q)]),
+    entry(Command::Undo, later("Undo"), &[with(CTRL, Key::Z)]),
+    entry(Command::Redo, later("Redo"), &[with(CTRL_SHIFT, Key::Z), with(CTRL, Key::Y)]),
+    entry(Command::Find, later("Find…"), &[with(CTRL, Key::F)]),
+    entry(Command::ShowAll, later("Show all"), &[plain(Key::F)]),
+    entry(Command::Measure, later("Measure lengths"), &[plain(Key::M)]),
+    entry(Command::Bookmark, later("Bookmark this view"), &[plain(Key::B)]),
+    entry(Command::Bookmarks, later("Bookmarks…"), &[with(CTRL, Key::B)]),
+    entry(Command::Bent, later("Straight or bent"), &[plain(Key::Space)]),
+    entry(Command::Compare, later("Compare: one picture, split, flicker"), &[plain(Key::C)]),
+    entry(Command::Inset, later("Straight picture in a corner"), &[plain(Key::I)]),
+    entry(Command::Overhead, later("Camera from above"), &[plain(Key::O)]),
+    entry(Command::Statistics, later("Renderer and times"), &[plain(Key::T)]),
+    entry(Command::Panel, later("Panel beside the picture"), &[plain(Key::P)]),
+    entry(Command::Help, later("Keys and pointer"), &[plain(Key::F1)]),
+    entry(Command::Welcome, later("Welcome and examples"), &[]),
+];
+
+/// Keys that steer the camera, and Escape, which ends what is under way.
+#[cfg(test)]
+const STEERING: [KeyboardShortcut; 12] = [
+    plain(Key::ArrowLeft),
+    plain(Key::ArrowRight),
+    plain(Key::ArrowUp),
+    plain(Key::ArrowDown),
+    with(Modifiers::SHIFT, Key::ArrowLeft),
+    with(Modifiers::SHIFT, Key::ArrowRight),
+    with(Modifiers::SHIFT, Key::ArrowUp),
+    with(Modifiers::SHIFT, Key::ArrowDown),
+    plain(Key::Plus),
+    plain(Key::Equals),
+    plain(Key::Minus),
+    plain(Key::Escape),
+];
+
+/// What pointer, fingers and steering keys do.
+const GESTURES: [(&str, &str); 7] = [
     (later("Drag, arrow keys"), later("move over the ground (tool Orbit: turn)")),
     (later("Right drag, Shift + arrow keys"), later("turn and tilt")),
-    (later("Wheel, pinch, + and -"), later("nearer and farther")),
-    (later("Space"), later("straight or bent")),
-    ("C", later("compare: one picture, split, flicker")),
-    ("I", later("straight picture in a corner")),
-    ("O", later("camera from above")),
-    ("F", later("show all")),
-    ("B", later("bookmark")),
-    ("T", later("renderer and times")),
-    ("P", later("panel beside the picture")),
-    (later("Ctrl O, Ctrl S, Ctrl Shift S"), later("open, save, save as")),
-    (later("Ctrl Z, Ctrl Shift Z or Ctrl Y"), later("undo, redo")),
+    (later("Wheel, + and -"), later("nearer and farther")),
+    (later("Two fingers"), later("nearer and farther, turn; up or down together: tilt")),
+    (later("Right click, long press"), later("menu of the place")),
+    (later("Escape, double click"), later("end of a measurement")),
     (later("Tab, Enter"), later("next control, press it")),
-    ("F1", later("this help")),
 ];
+
+/// Words of a command in the user's language.
+pub(crate) fn words(command: Command) -> &'static str {
+    COMMANDS.iter().find(|entry| entry.command == command).map_or("", |entry| tr(entry.words))
+}
+
+/// The keys of a command as the system writes them; empty without keys.
+pub(crate) fn shortcut(ctx: &Context, command: Command) -> String {
+    let keys = COMMANDS.iter().find(|entry| entry.command == command).and_then(|entry| entry.keys.first());
+    keys.map_or_else(String::new, |keys| ctx.format_shortcut(keys))
+}
+
+/// Rows of the help: keys, and what they do.
+pub(crate) fn help(ctx: &Context) -> Vec<(String, &'static str)> {
+    let gestures = GESTURES.iter().map(|(keys, what)| (tr(keys).to_owned(), tr(what)));
+    let with_keys = COMMANDS.iter().filter(|entry| !entry.keys.is_empty());
+    let commands = with_keys.map(|entry| {
+        let keys: Vec<String> = entry.keys.iter().map(|keys| ctx.format_shortcut(keys)).collect();
+        (keys.join(", "), tr(entry.words))
+    });
+    gestures.chain(commands).collect()
+}
+
+/// Whether a shortcut is no letter that may be meant for a control.
+fn is_always_heard(keys: &KeyboardShortcut) -> bool {
+    keys.modifiers.command || keys.logical_key == Key::F1
+}
 
 /// Steps of the arrow keys as a share of the distance to the target; angle of a turn, radians; factor of a zoom.
 const STEP: f64 = 0.06;
@@ -44,45 +136,16 @@ const ZOOM: f64 = 1.15;
 
 /// Reads the keyboard, unless something is being typed.
 pub(crate) fn read(ctx: &Context, model: &mut Model) -> Option<Command> {
-    let with = |modifiers: Modifiers, key: Key| ctx.input_mut(|input| input.consume_key(modifiers, key));
-    let shift = Modifiers::COMMAND | Modifiers::SHIFT;
-    let commands = [
-        (shift, Key::Z, Command::Redo),
-        (shift, Key::S, Command::SaveAs),
-        (Modifiers::COMMAND, Key::Z, Command::Undo),
-        (Modifiers::COMMAND, Key::Y, Command::Redo),
-        (Modifiers::COMMAND, Key::S, Command::Save),
-        (Modifiers::COMMAND, Key::O, Command::Open),
-        (Modifiers::NONE, Key::F1, Command::Help),
-    ];
-    if let Some((.., command)) = commands.into_iter().find(|(modifiers, key, _)| with(*modifiers, *key)) {
-        return Some(command);
+    // A control that has the focus uses the arrow keys, letters and the space bar itself.
+    let is_free = !ctx.egui_wants_keyboard_input() && ctx.memory(|memory| memory.focused().is_none());
+    if is_free {
+        steer(ctx, model);
     }
-    // A control that has the focus uses the arrow keys and the space bar itself.
-    if ctx.egui_wants_keyboard_input() || ctx.memory(|memory| memory.focused().is_some()) {
-        return None;
-    }
-    steer(ctx, model);
-    let pressed = |key: Key| with(Modifiers::NONE, key);
-    let look = &mut model.look;
-    if pressed(Key::Space) {
-        look.bent = !look.bent;
-    }
-    if pressed(Key::C) {
-        look.compare = match look.compare {
-            Compare::Off => Compare::Split,
-            Compare::Split => Compare::Flicker,
-            Compare::Flicker => Compare::Off,
-        };
-    }
-    look.inset ^= pressed(Key::I);
-    look.overhead ^= pressed(Key::O);
-    look.statistics ^= pressed(Key::T);
-    look.panel ^= pressed(Key::P);
-    if pressed(Key::F) {
-        return Some(Command::ShowAll);
-    }
-    pressed(Key::B).then_some(Command::Bookmark)
+    let all = COMMANDS.iter().flat_map(|entry| entry.keys.iter().map(|keys| (keys, entry.command)));
+    let mut heard: Vec<_> = all.filter(|(keys, _)| is_free || is_always_heard(keys)).collect();
+    // Keys without Shift are found with it, too, so those with it come first.
+    heard.sort_by_key(|(keys, _)| !keys.modifiers.shift);
+    heard.into_iter().find(|(keys, _)| ctx.input_mut(|input| input.consume_shortcut(keys))).map(|(_, command)| command)
 }
 
 fn steer(ctx: &Context, model: &mut Model) {
@@ -116,4 +179,28 @@ fn steer(ctx: &Context, model: &mut Model) {
         let by: DVec3 = reach * (moved[0] * camera.pinhole.right + moved[1] * ahead);
         camera.moved(by)?.orbited(TURN * turned[0], TURN * turned[1])?.zoomed(camera.target + by, zoom)
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_key_has_two_meanings_and_no_command_two_rows() {
+        let mut keys: Vec<KeyboardShortcut> =
+            COMMANDS.iter().flat_map(|entry| entry.keys).copied().chain(STEERING).collect();
+        let all = keys.len();
+        keys.sort_by_key(|keys| format!("{keys:?}"));
+        keys.dedup();
+        assert_eq!(keys.len(), all, "a key is there twice");
+        for entry in &COMMANDS {
+            assert_eq!(
+                COMMANDS.iter().filter(|other| other.command == entry.command).count(),
+                1,
+                "{:?}",
+                entry.command
+            );
+            assert_eq!(COMMANDS.iter().filter(|other| other.words == entry.words).count(), 1, "{}", entry.words);
+        }
+    }
 }

@@ -7,8 +7,11 @@ mod builtin;
 mod consent;
 mod export;
 mod files;
+mod find;
+mod flying;
 mod keys;
 mod language;
+mod measure;
 mod menu;
 #[cfg(any(target_family = "wasm", test))]
 mod mirror;

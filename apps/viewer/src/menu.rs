@@ -1,12 +1,12 @@
 //! The menu bar: files, undo steps, bookmarks.
 
 use crate::builtin::BUILTIN;
-use crate::keys::{Command, KEYS};
+use crate::keys::{self, Command};
 use crate::language::{fill, heard, tr};
 use crate::model::Model;
 use crate::settings::Settings;
 use belvedere::scene_file::CameraDoc;
-use eframe::egui::{Context, Grid, Label, MenuBar, RichText, ScrollArea, Ui, Window};
+use eframe::egui::{Button, Context, Grid, Label, MenuBar, RichText, Role, ScrollArea, Ui, WidgetInfo, Window};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -20,11 +20,9 @@ pub(crate) enum Choice {
     Forget(usize),
     /// Undoes or redoes to that number of steps.
     Step(usize),
-    Welcome,
     /// The browser forgets the files that it keeps.
     #[cfg(target_family = "wasm")]
     ForgetFiles,
-    Quit,
 }
 
 /// A camera kept under a name.
@@ -32,6 +30,14 @@ pub(crate) enum Choice {
 pub(crate) struct Bookmark {
     pub(crate) name: String,
     pub(crate) camera: CameraDoc,
+}
+
+/// An entry with its keys at its right. Returns whether it was chosen.
+fn item(ui: &mut Ui, command: Command, enabled: bool) -> bool {
+    let (words, keys) = (keys::words(command), keys::shortcut(ui.ctx(), command));
+    let response = ui.add_enabled(enabled, Button::new(words).shortcut_text(keys));
+    response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, words));
+    response.clicked()
 }
 
 /// Shows the bar.
@@ -44,59 +50,13 @@ pub(crate) fn bar(
 ) -> Option<Choice> {
     let mut choice = None;
     MenuBar::new().ui(ui, |ui| {
-        ui.menu_button(tr("File"), |ui| {
-            if ui.button(tr("Open…")).clicked() {
-                choice = Some(Choice::Command(Command::Open));
-            }
-            ui.menu_button(tr("Built-in scenes"), |ui| {
-                for (i, (name, _)) in BUILTIN.iter().enumerate() {
-                    if ui.button(tr(name)).clicked() {
-                        choice = Some(Choice::Builtin(i));
-                    }
-                }
-            });
-            ui.menu_button(tr("Recent files"), |ui| {
-                if recent.is_empty() {
-                    ui.weak(tr("none yet"));
-                }
-                for path in recent {
-                    if ui.button(path.display().to_string()).clicked() {
-                        choice = Some(Choice::Recent(path.clone()));
-                    }
-                }
-            });
-            ui.separator();
-            if ui.button(tr("Save")).clicked() {
-                choice = Some(Choice::Command(Command::Save));
-            }
-            if ui.button(tr("Save as…")).clicked() {
-                choice = Some(Choice::Command(Command::SaveAs));
-            }
-            #[cfg(target_family = "wasm")]
-            {
-                ui.separator();
-                let forget = ui.button(tr("Forget my files"));
-                let why = tr("The browser keeps the files that you open until another scene is opened.");
-                if forget.on_hover_text(why).clicked() {
-                    choice = Some(Choice::ForgetFiles);
-                }
-            }
-            // A page is closed by its browser, which asks the same question.
-            if cfg!(not(target_family = "wasm")) {
-                ui.separator();
-                if ui.button(tr("Quit")).clicked() {
-                    choice = Some(Choice::Quit);
-                }
-            }
-        });
+        ui.menu_button(tr("File"), |ui| choice = file(ui, recent));
         ui.menu_button(tr("Edit"), |ui| {
-            let undo = eframe::egui::Button::new(tr("Undo"));
-            if ui.add_enabled(model.editor.can_undo(), undo).clicked() {
-                choice = Some(Choice::Command(Command::Undo));
-            }
-            let redo = eframe::egui::Button::new(tr("Redo"));
-            if ui.add_enabled(model.editor.can_redo(), redo).clicked() {
-                choice = Some(Choice::Command(Command::Redo));
+            let can = [model.editor.can_undo(), model.editor.can_redo()];
+            for (command, can) in [Command::Undo, Command::Redo].into_iter().zip(can) {
+                if item(ui, command, can) {
+                    choice = Some(Choice::Command(command));
+                }
             }
             ui.menu_button(tr("Steps"), |ui| {
                 if let Some(steps) = steps(ui, model) {
@@ -104,44 +64,91 @@ pub(crate) fn bar(
                 }
             });
         });
-        ui.menu_button(tr("Places"), |ui| {
-            if ui.button(tr("Show all")).clicked() {
-                choice = Some(Choice::Command(Command::ShowAll));
-            }
-            if ui.button(tr("Bookmark this view")).clicked() {
-                choice = Some(Choice::Command(Command::Bookmark));
-            }
-            ui.separator();
-            for (i, bookmark) in bookmarks.iter().enumerate() {
-                if ui.button(&bookmark.name).clicked() {
-                    choice = Some(Choice::GoTo(i));
-                }
-            }
-            ui.add_enabled_ui(!bookmarks.is_empty(), |ui| {
-                ui.menu_button(tr("Remove a bookmark"), |ui| {
-                    for (i, bookmark) in bookmarks.iter().enumerate() {
-                        if ui.button(fill(tr("Remove {0}"), &[&bookmark.name])).clicked() {
-                            choice = Some(Choice::Forget(i));
-                        }
-                    }
-                });
-            });
-        });
+        ui.menu_button(tr("Places"), |ui| choice = places(ui, bookmarks).or(choice.take()));
         ui.menu_button(tr("View"), |ui| settings.menu(ui));
         ui.menu_button(tr("Help"), |ui| {
-            if ui.button(tr("Keys and pointer")).clicked() {
-                choice = Some(Choice::Command(Command::Help));
-            }
-            if ui.button(tr("Welcome and examples")).clicked() {
-                choice = Some(Choice::Welcome);
+            for command in [Command::Help, Command::Welcome] {
+                if item(ui, command, true) {
+                    choice = Some(Choice::Command(command));
+                }
             }
         });
         if ui.ctx().content_rect().width() >= 600.0 {
-            ui.toggle_value(&mut model.look.panel, tr("Panel")).on_hover_text("P");
+            ui.toggle_value(&mut model.look.panel, tr("Panel")).on_hover_text(keys::shortcut(ui.ctx(), Command::Panel));
         }
         let title = &model.document().title;
         let state = if model.editor.is_changed() { tr("changed") } else { "" };
         ui.add(Label::new(RichText::new(format!("{title}  {state}")).weak()).truncate());
+    });
+    choice
+}
+
+fn file(ui: &mut Ui, recent: &[PathBuf]) -> Option<Choice> {
+    let mut choice = None;
+    if item(ui, Command::Open, true) {
+        choice = Some(Choice::Command(Command::Open));
+    }
+    ui.menu_button(tr("Built-in scenes"), |ui| {
+        for (i, (name, _)) in BUILTIN.iter().enumerate() {
+            if ui.button(tr(name)).clicked() {
+                choice = Some(Choice::Builtin(i));
+            }
+        }
+    });
+    ui.menu_button(tr("Recent files"), |ui| {
+        if recent.is_empty() {
+            ui.weak(tr("none yet"));
+        }
+        for path in recent {
+            if ui.button(path.display().to_string()).clicked() {
+                choice = Some(Choice::Recent(path.clone()));
+            }
+        }
+    });
+    ui.separator();
+    #[cfg(target_family = "wasm")]
+    {
+        let forget = ui.button(tr("Forget my files"));
+        let why = tr("The browser keeps the files that you open until another scene is opened.");
+        if forget.on_hover_text(why).clicked() {
+            choice = Some(Choice::ForgetFiles);
+        }
+        ui.separator();
+    }
+    // A page is closed by its browser, which asks the same question.
+    let quit = cfg!(not(target_family = "wasm")).then_some(Command::Quit);
+    for command in [Some(Command::Save), Some(Command::SaveAs), quit].into_iter().flatten() {
+        if command == Command::Quit {
+            ui.separator();
+        }
+        if item(ui, command, true) {
+            choice = Some(Choice::Command(command));
+        }
+    }
+    choice
+}
+
+fn places(ui: &mut Ui, bookmarks: &[Bookmark]) -> Option<Choice> {
+    let mut choice = None;
+    for command in [Command::Find, Command::ShowAll, Command::Measure, Command::Bookmark, Command::Bookmarks] {
+        if item(ui, command, true) {
+            choice = Some(Choice::Command(command));
+        }
+    }
+    ui.separator();
+    for (i, bookmark) in bookmarks.iter().enumerate() {
+        if ui.button(&bookmark.name).clicked() {
+            choice = Some(Choice::GoTo(i));
+        }
+    }
+    ui.add_enabled_ui(!bookmarks.is_empty(), |ui| {
+        ui.menu_button(tr("Remove a bookmark"), |ui| {
+            for (i, bookmark) in bookmarks.iter().enumerate() {
+                if ui.button(fill(tr("Remove {0}"), &[&bookmark.name])).clicked() {
+                    choice = Some(Choice::Forget(i));
+                }
+            }
+        });
     });
     choice
 }
@@ -168,13 +175,16 @@ fn steps(ui: &mut Ui, model: &Model) -> Option<usize> {
 
 /// The help window.
 pub(crate) fn help(ctx: &Context, open: &mut bool) {
+    let rows = if *open { keys::help(ctx) } else { Vec::new() };
     Window::new(tr("Keys and pointer")).open(open).resizable(false).show(ctx, |ui| {
-        Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
-            for (keys, what) in KEYS {
-                ui.strong(tr(keys));
-                ui.label(tr(what));
-                ui.end_row();
-            }
+        ScrollArea::vertical().max_height(ctx.content_rect().height() - 90.0).show(ui, |ui| {
+            Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
+                for (keys, what) in rows {
+                    ui.strong(keys);
+                    ui.label(what);
+                    ui.end_row();
+                }
+            });
         });
     });
 }

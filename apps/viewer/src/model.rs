@@ -1,5 +1,6 @@
 //! State of the application without its window: the document, the last pictures, and how they are viewed.
 
+use crate::flying::{Flying, Ring};
 use crate::language::tr;
 use crate::notices::Notices;
 use belvedere::core::presets::PresetDocument;
@@ -10,7 +11,7 @@ use belvedere::editor::{
 };
 use belvedere::scene::Frame;
 use belvedere::scene::Instant as Clock;
-use belvedere::scene_file::{CameraDoc, ConstructorKind, Document, LayerDoc, StageDoc};
+use belvedere::scene_file::{CameraDoc, Document, LayerDoc, StageDoc};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -36,6 +37,8 @@ pub(crate) enum Tool {
     Orbit,
     /// Picks what is to be kept in sight.
     Track,
+    /// Sets the points of a measurement.
+    Measure,
 }
 
 /// What the open panel edits, and the picture has handles for.
@@ -160,6 +163,11 @@ pub(crate) struct Model {
     stopped: Option<Arc<Document>>,
     /// Whether the scene of before has come back since a new one could not be drawn.
     pub(crate) came_back: bool,
+    /// Counts scenes, so that what belongs to one knows when it is gone.
+    pub(crate) scenes: u64,
+    /// The flight under way, and the ring around what was found.
+    pub(crate) flying: Option<Flying>,
+    pub(crate) ring: Option<Ring>,
 }
 
 impl Model {
@@ -194,6 +202,9 @@ impl Model {
             before: None,
             stopped: None,
             came_back: false,
+            scenes: 0,
+            flying: None,
+            ring: None,
         }
     }
 
@@ -226,6 +237,8 @@ impl Model {
             self.before = Some(Before { editor, shown, overhead, judged });
         }
         (self.violated, self.ordered) = (None, None);
+        (self.flying, self.ring) = (None, None);
+        self.scenes += 1;
     }
 
     /// Keeps the scene although it may not be drawn: it is all that is left of an earlier session.
@@ -244,6 +257,7 @@ impl Model {
         (self.shown, self.overhead, self.judged) = (before.shown, before.overhead, before.judged);
         (self.violated, self.ordered) = (None, None);
         self.pictures += 1;
+        self.scenes += 1;
         self.came_back = true;
     }
 
@@ -298,7 +312,7 @@ impl Model {
 
     /// Moves the camera within the gesture, never below the ground; a move that fails is ignored.
     pub(crate) fn move_camera<E>(&mut self, change: impl FnOnce(&Navigation) -> Result<Navigation, E>) {
-        if self.document().constructor.as_ref().is_some_and(|doc| doc.kind == ConstructorKind::PathPreview) {
+        if self.has_own_camera() {
             self.notices.note(
                 tr("The preview along a path has a camera of its own; bend rays by hand to move it."),
                 self.moved_on_at,
@@ -535,7 +549,7 @@ impl Model {
     /// Whether the picture shows the current document, in full.
     pub(crate) fn rests(&self) -> bool {
         let is_it = |shown: &Shown| shown.pace == Pace::Resting && Arc::ptr_eq(&shown.document, self.document());
-        self.rested && self.waiting.is_none() && self.shown.as_deref().is_some_and(is_it)
+        self.rested && self.waiting.is_none() && self.flying.is_none() && self.shown.as_deref().is_some_and(is_it)
     }
 
     /// The stage of a kind, if the document has one.

@@ -3,14 +3,15 @@
 mod handles;
 
 use crate::language::{fill, heard, tr};
+use crate::measure::Measure;
 use crate::model::{Compare, Model, Tool};
 use crate::pointer::{Hand, share};
-use belvedere::core::{DVec2, DVec3};
+use belvedere::core::{Aabb, DVec2, DVec3};
 use belvedere::editor::{Pace, Shown};
 use belvedere::scene::{Frame, Unit};
 use eframe::egui::{
-    Align2, Color32, ColorImage, Context, CursorIcon, FontId, Painter, Pos2, Rect, Role, Sense, Stroke, TextureHandle,
-    TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Color32, ColorImage, Context, CursorIcon, FontId, Painter, Pos2, Rect, Response, Role, Sense, Stroke,
+    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
 /// Most pixels of a picture on the screen.
@@ -19,6 +20,8 @@ const MOST_PIXELS: f32 = 2.4e6;
 const FLICKER: f64 = 0.7;
 /// Time after which running work is announced, seconds.
 const PATIENT: f64 = 0.8;
+/// Colour of the ring.
+const MARK: Color32 = Color32::from_rgb(214, 60, 20);
 const INK: Color32 = Color32::from_rgb(28, 34, 44);
 const PAPER: Color32 = Color32::from_rgba_premultiplied(225, 225, 222, 225);
 
@@ -33,6 +36,9 @@ pub(crate) struct PictureView {
     pub(crate) middle_top: Pos2,
     /// The clicked point and the id of its layer.
     pub(crate) picked: Option<(DVec3, String)>,
+    measure: Measure,
+    /// The point of the menu of a place.
+    place: Option<DVec3>,
 }
 
 impl PictureView {
@@ -55,11 +61,14 @@ impl PictureView {
             self.click(share(rect, at), model);
         }
         let cursor = match (model.look.tool, response.dragged()) {
-            (Tool::Track, _) => CursorIcon::Crosshair,
+            (Tool::Track | Tool::Measure, _) => CursorIcon::Crosshair,
             (_, true) => CursorIcon::Grabbing,
             (_, false) => CursorIcon::Grab,
         };
         let response = response.on_hover_cursor(cursor);
+        self.measure.show(ui, &response, (rect, free), model);
+        ring(&painter, rect, ui.ctx(), model);
+        self.menu(&response, rect, model);
         if let Some(at) = response.hover_pos() {
             self.tell(&painter, free, share(rect, at), model);
         }
@@ -208,7 +217,34 @@ impl PictureView {
         label(painter, rect.left_bottom() + vec2(8.0, -8.0), Align2::LEFT_BOTTOM, &words);
     }
 
+    /// The menu of a place: a right click, or a long press of a finger.
+    fn menu(&mut self, response: &Response, rect: Rect, model: &mut Model) {
+        if response.secondary_clicked() {
+            let at = response.interact_pointer_pos();
+            self.place = at.and_then(|at| model.world_at(share(rect, at)));
+        }
+        let (Some(point), Some(unit)) = (self.place, model.shown.as_ref().map(|shown| shown.session.scene().unit))
+        else {
+            return;
+        };
+        response.context_menu(|ui| {
+            if ui.button(tr("Fly here")).clicked() {
+                model.visit(&Aabb::of([point]), ui.ctx());
+            }
+            if ui.button(tr("Measure from here")).clicked() {
+                self.measure.begin_at(point, model);
+            }
+            if ui.button(tr("Copy the coordinates")).clicked() {
+                ui.ctx().copy_text(coordinates(point, unit));
+            }
+        });
+    }
+
     fn click(&mut self, at: DVec2, model: &mut Model) {
+        if model.look.tool == Tool::Measure {
+            self.measure.add(at, model);
+            return;
+        }
         let Some(layer) = model.layer_at(at) else {
             self.picked = None;
             return;
@@ -266,13 +302,22 @@ fn frame_corners(painter: &Painter, rect: Rect, model: &Model) {
 }
 
 /// Position in the window at which the picture shows a world point.
-fn image_of(point: DVec3, rect: Rect, model: &Model) -> Option<Pos2> {
+pub(crate) fn image_of(point: DVec3, rect: Rect, model: &Model) -> Option<Pos2> {
     let shown = model.shown.as_ref()?;
     let view = if model.look.bent { shown.session.view().clone() } else { shown.session.view().straightened() };
     let at = view.project(point).ok()?.pixel;
     let [w, h] = view.pinhole().image.map(f64::from);
     let share = Vec2::new((at.x / w) as f32, (at.y / h) as f32);
     Some(rect.min + share * rect.size()).filter(|at| rect.contains(*at))
+}
+
+/// The ring around what was found, which closes in and fades.
+fn ring(painter: &Painter, rect: Rect, ctx: &Context, model: &Model) {
+    let Some(at) = model.ring.as_ref().and_then(|ring| image_of(ring.point, rect, model)) else { return };
+    let over = model.ring_share(ctx);
+    let (radius, left) = (18.0 + 26.0 * (1.0 - 3.0 * over).max(0.0), (3.0 * (1.0 - over)).min(1.0));
+    painter.circle_stroke(at, radius, Stroke::new(5.0, Color32::WHITE.gamma_multiply(0.8 * left)));
+    painter.circle_stroke(at, radius, Stroke::new(2.5, MARK.gamma_multiply(left)));
 }
 
 /// Position and height in the scene's own system.

@@ -1,8 +1,8 @@
-//! Moving the camera by pointer, wheel and touchpad.
+//! Moving the camera by pointer, wheel, touchpad and fingers.
 
 use crate::model::{Model, Tool};
-use belvedere::core::{DVec2, DVec3, Navigation};
-use eframe::egui::{PointerButton, Rect, Response, Ui};
+use belvedere::core::{DVec2, DVec3, Navigation, Pinhole, PinholeError};
+use eframe::egui::{MultiTouchInfo, PointerButton, Rect, Response, Ui};
 
 /// Turn of the camera for a drag across the whole picture, radians.
 const TURN: f64 = 3.0;
@@ -10,12 +10,17 @@ const TURN: f64 = 3.0;
 const WHEEL: f64 = 260.0;
 /// Wheel turns closer together than this are one gesture, seconds.
 const ONE_GESTURE: f64 = 0.6;
+/// Way of two fingers together, points, change of their distance, as a logarithm, and turn, radians, from which on it is known what they do.
+const TOGETHER: f32 = 10.0;
+const APART: f32 = 0.08;
+const TURNED: f32 = 0.14;
 
 /// A drag in the picture.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Hand {
     held: Option<Held>,
     wheeled_at: f64,
+    fingers: Option<Fingers>,
 }
 
 #[derive(Debug, Clone)]
@@ -28,6 +33,25 @@ struct Held {
     turns: bool,
 }
 
+/// Two fingers on the picture.
+#[derive(Debug, Clone)]
+struct Fingers {
+    /// World point between them when they came down.
+    about: DVec3,
+    /// What they have done before it was known what they do: way upwards, logarithm of the change of their distance, turn.
+    so_far: [f32; 3],
+    does: Option<TwoFingers>,
+}
+
+/// What two fingers do until they are lifted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum TwoFingers {
+    /// Nearer, farther and round about the point between them.
+    Grasp,
+    /// Up and down over it.
+    Tilt,
+}
+
 /// A position in the window as shares of the picture's width and height.
 pub(crate) fn share(rect: Rect, at: eframe::egui::Pos2) -> DVec2 {
     let offset = at - rect.min;
@@ -35,8 +59,15 @@ pub(crate) fn share(rect: Rect, at: eframe::egui::Pos2) -> DVec2 {
 }
 
 impl Hand {
-    /// Moves the camera by drags and the wheel.
+    /// Moves the camera by drags, the wheel and two fingers.
     pub(crate) fn steer(&mut self, ui: &Ui, response: &Response, rect: Rect, model: &mut Model) {
+        if let Some(touch) = ui.input(|input| input.multi_touch()) {
+            // The first finger is a pointer, too; what it began ends here.
+            self.held = None;
+            self.touch(ui, response, (rect, touch), model);
+            return;
+        }
+        self.fingers = None;
         self.drag(response, rect, model);
         self.wheel(ui, response, rect, model);
     }
@@ -87,4 +118,57 @@ impl Hand {
         let about = model.world_at(share(rect, at));
         model.move_camera(|camera| camera.zoomed(about.unwrap_or(camera.target), factor));
     }
+
+    /// Two fingers: pinched they go nearer or farther, turned they turn, up or down together they tilt.
+    fn touch(&mut self, ui: &Ui, response: &Response, (rect, touch): (Rect, MultiTouchInfo), model: &mut Model) {
+        let middle = touch.center_pos;
+        if self.fingers.is_none() {
+            let is_here =
+                rect.contains(middle) && ui.ctx().layer_id_at(middle).is_none_or(|id| id == response.layer_id);
+            let Some(camera) = model.camera().filter(|_| is_here) else { return };
+            let about = model.world_at(share(rect, middle)).unwrap_or(camera.target);
+            self.fingers = Some(Fingers { about, so_far: [0.0; 3], does: None });
+            model.begin_gesture();
+        }
+        let Some(fingers) = &mut self.fingers else { return };
+        let now = [touch.translation_delta.y, touch.zoom_delta.max(1e-3).ln(), touch.rotation_delta];
+        let mut by = now;
+        if fingers.does.is_none() {
+            for (sum, now) in fingers.so_far.iter_mut().zip(now) {
+                *sum += now;
+            }
+            let [along, apart, turned] = fingers.so_far.map(f32::abs);
+            fingers.does = match () {
+                () if apart > APART || turned > TURNED => Some(TwoFingers::Grasp),
+                () if along > TOGETHER => Some(TwoFingers::Tilt),
+                () => None,
+            };
+            // Nothing of the motion is lost.
+            by = fingers.so_far;
+        }
+        let [along, apart, turned] = by.map(f64::from);
+        let about = fingers.about;
+        match fingers.does {
+            None => {}
+            Some(TwoFingers::Tilt) => {
+                let pitch = TURN * along / f64::from(rect.height());
+                model.move_camera(|camera| camera.orbited(0.0, pitch));
+            }
+            Some(TwoFingers::Grasp) => {
+                model.move_camera(|camera| turned_about(camera, about, turned)?.zoomed(about, apart.exp()));
+            }
+        }
+    }
+}
+
+/// The camera turned about the vertical through a point, counter-clockwise seen from above, radians.
+fn turned_about(camera: &Navigation, about: DVec3, angle: f64) -> Result<Navigation, PinholeError> {
+    let turn = |p: DVec3| {
+        let (sin, cos) = angle.sin_cos();
+        let d = p - about;
+        about + DVec3::new(cos * d.x - sin * d.y, sin * d.x + cos * d.y, d.z)
+    };
+    let (p, target) = (&camera.pinhole, turn(camera.target));
+    let pinhole = Pinhole::look_at(turn(p.eye), target, DVec3::Z, p.projection, p.image, p.near, p.far)?;
+    Ok(Navigation { pinhole, target })
 }

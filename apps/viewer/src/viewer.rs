@@ -1,6 +1,7 @@
 //! The application as a whole: opening, saving, kept state; panels around the picture.
 
 mod at_work;
+mod bookmarks;
 mod from_above;
 mod layout;
 mod opening;
@@ -11,10 +12,11 @@ mod welcome;
 use crate::builtin::BUILTIN;
 use crate::consent::Consent;
 use crate::files;
+use crate::find::{Find, Going};
 use crate::keys::{self, Command};
 use crate::language::{fill, tr};
 use crate::menu::{self, Bookmark, Choice};
-use crate::model::{Look, Model};
+use crate::model::{Compare, Look, Model, Tool};
 use crate::panels::{Panels, Tab};
 use crate::picture::PictureView;
 use crate::settings::Settings;
@@ -23,8 +25,8 @@ use crate::wake::Wake;
 use belvedere::Trust;
 use belvedere::editor::{Editor, Place, Recovery};
 use belvedere::io::fs;
-use belvedere::scene_file::{self, CameraDoc};
-use eframe::egui::{Context, TextureHandle, Ui};
+use belvedere::scene_file;
+use eframe::egui::{Context, TextureHandle, Ui, vec2};
 use layout::SMALL;
 use opening::Pending;
 use serde::{Deserialize, Serialize};
@@ -127,6 +129,9 @@ pub struct Viewer {
     /// Bookmarks of the scene that comes back if the new one cannot be drawn.
     bookmarks_before: Vec<Bookmark>,
     help: bool,
+    find: Find,
+    /// Whether the window of the bookmarks is open.
+    lists_bookmarks: bool,
     welcome: welcome::Welcome,
     /// Whether the sheet of a small screen is open.
     sheet: bool,
@@ -178,6 +183,8 @@ impl Viewer {
             may_close: None,
             bookmarks_before: Vec::new(),
             help: false,
+            find: Find::default(),
+            lists_bookmarks: false,
             welcome: welcome::Welcome::default(),
             sheet: false,
             times: Times::default(),
@@ -290,15 +297,6 @@ impl Viewer {
         self.write_remembered();
     }
 
-    /// Keeps the bookmarks of a scene that has a file.
-    fn remember_bookmarks(&mut self) {
-        let scene = self.model.editor.place.scene.as_ref().and_then(|path| fs::canonicalize(path).ok());
-        if let Some(scene) = scene {
-            self.remembered.bookmarks.insert(scene, self.bookmarks.clone());
-            self.write_remembered();
-        }
-    }
-
     fn write_remembered(&self) {
         if let Some(folder) = &self.state {
             let text = serde_json::to_string(&self.remembered).unwrap_or_default();
@@ -333,14 +331,28 @@ impl Viewer {
             Command::Redo => {
                 self.model.editor.redo();
             }
-            Command::Bookmark => {
-                if let Some(camera) = self.model.camera_doc() {
-                    let taken = |name: &String| self.bookmarks.iter().any(|bookmark| bookmark.name == *name);
-                    let name = (1..).map(|n| fill(tr("View {0}"), &[&n])).find(|name| !taken(name)).unwrap_or_default();
-                    self.bookmarks.push(Bookmark { name, camera });
-                    self.remember_bookmarks();
-                }
+            Command::Quit => self.go_on_to(ctx, Next::Quit),
+            Command::Find => self.find.begin(),
+            Command::Measure => {
+                let look = &mut self.model.look;
+                look.tool = if look.tool == Tool::Measure { Tool::Map } else { Tool::Measure };
             }
+            Command::Bookmark => self.bookmark(),
+            Command::Bookmarks => self.lists_bookmarks = !self.lists_bookmarks,
+            Command::Bent => self.model.look.bent = !self.model.look.bent,
+            Command::Compare => {
+                let compare = &mut self.model.look.compare;
+                *compare = match *compare {
+                    Compare::Off => Compare::Split,
+                    Compare::Split => Compare::Flicker,
+                    Compare::Flicker => Compare::Off,
+                };
+            }
+            Command::Inset => self.model.look.inset = !self.model.look.inset,
+            Command::Overhead => self.model.look.overhead = !self.model.look.overhead,
+            Command::Statistics => self.model.look.statistics = !self.model.look.statistics,
+            Command::Panel => self.model.look.panel = !self.model.look.panel,
+            Command::Welcome => self.welcome.open = true,
             Command::ShowAll => {
                 if let Some(bounds) = self.model.shown.as_ref().map(|shown| shown.session.scene().bounds()) {
                     self.model.frame(&bounds);
@@ -350,28 +362,29 @@ impl Viewer {
         }
     }
 
+    /// Shows the field that finds things, and goes to what is chosen.
+    fn finding(&mut self, ctx: &Context) {
+        let busy = self.model.opening.is_some() || self.model.works_since().is_some() || self.model.is_stopped();
+        let at = self.picture.middle_top + vec2(0.0, if busy { 54.0 } else { 10.0 });
+        let room = 2.0 * (self.picture.middle - self.picture.middle_top).y;
+        let room = vec2(ctx.content_rect().width(), room);
+        match self.find.show(ctx, (at, room), &self.model, &self.bookmarks) {
+            Some(Going::To(bounds)) => self.model.visit(&bounds, ctx),
+            Some(Going::Bookmark(i)) => self.go_to_bookmark(ctx, i),
+            None => {}
+        }
+    }
+
     fn choose(&mut self, ctx: &Context, choice: Choice) {
         match choice {
             Choice::Command(command) => self.command(ctx, command),
             Choice::Builtin(i) => self.go_on_to(ctx, Next::Show(Box::new(builtin(i)))),
             Choice::Recent(path) => self.open(vec![path]),
-            Choice::GoTo(i) => {
-                if let Some(bookmark) = self.bookmarks.get(i).cloned() {
-                    let image = self.model.document().camera.image;
-                    self.model.edit(|document| document.camera = CameraDoc { image, ..bookmark.camera });
-                }
-            }
-            Choice::Forget(i) => {
-                if i < self.bookmarks.len() {
-                    self.bookmarks.remove(i);
-                    self.remember_bookmarks();
-                }
-            }
+            Choice::GoTo(i) => self.go_to_bookmark(ctx, i),
+            Choice::Forget(i) => self.forget_bookmark(i),
             Choice::Step(steps) => self.model.editor.go_to(steps),
-            Choice::Welcome => self.welcome.open = true,
             #[cfg(target_family = "wasm")]
             Choice::ForgetFiles => self.forget_files(ctx),
-            Choice::Quit => self.go_on_to(ctx, Next::Quit),
         }
     }
 
@@ -426,6 +439,7 @@ impl eframe::App for Viewer {
         if std::mem::take(&mut self.model.came_back) {
             self.bookmarks = std::mem::take(&mut self.bookmarks_before);
         }
+        self.model.fly_on(&ctx);
         self.closing(&ctx);
         self.arrivals(&ctx);
         if !self.asks()
@@ -440,6 +454,8 @@ impl eframe::App for Viewer {
             self.large(ui);
         }
         self.overhead(&ctx);
+        self.finding(&ctx);
+        self.bookmark_window(&ctx);
         self.welcome(&ctx);
         self.at_work(&ctx);
         menu::help(&ctx, &mut self.help);

@@ -15,6 +15,8 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
         ui.label(tr("Pointer"));
         ui.selectable_value(&mut look.tool, Tool::Map, tr("Map"));
         ui.selectable_value(&mut look.tool, Tool::Orbit, tr("Orbit"));
+        let help = tr("lengths along the ground, climb and area");
+        ui.selectable_value(&mut look.tool, Tool::Measure, tr("Measure")).on_hover_text(help);
     });
     ui.checkbox(&mut look.bent, tr("Bent"));
     ui.horizontal_wrapped(|ui| {

@@ -98,7 +98,10 @@ pub(crate) fn set_stage(document: &mut Document, stage: StageDoc) {
 /// Width of the number and the name beside a slider, points.
 const BESIDE_SLIDER: f32 = 190.0;
 
-/// A slider with its name beside it; its drag is one step of undo. Returns the new value.
+/// Least width of the value of a slider, points.
+const VALUE: f32 = 54.0;
+
+/// A slider with its name after it; its drag is one step of undo. Returns the new value.
 pub(crate) fn slider(
     ui: &mut Ui,
     model: &mut Model,
@@ -108,15 +111,15 @@ pub(crate) fn slider(
     help: &str,
 ) -> Option<f64> {
     let mut now = value;
-    let response = ui
-        .scope(|ui| {
-            // In a narrow panel the slider leaves its name the room.
-            let rest = ui.available_width() - BESIDE_SLIDER;
-            ui.spacing_mut().slider_width = rest.clamp(0.6 * ui.spacing().slider_width, ui.spacing().slider_width);
-            ui.add(Slider::new(&mut now, range).text(name))
-        })
-        .inner
-        .on_hover_text(help);
+    let slider = ui.scope(|ui| {
+        // The name stays where it is whatever number of digits the value has.
+        ui.spacing_mut().interact_size.x = VALUE;
+        // In a narrow panel the slider leaves its name the room.
+        let rest = ui.available_width() - BESIDE_SLIDER;
+        ui.spacing_mut().slider_width = rest.clamp(0.6 * ui.spacing().slider_width, ui.spacing().slider_width);
+        ui.add(Slider::new(&mut now, range).text(name))
+    });
+    let response = slider.inner.on_hover_text(help);
     changed(model, &response, now)
 }
 

@@ -15,6 +15,9 @@ const PLAY: f64 = 0.25;
 /// Share of the previewed length that is still ahead when playing ends, since nothing is left to show at the end of a path.
 const AHEAD: f64 = 0.25;
 
+/// Size of the field of a coordinate, points; the same for any number of digits.
+const COORDINATE: [f32; 2] = [92.0, 20.0];
+
 /// Visible share from which on a target counts as in sight.
 const WHOLE: f64 = 0.99;
 
@@ -40,13 +43,14 @@ impl RaysPanel {
             }
             _ => {}
         }
+        ui.separator();
+        turns(ui, model);
+        // Below everything, so that nothing moves under a pointer that drags.
         if let Some(reason) = &model.violated {
             ui.separator();
             ui.strong(tr("Not possible like this"));
             ui.label(reason);
         }
-        ui.separator();
-        turns(ui, model);
         model.handles = Some(Handles::Turns);
     }
 
@@ -306,7 +310,8 @@ fn one(ui: &mut Ui, model: &mut Model, n: usize, turn: &TurnDoc, next: &mut Turn
                 let field =
                     eframe::egui::DragValue::new(&mut value).speed(speed).max_decimals(2).prefix(format!("{letter} "));
                 let whole = format!("{name} {n}, {letter}");
-                let response = ui.add(field).accessible_name(whole.as_str()).on_hover_text(whole);
+                let response =
+                    ui.add_sized(COORDINATE, field).accessible_name(whole.as_str()).on_hover_text(whole);
                 if let Some(value) = super::changed(model, &response, value) {
                     part(next)[axis] = value;
                 }

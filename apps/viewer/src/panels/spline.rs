@@ -69,14 +69,11 @@ impl SplinePanel {
         });
         let Some(drawing) = sketch(&presets, preset.phi, distance_of(model)) else { return };
         let id = ui.scope_id().with(("curve", self.chosen));
-        if let Some(edit) = curve(ui, id, &drawing) {
+        if let Some(edit) = curve(ui, id, &drawing, self.clamped.as_deref()) {
             if edit.begins {
                 model.begin_gesture();
             }
             self.change(model, &presets, edit.change);
-        }
-        if let Some(clamped) = &self.clamped {
-            ui.colored_label(ui.visuals().warn_fg_color, clamped);
         }
         self.sections(ui, model, &presets);
         self.numbers(ui, model, &presets);

@@ -161,6 +161,7 @@ impl Viewer {
         match self.model.editor.save(path) {
             Ok(()) => {
                 self.remember(path);
+                self.remember_bookmarks();
                 // The recovery file is written anew, since it says whether the scene is saved.
                 self.written = None;
                 let mut said = fill(tr("Saved: {0}"), &[&path.display()]);

@@ -6,8 +6,8 @@ use belvedere::core::DVec2;
 use belvedere::core::presets::edit::PresetChange;
 use belvedere::verbs::preset::{Sketch, SketchTag};
 use eframe::egui::{
-    Color32, CursorIcon, FontId, Id, Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2,
-    vec2,
+    Align, Color32, CursorIcon, FontId, Id, Label, Layout, Painter, Pos2, Rect, Response, RichText, Role, Sense, Shape,
+    Stroke, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
 const HEIGHT: f32 = 250.0;
@@ -58,7 +58,9 @@ impl Scale {
 }
 
 /// Draws the curve and lets it be dragged.
-pub(crate) fn curve(ui: &mut Ui, id: Id, sketch: &Sketch) -> Option<CurveEdit> {
+///
+/// * `said`: a sentence on the last edit, written into the plot, so that the rows below it keep their place.
+pub(crate) fn curve(ui: &mut Ui, id: Id, sketch: &Sketch, said: Option<&str>) -> Option<CurveEdit> {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Group, true, tr("Curve of the preset")));
     // The scale is kept during a drag, or the curve would move away from the pointer.
@@ -71,6 +73,11 @@ pub(crate) fn curve(ui: &mut Ui, id: Id, sketch: &Sketch) -> Option<CurveEdit> {
     let painter = ui.painter_at(rect);
     painter.rect_filled(rect, 3.0, Color32::from_rgb(252, 252, 250));
     draw(&painter, &scale, sketch);
+    if let Some(said) = said {
+        let row = rect.shrink(6.0).with_min_y(rect.bottom() - 40.0);
+        let mut note = ui.new_child(UiBuilder::new().max_rect(row).layout(Layout::bottom_up(Align::Min)));
+        note.add(Label::new(RichText::new(said).color(FOLD)).selectable(false));
+    }
     let mut edit = None;
     for (i, point) in sketch.control.iter().enumerate() {
         let response = handle(ui, id.with(("point", i)), scale.at(*point), &fill(tr("Control point {0}"), &[&(i + 1)]));

@@ -2,15 +2,19 @@
 
 mod accessible;
 mod authoring;
+mod bookmarks;
 mod consent;
 mod controls;
 mod density;
 mod files;
 mod film;
+mod finding;
+mod fingers;
 mod handles;
 mod languages;
 mod layers;
 mod layout;
+mod measuring;
 mod moving;
 mod narrow;
 mod presets;
@@ -18,6 +22,7 @@ mod rest;
 mod screen;
 mod snapshots;
 mod sources;
+mod steady;
 mod styles;
 mod tasks;
 mod unsaved;

@@ -4,7 +4,10 @@
 
 mod beside;
 mod camera;
+mod find;
+mod flight;
 mod layers;
+mod lengths;
 mod live;
 mod object;
 mod painter;
@@ -17,7 +20,10 @@ mod thumbnail;
 
 pub use beside::{THREADS, beside};
 pub use camera::{above_ground, frame_factor, framed, navigation, set_camera};
+pub use find::{Matches, NameIndex, Named, Wanted, atoms_in, folded, place_in};
+pub use flight::{Flight, shown_whole};
 pub use layers::{with_layer_renamed, without_layer};
+pub use lengths::{Lengths, ground_way, lengths, lengths_geojson};
 pub use live::{Judged, LiveSession, Order, Pace, Shown, Sides};
 pub use object::object_at;
 pub use painter::{Answer, Painter};

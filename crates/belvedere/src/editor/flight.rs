@@ -1,0 +1,208 @@
+//! Flights of the camera: from one view to another, above the ground.
+
+use super::camera::above_ground;
+use belvedere_core::{Aabb, DVec2, DVec3, Navigation, Pinhole, Projection};
+use belvedere_scene::{Heightfield, Scene};
+use std::f64::consts::{PI, TAU};
+
+/// Half the width of what is shown around a single point, as a share of the diagonal of the scene.
+const AROUND: f64 = 0.012;
+/// Room around a thing, as a factor of its size.
+const ROOM: f64 = 1.25;
+/// Steps by which the camera is raised until nothing stands before a thing, degrees, and their number.
+const RAISE_DEG: f64 = 4.0;
+const RAISES: usize = 20;
+/// Places of a path at which the ground is looked at.
+const SAMPLES: usize = 96;
+/// Height of the middle of a flight as a share of its length, where that is more than the distance at its ends.
+const ARCH: f64 = 0.3;
+/// Height over the ground in the middle of a flight, as a share of the distance to the point looked at.
+const CLEAR: f64 = 0.03;
+/// Least height over the ground, metres.
+const LEAST_M: f64 = 3.0;
+
+/// A camera that shows a whole box in the middle of its picture from the present direction, raised as far as the ground would hide its
+/// middle; `None` for an empty box. A single point is shown with its surroundings.
+pub fn shown_whole(camera: &Navigation, bounds: &Aabb, scene: &Scene) -> Option<Navigation> {
+    if bounds.is_empty() {
+        return None;
+    }
+    let all = scene.bounds();
+    let diagonal = if all.is_empty() { 0.0 } else { (all.max - all.min).length() };
+    let (middle, half) = (bounds.center(), 0.5 * (bounds.max - bounds.min));
+    let half = if half.length() > 1e-6 * diagonal { ROOM * half } else { DVec3::splat((AROUND * diagonal).max(1e-3)) };
+    let wide = Aabb { min: middle - half, max: middle + half };
+    let raised = |k: usize| camera.orbited(0.0, (RAISE_DEG * k as f64).to_radians())?.framing(&wide);
+    let found = (0..=RAISES).filter_map(|k| raised(k).ok()).find(|next| is_clear(next, middle, scene));
+    found.or_else(|| raised(0).ok().map(|next| above_ground(next, scene)))
+}
+
+/// Whether the eye lies above the ground and the ground leaves the line to a point free.
+fn is_clear(camera: &Navigation, point: DVec3, scene: &Scene) -> bool {
+    let Some(ground) = scene.terrain() else { return true };
+    let eye = camera.pinhole.eye;
+    let height = |xy: DVec2| ground.surface_at(xy);
+    if height(eye.truncate()).is_some_and(|z| eye.z < z + LEAST_M) {
+        return false;
+    }
+    let point = point.with_z(height(point.truncate()).map_or(point.z, |z| z.max(point.z)));
+    // The last part of the way lies on the slope of the thing itself.
+    (0..4 * SAMPLES).map(|k| k as f64 / (4 * SAMPLES) as f64 * 0.97).all(|t| {
+        let at = eye.lerp(point, t);
+        height(at.truncate()).is_none_or(|z| at.z >= z)
+    })
+}
+
+/// A path of the camera from one view to another.
+#[derive(Debug, Clone)]
+pub struct Flight {
+    from: Navigation,
+    to: Navigation,
+    /// Height of the eye in the middle over that without the arch, scene units.
+    lift: f64,
+}
+
+impl Flight {
+    /// The flight between two cameras over the ground of a scene.
+    pub fn new(from: Navigation, to: Navigation, scene: &Scene) -> Self {
+        let flat = Self { from, to, lift: 0.0 };
+        let way = flat.from.target.distance(flat.to.target);
+        let reach = [&flat.from, &flat.to].map(|end| end.target.distance(end.pinhole.eye));
+        let arch = (ARCH * way - 0.5 * (reach[0] + reach[1])).max(0.0);
+        let lift = scene.terrain().map_or(arch, |ground| flat.over(ground).max(arch));
+        Self { lift: lift.min(2.0 * (way + reach[0] + reach[1])), ..flat }
+    }
+
+    /// The lift that keeps the path above the ground.
+    fn over(&self, ground: &Heightfield) -> f64 {
+        let needed = (1..SAMPLES).map(|k| {
+            let s = k as f64 / SAMPLES as f64;
+            let (eye, target) = self.unlifted(s);
+            let room = bump(s);
+            let above = LEAST_M + CLEAR * room * eye.distance(target);
+            ground.surface_at(eye.truncate()).map_or(0.0, |z| (z + above - eye.z) / room)
+        });
+        needed.fold(0.0, f64::max)
+    }
+
+    /// Eye and target at a share of the way without the arch.
+    fn unlifted(&self, s: f64) -> (DVec3, DVec3) {
+        let away = |end: &Navigation| end.pinhole.eye - end.target;
+        let (a, b) = (away(&self.from), away(&self.to));
+        let (length_a, length_b) = (a.length().max(1e-12), b.length().max(1e-12));
+        let length = length_a * (length_b / length_a).powf(s);
+        let heading = |v: DVec3| v.y.atan2(v.x);
+        let steep = |v: DVec3, length: f64| (v.z / length).clamp(-1.0, 1.0).asin();
+        let turn = (heading(b) - heading(a) + PI).rem_euclid(TAU) - PI;
+        let (around, up) = (heading(a) + s * turn, steep(a, length_a).lerp_to(steep(b, length_b), s));
+        let direction = DVec3::new(up.cos() * around.cos(), up.cos() * around.sin(), up.sin());
+        let target = self.from.target.lerp(self.to.target, s);
+        (target + length * direction, target)
+    }
+
+    /// The camera at a share of the time, 0..=1: it starts and ends gently, at 0 and 1 with the two cameras themselves.
+    pub fn at(&self, share: f64) -> Navigation {
+        let t = share.clamp(0.0, 1.0);
+        if t <= 0.0 {
+            return self.from.clone();
+        }
+        let s = t * t * (3.0 - 2.0 * t);
+        let (eye, target) = self.unlifted(s);
+        let eye = eye + self.lift * bump(s) * DVec3::Z;
+        let (a, b) = (&self.from.pinhole, &self.to.pinhole);
+        let projection = match (a.projection, b.projection) {
+            (Projection::Perspective { fov_y: a }, Projection::Perspective { fov_y: b }) => {
+                Projection::Perspective { fov_y: a.lerp_to(b, s) }
+            }
+            (Projection::Orthographic { height: a }, Projection::Orthographic { height: b }) => {
+                Projection::Orthographic { height: a * (b / a).powf(s) }
+            }
+            (_, last) => last,
+        };
+        let pinhole = Pinhole::look_at(eye, target, DVec3::Z, projection, b.image, a.near.min(b.near), b.far);
+        match pinhole {
+            Ok(pinhole) if t < 1.0 => Navigation { pinhole, target },
+            _ => self.to.clone(),
+        }
+    }
+}
+
+/// 0 at both ends and 1 in the middle.
+fn bump(s: f64) -> f64 {
+    4.0 * s * (1.0 - s)
+}
+
+trait Lerp {
+    fn lerp_to(self, to: Self, s: f64) -> Self;
+}
+
+impl Lerp for f64 {
+    fn lerp_to(self, to: Self, s: f64) -> Self {
+        self + s * (to - self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera(eye: [f64; 3], target: [f64; 3]) -> Navigation {
+        let lens = Projection::Perspective { fov_y: 0.8 };
+        let target = DVec3::from_array(target);
+        let pinhole = Pinhole::look_at(DVec3::from_array(eye), target, DVec3::Z, lens, [1280, 720], 1.0, None);
+        Navigation { pinhole: pinhole.expect("camera"), target }
+    }
+
+    /// Level ground with a wall of 900 m across its middle.
+    fn walled() -> Scene {
+        let heights = (0..101 * 101).map(|i| if (48..=52).contains(&(i / 101)) { 900.0 } else { 0.0 }).collect();
+        let ground = Heightfield::measured(DVec2::new(0.0, 10_000.0), DVec2::splat(100.0), 101, 101, heights);
+        Scene::default().with_terrain("ground", ground.expect("ground"))
+    }
+
+    #[test]
+    fn a_flight_over_a_wall_stays_above_it_and_ends_where_it_should() {
+        let scene = walled();
+        let (from, to) = (
+            camera([5000.0, 1000.0, 200.0], [5000.0, 2500.0, 0.0]),
+            camera([5000.0, 9000.0, 150.0], [4800.0, 7500.0, 0.0]),
+        );
+        let flight = Flight::new(from.clone(), to.clone(), &scene);
+        assert_eq!((flight.at(0.0), flight.at(1.0)), (from, to));
+        let ground = scene.terrain().expect("ground");
+        let mut last: Option<DVec3> = None;
+        for k in 0..=400 {
+            let now = flight.at(f64::from(k) / 400.0);
+            let eye = now.pinhole.eye;
+            let over = eye.z - ground.surface_at(eye.truncate()).expect("on the ground");
+            assert!(over > 2.0, "{over} m over the ground at {k}");
+            assert!(now.pinhole.right.z.abs() < 1e-9, "rolled");
+            assert!(last.is_none_or(|last| last.distance(eye) < 250.0), "a jump at {k}");
+            last = Some(eye);
+        }
+    }
+
+    #[test]
+    fn a_thing_behind_a_wall_is_looked_at_from_higher_up() {
+        let scene = walled();
+        let before = camera([5000.0, 1000.0, 200.0], [5000.0, 2500.0, 100.0]);
+        let hut = DVec3::new(5000.0, 5500.0, 0.0);
+        let after = shown_whole(&before, &Aabb::of([hut]), &scene).expect("a camera");
+        assert!(is_clear(&after, hut, &scene));
+        assert!(after.target.distance(hut) < 1e-9);
+        let heading = |camera: &Navigation| camera.pinhole.forward.truncate().normalize();
+        assert!(heading(&after).distance(heading(&before)) < 1e-9, "from the present direction");
+        let (at, _) = after.pinhole.project(hut).expect("in front");
+        assert!(at.distance(DVec2::new(640.0, 360.0)) < 1e-6, "in the middle: {at}");
+    }
+
+    #[test]
+    fn a_long_thing_is_shown_whole() {
+        let bounds = Aabb::of([DVec3::new(1000.0, 1000.0, 0.0), DVec3::new(9000.0, 4000.0, 100.0)]);
+        let after =
+            shown_whole(&camera([5000.0, 1000.0, 900.0], [5000.0, 2500.0, 0.0]), &bounds, &walled()).expect("a camera");
+        assert!(
+            bounds.corners().iter().all(|&c| after.pinhole.project(c).is_ok_and(|(p, _)| after.pinhole.contains(p)))
+        );
+    }
+}

@@ -1,0 +1,242 @@
+//! Lengths between points that a user sets: along the ground, straight, up and down, and the area in plan.
+
+use crate::resolve::ground::Ground;
+use belvedere_core::{DVec2, DVec3};
+use belvedere_scene::{Crs, Heightfield, Scene, Unit};
+use serde_json::{Value, json};
+
+/// Points of a height profile, at most.
+const PROFILE: usize = 400;
+
+/// Lengths of a chain of points, scene units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lengths {
+    /// Along the ground below the points, over the true surface as it is drawn unbent: two triangles in each cell. `None` where the
+    /// scene has no ground below the whole chain.
+    pub along_ground: Option<f64>,
+    /// Sum of the straight distances from point to point.
+    pub straight: f64,
+    /// Upwards and downwards along the ground; without ground from point to point.
+    pub climb: f64,
+    /// See `climb`; positive.
+    pub descent: f64,
+    /// Area in plan of the ring of three points or more, square scene units; of a ring that crosses itself the parts count with the sign
+    /// of their turn. `None` for fewer points, and in scenes without a plan (molecules, volumes).
+    pub area: Option<f64>,
+    /// Distance in plan from the first point and height, at most 400 points along the ground, or the points themselves without ground.
+    pub profile: Vec<[f64; 2]>,
+}
+
+/// The lengths of a chain of points on or above the ground of a scene.
+pub fn lengths(scene: &Scene, points: &[DVec3]) -> Lengths {
+    let way = scene.terrain().and_then(|ground| ground_way(ground, points));
+    let walked = way.as_deref().unwrap_or(points);
+    let rise = |pair: &[DVec3]| pair[1].z - pair[0].z;
+    let climb = walked.windows(2).map(|pair| rise(pair).max(0.0)).sum();
+    let descent = walked.windows(2).map(|pair| (-rise(pair)).max(0.0)).sum();
+    let is_ring = points.len() >= 3 && scene.unit == Unit::Metre;
+    Lengths {
+        along_ground: way.as_deref().map(length),
+        straight: length(points),
+        climb,
+        descent,
+        area: is_ring.then(|| area(points)),
+        profile: profile(walked),
+    }
+}
+
+fn length(points: &[DVec3]) -> f64 {
+    points.windows(2).map(|pair| pair[0].distance(pair[1])).sum()
+}
+
+/// Area in plan of a ring that closes itself.
+fn area(points: &[DVec3]) -> f64 {
+    let first = points[0].truncate();
+    let fan = points.windows(2).map(|pair| (pair[0].truncate() - first).perp_dot(pair[1].truncate() - first));
+    0.5 * fan.sum::<f64>().abs()
+}
+
+/// The way over the drawn ground below a chain of points: a vertex wherever it crosses an edge of a triangle. `None` if the ground has a
+/// gap below it.
+pub fn ground_way(ground: &Heightfield, points: &[DVec3]) -> Option<Vec<DVec3>> {
+    let on_ground = |xy: DVec2| ground.surface_at(xy).map(|z| xy.extend(z));
+    let mut way = vec![on_ground(points.first()?.truncate())?];
+    for pair in points.windows(2) {
+        let [a, b] = [pair[0].truncate(), pair[1].truncate()];
+        for t in crossings(ground, a, b) {
+            way.push(on_ground(a.lerp(b, t))?);
+        }
+        way.push(on_ground(b)?);
+    }
+    Some(way)
+}
+
+/// Shares of the way from `a` to `b` at which it crosses columns, rows and diagonals of the grid, rising.
+fn crossings(ground: &Heightfield, a: DVec2, b: DVec2) -> Vec<f64> {
+    let [from, to] = [a, b].map(|p| ground.grid_from_scene(p));
+    let families = [[from.x, to.x], [from.y, to.y], [from.x - from.y, to.x - to.y]];
+    let mut shares = Vec::new();
+    for [from, to] in families {
+        let (low, high) = (from.min(to).ceil(), from.max(to).floor());
+        let most = (ground.cols() + ground.rows()) as f64;
+        if high - low > 2.0 * most {
+            continue;
+        }
+        let mut k = low;
+        while k <= high {
+            let t = (k - from) / (to - from);
+            if t > 0.0 && t < 1.0 {
+                shares.push(t);
+            }
+            k += 1.0;
+        }
+    }
+    shares.sort_by(f64::total_cmp);
+    shares
+}
+
+/// Distance in plan and height, thinned where there are too many points; first and last stay.
+fn profile(way: &[DVec3]) -> Vec<[f64; 2]> {
+    let mut along = 0.0;
+    let mut last: Option<DVec3> = None;
+    let all = way.iter().map(|p| {
+        along += last.map_or(0.0, |last| last.truncate().distance(p.truncate()));
+        last = Some(*p);
+        [along, p.z]
+    });
+    let all: Vec<[f64; 2]> = all.collect();
+    if all.len() <= PROFILE {
+        return all;
+    }
+    let at = |k: usize| all[k * (all.len() - 1) / (PROFILE - 1)];
+    (0..PROFILE).map(at).collect()
+}
+
+/// The chain as GeoJSON with its lengths as properties: a line, or the ring of three points and more where `closed`. Longitude and
+/// latitude (WGS84) with heights where the scene is georeferenced, as GeoJSON requires; else scene coordinates.
+pub fn lengths_geojson(scene: &Scene, points: &[DVec3], closed: bool) -> Value {
+    let ground = Ground::of(scene);
+    let place = |p: &DVec3| match ground.crs {
+        Crs::Local => Some([p.x, p.y, p.z]),
+        Crs::Epsg(_) => ground.lon_lat(p.truncate()).map(|lon_lat| [rounded(lon_lat.x), rounded(lon_lat.y), p.z]),
+    };
+    let geographic: Option<Vec<[f64; 3]>> = points.iter().map(place).collect();
+    let system =
+        if geographic.is_some() && ground.crs != Crs::Local { "OGC:CRS84".to_owned() } else { ground.crs.to_string() };
+    let mut chain = geographic.unwrap_or_else(|| points.iter().map(|p| p.to_array()).collect());
+    let closes = closed && points.len() >= 3;
+    let geometry = match chain.as_slice() {
+        [one] => json!({ "type": "Point", "coordinates": one }),
+        _ if closes => {
+            // The outer ring turns counter-clockwise.
+            let first = points[0].truncate();
+            let fan = points.windows(2).map(|pair| (pair[0].truncate() - first).perp_dot(pair[1].truncate() - first));
+            if fan.sum::<f64>() < 0.0 {
+                chain.reverse();
+            }
+            chain.push(chain[0]);
+            json!({ "type": "Polygon", "coordinates": [chain] })
+        }
+        _ => json!({ "type": "LineString", "coordinates": chain }),
+    };
+    let of = lengths(scene, points);
+    let unit = match scene.unit {
+        Unit::Metre => "metre",
+        Unit::Angstrom => "angstrom",
+        Unit::Voxel => "voxel",
+    };
+    let properties = json!({
+        "unit": unit,
+        "crs": system,
+        "along_ground": of.along_ground,
+        "straight": of.straight,
+        "climb": of.climb,
+        "descent": of.descent,
+        "area_in_plan": of.area,
+    });
+    json!({ "type": "FeatureCollection", "features": [{ "type": "Feature", "geometry": geometry, "properties": properties }] })
+}
+
+/// Degrees to about 0.1 mm.
+fn rounded(degrees: f64) -> f64 {
+    (1e9 * degrees).round() / 1e9
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hills() -> Scene {
+        let heights =
+            (0..61 * 81).map(|i| (60.0 * (f64::from(i % 81) / 6.0).sin() * (f64::from(i / 81) / 9.0).cos()) as f32);
+        let ground =
+            Heightfield::measured(DVec2::new(-400.0, 1800.0), DVec2::new(25.0, 30.0), 81, 61, heights.collect());
+        Scene::default().with_terrain("ground", ground.expect("ground"))
+    }
+
+    /// Sums over many short steps on the drawn surface.
+    fn by_small_steps(scene: &Scene, points: &[DVec3]) -> [f64; 3] {
+        let ground = scene.terrain().expect("ground");
+        let [mut length, mut climb, mut descent] = [0.0; 3];
+        for pair in points.windows(2) {
+            let at = |k: u32| {
+                let xy = pair[0].truncate().lerp(pair[1].truncate(), f64::from(k) / 200_000.0);
+                xy.extend(ground.surface_at(xy).expect("ground"))
+            };
+            let mut last = at(0);
+            for k in 1..=200_000 {
+                let now = at(k);
+                length += now.distance(last);
+                climb += (now.z - last.z).max(0.0);
+                descent += (last.z - now.z).max(0.0);
+                last = now;
+            }
+        }
+        [length, climb, descent]
+    }
+
+    #[test]
+    fn lengths_along_the_ground_are_those_of_many_small_steps() {
+        let scene = hills();
+        let points = [[-390.0, 20.0, 0.0], [1500.0, 1700.0, 0.0], [1333.0, 210.0, 0.0], [-100.0, 210.0, 0.0]]
+            .map(DVec3::from_array);
+        let of = lengths(&scene, &points);
+        let [length, climb, descent] = by_small_steps(&scene, &points);
+        let along = of.along_ground.expect("ground everywhere");
+        assert!((along - length).abs() < 1e-6 * length, "{along} {length}");
+        assert!((of.climb - climb).abs() < 1e-6 * climb && (of.descent - descent).abs() < 1e-6 * descent);
+        assert!(along > of.straight + 20.0, "hills make a way longer: {along} {}", of.straight);
+        let steps = of.profile.windows(2).all(|pair| pair[1][0] >= pair[0][0]);
+        assert!(steps && of.profile.len() > 100 && of.profile.len() <= PROFILE);
+    }
+
+    #[test]
+    fn areas_are_in_plan_and_gaps_are_not_walked_over() {
+        let scene = hills();
+        let square =
+            [[0.0, 0.0, 5.0], [300.0, 0.0, 90.0], [300.0, 200.0, 7.0], [0.0, 200.0, 0.0]].map(DVec3::from_array);
+        assert_eq!(lengths(&scene, &square).area, Some(60_000.0));
+        assert_eq!(lengths(&scene, &square[..2]).area, None);
+        let beyond = [square[0], DVec3::new(5000.0, 0.0, 0.0)];
+        let of = lengths(&scene, &beyond);
+        assert_eq!((of.along_ground, of.straight), (None, beyond[0].distance(beyond[1])));
+        assert_eq!(lengths(&scene, &[]).straight, 0.0);
+    }
+
+    #[test]
+    fn a_chain_is_written_as_geojson_in_the_system_of_its_scene() {
+        let points = [[500_000.0, 4_649_776.0, 3.0], [501_000.0, 4_649_776.0, 3.0], [500_000.0, 4_650_776.0, 3.0]]
+            .map(DVec3::from_array);
+        let here = Scene { crs: Crs::Epsg(32633), ..Scene::default() };
+        let line = lengths_geojson(&here, &points, false);
+        let geometry = &line["features"][0]["geometry"];
+        assert_eq!(geometry["type"], "LineString");
+        // The middle of zone 33 on 42 degrees north.
+        let first = [0, 1].map(|i| geometry["coordinates"][0][i].as_f64().expect("a number"));
+        assert!((first[0] - 15.0).abs() < 1e-6 && (first[1] - 42.0).abs() < 1e-4, "{first:?}");
+        let ring = lengths_geojson(&Scene::default(), &points, true);
+        assert_eq!(ring["features"][0]["geometry"]["coordinates"][0].as_array().map(Vec::len), Some(4));
+        assert_eq!(ring["features"][0]["geometry"]["coordinates"][0][1][0], 501_000.0);
+        assert_eq!(ring["features"][0]["properties"]["area_in_plan"], 500_000.0);
+    }
+}
