@@ -28,8 +28,8 @@ fn main() -> Result<()> {
     let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let data = std::env::var_os("BELVEDERE_DATA").map_or_else(|| repository.join("../shared/data"), PathBuf::from);
     println!(
-        "{:<28} {:>4} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>9} {:>6}",
-        "scene", "pics", "p50 ms", "p95 ms", "worst", "drawing", "first", "rest", "width", "triangles", "per px"
+        "{:<28} {:>4} {:>8} {:>8} {:>8} {:>8} {:>7} {:>8} {:>8} {:>6} {:>2} {:>9} {:>6}",
+        "scene", "pics", "p50 ms", "p95 ms", "worst", "drawing", "cpu", "first", "rest", "width", "", "triangles", "per px"
     );
     for (name, make) in SCENES {
         if only.as_deref().is_some_and(|only| !name.contains(only)) {
@@ -122,17 +122,30 @@ fn styled(data: &Path, name: &str) -> Result<Editor> {
 /// A city at three levels of abstraction in the sections of the demo presets.
 fn sections(data: &Path, name: &str) -> Result<Editor> {
     let mut editor = styled(data, name)?;
+    if name.ends_with(".pbf") {
+        // In degrees the city would be a point.
+        let text = "format = 1\n[camera]\neye = { lon = 1.5218, lat = 42.497, above_ground_m = 400 }\n\
+                    look_at = { lon = 1.5218, lat = 42.508, above_ground_m = 0 }\nfov_y_deg = 45.0\n";
+        let camera = belvedere::scene_file::parse(Path::new("camera.toml"), text)?.document.camera;
+        let ground = ready(Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").as_path(), data, "andorra")?;
+        editor.edit(|document| {
+            document.camera = camera;
+            document.crs = "auto".into();
+            document.layer.splice(0..0, ground.document().layer.first().cloned());
+        });
+        editor.place.roots.allowed.push(data.to_owned());
+    }
     let stage = "format = 1\n[camera]\neye = [0, 0, 1]\nlook_at = [0, 1, 1]\n[[stage]]\nkind = \"spline_bend\"\npresets = \"demo\"\n";
     let stage = belvedere::scene_file::parse(Path::new("stage.toml"), stage)?.document.stage;
     editor.edit(|document| {
-        let [LayerDoc::City(city)] = document.layer.as_slice() else { return };
+        let Some(LayerDoc::City(city)) = document.layer.pop() else { return };
         let levels = [0u8, 1, 2].map(|loa| {
             let mut level = city.clone();
             (level.id, level.loa) = (format!("loa{loa}"), loa);
             level
         });
         document.representations = levels.iter().map(|l| (l.id.clone(), vec![l.id.clone()])).collect();
-        document.layer = levels.map(LayerDoc::City).to_vec();
+        document.layer.extend(levels.map(LayerDoc::City));
         document.stage = stage;
     });
     Ok(editor)

@@ -1,7 +1,7 @@
 //! Dragging as the window does it, without a window: a script of a pointer orders pictures at 60 Hz from the painter that the window
 //! uses, and every picture is timed from the input to its arrival.
 
-use crate::clock::quantile;
+use crate::clock::{Stopwatch, quantile};
 use anyhow::{Context, Result, bail, ensure};
 use belvedere::core::DVec2;
 use belvedere::editor::{
@@ -30,13 +30,17 @@ pub struct DragCost {
     pub latency_ms: [f64; 3],
     /// The time of drawing alone, without waiting for the picture before: median, milliseconds.
     pub drawing_ms: f64,
+    /// Processor time of all threads per moving picture, solvers and judges beside it included, milliseconds.
+    pub cpu_ms: f64,
     /// Time to the first picture, which is one at rest, reading included, milliseconds.
     pub first_ms: f64,
     /// Time of a picture at rest after the drag, milliseconds.
     pub rest_ms: f64,
     /// Width of the last moving picture as a share of the full width.
     pub width_share: f64,
-    /// Triangles of the last moving picture, and per pixel of it.
+    /// Coarseness of the detail of the last moving picture, 0..=3.
+    pub coarseness: u8,
+    /// Triangles of the last moving picture.
     pub triangles: u64,
     /// Triangles per pixel, the most of all moving pictures.
     pub triangles_per_px: f64,
@@ -53,7 +57,7 @@ struct Dragged {
     latencies: Vec<f64>,
     drawing: Vec<f64>,
     densest: f64,
-    coarseness: f64,
+    cpu: Stopwatch,
 }
 
 /// Drags a scene: turns, moves and nears the camera.
@@ -70,14 +74,16 @@ pub fn drag(name: &str, editor: Editor, image: [u32; 2]) -> Result<DragCost> {
     let first_ms = began.elapsed().as_secs_f64() * 1e3;
     let (awaited, latencies, drawing) = (Vec::new(), Vec::new(), Vec::new());
     let mut dragged =
-        Dragged { editor, painter, image, shown, awaited, latencies, drawing, densest: 0.0, coarseness: 1.0 };
+        Dragged { editor, painter, image, shown, awaited, latencies, drawing, densest: 0.0, cpu: Stopwatch::start() };
     for gesture in 0..3 {
         dragged.gesture(gesture)?;
     }
+    let cpu_ms = dragged.cpu.cpu_ms().unwrap_or_default();
     let Dragged { editor, mut painter, shown, latencies, drawing, densest, .. } = dragged;
     ensure!(!latencies.is_empty(), "{name}: no moving picture arrived");
     let frame = shown.bent.as_ref().context("no picture")?;
-    let (width_share, triangles) = (frame.width as f64 / f64::from(image[0]), frame.stats.triangles_drawn);
+    let (width_share, coarseness, triangles) =
+        (shown.quality.width(), shown.quality.coarseness(), frame.stats.triangles_drawn);
     let began = Instant::now();
     painter.order(order(&editor, image, Pace::Resting));
     while picture(&mut painter)?.pace != Pace::Resting {}
@@ -88,9 +94,11 @@ pub fn drag(name: &str, editor: Editor, image: [u32; 2]) -> Result<DragCost> {
         pictures: latencies.len(),
         latency_ms: [of(0.5), of(0.95), of(1.0)],
         drawing_ms: quantile(drawing, 0.5),
+        cpu_ms: cpu_ms / latencies.len() as f64,
         first_ms,
         rest_ms,
         width_share,
+        coarseness,
         triangles,
         triangles_per_px: densest,
     })
@@ -145,9 +153,8 @@ impl Dragged {
     }
 
     fn order(&mut self) {
-        let size = self.image.map(|n| ((f64::from(n) * self.coarseness) as u32).max(16));
         self.awaited.push((self.editor.document().clone(), Instant::now()));
-        self.painter.order(order(&self.editor, size, Pace::Moving { detail_px: 1.0 / self.coarseness }));
+        self.painter.order(order(&self.editor, self.image, Pace::Moving { quality: None }));
     }
 
     fn take(&mut self, answer: Answer) -> Result<()> {
@@ -161,12 +168,6 @@ impl Dragged {
             self.latencies.push(since.elapsed().as_secs_f64() * 1e3);
             self.drawing.push(shown.milliseconds);
         }
-        let factor = match shown.milliseconds {
-            ms if ms > 32.0 => 0.85,
-            ms if ms < 16.0 => 1.1,
-            _ => 1.0,
-        };
-        self.coarseness = (self.coarseness * factor).clamp(0.35, 1.0);
         if let Some(frame) = &shown.bent {
             self.densest = self.densest.max(frame.stats.triangles_drawn as f64 / (frame.width * frame.height) as f64);
         }
@@ -177,11 +178,11 @@ impl Dragged {
 
 impl std::fmt::Display for DragCost {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { scene, pictures, latency_ms: [p50, p95, worst], drawing_ms, first_ms, rest_ms, .. } = self;
+        let Self { scene, pictures, latency_ms: [p50, p95, worst], drawing_ms, cpu_ms, first_ms, rest_ms, .. } = self;
         write!(
             f,
-            "{scene:<28} {pictures:>4} {p50:>8.0} {p95:>8.0} {worst:>8.0} {drawing_ms:>8.0} {first_ms:>8.0} {rest_ms:>8.0} {:>6.2} {:>9} {:>6.2}",
-            self.width_share, self.triangles, self.triangles_per_px
+            "{scene:<28} {pictures:>4} {p50:>8.0} {p95:>8.0} {worst:>8.0} {drawing_ms:>8.0} {cpu_ms:>7.0} {first_ms:>8.0} {rest_ms:>8.0} {:>6.2} {:>2} {:>9} {:>6.2}",
+            self.width_share, self.coarseness, self.triangles, self.triangles_per_px
         )
     }
 }

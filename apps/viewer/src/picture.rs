@@ -171,7 +171,7 @@ impl PictureView {
                 shown.milliseconds,
                 stats.map_or(0.0, |s| s.milliseconds),
                 stats.map_or(0, |s| s.triangles_drawn),
-                if moving { 100.0 * model.coarseness } else { 100.0 },
+                100.0 * shown.quality.width(),
                 model.latency().unwrap_or_default(),
             );
             // Placed above the mark that is part of the picture.

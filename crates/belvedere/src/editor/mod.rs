@@ -4,11 +4,14 @@
 
 mod beside;
 mod camera;
+mod coarse;
 mod layers;
 mod live;
+mod moving;
 mod object;
 mod painter;
 mod place;
+mod rate;
 mod rays;
 mod steps;
 mod thin;
@@ -20,6 +23,7 @@ pub use live::{Judged, LiveSession, Order, Pace, Shown, Sides};
 pub use object::object_at;
 pub use painter::{Answer, Painter};
 pub use place::{Place, Recovered, Recovery};
+pub use rate::{Quality, Rate};
 pub use rays::{next_turn, sharpness_at, sharpness_knob, with_parallel_planes, with_pivot_line};
 pub use steps::step_name;
 

@@ -3,6 +3,7 @@
 mod exact;
 mod examples;
 mod films;
+mod moving_pictures;
 mod names;
 mod sessions;
 mod sweeps;
