@@ -29,7 +29,19 @@ fn main() -> Result<()> {
     let data = std::env::var_os("BELVEDERE_DATA").map_or_else(|| repository.join("../shared/data"), PathBuf::from);
     println!(
         "{:<28} {:>4} {:>8} {:>8} {:>8} {:>8} {:>7} {:>8} {:>8} {:>6} {:>2} {:>9} {:>6}",
-        "scene", "pics", "p50 ms", "p95 ms", "worst", "drawing", "cpu", "first", "rest", "width", "", "triangles", "per px"
+        "scene",
+        "pics",
+        "p50 ms",
+        "p95 ms",
+        "worst",
+        "drawing",
+        "cpu",
+        "first",
+        "rest",
+        "width",
+        "",
+        "triangles",
+        "per px"
     );
     for (name, make) in SCENES {
         if only.as_deref().is_some_and(|only| !name.contains(only)) {

@@ -3,8 +3,8 @@
 use crate::notices::Notices;
 use belvedere::core::{Aabb, DVec2, DVec3, Navigation, Pinhole, Projection};
 use belvedere::editor::{
-    Answer, Editor, Judged, Order, Pace, Painter, Quality, Shown, Sides, above_ground, frame_factor, navigation, object_at,
-    set_camera,
+    Answer, Editor, Judged, Order, Pace, Painter, Quality, Shown, Sides, above_ground, frame_factor, navigation,
+    object_at, set_camera,
 };
 use belvedere::scene::Frame;
 use belvedere::scene::Instant as Clock;

@@ -47,7 +47,8 @@ fn prepared<'a>(job: &RenderJob<'a>) -> Option<Tracer<'a>> {
         _ => 0,
     };
     let nodes: usize = job.scene.layers.iter().map(|l| nodes(&l.kind)).sum();
-    (nodes <= MAX_NODES && job.options.tolerance_px < COARSE_PX).then(|| Tracer::exposed(job.scene, job.view, Sections::new(job), Exposure::even()))
+    (nodes <= MAX_NODES && job.options.tolerance_px < COARSE_PX)
+        .then(|| Tracer::exposed(job.scene, job.view, Sections::new(job), Exposure::even()))
 }
 
 impl Sight for TracedSight<'_> {

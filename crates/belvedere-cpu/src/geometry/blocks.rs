@@ -136,13 +136,15 @@ impl Blocks {
                     let carried = bodies.and_then(|bodies| bodies.carried.layer(i));
                     let locator = body_locator.as_ref().filter(|_| carried.is_some()).unwrap_or(&locator);
                     let parts = box_chunks(b, carried);
-                    self.list.par_extend(soups(locator, &parts, progress, |pass, k| job.box_block(pass, b, carried, k)));
+                    self.list
+                        .par_extend(soups(locator, &parts, progress, |pass, k| job.box_block(pass, b, carried, k)));
                 }
                 kind => {
                     let Some(mesh) = kind.triangles().map(|m| &m.mesh) else { continue };
                     let mut draw = |locator: &Locator<'_>, drawn: Drawn<'_>| {
                         let parts = drawn.chunks();
-                        self.list.par_extend(soups(locator, &parts, progress, |pass, k| job.mesh_block(pass, drawn, k)));
+                        self.list
+                            .par_extend(soups(locator, &parts, progress, |pass, k| job.mesh_block(pass, drawn, k)));
                     };
                     match (bodies.and_then(|bodies| bodies.carried.layer(i)), &body_locator) {
                         (Some(carried), Some(body_locator)) => {

@@ -4,10 +4,11 @@
 use belvedere_core::DVec3;
 use belvedere_scene::{Color, Mesh, MeshColors, MeshLayer, RigidParts};
 use std::collections::{HashMap, HashSet};
+use std::hash::{BuildHasherDefault, Hasher};
 
-/// Lattices that are tried, each coarser than the one before.
+/// Lattices that are tried, and the share of the triangles that the next one is made for.
 const TRIES: usize = 6;
-const COARSER: f64 = 1.35;
+const SPARE: f64 = 0.9;
 /// Corners by which is judged whether a mesh has normals of its own, and least cosine to the normal of the face without them.
 const JUDGED: usize = 64;
 const SAME: f64 = 0.9999;
@@ -39,55 +40,82 @@ fn clustered(mesh: &Mesh, most: usize, apart: bool, plain: Color) -> Option<Mesh
         if made.triangles.len() <= most {
             return finished(mesh, made, side, plain);
         }
-        side *= COARSER;
+        side *= (made.triangles.len() as f64 / (SPARE * most as f64)).sqrt();
     }
     None
 }
 
+/// A quick hash of a few numbers: multiplied by an odd constant and folded, one after the other.
+#[derive(Default)]
+struct Fold(u64);
+
+impl Hasher for Fold {
+    fn write(&mut self, bytes: &[u8]) {
+        for four in bytes.chunks(4) {
+            self.write_u32(four.iter().fold(0, |n, byte| n << 8 | u32::from(*byte)));
+        }
+    }
+
+    fn write_u32(&mut self, n: u32) {
+        let product = (u128::from(self.0 ^ u64::from(n)) + 1) * 0x9e37_79b9_7f4a_7c15;
+        self.0 = (product as u64) ^ (product >> 64) as u64;
+    }
+
+    fn write_i32(&mut self, n: i32) {
+        self.write_u32(n as u32);
+    }
+
+    fn write_usize(&mut self, n: usize) {
+        self.write_u32(n as u32);
+    }
+
+    fn finish(&self) -> u64 {
+        self.0
+    }
+}
+
+type Quick = BuildHasherDefault<Fold>;
+
 /// Clusters of vertices.
 struct Clusters {
-    /// By vertex.
-    of: Vec<u32>,
-    count: usize,
+    /// By triangle and corner.
+    of: Vec<[u32; 3]>,
+    /// Sum of the positions of the corners in a cluster, relative to the mesh's origin, and their number.
+    sums: Vec<(DVec3, f64)>,
     /// Triangles between three clusters, and the triangles of the mesh that they were.
     triangles: Vec<([u32; 3], usize)>,
 }
 
 fn on_lattice(mesh: &Mesh, side: f64, apart: bool) -> Clusters {
-    let mut part = vec![u32::MAX; mesh.vertex_count()];
-    if apart {
-        for (t, corners) in mesh.triangles().iter().enumerate() {
-            corners.iter().for_each(|&v| part[v as usize] = mesh.part(t).unwrap_or(u32::MAX));
-        }
-    }
-    let mut known: HashMap<([i32; 3], u32), u32> = HashMap::new();
-    let cube = |p: DVec3| (p / side).floor().to_array().map(|x| x as i32);
-    let of: Vec<u32> = (mesh.positions().iter().zip(&part))
-        .map(|(p, part)| {
-            let next = known.len() as u32;
-            *known.entry((cube(p.as_dvec3()), *part)).or_insert(next)
-        })
-        .collect();
-    let mut seen = HashSet::new();
-    let mut triangles = Vec::new();
+    let mut known: HashMap<([i32; 3], u32), u32, Quick> = HashMap::default();
+    let (mut sums, mut seen) = (Vec::new(), HashSet::<[u32; 3], Quick>::default());
+    let (mut of, mut triangles) = (Vec::with_capacity(mesh.triangles().len()), Vec::new());
     for (t, corners) in mesh.triangles().iter().enumerate() {
-        let [a, b, c] = corners.map(|v| of[v as usize]);
-        let mut key = [a, b, c];
+        let part = if apart { mesh.part(t).unwrap_or(u32::MAX) } else { 0 };
+        let clusters = corners.map(|v| {
+            let p = mesh.positions()[v as usize].as_dvec3();
+            let cube = (p / side).floor().to_array().map(|x| x as i32);
+            let next = sums.len() as u32;
+            let cluster = *known.entry((cube, part)).or_insert(next);
+            if cluster == next {
+                sums.push((DVec3::ZERO, 0.0));
+            }
+            let (sum, n) = &mut sums[cluster as usize];
+            (*sum, *n) = (*sum + p, *n + 1.0);
+            cluster
+        });
+        of.push(clusters);
+        let mut key = clusters;
         key.sort_unstable();
         if key[0] != key[1] && key[1] != key[2] && seen.insert(key) {
-            triangles.push(([a, b, c], t));
+            triangles.push((clusters, t));
         }
     }
-    Clusters { of, count: known.len(), triangles }
+    Clusters { of, sums, triangles }
 }
 
 fn finished(mesh: &Mesh, made: Clusters, side: f64, plain: Color) -> Option<Mesh> {
-    let mut sums = vec![(DVec3::ZERO, 0.0); made.count];
-    for (v, &k) in made.of.iter().enumerate() {
-        let (sum, n) = &mut sums[k as usize];
-        (*sum, *n) = (*sum + mesh.vertex(v as u32), *n + 1.0);
-    }
-    let positions: Vec<DVec3> = sums.into_iter().map(|(sum, n)| sum / n).collect();
+    let positions: Vec<DVec3> = made.sums.iter().map(|(sum, n)| mesh.origin() + *sum / *n).collect();
     let color = |t: usize| mesh.surface_color_at(t, [1.0 / 3.0; 3], side);
     let colors = match made.triangles.iter().any(|(_, t)| color(*t).is_some()) {
         true => MeshColors::PerTriangle(made.triangles.iter().map(|(_, t)| color(*t).unwrap_or(plain)).collect()),
@@ -111,11 +139,11 @@ fn is_smooth(mesh: &Mesh) -> bool {
 }
 
 fn normals(mesh: &Mesh, made: &Clusters) -> Vec<DVec3> {
-    let mut sums = vec![DVec3::ZERO; made.count];
-    for (t, corners) in mesh.triangles().iter().enumerate() {
-        for (corner, v) in corners.iter().enumerate() {
+    let mut sums = vec![DVec3::ZERO; made.sums.len()];
+    for (t, clusters) in made.of.iter().enumerate() {
+        for (corner, cluster) in clusters.iter().enumerate() {
             let weights = std::array::from_fn(|k| if k == corner { 1.0 } else { 0.0 });
-            sums[made.of[*v as usize] as usize] += mesh.normal_at(t, weights);
+            sums[*cluster as usize] += mesh.normal_at(t, weights);
         }
     }
     sums

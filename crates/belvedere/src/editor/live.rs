@@ -12,7 +12,7 @@ use crate::session::{Loaded, Resolved};
 use crate::{BelvedereError, CameraPicture, OpenOptions, Session};
 use belvedere_construct::measure::HiddenRun;
 use belvedere_construct::{MeasureOptions, Measures};
-use belvedere_core::{Stage, View};
+use belvedere_core::{Stage, View, Warning};
 use belvedere_scene::Instant;
 use belvedere_scene::{Frame, Progress, RenderJob, RenderOptions, Scene};
 use std::sync::Arc;
@@ -235,6 +235,12 @@ impl LiveSession {
     /// # Errors
     /// [`BelvedereError::Construct`], [`BelvedereError::Cancelled`].
     pub fn judge(&mut self, order: &Order, progress: &Progress) -> Result<Option<Judged>, BelvedereError> {
+        if order.pace == Pace::Resting
+            && let Some(session) = &self.session
+        {
+            // So that a motion need not wait for coarse models.
+            self.thin.scene(session.loaded.scene.clone(), self.rate.quality());
+        }
         let began = Instant::now();
         let judged = self.judged(order, progress);
         // How long one would have taken that was broken off is not known.
@@ -291,7 +297,7 @@ impl LiveSession {
         // A preview has a camera of its own, so its picture is not drawn without it.
         let is_preview = document.constructor.as_ref().is_some_and(|doc| doc.kind == ConstructorKind::PathPreview);
         let in_time = constructs && !solves && (is_preview || self.constructing <= SOLVE_WITHIN);
-        let options = OpenOptions { unsolved: !in_time, ..options(order, progress) };
+        let options = OpenOptions { unsolved: !in_time, unchecked: true, ..options(order, progress) };
         let Some(session) = self.open(&document) else {
             let session = self.reopened(&document, &options)?;
             self.session = Some(session.clone());
@@ -299,7 +305,13 @@ impl LiveSession {
         };
         let document = with_known_planes(document, &session);
         let mut memory = self.memory.of_path_sized(image);
-        let session = session.edited(document, &options, &mut memory)?;
+        let mut session = session.edited(document, &options, &mut memory)?;
+        // What only a picture at rest warns of holds until the next one.
+        if let Some(rested) = &self.session {
+            let new = |warning: &Warning| !session.resolved.warnings.contains(warning);
+            let old: Vec<Warning> = rested.resolved.warnings.iter().filter(|w| new(w)).cloned().collect();
+            session.resolved.warnings.extend(old);
+        }
         if solves {
             return match self.ground.under(&session)? {
                 Some(stage) => Ok((with_ground(session, stage)?, constructs.then_some(RAYS))),

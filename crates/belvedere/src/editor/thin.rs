@@ -85,9 +85,10 @@ fn changes(kind: &LayerKind, quality: Quality) -> bool {
     match kind {
         LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) => quality.width() < 1.0,
         LayerKind::Volume(_) => quality.volume_step() > 1.0,
-        kind => quality.mesh_triangles().zip(kind.triangles()).is_some_and(|(most, layer)| {
-            layer.mesh.triangles().len() > most
-        }),
+        kind => quality
+            .mesh_triangles()
+            .zip(kind.triangles())
+            .is_some_and(|(most, layer)| layer.mesh.triangles().len() > most),
     }
 }
 
@@ -153,7 +154,8 @@ mod tests {
         let camera = "format = 1\nunit = 'angstrom'\n[camera]\neye = [0, -300, 0]\nlook_at = [0, 0, 0]\n[[layer]]\n";
         let scene = session(&format!("{camera}id = 'm'\nkind = 'molecule'\nsource = 'builtin:dna?pairs=12&seed=7'\n"));
         let count = |scene: &Scene| scene.layers[0].kind.triangles().expect("triangles").mesh.triangles().len();
-        let (all, coarse) = (scene.loaded.scene.clone(), Thin::default().scene(scene.loaded.scene.clone(), Quality::LEAST));
+        let (all, coarse) =
+            (scene.loaded.scene.clone(), Thin::default().scene(scene.loaded.scene.clone(), Quality::LEAST));
         assert!(count(&all) > 200_000 && (10_000..=40_000).contains(&count(&coarse)), "{}", count(&coarse));
         let scene = session(&format!("{camera}id = 'v'\nkind = 'volume'\nsource = 'builtin:tube'\n"));
         let coarse = Thin::default().scene(scene.loaded.scene.clone(), Quality::LEAST);

@@ -46,7 +46,8 @@ fn drapes(layer: &TerrainLayer, cache: &LightCache) -> Arc<Vec<DrapeMap>> {
     }
     let make = || Arc::new(layer.drapes.iter().filter_map(DrapeMap::new).collect::<Vec<_>>());
     let known = cache.drapes.get(&layer.heightfield, (), make);
-    let same = known.len() == layer.drapes.len() && known.iter().zip(&layer.drapes).all(|(map, drape)| map.is_of(drape));
+    let same =
+        known.len() == layer.drapes.len() && known.iter().zip(&layer.drapes).all(|(map, drape)| map.is_of(drape));
     if same {
         return known;
     }

@@ -39,9 +39,10 @@ impl DrapeMap {
 
     /// Whether it was made from this picture.
     pub(crate) fn is_of(&self, drape: &Drape) -> bool {
-        let made = self.levels.first().is_some_and(|(w, h, pixels)| {
-            (*w, *h) == (drape.width, drape.height) && *pixels == drape.pixels
-        });
+        let made = self
+            .levels
+            .first()
+            .is_some_and(|(w, h, pixels)| (*w, *h) == (drape.width, drape.height) && *pixels == drape.pixels);
         made && self.pixel_from_scene == drape.pixel_from_scene
     }
 
