@@ -4,6 +4,7 @@
 //! frames of one round. Processor time of all threads counts where the system tells it (Linux), wall time elsewhere.
 
 pub mod clock;
+pub mod dragging;
 mod flight;
 mod frames;
 pub mod scene;

@@ -6,8 +6,8 @@ use crate::notices::Notices;
 use belvedere::core::presets::PresetDocument;
 use belvedere::core::{Aabb, DVec2, DVec3, Navigation, Pinhole, Projection};
 use belvedere::editor::{
-    Answer, Editor, Judged, Order, Pace, Painter, Shown, Sides, above_ground, frame_factor, navigation, object_at,
-    set_camera,
+    Answer, Editor, Judged, Order, Pace, Painter, Quality, Shown, Sides, above_ground, frame_factor, navigation,
+    object_at, set_camera,
 };
 use belvedere::scene::Frame;
 use belvedere::scene::Instant as Clock;
@@ -77,10 +77,6 @@ impl Default for Look {
     }
 }
 
-/// Time of a moving picture above which it is drawn coarser, and below which it is drawn finer, milliseconds.
-const PACE_MS: [f64; 2] = [32.0, 16.0];
-/// Least width of a moving picture as a share of the full width in pixels.
-const COARSEST: f64 = 0.35;
 /// Number of kept times.
 const LATENCIES: usize = 600;
 /// Time without motion after which the picture is drawn in full, seconds; longer in a browser, where drawing cannot be interrupted.
@@ -149,8 +145,8 @@ pub(crate) struct Model {
     /// Share of the transition from straight to bent, 0..=1, and the time of its last step, seconds.
     way: f64,
     moved_on_at: f64,
-    /// Width of moving pictures as a share of the full width in pixels.
-    pub(crate) coarseness: f64,
+    /// Quality of moving pictures; `None` = as good as is drawn in time.
+    pub(crate) quality: Option<Quality>,
     gesture: u64,
     /// Pixels of the picture per point of the window: lines, marks and names are that many times as large.
     pub(crate) density: f64,
@@ -194,7 +190,7 @@ impl Model {
             changed_at: f64::NEG_INFINITY,
             way: 1.0,
             moved_on_at: f64::NEG_INFINITY,
-            coarseness: 1.0,
+            quality: None,
             gesture: 0,
             density: 1.0,
             system_dialogs: false,
@@ -446,10 +442,8 @@ impl Model {
             self.ordered = Some(wanted.clone());
             let takes_long = self.document().solves_terrain() || self.document().constructor.is_some();
             if self.shown.is_some() || takes_long {
-                let size = image.map(|n| ((f64::from(n) * self.coarseness) as u32).max(16));
-                let detail_px = 1.0 / self.coarseness;
                 self.awaited.push((wanted.document.clone(), Clock::now()));
-                self.send(wanted, size, Pace::Moving { detail_px });
+                self.send(wanted, image, Pace::Moving { quality: self.quality });
                 return Some(if self.is_easing() { 0.0 } else { REST_AFTER });
             }
         }
@@ -499,12 +493,6 @@ impl Model {
                 self.waiting = self.waiting.filter(|pace| *pace != shown.pace);
                 if let Pace::Moving { .. } = shown.pace {
                     self.arrived(&shown.document);
-                    let factor = match shown.milliseconds {
-                        ms if ms > PACE_MS[0] => 0.85,
-                        ms if ms < PACE_MS[1] => 1.1,
-                        _ => 1.0,
-                    };
-                    self.coarseness = (self.coarseness * factor).clamp(COARSEST, 1.0);
                 } else {
                     note(&mut self.rests_after, self.changed.elapsed().as_secs_f64() * 1e3);
                 }
@@ -612,13 +600,12 @@ presets = "progressive"
         let mut now = 0.0;
         model.order(image, now);
         let bent = next(&mut model);
-        (model.look.bent, model.coarseness) = (false, 1.0);
+        (model.look.bent, model.quality) = (false, Some(Quality::FULL));
         let mut between = Vec::new();
         while model.shown.as_ref().is_some_and(|shown| shown.straight.is_none()) {
             now += 0.1;
             model.order(image, now);
             between.push(next(&mut model));
-            model.coarseness = 1.0;
             assert!(between.len() < 20, "it never arrives");
         }
         let straight = between.pop().expect("pictures");

@@ -192,7 +192,7 @@ impl PictureView {
                     &whole(shown.milliseconds),
                     &whole(stats.map_or(0.0, |s| s.milliseconds)),
                     &stats.map_or(0, |s| s.triangles_drawn),
-                    &whole(if moving { 100.0 * model.coarseness } else { 100.0 }),
+                    &whole(100.0 * shown.quality.width()),
                     &whole(model.latency().unwrap_or_default()),
                 ],
             );

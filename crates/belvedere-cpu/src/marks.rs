@@ -12,6 +12,8 @@ use std::sync::OnceLock;
 
 /// Terrain with more nodes is not prepared for lines of sight in every frame.
 const MAX_NODES: usize = 64 << 20;
+/// Tolerance of bent edges from which on a picture is a coarse one, whose lines are hidden by its depths alone, pixels.
+const COARSE_PX: f64 = 1.0;
 
 /// The marks of a job.
 /// * `depth`: surfaces at the pixel centres.
@@ -45,7 +47,8 @@ fn prepared<'a>(job: &RenderJob<'a>) -> Option<Tracer<'a>> {
         _ => 0,
     };
     let nodes: usize = job.scene.layers.iter().map(|l| nodes(&l.kind)).sum();
-    (nodes <= MAX_NODES).then(|| Tracer::exposed(job.scene, job.view, Sections::new(job), Exposure::even()))
+    (nodes <= MAX_NODES && job.options.tolerance_px < COARSE_PX)
+        .then(|| Tracer::exposed(job.scene, job.view, Sections::new(job), Exposure::even()))
 }
 
 impl Sight for TracedSight<'_> {

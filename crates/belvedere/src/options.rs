@@ -41,6 +41,8 @@ pub struct OpenOptions {
     pub area_style: Option<SurfaceDoc>,
     /// Leaves stages that need a solver out of the view, for callers that need the document alone.
     pub unsolved: bool,
+    /// Leaves out the check of presets at viewing angles that the picture does not show, for pictures that are drawn while something moves.
+    pub unchecked: bool,
     /// Memory limit for the samples of one file, bytes; `None`: that of [`Limits::default`].
     pub max_bytes: Option<u64>,
     /// Progress and cancellation.

@@ -108,8 +108,9 @@ impl Resolved {
         roots: Roots,
         scene: &Scene,
         solving: Option<&mut Solving<'_>>,
+        checks: bool,
     ) -> Result<Self, BelvedereError> {
-        let made = view::resolve(&source, &roots, scene, solving)?;
+        let made = view::resolve(&source, &roots, scene, solving, checks)?;
         Ok(Self {
             light: made.light,
             overlay: source.document.overlay.clone().unwrap_or_default(),
@@ -139,7 +140,7 @@ impl Session {
         roots: Roots,
         solving: Option<&mut Solving<'_>>,
     ) -> Result<Self, BelvedereError> {
-        let resolved = Resolved::of(source, roots, &loaded.scene, solving)?;
+        let resolved = Resolved::of(source, roots, &loaded.scene, solving, true)?;
         Ok(Self::together(loaded.drawn_for(&resolved), resolved))
     }
 
@@ -189,7 +190,7 @@ impl Session {
             Some(d) => (d.source.origin.clone(), d.roots.clone()),
             None => Default::default(),
         };
-        let resolved = Resolved::of(SourceDocument { origin, document }, roots, &self.loaded.scene, solving)?;
+        let resolved = Resolved::of(SourceDocument { origin, document }, roots, &self.loaded.scene, solving, true)?;
         let Resolved { overlay, stylisation, .. } = self.resolved.clone();
         let resolved = Resolved { overlay, stylisation, ..resolved };
         Ok(Self { loaded: self.loaded.clone().drawn_for(&resolved), resolved, ..self.clone() })
@@ -211,7 +212,7 @@ impl Session {
         let roots = Roots { allowed, files, ..Roots::default() };
         let mut solving = Solving { memory, time_step_s: None, progress: &options.progress };
         let solving = (!options.unsolved).then_some(&mut solving);
-        let resolved = Resolved::of(source, roots, &self.loaded.scene, solving)?;
+        let resolved = Resolved::of(source, roots, &self.loaded.scene, solving, !options.unchecked)?;
         Ok(Self { loaded: self.loaded.clone().drawn_for(&resolved), resolved, ..self.clone() })
     }
 

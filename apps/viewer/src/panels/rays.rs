@@ -310,8 +310,7 @@ fn one(ui: &mut Ui, model: &mut Model, n: usize, turn: &TurnDoc, next: &mut Turn
                 let field =
                     eframe::egui::DragValue::new(&mut value).speed(speed).max_decimals(2).prefix(format!("{letter} "));
                 let whole = format!("{name} {n}, {letter}");
-                let response =
-                    ui.add_sized(COORDINATE, field).accessible_name(whole.as_str()).on_hover_text(whole);
+                let response = ui.add_sized(COORDINATE, field).accessible_name(whole.as_str()).on_hover_text(whole);
                 if let Some(value) = super::changed(model, &response, value) {
                     part(next)[axis] = value;
                 }

@@ -15,7 +15,7 @@ use crate::raster::cells::SIDE;
 use crate::screen::Screen;
 use belvedere_composite::sections::{Exposure, Sections, Shown};
 use belvedere_core::Aabb;
-use belvedere_scene::{LayerKind, RenderJob};
+use belvedere_scene::{LayerKind, Progress, RenderJob};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -24,6 +24,14 @@ pub(crate) const SOUP: u32 = 1 << 31;
 /// Bits of a grid primitive below the block number: 10 of the cell, 1 of the triangle.
 pub(crate) const CELL_BITS: u32 = 11;
 
+/// Parts between two reports of progress.
+const REPORTED: usize = 32;
+
+/// Whether a part is still wanted; after a cancellation the rest is left out, and the caller's next report ends the frame.
+fn goes_on(progress: &Progress, part: usize) -> bool {
+    if part.is_multiple_of(REPORTED) { progress.tick("project", 0.0).is_ok() } else { !progress.is_cancelled() }
+}
+
 /// Blocks of boxes or triangles. Each part of a layer is drawn once per record that shows it, or once for all of its records if they
 /// displace it as one map, and once per segment that shows what the records leave out.
 /// * `bounds`: bounds of the parts.
@@ -31,6 +39,7 @@ pub(crate) const CELL_BITS: u32 = 11;
 fn soups(
     locator: &Locator<'_>,
     bounds: &[Aabb],
+    progress: &Progress,
     draw: impl Fn(&Pass<'_>, usize) -> Option<Block> + Sync,
 ) -> Vec<Block> {
     let locate = |bounds: &Aabb| {
@@ -50,6 +59,7 @@ fn soups(
     let joined = JoinedPasses::new(locator.view, locator.passes, together);
     let parts = located.par_iter().enumerate();
     parts
+        .filter(|(k, _)| goes_on(progress, *k))
         .flat_map_iter(|(k, (held, segments, whole))| {
             joined.of([held, segments], *whole).filter_map(|pass| draw(pass, k)).collect::<Vec<_>>()
         })
@@ -79,7 +89,7 @@ impl Blocks {
         sections: Option<&Sections<'_>>,
         detail: &GroundCache<(), Arc<Tree>>,
     ) {
-        let RenderJob { scene, view, options, .. } = *job;
+        let RenderJob { scene, view, options, progress, .. } = *job;
         // A tolerance of zero or less would split edges without end.
         let tolerance_px = if options.tolerance_px > 0.01 { options.tolerance_px } else { 0.01 };
         self.list.drain(..).for_each(|b| self.spare.keep(b.geometry));
@@ -108,7 +118,8 @@ impl Blocks {
                     let whole = choice.list.iter().filter(|c| c.held.whole).map(|c| choice.held(&c.held)[0]);
                     let joined = JoinedPasses::new(view, passes, whole);
                     let (job, tree) = (&job, &tree);
-                    let drawn = choice.list.par_iter().flat_map_iter(|c| {
+                    let drawn = choice.list.par_iter().enumerate().filter(|(k, _)| goes_on(progress, *k));
+                    let drawn = drawn.flat_map_iter(|(_, c)| {
                         let bounds = tree.bounds(hf, c.level, c.block);
                         let shown = bounds.map_or(Shown::Everything, |b| job.shown(&b));
                         let seen_in = bounds.filter(|_| !c.held.whole);
@@ -125,13 +136,15 @@ impl Blocks {
                     let carried = bodies.and_then(|bodies| bodies.carried.layer(i));
                     let locator = body_locator.as_ref().filter(|_| carried.is_some()).unwrap_or(&locator);
                     let parts = box_chunks(b, carried);
-                    self.list.par_extend(soups(locator, &parts, |pass, k| job.box_block(pass, b, carried, k)));
+                    self.list
+                        .par_extend(soups(locator, &parts, progress, |pass, k| job.box_block(pass, b, carried, k)));
                 }
                 kind => {
                     let Some(mesh) = kind.triangles().map(|m| &m.mesh) else { continue };
                     let mut draw = |locator: &Locator<'_>, drawn: Drawn<'_>| {
                         let parts = drawn.chunks();
-                        self.list.par_extend(soups(locator, &parts, |pass, k| job.mesh_block(pass, drawn, k)));
+                        self.list
+                            .par_extend(soups(locator, &parts, progress, |pass, k| job.mesh_block(pass, drawn, k)));
                     };
                     match (bodies.and_then(|bodies| bodies.carried.layer(i)), &body_locator) {
                         (Some(carried), Some(body_locator)) => {

@@ -11,6 +11,10 @@ const MAX_HALVINGS: u8 = 10;
 /// long.
 const MAX_BLIND_HALVINGS: u8 = 9;
 const MAX_BLIND_HALVINGS_BESIDE_STRIPS: u8 = 6;
+/// Fewest of them in a coarse picture.
+const LEAST_BLIND_HALVINGS: u8 = 3;
+/// Tolerance of a picture that is not coarse, pixels; each doubling saves a halving.
+const FINE_PX: f64 = 0.5;
 /// Distance beyond the image up to which triangles whose bend is unknown are refined.
 const MAX_MARGIN_PX: f64 = 4096.0;
 /// Level of an edge that must not be split.
@@ -49,7 +53,9 @@ impl<'a> Refiner<'a> {
     /// * `out`: a buffer to reuse.
     pub(crate) fn new(pass: &'a Pass<'a>, screen: &'a Screen, tolerance_px: f64, mut out: Vec<SoupTriangle>) -> Self {
         out.clear();
-        let blind_halvings = if pass.has_border() { MAX_BLIND_HALVINGS_BESIDE_STRIPS } else { MAX_BLIND_HALVINGS };
+        let most = if pass.has_border() { MAX_BLIND_HALVINGS_BESIDE_STRIPS } else { MAX_BLIND_HALVINGS };
+        let saved = (tolerance_px / FINE_PX).log2().floor().clamp(0.0, 16.0) as u8;
+        let blind_halvings = most.saturating_sub(saved).max(LEAST_BLIND_HALVINGS);
         Self { pass, screen, tolerance_px, blind_halvings, out, splits: 0 }
     }
 

@@ -66,12 +66,28 @@ impl LiveTerrain {
     ///
     /// * `solver`: with a time step between two pictures, if the ground is to move smoothly.
     pub fn new(solver: TerrainSolver, scene: Arc<Scene>) -> Self {
+        Self::started(solver, scene, false)
+    }
+
+    /// The same on one thread alone, for pictures that do not wait for their ground ([`LiveTerrain::newest`]): work of the solver among that
+    /// of a picture would delay it by as long as it takes.
+    pub fn apart(solver: TerrainSolver, scene: Arc<Scene>) -> Self {
+        Self::started(solver, scene, true)
+    }
+
+    fn started(solver: TerrainSolver, scene: Arc<Scene>, apart: bool) -> Self {
         let (orders, inbox) = channel();
         let (outbox, answers) = channel();
         let progress = Progress::silent();
         let guard = solver.settings().guard;
         let own = progress.clone();
-        let worker = std::thread::spawn(move || work(&solver, &scene, &inbox, &outbox, &own));
+        let worker = std::thread::spawn(move || {
+            let pool = apart.then(|| rayon::ThreadPoolBuilder::new().num_threads(1).build().ok()).flatten();
+            match pool {
+                Some(pool) => pool.install(|| work(&solver, &scene, inbox, outbox, &own)),
+                None => work(&solver, &scene, inbox, outbox, &own),
+            }
+        });
         Self { orders: Some(orders), answers, worker: Some(worker), progress, guard, frame: 0, ground: None }
     }
 
@@ -156,7 +172,7 @@ impl Drop for LiveTerrain {
 }
 
 /// Solves for the newest view until the inbox is closed.
-fn work(solver: &TerrainSolver, scene: &Scene, inbox: &Receiver<Order>, outbox: &Sender<Answer>, progress: &Progress) {
+fn work(solver: &TerrainSolver, scene: &Scene, inbox: Receiver<Order>, outbox: Sender<Answer>, progress: &Progress) {
     let mut memory = TerrainMemory::default();
     let mut points: Arc<[ReferencePoint]> = Arc::new([]);
     while let Ok(mut order) = inbox.recv() {

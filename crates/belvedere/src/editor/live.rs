@@ -1,9 +1,10 @@
 //! A session that follows a document: everything is resolved again, but unchanged layers are not read again.
 
-use super::thin::{self, Thin};
+use super::moving::{quick, within};
+use super::rate::{Quality, Rate, TARGET_MS};
+use super::thin::Thin;
 use super::{Place, THREADS, camera};
 use crate::fallback;
-use crate::overlays::grid;
 use crate::picture::{self, DisplacementReport, PictureOptions};
 use crate::resolve::solving::Memory;
 use crate::resolve::{hidden, representations};
@@ -13,7 +14,7 @@ use crate::session::{Loaded, Resolved};
 use crate::{BelvedereError, CameraPicture, OpenOptions, Session};
 use belvedere_construct::measure::HiddenRun;
 use belvedere_construct::{MeasureOptions, Measures};
-use belvedere_core::{Stage, View};
+use belvedere_core::{Stage, View, Warning};
 use belvedere_scene::Instant;
 use belvedere_scene::{Frame, Progress, RenderJob, RenderOptions, Scene};
 use std::sync::Arc;
@@ -54,8 +55,8 @@ pub enum Sides {
 pub enum Pace {
     /// As little as possible, during a motion; slow solvers are postponed.
     Moving {
-        /// Worst error of terrain drawn with level of detail, pixels.
-        detail_px: f64,
+        /// Quality of the picture; `None` = as good as is drawn in time ([`Rate`]).
+        quality: Option<Quality>,
     },
     /// As much as needed: the same picture that the command line draws.
     Resting,
@@ -78,6 +79,8 @@ pub struct Shown {
     pub displacement: Option<DisplacementReport>,
     /// Pace of the order.
     pub pace: Pace,
+    /// Quality of a moving picture; [`Quality::FULL`] at rest.
+    pub quality: Quality,
     /// What was postponed because it takes long; one sentence.
     pub waits: Option<&'static str>,
     /// Wall time of all steps, milliseconds.
@@ -101,12 +104,15 @@ pub struct Judged {
 }
 
 /// Longest judgement that is made after every moving picture.
-const JUDGE_WITHIN: Duration = Duration::from_millis(40);
+const JUDGE_WITHIN: Duration = Duration::from_millis(8);
 /// Longest judgement that is made between moving pictures at all, and the pause after it in multiples of its duration.
-const JUDGE_AT_MOST: Duration = Duration::from_millis(250);
-const JUDGE_SHARE: u32 = 6;
+const JUDGE_AT_MOST: Duration = Duration::from_millis(120);
+const JUDGE_SHARE: u32 = 12;
 /// Longest solution that is made during a motion.
 const SOLVE_WITHIN: Duration = Duration::from_millis(120);
+/// Time after which a moving picture is broken off and drawn coarser, and how often.
+const BREAK_OFF: Duration = Duration::from_millis(2 * TARGET_MS as u64);
+const BROKEN_OFF: usize = 2;
 
 /// A session that follows a document.
 #[derive(Debug, Default)]
@@ -127,6 +133,9 @@ pub struct LiveSession {
     thin: Thin,
     /// Pixels per point of the screen; `None`: 1.
     density: Option<f64>,
+    rate: Rate,
+    /// Layers of the last moving picture: what can be computed once has been.
+    drawn: Option<Arc<Scene>>,
 }
 
 /// Displaced ground during a motion.
@@ -151,51 +160,84 @@ impl LiveSession {
     /// As [`Session::open`] and [`Session::render`]; the session stays as it was.
     pub fn show(&mut self, order: &Order, progress: &Progress) -> Result<Shown, BelvedereError> {
         let began = Instant::now();
+        let mut shown = match order.pace {
+            Pace::Moving { quality } => self.in_motion(order, quality, progress)?,
+            Pace::Resting => self.at_rest(order, progress)?,
+        };
+        shown.milliseconds = began.elapsed().as_secs_f64() * 1e3;
+        Ok(shown)
+    }
+
+    /// Pixels of the picture per point of the screen.
+    fn density(&self) -> f64 {
+        self.density.unwrap_or(1.0)
+    }
+
+    fn at_rest(&mut self, order: &Order, progress: &Progress) -> Result<Shown, BelvedereError> {
         let mut document = (*order.document).clone();
         camera::fit(&mut document, order.image);
-        let (session, waits) = match order.pace {
-            Pace::Moving { .. } => self.moving(document, order, progress)?,
-            Pace::Resting => (self.resting(document, order, progress)?, None),
-        };
+        let session = self.resting(document, order, progress)?;
         session.check_drawable()?;
         self.shown = Some(session.clone());
-        let (mut bent, mut straight, mut displacement) = (None, None, None);
-        let density = self.density.unwrap_or(1.0);
-        match order.pace {
-            Pace::Moving { detail_px } => {
-                let scene = self.thin.scene(session.loaded.scene.clone(), density / detail_px);
-                if order.sides != Sides::Straight {
-                    bent = Some(quick(
-                        &session,
-                        &scene,
-                        &eased(session.view(), order.bend),
-                        [detail_px, density],
-                        progress,
-                    )?);
+        let density = self.density();
+        let mut displacement = None;
+        let mut side = |plain: bool| {
+            let request = PictureOptions { straight: plain, density, ..PictureOptions::default() };
+            let drawn = picture::draw_view(&session, &request, progress)?;
+            displacement = displacement.or(drawn.displacement);
+            Ok::<_, BelvedereError>(Some(drawn.frame))
+        };
+        let bent = if order.sides == Sides::Straight { None } else { side(false)? };
+        let straight = if order.sides == Sides::Bent { None } else { side(true)? };
+        let overhead = if order.overhead { Some(overhead(&session, progress)?) } else { None };
+        Ok(Shown { overhead, displacement, ..shown(order, session, Quality::FULL, [bent, straight]) })
+    }
+
+    /// A moving picture; one that takes too long is broken off and drawn coarser.
+    ///
+    /// * `fixed`: its quality, if it is not to be chosen.
+    fn in_motion(
+        &mut self,
+        order: &Order,
+        fixed: Option<Quality>,
+        progress: &Progress,
+    ) -> Result<Shown, BelvedereError> {
+        let mut broken_off = 0;
+        loop {
+            let began = Instant::now();
+            let quality = fixed.unwrap_or(self.rate.quality());
+            let image = quality.size(order.image);
+            let mut document = (*order.document).clone();
+            camera::fit(&mut document, image);
+            let (session, waits) = self.moving(document, image, order, progress)?;
+            session.check_drawable()?;
+            self.shown = Some(session.clone());
+            let density = self.density();
+            let resolving = began.elapsed();
+            let scene = self.thin.scene(session.loaded.scene.clone(), quality, density);
+            // The first picture of a scene prepares it.
+            let of = self.session.as_ref().map(|session| session.loaded.scene.clone());
+            let is_known = self.drawn.as_ref().zip(of.as_ref()).is_some_and(|(drawn, of)| Arc::ptr_eq(drawn, of));
+            let drawing = Instant::now();
+            let hurries = fixed.is_none() && is_known && broken_off < BROKEN_OFF;
+            let limited = if hurries { within(BREAK_OFF, progress) } else { progress.unheard() };
+            let pictures = sides(&session, &scene, (quality, density), order, &limited);
+            let milliseconds = (resolving + drawing.elapsed()).as_secs_f64() * 1e3;
+            match pictures {
+                Err(e) if e.is_cancelled() && hurries && !progress.is_cancelled() => {
+                    self.rate.broken_off(milliseconds);
+                    broken_off += 1;
                 }
-                if order.sides != Sides::Bent {
-                    straight =
-                        Some(quick(&session, &scene, &session.view().straightened(), [detail_px, density], progress)?);
+                Err(e) => return Err(e),
+                Ok(pictures) => {
+                    if fixed.is_none() && is_known {
+                        self.rate.note(milliseconds);
+                    }
+                    self.drawn = of;
+                    return Ok(Shown { waits, ..shown(order, session, quality, pictures) });
                 }
-            }
-            Pace::Resting => {
-                let mut side = |plain: bool| {
-                    let request = PictureOptions { straight: plain, density, ..PictureOptions::default() };
-                    let drawn = picture::draw_view(&session, &request, progress)?;
-                    displacement = displacement.or(drawn.displacement);
-                    Ok::<_, BelvedereError>(Some(drawn.frame))
-                };
-                bent = if order.sides == Sides::Straight { None } else { side(false)? };
-                straight = if order.sides == Sides::Bent { None } else { side(true)? };
             }
         }
-        let overhead = match order.overhead && order.pace == Pace::Resting {
-            true => Some(overhead(&session, progress)?),
-            false => None,
-        };
-        let milliseconds = began.elapsed().as_secs_f64() * 1e3;
-        let document = order.document.clone();
-        Ok(Shown { document, session, bent, straight, overhead, displacement, pace: order.pace, waits, milliseconds })
     }
 
     /// Whether there is time to judge a picture: always at rest; during a motion only in the background, and if the last judgement was
@@ -211,9 +253,17 @@ impl LiveSession {
     /// # Errors
     /// [`BelvedereError::Construct`], [`BelvedereError::Cancelled`].
     pub fn judge(&mut self, order: &Order, progress: &Progress) -> Result<Option<Judged>, BelvedereError> {
+        if order.pace == Pace::Resting
+            && let Some(session) = &self.session
+        {
+            // So that a motion need not wait for coarse models.
+            self.thin.scene(session.loaded.scene.clone(), self.rate.quality());
+        }
         let began = Instant::now();
         let judged = self.judged(order, progress);
-        self.judging = began.elapsed();
+        // How long one would have taken that was broken off is not known.
+        let least = if progress.is_cancelled() { self.judging } else { Duration::ZERO };
+        self.judging = began.elapsed().max(least);
         self.judged_at = Some(Instant::now());
         judged
     }
@@ -250,9 +300,12 @@ impl LiveSession {
     }
 
     /// Resolves a document for a moving picture: slow results are left out or reused.
+    ///
+    /// * `image`: size of the picture, pixels.
     fn moving(
         &mut self,
         document: Document,
+        image: [u32; 2],
         order: &Order,
         progress: &Progress,
     ) -> Result<(Session, Option<&'static str>), BelvedereError> {
@@ -262,15 +315,21 @@ impl LiveSession {
         // A preview has a camera of its own, so its picture is not drawn without it.
         let is_preview = document.constructor.as_ref().is_some_and(|doc| doc.kind == ConstructorKind::PathPreview);
         let in_time = constructs && !solves && (is_preview || self.constructing <= SOLVE_WITHIN);
-        let options = OpenOptions { unsolved: !in_time, ..options(order, progress) };
+        let options = OpenOptions { unsolved: !in_time, unchecked: true, ..options(order, progress) };
         let Some(session) = self.open(&document, &options)? else {
             let session = self.reopened(&document, &options)?;
             self.session = Some(session.clone());
             return Ok((session, solves.then_some(GROUND).or((constructs && !in_time).then_some(RAYS))));
         };
         let document = with_known_planes(document, &session);
-        let mut memory = self.memory.of_path_sized(order.image);
-        let session = session.edited(document, &options, &mut memory)?;
+        let mut memory = self.memory.of_path_sized(image);
+        let mut session = session.edited(document, &options, &mut memory)?;
+        // What only a picture at rest warns of holds until the next one.
+        if let Some(rested) = &self.session {
+            let new = |warning: &Warning| !session.resolved.warnings.contains(warning);
+            let old: Vec<Warning> = rested.resolved.warnings.iter().filter(|w| new(w)).cloned().collect();
+            session.resolved.warnings.extend(old);
+        }
         if solves {
             return match self.ground.under(&session)? {
                 Some(stage) => Ok((with_ground(session, stage)?, constructs.then_some(RAYS))),
@@ -307,6 +366,9 @@ impl LiveSession {
         let is_hidden = |layer: &LayerDoc| document.hidden.iter().any(|id| id == layer.id());
         let must_see: Vec<bool> = document.layer.iter().map(|l| l.must_see() && !is_hidden(l)).collect();
         let layers = session.scene().layers.iter();
+        // A file of lines and points makes several layers; then they are known by the document that was read.
+        let one_each = session.scene().layers.len() == document.layer.len();
+        let alike = |a: &LayerDoc, b: &LayerDoc| if one_each { a.with_must_see(b.must_see()) == *b } else { a == b };
         let same = opened.crs == document.crs
             && opened.unit == document.unit
             && opened.representations == document.representations
@@ -314,10 +376,11 @@ impl LiveSession {
             && (document.hidden.is_empty()
                 || (opened.constructor == document.constructor && opened.animation == document.animation))
             && opened.layer.len() == document.layer.len()
-            && session.scene().layers.len() == document.layer.len()
-            && opened.layer.iter().zip(&document.layer).all(|(a, b)| a.with_must_see(b.must_see()) == *b);
-        let is_current = session.scene().title == document.title
-            && layers.clone().zip(&must_see).all(|(layer, must)| layer.must_see == *must);
+            && (one_each || opened.title == document.title)
+            && opened.layer.iter().zip(&document.layer).all(|(a, b)| alike(a, b));
+        let is_current = !one_each
+            || (session.scene().title == document.title
+                && layers.clone().zip(&must_see).all(|(layer, must)| layer.must_see == *must));
         match (same, is_current) {
             (false, _) => None,
             (true, true) => Some(session.clone()),
@@ -351,7 +414,7 @@ impl Ground {
         if !self.live.as_ref().is_some_and(fits) {
             let solver = TerrainSolver::new(session.terrain_settings()?)?;
             self.live =
-                Some((stated, session.loaded.scene.clone(), LiveTerrain::new(solver, session.loaded.scene.clone())));
+                Some((stated, session.loaded.scene.clone(), LiveTerrain::apart(solver, session.loaded.scene.clone())));
         }
         let Some((.., live)) = &mut self.live else { return Ok(None) };
         Ok(live.newest(session.view())?.map(Stage::TerrainDisocclusion).or_else(|| self.last.clone()))
@@ -414,34 +477,31 @@ fn eased(view: &View, share: f64) -> View {
     view.eased(share).unwrap_or_else(|| if share < 0.5 { view.straightened() } else { view.clone() })
 }
 
-/// Draws with one sample per pixel, level of detail, and no marks that need further pictures.
+/// What a session shows, without what is made at rest alone.
+fn shown(order: &Order, session: Session, quality: Quality, [bent, straight]: [Option<Frame>; 2]) -> Shown {
+    let (document, pace) = (order.document.clone(), order.pace);
+    let (overhead, displacement, waits, milliseconds) = (None, None, None, 0.0);
+    Shown { document, session, bent, straight, overhead, displacement, pace, quality, waits, milliseconds }
+}
+
+/// The bent and the straight moving picture, as ordered.
 ///
-/// * `scene`: the session's scene with thinner lines for the coarse picture.
-pub(super) fn quick(
+/// * `scene`: the session's scene for pictures of this quality.
+fn sides(
     session: &Session,
     scene: &Scene,
-    view: &View,
-    [detail_px, density]: [f64; 2],
+    (quality, density): (Quality, f64),
+    order: &Order,
     progress: &Progress,
-) -> Result<Frame, BelvedereError> {
-    let mut options = RenderOptions {
-        samples: 1,
-        lod_px: detail_px,
-        stylisation: session.resolved.stylisation,
-        ..RenderOptions::default()
-    };
-    let plan = if view.is_bent() { fallback::of_session(session, view)? } else { None };
-    let scene = plan.as_ref().map_or(scene, |plan| plan.scene());
-    let grid = grid::wanted(scene, grid::stated(&session.resolved.overlay));
-    options.overlay.under.extend(grid.into_iter().map(|line| thin::line(line, density / detail_px)));
-    let draw = |scene: &Scene, view: &View| {
-        let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
-        Ok::<_, BelvedereError>(session.renderer.render(&job)?)
-    };
-    match &plan {
-        Some(plan) => plan.draw(view, &draw),
-        None => draw(scene, view),
+) -> Result<[Option<Frame>; 2], BelvedereError> {
+    let (mut bent, mut straight) = (None, None);
+    if order.sides != Sides::Straight {
+        bent = Some(quick(session, scene, &eased(session.view(), order.bend), (quality, density), progress)?);
     }
+    if order.sides != Sides::Bent {
+        straight = Some(quick(session, scene, &session.view().straightened(), quality, progress)?);
+    }
+    Ok([bent, straight])
 }
 
 /// Share of the tracked target that the session's view shows.
@@ -450,7 +510,7 @@ fn target_seen(session: &Session, progress: &Progress) -> Result<Option<f64>, Be
         return Ok(None);
     }
     let view = session.view();
-    let frame = quick(session, session.scene(), view, [1.0, 1.0], progress)?;
+    let frame = quick(session, session.scene(), view, (Quality::FULL, 1.0), progress)?;
     let options = RenderOptions { samples: 1, ..RenderOptions::default() };
     let draw = |scene: &Scene, view: &View| {
         let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
@@ -479,7 +539,7 @@ mod tests {
         Order { document, place, image, pace, sides: Sides::Bent, bend: 1.0, overhead: false }
     }
 
-    const MOVING: Pace = Pace::Moving { detail_px: 2.0 };
+    const MOVING: Pace = Pace::Moving { quality: None };
 
     #[test]
     fn a_preview_goes_along_its_path_while_it_is_played() {

@@ -4,14 +4,17 @@
 
 mod beside;
 mod camera;
+mod coarse;
 mod find;
 mod flight;
 mod layers;
 mod lengths;
 mod live;
+mod moving;
 mod object;
 mod painter;
 mod place;
+mod rate;
 mod rays;
 mod sections;
 mod steps;
@@ -28,6 +31,7 @@ pub use live::{Judged, LiveSession, Order, Pace, Shown, Sides};
 pub use object::object_at;
 pub use painter::{Answer, Painter};
 pub use place::{Place, Recovered, Recovery};
+pub use rate::{Quality, Rate};
 pub use rays::{next_turn, sharpness_at, sharpness_knob, with_parallel_planes, with_pivot_line};
 pub use sections::{with_levels, with_own_style};
 pub use steps::step_name;

@@ -18,6 +18,8 @@ pub(super) struct StageContext<'a> {
     pub(super) camera: &'a ResolvedCamera,
     /// Stages before those of the document, such as the earth's curvature.
     pub(super) earth: &'a [Stage],
+    /// Whether presets are checked at viewing angles that the picture does not show.
+    pub(super) checks: bool,
 }
 
 impl StageContext<'_> {

@@ -35,9 +35,11 @@ pub(super) fn spline(
     let (plane, height) = plane(context, doc.plane.as_ref(), at)?;
     let pivot = doc.pivot.map_or_else(|| default_pivot(pinhole, &plane), DVec3::from_array);
     let bend = SplineBend::new(pinhole, &presets, &plane, pivot).map_err(|e| at.error(&["presets"], e))?;
-    let heights = heights(context).map(|range| range.map(|z| z - height)).filter(|_| plane.normal() == DVec3::Z);
-    let distance = bend.resolved().distance;
-    warnings.extend(belvedere_core::map::spline::check_presets(&presets, distance, heights).iter().map(Warning::from));
+    if context.checks {
+        let heights = heights(context).map(|range| range.map(|z| z - height)).filter(|_| plane.normal() == DVec3::Z);
+        let found = belvedere_core::map::spline::check_presets(&presets, bend.resolved().distance, heights);
+        warnings.extend(found.iter().map(Warning::from));
+    }
     let document = StageDoc::SplineBend(SplineStageDoc {
         presets: PresetsDoc::Inline(Box::new(presets)),
         pivot: Some(pivot.to_array()),

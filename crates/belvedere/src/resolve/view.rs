@@ -31,11 +31,14 @@ pub(crate) struct ResolvedView {
 }
 
 /// Resolves camera, stages and light over a scene. Without `solving` an intent of terrain disocclusion is left out.
+///
+/// * `checks`: whether presets are checked at viewing angles that the picture does not show.
 pub(crate) fn resolve(
     source: &SourceDocument,
     roots: &Roots,
     scene: &Scene,
     mut solving: Option<&mut Solving<'_>>,
+    checks: bool,
 ) -> Result<ResolvedView, BelvedereError> {
     let (mut inputs, mut warnings) = (Vec::new(), Vec::new());
     let ground = Ground::of(scene);
@@ -46,7 +49,8 @@ pub(crate) fn resolve(
         terrain::adjust(source, scene, &mut camera, before, solving, &mut warnings)?;
     }
     let mut chain: Vec<_> = earth(shape, &ground, camera.pinhole.eye, &mut warnings).into_iter().collect();
-    let context = context::StageContext { source, roots, scene, ground: &ground, camera: &camera, earth: &chain };
+    let context =
+        context::StageContext { source, roots, scene, ground: &ground, camera: &camera, earth: &chain, checks };
     let resolved = stages::resolve(&context, solving.as_deref_mut(), &mut inputs, &mut warnings)?;
     chain.extend(resolved.stages);
     let view = View::new(resolved.pinhole, chain).map_err(|e| source.error(&["stage"], e))?;

@@ -5,6 +5,7 @@ mod escapes;
 mod exact;
 mod examples;
 mod films;
+mod moving_pictures;
 mod names;
 mod sessions;
 mod sweeps;

@@ -36,16 +36,34 @@ pub(crate) struct TerrainShade<'a> {
     shadows: Option<Arc<Shadows>>,
     tint: Tint,
     exaggeration: f32,
-    drapes: Vec<DrapeMap>,
+    drapes: Arc<Vec<DrapeMap>>,
 }
 
-/// Caches of the light on grounds, kept between frames.
+/// The drapes with their averages, from the cache if they were made from the same pictures.
+fn drapes(layer: &TerrainLayer, cache: &LightCache) -> Arc<Vec<DrapeMap>> {
+    if layer.drapes.is_empty() {
+        return Arc::default();
+    }
+    let make = || Arc::new(layer.drapes.iter().filter_map(DrapeMap::new).collect::<Vec<_>>());
+    let known = cache.drapes.get(&layer.heightfield, (), make);
+    let same =
+        known.len() == layer.drapes.len() && known.iter().zip(&layer.drapes).all(|(map, drape)| map.is_of(drape));
+    if same {
+        return known;
+    }
+    let made = make();
+    cache.drapes.put(&layer.heightfield, (), made.clone());
+    made
+}
+
+/// Caches of the light on grounds, and of what is draped over them, kept between frames.
 #[derive(Debug, Default)]
 pub(crate) struct LightCache {
     means: GroundCache<(), Arc<MipPyramid>>,
     shadows: GroundCache<Light, Arc<Shadows>>,
     lit: GroundCache<LitKey, Arc<LitGround>>,
     displaced: GroundCache<LitKey, DisplacedLight>,
+    drapes: GroundCache<(), Arc<Vec<DrapeMap>>>,
 }
 
 impl<'a> TerrainShade<'a> {
@@ -95,7 +113,7 @@ impl<'a> TerrainShade<'a> {
             shadows,
             tint: Tint::new(&layer.palette, hf.z_range()),
             exaggeration: layer.exaggeration as f32,
-            drapes: layer.drapes.iter().filter_map(DrapeMap::new).collect(),
+            drapes: drapes(layer, cache),
         }
     }
 

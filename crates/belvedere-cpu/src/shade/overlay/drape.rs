@@ -37,6 +37,15 @@ impl DrapeMap {
         Some(Self { levels, pixel_from_scene: a, density: (a[0] * a[4] - a[1] * a[3]).abs().sqrt() })
     }
 
+    /// Whether it was made from this picture.
+    pub(crate) fn is_of(&self, drape: &Drape) -> bool {
+        let made = self
+            .levels
+            .first()
+            .is_some_and(|(w, h, pixels)| (*w, *h) == (drape.width, drape.height) && *pixels == drape.pixels);
+        made && self.pixel_from_scene == drape.pixel_from_scene
+    }
+
     /// Linear colour and alpha around a scene position, averaged over what a pixel covers there: samples along the
     /// longer side, each averaged over the shorter one.
     pub(crate) fn at(&self, xy: DVec2, print: &Footprint) -> (Rgb, f32) {
