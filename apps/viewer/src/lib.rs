@@ -7,6 +7,7 @@ mod builtin;
 mod consent;
 mod export;
 mod files;
+mod handles;
 mod keys;
 mod language;
 mod menu;

@@ -1,7 +1,8 @@
 //! Curved rays: turns by hand, constructors that find them.
 
 use super::{number, set_stage, slider};
-use crate::model::{Handles, Model, Tool};
+use crate::handles::Handles;
+use crate::model::{Model, Tool};
 use belvedere::core::DVec3;
 use belvedere::core::map::curved_rays::{Model as RayModel, Sharpness};
 use belvedere::editor::{next_turn, with_parallel_planes, with_pivot_line};
