@@ -9,6 +9,7 @@ mod export;
 mod files;
 mod find;
 mod flying;
+mod handles;
 mod keys;
 mod language;
 mod measure;

@@ -1,9 +1,9 @@
 //! State of the application without its window: the document, the last pictures, and how they are viewed.
 
 use crate::flying::{Flying, Ring};
+use crate::handles::Handles;
 use crate::language::tr;
 use crate::notices::Notices;
-use belvedere::core::presets::PresetDocument;
 use belvedere::core::{Aabb, DVec2, DVec3, Navigation, Pinhole, Projection};
 use belvedere::editor::{
     Answer, Editor, Judged, Order, Pace, Painter, Quality, Shown, Sides, above_ground, frame_factor, navigation,
@@ -39,15 +39,6 @@ pub(crate) enum Tool {
     Track,
     /// Sets the points of a measurement.
     Measure,
-}
-
-/// What the open panel edits, and the picture has handles for.
-#[derive(Debug, Clone)]
-pub(crate) enum Handles {
-    /// Turns of curved rays.
-    Turns,
-    /// A preset of the spline, by its position.
-    Preset(Box<PresetDocument>, usize),
 }
 
 /// How the scene is viewed; not part of the document.

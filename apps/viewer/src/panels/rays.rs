@@ -1,8 +1,9 @@
 //! Curved rays: turns by hand, constructors that find them.
 
 use super::{number, set_stage, slider};
+use crate::handles::Handles;
 use crate::language::{fill, tr};
-use crate::model::{Handles, Model, Tool};
+use crate::model::{Model, Tool};
 use belvedere::core::DVec3;
 use belvedere::core::map::curved_rays::{Model as RayModel, Sharpness};
 use belvedere::editor::{next_turn, with_parallel_planes, with_pivot_line};

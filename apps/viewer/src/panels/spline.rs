@@ -3,8 +3,9 @@
 use super::gallery::{Galleries, variant};
 use super::number;
 use super::sections::{self, SectionEdit};
+use crate::handles::Handles;
 use crate::language::{fill, heard, tr};
-use crate::model::{Handles, Model};
+use crate::model::Model;
 use crate::widgets::curve::curve;
 use crate::widgets::ruler::{RANGE, RulerEdit, ruler};
 use belvedere::core::presets::PresetDocument;

@@ -3,7 +3,8 @@
 mod curve;
 mod planes;
 
-use crate::model::{Handles, Model};
+use crate::handles::Handles;
+use crate::model::Model;
 use belvedere::core::{DVec3, View};
 use eframe::egui::{Color32, CursorIcon, Id, Pos2, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, vec2};
 

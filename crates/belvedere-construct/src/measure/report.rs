@@ -7,7 +7,7 @@ use belvedere_core::Warning;
 use serde::Serialize;
 
 /// Everything [`super::measure`] found.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Measures {
     /// One entry per feature of the layers that must be seen.
     pub features: Vec<FeatureMeasure>,

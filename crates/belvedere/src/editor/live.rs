@@ -257,7 +257,7 @@ impl LiveSession {
             && let Some(session) = &self.session
         {
             // So that a motion need not wait for coarse models.
-            self.thin.scene(session.loaded.scene.clone(), self.rate.quality());
+            self.thin.scene(session.loaded.scene.clone(), self.rate.quality(), self.density());
         }
         let began = Instant::now();
         let judged = self.judged(order, progress);
@@ -273,12 +273,16 @@ impl LiveSession {
         let scene = session.scene();
         let view = &camera::cut_to_frame(session.view(), &order.document, order.image);
         let target_seen = if order.pace == Pace::Resting { target_seen(session, progress)? } else { None };
-        if target_seen.is_none() && !scene.layers.iter().any(|layer| layer.must_see) {
+        let requires = scene.layers.iter().any(|layer| layer.must_see);
+        if target_seen.is_none() && !requires {
             return Ok(None);
         }
         let options = MeasureOptions::default();
-        let measures = belvedere_construct::measure(scene, view, None, &options, progress)?;
-        let hidden = belvedere_construct::measure::hidden(scene, view, &options, progress)?;
+        let (measures, hidden) = if requires {
+            belvedere_construct::measure::measure_and_hidden(scene, view, None, &options, progress)?
+        } else {
+            Default::default()
+        };
         Ok(Some(Judged { document: order.document.clone(), pace: order.pace, measures, hidden, target_seen }))
     }
 
@@ -499,7 +503,7 @@ fn sides(
         bent = Some(quick(session, scene, &eased(session.view(), order.bend), (quality, density), progress)?);
     }
     if order.sides != Sides::Bent {
-        straight = Some(quick(session, scene, &session.view().straightened(), quality, progress)?);
+        straight = Some(quick(session, scene, &session.view().straightened(), (quality, density), progress)?);
     }
     Ok([bent, straight])
 }

@@ -1,6 +1,8 @@
 //! Small pictures of variants of a document, such as presets to choose from.
 
-use super::live::{options_for, quick};
+use super::live::options_for;
+use super::moving::quick;
+use super::rate::Quality;
 use super::thin::Thin;
 use super::{Place, camera};
 use crate::resolve::solving::Memory;
@@ -43,7 +45,7 @@ impl Thumbnails {
         camera::fit(&mut document, image);
         let session = self.session.edited(document, &self.options, &mut Memory::default())?;
         session.check_drawable()?;
-        let mut scene = Thin::default().scene(session.loaded.scene.clone(), self.scale);
+        let mut scene = Thin::default().scene(session.loaded.scene.clone(), Quality::FULL, self.scale);
         if self.scale < 1.0 {
             // The rim of a line thinner than a pixel would be all that is seen of it.
             for layer in &mut Arc::make_mut(&mut scene).layers {
@@ -54,7 +56,7 @@ impl Thumbnails {
                 }
             }
         }
-        quick(&session, &scene, session.view(), 1.0, progress)
+        quick(&session, &scene, session.view(), (Quality::FULL, self.scale), progress)
     }
 }
 

@@ -246,10 +246,6 @@ const ADDED: &[(&str, &[&str])] = &[
             "style = { distance_markers_m = «-3» }",
             "route = { seed = 3 }",
             "name_field = 'nom'",
-            "style = { color_by = { property = 'nom' } }",
-            "style = { color_by = { property = 'kind', classes = «12» } }",
-            "style = { color_by = { property = 'kind', breaks = [2, 1] } }",
-            "style = { width_by = { property = 'kind', px = [0, 3] } }",
         ],
     ),
     (

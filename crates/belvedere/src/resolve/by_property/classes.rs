@@ -47,7 +47,7 @@ impl Coloring {
     /// * `values`: distinct values of the property.
     ///
     /// # Errors
-    /// A key of the table and a sentence: a value out of its range, a colour that is none, texts where numbers are needed.
+    /// A key of the table and a sentence: a value out of its range, a text that is not a colour, texts where numbers are needed.
     pub fn new(doc: &ColorByDoc, values: &[Counted]) -> Result<Self, Complaint> {
         check(doc)?;
         let wants_numbers = doc.scale.is_some() || doc.steps.is_some() || doc.classes.is_some() || doc.breaks.is_some();
