@@ -145,10 +145,6 @@ fn one_click_keeps_a_thing_in_sight_in_place_of_turns_by_hand_and_the_ground_is_
     let document = harness.state().document().clone();
     let target = document.constructor.as_ref().and_then(|doc| doc.target.clone());
     assert_eq!((target.as_deref(), document.stage.len()), (Some("towers/1"), 0));
-    crate::wait_for(&mut harness, "the share", |harness| {
-        harness.query_by_label_contains("In sight: towers/1").is_some()
-            || harness.query_by_label_contains("of it is in sight").is_some()
-    });
     harness.key_press_modifiers(eframe::egui::Modifiers::COMMAND, eframe::egui::Key::Z);
     settle(&mut harness);
     assert_eq!(*harness.state().document(), by_hand);
