@@ -27,6 +27,13 @@ pub(crate) struct Ring {
 }
 
 impl Model {
+    /// Moves the camera so that a box fills the document's frame.
+    pub(crate) fn frame(&mut self, bounds: &Aabb) {
+        let Some(camera) = self.frame_camera() else { return };
+        self.begin_gesture();
+        self.move_camera(|_| camera.framing(bounds));
+    }
+
     /// Flies to where a thing is seen whole, in the middle of the picture and from the present direction, and marks it.
     pub(crate) fn visit(&mut self, bounds: &Aabb, ctx: &Context) {
         let Some(camera) = self.frame_camera() else { return };

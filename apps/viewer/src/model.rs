@@ -4,7 +4,7 @@ use crate::flying::{Flying, Ring};
 use crate::handles::Handles;
 use crate::language::tr;
 use crate::notices::Notices;
-use belvedere::core::{Aabb, DVec2, DVec3, Navigation, Pinhole, Projection};
+use belvedere::core::{DVec2, DVec3, Navigation};
 use belvedere::editor::{
     Answer, Editor, Judged, Order, Pace, Painter, Quality, Shown, Sides, above_ground, frame_factor, navigation,
     object_at, set_camera,
@@ -262,21 +262,6 @@ impl Model {
         let mut document = (**self.document()).clone();
         set_camera(&mut document, &self.camera()?);
         Some(document.camera)
-    }
-
-    /// Moves the camera so that a box fills the document's frame.
-    pub(crate) fn frame(&mut self, bounds: &Aabb) {
-        let document = self.document().clone();
-        let projection = match document.camera.ortho_height_m {
-            Some(height) => Projection::Orthographic { height },
-            None => Projection::Perspective { fov_y: document.camera.fov_y_deg.to_radians() },
-        };
-        let image = document.camera.image;
-        self.begin_gesture();
-        self.move_camera(|camera| {
-            let pinhole = Pinhole { image, projection, ..camera.pinhole.clone() };
-            Navigation { pinhole, target: camera.target }.framing(bounds)
-        });
     }
 
     /// Size of the picture on the screen, pixels.

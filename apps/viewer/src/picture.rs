@@ -250,6 +250,12 @@ impl PictureView {
             return;
         };
         if model.look.tool == Tool::Track {
+            if !crate::panels::rays::can_track(model, &layer) {
+                model
+                    .notices
+                    .tell(tr("The ground cannot be kept in sight; click a line, a point, a building or a model."));
+                return;
+            }
             let target = model.object_at(at, &layer).unwrap_or(layer);
             crate::panels::rays::track(model, &target);
             model.look.tool = Tool::Map;

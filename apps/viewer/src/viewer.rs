@@ -331,6 +331,8 @@ impl Viewer {
             Command::Redo => {
                 self.model.editor.redo();
             }
+            // A page is closed by its browser.
+            Command::Quit if cfg!(target_family = "wasm") => {}
             Command::Quit => self.go_on_to(ctx, Next::Quit),
             Command::Find => self.find.begin(),
             Command::Measure => {

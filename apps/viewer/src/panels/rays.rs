@@ -179,6 +179,16 @@ fn construct(model: &mut Model, constructor: ConstructorDoc) {
     }
 }
 
+/// Whether a layer has something that can be kept in sight: ground and what is painted on it has not.
+fn is_target(layer: &LayerDoc) -> bool {
+    !matches!(layer, LayerDoc::Terrain(_) | LayerDoc::Area(_))
+}
+
+/// Whether the layer of that id has something that can be kept in sight.
+pub(crate) fn can_track(model: &Model, id: &str) -> bool {
+    model.document().layer.iter().any(|layer| layer.id() == id && is_target(layer))
+}
+
 fn constructors(ui: &mut Ui, model: &mut Model) {
     let kind = model.document().constructor.as_ref().map_or(ConstructorKind::Manual, |constructor| constructor.kind);
     ui.label(tr("Rays are bent"));
@@ -187,11 +197,12 @@ fn constructors(ui: &mut Ui, model: &mut Model) {
             model.edit(|document| document.constructor = None);
         }
         let tracking = kind == ConstructorKind::TargetTracking;
-        if ui
-            .selectable_label(tracking, tr("To keep something in sight"))
-            .on_hover_text(tr("then click it in the picture"))
-            .clicked()
-        {
+        let has_targets = model.document().layer.iter().any(is_target);
+        let track = ui
+            .add_enabled(has_targets, eframe::egui::Button::selectable(tracking, tr("To keep something in sight")))
+            .on_hover_text(tr("then click it in the picture"));
+        let lacks = tr("needs a line, a point, a building or a model");
+        if track.on_disabled_hover_text(lacks).clicked() {
             model.look.tool = Tool::Track;
         }
         let lines = model.layer_ids(|layer| matches!(layer, LayerDoc::Line(_)));

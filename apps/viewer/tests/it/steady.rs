@@ -113,3 +113,47 @@ fn a_look_into_what_is_hidden_tells_what_it_is_at_and_is_cancelled() {
         assert!(!tells(&harness), "it goes on");
     }
 }
+
+#[test]
+fn one_click_keeps_a_thing_in_sight_in_place_of_turns_by_hand_and_the_ground_is_refused() {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("towers.toml");
+    let text = "format = 1\n[camera]\neye = [0, -90, 12]\nlook_at = [0, 0, 12]\nimage = [320, 180]\n\
+        [[layer]]\nkind = \"boxes\"\nid = \"towers\"\nboxes = [{ base = [0, 0, 0], size = [60, 8, 40] }]\n";
+    std::fs::write(&path, text).expect("scene");
+    let mut harness = app(&opened(&[path]));
+    settle(&mut harness);
+    press(&mut harness, "Curved rays");
+    press(&mut harness, "Add a turn");
+    settle(&mut harness);
+    let by_hand = harness.state().document().clone();
+    // The window of the camera from above lies over the picture.
+    harness.key_press(eframe::egui::Key::O);
+    settle(&mut harness);
+    let click = |harness: &mut Window, down: f32| {
+        let picture = find(harness, "Picture").rect();
+        let at = picture.center() + vec2(0.0, down * picture.height());
+        harness.hover_at(at);
+        harness.drag_at(at);
+        harness.drop_at(at);
+        harness.step();
+        harness.step();
+    };
+    press(&mut harness, "To keep something in sight");
+    click(&mut harness, 0.0);
+    settle(&mut harness);
+    let document = harness.state().document().clone();
+    let target = document.constructor.as_ref().and_then(|doc| doc.target.clone());
+    assert_eq!((target.as_deref(), document.stage.len()), (Some("towers/1"), 0));
+    harness.key_press_modifiers(eframe::egui::Modifiers::COMMAND, eframe::egui::Key::Z);
+    settle(&mut harness);
+    assert_eq!(*harness.state().document(), by_hand);
+
+    let mut harness = app(&opened(&[scene(folder.path())]));
+    settle(&mut harness);
+    press(&mut harness, "Curved rays");
+    press(&mut harness, "To keep something in sight");
+    click(&mut harness, 0.45);
+    assert!(harness.state().document().constructor.is_none());
+    find(&harness, "Click what has to stay in sight.");
+}

