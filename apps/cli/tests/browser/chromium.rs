@@ -156,7 +156,7 @@ impl Page {
             if passes(&value) {
                 return value;
             }
-            let text = self.value("document.body.innerText");
+            let text = self.value("document.body?.innerText ?? ''");
             assert!(began.elapsed() < PATIENCE, "{script} is {value}; the page says {text}; {:?}", self.complaints);
             std::thread::sleep(Duration::from_millis(50));
         }
