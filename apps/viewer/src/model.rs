@@ -404,14 +404,8 @@ impl Model {
         }
         self.ease(now);
         let (sides, bend) = self.sides();
-        let wanted = Wanted {
-            document: self.document().clone(),
-            image,
-            density: self.density,
-            sides,
-            bend,
-            overhead: self.look.overhead,
-        };
+        let (document, density, overhead) = (self.document().clone(), self.density, self.look.overhead);
+        let wanted = Wanted { document, image, density, sides, bend, overhead };
         if self.ordered.as_ref() != Some(&wanted) {
             (self.changed_at, self.changed) = (now, Clock::now());
             self.rested = false;

@@ -47,30 +47,19 @@ pub(crate) fn line(line: OverlayLine, scale: f64) -> OverlayLine {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere_scene::{Color, Layer, LineLayer, PointLayer, PointStyle};
-
-    fn layer(kind: LayerKind) -> Layer {
-        Layer { id: "it".into(), must_see: true, kind }
-    }
+    use belvedere_scene::{Color, Layer, LineLayer};
 
     #[test]
     fn twice_as_many_pixels_per_point_make_lines_and_names_twice_as_large() {
         let mut way = LineLayer::new(Vec::new(), Color::rgb(1, 2, 3));
         (way.width_px, way.label_px) = (3.0, Some(12.0));
-        let style = PointStyle { label_px: Some(13.0), ..PointStyle::default() };
-        let mut huts = PointLayer::new(Vec::new(), Color::rgb(1, 2, 3));
-        (huts.size_px, huts.style) = (8.0, style);
-        let scene =
-            Scene { layers: vec![layer(LayerKind::Line(way)), layer(LayerKind::Point(huts))], ..Scene::default() };
+        let layer = Layer { id: "way".into(), must_see: true, kind: LayerKind::Line(way) };
+        let scene = Scene { layers: vec![layer], ..Scene::default() };
         assert!(matches!(scaled(&scene, 1.0), Cow::Borrowed(_)));
-        let wide = scaled(&scene, 2.0);
-        let [LayerKind::Line(line), LayerKind::Point(point)] = [&wide.layers[0].kind, &wide.layers[1].kind] else {
-            panic!("other layers")
-        };
-        assert_eq!((line.width_px, line.label_px), (6.0, Some(24.0)));
-        assert_eq!((point.size_px, point.style.label_px), (16.0, Some(26.0)));
-        let thin = scaled(&scene, 0.5);
-        let LayerKind::Line(line) = &thin.layers[0].kind else { panic!("no line") };
-        assert_eq!((line.width_px, line.label_px), (1.5, None), "letters of 6 pixels cannot be read");
+        for (scale, width, letters) in [(2.0, 6.0, Some(24.0)), (0.5, 1.5, None)] {
+            let other = scaled(&scene, scale);
+            let LayerKind::Line(line) = &other.layers[0].kind else { panic!("no line") };
+            assert_eq!((line.width_px, line.label_px), (width, letters), "letters of 6 pixels cannot be read");
+        }
     }
 }
