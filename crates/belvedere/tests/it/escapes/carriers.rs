@@ -162,19 +162,6 @@ pub(super) const CARRIERS: &[Carrier] = &[
         scene: |_| layer("mesh", "m.obj", ""),
     },
     Carrier {
-        name: "picture of a PLY",
-        ending: "png",
-        content: picture,
-        files: |name| {
-            let head = format!("ply\nformat ascii 1.0\ncomment TextureFile {name}\nelement vertex 3\n");
-            let vertex = "property float x\nproperty float y\nproperty float z\nproperty float s\nproperty float t\n";
-            let rest = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-            let body = "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
-            vec![("m.ply", text(&format!("{head}{vertex}{rest}{body}")))]
-        },
-        scene: |_| layer("mesh", "m.ply", ""),
-    },
-    Carrier {
         name: "buffer of a glTF",
         ending: "bin",
         content: triangle,
