@@ -127,3 +127,33 @@ fn sync_folder(folder: &Path) {
 
 #[cfg(not(any(unix, target_family = "wasm")))]
 fn sync_folder(_: &Path) {}
+
+/// There are no temporary files in memory: programs that would write them cannot be started.
+#[cfg(target_family = "wasm")]
+#[derive(Debug)]
+pub struct Temporary(std::path::PathBuf);
+
+#[cfg(target_family = "wasm")]
+impl Temporary {
+    /// Always an error.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::Unsupported`].
+    pub fn beside(_: &Path) -> io::Result<Self> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
+
+    /// Its path.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+}
+
+/// Publishes nothing: there are no temporary files.
+///
+/// # Errors
+/// None.
+#[cfg(target_family = "wasm")]
+pub fn publish(_: Temporary, _: bool) -> Result<(), IoError> {
+    Ok(())
+}
