@@ -64,7 +64,8 @@ fn broken(panic: &(dyn std::any::Any + Send)) -> ExitCode {
 fn run(cli: Cli) -> ExitCode {
     belvedere::threads::start();
     let verb = cli.verb.name();
-    let context = Context::new(cli.common, verb, cli.verb.makes_many_pictures());
+    let context = Context::new(cli.common, cli.verb.makes_many_pictures());
+    interrupt::install(context.progress.cancel_flag(), verb);
     let end =
         verbs::run(cli.verb, &context).and_then(|goal| context.timings.write(verb, &context.common).map(|()| goal));
     interrupt::claim_end();

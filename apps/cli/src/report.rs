@@ -157,10 +157,10 @@ pub(crate) struct Context {
 }
 
 impl Context {
-    /// Installs Ctrl-C, see [`interrupt`](crate::interrupt), and the progress bar.
+    /// Installs the progress bar.
     ///
-    /// * `verb`: its name. `many_pictures`: the time limit applies to each picture, not to the whole command.
-    pub(crate) fn new(common: Common, verb: &'static str, many_pictures: bool) -> Self {
+    /// * `many_pictures`: the time limit applies to each picture, not to the whole command.
+    pub(crate) fn new(common: Common, many_pictures: bool) -> Self {
         let bar: Arc<Mutex<Option<indicatif::ProgressBar>>> = Arc::default();
         let progress = match (common.quiet, std::io::stderr().is_terminal()) {
             (true, _) => Progress::silent(),
@@ -172,7 +172,6 @@ impl Context {
             Some(seconds) => progress.limited(Duration::from_secs_f64(seconds)).begin(),
             None => progress,
         };
-        crate::interrupt::install(progress.cancel_flag(), verb);
         let trust = if common.no_remember { Trust::default() } else { Trust::of_user() };
         Self { common, progress, trust, timings: Timings::begin(), bar }
     }

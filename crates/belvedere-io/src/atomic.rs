@@ -1,6 +1,8 @@
 //! Atomic writing: a file exists complete or not at all, and files that belong together appear together.
 
 #[cfg(not(target_family = "wasm"))]
+mod batch;
+#[cfg(not(target_family = "wasm"))]
 mod ledger;
 #[cfg(not(target_family = "wasm"))]
 mod temporary;
@@ -10,7 +12,9 @@ use std::io::{self, Write};
 use std::path::Path;
 
 #[cfg(not(target_family = "wasm"))]
-pub use ledger::{abandon, contents_of, together, written};
+pub use batch::{contents_of, publish, together};
+#[cfg(not(target_family = "wasm"))]
+pub use ledger::{abandon, written};
 #[cfg(not(target_family = "wasm"))]
 pub use temporary::Temporary;
 
@@ -73,7 +77,7 @@ pub fn write_atomic(
     // What is left in the buffer after an error is not written.
     drop(out.into_parts());
     written.map_err(os)?;
-    temporary.publish(overwrite)
+    publish(temporary, overwrite)
 }
 
 /// Writes a file in memory: complete, or not at all.
@@ -123,3 +127,33 @@ fn sync_folder(folder: &Path) {
 
 #[cfg(not(any(unix, target_family = "wasm")))]
 fn sync_folder(_: &Path) {}
+
+/// There are no temporary files in memory: programs that would write them cannot be started.
+#[cfg(target_family = "wasm")]
+#[derive(Debug)]
+pub struct Temporary(std::path::PathBuf);
+
+#[cfg(target_family = "wasm")]
+impl Temporary {
+    /// Always an error.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::Unsupported`].
+    pub fn beside(_: &Path) -> io::Result<Self> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
+
+    /// Its path.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+}
+
+/// Publishes nothing: there are no temporary files.
+///
+/// # Errors
+/// None.
+#[cfg(target_family = "wasm")]
+pub fn publish(_: Temporary, _: bool) -> Result<(), IoError> {
+    Ok(())
+}

@@ -60,15 +60,6 @@ impl Temporary {
         }
     }
 
-    /// Flushes the file to the disk and gives it the name of the output; inside [`together`](super::together) at its end.
-    ///
-    /// # Errors
-    /// [`IoError::Exists`], [`IoError::Os`].
-    pub fn publish(self, overwrite: bool) -> Result<(), IoError> {
-        self.file().sync_all().map_err(|e| IoError::os(&self.target, e))?;
-        ledger::publish(self, overwrite)
-    }
-
     /// Renames the file.
     pub(super) fn rename(mut self, overwrite: bool) -> Result<(), IoError> {
         let Some(file) = self.file.take() else { return Ok(()) };

@@ -136,6 +136,7 @@ pub(super) fn canonicalize(path: impl AsRef<Path>) -> io::Result<PathBuf> {
 ///
 /// # Errors
 /// [`io::ErrorKind::NotFound`].
+#[allow(dead_code)] // readers open files
 pub(super) fn read(path: impl AsRef<Path>) -> io::Result<Vec<u8>> {
     content(path.as_ref()).map(|bytes| bytes.to_vec())
 }

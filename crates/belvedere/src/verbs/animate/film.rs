@@ -2,7 +2,7 @@
 
 use super::manifest::frame_name;
 use crate::BelvedereError;
-use belvedere_io::atomic::Temporary;
+use belvedere_io::atomic::{self, Temporary};
 use belvedere_scene::{Cancelled, Progress};
 use std::ffi::OsString;
 use std::io::ErrorKind;
@@ -56,7 +56,7 @@ pub(super) fn make(
         let ran = run(&mut ffmpeg, progress);
         match ran {
             Ok((true, _)) => {
-                temporary.publish(true)?;
+                atomic::publish(temporary, true)?;
                 return Ok(Film::Made(out.to_owned()));
             }
             Ok((false, said)) => complaint = said,

@@ -2,6 +2,9 @@
 
 use belvedere::io::png::{Channels, encode};
 
+/// Names and contents of files.
+type Files = Vec<(&'static str, Vec<u8>)>;
+
 /// A place that names a file.
 pub(super) struct Carrier {
     /// What it is; of a file that is found by its name, that name.
@@ -11,7 +14,7 @@ pub(super) struct Carrier {
     /// Content with which the named file would be read.
     pub(super) content: fn() -> Vec<u8>,
     /// Files beside the scene, which name the file.
-    pub(super) files: fn(&str) -> Vec<(&'static str, Vec<u8>)>,
+    pub(super) files: fn(&str) -> Files,
     /// Text of the scene.
     pub(super) scene: fn(&str) -> String,
 }
@@ -23,7 +26,7 @@ const LINE: &str =
     r#"{"type":"Feature","properties":{"name":"CANARY"},"geometry":{"type":"LineString","coordinates":[[1,2],[9,9]]}}"#;
 const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n";
 
-fn none(_: &str) -> Vec<(&'static str, Vec<u8>)> {
+fn none(_: &str) -> Files {
     Vec::new()
 }
 
@@ -124,13 +127,13 @@ pub(super) const CARRIERS: &[Carrier] = &[
         |name| layer("volume", "builtin:engine", &format!("transfer = {}", quoted(name))),
     ),
     named("drape", "png", picture, |name| {
-        layer("terrain", "builtin:massif?size=33", &format!("drape = {}", quoted(name)))
+        layer("terrain", "builtin:massif?size=65", &format!("drape = {}", quoted(name)))
     }),
     named(
         "palette",
         "cpt",
         || text("CANARY"),
-        |name| layer("terrain", "builtin:massif?size=33", &format!("style = {{ palette = {} }}", quoted(name))),
+        |name| layer("terrain", "builtin:massif?size=65", &format!("style = {{ palette = {} }}", quoted(name))),
     ),
     named(
         "presets of a bend",
@@ -138,7 +141,7 @@ pub(super) const CARRIERS: &[Carrier] = &[
         || text("{\"CANARY\": 1}"),
         |name| {
             let stage = format!("[[stage]]\nkind = \"spline_bend\"\npresets = {}\n", quoted(name));
-            layer("terrain", "builtin:massif?size=33", "") + &stage
+            layer("terrain", "builtin:massif?size=65", "") + &stage
         },
     ),
     Carrier {
@@ -157,19 +160,6 @@ pub(super) const CARRIERS: &[Carrier] = &[
             vec![("m.obj", text(&format!("mtllib m.mtl\n{OBJ}"))), ("m.mtl", text(&materials))]
         },
         scene: |_| layer("mesh", "m.obj", ""),
-    },
-    Carrier {
-        name: "picture of a PLY",
-        ending: "png",
-        content: picture,
-        files: |name| {
-            let head = format!("ply\nformat ascii 1.0\ncomment TextureFile {name}\nelement vertex 3\n");
-            let vertex = "property float x\nproperty float y\nproperty float z\nproperty float s\nproperty float t\n";
-            let rest = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
-            let body = "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
-            vec![("m.ply", text(&format!("{head}{vertex}{rest}{body}")))]
-        },
-        scene: |_| layer("mesh", "m.ply", ""),
     },
     Carrier {
         name: "buffer of a glTF",
@@ -252,6 +242,6 @@ pub(super) const SIDECARS: &[Carrier] = &[
         ending: "pgw",
         content: || text("CANARY"),
         files: |_| vec![("d.png", picture())],
-        scene: |_| layer("terrain", "builtin:massif?size=33", "drape = \"d.png\""),
+        scene: |_| layer("terrain", "builtin:massif?size=65", "drape = \"d.png\""),
     },
 ];
