@@ -46,7 +46,9 @@ fn fails_within(place: &Place, kib: u64, args: &[&str]) -> String {
     shell.arg("-c").arg(format!("ulimit -v {kib}; exec \"$0\" \"$@\"")).arg(program.get_program()).args(args);
     shell.current_dir(place.path("."));
     for (name, value) in program.get_envs() {
-        value.map(|value| shell.env(name, value));
+        if let Some(value) = value {
+            shell.env(name, value);
+        }
     }
     let out = shell.output().expect("the program starts");
     let text = String::from_utf8(out.stderr).expect("UTF-8");

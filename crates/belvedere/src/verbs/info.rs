@@ -346,6 +346,7 @@ fn geotiff(path: &Path, name: &str, request: &TerrainRequest, progress: &Progres
         return Ok(FileInfo::Picture(picture));
     }
     match terrain(path, request, progress) {
+        Err(reason) if belvedere_io::budget::is_refusal(&reason.to_string()) => Err(reason),
         // Readable, but not usable as ground of a scene.
         Err(reason) if !reason.is_cancelled() && file.read(0, progress).is_ok() => {
             let unusable = Warning::new(WarningKind::Fallback, reason.to_string()).about(name);
