@@ -76,7 +76,7 @@ mod tests {
 
     /// One sample at a time, on grids of two values.
     fn slowly(heights: &[f32], cols: usize, rows: usize, value: f32) -> usize {
-        let edge = |i: usize| i % cols == 0 || i % cols == cols - 1 || i / cols == 0 || i / cols == rows - 1;
+        let edge = |i: usize| i.is_multiple_of(cols) || i % cols == cols - 1 || i / cols == 0 || i / cols == rows - 1;
         let mut seen: Vec<bool> = (0..heights.len()).map(|i| edge(i) && heights[i] == value).collect();
         loop {
             let near = |i: usize| {

@@ -10,7 +10,7 @@ use std::io::Write;
 fn of_one_tile(cols: u32, rows: u32, left_out: usize) -> Vec<u8> {
     let tile: Vec<u8> = (0..=255).collect();
     let tiles = (cols.div_ceil(16) * rows.div_ceil(16)) as usize;
-    let at = |i: usize| if left_out > 0 && i % left_out == 0 { 0 } else { 8u32 };
+    let at = |i: usize| if left_out > 0 && i.is_multiple_of(left_out) { 0 } else { 8u32 };
     let long = |value: u32| (4u16, 1u32, value);
     let short = |value: u32| (3u16, 1u32, value);
     let lists = 8 + 256;
