@@ -4,7 +4,7 @@ use super::gallery::{Galleries, variant};
 use super::number;
 use super::sections::{self, SectionEdit};
 use crate::handles::Handles;
-use crate::language::{fill, heard, tr};
+use crate::language::{fill, tr};
 use crate::model::Model;
 use crate::widgets::curve::curve;
 use crate::widgets::ruler::{RANGE, RulerEdit, ruler};

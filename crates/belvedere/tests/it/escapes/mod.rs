@@ -7,7 +7,7 @@
 mod carriers;
 
 use belvedere::scene::Progress;
-use belvedere::verbs::pack::{APPLICATION, PackRequest, pack};
+use belvedere::verbs::pack::{PackRequest, pack};
 use belvedere::{OpenOptions, Session};
 use carriers::{CARRIERS, Carrier, SIDECARS};
 use std::fs::{self, File, FileTimes};
@@ -212,18 +212,21 @@ fn a_page_holds_no_file_from_elsewhere() {
     symlink(&folders.canary, folders.inside.join("link.png")).expect("link");
     folders.opened(carrier, "link.png");
     let app = folders.inside.join("app");
-    fs::create_dir_all(app.join("threads")).expect("folder");
-    APPLICATION.iter().for_each(|name| fs::write(app.join(name), "app").expect("written"));
-    symlink(&folders.canary, app.join("threads/worker.js")).expect("link");
+    fs::create_dir_all(app.join("threads/snippets")).expect("folder");
+    let page = ["index.html", "page.css", "page.js", "kept.js", "mirror.js"];
+    let program = ["threads/belvedere.js", "threads/belvedere_bg.wasm"];
+    page.iter().chain(&program).for_each(|name| fs::write(app.join(name), "app").expect("written"));
+    symlink(&folders.canary, app.join("threads/snippets/worker.js")).expect("link");
     let out = folders.inside.join("page");
     forget_reading(&folders.canary);
     let request = PackRequest {
         files: vec![folders.inside.join("scene.toml")],
         application: app,
+        threads: true,
         out: out.clone(),
         ..PackRequest::default()
     };
     let packed = pack(&request, &Progress::silent()).expect("packed");
     assert!(packed.bundle.files.iter().all(|file| !file.path.ends_with("link.png")), "{packed:?}");
-    assert!(!was_read(&folders.canary) && !out.join("threads/worker.js").exists());
+    assert!(!was_read(&folders.canary) && !out.join("snippets/worker.js").exists());
 }
