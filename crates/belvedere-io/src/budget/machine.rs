@@ -14,6 +14,14 @@ pub fn of_machine() -> u64 {
     }
 }
 
+/// Bytes that the limit of address space leaves to the process; `u64::MAX` without one.
+pub(super) fn address_space_left() -> u64 {
+    let text = |name: &str| std::fs::read_to_string(name).ok();
+    let most = text("/proc/self/limits").and_then(|t| address_space(&t));
+    let taken = || text("/proc/self/status").and_then(|t| kib(&t, "VmSize:")).unwrap_or(0);
+    most.map_or(u64::MAX, |most| most.saturating_sub(taken()).max(1))
+}
+
 #[cfg(not(target_os = "linux"))]
 fn free() -> Option<u64> {
     None
@@ -23,22 +31,18 @@ fn free() -> Option<u64> {
 fn free() -> Option<u64> {
     let text = |name: &str| std::fs::read_to_string(name).ok();
     let machine = text("/proc/meminfo").and_then(|t| kib(&t, "MemAvailable:"));
-    let space = text("/proc/self/limits").and_then(|t| address_space(&t));
-    let taken = text("/proc/self/status").and_then(|t| kib(&t, "VmSize:")).unwrap_or(0);
     let group = text("/proc/self/cgroup").and_then(|t| in_groups(&t, &text));
-    let found = [machine, space.map(|most| most.saturating_sub(taken)), group];
+    let found = [machine, Some(address_space_left()), group];
     found.into_iter().flatten().min()
 }
 
 /// Bytes of a line such as `MemAvailable:   123 kB`.
-#[cfg(any(test, target_os = "linux"))]
 fn kib(text: &str, key: &str) -> Option<u64> {
     let rest = text.lines().find_map(|line| line.strip_prefix(key))?;
     rest.split_whitespace().next()?.parse::<u64>().ok()?.checked_mul(1024)
 }
 
 /// Soft limit of the address space, bytes; `None` = unlimited.
-#[cfg(any(test, target_os = "linux"))]
 fn address_space(limits: &str) -> Option<u64> {
     let rest = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
     rest.split_whitespace().next()?.parse().ok()

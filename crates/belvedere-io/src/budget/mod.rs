@@ -1,7 +1,7 @@
 //! One budget of memory for all that a process reads, holds, solves and draws.
 //!
 //! An application sets it ([`set`]); else it is [`of_machine`]. Work asks for its peak before it begins ([`ask`]). What is held already
-//! counts where the application counts its allocations ([`count_by`]); elsewhere each request is weighed alone.
+//! counts where the application tells it ([`count_by`]); elsewhere each request is weighed alone.
 
 mod machine;
 
@@ -19,9 +19,9 @@ static SET: AtomicU64 = AtomicU64::new(0);
 static METER: OnceLock<fn() -> u64> = OnceLock::new();
 static IN_WORK: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Sets the budget of the process, bytes; 0 = that of the machine.
+/// Sets the budget of the process, bytes, but no more than its limit of address space leaves; 0 = that of the machine.
 pub fn set(bytes: u64) {
-    SET.store(bytes, Ordering::Relaxed);
+    SET.store(bytes.min(machine::address_space_left()), Ordering::Relaxed);
 }
 
 /// The budget of the process, bytes.

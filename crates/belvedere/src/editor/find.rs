@@ -301,7 +301,7 @@ mod tests {
     use std::time::{Duration, Instant};
 
     fn points(names: impl Iterator<Item = String>) -> Scene {
-        let feature = |(i, name)| PointFeature { name, position: DVec3::new(i as f64, 0.0, 0.0) };
+        let feature = |(i, name)| PointFeature { name, position: DVec3::new(i as f64, 0.0, 0.0), style: None };
         let features = names.enumerate().map(feature).collect();
         let color = Color::rgb(0, 0, 0);
         let (size_px, style, hidden, lift_m) = (5.0, PointStyle::default(), Default::default(), 0.0);
@@ -332,6 +332,7 @@ mod tests {
         let piece = |x: f64| LineFeature {
             name: "Inn".into(),
             points: vec![DVec3::new(x, 0.0, 5.0), DVec3::new(x + 1.0, 2.0, 5.0)],
+            style: None,
         };
         let line = LineLayer::new(vec![piece(0.0), piece(7.0)], Color::rgb(0, 0, 0));
         let index = NameIndex::of(&Scene::default().with_layer("rivers", LayerKind::Line(line)));
