@@ -70,7 +70,6 @@ fn a_preset_and_its_curve_in_light_colours() {
     press(&mut harness, "View");
     press(&mut harness, "Light");
     press(&mut harness, "Spline");
-    press(&mut harness, "Presets");
     press(&mut harness, "progressive");
     compare(&mut harness, "light");
 }

@@ -36,11 +36,10 @@ fn the_plot_of_a_curve_and_the_rows_below_it_stay_while_a_point_is_dragged_beyon
     let mut harness = app(&opened(&[scene(folder.path())]));
     settle(&mut harness);
     press(&mut harness, "Spline");
-    press(&mut harness, "Presets");
     press(&mut harness, "progressive");
     settle(&mut harness);
     let still = |harness: &Window| {
-        ["Control point 1", "Curve of the preset", "Split the last section", "Mirror"]
+        ["Control point 1", "Curve of the preset", "Split section 1 in two", "Mirror"]
             .map(|name| find(harness, name).rect())
     };
     let before = still(&harness);
@@ -56,7 +55,7 @@ fn the_plot_of_a_curve_and_the_rows_below_it_stay_while_a_point_is_dragged_beyon
     settle(&mut harness);
     // A value stops at its limit, and a sentence says so.
     let still =
-        |harness: &Window| ["Curve of the preset", "Split the last section"].map(|name| find(harness, name).rect());
+        |harness: &Window| ["Curve of the preset", "Split section 1 in two"].map(|name| find(harness, name).rect());
     let before = still(&harness);
     let field = find(&harness, "holds within ± degrees").rect().center();
     drag(&mut harness, field, vec2(2400.0, 0.0), |harness| assert_eq!(still(harness), before));

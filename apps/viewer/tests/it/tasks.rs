@@ -139,11 +139,10 @@ fn a_preset_of_three_sections_is_made_for_a_city() {
     let mut person = Person::before(&opened(&[path]));
     person.wait_for_picture();
     person.press("Spline");
-    person.press("Presets");
     person.press("progressive");
     person.wait_for_picture();
-    for _ in sections(&person.harness).len()..3 {
-        person.press("Split the last section");
+    for n in sections(&person.harness).len()..3 {
+        person.press(&format!("Split section {n} in two"));
         person.wait_for_picture();
     }
     for (n, layer) in [(1, "houses"), (2, "blocks"), (3, "quarters")] {
@@ -184,7 +183,6 @@ fn the_residues_of_a_molecule_are_told_apart_and_it_is_bent() {
     person.press("residue");
     person.wait_for_picture();
     person.press("Spline");
-    person.press("Presets");
     person.press("progressive");
     person.wait_for_picture();
     let document = person.harness.state().document().clone();

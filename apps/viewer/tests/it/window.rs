@@ -126,15 +126,14 @@ fn a_preset_is_made_in_a_window_saved_and_drawn_and_a_killed_window_comes_back()
         display.click(x, y);
     };
     click(33, 60); // the panel of splines
-    click(57, 92); // presets
-    click(57, 119); // the first of the list
+    click(70, 140); // the first picture of a preset
     written(&place, "bent", |state| state["document"]["stage"][0]["presets"] == "progressive");
     std::thread::sleep(Duration::from_secs(3)); // The angle of the camera is told when the bent picture is there.
-    click(144, 194); // for the angle of this camera
+    click(144, 406); // for the angle of this camera
     let state = written(&place, "captured", |state| state["document"]["stage"][0]["presets"]["presets"].is_array());
     let far = |state: &Value| state["document"]["stage"][0]["presets"]["presets"][0]["control"][3][1].as_f64();
     let before = far(&state);
-    display.drag([243, 306], [243, 280]); // the far end of the curve is raised
+    display.drag([243, 519], [243, 493]); // the far end of the curve is raised
     operations += 1;
     written(&place, "raised", |state| far(state) > before);
     display.click(18, 12); // the menu of files
