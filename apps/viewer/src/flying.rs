@@ -1,7 +1,8 @@
 //! Flights of the camera to what was found or bookmarked, and the ring that marks it.
 
+use crate::flight::{Flying, Ring};
 use crate::model::Model;
-use belvedere::core::{Aabb, DVec3, Navigation, Pinhole, Projection};
+use belvedere::core::{Aabb, Navigation, Pinhole, Projection};
 use belvedere::editor::{Flight, navigation, shown_whole};
 use belvedere::scene_file::{CameraDoc, ConstructorKind};
 use eframe::egui::{Context, Event, TouchPhase};
@@ -10,21 +11,6 @@ use eframe::egui::{Context, Event, TouchPhase};
 const SECONDS: f64 = 0.8;
 /// Time for which a ring is shown from the beginning of the flight, seconds.
 const MARKED: f64 = 3.0;
-
-/// A flight under way.
-pub(crate) struct Flying {
-    flight: Flight,
-    /// Time of its first step; `None` before it.
-    began: Option<f64>,
-    /// The camera as it is written at the end, where it is that of a bookmark.
-    end: Option<Box<CameraDoc>>,
-}
-
-/// A ring around what was found.
-pub(crate) struct Ring {
-    pub(crate) point: DVec3,
-    began: Option<f64>,
-}
 
 impl Model {
     /// Moves the camera so that a box fills the document's frame.

@@ -2,8 +2,8 @@
 
 use crate::language::{fill, tr};
 use crate::model::{Model, Tool};
-use crate::picture::{coordinates, image_of};
 use crate::pointer::share;
+use crate::points::{coordinates, image_of};
 use belvedere::core::{DVec2, DVec3};
 use belvedere::editor::{Lengths, ground_way, lengths, lengths_geojson};
 use belvedere::scene::{LayerKind, Scene, Unit};

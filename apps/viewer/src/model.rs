@@ -1,6 +1,6 @@
 //! State of the application without its window: the document, the last pictures, and how they are viewed.
 
-use crate::flying::{Flying, Ring};
+use crate::flight::{Flying, Ring};
 use crate::handles::Handles;
 use crate::language::tr;
 use crate::notices::Notices;

@@ -6,12 +6,13 @@ use crate::language::{fill, heard, tr};
 use crate::measure::Measure;
 use crate::model::{Compare, Model, Tool};
 use crate::pointer::{Hand, share};
+use crate::points::{coordinates, image_of};
 use belvedere::core::{Aabb, DVec2, DVec3};
 use belvedere::editor::{Pace, Shown};
-use belvedere::scene::{Frame, Unit};
+use belvedere::scene::Frame;
 use eframe::egui::{
     Align2, Color32, ColorImage, Context, CursorIcon, FontId, Painter, Pos2, Rect, Response, Role, Sense, Stroke,
-    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+    TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
 };
 
 /// Most pixels of a picture on the screen.
@@ -307,16 +308,6 @@ fn frame_corners(painter: &Painter, rect: Rect, model: &Model) {
     }
 }
 
-/// Position in the window at which the picture shows a world point.
-pub(crate) fn image_of(point: DVec3, rect: Rect, model: &Model) -> Option<Pos2> {
-    let shown = model.shown.as_ref()?;
-    let view = if model.look.bent { shown.session.view().clone() } else { shown.session.view().straightened() };
-    let at = view.project(point).ok()?.pixel;
-    let [w, h] = view.pinhole().image.map(f64::from);
-    let share = Vec2::new((at.x / w) as f32, (at.y / h) as f32);
-    Some(rect.min + share * rect.size()).filter(|at| rect.contains(*at))
-}
-
 /// The ring around what was found, which closes in and fades.
 fn ring(painter: &Painter, rect: Rect, ctx: &Context, model: &Model) {
     let Some(at) = model.ring.as_ref().and_then(|ring| image_of(ring.point, rect, model)) else { return };
@@ -324,17 +315,6 @@ fn ring(painter: &Painter, rect: Rect, ctx: &Context, model: &Model) {
     let (radius, left) = (18.0 + 26.0 * (1.0 - 3.0 * over).max(0.0), (3.0 * (1.0 - over)).min(1.0));
     painter.circle_stroke(at, radius, Stroke::new(5.0, Color32::WHITE.gamma_multiply(0.8 * left)));
     painter.circle_stroke(at, radius, Stroke::new(2.5, MARK.gamma_multiply(left)));
-}
-
-/// Position and height in the scene's own system.
-pub(crate) fn coordinates(point: DVec3, unit: Unit) -> String {
-    match unit {
-        Unit::Metre => {
-            let [e, n, height] = point.to_array().map(|value| format!("{value:.0}"));
-            fill(tr("E {0}  N {1}  height {2} m"), &[&e, &n, &height])
-        }
-        _ => format!("x {:.2}  y {:.2}  z {:.2}", point.x, point.y, point.z),
-    }
 }
 
 /// A label: text on a light background.

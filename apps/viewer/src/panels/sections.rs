@@ -143,7 +143,9 @@ fn chips(ui: &mut Ui, known: &[String]) {
             let response = ui
                 .dnd_drag_source(id, name.clone(), |ui| {
                     let button = eframe::egui::Button::new(dark(name.clone())).fill(color_of(name));
-                    ui.add(button.wrap_mode(TextWrapMode::Extend))
+                    let shown = ui.add(button.wrap_mode(TextWrapMode::Extend));
+                    // The control is what is dragged; this is its text.
+                    shown.widget_info(|| WidgetInfo::labeled(Role::Label, true, name));
                 })
                 .response;
             let words = fill(tr("Representation {0}"), &[name]);

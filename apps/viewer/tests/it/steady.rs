@@ -33,7 +33,10 @@ fn fields(harness: &Window) -> Vec<Rect> {
 #[test]
 fn the_plot_of_a_curve_and_the_rows_below_it_stay_while_a_point_is_dragged_beyond_its_limit() {
     let folder = tempfile::tempdir().expect("folder");
-    let mut harness = app(&opened(&[scene(folder.path())]));
+    let opening = opened(&[scene(folder.path())]);
+    // Tall enough that all rows are in sight.
+    let builder = Harness::builder().with_size([960.0, 1400.0]).with_max_steps(4);
+    let mut harness = builder.build_eframe(move |cc| Viewer::new(&cc.egui_ctx, &opening));
     settle(&mut harness);
     press(&mut harness, "Spline");
     press(&mut harness, "progressive");

@@ -3,7 +3,9 @@
 use crate::{opened, wait_for};
 use belvedere::scene_file::{LayerDoc, PresetsDoc, StageDoc};
 use belvedere_viewer::{Opening, Viewer};
-use eframe::egui::{DroppedFile, Event, Key, Modifiers, accesskit::Role};
+use eframe::egui::{
+    DroppedFile, Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, TouchPhase, accesskit::Role, pos2, vec2,
+};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use std::path::{Path, PathBuf};
@@ -27,6 +29,9 @@ impl DroppedFile for Dropped {
     }
 }
 
+/// Height of the window, points.
+const HEIGHT: f32 = 760.0;
+
 /// Somebody who only knows the names on the screen.
 struct Person {
     harness: Harness<'static, Viewer>,
@@ -37,13 +42,35 @@ struct Person {
 impl Person {
     fn before(opening: &Opening) -> Self {
         let opening = opening.clone();
-        let builder = Harness::builder().with_size([900.0, 760.0]).with_max_steps(4);
+        let builder = Harness::builder().with_size([900.0, HEIGHT]).with_max_steps(4);
         let mut harness = builder.build_eframe(move |cc| Viewer::new(&cc.egui_ctx, &opening));
         (0..3).for_each(|_| harness.step());
         Self { harness, actions: Vec::new(), waited: Duration::ZERO }
     }
 
+    /// Turns the wheel over the panel until a control of that name is in sight.
+    fn scroll_to(&mut self, name: &str) {
+        for _ in 0..10 {
+            // What touches the lower edge may be cut off there.
+            if self.harness.query_all_by_label(name).any(|node| node.rect().bottom() < HEIGHT - 16.0) {
+                return;
+            }
+            self.actions.push("wheel".into());
+            self.harness.hover_at(pos2(150.0, 500.0));
+            let (unit, delta, phase) = (MouseWheelUnit::Point, vec2(0.0, -240.0), TouchPhase::Move);
+            self.harness.event(Event::MouseWheel {
+                unit,
+                delta,
+                phase,
+                modifiers: Modifiers::NONE,
+                source: MouseWheelSource::Wheel,
+            });
+            (0..20).for_each(|_| self.harness.step());
+        }
+    }
+
     fn press(&mut self, name: &str) {
+        self.scroll_to(name);
         self.actions.push(name.to_owned());
         let named: Vec<_> = self.harness.get_all_by_label(name).collect();
         let is_text = |node: &&egui_kittest::Node<'_>| node.accesskit_node().role() == Role::Label;

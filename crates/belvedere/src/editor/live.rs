@@ -1,5 +1,6 @@
 //! A session that follows a document: everything is resolved again, but unchanged layers are not read again.
 
+use super::ground::{Ground, with_ground};
 use super::moving::{quick, within};
 use super::rate::{Quality, Rate, TARGET_MS};
 use super::thin::Thin;
@@ -10,11 +11,11 @@ use crate::resolve::solving::Memory;
 use crate::resolve::{hidden, representations};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{ConstructorKind, Document, LayerDoc, SourceDocument, StageDoc};
-use crate::session::{Loaded, Resolved};
+use crate::session::Loaded;
 use crate::{BelvedereError, CameraPicture, OpenOptions, Session};
 use belvedere_construct::measure::HiddenRun;
 use belvedere_construct::{MeasureOptions, Measures};
-use belvedere_core::{Stage, View, Warning};
+use belvedere_core::{View, Warning};
 use belvedere_scene::Instant;
 use belvedere_scene::{Frame, Progress, RenderJob, RenderOptions, Scene};
 use std::sync::Arc;
@@ -136,14 +137,6 @@ pub struct LiveSession {
     rate: Rate,
     /// Layers of the last moving picture: what can be computed once has been.
     drawn: Option<Arc<Scene>>,
-}
-
-/// Displaced ground during a motion.
-#[derive(Debug, Default)]
-struct Ground {
-    #[cfg(not(target_family = "wasm"))]
-    live: Option<(crate::scene_file::TerrainStageDoc, Arc<Scene>, belvedere_disocclusion::LiveTerrain)>,
-    last: Option<Stage>,
 }
 
 impl LiveSession {
@@ -407,30 +400,6 @@ impl LiveSession {
     }
 }
 
-impl Ground {
-    /// The newest solved ground for the view of a session without displaced ground; before the first one that of the last picture
-    /// at rest.
-    #[cfg(not(target_family = "wasm"))]
-    fn under(&mut self, session: &Session) -> Result<Option<Stage>, BelvedereError> {
-        use belvedere_disocclusion::{LiveTerrain, TerrainSolver};
-        let Some(stated) = session.stated_terrain() else { return Ok(None) };
-        let fits = |(doc, scene, _): &(_, Arc<Scene>, _)| *doc == stated && Arc::ptr_eq(scene, &session.loaded.scene);
-        if !self.live.as_ref().is_some_and(fits) {
-            let solver = TerrainSolver::new(session.terrain_settings()?)?;
-            self.live =
-                Some((stated, session.loaded.scene.clone(), LiveTerrain::apart(solver, session.loaded.scene.clone())));
-        }
-        let Some((.., live)) = &mut self.live else { return Ok(None) };
-        Ok(live.newest(session.view())?.map(Stage::TerrainDisocclusion).or_else(|| self.last.clone()))
-    }
-
-    /// The ground of the last picture at rest: there is no thread to solve in the background.
-    #[cfg(target_family = "wasm")]
-    fn under(&mut self, _: &Session) -> Result<Option<Stage>, BelvedereError> {
-        Ok(self.last.clone())
-    }
-}
-
 /// The document with the reference planes of the last picture at rest, so that the median of the terrain is not computed for every
 /// picture.
 fn with_known_planes(mut document: Document, session: &Session) -> Document {
@@ -449,15 +418,6 @@ fn with_known_planes(mut document: Document, session: &Session) -> Document {
         }
     }
     document
-}
-
-/// The session with a stage of displaced ground in its chain.
-fn with_ground(session: Session, ground: Stage) -> Result<Session, BelvedereError> {
-    let (pinhole, mut stages) = (session.view().pinhole().clone(), session.view().stages().to_vec());
-    let at = stages.iter().take_while(|stage| stage.rank() < ground.rank()).count();
-    stages.insert(at, ground);
-    let view = View::new(pinhole, stages).map_err(|e| BelvedereError::Setting(e.to_string()))?;
-    Ok(Session { resolved: Resolved { view, ..session.resolved }, ..session })
 }
 
 fn options(order: &Order, progress: &Progress) -> OpenOptions {

@@ -7,6 +7,7 @@ mod camera;
 mod coarse;
 mod find;
 mod flight;
+mod ground;
 mod layers;
 mod lengths;
 mod live;
