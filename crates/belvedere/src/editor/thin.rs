@@ -13,10 +13,13 @@ const PLAIN: u8 = 3;
 /// Scenes that are kept: those of the qualities between which moving pictures change.
 const KEPT: usize = 3;
 
+/// A scene, the quality and density of its picture, and its form for that.
+type Kept = (Arc<Scene>, (Quality, f64), Arc<Scene>);
+
 /// The scenes of the last coarse pictures.
 #[derive(Debug, Default)]
 pub(super) struct Thin {
-    kept: Vec<(Arc<Scene>, (Quality, f64), Arc<Scene>)>,
+    kept: Vec<Kept>,
     /// Coarse meshes of a scene: number of the layer, most triangles, the mesh if it can be made coarser.
     meshes: Vec<(usize, usize, Option<MeshLayer>)>,
 }
