@@ -74,8 +74,7 @@ impl Run<'_> {
         self.page.with("slider", "field of view, degrees", &set);
         self.edited();
         assert!(self.scene.as_str().is_some_and(|text| text.contains(&format!("fov_y_deg = {degrees}.5"))));
-        // The picture gets the keyboard again.
-        self.page.value("document.getElementById('canvas').focus()");
+        self.touch();
     }
 
     fn drop_way(&mut self) {
@@ -113,7 +112,7 @@ impl Run<'_> {
         self.page.press("Built-in scenes");
         self.page.press("Massif, curved rays");
         self.page.press("Cancel");
-        self.page.value("document.getElementById('canvas').focus()");
+        self.touch();
     }
 
     /// The page is loaded again, or left and visited again; it asks if something is in no file.
