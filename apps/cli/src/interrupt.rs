@@ -26,6 +26,10 @@ pub(crate) fn install(flag: Arc<AtomicBool>, verb: &'static str) {
     // Without a handler Ctrl-C still ends the process, only less politely.
     let _ = ctrlc::set_handler(move || {
         if flag.swap(true, Ordering::SeqCst) {
+            // An end that waits for a slow disk is not waited for.
+            if ENDING.load(Ordering::SeqCst) {
+                std::process::exit(i32::from(CODE));
+            }
             end(verb);
         }
         let later = std::thread::Builder::new().spawn(move || {

@@ -3,6 +3,7 @@
 use crate::language::{fill, tr};
 use crate::menu::Bookmark;
 use crate::model::Model;
+use crate::wake::Wake;
 use belvedere::core::{Aabb, DVec3};
 use belvedere::editor::{NameIndex, Wanted, atoms_in, beside, folded, place_in};
 use belvedere::scene_file::Document;
@@ -39,6 +40,8 @@ pub(crate) struct Find {
     pub(crate) open: bool,
     text: String,
     has_focus: bool,
+    /// The field, once it was shown.
+    field: Option<Id>,
     chosen: usize,
     /// Names of the scene of a document.
     index: Option<(Arc<Document>, NameIndex)>,
@@ -80,10 +83,10 @@ impl Find {
             return;
         }
         let (outbox, inbox) = channel();
-        let (session, ctx) = (shown.session.clone(), ctx.clone());
+        let (session, wake) = (shown.session.clone(), Wake::new(ctx));
         let work = move || {
             let _ = outbox.send(NameIndex::of(session.scene()));
-            ctx.request_repaint();
+            wake.call();
         };
         if beside(work).is_ok() {
             self.coming = Some((shown.document.clone(), inbox));
@@ -140,7 +143,9 @@ impl Find {
         }
         self.keep_index(model, ctx);
         self.look(model, bookmarks);
-        let pressed = |key: Key| ctx.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+        // Other controls and windows have these keys, too.
+        let is_typing = self.field.is_some() && ctx.memory(|memory| memory.focused()) == self.field;
+        let pressed = |key: Key| is_typing && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, key));
         let (up, down, enter, escape) =
             (pressed(Key::ArrowUp), pressed(Key::ArrowDown), pressed(Key::Enter), pressed(Key::Escape));
         let last = self.answer.as_ref().map_or(0, |answer| answer.hits.len().saturating_sub(1));
@@ -182,6 +187,7 @@ impl Find {
             let hint = tr("name, or place as 46.5N,11.3E");
             let width = (ui.available_width() - close).max(80.0);
             let field = ui.add(TextEdit::singleline(&mut self.text).hint_text(hint).desired_width(width));
+            self.field = Some(field.id);
             let text = &self.text;
             let label = || Some(tr("Find").to_owned());
             field.widget_info(|| WidgetInfo { label: label(), ..WidgetInfo::text_edit(true, text, text, hint) });

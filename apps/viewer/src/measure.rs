@@ -7,10 +7,12 @@ use crate::points::{coordinates, image_of};
 use belvedere::core::{DVec2, DVec3};
 use belvedere::editor::{Lengths, ground_way, lengths, lengths_geojson};
 use belvedere::scene::{LayerKind, Scene, Unit};
+use belvedere::scene_file::Document;
 use eframe::egui::{
     Align, Align2, Area, Color32, Context, CursorIcon, FontId, Frame, Grid, Id, Key, Layout, Mesh, Modifiers, Order,
     Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
+use std::sync::Arc;
 
 /// Width and height of the profile, points.
 const PROFILE: [f32; 2] = [250.0, 66.0];
@@ -26,6 +28,8 @@ pub(crate) struct Measure {
     points: Vec<DVec3>,
     /// Lengths of the points, and the way that is drawn; made anew when the points change.
     of: Option<(Lengths, Vec<DVec3>)>,
+    /// The document that they are lengths in.
+    document: Option<Arc<Document>>,
     /// Number of the scene that the points lie in.
     scene: u64,
     /// Whether the last measurement is at an end.
@@ -68,9 +72,15 @@ impl Measure {
         if measures && picture.double_clicked() {
             self.end(model);
         }
-        let Some(scene) = model.shown.as_ref().map(|shown| shown.session.scene()) else { return };
-        if self.of.is_none() && !self.points.is_empty() {
+        let Some(shown) = &model.shown else { return };
+        let is_same = |of: &Arc<Document>| {
+            let (a, b) = (of, &shown.document);
+            Arc::ptr_eq(a, b) || (a.layer == b.layer && a.hidden == b.hidden && a.crs == b.crs)
+        };
+        if (self.of.is_none() || !self.document.as_ref().is_some_and(is_same)) && !self.points.is_empty() {
+            let scene = shown.session.scene();
             self.of = Some((lengths(scene, &self.points), drawn_way(scene, &self.points)));
+            self.document = Some(shown.document.clone());
         }
         self.draw(&ui.painter_at(rect), rect, model);
         self.handles(ui, rect, model);

@@ -32,8 +32,15 @@ export class Mirror {
     place.addEventListener("input", (event) => event.target.type !== "number" && change(event));
     place.addEventListener("change", (event) => event.target.type === "number" && change(event));
     place.addEventListener("keydown", (event) => {
-      const own = event.target.tagName === "INPUT" ? !["Tab", "Escape"].includes(event.key) : ["Enter", " "].includes(event.key);
-      if (own) return;
+      const [tag, presses] = [event.target.tagName, ["Enter", " "].includes(event.key)];
+      if (tag === "INPUT" ? !["Tab", "Escape"].includes(event.key) : tag === "BUTTON" && presses) return;
+      if (presses) {
+        // Only buttons press themselves.
+        event.preventDefault();
+        event.stopPropagation();
+        act(of(event), "click");
+        return;
+      }
       // Other keys are the application's.
       event.preventDefault();
       event.stopPropagation();

@@ -104,7 +104,7 @@ fn shortest(path: &Path, all: &[&PathBuf]) -> String {
     let end = |n: usize| parts[parts.len() - n.min(parts.len())..].iter().collect::<PathBuf>();
     let is_its_own = |n: &usize| all.iter().filter(|other| **other != path && other.ends_with(end(*n))).count() == 0;
     let told = parts.len().saturating_sub(of_a_user(path)).max(1);
-    let n = (1..=told).filter(|n| *n < parts.len()).find(is_its_own);
+    let n = (1..=told).filter(|n| *n < parts.len().max(2)).find(is_its_own);
     let names: Vec<String> =
         end(n.unwrap_or(1)).components().map(|part| part.as_os_str().to_string_lossy().into_owned()).collect();
     let name = names.join("/");

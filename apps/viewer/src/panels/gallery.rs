@@ -158,7 +158,7 @@ impl Galleries {
         let Some(shown) = &model.shown else { return };
         let document = variant(model.document(), BUILTINS[card].name);
         let width = model.screen_size().map_or(PICTURE[0], |[width, _]| width);
-        let scale = f64::from(PICTURE[0]) / f64::from(width.max(1));
+        let scale = model.density * f64::from(PICTURE[0]) / f64::from(width.max(1));
         let thumbnails = Thumbnails::new(&shown.session, &model.editor.place, scale);
         let (outbox, inbox) = mpsc::channel();
         let progress = Progress::silent();
@@ -167,8 +167,13 @@ impl Galleries {
             let drawn = thumbnails.draw(&document, PICTURE, &own).map_err(|e| e.to_string());
             let _ = outbox.send(drawn);
         };
-        if beside(work).is_ok() {
-            self.drawing = Some(Drawing { of, card, progress, inbox });
+        match beside(work) {
+            Ok(()) => self.drawing = Some(Drawing { of, card, progress, inbox }),
+            Err(reason) => {
+                if let Some(gallery) = self.kept.iter_mut().find(|gallery| gallery.of == of) {
+                    gallery.cards[card] = Some(Err(reason));
+                }
+            }
         }
     }
 
@@ -221,6 +226,7 @@ fn key(model: &Model) -> Option<u64> {
     }
     let mut hasher = DefaultHasher::new();
     document.to_string().hash(&mut hasher);
+    model.editor.place.roots.scene_dir.hash(&mut hasher);
     let pinhole = &camera.pinhole;
     let distance = pinhole.eye.distance(camera.target);
     let step = COARSE * distance.log2().floor().exp2();

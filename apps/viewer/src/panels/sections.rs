@@ -71,7 +71,7 @@ fn row(
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
             response.on_hover_text(name).clicked()
         };
-        if button(ui, tr("Split"), fill(tr("Split section {0} in two"), &[&(i + 1)])) {
+        if button(ui, tr("Split in two"), fill(tr("Split section {0} in two"), &[&(i + 1)])) {
             edit = Some(SectionEdit::Preset(vec![PresetChange::Split(i + 1)], true));
         }
         if count > 1 && button(ui, tr("Remove"), fill(tr("Remove section {0}"), &[&(i + 1)])) {
@@ -79,7 +79,7 @@ fn row(
         }
         let style = ui.menu_button(tr("Own style"), |ui| {
             ui.label(tr("A copy of the layer is shown here alone. Change its style under Layers."));
-            for id in model.layer_ids(|_| true) {
+            for id in shown_by(model, section) {
                 if ui.button(fill(tr("Copy of {0}"), &[&id])).clicked() {
                     match with_own_style(model.document(), presets, [chosen, i], &id) {
                         Ok((next, copy)) => {
@@ -96,6 +96,15 @@ fn row(
         style.response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
     });
     edit
+}
+
+/// The layers that a section shows.
+fn shown_by(model: &Model, section: &str) -> Vec<String> {
+    match model.document().representations.get(section) {
+        Some(members) => model.layer_ids(|layer| members.iter().any(|member| member == layer.id())),
+        None if section == UNNAMED => model.layer_ids(|_| true),
+        None => model.layer_ids(|layer| layer.id() == section),
+    }
 }
 
 /// The section goes, and its neighbour takes its place.

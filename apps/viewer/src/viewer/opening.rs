@@ -4,7 +4,7 @@ use super::unsaved::Next;
 use super::{Refusal, Viewer};
 use crate::consent::{self, Consent, Decision};
 use crate::files;
-use crate::language::{fill, tr};
+use crate::language::{fill, heard, tr};
 use belvedere::editor::beside;
 use belvedere::scene::Progress;
 use belvedere::verbs::open_files::{Opened, open_beside, open_trusted};
@@ -17,7 +17,8 @@ use std::sync::{Arc, Mutex};
 /// A file that is being opened in the background, and the progress in words.
 pub(super) struct Pending {
     opened: Receiver<Result<Opened, Refusal>>,
-    at: Arc<Mutex<String>>,
+    /// What is being done, and the share of it.
+    at: Arc<Mutex<(String, f64)>>,
     pub(super) progress: Progress,
 }
 
@@ -29,14 +30,13 @@ impl Viewer {
         }
         let (outbox, inbox) = std::sync::mpsc::channel();
         let (allowed, trust, wake) = (self.allowed.clone(), self.trust.clone(), self.wake.clone());
-        let at = Arc::new(Mutex::new(tr("opening").to_owned()));
+        let at = Arc::new(Mutex::new((String::new(), 0.0)));
         let current = self.model.shown.is_some().then(|| self.model.document().clone());
-        // Other threads do not know the language.
-        let (told, words) = (at.clone(), tr("opening: {0}, {1} %"));
+        let told = at.clone();
         let progress = Progress::new(move |stage, share| {
             // The main thread of a browser must not block on a lock.
             if let Ok(mut at) = told.try_lock() {
-                *at = fill(words, &[&stage, &format!("{:.0}", 100.0 * share)]);
+                *at = (stage.to_owned(), share);
             }
         });
         let cancel = progress.clone();
@@ -76,8 +76,11 @@ impl Viewer {
     /// Takes the files that were chosen, dropped or opened in the background.
     pub(super) fn arrivals(&mut self, ctx: &Context) {
         if let Some(pending) = &self.pending {
-            if let Ok(at) = pending.at.try_lock() {
-                self.model.opening = Some(at.clone());
+            if let Ok(at) = pending.at.try_lock()
+                && !at.0.is_empty()
+            {
+                let share = format!("{:.0}", 100.0 * at.1);
+                self.model.opening = Some(fill(tr("opening: {0}, {1} %"), &[&heard(&at.0), &share]));
             }
             ctx.request_repaint_after_secs(0.1);
             match pending.opened.try_recv() {

@@ -195,7 +195,7 @@ impl Viewer {
                             None => Button::new(tr(name)).min_size(CARD).fill(theme::blank(ui.visuals().dark_mode)),
                         };
                         let response = ui.add(button.frame_when_inactive(false));
-                        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, *name));
+                        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, tr(name)));
                         if response.clicked() {
                             chosen = Some(*scene);
                         }

@@ -68,6 +68,9 @@ pub(crate) fn strip(
         {
             let u = f64::from((to.x - rect.left()) / rect.width());
             edit = Some(StripEdit { change: place(u), begins: response.drag_started() });
+        } else if response.drag_started() {
+            // The gesture begins here even where the pointer stands still or moves up.
+            edit = Some(StripEdit { change: place(*border), begins: true });
         } else if let Some([step, _]) = nudged(ui, &response) {
             edit = Some(StripEdit { change: place(border + NUDGE * step), begins: true });
         }

@@ -77,8 +77,10 @@ impl Line {
         for (glyph, [x, y]) in &self.glyphs {
             pen.origin = [origin[0] + x * scale, origin[1] - y * scale];
             let settings = DrawSettings::unhinted(Size::new(size_px), LocationRef::default());
-            // A letter whose outline is damaged is left out; the embedded font has none.
-            let _ = outlines.get(*glyph)?.draw(settings, &mut pen);
+            // A letter without an outline, or with a damaged one, is left out.
+            if let Some(outline) = outlines.get(*glyph) {
+                let _ = outline.draw(settings, &mut pen);
+            }
         }
         pen.ink()
     }

@@ -68,10 +68,13 @@ fn in_groups(own: &str, text: &dyn Fn(&str) -> Option<String>) -> Option<u64> {
             if let (Some(most), Some(used)) = (number(most), number(used)) {
                 // Pages of files that can be dropped count as used, but are free.
                 let stat = text(&format!("{root}{path}/memory.stat")).unwrap_or_default();
-                let files = ["total_inactive_file ", "inactive_file "].iter().find_map(|key| {
+                let of = |key: &str| {
                     stat.lines().find_map(|line| line.strip_prefix(key)).and_then(|n| n.trim().parse::<u64>().ok())
-                });
-                let left = most.saturating_sub(used.saturating_sub(files.unwrap_or(0)));
+                };
+                let kinds = ["inactive_file ", "active_file ", "slab_reclaimable "];
+                let files: u64 =
+                    kinds.iter().filter_map(|kind| of(&format!("total_{kind}")).or_else(|| of(kind))).sum();
+                let left = most.saturating_sub(used.saturating_sub(files));
                 least = Some(least.map_or(left, |l| l.min(left)));
             }
             let Some((above, _)) = path.rsplit_once('/') else { break };
@@ -104,7 +107,7 @@ mod tests {
                 "/sys/fs/cgroup/a/b/memory.current" => "5",
                 "/sys/fs/cgroup/a/memory.max" => "1000\n",
                 "/sys/fs/cgroup/a/memory.current" => "700\n",
-                "/sys/fs/cgroup/a/memory.stat" => "anon 1\ninactive_file 300\n",
+                "/sys/fs/cgroup/a/memory.stat" => "anon 1\ninactive_file 200\nactive_file 90\nslab_reclaimable 10\n",
                 "/sys/fs/cgroup/memory/c/memory.limit_in_bytes" => "900",
                 "/sys/fs/cgroup/memory/c/memory.usage_in_bytes" => "400",
                 _ => return None,

@@ -101,7 +101,7 @@ pub fn room<T>(what: &str, count: usize) -> Result<Vec<T>, String> {
 #[derive(Debug)]
 pub(crate) struct InWork(());
 
-/// Marks a file as the one in work, for the message of an allocation that fails.
+/// Marks a file as the one in work, for the message of a budget that does not suffice.
 pub(crate) fn work_on(path: &Path) -> InWork {
     IN_WORK.lock().unwrap_or_else(PoisonError::into_inner).push(path.to_owned());
     InWork(())

@@ -51,7 +51,10 @@ impl Picture {
         let mut sidecar = this.sidecar.clone();
         // A device keeps nothing that could be read again.
         let place = atomic::contents_of(out);
-        sidecar.picture_sha256 = place.is_file().then(|| belvedere_io::sha256_of_file(&place)).transpose()?;
+        sidecar.picture_sha256 = belvedere_io::fs::metadata(&place)
+            .is_ok_and(|m| m.is_file())
+            .then(|| belvedere_io::sha256_of_file(&place))
+            .transpose()?;
         output::write_text(&written[1], &output::pretty(&sidecar)?, overwrite)?;
         if self.aux_format == AuxFormat::Exr && !self.aux.is_empty() {
             let path = out.with_extension("exr");

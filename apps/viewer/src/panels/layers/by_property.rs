@@ -43,8 +43,9 @@ pub(super) fn colors(ui: &mut Ui, id: &str, reading: &Reading, by: &mut Option<C
     match Coloring::new(doc, &field.values) {
         Ok(coloring) if coloring.is_of_numbers() => {
             numbers(ui, id, doc);
-            coloring.classes.iter().for_each(|class| swatch(ui, class));
-            if doc.steps != Some(StepsDoc::Smooth) && field.values.len() <= MOST {
+            let is_smooth = doc.steps == Some(StepsDoc::Smooth);
+            coloring.classes.iter().for_each(|class| swatch(ui, class, is_smooth));
+            if !is_smooth && field.values.len() <= MOST {
                 let each = ui.button(tr("A colour for each number"));
                 if each.on_hover_text(tr("each number becomes a category with a colour of its own")).clicked() {
                     let values = field.values.iter().zip(CATEGORIES.into_iter().cycle());
@@ -128,12 +129,14 @@ fn ramp(ui: &mut Ui, scale: ScaleName) {
 }
 
 /// The colour of a class of numbers, and its range.
-fn swatch(ui: &mut Ui, class: &Class) {
+/// A colour and what has it; places on a smooth ramp have no number of features.
+fn swatch(ui: &mut Ui, class: &Class, is_place: bool) {
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(22.0, 12.0), Sense::hover());
         let Color { r, g, b, .. } = class.color;
         ui.painter().rect_filled(rect, 2.0, Color32::from_rgb(r, g, b));
-        ui.label(fill(tr("{0} ({1})"), &[&class.name, &class.count]));
+        let words = if is_place { class.name.clone() } else { fill(tr("{0} ({1})"), &[&class.name, &class.count]) };
+        ui.label(words);
     });
 }
 

@@ -27,7 +27,8 @@ pub(super) fn of(ui: &Ui, model: &Model, layer: &LayerDoc) -> Reading {
         LayerDoc::Point(l) => format!("{:?}", l.source),
         _ => String::new(),
     };
-    let key = Id::unique(("properties", layer.kind(), source, &roots.scene_dir));
+    let place = (&roots.scene_dir, &roots.allowed, &roots.files, model.scenes);
+    let key = Id::unique(("properties", layer.kind(), source, place));
     if let Some(reading) = ui.data(|data| data.get_temp::<Reading>(key)) {
         if reading.get().is_none() {
             ui.request_repaint_after_secs(AGAIN);

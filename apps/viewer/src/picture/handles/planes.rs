@@ -97,17 +97,12 @@ fn foot(scene: &Scene, point: DVec3, normal: DVec3) -> Option<DVec3> {
     let above = over(point);
     let down = if above >= 0.0 { down } else { -down };
     let step = 0.125 * above.abs().max(1e-3) / down.z.abs().max(0.05);
-    let (mut from, mut to) = (point, point);
-    for _ in 0..200 {
-        to = from + step * down;
-        if (over(to) >= 0.0) != (above >= 0.0) {
-            break;
-        }
-        from = to;
-    }
+    let is_past = |p: DVec3| (over(p) >= 0.0) != (above >= 0.0);
+    let to = (1..=200).map(|k| point + f64::from(k) * step * down).find(|p| is_past(*p))?;
+    let (mut from, mut to) = (to - step * down, to);
     for _ in 0..24 {
         let middle = 0.5 * (from + to);
-        if (over(middle) >= 0.0) == (above >= 0.0) { from = middle } else { to = middle }
+        if is_past(middle) { to = middle } else { from = middle }
     }
     Some(0.5 * (from + to))
 }

@@ -13,6 +13,8 @@ const MAX_HEADER: usize = 64 << 10;
 const MAX_BLOB: usize = 32 << 20;
 /// Blocks that are unpacked at once.
 const AT_ONCE: usize = 8;
+/// Beginning of errors that tell of sound files.
+pub(super) const UNKNOWN: &str = "unknown: ";
 /// What a file may require of its reader.
 const FEATURES: [&str; 3] = ["OsmSchema-V0.6", "DenseNodes", "HistoricalInformation"];
 
@@ -209,7 +211,7 @@ impl<'f> Blobs<'f> {
                 "OSMHeader" => {
                     let required = unpacked::<HeaderBlock>(blob)?.required;
                     if let Some(unknown) = required.iter().find(|f| !FEATURES.contains(&f.as_str())) {
-                        return Err(format!("it requires {unknown}, which is not understood"));
+                        return Err(format!("{UNKNOWN}it requires {unknown}"));
                     }
                 }
                 _ => {}
@@ -251,7 +253,7 @@ fn unpacked<M: Message + Default>(blob: &[u8]) -> Result<M, String> {
             }
             bytes.into()
         }
-        (None, None) => return Err("a blob is neither plain nor packed by zlib".into()),
+        (None, None) => return Err(format!("{UNKNOWN}its blobs are neither plain nor packed by zlib")),
     };
     M::decode(bytes).map_err(|e| e.to_string())
 }

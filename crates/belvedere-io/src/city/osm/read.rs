@@ -1,6 +1,6 @@
 //! Reading of OpenStreetMap's files: PBF, XML and the JSON of Overpass.
 
-use super::pbf::Blobs;
+use super::pbf::{self, Blobs};
 use super::{Line, Map, Relation, Tags, is_wanted};
 use crate::IoError;
 use crate::text::text_of;
@@ -22,7 +22,13 @@ impl Map {
             "OSM XML" => Objects::of_xml(&text_of(bytes, &mut Vec::new())).map(Objects::map),
             _ => Objects::of_json(bytes).map(Objects::map),
         };
-        read.map_err(|e| IoError::format(path, format!("{format} is damaged or cut off ({e}); fetch it again")))
+        read.map_err(|e| {
+            let reason = match e.strip_prefix(pbf::UNKNOWN) {
+                Some(what) => format!("{format} cannot be read: {what}; write it anew (osmium cat, with zlib)"),
+                None => format!("{format} is damaged or cut off ({e}); fetch it again"),
+            };
+            IoError::format(path, reason)
+        })
     }
 
     /// Relations come after ways and ways after nodes, so the file is read three times and only what is used is kept.
