@@ -1,6 +1,7 @@
 //! Options of every verb.
 
 use crate::parse::{parse_bytes, parse_seconds, parse_threads};
+use belvedere::io::budget;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -42,4 +43,11 @@ pub(crate) struct Common {
     /// Write how long the steps took, JSON
     #[arg(long, global = true, help_heading = "Every command", value_name = "FILE.json")]
     pub(crate) timings: Option<PathBuf>,
+}
+
+impl Common {
+    /// The budget of memory that was asked for, bytes, as far as the system gives it; `None` without the option.
+    pub(crate) fn budget(&self) -> Option<u64> {
+        self.max_mem.map(|_| budget::bytes())
+    }
 }

@@ -198,7 +198,7 @@ impl Context {
             needs,
             image,
             seed: self.common.seed,
-            max_bytes: self.common.max_mem,
+            max_bytes: self.common.budget(),
             progress: self.progress.clone(),
             ..OpenOptions::default()
         }

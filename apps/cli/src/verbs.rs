@@ -322,7 +322,7 @@ fn describe(args: &InfoArgs, context: &Context) -> anyhow::Result<Goal> {
         nodata: args.ground.nodata,
         vertical_unit: args.ground.vertical_unit.map(Into::into),
         name_field: args.ground.name_field.clone(),
-        max_bytes: context.common.max_mem,
+        max_bytes: context.common.budget(),
     };
     let (mut files, mut bad) = (Vec::new(), Vec::new());
     for file in &args.files {
