@@ -144,8 +144,11 @@ impl Find {
         self.keep_index(model, ctx);
         self.look(model, bookmarks);
         // Other controls and windows have these keys, too.
-        let is_typing = self.field.is_some() && ctx.memory(|memory| memory.focused()) == self.field;
-        let pressed = |key: Key| is_typing && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+        let focused = ctx.memory(|memory| memory.focused());
+        let is_typing = self.field.is_some() && focused == self.field;
+        // Escape takes the focus from the field before it gets here.
+        let hears = |key: Key| is_typing || (key == Key::Escape && focused.is_none());
+        let pressed = |key: Key| hears(key) && ctx.input_mut(|input| input.consume_key(Modifiers::NONE, key));
         let (up, down, enter, escape) =
             (pressed(Key::ArrowUp), pressed(Key::ArrowDown), pressed(Key::Enter), pressed(Key::Escape));
         let last = self.answer.as_ref().map_or(0, |answer| answer.hits.len().saturating_sub(1));

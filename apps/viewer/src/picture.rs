@@ -81,10 +81,11 @@ impl PictureView {
         model.handles = None;
     }
 
-    /// Orders the picture at the resolution of the screen, within the limit of pixels.
+    /// Orders the picture at the resolution of the screen, within the limits of pixels and of what the screen can show as one image.
     fn order(&self, ctx: &Context, rect: Rect, model: &mut Model) {
         let size = rect.size() * ctx.pixels_per_point();
-        let fewer = (MOST_PIXELS / (size.x * size.y)).sqrt().min(1.0);
+        let side = ctx.input(|input| input.max_texture_side) as f32;
+        let fewer = (MOST_PIXELS / (size.x * size.y)).sqrt().min(side / size.max_elem()).min(1.0);
         let size = size * fewer;
         model.density = f64::from(ctx.pixels_per_point() * fewer);
         let image = [size.x, size.y].map(|n| (n.round() as u32).max(16));
