@@ -3,6 +3,7 @@
 use crate::language::{fill, tr};
 use crate::menu::Bookmark;
 use crate::model::Model;
+use crate::points::has_same_layers;
 use crate::wake::Wake;
 use belvedere::core::{Aabb, DVec3};
 use belvedere::editor::{NameIndex, Wanted, atoms_in, beside, folded, place_in};
@@ -73,10 +74,7 @@ impl Find {
             (self.coming, self.answer) = (None, None);
         }
         let Some(shown) = &model.shown else { return };
-        let same = |of: &Arc<Document>| {
-            let (a, b) = (of, &shown.document);
-            Arc::ptr_eq(a, b) || (a.layer == b.layer && a.hidden == b.hidden && a.crs == b.crs)
-        };
+        let same = |of: &Arc<Document>| has_same_layers(of, &shown.document);
         let known = self.index.as_ref().map(|(of, _)| of).filter(|of| same(of));
         let comes = self.coming.as_ref().map(|(of, _)| of).filter(|of| same(of));
         if known.is_some() || comes.is_some() {

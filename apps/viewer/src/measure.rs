@@ -3,7 +3,7 @@
 use crate::language::{fill, tr};
 use crate::model::{Model, Tool};
 use crate::pointer::share;
-use crate::points::{coordinates, image_of};
+use crate::points::{coordinates, has_same_layers, image_of};
 use belvedere::core::{DVec2, DVec3};
 use belvedere::editor::{Lengths, ground_way, lengths, lengths_geojson};
 use belvedere::scene::{LayerKind, Scene, Unit};
@@ -73,10 +73,7 @@ impl Measure {
             self.end(model);
         }
         let Some(shown) = &model.shown else { return };
-        let is_same = |of: &Arc<Document>| {
-            let (a, b) = (of, &shown.document);
-            Arc::ptr_eq(a, b) || (a.layer == b.layer && a.hidden == b.hidden && a.crs == b.crs)
-        };
+        let is_same = |of: &Arc<Document>| has_same_layers(of, &shown.document);
         if (self.of.is_none() || !self.document.as_ref().is_some_and(is_same)) && !self.points.is_empty() {
             let scene = shown.session.scene();
             self.of = Some((lengths(scene, &self.points), drawn_way(scene, &self.points)));

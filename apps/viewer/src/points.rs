@@ -1,10 +1,17 @@
-//! Points of the world: where the window shows them, and their coordinates in words.
+//! Points of the world: what they lie in, where the window shows them, and their coordinates in words.
 
 use crate::language::{fill, tr};
 use crate::model::Model;
 use belvedere::core::DVec3;
 use belvedere::scene::Unit;
+use belvedere::scene_file::Document;
 use eframe::egui::{Pos2, Rect, Vec2};
+use std::sync::Arc;
+
+/// Whether two documents have the same things in the same places.
+pub(crate) fn has_same_layers(a: &Arc<Document>, b: &Arc<Document>) -> bool {
+    Arc::ptr_eq(a, b) || (a.layer == b.layer && a.hidden == b.hidden && a.crs == b.crs)
+}
 
 /// Position in the window at which the picture shows a world point.
 pub(crate) fn image_of(point: DVec3, rect: Rect, model: &Model) -> Option<Pos2> {
