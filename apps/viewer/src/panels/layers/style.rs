@@ -15,6 +15,7 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDo
     let pending = ui.data(|data| data.get_temp::<Pending>(key));
     let mut next = pending.map_or_else(|| layer.clone(), |pending| pending.0);
     let id = layer.id().to_owned();
+    // Scopes around what appears once a file is read: the controls below keep their identities, and so their clicks.
     match &mut next {
         LayerDoc::Terrain(l) => {
             palette(ui, &id, &mut l.style.palette);
@@ -23,17 +24,15 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDo
         LayerDoc::Line(l) => {
             let reading = fields::of(ui, model, layer);
             color(ui, &fill(tr("colour of {0}"), &[&id]), &mut l.style.color);
-            by_property::colors(ui, &id, &reading, &mut l.style.color_by, &l.style.color);
+            ui.scope(|ui| by_property::colors(ui, &id, &reading, &mut l.style.color_by, &l.style.color));
             opacity(ui, &id, &mut l.style.color);
             width(ui, &fill(tr("width of {0}, pixels"), &[&id]), &mut l.style.width_px);
             let words = [fill(tr("width of {0} by"), &[&id]), tr("nothing: one width").to_owned()];
-            by_property::sizes(ui, words, &reading, &mut l.style.width_by);
+            ui.scope(|ui| by_property::sizes(ui, words, &reading, &mut l.style.width_by));
             marks::casing(ui, &id, &mut l.style.casing);
             marks::distances(ui, &id, &mut l.style.distance_markers_m);
             labels(ui, &id, (&mut l.style.labels, &mut l.style.label_px));
-            if l.style.labels {
-                by_property::names(ui, &id, &reading, &mut l.name_field);
-            }
+            ui.scope(|ui| l.style.labels.then(|| by_property::names(ui, &id, &reading, &mut l.name_field)));
             hidden(ui, &id, &mut l.style.hidden);
         }
         LayerDoc::Area(l) => {
@@ -42,7 +41,7 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDo
                 l.style.color = Some(text.clone());
             }
             let reading = fields::of(ui, model, layer);
-            by_property::colors(ui, &id, &reading, &mut l.style.color_by, &text);
+            ui.scope(|ui| by_property::colors(ui, &id, &reading, &mut l.style.color_by, &text));
             marks::outline(ui, &id, &mut l.style.outline);
             width(ui, &fill(tr("outline of {0}, pixels"), &[&id]), &mut l.style.width_px);
         }
@@ -50,16 +49,14 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDo
             let reading = fields::of(ui, model, layer);
             marks::symbol(ui, &id, &mut l.style.symbol);
             color(ui, &fill(tr("colour of {0}"), &[&id]), &mut l.style.color);
-            by_property::colors(ui, &id, &reading, &mut l.style.color_by, &l.style.color);
+            ui.scope(|ui| by_property::colors(ui, &id, &reading, &mut l.style.color_by, &l.style.color));
             opacity(ui, &id, &mut l.style.color);
             width(ui, &fill(tr("size of {0}, pixels"), &[&id]), &mut l.style.size_px);
             let words = [fill(tr("size of {0} by"), &[&id]), tr("nothing: one size").to_owned()];
-            by_property::sizes(ui, words, &reading, &mut l.style.size_by);
+            ui.scope(|ui| by_property::sizes(ui, words, &reading, &mut l.style.size_by));
             marks::casing(ui, &id, &mut l.style.casing);
             labels(ui, &id, (&mut l.style.labels, &mut l.style.label_px));
-            if l.style.labels {
-                by_property::names(ui, &id, &reading, &mut l.name_field);
-            }
+            ui.scope(|ui| l.style.labels.then(|| by_property::names(ui, &id, &reading, &mut l.name_field)));
             hidden(ui, &id, &mut l.style.hidden);
         }
         LayerDoc::Boxes(l) => {
