@@ -10,6 +10,7 @@ mod volume;
 use super::percent;
 use crate::language::{fill, heard, tr};
 use crate::model::Model;
+use crate::widgets::steady;
 use belvedere::Warning;
 use belvedere::editor::{with_layer_renamed, without_layer};
 use belvedere::scene_file::LayerDoc;
@@ -30,7 +31,7 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
     }
     for (index, layer) in document.layer.iter().enumerate() {
         ui.separator();
-        one(ui, model, index, layer);
+        steady(ui, layer.id(), |ui| one(ui, model, index, layer));
     }
     let mut warnings = model.shown.as_ref().map_or_else(Vec::new, |shown| shown.session.warnings());
     if !warnings.is_empty() {
@@ -59,6 +60,12 @@ fn one(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDoc) {
     if let Some([seen, in_frame]) = shares(model, id).filter(|_| !is_hidden) {
         ui.label(fill(tr("{0} visible, {1} in the frame"), &[&percent(Some(seen)), &percent(Some(in_frame))]));
     }
+    steady(ui, "controls", |ui| controls(ui, model, (index, layer), is_hidden));
+}
+
+/// What is done with a layer.
+fn controls(ui: &mut Ui, model: &mut Model, (index, layer): (usize, &LayerDoc), is_hidden: bool) {
+    let id = layer.id();
     handling(ui, model, (index, id), is_hidden);
     if !matches!(layer, LayerDoc::Terrain(_)) {
         let mut must_see = layer.must_see();

@@ -5,7 +5,7 @@ pub(crate) mod overhead;
 pub(crate) mod ruler;
 pub(crate) mod strip;
 
-use eframe::egui::{EventFilter, Key, Response, Ui};
+use eframe::egui::{AsIdSalt, EventFilter, Key, Response, Ui, UiBuilder};
 
 /// Steps of the arrow keys, right and up, on a handle that has the focus, which a click gives it.
 pub(crate) fn nudged(ui: &Ui, response: &Response) -> Option<[f64; 2]> {
@@ -25,4 +25,12 @@ pub(crate) fn nudged(ui: &Ui, response: &Response) -> Option<[f64; 2]> {
         (Key::ArrowDown, [0.0, -1.0]),
     ];
     ui.input(|input| keys.into_iter().find(|(key, _)| input.key_pressed(*key)).map(|(_, step)| step))
+}
+
+/// A part of a panel whose controls keep their identities whatever appears or vanishes above it, and with them focus and clicks under way.
+///
+/// * `salt`: unique within the parent.
+pub(crate) fn steady<R>(ui: &mut Ui, salt: impl AsIdSalt, add: impl FnOnce(&mut Ui) -> R) -> R {
+    let scope_id = ui.scope_id().with(("steady", salt));
+    ui.scope_builder(UiBuilder::new().scope_id(scope_id), add).inner
 }

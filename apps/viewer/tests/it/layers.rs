@@ -1,10 +1,11 @@
 //! The list of layers: what is seen, order, names, removal, styles; each one step of undo.
 
-use crate::{app, find, opened, press, scene, settle};
+use crate::{app, find, opened, press, scene, settle, wait_for};
 use belvedere::scene_file::LayerDoc;
 use belvedere_viewer::Viewer;
 use eframe::egui::{Event, Key, Modifiers, vec2};
 use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
 use std::path::Path;
 
 type Window = Harness<'static, Viewer>;
@@ -72,6 +73,20 @@ fn layers_are_hidden_ordered_named_and_removed_and_each_is_undone() {
     press(&mut harness, "1. hid trail");
     settle(&mut harness);
     assert_eq!(harness.state().document().hidden, ["trail"]);
+}
+
+/// A click that is under way when the shares of a layer or the properties of its file come in still finds its control.
+#[test]
+fn controls_of_a_layer_keep_their_identities() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut harness = app(&opened(&[scene(folder.path())]));
+    let names = ["Hide trail", "trail must be seen", "Style of trail"];
+    let identities = |harness: &Window| names.map(|name| find(harness, name).accesskit_node().id());
+    wait_for(&mut harness, "the list", |harness| harness.query_by_label(names[2]).is_some());
+    assert!(!harness.state().is_judged());
+    let before = identities(&harness);
+    wait_for(&mut harness, "the measure", |harness| harness.state().is_judged());
+    assert_eq!(identities(&harness), before);
 }
 
 /// A scene of one layer.
