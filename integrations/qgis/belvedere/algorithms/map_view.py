@@ -47,7 +47,7 @@ class MapView(Algorithm):
         self.addParameter(QgsProcessingParameterRasterLayer("DEM", "Elevation model"))
         self.addParameter(QgsProcessingParameterMultipleLayers(
             "DRAPE", "Map layers to drape over the ground", types.TypeMapLayer, optional=True))
-        self.addParameter(number("DRAPE_SIZE", "Longer side of the draped map, pixels", 4096, 64, 16384, whole=True))
+        self.addParameter(number("DRAPE_SIZE", "Longer side of the draped map, pixels", 4000, 64, 16384, whole=True))
         self.addParameter(QgsProcessingParameterPoint("EYE", "Eye"))
         self.addParameter(number("EYE_HEIGHT", "Height of the eye above the ground, metres", 300.0, 0.0, 100000.0))
         self.addParameter(QgsProcessingParameterPoint("LOOK", "Point to look at"))

@@ -58,7 +58,7 @@ class Reveal(Algorithm):
         self.addSize()
         self.addParameter(QgsProcessingParameterMultipleLayers(
             "DRAPE", "Map layers to drape over the ground", types.TypeMapLayer, optional=True))
-        self.addParameter(number("DRAPE_SIZE", "Longer side of the draped map, pixels", 4096, 64, 16384, whole=True))
+        self.addParameter(number("DRAPE_SIZE", "Longer side of the draped map, pixels", 4000, 64, 16384, whole=True))
         self.addParameter(QgsProcessingParameterBoolean("LABELS", "Write the names of lines and points", False))
         self.addExtra()
         self.addParameter(QgsProcessingParameterFileDestination("PICTURE", "Picture", "PNG (*.png)"))
