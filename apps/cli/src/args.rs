@@ -8,14 +8,15 @@ use crate::kinds::{self, RendererKind, TechniqueKind};
 use crate::look_args::LookArgs;
 use crate::pack::PackArgs;
 use crate::parse::{
-    Outside, parse_drafts, parse_eye, parse_fallback, parse_highlight, parse_number, parse_outside, parse_position,
-    parse_scale, parse_size, parse_spacing, parse_sweep,
+    Outside, parse_drafts, parse_eye, parse_fallback, parse_highlight, parse_number, parse_outside, parse_part,
+    parse_position, parse_scale, parse_size, parse_spacing, parse_sweep,
 };
 use crate::preset::PresetArgs;
 use crate::trust::TrustArgs;
 use belvedere::RendererChoice;
 use belvedere::places::Place;
 use belvedere::scene_file::{HighlightMark, SurfaceDoc};
+use belvedere::verbs::animate;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -484,6 +485,9 @@ pub(crate) struct AnimateArgs {
     /// Keep the frames that exist and draw the rest
     #[arg(long)]
     pub(crate) resume: bool,
+    /// Draw these frames alone, counted from 0, both included: for one of several processes or machines that draw a film into one folder. --resume without it collects the parts and makes the film
+    #[arg(long, value_name = "FIRST:LAST", value_parser = parse_part)]
+    pub(crate) part: Option<animate::Part>,
     #[command(flatten)]
     pub(crate) draw: DrawArgs,
 }

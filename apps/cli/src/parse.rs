@@ -2,6 +2,7 @@
 
 use belvedere::places::Place;
 use belvedere::scene_file::{HighlightMark, StylisationDoc, SwitchOrStrength};
+use belvedere::verbs::animate::Part;
 use belvedere::verbs::appearance::EXAGGERATION;
 use belvedere::verbs::drafts::MOST_DRAFTS;
 
@@ -85,6 +86,15 @@ pub(crate) fn parse_sweep(text: &str) -> Result<[f64; 3], String> {
         Some([first, last]) if first != last => Ok([*first, *last, 0.0]),
         Some([first, last, step]) if first != last && *step > 0.0 => Ok([*first, *last, *step]),
         _ => Err(wrong()),
+    }
+}
+
+/// Parses the first and the last frame of a part, such as `0:249`.
+pub(crate) fn parse_part(text: &str) -> Result<Part, String> {
+    let ends: Option<Vec<usize>> = text.split(':').map(|end| end.trim().parse().ok()).collect();
+    match ends.as_deref() {
+        Some([first, last]) if first <= last => Ok(*first..=*last),
+        _ => Err("give FIRST:LAST, frames counted from 0, such as 0:249".into()),
     }
 }
 

@@ -226,8 +226,8 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
         profile: args.profile.then_some(true),
         ..AnimationDoc::default()
     };
-    let request =
-        AnimateRequest { animation, picture, out: args.out, resume: args.resume, overwrite: context.common.overwrite };
+    let (resume, overwrite) = (args.resume, context.common.overwrite);
+    let request = AnimateRequest { animation, picture, out: args.out, resume, overwrite, part: args.part };
     // The ground is solved for every frame, not on opening.
     let options = OpenOptions { unsolved: true, ..context.options(Needs::Everything, args.draw.size) };
     let session = Session::open(&args.scene, &options)?;

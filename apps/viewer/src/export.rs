@@ -352,7 +352,7 @@ fn make(
         Want::Film => {
             let out = path.to_owned();
             let cameras = animation.camera.as_deref().filter(|name| name.ends_with(".cameras.json")).map(PathBuf::from);
-            let request = AnimateRequest { animation, picture, out, resume: false, overwrite: true };
+            let request = AnimateRequest { animation, picture, out, overwrite: true, ..AnimateRequest::default() };
             let made = animate(&session, &request, progress)?;
             Ok([made.folder].into_iter().chain(cameras).collect())
         }

@@ -7,6 +7,7 @@ mod examples;
 mod films;
 mod moving_pictures;
 mod names;
+mod parts;
 mod sessions;
 mod sweeps;
 mod tiles;

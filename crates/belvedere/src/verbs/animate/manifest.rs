@@ -1,6 +1,7 @@
 //! The manifest of a folder of frames, by which an interrupted animation is resumed.
 
 use super::overlay::MarkerRecord;
+use super::parts;
 use crate::camera_path::CameraPath;
 use crate::output;
 use crate::picture::{DisplacementReport, PictureOptions};
@@ -11,9 +12,6 @@ use crate::{BelvedereError, Session};
 use belvedere_disocclusion::TerrainReport;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
-
-/// Name of the manifest in a folder of frames.
-const NAME: &str = "animation.json";
 
 /// The record of a folder of frames. Same scene and request, same bytes, whether drawn at once or in parts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -187,14 +185,18 @@ impl Manifest {
 
     /// Reads the manifest of a folder; `None` if there is none.
     pub(super) fn read(folder: &Path) -> Result<Option<Self>, BelvedereError> {
-        let path = folder.join(NAME);
-        let refuse = |reason: String| BelvedereError::Output { path: path.clone(), reason };
-        match belvedere_io::fs::read_to_string(&path) {
+        Self::read_file(&folder.join(parts::record_name(None)))
+    }
+
+    /// Reads a manifest; `None` if there is none.
+    pub(super) fn read_file(path: &Path) -> Result<Option<Self>, BelvedereError> {
+        let refuse = |reason: String| BelvedereError::Output { path: path.to_owned(), reason };
+        match belvedere_io::fs::read_to_string(path) {
             Ok(text) => serde_json::from_str(&text).map(Some).map_err(|e| {
                 refuse(format!("is no record of an animation ({e}); remove the folder, or choose another"))
             }),
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
-            Err(e) => Err(belvedere_io::IoError::os(&path, e).into()),
+            Err(e) => Err(belvedere_io::IoError::os(path, e).into()),
         }
     }
 
@@ -224,9 +226,9 @@ impl Manifest {
         (self.scene_sha256 != earlier.scene_sha256).then(|| "the scene has changed since".into())
     }
 
-    /// Takes over the frames of `earlier` whose files are unchanged.
+    /// Takes over the frames of `earlier` that are missing here and whose files are unchanged.
     pub(super) fn keep(&mut self, earlier: &Self, folder: &Path) {
-        for (mine, theirs) in self.frames.iter_mut().zip(&earlier.frames) {
+        for (mine, theirs) in self.frames.iter_mut().zip(&earlier.frames).filter(|(mine, _)| mine.is_none()) {
             *mine = theirs.clone().filter(|frame| frame.is_whole(folder));
         }
         self.count();
@@ -243,8 +245,8 @@ impl Manifest {
     }
 
     /// Writes the manifest into its folder.
-    pub(super) fn write(&self, folder: &Path) -> Result<PathBuf, BelvedereError> {
-        let path = folder.join(NAME);
+    pub(super) fn write(&self, folder: &Path, name: &str) -> Result<PathBuf, BelvedereError> {
+        let path = folder.join(name);
         output::write_text(&path, &output::pretty(self)?, true)?;
         Ok(path)
     }

@@ -1,15 +1,18 @@
 //! `animate`: numbered frames of a moving camera, and a film of them.
 
+mod claim;
 mod clock;
 mod film;
 mod manifest;
 mod overlay;
+mod parts;
 mod plan;
 mod tracking;
 
 pub use film::Film;
 pub use manifest::{FrameGround, FrameRecord, FrameTerrain, Manifest, Settings, frame_name};
 pub use overlay::MarkerRecord;
+pub use parts::Part;
 
 use crate::camera_path::CameraPath;
 use crate::film::{Adjustment, DrawnGround};
@@ -39,6 +42,9 @@ pub struct AnimateRequest {
     pub resume: bool,
     /// Replaces existing frames and films.
     pub overwrite: bool,
+    /// Draws these frames alone, and makes no film: one of several processes that draw a film into one folder. A run without it and with
+    /// `resume` collects the parts. Frames of a part that exist are kept unless `overwrite` is set.
+    pub part: Option<Part>,
 }
 
 /// Result of an animation.
@@ -83,7 +89,8 @@ pub fn outputs(out: &Path) -> Result<(PathBuf, Option<PathBuf>), BelvedereError>
 ///
 /// # Errors
 /// [`BelvedereError::Interrupted`] if cancelled, [`BelvedereError::Frame`] for a frame that cannot be drawn,
-/// [`BelvedereError::FramesThere`] if the folder holds another animation.
+/// [`BelvedereError::FramesThere`] if the folder holds another animation, [`BelvedereError::Animation`] for a part beyond the film, or of
+/// a film along a route over ground that makes way: there each frame depends on those before it.
 pub fn animate(session: &Session, request: &AnimateRequest, progress: &Progress) -> Result<Animation, BelvedereError> {
     guarded(|| animated(session, request, progress))
 }
@@ -95,18 +102,30 @@ fn animated(session: &Session, request: &AnimateRequest, progress: &Progress) ->
     }
     let mut path = CameraPath::new(session, &request.animation)?;
     let mut manifest = Manifest::new(session, &path, &request.picture)?;
-    claim(&mut manifest, &folder, request)?;
-    if manifest.done < path.len() {
+    if let Some(part) = &request.part {
+        parts::check(part, path.len())?;
+        if path.following.is_some() && sinks(session, &path, request.picture.straight) {
+            let reason = "along a route over ground that makes way each frame depends on those before it; draw the film in one part";
+            return Err(BelvedereError::Animation(reason.into()));
+        }
+    }
+    claim::claim(&mut manifest, &folder, request)?;
+    let record = parts::record_name(request.part.as_ref());
+    if manifest.done < path.len() && !parts::read_plan(&folder, &manifest, &mut path)? {
         plan::plan(session, &mut path, request.picture.straight, progress)?;
+        if request.part.is_some() {
+            create(&folder)?;
+            parts::write_plan(&folder, &manifest, &path)?;
+        }
     }
     check_all(session, &path, progress)?;
-    std::fs::create_dir_all(&folder).map_err(|e| belvedere_io::IoError::os(&folder, e))?;
+    create(&folder)?;
     let interrupted = |manifest: &Manifest| BelvedereError::Interrupted {
         done: manifest.done,
         frames: manifest.frames.len(),
         folder: folder.clone(),
     };
-    manifest.write(&folder)?;
+    manifest.write(&folder, &record)?;
     let (overlay, mut warnings) = match &path.following {
         Some(following) => {
             let (overlay, warnings) = FilmOverlay::new(session, following, &path.animation);
@@ -114,13 +133,16 @@ fn animated(session: &Session, request: &AnimateRequest, progress: &Progress) ->
         }
         None => (None, Vec::new()),
     };
-    let drawing = Drawing { session, overlay, folder: &folder, request, progress };
+    let drawing = Drawing { session, overlay, folder: &folder, record: &record, request, progress };
     let drawn = match drawing.missing(&mut path, &mut manifest) {
         Err(e) if e.is_cancelled() => return Err(interrupted(&manifest)),
         drawn => drawn?,
     };
     warnings.extend(seen_from_below(&manifest));
-    let film = match film {
+    if request.part.is_none() {
+        parts::forget(&folder);
+    }
+    let film = match film.filter(|_| request.part.is_none()) {
         None => Film::Unwanted,
         Some(out) => match film::make(&out, &folder, path.len(), path.fps, progress) {
             Err(e) if e.is_cancelled() => return Err(interrupted(&manifest)),
@@ -130,36 +152,14 @@ fn animated(session: &Session, request: &AnimateRequest, progress: &Progress) ->
     Ok(Animation { manifest, folder, drawn, film, warnings })
 }
 
-/// Decides whether existing frames of the folder are kept, replaced or refused.
-fn claim(manifest: &mut Manifest, folder: &Path, request: &AnimateRequest) -> Result<(), BelvedereError> {
-    let refuse =
-        |reason: String, resumable| Err(BelvedereError::FramesThere { folder: folder.to_owned(), reason, resumable });
-    if std::fs::metadata(folder).is_ok_and(|m| !m.is_dir()) {
-        let reason = "is a file; give a folder for the frames, or a film named .mp4".into();
-        return Err(BelvedereError::Output { path: folder.to_owned(), reason });
-    }
-    if request.overwrite && !request.resume {
-        // Frames of a longer earlier animation would end up in this film.
-        let earlier = Manifest::read(folder).ok().flatten().map_or(0, |m| m.frames.len());
-        for frame in manifest.frames.len()..earlier {
-            let _ = std::fs::remove_file(folder.join(frame_name(frame)));
-        }
-        return Ok(());
-    }
-    match (Manifest::read(folder)?, request.resume) {
-        (Some(earlier), true) => match manifest.differs_from(&earlier) {
-            Some(reason) => refuse(format!("cannot be gone on with: {reason}"), false),
-            None => {
-                manifest.keep(&earlier, folder);
-                Ok(())
-            }
-        },
-        (Some(earlier), false) => {
-            refuse(format!("holds {} of {} frames of an animation", earlier.done, earlier.frames.len()), true)
-        }
-        (None, _) if folder.join(frame_name(0)).exists() => refuse("holds frames without their record".into(), false),
-        (None, _) => Ok(()),
-    }
+/// Whether the ground under a walker may sink: bends keep him where he is, the terrain solver does not. Straight frames need no
+/// solution, unless a constructor leads the camera along a path.
+fn sinks(session: &Session, path: &CameraPath, straight: bool) -> bool {
+    (!straight || path.is_previewed()) && session.resolved().is_some_and(Document::solves_terrain)
+}
+
+fn create(folder: &Path) -> Result<(), BelvedereError> {
+    Ok(std::fs::create_dir_all(folder).map_err(|e| belvedere_io::IoError::os(folder, e))?)
 }
 
 /// Resolves the view of every frame.
@@ -197,6 +197,8 @@ struct Drawing<'a> {
     session: &'a Session,
     overlay: Option<FilmOverlay>,
     folder: &'a Path,
+    /// Name of the record in it.
+    record: &'a str,
     request: &'a AnimateRequest,
     progress: &'a Progress,
 }
@@ -212,12 +214,12 @@ impl Drawing<'_> {
     /// Draws the missing frames in order; returns their number.
     fn missing(&self, path: &mut CameraPath, manifest: &mut Manifest) -> Result<usize, BelvedereError> {
         let (session, progress, straight) = (self.session, self.progress, self.request.picture.straight);
-        let missing: Vec<usize> = (0..path.len()).filter(|&f| manifest.frames[f].is_none()).collect();
+        let asked = self.request.part.clone().unwrap_or(0..=path.len().saturating_sub(1));
+        let missing: Vec<usize> = asked.filter(|&f| f < path.len() && manifest.frames[f].is_none()).collect();
         // The memory of a solver depends on all earlier frames: existing frames are solved again but not drawn.
         // Straight frames need no solution, unless a constructor leads the camera along a path.
         let solved = !straight || path.is_previewed();
-        // Bends keep the walker where he is; the terrain solver may sink the ground under him.
-        let sinks = solved && session.resolved().is_some_and(Document::solves_terrain);
+        let sinks = sinks(session, path, straight);
         let solves = solved && (session.resolved().is_some_and(Document::solves_terrain) || session.tracks());
         let last = missing.last().map_or(0, |f| f + 1);
         let work: Vec<usize> = if solves { (0..last).collect() } else { missing.clone() };
@@ -225,7 +227,10 @@ impl Drawing<'_> {
         let bends = if work.is_empty() { Vec::new() } else { tracking::plan(session, path, progress)? };
         let (started, mut turned) = (Instant::now(), 0.0);
         for (step, &frame) in work.iter().enumerate() {
-            let share = manifest.done as f64 / path.len() as f64;
+            let share = match self.request.part {
+                None => manifest.done as f64 / path.len() as f64,
+                Some(_) => step as f64 / work.len() as f64,
+            };
             progress.tick(&remaining(frame, path.len(), step, work.len(), started), share)?;
             memory.tracking.follow(bends.get(frame).copied());
             let known = manifest.frames[frame].as_ref().map(|f| f.ground);
@@ -236,7 +241,7 @@ impl Drawing<'_> {
             } else if let Some(following) = &mut path.following {
                 following.adjustments[frame].aim = turned;
             }
-            if known.is_some() {
+            if known.is_some() || self.request.part.as_ref().is_some_and(|part| !part.contains(&frame)) {
                 self.resolved(path, frame, solved, &mut memory)?;
                 continue;
             }
@@ -244,7 +249,7 @@ impl Drawing<'_> {
             turned = drawn.ground.filter(|_| sinks).map_or(0.0, |g| Adjustment::next_aim(g.aimed_m, g.walker_m));
             let record = self.write(path, frame, drawn)?;
             manifest.put(frame, record);
-            manifest.write(self.folder)?;
+            manifest.write(self.folder, self.record)?;
         }
         Ok(missing.len())
     }
