@@ -33,8 +33,9 @@ def features_of(source: object, kind: str, crs: object) -> tuple[dict[str, Any],
 
 def write_geojson(path: Path, collection: dict[str, Any], crs: Crs | None) -> None:
     """Writes a collection with its system."""
-    if crs is not None and crs.code is not None:
-        collection = {**collection, "crs": {"type": "name", "properties": {"name": f"urn:ogc:def:crs:EPSG::{crs.code}"}}}
+    if crs is not None:
+        name = "local" if crs.code is None else f"urn:ogc:def:crs:EPSG::{crs.code}"
+        collection = {**collection, "crs": {"type": "name", "properties": {"name": name}}}
     try:
         path.write_text(json.dumps(collection, default=str, allow_nan=False), encoding="utf-8")
     except ValueError:

@@ -120,10 +120,8 @@ class GroundReport:
     @classmethod
     def of(cls, raw: Raw) -> GroundReport:
         """The typed form of a report."""
-        metrics = raw["metrics"]
-        return cls(
-            raw["visible_whole"], raw["visible_whole_before"], raw["in_view"], raw["guaranteed"], metrics["max_m"], metrics["rms_m"], raw
-        )
+        shares = (raw["visible_whole"], raw["visible_whole_before"], raw["in_view"])
+        return cls(*shares, raw["guaranteed"], raw["max_m"], raw["rms_m"], raw)
 
 
 @dataclass(frozen=True)

@@ -177,6 +177,7 @@ def reveal(
         "technique": technique,
         "no_limits": bool(no_limits),
         "draw": drawn,
+        "open": {} if see is None else {"size": size_of(size)},
     }
     with asked(threads, progress, time_limit_s) as ask, Named(os.fspath(folder.path)):
         return Revealed(_native.reveal(text("reveal", request), ask), folder)

@@ -252,6 +252,13 @@ class Scene(Layers):
         return out
 
     @property
+    def bounds(self) -> NDArray[np.float64] | None:
+        """Smallest and largest coordinates of all layers, ``(2, 3)``, scene coordinates; ``None`` for a scene without layers."""
+        with asked() as ask:
+            bounds = self._opened(ask).bounds
+        return None if bounds is None else np.array(bounds)
+
+    @property
     def layers(self) -> list[str]:
         """Ids of the layers; ``Picture.id`` holds 1 + an index of this list."""
         with asked() as ask:
@@ -324,6 +331,7 @@ class Scene(Layers):
         self,
         *,
         spacing_m: float | None = None,
+        size: tuple[int, int] | None = None,
         renderer: str = "auto",
         threads: int | None = None,
         progress: Progress = None,
@@ -334,13 +342,14 @@ class Scene(Layers):
         * ``spacing_m``: largest distance between samples of a line, scene units; by default an eighth of the cell of the terrain.
         """
         with asked(threads, progress, time_limit_s) as ask, self._named():
-            return MeasureReport.of(json.loads(self._opened(ask).measure(spacing_m, str(renderer), ask)))
+            return MeasureReport.of(json.loads(self._sized(_size(size), ask).measure(spacing_m, str(renderer), ask)))
 
-    def project(self, points: object, *, threads: int | None = None, progress: Progress = None) -> Projected:
-        """Pixels and depths of points ``(n, 3)``, scene coordinates. A point outside the picture has its pixel too."""
+    def project(self, points: object, *, size: tuple[int, int] | None = None, threads: int | None = None, progress: Progress = None) -> Projected:
+        """Pixels and depths of points ``(n, 3)``, scene coordinates. A point outside the picture has its pixel too.
+        ``size``: that of the picture, as of :meth:`render`."""
         data, count = _bytes("points", points, 3)
         with asked(threads, progress) as ask:
-            pixel, depth, segment, inside, miss = _native.project(self._opened(ask), data, ask)
+            pixel, depth, segment, inside, miss = _native.project(self._sized(_size(size), ask), data, ask)
         return Projected(
             np.frombuffer(pixel, np.float64).reshape(count, 2),
             np.frombuffer(depth, np.float64),
@@ -358,13 +367,13 @@ class Scene(Layers):
             np.frombuffer(moved, np.float64).reshape(count, 3), np.frombuffer(folded, np.bool_), np.frombuffer(miss, np.uint8)
         )
 
-    def rays(self, pixels: object, samples: int, *, far: float | None = None, threads: int | None = None) -> Rays:
+    def rays(self, pixels: object, samples: int, *, far: float | None = None, size: tuple[int, int] | None = None, threads: int | None = None) -> Rays:
         """``samples`` world points of the ray of each pixel ``(n, 2)``, equidistant in depth from the camera's near depth to ``far``, scene units."""
         data, count = _bytes("pixels", pixels, 2)
         if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)) or samples < 1:
             raise InputError(f"samples={samples!r} is not a number of samples; give a whole number above 0")
         with asked(threads) as ask:
-            point, depth, segment = _native.rays(self._opened(ask), data, int(samples), far, ask)
+            point, depth, segment = _native.rays(self._sized(_size(size), ask), data, int(samples), far, ask)
         shape = (count, int(samples))
         return Rays(
             np.frombuffer(point, np.float64).reshape(*shape, 3),
@@ -372,11 +381,11 @@ class Scene(Layers):
             np.frombuffer(segment, np.int32).reshape(shape),
         )
 
-    def pick(self, pixels: object, *, threads: int | None = None, progress: Progress = None) -> list[Picked | None]:
+    def pick(self, pixels: object, *, size: tuple[int, int] | None = None, threads: int | None = None, progress: Progress = None) -> list[Picked | None]:
         """What is seen at pixels ``(n, 2)``, origin at the outer corner of the top-left pixel; ``None`` where only sky is seen."""
         data, _ = _bytes("pixels", pixels, 2)
         with asked(threads, progress) as ask, self._named():
-            found = json.loads(_native.pick(self._opened(ask), data, ask))
+            found = json.loads(_native.pick(self._sized(_size(size), ask), data, ask))
         return [None if one is None else Picked.of(one) for one in found]
 
     def ground_m(self, xy: object) -> NDArray[np.float64]:

@@ -30,7 +30,7 @@ def test_voxels_of_any_type(dtype: str) -> None:
     picture = scene.render(size=(64, 48))
     assert 0.02 < (picture.id == 1).mean() < 0.6
     # x runs along the last axis.
-    low, high = np.array(scene._natives[None].bounds)
+    low, high = scene.bounds
     assert (high - low)[0] > (high - low)[2]
 
 

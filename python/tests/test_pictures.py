@@ -35,7 +35,7 @@ def test_a_picture_is_arrays(scene: belvedere.Scene) -> None:
     world = picture.world[ground]
     np.testing.assert_allclose(scene.ground_m(world[:, :2]), world[:, 2], atol=0.5)
     # And projecting it leads back to the pixels.
-    back = scene.project(world)
+    back = scene.project(world, size=(160, 90))
     rows, columns = np.nonzero(ground)
     assert np.abs(back.pixel - np.stack([columns + 0.5, rows + 0.5], axis=1)).max() < 0.5
     assert picture.displacement is not None and picture.displacement.max_m > 1

@@ -69,7 +69,7 @@ def test_the_terrain_solver_alone(tmp_path: Path) -> None:
     assert found.heights.shape == (60, 80) and np.abs(found.displacement).max() > 1
     np.testing.assert_allclose(found.heights - found.displacement, hills(), atol=1e-2)
     report = found.report
-    assert report.visible > report.visible_before and report.max_m == report.raw["metrics"]["max_m"]
+    assert report.visible > report.visible_before and report.max_m == report.raw["max_m"]
     assert found.transform is not None and found.transform[0] == pytest.approx(CELL)
     written = found.save(tmp_path / "a.tif", report=tmp_path / "a.json", displacement=tmp_path / "d.tif", features=tmp_path / "f.geojson")
     assert [p.name for p in written] == ["a.tif", "d.tif", "f.geojson", "a.json"]
