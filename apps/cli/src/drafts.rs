@@ -47,7 +47,7 @@ fn sheet(found: &DraftsAnswer, out: &Path, context: &Context) -> anyhow::Result<
 /// This command line with the draft's view in place of the drafts.
 fn command(draft: &Draft, index: usize, out: &Path) -> String {
     let mut words = vec!["belvedere".to_owned()];
-    let mut given = std::env::args().skip(1);
+    let mut given = crate::given_words();
     while let Some(word) = given.next() {
         let name = word.split_once('=').map_or(word.as_str(), |(name, _)| name);
         let is_short = word.starts_with("-o") && !word.starts_with("--");

@@ -6,24 +6,23 @@ use belvedere::core::plain as plain_text;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, CommandFactory};
 use std::path::Path;
-use std::process::ExitCode;
 
 /// Most characters of a mistake, before the way to the help.
 const MOST: usize = 420;
 
 /// Help and version on standard output, a mistake as one line.
-pub(crate) fn report(error: &clap::Error) -> ExitCode {
+pub(crate) fn report(error: &clap::Error) -> u8 {
     if !error.use_stderr() {
         let _ = error.print();
-        return ExitCode::SUCCESS;
+        return 0;
     }
-    let given: Vec<String> = std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+    let given: Vec<String> = crate::given_words().collect();
     let cli = Cli::command();
     let (command, names) = meant(&cli, &given);
     let help = [&["belvedere"], &names[..], &["--help"]].concat().join(" ");
     let what = words(error, command);
     fail(&format!("{}; see {help}", plain_text::shortened(&what, MOST)));
-    ExitCode::from(2)
+    2
 }
 
 /// The command that the words name, and its names: a verb, and what it does.

@@ -1,5 +1,6 @@
 //! A session: a scene with a view and a light, ready to be drawn.
 
+use crate::guard::guarded;
 use crate::names::PublicNames;
 use crate::record::{AreaRecord, InputFile};
 use crate::resolve::StripReport;
@@ -12,11 +13,11 @@ use crate::scene_file::paths::{Roots, folder_of, stays_below};
 use crate::scene_file::{Document, OverlayDoc, SourceDocument, StageDoc};
 use crate::{BelvedereError, OpenOptions};
 use belvedere_core::Warning;
-use belvedere_core::{SpaceMap, View};
+use belvedere_core::{Pinhole, SpaceMap, View};
 use belvedere_cpu::CpuRenderer;
 use belvedere_disocclusion::{TerrainReport, TerrainSettings};
 use belvedere_io::split_table;
-use belvedere_scene::{Light, Renderer, Scene, Stylisation};
+use belvedere_scene::{Light, Progress, Renderer, Scene, Stylisation};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -214,6 +215,23 @@ impl Session {
         let solving = (!options.unsolved).then_some(&mut solving);
         let resolved = Resolved::of(source, roots, &self.loaded.scene, solving, !options.unchecked)?;
         Ok(Self { loaded: self.loaded.clone().drawn_for(&resolved), resolved, ..self.clone() })
+    }
+
+    /// The same scene in a picture of another size, pixels: everything that depends on camera and stages is resolved again, layers are not
+    /// read again. A session from parts keeps its view but for the size.
+    ///
+    /// # Errors
+    /// Those of [`Session::from_document`] but for layers.
+    pub fn resized(&self, image: [u32; 2], progress: &Progress) -> Result<Self, BelvedereError> {
+        let Some(description) = &self.resolved.description else {
+            let pinhole = Pinhole { image, ..self.view().pinhole().clone() };
+            return Ok(self.clone().with_view(View::new(pinhole, self.view().stages().to_vec())?));
+        };
+        let mut document = description.source.document.clone();
+        document.camera.image = image;
+        let mut memory = Memory::default();
+        let mut solving = Solving { memory: &mut memory, time_step_s: None, progress };
+        guarded(|| self.with_document(document, Some(&mut solving)))
     }
 
     /// Layers, unit and coordinate system.

@@ -130,6 +130,7 @@ fn system_of(records: &[Value]) -> Result<(CoordinateSystem, bool), String> {
     let code = code.and_then(|c| c.as_u64().map(|n| n.to_string()).or_else(|| c.as_str().map(str::to_owned)));
     match (name, code) {
         (Some(name), _) if name.to_ascii_uppercase().contains("CRS84") => return Ok((default()?, true)),
+        (Some(name), _) if name.eq_ignore_ascii_case("local") => return Ok((CoordinateSystem::local(), true)),
         (Some(name), _) => CoordinateSystem::from_text(name),
         (None, Some(code)) => CoordinateSystem::from_text(&code),
         _ => return Err(format!("\"crs\" {} is not understood; name an EPSG code", shorten(&crs.to_string()))),

@@ -253,6 +253,7 @@ impl<'a> Reprojection<'a> {
             warnings: Vec::new(),
         };
         match CoordinateSystem::from_scene(scene_crs) {
+            Err(CrsError::Local) if vectors.crs.is_local() && vectors.crs_stated => {}
             Err(CrsError::Local) if !vectors.crs.is_geographic() || reprojection.could_be_local() => {
                 let text = "coordinates are taken as they are, for the scene has no coordinate system";
                 reprojection.warn(Warning::new(WarningKind::Assumed, text));

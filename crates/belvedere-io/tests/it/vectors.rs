@@ -190,6 +190,13 @@ fn geojson_states_its_system_or_is_in_degrees() {
     assert_eq!(lines_on_terrain(&unstated, Crs::Local, None).unwrap().value.len(), 1);
     let text = load_vectors(&write(&dir, "a.json", name("my own system"))).unwrap_err().to_string();
     assert!(text.contains("my own system"), "{text}");
+    // A local system is stated, too, and numbers that could be degrees are not.
+    let small = name("local").replace("[390478,5819214],[390703,5819553]", "[2,3],[20,22]");
+    let local = load_vectors(&write(&dir, "a.json", small)).unwrap().value;
+    assert!(local.crs.is_local() && local.crs_stated);
+    let lines = lines_on_terrain(&local, Crs::Local, None).unwrap();
+    assert!(lines.value.len() == 1 && lines.warnings.is_empty(), "{:?}", lines.warnings);
+    assert!(lines_on_terrain(&local, Crs::Epsg(25833), None).is_err());
 }
 
 #[test]

@@ -109,6 +109,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
         &["belvedere", "belvedere-bench", "belvedere-gallery"],
         &["anyhow", "clap", "ctrlc", "indicatif", "serde_json", "tracing", "tracing-subscriber"],
     ),
+    ("belvedere-python", &["belvedere", "belvedere-cli"], &["pyo3", "rayon", "serde", "serde_json"]),
 ];
 
 fn metadata() -> serde_json::Value {

@@ -18,7 +18,7 @@ fn rust_files(folder: &Path, out: &mut Vec<PathBuf>) {
 
 fn all_rust_files() -> Vec<PathBuf> {
     let mut files = Vec::new();
-    for folder in ["crates", "apps", "tools"] {
+    for folder in ["crates", "apps", "tools", "python"] {
         rust_files(&belvedere_testkit::workspace_root().join(folder), &mut files);
     }
     assert!(files.len() > 30, "only {} source files found", files.len());

@@ -203,3 +203,10 @@ pub struct Picture {
     pub(crate) crs: Crs,
     pub(crate) unit: Unit,
 }
+
+impl Picture {
+    /// The same picture, which writes these buffers beside itself; those that it was not drawn with are empty.
+    pub fn with_buffers(self, aux: Vec<AuxBuffer>, aux_format: AuxFormat) -> Self {
+        Self { aux, aux_format, ..self }
+    }
+}

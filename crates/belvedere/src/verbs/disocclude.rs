@@ -394,6 +394,23 @@ impl Disoccluded {
         &self.solved.report
     }
 
+    /// Displaced heights and displacement, on the written grid.
+    pub fn rasters(&self) -> &[Raster; 2] {
+        &self.rasters
+    }
+
+    /// The text of the report file, JSON.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Text`], which no solution gives.
+    pub fn report_text(&self) -> Result<String, BelvedereError> {
+        let mut report = serde_json::to_value(self.report()).unwrap_or_default();
+        if let (Value::Object(report), Ok(Value::Object(record))) = (&mut report, serde_json::to_value(&self.record)) {
+            report.extend(record);
+        }
+        pretty(&report)
+    }
+
     /// Goals that were missed, one sentence each.
     pub fn missed(&self) -> Vec<String> {
         let r = self.report();
@@ -467,13 +484,7 @@ impl Disoccluded {
             written.extend(self.session.render(&pair)?.write(path, overwrite)?);
         }
         if let Some(path) = &files.report {
-            let mut report = serde_json::to_value(self.report()).unwrap_or_default();
-            if let (Value::Object(report), Ok(Value::Object(record))) =
-                (&mut report, serde_json::to_value(&self.record))
-            {
-                report.extend(record);
-            }
-            output::write_text(path, &pretty(&report)?, overwrite)?;
+            output::write_text(path, &self.report_text()?, overwrite)?;
             written.push(path.clone());
         }
         Ok(written)

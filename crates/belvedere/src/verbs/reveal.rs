@@ -12,7 +12,7 @@ use crate::resolve::rays::sidestep_stage;
 use crate::resolve::solving::Memory;
 use crate::resolve::solving::Solving;
 use crate::scene_file::{CameraDoc, EarthDoc, PlaneDoc, PresetsDoc, SplineStageDoc, StageDoc, TerrainStageDoc};
-use crate::{BelvedereError, OpenOptions, Session};
+use crate::{BelvedereError, OpenOptions, Session, output};
 use belvedere_construct::measure::{HiddenRun, Shares};
 use belvedere_construct::rays::{AroundOptions, Target, bend_around};
 use belvedere_construct::{
@@ -452,8 +452,20 @@ impl RevealAnswer {
     /// # Errors
     /// [`BelvedereError::Io`].
     pub fn write(&self, files: &RevealFiles, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
+        files.write(&self.picture, &self.session, &self.report_file(), overwrite)
+    }
+
+    /// The text of the report file, JSON.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Text`], which no answer gives.
+    pub fn report_text(&self) -> Result<String, BelvedereError> {
+        output::pretty(&self.report_file())
+    }
+
+    fn report_file(&self) -> ReportFile<'_> {
         let sidecar = &self.picture.sidecar;
-        let report = ReportFile {
+        ReportFile {
             program: sidecar.program.clone(),
             report: &self.report,
             shares: self.shares,
@@ -467,8 +479,7 @@ impl RevealAnswer {
             terrain: sidecar.terrain,
             inputs: &sidecar.inputs,
             scene_warnings: &sidecar.warnings,
-        };
-        files.write(&self.picture, &self.session, &report, overwrite)
+        }
     }
 }
 

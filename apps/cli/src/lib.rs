@@ -30,14 +30,20 @@ mod view;
 use args::Cli;
 use clap::Parser;
 use report::Context;
-use std::process::ExitCode;
+use std::ffi::OsString;
+use std::sync::OnceLock;
 
 /// Stack of the thread that works: deep enough for any document that passes the limits.
 const STACK_BYTES: usize = 64 << 20;
 
-fn main() -> ExitCode {
+/// Words of the command line, the first the program's own name.
+static WORDS: OnceLock<Vec<OsString>> = OnceLock::new();
+
+/// Runs the program with the words of a command line, of which the first is its own name; once in a process. Returns the exit code; Ctrl-C and
+/// memory beyond the budget end the process.
+pub fn command_line(words: Vec<OsString>) -> u8 {
     std::panic::set_hook(Box::new(|_| {}));
-    let cli = match Cli::try_parse() {
+    let cli = match Cli::try_parse_from(WORDS.get_or_init(|| words)) {
         Ok(cli) => cli,
         Err(e) => return usage::report(&e),
     };
@@ -48,20 +54,25 @@ fn main() -> ExitCode {
         Ok(Err(panic)) => broken(&*panic),
         Err(e) => {
             report::fail(&format!("no thread could be started: {e}"));
-            ExitCode::from(2)
+            2
         }
     }
 }
 
+/// The words that the user gave after the name of the program.
+fn given_words() -> impl Iterator<Item = String> {
+    WORDS.get().into_iter().flatten().skip(1).map(|word| word.to_string_lossy().into_owned())
+}
+
 /// Reports a panic in one line on standard error.
-fn broken(panic: &(dyn std::any::Any + Send)) -> ExitCode {
+fn broken(panic: &(dyn std::any::Any + Send)) -> u8 {
     let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
     let what = text.unwrap_or("no message").lines().next().unwrap_or_default();
     report::fail(&format!("internal error ({what}); please report this with the command line and the files"));
-    ExitCode::from(2)
+    2
 }
 
-fn run(cli: Cli) -> ExitCode {
+fn run(cli: Cli) -> u8 {
     belvedere::threads::start();
     let verb = cli.verb.name();
     let context = Context::new(cli.common, cli.verb.makes_many_pictures());
@@ -72,17 +83,17 @@ fn run(cli: Cli) -> ExitCode {
     match end {
         Ok(goal) => {
             context.finish();
-            if goal.is_missed() && context.common.strict { ExitCode::from(1) } else { ExitCode::SUCCESS }
+            u8::from(goal.is_missed() && context.common.strict)
         }
         Err(e) if context.progress.is_cancelled() => {
             context.finish();
             report::fail(&interrupt::told(&e, verb));
-            ExitCode::from(interrupt::CODE)
+            interrupt::CODE
         }
         Err(e) => {
             context.finish();
             report::fail(&report::one_line(&e));
-            ExitCode::from(2)
+            2
         }
     }
 }

@@ -1,0 +1,75 @@
+"""Terrain and features of a call as files for the engine."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+
+from . import _rasters, _vectors
+from ._crs import Crs, crs_of
+from ._folder import Folder
+from .errors import InputError
+
+
+def files_of(
+    dem: object,
+    routes: object,
+    *,
+    transform: object,
+    spacing: object,
+    origin: Sequence[float] | None,
+    crs: object,
+    nodata: object,
+    features_crs: object,
+    fill_voids: bool | None,
+    folder: Folder,
+) -> dict[str, Any]:
+    """Files of terrain and features, as the engine takes them; arrays are written into ``folder``."""
+    files: dict[str, Any] = {}
+    terrain_crs: Crs | None = None
+    if isinstance(dem, (str, os.PathLike)):
+        files["dem"] = os.fspath(dem)
+        if transform is not None or spacing is not None or origin is not None:
+            raise InputError("transform, spacing and origin are of arrays; a file says itself where it lies")
+        if crs is not None:
+            files["source_crs"] = str(crs_of(crs))
+        if nodata is not None:
+            files["nodata"] = nodata
+    else:
+        source = dem if _rasters.is_raster(dem) else np.asanyarray(dem)
+        heights = _rasters.heights_of(source, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata)
+        path = folder.file("terrain.tif")
+        _rasters.write_geotiff(path, heights)
+        terrain_crs, files["dem"] = heights.crs, os.fspath(path)
+        if terrain_crs.code is None:
+            files["crs"] = "local"
+        else:
+            files["source_crs"] = str(terrain_crs)
+        # Holes of an array are what the caller masked.
+        fill_voids = bool(fill_voids)
+    files["keep_voids"], files["fill_voids"] = fill_voids is False, fill_voids is True
+    files["features"] = [_file_of(i, source, features_crs, terrain_crs, folder) for i, source in enumerate(_several(routes))]
+    return files
+
+
+def _several(routes: object) -> list[object]:
+    if routes is None:
+        return []
+    if isinstance(routes, (list, tuple)) and routes and all(isinstance(r, (str, os.PathLike)) for r in routes):
+        return list(routes)
+    return [routes]
+
+
+def _file_of(i: int, source: object, crs: object, terrain: Crs | None, folder: Folder) -> str:
+    if isinstance(source, (str, os.PathLike)):
+        return os.fspath(source)
+    collection, stated = _vectors.features_of(source, "line", crs)
+    if stated is None and not (isinstance(source, Mapping) and "type" in source):
+        if terrain is None:
+            raise InputError("nothing says in which system the coordinates of the routes are; give features_crs='EPSG:n' (4326 for longitude and latitude)")
+        stated = terrain
+    path = folder.file(f"features{i + 1}.geojson")
+    _vectors.write_geojson(path, collection, stated)
+    return os.fspath(path)

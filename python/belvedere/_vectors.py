@@ -1,0 +1,130 @@
+"""Lines, areas and points from arrays, GeoJSON, shapely and GeoPandas as GeoJSON for the loader of the engine."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._crs import Crs, crs_of
+from ._masks import masked_count
+from .errors import FileError, InputError
+
+_LEAST = {"line": 2, "area": 3, "point": 1}
+
+
+def features_of(source: object, kind: str, crs: object) -> tuple[dict[str, Any], Crs | None]:
+    """A GeoJSON feature collection and the stated system; ``kind`` says what arrays are: line, area or point."""
+    interface = source if isinstance(source, Mapping) and "type" in source else getattr(source, "__geo_interface__", None)
+    stated = None if crs is None else crs_of(crs)
+    if interface is not None:
+        if stated is None and getattr(source, "crs", None) is not None:
+            stated = crs_of(source.crs)  # type: ignore[attr-defined]
+        return _collection(interface), stated
+    features = [_feature(name, parts, kind) for name, parts in _named(source, kind)]
+    if not features:
+        raise InputError(f"there is no {kind}; give at least one")
+    return {"type": "FeatureCollection", "features": features}, stated
+
+
+def write_geojson(path: Path, collection: dict[str, Any], crs: Crs | None) -> None:
+    """Writes a collection with its system."""
+    if crs is not None:
+        name = "local" if crs.code is None else f"urn:ogc:def:crs:EPSG::{crs.code}"
+        collection = {**collection, "crs": {"type": "name", "properties": {"name": name}}}
+    try:
+        path.write_text(json.dumps(collection, default=str, allow_nan=False), encoding="utf-8")
+    except ValueError:
+        raise InputError("a coordinate is not finite; leave such points out") from None
+    except OSError as error:
+        raise FileError(f"{path}: {error.strerror}") from error
+
+
+def _collection(interface: Mapping[str, Any]) -> dict[str, Any]:
+    kind = interface.get("type")
+    if kind == "FeatureCollection":
+        features = [_clean(f) for f in interface["features"]]
+    elif kind == "Feature":
+        features = [_clean(interface)]
+    else:
+        features = [{"type": "Feature", "properties": {}, "geometry": _lists(interface)}]
+    if not features:
+        raise InputError("the features are empty; give at least one")
+    return {"type": "FeatureCollection", "features": features}
+
+
+def _clean(feature: Mapping[str, Any]) -> dict[str, Any]:
+    properties = {str(k): _value(v) for k, v in (feature.get("properties") or {}).items()}
+    return {"type": "Feature", "properties": properties, "geometry": _lists(feature.get("geometry"))}
+
+
+def _value(value: Any) -> Any:
+    if isinstance(value, np.generic):
+        value = value.item()
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _lists(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {k: _lists(v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_lists(v) for v in value]
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _named(source: Any, kind: str) -> list[tuple[str, Any]]:
+    if isinstance(source, Mapping):
+        return [(str(name), value) for name, value in source.items()]
+    if kind == "point":
+        points = _points("points", source, 1)
+        return [("", p[None, :]) for p in points]
+    if _is_one(source):
+        return [("", source)]
+    try:
+        return [("", part) for part in source]
+    except TypeError:
+        raise InputError(f"{type(source).__name__} is no {kind}; give an array of x, y, a list of them, GeoJSON, or a GeoDataFrame") from None
+
+
+def _is_one(source: Any) -> bool:
+    """Whether it is one array of points rather than several."""
+    if isinstance(source, np.ndarray):
+        return source.ndim == 2
+    try:
+        return np.asarray(source, float).ndim == 2
+    except (TypeError, ValueError):
+        return False
+
+
+def _points(what: str, source: Any, least: int) -> NDArray[np.float64]:
+    if masked_count(source):
+        raise InputError(f"{what}: {masked_count(source)} coordinates are masked; leave such points out")
+    try:
+        points = np.asarray(source, np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"{what}: coordinates are numbers; give an array of x, y or x, y, z") from None
+    if points.ndim == 1 and points.size in (2, 3):
+        points = points[None, :]
+    if points.ndim != 2 or points.shape[1] not in (2, 3) or points.shape[0] < least:
+        raise InputError(f"{what} has the shape {points.shape}; give at least {least} rows of x, y or x, y, z")
+    bad = np.flatnonzero(~np.isfinite(points[:, :2]).all(axis=1))
+    if bad.size:
+        raise InputError(f"{what}: point {bad[0]} of {len(points)} is not finite; leave such points out")
+    return points
+
+
+def _feature(name: str, parts: Any, kind: str) -> dict[str, Any]:
+    points = _points(f"{kind} {name!r}" if name else f"the {kind}", parts, _LEAST[kind])
+    # Heights are those of the ground.
+    rows: Sequence[Any] = points[:, :2].tolist()
+    if kind == "area":
+        geometry = {"type": "Polygon", "coordinates": [[*rows, rows[0]] if rows[0] != rows[-1] else rows]}
+    elif kind == "line":
+        geometry = {"type": "LineString", "coordinates": rows}
+    else:
+        geometry = {"type": "Point", "coordinates": rows[0]}
+    return {"type": "Feature", "properties": {"name": name} if name else {}, "geometry": geometry}

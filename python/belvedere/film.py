@@ -1,0 +1,72 @@
+"""Films: numbered frames of a moving camera."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import Any
+
+from . import _native
+from ._ask import Progress, asked, number
+from ._drawing import drawing
+from ._json import size as size_of
+from ._json import text
+from .errors import InputError
+from .reports import FilmReport
+from .scene import Scene
+
+
+def animate(
+    scene: Scene | str | os.PathLike[str],
+    out: str | os.PathLike[str],
+    *,
+    along: str | None = None,
+    sweep_deg: tuple[float, float, float] | bool | None = None,
+    turntable_deg_per_s: float | bool | None = None,
+    frames: int | None = None,
+    fps: float | None = None,
+    speed_mps: float | None = None,
+    marker: bool | None = None,
+    clock: bool | None = None,
+    profile: bool | None = None,
+    size: tuple[int, int] | None = None,
+    straight: bool = False,
+    compare: bool = False,
+    samples: int | None = None,
+    resume: bool = False,
+    overwrite: bool = False,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> FilmReport:
+    """Draws the frames of a film, PNG, and encodes them if ``out`` ends in ``.mp4`` and ffmpeg is installed.
+
+    * ``scene``: a scene, or the path of a scene file. ``out``: a film, with its frames in the folder beside it, or a folder.
+    * ``along``: id of a line layer that the camera follows; or ``sweep_deg``: viewing angles (first, last, step), ``True``: those of the presets; or
+      ``turntable_deg_per_s``: a turn, ``True``: at the usual speed; or what the scene's ``[animation]`` says.
+    * ``frames``: their number; ``fps``: frames per second, 25 by default; ``speed_mps``: ground speed, metres per second of film.
+    * ``marker``, ``clock``, ``profile``: what is drawn over a film along a route.
+    * ``resume``: goes on with existing frames, to the same bytes as an uninterrupted film. Ctrl-C leaves whole frames.
+
+    Raises :class:`belvedere.FileError` where frames exist already.
+    """
+    if not isinstance(scene, Scene):
+        scene = Scene.open(scene)
+    animation: dict[str, Any] = {"along": along, "marker": marker, "clock": clock, "profile": profile}
+    if sweep_deg is not None and sweep_deg is not False:
+        animation["sweep"] = {"phi_deg": [0.0, 0.0, 0.0] if sweep_deg is True else [number("sweep_deg", v) for v in sweep_deg]}
+    if turntable_deg_per_s is not None and turntable_deg_per_s is not False:
+        speed = 0.0 if turntable_deg_per_s is True else number("turntable_deg_per_s", turntable_deg_per_s)
+        animation["turntable"] = {"deg_per_s": speed}
+    if frames is not None:
+        if isinstance(frames, bool) or not isinstance(frames, int) or not 0 < frames < 2**32:
+            raise InputError(f"frames={frames!r} is not a number of frames; give a whole number above 0")
+        animation["frames"] = frames
+    animation["fps"] = None if fps is None else number("fps", fps)
+    animation["speed_mps"] = None if speed_mps is None else number("speed_mps", speed_mps)
+    animation = {key: value for key, value in animation.items() if value is not None}
+    drawn = drawing(straight=straight, compare=compare, samples=samples)
+    with asked(threads, progress) as ask, scene._named():
+        # The ground is solved for every frame, not on opening.
+        native = scene._open({"unsolved": True, "size": size_of(size)}, ask)
+        answer = _native.animate(native, os.fspath(out), text("animation", animation), text("animate", drawn), resume, overwrite, ask)
+    return FilmReport.of(json.loads(answer))

@@ -1,0 +1,112 @@
+//! Scenes: opened, drawn, measured.
+
+use crate::errors::{raised, wrong};
+use crate::picture::NativePicture;
+use crate::request::{self, Drawing, Opening, RendererName};
+use crate::work::{Ask, run};
+use belvedere::verbs::measure::{self, MeasureOptions};
+use belvedere::{Session, output};
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// JSON Schema of scene files.
+#[pyfunction]
+pub(crate) fn schema() -> PyResult<String> {
+    output::schema_json().map_err(|e| raised(&e))
+}
+
+/// An opened scene.
+#[pyclass(frozen)]
+pub(crate) struct NativeScene {
+    pub(crate) session: Session,
+}
+
+#[pymethods]
+impl NativeScene {
+    /// Opens a scene file.
+    #[staticmethod]
+    fn open(py: Python<'_>, path: PathBuf, options: &str, ask: Ask) -> PyResult<Self> {
+        let opening: Opening = request::read("options", options)?;
+        let session = run(py, &ask, move |progress| Session::open(&path, &opening.options(progress)))?;
+        Ok(Self { session })
+    }
+
+    /// Opens a scene of a text; `path` is the scene file that it would be.
+    #[staticmethod]
+    fn from_text(py: Python<'_>, path: PathBuf, text: String, options: &str, ask: Ask) -> PyResult<Self> {
+        let opening: Opening = request::read("options", options)?;
+        let session = run(py, &ask, move |progress| Session::from_text(&path, &text, &opening.options(progress)))?;
+        Ok(Self { session })
+    }
+
+    /// The same in another size, pixels.
+    fn resized(&self, py: Python<'_>, size: [u32; 2], ask: Ask) -> PyResult<Self> {
+        let session = self.session.clone();
+        Ok(Self { session: run(py, &ask, move |progress| session.resized(size, &progress))? })
+    }
+
+    /// Draws a picture.
+    fn render(&self, py: Python<'_>, options: &str, ask: Ask) -> PyResult<NativePicture> {
+        let drawing: Drawing = request::read("render", options)?;
+        // Mistakes are told before the work begins.
+        drawing.options(Default::default())?;
+        let session = self.session.clone();
+        let picture = run(py, &ask, move |progress| {
+            // Checked above.
+            let options = drawing.options(progress).unwrap_or_default();
+            session.render(&options)
+        })?;
+        Ok(NativePicture { picture })
+    }
+
+    /// Visible shares, JSON.
+    fn measure(&self, py: Python<'_>, spacing_m: Option<f64>, renderer: &str, ask: Ask) -> PyResult<String> {
+        if spacing_m.is_some_and(|s| !(s > 0.0 && s.is_finite())) {
+            let given = spacing_m.unwrap_or_default();
+            return Err(wrong(&format!("spacing_m={given} is not a distance; give a number above 0, or None")));
+        }
+        let renderer: RendererName = request::read("renderer", &format!("{renderer:?}"))?;
+        let session = self.session.clone();
+        let options = MeasureOptions { spacing_m, ..MeasureOptions::default() };
+        run(py, &ask, move |progress| output::json(&measure::measure(&session, &options, renderer.into(), &progress)?))
+    }
+
+    /// Size of the picture, pixels.
+    #[getter]
+    fn size(&self) -> [u32; 2] {
+        self.session.view().pinhole().image
+    }
+
+    /// `EPSG:n` or `local`.
+    #[getter]
+    fn crs(&self) -> String {
+        self.session.scene().crs.to_string()
+    }
+
+    /// Ids of the layers, in the order of their numbers.
+    #[getter]
+    fn layers(&self) -> Vec<String> {
+        self.session.scene().layers.iter().map(|layer| layer.id.clone()).collect()
+    }
+
+    /// Smallest and largest coordinates of all layers; `None` for a scene without any.
+    #[getter]
+    fn bounds(&self) -> Option<[[f64; 3]; 2]> {
+        let bounds = self.session.scene().bounds();
+        (!bounds.is_empty()).then(|| [bounds.min.to_array(), bounds.max.to_array()])
+    }
+
+    /// Warnings, JSON.
+    fn warnings(&self) -> PyResult<String> {
+        output::json(&self.session.warnings()).map_err(|e| raised(&e))
+    }
+
+    /// The document with every default filled in, JSON; for a scene file at `path`, if that is given.
+    fn resolved(&self, path: Option<PathBuf>) -> PyResult<Option<String>> {
+        let document = match path {
+            Some(path) => self.session.resolved_for(&path),
+            None => self.session.resolved().cloned(),
+        };
+        document.map(|d| output::document_json(&d)).transpose().map_err(|e| raised(&e))
+    }
+}
