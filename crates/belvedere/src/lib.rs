@@ -27,6 +27,7 @@
 //! in this crate: [`core`] (views and stages), [`scene`] (layers, frames), [`io`] (loaders), [`construct`], [`disocclusion`],
 //! [`cpu`] (renderers), [`builtin`] (generated scenes).
 
+pub mod answers;
 mod bodies;
 mod camera_path;
 mod city_blocks;

@@ -29,7 +29,7 @@ fn pack(place: &Place, out: &str, more: &[&str]) -> Value {
 fn a_folder_holds_one_application() {
     let place = with_application();
     for (out, more, word, threads) in [("plain", &[][..], "one", false), ("fast", &["--all-cores"][..], "many", true)] {
-        let report = &pack(&place, out, more)["report"];
+        let report = &pack(&place, out, more);
         let bundle: Value = serde_json::from_slice(&read(&place.path(&format!("{out}/bundle.json")))).expect("JSON");
         assert_eq!((&bundle["threads"], &report["bundle"]["threads"]), (&threads.into(), &threads.into()));
         for name in ["belvedere.js", "belvedere_bg.wasm"] {

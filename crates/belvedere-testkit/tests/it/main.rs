@@ -4,4 +4,5 @@ mod circles;
 mod dependencies;
 mod layering;
 mod papers;
+mod publishing;
 mod sources;
