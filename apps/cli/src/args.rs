@@ -3,6 +3,7 @@
 use crate::city::GeneraliseArgs;
 use crate::common_args::Common;
 use crate::draw_args::DrawArgs;
+use crate::export::ExportArgs;
 use crate::ground_args::{GroundArgs, InfoArgs};
 use crate::kinds::{self, RendererKind, TechniqueKind};
 use crate::look_args::LookArgs;
@@ -41,6 +42,7 @@ impl Verb {
             Self::Preset(_) => "preset",
             Self::Render(_) => "render",
             Self::Animate(_) => "animate",
+            Self::Export(_) => "export",
             Self::Project(_) => "project",
             Self::Rays(_) => "rays",
             Self::Displace(_) => "displace",
@@ -83,6 +85,8 @@ pub(crate) enum Verb {
     Render(RenderArgs),
     /// Draw a film or numbered frames: along a route, through viewing angles, or once around
     Animate(AnimateArgs),
+    /// Write the displaced scene and its camera as a GLB file, for Blender and other programs
+    Export(ExportArgs),
     /// Give the pixel and depth of points: [[x,y,z],...] in scene coordinates
     Project(ProjectArgs),
     /// Sample the curved rays of pixels: [[x,y],...]
@@ -574,7 +578,7 @@ pub(crate) struct ShowArgs {
 /// The schema.
 #[derive(Debug, Args)]
 pub(crate) struct SchemaArgs {
-    /// Document: scene (a scene file), or a verb, for what it prints with --json
+    /// Document: scene (a scene file), keys (its keys as a page in Markdown), or a verb, for what it prints with --json
     #[arg(value_name = "VERB", default_value = "scene", value_parser = crate::schemas::names())]
     pub(crate) of: String,
     /// Output; standard output if left out

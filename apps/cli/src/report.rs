@@ -272,7 +272,7 @@ impl Context {
     ) -> anyhow::Result<()> {
         let file: Vec<PathBuf> = out.filter(|path| !is_stdout(path)).map(Path::to_owned).into_iter().collect();
         if let [path] = &file[..] {
-            belvedere::output::write_text(path, &answers::in_file(verb, &file, content)?, self.common.overwrite)?;
+            belvedere::output::write_text(path, &answers::line_in_file(verb, &file, content)?, self.common.overwrite)?;
         }
         if file.is_empty() || self.common.json {
             self.print(verb, &file, content)?;

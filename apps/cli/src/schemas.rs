@@ -8,18 +8,23 @@ use clap::builder::PossibleValuesParser;
 
 /// The schema of scene files.
 const SCENE: &str = "scene";
+/// The same as a page for readers.
+const KEYS: &str = "keys";
 /// The verb whose report is not the library's.
 const BENCH: &str = "bench";
 
 /// What has a schema.
 pub(crate) fn names() -> PossibleValuesParser {
-    PossibleValuesParser::new([SCENE, BENCH].into_iter().chain(schemas::VERBS))
+    PossibleValuesParser::new([SCENE, KEYS, BENCH].into_iter().chain(schemas::VERBS))
 }
 
 /// The schema of scene files, or of the answers of a verb.
 pub(crate) fn text(of: &str) -> anyhow::Result<String> {
     if of == BENCH {
         return Ok(schemas::schema_of(BENCH, &[schemas::shape::<Answer<Warned<BenchReport>>>()])?);
+    }
+    if of == KEYS {
+        return crate::scene_keys::page(&output::schema_json()?);
     }
     match schemas::schema(of) {
         Some(text) => Ok(text?),

@@ -2,9 +2,9 @@
 
 use crate::goal::Goal;
 use crate::report::{Context, print};
-use belvedere::verbs::schemas::TrustAnswer;
 use anyhow::ensure;
 use belvedere::trust;
+use belvedere::verbs::schemas::TrustAnswer;
 use clap::Args;
 use std::fmt::Write;
 use std::path::PathBuf;

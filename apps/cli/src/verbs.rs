@@ -32,6 +32,7 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
         Verb::Generalise(args) => crate::city::generalise_city(args, context),
         Verb::Preset(args) => crate::preset::preset(args, context),
         Verb::Animate(args) => animate_scene(args, context),
+        Verb::Export(args) => crate::export::export_scene(&args, context),
         Verb::Project(args) => project(&args, context),
         Verb::Rays(args) => rays(&args, context),
         Verb::Displace(args) => displace(&args, context),
@@ -55,6 +56,8 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
 
 /// Refuses a bad output before the work starts.
 fn ready(out: Option<&PathBuf>, inputs: &[&Path], context: &Context) -> anyhow::Result<()> {
+    let from_stdin = inputs.iter().filter(|path| is_stdout(path)).count();
+    anyhow::ensure!(from_stdin < 2, "-: only one input can be standard input; give a file for the other");
     let inputs: Vec<PathBuf> = inputs.iter().map(|p| p.to_path_buf()).collect();
     outputs::check(&outputs::file(out).cloned().into_iter().collect::<Vec<_>>(), &inputs, context)
 }

@@ -62,7 +62,17 @@ pub fn line(verb: &'static str, outputs: &[PathBuf], content: &impl Content) -> 
 /// # Errors
 /// As [`line`].
 pub fn in_file(verb: &'static str, outputs: &[PathBuf], content: &impl Content) -> Result<String, BelvedereError> {
-    let name = |path: &PathBuf| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    output::pretty(&Answer { verb, outputs: outputs.iter().map(name).collect(), content })
+    output::pretty(&Answer { verb, outputs: bare(outputs), content })
 }
 
+/// The same on one line, for answers that may be long.
+///
+/// # Errors
+/// As [`line`].
+pub fn line_in_file(verb: &'static str, outputs: &[PathBuf], content: &impl Content) -> Result<String, BelvedereError> {
+    output::json(&Answer { verb, outputs: bare(outputs), content })
+}
+
+fn bare(outputs: &[PathBuf]) -> Vec<String> {
+    outputs.iter().map(|path| path.file_name().unwrap_or_default().to_string_lossy().into_owned()).collect()
+}

@@ -35,6 +35,7 @@ pub mod city_map;
 mod data;
 pub mod editor;
 mod error;
+pub mod export;
 pub mod fallback;
 mod film;
 mod guard;

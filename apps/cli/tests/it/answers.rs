@@ -42,11 +42,10 @@ const EYE: [&str; 4] = ["--eye", "8.022,46.002,1500", "--look", "8.024,46.03"];
 #[test]
 fn every_verb_keeps_to_its_schema() {
     let place = place();
-    let reveal = [&["reveal", "dem.asc", "way.geojson", "--size", "32x24"][..], &EYE].concat();
-    let disocclude = [&["disocclude", "dem.asc", "way.geojson"][..], &EYE].concat();
     let commands: Vec<Vec<&str>> = vec![
         vec!["render", "s.toml", "-o", "a.png"],
         vec!["animate", "s.toml", "-o", "frames", "--turntable", "--frames", "2"],
+        vec!["export", "s.toml", "-o", "a.glb"],
         vec!["project", "s.toml", "--points", "points.json"],
         vec!["displace", "s.toml", "--points", "points.json"],
         vec!["rays", "s.toml", "--pixels", "pixels.json", "--samples", "2", "--far", "9000"],
@@ -55,7 +54,7 @@ fn every_verb_keeps_to_its_schema() {
         vec!["check", "s.toml"],
         vec!["show", "s.toml"],
         vec!["show", "s.toml", "-o", "shown.toml"],
-        vec!["info", "dem.asc", "way.geojson", "s.toml", "--adapters"],
+        vec!["info", "dem.asc", "way.geojson", "--adapters"],
         vec!["info", "builtin:massif?seed=7", "town.geojson"],
         vec!["preset", "list"],
         vec!["preset", "check", "map"],
@@ -67,18 +66,23 @@ fn every_verb_keeps_to_its_schema() {
         vec!["trust", "--forget"],
         vec!["completions", "bash", "-o", "belvedere.bash"],
         vec!["man", "man"],
-        [&reveal[..], &["-o", "r.png"]].concat(),
-        vec!["reveal", "dem.asc", "way.geojson", "--drafts", "2", "--size", "32x24", "-o", "d.png"],
-        vec!["reveal", "town.geojson", "--see", "16.0,0.0,1.0", "--size", "32x24", "-o", "see.png"],
-        [&disocclude[..], &["-o", "d.tif"]].concat(),
+        vec!["reveal", "dem.asc", "way.geojson", "--drafts", "1", "--size", "32x24", "-o", "d.png"],
     ];
     let mut seen: Vec<&str> = commands.iter().map(|args| args[0]).collect();
     for args in commands {
         let found = answer(&place, &args);
-        assert!(found["verb"] == args[0] || found["verb"].is_null() && ["show", "preset"].contains(&args[0]), "{found}");
+        assert!(
+            found["verb"] == args[0] || found["verb"].is_null() && ["show", "preset"].contains(&args[0]),
+            "{found}"
+        );
     }
-    // Their answers are those of `man`, or take long; tests of their own run them.
-    seen.extend(["demo", "figures", "pack"]);
+    // One file of several that cannot be described has its reason in the answer.
+    let out = place.run(&["info", "way.geojson", "s.toml", "--json"]);
+    let answer: Value = serde_json::from_slice(&out.stdout).expect("JSON");
+    assert_eq!(check(&schema(&place, "info"), &answer, Strictness::NoUnknownKeys), Ok(()));
+    assert!(out.status.code() == Some(2) && answer["files"][1]["kind"] == "error", "{answer}");
+    // `demo` and `figures` answer as `man` does and take long, the others are tried below and in packed.rs.
+    seen.extend(["demo", "figures", "pack", "disocclude"]);
     for verb in belvedere::verbs::schemas::VERBS {
         assert!(seen.contains(&verb), "{verb} is not tried");
     }
@@ -88,15 +92,27 @@ fn every_verb_keeps_to_its_schema() {
 fn a_report_file_has_the_shape_of_standard_output() {
     let place = place();
     let reveal = [&["reveal", "dem.asc", "way.geojson", "--size", "32x24"][..], &EYE].concat();
-    let technique = |name| [&reveal[..], &["--technique", name, "-o", "a.png", "--report", "f.json", "--overwrite"]].concat();
+    let technique =
+        |name| [&reveal[..], &["--technique", name, "-o", "a.png", "--report", "f.json", "--overwrite"]].concat();
     let commands = [
         technique("spline"),
         technique("terrain"),
-        technique("both"),
         technique("curved_rays"),
-        technique("auto"),
-        vec!["reveal", "town.geojson", "--see", "16.0,0.0,1.0", "--size", "32x24", "-o", "see.png", "--report", "f.json", "--overwrite"],
-        [&["disocclude", "dem.asc", "way.geojson", "-o", "d.tif", "--report", "f.json", "--overwrite"][..], &EYE].concat(),
+        vec![
+            "reveal",
+            "town.geojson",
+            "--see",
+            "16.0,0.0,1.0",
+            "--size",
+            "32x24",
+            "-o",
+            "see.png",
+            "--report",
+            "f.json",
+            "--overwrite",
+        ],
+        [&["disocclude", "dem.asc", "way.geojson", "-o", "d.tif", "--report", "f.json", "--overwrite"][..], &EYE]
+            .concat(),
         vec!["measure", "s.toml", "-o", "f.json", "--overwrite"],
         vec!["project", "s.toml", "--points", "points.json", "-o", "f.json", "--overwrite"],
     ];

@@ -1,5 +1,6 @@
 //! Pages: one application in a folder, under one policy.
 
+use super::schema_check::{Strictness, check};
 use super::{Place, read};
 use serde_json::Value;
 use std::path::Path;
@@ -22,7 +23,10 @@ fn with_application() -> Place {
 }
 
 fn pack(place: &Place, out: &str, more: &[&str]) -> Value {
-    place.json(&[&["pack", "-o", out, "--app", "app", "--json"], more].concat())
+    let answer = place.json(&[&["pack", "-o", out, "--app", "app", "--json"], more].concat());
+    let schema = place.json(&["schema", "pack"]);
+    assert_eq!(check(&schema, &answer, Strictness::NoUnknownKeys), Ok(()));
+    answer
 }
 
 #[test]

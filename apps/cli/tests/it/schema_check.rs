@@ -38,7 +38,8 @@ impl Judge<'_> {
     }
 
     fn no_more(&self, value: &Value, known: &Keys, at: &str) -> Result<(), String> {
-        let (Some(entries), Some(known), Strictness::NoUnknownKeys) = (value.as_object(), known, self.strictness) else {
+        let (Some(entries), Some(known), Strictness::NoUnknownKeys) = (value.as_object(), known, self.strictness)
+        else {
             return Ok(());
         };
         match entries.keys().find(|key| !known.contains(*key)) {
@@ -110,6 +111,10 @@ impl Judge<'_> {
 
     fn object(&self, schema: &Map<String, Value>, entries: &Map<String, Value>, at: &str) -> Result<Keys, String> {
         let properties = schema.get("properties").and_then(Value::as_object);
+        let required = schema.get("required").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
+        if (1..required.len()).any(|k| required[..k].contains(&required[k])) {
+            return Err(format!("{at}: the schema requires a key twice: {required:?}"));
+        }
         for key in schema.get("required").and_then(Value::as_array).into_iter().flatten() {
             let key = key.as_str().unwrap_or_default();
             entries.contains_key(key).then_some(()).ok_or_else(|| format!("{at}.{key} is missing"))?;

@@ -23,7 +23,8 @@ fn completions_know_the_verbs_and_their_options() {
 #[test]
 fn bash_takes_its_completions_and_completes_a_verb() {
     let script = Place::new().ok(&["completions", "bash"]);
-    let ask = "COMP_WORDS=(belvedere disoc); COMP_CWORD=1; _belvedere belvedere disoc belvedere; echo \"${COMPREPLY[@]}\"";
+    let ask =
+        "COMP_WORDS=(belvedere disoc); COMP_CWORD=1; _belvedere belvedere disoc belvedere; echo \"${COMPREPLY[@]}\"";
     let Ok(mut bash) = Command::new("bash").stdin(Stdio::piped()).stdout(Stdio::piped()).spawn() else {
         println!("SKIPPED: there is no bash on this machine");
         return;
@@ -38,7 +39,7 @@ fn every_verb_has_its_manual_page() {
     let place = Place::new();
     assert!(place.ok(&["man", "pages"]).contains("pages in pages"));
     let page = |name: &str| String::from_utf8(super::read(&place.path(&format!("pages/{name}.1")))).expect("UTF-8");
-    let verbs = "demo reveal disocclude generalise preset render animate project rays displace pick measure check info show schema bench \
+    let verbs = "demo reveal disocclude generalise preset render animate export project rays displace pick measure check info show schema bench \
                  figures view pack trust completions man";
     for verb in verbs.split_whitespace() {
         let text = page(&format!("belvedere-{verb}"));

@@ -40,7 +40,9 @@ fn reasons(package: &serde_json::Value, names: &[&str]) -> Vec<String> {
             _ if *version != format!("^{}", package["version"].as_str().expect("a version")) => {
                 found.push(format!("{} needs {name} {version}, not its own version", package["name"]));
             }
-            _ if !names.contains(&name) => found.push(format!("{} needs {name}, which is not published", package["name"])),
+            _ if !names.contains(&name) => {
+                found.push(format!("{} needs {name}, which is not published", package["name"]))
+            }
             _ => {}
         }
     }
@@ -52,7 +54,8 @@ fn library_crates_can_be_published() {
     let metadata = metadata();
     let packages = published(&metadata);
     let names: Vec<&str> = packages.iter().filter_map(|package| package["name"].as_str()).collect();
-    let script = std::fs::read_to_string(belvedere_testkit::workspace_root().join("tools/release")).expect("the script");
+    let script =
+        std::fs::read_to_string(belvedere_testkit::workspace_root().join("tools/release")).expect("the script");
     let list = script.split_once("crates=\"").and_then(|(_, rest)| rest.split_once('"')).expect("a list of crates").0;
     let mut listed: Vec<&str> = list.split_whitespace().collect();
     let mut sorted = names.clone();
@@ -67,7 +70,8 @@ fn a_crate_that_cannot_be_published_is_noticed() {
     let metadata = metadata();
     let mut package = published(&metadata)[0].clone();
     package["description"] = "".into();
-    let dependency = |kind: Option<&str>, req: &str| serde_json::json!({ "name": "x", "path": "/x", "kind": kind, "req": req });
+    let dependency =
+        |kind: Option<&str>, req: &str| serde_json::json!({ "name": "x", "path": "/x", "kind": kind, "req": req });
     package["dependencies"] = serde_json::json!([
         dependency(None, "*"),
         dependency(Some("dev"), "^0.1.0"),
@@ -91,6 +95,8 @@ fn packages_hold_their_sources_and_nothing_that_was_built() {
     for file in ["Cargo.toml", "src/lib.rs", "tests/it/main.rs"] {
         assert!(files.contains(&file), "{file}: {list}");
     }
-    let odd = |file: &&&str| file.starts_with("target") || file.starts_with('.') && **file != ".cargo_vcs_info.json" || file.contains("~");
+    let odd = |file: &&&str| {
+        file.starts_with("target") || file.starts_with('.') && **file != ".cargo_vcs_info.json" || file.contains("~")
+    };
     assert_eq!(files.iter().find(odd), None);
 }

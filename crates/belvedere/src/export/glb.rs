@@ -59,7 +59,7 @@ pub(super) fn bytes(content: &Content<'_>) -> Result<Vec<u8>, BelvedereError> {
             "name": ball.name,
             "mesh": mesh,
             "translation": turned(ball.at - content.origin).to_array(),
-            "scale": [ball.radius; 3],
+            "scale": [ball.radius, ball.radius, ball.radius],
             "extras": { "layer": ball.layer },
         }));
     }
@@ -167,7 +167,8 @@ impl File {
     fn accessor(&mut self, bytes: &[u8], target: u32, accessor: Value) -> usize {
         self.bin.resize(self.bin.len().next_multiple_of(4), 0);
         let view = self.views.len();
-        self.views.push(json!({ "buffer": 0, "byteOffset": self.bin.len(), "byteLength": bytes.len(), "target": target }));
+        self.views
+            .push(json!({ "buffer": 0, "byteOffset": self.bin.len(), "byteLength": bytes.len(), "target": target }));
         self.bin.extend_from_slice(bytes);
         let mut accessor = accessor;
         accessor["bufferView"] = view.into();

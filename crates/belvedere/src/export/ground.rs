@@ -38,7 +38,8 @@ pub(super) fn sheet(
         }
     }
     let places: Vec<(usize, usize)> = rows.iter().flat_map(|row| cols.iter().map(|col| (*col, *row))).collect();
-    let nodes: Vec<_> = places.par_iter().map(|(col, row)| hf.node(*col, *row).map(|p| (p, carrier.carry(p)))).collect();
+    let nodes: Vec<_> =
+        places.par_iter().map(|(col, row)| hf.node(*col, *row).map(|p| (p, carrier.carry(p)))).collect();
     let mut sheet = Sheet { smooth: true, ..Sheet::default() };
     for (node, color) in nodes.iter().zip(&colors) {
         match node {

@@ -128,24 +128,30 @@ fn exported(session: &Session, options: &ExportOptions) -> Result<Exported, Belv
     let count = scene.layers.len().max(1) as f64;
     for (k, layer) in scene.layers.iter().enumerate() {
         options.progress.tick("export", k as f64 / count)?;
-        let (before, sheet) = (balls.len(), match &layer.kind {
-            LayerKind::Terrain(terrain) => Some(ground::sheet(terrain, scene, &carrier, options, &mut warnings, &layer.id)?),
-            LayerKind::Boxes(_) | LayerKind::Mesh(_) | LayerKind::Molecule(_) => {
-                Some(solids::sheet(&layer.kind, &carrier, options)?)
-            }
-            LayerKind::Line(lines) => Some(marks::tubes(lines, &carrier)),
-            LayerKind::Point(points) => {
-                balls.extend(marks::balls(points, &carrier, &layer.id));
-                None
-            }
-            // Fills of areas are colours of the ground.
-            LayerKind::Area(_) => None,
-            LayerKind::Volume(_) => {
-                let text = format!("layer \"{}\" is a volume, which a GLB file cannot hold; it is left out", layer.id);
-                warnings.push(Warning::new(WarningKind::Ignored, text).about(&layer.id));
-                None
-            }
-        });
+        let (before, sheet) = (
+            balls.len(),
+            match &layer.kind {
+                LayerKind::Terrain(terrain) => {
+                    Some(ground::sheet(terrain, scene, &carrier, options, &mut warnings, &layer.id)?)
+                }
+                LayerKind::Boxes(_) | LayerKind::Mesh(_) | LayerKind::Molecule(_) => {
+                    Some(solids::sheet(&layer.kind, &carrier, options)?)
+                }
+                LayerKind::Line(lines) => Some(marks::tubes(lines, &carrier)),
+                LayerKind::Point(points) => {
+                    balls.extend(marks::balls(points, &carrier, &layer.id));
+                    None
+                }
+                // Fills of areas are colours of the ground.
+                LayerKind::Area(_) => None,
+                LayerKind::Volume(_) => {
+                    let text =
+                        format!("layer \"{}\" is a volume, which a GLB file cannot hold; it is left out", layer.id);
+                    warnings.push(Warning::new(WarningKind::Ignored, text).about(&layer.id));
+                    None
+                }
+            },
+        );
         let sheet = sheet.filter(|sheet: &Sheet| !sheet.triangles.is_empty());
         let triangles = sheet.as_ref().map_or(0, |sheet| sheet.triangles.len());
         layers.push(ExportedLayer { layer: layer.id.clone(), triangles, points: balls.len() - before });
@@ -158,7 +164,9 @@ fn exported(session: &Session, options: &ExportOptions) -> Result<Exported, Belv
         )));
     }
     let origin = origin(&sheets, &balls).ok_or_else(|| {
-        BelvedereError::Target("nothing of the scene can be exported: ground, lines, points, boxes, meshes and molecules can".into())
+        BelvedereError::Target(
+            "nothing of the scene can be exported: ground, lines, points, boxes, meshes and molecules can".into(),
+        )
     })?;
     let report = ExportReport {
         origin: origin.to_array(),
@@ -172,7 +180,8 @@ fn exported(session: &Session, options: &ExportOptions) -> Result<Exported, Belv
         warnings,
     };
     options.progress.tick("write", 0.95)?;
-    let glb = glb::bytes(&Content { sheets: &sheets, balls: &balls, pinhole: view.pinhole(), origin, report: &report })?;
+    let glb =
+        glb::bytes(&Content { sheets: &sheets, balls: &balls, pinhole: view.pinhole(), origin, report: &report })?;
     Ok(Exported { report: ExportReport { bytes: glb.len(), ..report }, glb })
 }
 

@@ -48,7 +48,12 @@ impl Sheet {
     }
 
     /// Splits edges until they follow the bend, and leaves out triangles of which a corner has no image.
-    pub(super) fn refined(mut self, carrier: &Carrier<'_>, most: usize, progress: &Progress) -> Result<Self, BelvedereError> {
+    pub(super) fn refined(
+        mut self,
+        carrier: &Carrier<'_>,
+        most: usize,
+        progress: &Progress,
+    ) -> Result<Self, BelvedereError> {
         let mut done: Vec<[u32; 3]> = Vec::with_capacity(self.triangles.len());
         let mut open = std::mem::take(&mut self.triangles);
         let mut middles: HashMap<(u32, u32), u32> = HashMap::new();
@@ -86,7 +91,8 @@ impl Sheet {
         let (Some(from), Some(to)) = (self.carried[a], self.carried[b]) else { return false };
         let Some(middle) = carrier.carry(0.5 * (self.world[a] + self.world[b])) else { return false };
         let pinhole = carrier.view.pinhole();
-        let (Ok((pixel, depth)), Ok((drawn, at))) = (pinhole.project(middle), pinhole.project(0.5 * (from + to))) else {
+        let (Ok((pixel, depth)), Ok((drawn, at))) = (pinhole.project(middle), pinhole.project(0.5 * (from + to)))
+        else {
             return false;
         };
         let size = belvedere_core::DVec2::from(pinhole.image.map(f64::from));

@@ -8,11 +8,7 @@ use belvedere_core::DVec3;
 use belvedere_scene::{Bodies, BoxShape, Color, LayerKind};
 
 /// The displaced triangles of a layer. Rigid bodies are carried as a whole.
-pub(super) fn sheet(
-    kind: &LayerKind,
-    carrier: &Carrier<'_>,
-    options: &ExportOptions,
-) -> Result<Sheet, BelvedereError> {
+pub(super) fn sheet(kind: &LayerKind, carrier: &Carrier<'_>, options: &ExportOptions) -> Result<Sheet, BelvedereError> {
     let bodies = Bodies::of(kind).filter(|_| carrier.view.carries_bodies());
     let (mut loose, mut carried) = (Sheet::default(), Sheet::default());
     // Triangles of a body follow each other, so its view serves many of them.
@@ -44,7 +40,9 @@ fn triangles(kind: &LayerKind) -> Vec<(usize, [DVec3; 3], [Color; 3])> {
         let of_box = |(k, shape): (usize, &BoxShape)| {
             let (corners, color) = (shape.corners(), shape.color);
             let outward = BoxShape::TRIANGLES.map(|t| t.map(|corner| corners[corner]));
-            (0..outward.len()).map(move |i| (BoxShape::TRIANGLES.len() * k + i, outward[i], [color; 3])).collect::<Vec<_>>()
+            (0..outward.len())
+                .map(move |i| (BoxShape::TRIANGLES.len() * k + i, outward[i], [color; 3]))
+                .collect::<Vec<_>>()
         };
         return layer.boxes.iter().enumerate().flat_map(of_box).collect();
     }

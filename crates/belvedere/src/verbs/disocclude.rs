@@ -3,9 +3,9 @@
 use super::in_time;
 use super::level_lakes::LevelLakes;
 use super::written_rivers::run_downhill;
+use crate::answers;
 use crate::data::DataFiles;
 use crate::guard::guarded;
-use crate::answers;
 use crate::output;
 use crate::picture::{self, PictureOptions};
 use crate::places::{Place, PlaceFinder};

@@ -83,7 +83,8 @@ fn measured(
 ) -> Result<MeasureReport, BelvedereError> {
     session.check_drawable()?;
     let renderer = renderer.of(session);
-    let mut measures = belvedere_construct::measure(session.scene(), session.view(), Some(renderer), options, progress)?;
+    let mut measures =
+        belvedere_construct::measure(session.scene(), session.view(), Some(renderer), options, progress)?;
     let shares = shares(&measures, session.terrain_report());
     let scene_warnings = session.public_warnings();
     measures.warnings.splice(..0, scene_warnings.iter().cloned());

@@ -12,6 +12,7 @@ use super::preset::{Listed, PresetCheck};
 use super::reveal::RevealDocument;
 use super::reveal_target::TargetDocument;
 use crate::answers::{Answer, Warned, Written};
+use crate::export::ExportReport;
 use crate::fallback::FallbackRecord;
 use crate::pick::PickReport;
 use crate::picture::DisplacementReport;
@@ -24,6 +25,7 @@ use schemars::generate::SchemaSettings;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::Serialize;
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Content of `render`.
@@ -150,13 +152,14 @@ pub fn shape<T: JsonSchema>() -> Shape {
 }
 
 /// Verbs of the library that answer in JSON, in alphabetical order.
-pub const VERBS: [&str; 20] = [
+pub const VERBS: [&str; 21] = [
     "animate",
     "check",
     "completions",
     "demo",
     "disocclude",
     "displace",
+    "export",
     "figures",
     "generalise",
     "info",
@@ -181,6 +184,7 @@ fn shapes(verb: &str) -> Option<Vec<Shape>> {
         "completions" | "demo" | "figures" | "man" => vec![shape::<Answer<Written>>()],
         "disocclude" => vec![shape::<Answer<DisoccludeDocument<'static>>>()],
         "displace" => vec![shape::<Answer<Warned<DisplaceReport>>>()],
+        "export" => vec![shape::<Answer<ExportReport>>()],
         "generalise" => vec![shape::<Answer<GeneraliseDocument<'static>>>()],
         "info" => vec![shape::<Answer<Informed>>()],
         "measure" => vec![shape::<Answer<MeasureReport>>()],
@@ -223,6 +227,11 @@ pub fn schema_of(verb: &str, shapes: &[Shape]) -> Result<String, BelvedereError>
     let shapes: Vec<Schema> = shapes.iter().map(|shape| shape(&mut generator)).collect();
     let mut definitions = generator.take_definitions(true);
     for (name, definition) in &mut definitions {
+        // A key that two flattened types name stands there twice, which the meta-schema forbids.
+        if let Some(required) = definition.get_mut("required").and_then(Value::as_array_mut) {
+            let mut known = BTreeSet::new();
+            required.retain(|key| known.insert(key.to_string()));
+        }
         if name.starts_with("Answer")
             && let Some(property) = definition.pointer_mut("/properties/verb").and_then(Value::as_object_mut)
         {

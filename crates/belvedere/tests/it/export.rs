@@ -71,13 +71,20 @@ impl Read {
         marks.map(|node| DVec3::from(node.transform().decomposed().0.map(f64::from))).collect()
     }
 
-    /// Positions and triangles of a layer.
+    /// Positions and triangles of a layer, from the bytes of the file.
     fn mesh(&self, layer: &str) -> (Vec<DVec3>, Vec<[u32; 3]>) {
         let mesh = self.file.meshes().find(|mesh| mesh.name() == Some(layer)).expect("a mesh");
         let primitive = mesh.primitives().next().expect("a primitive");
-        let reader = primitive.reader(|_| self.file.blob.as_deref());
-        let places = reader.read_positions().expect("positions").map(|p| DVec3::from(p.map(f64::from))).collect();
-        let indices: Vec<u32> = reader.read_indices().expect("indices").into_u32().collect();
+        let words = |accessor: &gltf::Accessor<'_>| -> Vec<[u8; 4]> {
+            let from = accessor.view().expect("a view").offset() + accessor.offset();
+            let bytes = &self.file.blob.as_deref().expect("bytes")[from..from + accessor.count() * accessor.size()];
+            bytes.as_chunks().0.to_vec()
+        };
+        let places = primitive.get(&gltf::Semantic::Positions).expect("positions");
+        let numbers: Vec<f64> = words(&places).into_iter().map(|w| f64::from(f32::from_le_bytes(w))).collect();
+        let indices: Vec<u32> =
+            words(&primitive.indices().expect("indices")).into_iter().map(u32::from_le_bytes).collect();
+        let places = numbers.as_chunks::<3>().0.iter().map(|p| DVec3::from(*p)).collect();
         (places, indices.as_chunks().0.to_vec())
     }
 }
@@ -90,7 +97,11 @@ fn marks_differ_by(name: &str, places: [[f64; 2]; 3], options: &ExportOptions) -
     let found = read.marks();
     assert_eq!(found.len(), 3, "{name}");
     let straight = Session::from_parts(session.scene().clone(), session.view().straightened());
-    let ours = if options.straight { straight.project(&marks.map(|p| p.to_array())) } else { session.project(&marks.map(|p| p.to_array())) };
+    let ours = if options.straight {
+        straight.project(&marks.map(|p| p.to_array()))
+    } else {
+        session.project(&marks.map(|p| p.to_array()))
+    };
     let off = found.iter().zip(&ours).map(|(p, ours)| {
         let pixel = DVec2::from(ours.pixel.expect("an image"));
         assert!(ours.inside, "{name}: {pixel}");
@@ -107,7 +118,10 @@ fn the_camera_sees_marks_at_the_pixels_of_the_picture() {
         for straight in [false, true] {
             let options = ExportOptions { straight, ground_nodes: 20_000, ..ExportOptions::default() };
             let (off, made) = marks_differ_by(name, MASSIF, &options);
-            println!("{name}, straight {straight}: {off:.5} px, {} triangles, {} bytes", made.report.triangles, made.report.bytes);
+            println!(
+                "{name}, straight {straight}: {off:.5} px, {} triangles, {} bytes",
+                made.report.triangles, made.report.bytes
+            );
             assert!(off < 0.05, "{name}: {off} px");
         }
     }
@@ -115,7 +129,8 @@ fn the_camera_sees_marks_at_the_pixels_of_the_picture() {
 
 #[test]
 fn single_precision_does_not_move_marks_far_from_the_origin_of_a_zone() {
-    let heights = (0..101 * 101).map(|i| 900.0 + 300.0 * ((i % 101) as f32 * 0.13).sin() * ((i / 101) as f32 * 0.11).cos());
+    let heights =
+        (0..101 * 101).map(|i| 900.0 + 300.0 * ((i % 101) as f32 * 0.13).sin() * ((i / 101) as f32 * 0.11).cos());
     let (corner, spacing) = (DVec2::new(677_123.25, 5_104_321.75), DVec2::splat(90.0));
     let ground = Heightfield::measured(corner, spacing, 101, 101, heights.collect()).expect("a grid");
     let at = |x: f64, y: f64| (corner + DVec2::new(x, y - 9000.0)).extend(1000.0);
@@ -194,7 +209,8 @@ fn lines_are_closed_tubes_as_wide_as_in_the_picture() {
     let read = Read::of(&made);
     let (places, triangles) = read.mesh(&id);
     // The widest distance between two corners of a ring, in the picture.
-    let widest = triangles.iter().map(|t| (read.pixel(places[t[0] as usize]) - read.pixel(places[t[1] as usize])).length());
+    let widest =
+        triangles.iter().map(|t| (read.pixel(places[t[0] as usize]) - read.pixel(places[t[1] as usize])).length());
     let first = widest.take(2).fold(0.0, f64::max);
     assert!(first <= 1.1 * width_px && first > 0.2 * width_px, "{first} of {width_px}");
     let reduced = made.report.warnings.iter().any(|w| w.text().contains("--nodes"));
