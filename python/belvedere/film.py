@@ -35,6 +35,7 @@ def animate(
     samples: int | None = None,
     resume: bool = False,
     overwrite: bool = False,
+    part: tuple[int, int] | None = None,
     threads: int | None = None,
     progress: Progress = None,
 ) -> FilmReport:
@@ -46,6 +47,8 @@ def animate(
     * ``frames``: their number; ``fps``: frames per second, 25 by default; ``speed_mps``: ground speed, metres per second of film.
     * ``marker``, ``clock``, ``profile``: what is drawn over a film along a route.
     * ``resume``: goes on with existing frames, to the same bytes as an uninterrupted film. Ctrl-C leaves whole frames.
+    * ``part``: first and last frame, counted from 0: one of several processes that draw a film into one folder, see :mod:`belvedere.batch`; a call
+      without it and with ``resume`` collects the parts.
 
     Raises :class:`belvedere.FileError` where frames exist already.
     """
@@ -64,9 +67,17 @@ def animate(
     animation["fps"] = None if fps is None else number("fps", fps)
     animation["speed_mps"] = None if speed_mps is None else number("speed_mps", speed_mps)
     animation = {key: value for key, value in animation.items() if value is not None}
+    first_and_last = None if part is None else _part(part)
     drawn = drawing(straight=straight, compare=compare, samples=samples)
     with asked(threads, progress) as ask, scene._named():
         # The ground is solved for every frame, not on opening.
         native = scene._open({"unsolved": True, "size": size_of(size)}, ask)
-        answer = _native.animate(native, os.fspath(out), text("animation", animation), text("animate", drawn), resume, overwrite, ask)
+        answer = _native.animate(native, os.fspath(out), text("animation", animation), text("animate", drawn), resume, overwrite, first_and_last, ask)
     return FilmReport.of(json.loads(answer))
+
+
+def _part(part: object) -> list[int]:
+    ends = list(part) if isinstance(part, (tuple, list)) else []
+    if len(ends) != 2 or any(isinstance(end, bool) or not isinstance(end, int) for end in ends) or not 0 <= ends[0] <= ends[1]:
+        raise InputError(f"part={part!r} is not a part of a film; give the first and the last frame, counted from 0, such as (0, 249)")
+    return ends

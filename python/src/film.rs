@@ -20,6 +20,7 @@ pub(crate) fn animate(
     drawing: &str,
     resume: bool,
     overwrite: bool,
+    part: Option<[usize; 2]>,
     ask: Ask,
 ) -> PyResult<String> {
     let animation = request::read("animation", animation)?;
@@ -27,7 +28,8 @@ pub(crate) fn animate(
     let picture = drawing.options(Default::default())?;
     let session = scene.session.clone();
     run(py, &ask, move |progress| {
-        let mut request = AnimateRequest { animation, picture, out, resume, overwrite };
+        let mut request =
+            AnimateRequest { animation, picture, out, resume, overwrite, part: part.map(|[first, last]| first..=last) };
         request.picture.progress = progress.clone();
         let made = verb::animate(&session, &request, &progress)?;
         let (film, missing) = match &made.film {

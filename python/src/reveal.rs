@@ -5,6 +5,7 @@ use crate::picture::NativePicture;
 use crate::request::{self, Drawing, Opening};
 use crate::scene::NativeScene;
 use crate::work::{Ask, run};
+use belvedere::answers;
 use belvedere::core::DVec3;
 use belvedere::scene::{Hidden, Relief};
 use belvedere::scene_file::{LightDoc, PaletteDoc, StylisationDoc, SurfaceDoc, VerticalUnit};
@@ -237,7 +238,7 @@ pub(crate) fn reveal(py: Python<'_>, asked: &str, ask: Ask) -> PyResult<NativeRe
         };
         let (answer, report) = run(py, &ask, move |progress| {
             let answer = verb::reveal(&request, &open.options(progress))?;
-            let report = answer.report_text()?;
+            let report = answers::in_file("reveal", &[], &answer.document())?;
             Ok((answer, report))
         })?;
         return Ok(NativeReveal { answer: Answer::Features(Box::new(answer)).into(), report });
@@ -264,7 +265,7 @@ pub(crate) fn reveal(py: Python<'_>, asked: &str, ask: Ask) -> PyResult<NativeRe
     };
     let (answer, report) = run(py, &ask, move |progress| {
         let answer = reveal_target(&request, &open.options(progress))?;
-        let report = output::json(&answer.report)?;
+        let report = answers::in_file("reveal", &[], &answer.document())?;
         Ok((answer, report))
     })?;
     Ok(NativeReveal { answer: Answer::Target(Box::new(answer)).into(), report })

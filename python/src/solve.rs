@@ -6,6 +6,7 @@ use crate::request::{self, Opening};
 use crate::reveal::Files;
 use crate::scene::NativeScene;
 use crate::work::{Ask, run};
+use belvedere::answers;
 use belvedere::io::raster::Raster;
 use belvedere::output;
 use belvedere::scene_file::TerrainStageDoc;
@@ -146,7 +147,7 @@ pub(crate) fn disocclude(py: Python<'_>, asked: &str, ask: Ask) -> PyResult<Nati
     };
     let (found, report) = run(py, &ask, move |progress| {
         let found = verb::disocclude(&request, &Opening::default().options(progress))?;
-        let report = found.report_text()?;
+        let report = answers::in_file("disocclude", &[], &found.document())?;
         Ok((found, report))
     })?;
     Ok(NativeGround { found: found.into(), report })

@@ -8,6 +8,7 @@ use belvedere::editor::{
     Answer, Editor, Order, Pace, Painter, Shown, Sides, above_ground, frame_factor, navigation, set_camera,
 };
 use belvedere::scene_file::Document;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -20,7 +21,7 @@ const PATIENCE: Duration = Duration::from_secs(300);
 const INPUTS: usize = 40;
 
 /// Cost of dragging one scene.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct DragCost {
     /// Name of the scene.
     pub scene: String,

@@ -12,6 +12,7 @@ use belvedere::scene::{
     Color, Frame, Layer, LayerKind, Light, LineFeature, LineLayer, Progress, RenderJob, RenderOptions, Renderer, Scene,
     drape_polyline,
 };
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -20,7 +21,7 @@ const RATE: f64 = 25.0;
 const STEP_M: f64 = 3.0;
 
 /// Cost of the ground of a flight's pictures by one method.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct FlightCost {
     /// `solved and judged for every picture`, or `solved in the background`.
     pub method: &'static str,

@@ -7,10 +7,11 @@ use anyhow::Result;
 use belvedere::core::View;
 use belvedere::cpu::{CpuRenderer, GroundImage};
 use belvedere::scene::{Frame, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// A frame.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct FrameCost {
     /// Bend: `straight`, `curved rays`, `spline`.
     pub view: &'static str,
@@ -29,7 +30,7 @@ pub struct FrameCost {
 }
 
 /// Projection alone.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct ProjectionCost {
     /// Bend.
     pub view: &'static str,
@@ -40,7 +41,7 @@ pub struct ProjectionCost {
 }
 
 /// How processor time grows, `time ~ size^exponent`, least squares in logarithms.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct Growth {
     /// The quantity that grows.
     pub of: &'static str,

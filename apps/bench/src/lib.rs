@@ -21,6 +21,7 @@ use belvedere::scene::Progress;
 use flight::fly;
 use frames::{Case, grow_pixels, grow_triangles, grow_turns, measure, project};
 use scene::{ground, views};
+use schemars::JsonSchema;
 use serde::Serialize;
 use smooth::smooth;
 
@@ -47,7 +48,7 @@ impl Default for BenchRequest {
 }
 
 /// The measurements.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct BenchReport {
     /// Program and version.
     pub program: String,

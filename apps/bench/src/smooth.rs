@@ -7,6 +7,7 @@ use belvedere::disocclusion::TerrainSettings;
 use belvedere::disocclusion::internals::{
     ConjugateGradients, ElevationRows, Hierarchy, Smoother, grid_weight, row_weight,
 };
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Elevation rows per node of the solver's grid: 1350 on 129 x 129.
@@ -15,7 +16,7 @@ const ROWS_PER_NODE: f64 = 1350.0 / 16_641.0;
 const W: f64 = 0.6;
 
 /// The smooth pass on one right-hand side.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct SmoothCost {
     /// Nodes along a side of the solver's grid.
     pub nodes: usize,
@@ -28,7 +29,7 @@ pub struct SmoothCost {
 }
 
 /// The paper's method: the normal equations, factorised once.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, JsonSchema, Serialize)]
 pub struct SparseCost {
     /// Building and factorising, wall time, milliseconds.
     pub factor_ms: f64,

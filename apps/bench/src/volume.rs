@@ -9,6 +9,7 @@ use belvedere::scene::{
     Color, Frame, Layer, LayerKind, Light, Progress, RenderJob, RenderOptions, Renderer, Scene, TransferFunction,
     TransferPoint, Unit, Volume, VolumeLayer, VolumeModel, VoxelValues,
 };
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Voxels along x, y, z, as many as the engine of the paper has.
@@ -37,7 +38,7 @@ pub struct VolumeRequest {
 }
 
 /// Frames of a volume.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct VolumeCost {
     /// Bend.
     pub view: &'static str,

@@ -3,6 +3,7 @@
 use crate::city::GeneraliseArgs;
 use crate::common_args::Common;
 use crate::draw_args::DrawArgs;
+use crate::export::ExportArgs;
 use crate::ground_args::{GroundArgs, InfoArgs};
 use crate::kinds::{self, RendererKind, TechniqueKind};
 use crate::look_args::LookArgs;
@@ -12,6 +13,7 @@ use crate::parse::{
     parse_position, parse_scale, parse_size, parse_spacing, parse_sweep,
 };
 use crate::preset::PresetArgs;
+use crate::shell::{CompletionsArgs, ManArgs};
 use crate::trust::TrustArgs;
 use belvedere::RendererChoice;
 use belvedere::places::Place;
@@ -41,6 +43,7 @@ impl Verb {
             Self::Preset(_) => "preset",
             Self::Render(_) => "render",
             Self::Animate(_) => "animate",
+            Self::Export(_) => "export",
             Self::Project(_) => "project",
             Self::Rays(_) => "rays",
             Self::Displace(_) => "displace",
@@ -55,6 +58,8 @@ impl Verb {
             Self::View(_) => "view",
             Self::Pack(_) => "pack",
             Self::Trust(_) => "trust",
+            Self::Completions(_) => "completions",
+            Self::Man(_) => "man",
         }
     }
 
@@ -81,6 +86,8 @@ pub(crate) enum Verb {
     Render(RenderArgs),
     /// Draw a film or numbered frames: along a route, through viewing angles, or once around
     Animate(AnimateArgs),
+    /// Write the displaced scene and its camera as a GLB file, for Blender and other programs
+    Export(ExportArgs),
     /// Give the pixel and depth of points: [[x,y,z],...] in scene coordinates
     Project(ProjectArgs),
     /// Sample the curved rays of pixels: [[x,y],...]
@@ -98,7 +105,7 @@ pub(crate) enum Verb {
     Info(InfoArgs),
     /// Print a scene with every default filled in and every rule replaced by its value
     Show(ShowArgs),
-    /// Print the JSON Schema of scene files
+    /// Print the JSON Schema of scene files, or of the answers of a verb
     Schema(SchemaArgs),
     /// Measure what bends, anti-aliasing and level of detail cost on this machine
     Bench(BenchArgs),
@@ -110,6 +117,10 @@ pub(crate) enum Verb {
     Pack(PackArgs),
     /// Let a scene read the files outside its folder that it names, from now on; list and forget such scenes
     Trust(TrustArgs),
+    /// Print what a shell needs to complete the command line
+    Completions(CompletionsArgs),
+    /// Write manual pages: one for the program and one for each verb
+    Man(ManArgs),
 }
 
 /// The application.
@@ -186,7 +197,7 @@ pub(crate) struct BenchArgs {
 /// A scene.
 #[derive(Debug, Args)]
 pub(crate) struct SceneArgs {
-    /// Scene file, TOML or JSON
+    /// Scene file, TOML or JSON; - = standard input
     pub(crate) scene: PathBuf,
 }
 
@@ -209,7 +220,7 @@ pub(crate) struct RevealArgs {
     #[arg(value_name = "DATA")]
     pub(crate) dem: String,
     /// Routes, areas or points: GPX, GeoJSON, shapefiles, GeoPackages where they are built in, or builtin:massif?seed=7; elevation models
-    /// among them are further tiles of the terrain; with --see more models
+    /// among them are further tiles of the terrain; with --see more models; - = standard input (one of all data)
     pub(crate) features: Vec<String>,
     /// Part of a model or city that must be seen: a file (by its name without ending) or layer, a named part of a mesh, atoms such as
     /// "chain B", a building, street or area by name, id or key=value (`info` lists them), a file of routes, or a point x,y,z in scene
@@ -302,7 +313,7 @@ pub(crate) struct RevealArgs {
 pub(crate) struct DisoccludeArgs {
     /// Elevation model: GeoTIFF, .hgt, ESRI ASCII
     pub(crate) dem: PathBuf,
-    /// Routes, areas or points: GPX, GeoJSON, shapefiles, GeoPackages where they are built in
+    /// Routes, areas or points: GPX, GeoJSON, shapefiles, GeoPackages where they are built in; - = standard input
     #[arg(required = true)]
     pub(crate) features: Vec<PathBuf>,
     /// Rivers that do not run uphill on the displaced ground: a file of lines, GPX, GeoJSON, shapefile; may be given several times
@@ -365,7 +376,7 @@ pub(crate) struct DisoccludeArgs {
 /// A scene to measure.
 #[derive(Debug, Args)]
 pub(crate) struct MeasureArgs {
-    /// Scene file, TOML or JSON
+    /// Scene file, TOML or JSON; - = standard input
     pub(crate) scene: PathBuf,
     /// Output; standard output if left out
     #[arg(short, long, value_name = "OUT.json")]
@@ -387,7 +398,7 @@ impl From<RendererKind> for RendererChoice {
 /// A picture.
 #[derive(Debug, Args)]
 pub(crate) struct RenderArgs {
-    /// Scene file, TOML or JSON
+    /// Scene file, TOML or JSON; - = standard input
     pub(crate) scene: PathBuf,
     /// Output; the record is written beside it as OUT.png.json; - = standard output, and no record
     #[arg(short, long, value_name = "OUT.png")]
@@ -450,7 +461,7 @@ pub(crate) enum AuxFormatKind {
 /// A moving camera.
 #[derive(Debug, Args)]
 pub(crate) struct AnimateArgs {
-    /// Scene file, TOML or JSON
+    /// Scene file, TOML or JSON; - = standard input
     pub(crate) scene: PathBuf,
     /// Film, made by the ffmpeg program, with its frames in the folder OUT.frames; or a folder for the frames alone
     #[arg(short, long, value_name = "OUT.mp4|DIR")]
@@ -508,9 +519,10 @@ pub(crate) enum AuxKind {
 /// A scene and points.
 #[derive(Debug, Args)]
 pub(crate) struct ProjectArgs {
-    /// Scene file, TOML or JSON
+    /// Scene file, TOML or JSON; - = standard input
     pub(crate) scene: PathBuf,
-    /// JSON file of points [[x,y,z],...]; texts such as "46.5N,11.3E,+20" may stand among them
+    /// JSON file of points [[x,y,z],...]; texts such as "46.5N,11.3E,+20" may stand among them;
+    /// - = standard input
     #[arg(long, value_name = "P.json")]
     pub(crate) points: PathBuf,
     /// Output; standard output if left out
@@ -521,9 +533,9 @@ pub(crate) struct ProjectArgs {
 /// A scene and pixels.
 #[derive(Debug, Args)]
 pub(crate) struct RaysArgs {
-    /// Scene file, TOML or JSON
+    /// Scene file, TOML or JSON; - = standard input
     pub(crate) scene: PathBuf,
-    /// JSON file of pixels [[x,y],...]
+    /// JSON file of pixels [[x,y],...]; - = standard input
     #[arg(long, value_name = "P.json")]
     pub(crate) pixels: PathBuf,
     /// Samples per ray, equidistant in depth
@@ -547,9 +559,9 @@ point is the true place in scene coordinates, depth the forward distance at whic
 /// A scene and pixels to look through.
 #[derive(Debug, Args)]
 pub(crate) struct PickArgs {
-    /// Scene file, TOML or JSON
+    /// Scene file, TOML or JSON; - = standard input
     pub(crate) scene: PathBuf,
-    /// JSON file of pixels [[x,y],...]
+    /// JSON file of pixels [[x,y],...]; - = standard input
     #[arg(long, value_name = "P.json")]
     pub(crate) pixels: PathBuf,
     /// Output; standard output if left out
@@ -560,7 +572,7 @@ pub(crate) struct PickArgs {
 /// A scene to show.
 #[derive(Debug, Args)]
 pub(crate) struct ShowArgs {
-    /// Scene file, TOML or JSON
+    /// Scene file, TOML or JSON; - = standard input
     pub(crate) scene: PathBuf,
     /// Output (TOML, or JSON if named so); standard output if left out
     #[arg(short, long, value_name = "OUT")]
@@ -570,6 +582,9 @@ pub(crate) struct ShowArgs {
 /// The schema.
 #[derive(Debug, Args)]
 pub(crate) struct SchemaArgs {
+    /// Document: scene (a scene file), keys (its keys as a page in Markdown), or a verb, for what it prints with --json
+    #[arg(value_name = "VERB", default_value = "scene", value_parser = crate::schemas::names())]
+    pub(crate) of: String,
     /// Output; standard output if left out
     #[arg(short, long, value_name = "OUT.json")]
     pub(crate) out: Option<PathBuf>,

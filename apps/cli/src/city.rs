@@ -2,7 +2,7 @@
 
 use crate::goal::Goal;
 use crate::outputs;
-use crate::report::{Context, done, print};
+use crate::report::{Context, print};
 use belvedere::output;
 use belvedere::verbs::generalise::{self, GeneraliseRequest, GeneraliseSettings};
 use clap::Args;
@@ -39,9 +39,7 @@ pub(crate) fn generalise_city(args: GeneraliseArgs, context: &Context) -> anyhow
     let written = found.write(&args.out, context.common.overwrite, &context.progress)?;
     context.finish();
     if context.common.json {
-        let mut result = done("generalise", &written, &found.warnings);
-        result["report"] = serde_json::from_str(&found.report_json()?)?;
-        context.print(&result)?;
+        context.print("generalise", &written, &found.document())?;
     } else if !context.common.quiet {
         print(&format!("{}\nopen {}\n", found.summary(), args.out.join("overview.png").display()))?;
     }

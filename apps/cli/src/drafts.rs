@@ -1,12 +1,12 @@
 //! `reveal --drafts`: the sheet, and one line per draft with the command that makes it.
 
 use crate::goal::Goal;
-use crate::report::{Context, done, print};
+use crate::report::{Context, print};
 use belvedere::Needs;
-use belvedere::output;
 use belvedere::verbs::drafts::{self, Draft, DraftsAnswer};
 use belvedere::verbs::reveal::RevealRequest;
 use belvedere::verbs::reveal_target::TargetRequest;
+use belvedere::verbs::schemas::{DraftWithCommand, Drafts};
 use belvedere::verbs::target_drafts::target_drafts;
 use std::path::{Path, PathBuf};
 
@@ -29,12 +29,9 @@ fn sheet(found: &DraftsAnswer, out: &Path, context: &Context) -> anyhow::Result<
     context.finish();
     let commands: Vec<String> = found.drafts.iter().enumerate().map(|(i, draft)| command(draft, i, out)).collect();
     if context.common.json {
-        let mut result = done("reveal", &[out.to_owned()], &found.warnings);
-        result["drafts"] = serde_json::from_str(&output::json(&found.drafts)?)?;
-        for (draft, command) in result["drafts"].as_array_mut().into_iter().flatten().zip(commands) {
-            draft["command"] = command.into();
-        }
-        context.print(&result)?;
+        let drafts = found.drafts.iter().cloned().zip(commands);
+        let drafts = drafts.map(|(draft, command)| DraftWithCommand { draft, command }).collect();
+        context.print("reveal", &[out.to_owned()], &Drafts { drafts, warnings: found.warnings.clone() })?;
     } else {
         for (i, (draft, command)) in found.drafts.iter().zip(&commands).enumerate() {
             print(&format!("{}: {}: {command}\n", i + 1, draft.words()))?;

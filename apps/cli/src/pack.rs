@@ -2,7 +2,8 @@
 
 use crate::goal::Goal;
 use crate::outputs;
-use crate::report::{Context, done, print};
+use crate::report::{Context, print};
+use belvedere::answers::Warned;
 use belvedere::verbs::pack::{PackRequest, pack};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -41,9 +42,8 @@ pub(crate) fn pack_scene(args: PackArgs, context: &Context) -> anyhow::Result<Go
     context.finish();
     let out = &packed.folder;
     if context.common.json {
-        let mut result = done("pack", &[out.join("index.html")], &[]);
-        result["report"] = serde_json::to_value(&packed)?;
-        context.print(&result)?;
+        let page = out.join("index.html");
+        context.print("pack", &[page], &Warned { content: &packed, warnings: Vec::new() })?;
     } else if !context.common.quiet {
         let mib = |bytes: u64| bytes as f64 / f64::from(1 << 20);
         let shown = out.display();

@@ -2,14 +2,15 @@
 
 use crate::goal::Goal;
 use crate::outputs;
-use crate::report::{Context, done, is_stdout, print};
+use crate::report::{Context, is_stdout, print};
+use belvedere::answers::Written;
 use belvedere::core::presets::PresetDocument;
 use belvedere::core::presets::edit::{PresetChange, PresetOperation};
 use belvedere::io::png;
 use belvedere::verbs::preset::{self, Shape, Verdict};
+use belvedere::verbs::schemas::Presets;
 use belvedere::{Needs, Session, Warning, output};
 use clap::{Args, Subcommand};
-use serde_json::json;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -95,7 +96,9 @@ pub(crate) fn preset(args: PresetArgs, context: &Context) -> anyhow::Result<Goal
             out.as_deref().map_or(Ok(()), document_named)?;
             let file = outputs::file(out.as_ref()).cloned();
             outputs::check(file.as_slice(), &[], context)?;
-            let text = preset::text(&preset::load(&preset)?, &file.unwrap_or_default())?;
+            // Only the ending of the name counts.
+            let printed = PathBuf::from(if context.common.json { "-.json" } else { "-.toml" });
+            let text = preset::text(&preset::load(&preset)?, &file.unwrap_or(printed))?;
             context.deliver("preset", out.as_deref(), &text, &[])?;
             Ok(Goal::Reached)
         }
@@ -137,7 +140,7 @@ fn document_named(path: &Path) -> anyhow::Result<()> {
 
 fn written(files: &[PathBuf], warnings: &[Warning], context: &Context) -> anyhow::Result<Goal> {
     if context.common.json {
-        context.print(&done("preset", files, warnings))?;
+        context.print("preset", files, &Written { warnings: warnings.to_vec() })?;
     }
     context.warn(warnings);
     Ok(Goal::Reached)
@@ -146,7 +149,7 @@ fn written(files: &[PathBuf], warnings: &[Warning], context: &Context) -> anyhow
 fn list(context: &Context) -> anyhow::Result<Goal> {
     let listed = preset::list()?;
     if context.common.json {
-        context.print(&json!({ "verb": "preset", "presets": listed }))?;
+        context.print("preset", &[], &Presets { presets: listed })?;
         return Ok(Goal::Reached);
     }
     let mut text = String::new();
@@ -172,9 +175,7 @@ fn line(shape: &Shape) -> String {
 fn check(source: &str, context: &Context) -> anyhow::Result<Goal> {
     let found = preset::check(&preset::load(source)?);
     if context.common.json {
-        let mut answer = serde_json::to_value(&found)?;
-        answer["verb"] = "preset".into();
-        context.print(&answer)?;
+        context.print("preset", &[], &found)?;
     } else {
         let lines = found.presets.iter().map(line).chain(found.still_words()).chain([found.words()]);
         print(&format!("{}\n", lines.collect::<Vec<_>>().join("\n")))?;

@@ -1,7 +1,9 @@
 //! Output for the user: one line per failure, warnings, progress, results.
 
 use crate::common_args::Common;
+use crate::stdin::Stdin;
 use crate::timings::Timings;
+use belvedere::answers::{self, Content, Written};
 use belvedere::core::{PinholeError, plain};
 use belvedere::scene::Progress;
 use belvedere::{BelvedereError, Needs, OpenOptions, Session, Trust, Warning};
@@ -153,6 +155,7 @@ pub(crate) struct Context {
     /// Files outside their folders that scenes may read.
     pub(crate) trust: Trust,
     pub(crate) timings: Timings,
+    pub(crate) stdin: Stdin,
     bar: Arc<Mutex<Option<indicatif::ProgressBar>>>,
 }
 
@@ -173,7 +176,7 @@ impl Context {
             None => progress,
         };
         let trust = if common.no_remember { Trust::default() } else { Trust::of_user() };
-        Self { common, progress, trust, timings: Timings::begin(), bar }
+        Self { common, progress, trust, timings: Timings::begin(), stdin: Stdin::default(), bar }
     }
 
     /// Removes the progress bar.
@@ -187,7 +190,12 @@ impl Context {
 
     /// Opens a scene with the options of the run.
     pub(crate) fn open(&self, scene: &Path, needs: Needs, image: Option<[u32; 2]>) -> anyhow::Result<Session> {
-        Ok(Session::open(scene, &self.options(needs, image))?)
+        self.open_with(scene, &self.options(needs, image))
+    }
+
+    /// The same with other options.
+    pub(crate) fn open_with(&self, scene: &Path, options: &OpenOptions) -> anyhow::Result<Session> {
+        Ok(Session::from_document(self.stdin.scene(scene)?, options)?)
     }
 
     /// The options of the run.
@@ -236,7 +244,7 @@ impl Context {
     /// Writes the text of a verb into `out`, or prints it on standard output.
     pub(crate) fn deliver(
         &self,
-        verb: &str,
+        verb: &'static str,
         out: Option<&Path>,
         text: &str,
         warnings: &[Warning],
@@ -245,7 +253,7 @@ impl Context {
             Some(path) => {
                 belvedere::output::write_text(path, text, self.common.overwrite)?;
                 if self.common.json {
-                    self.print(&done(verb, &[path.to_owned()], warnings))?;
+                    self.print(verb, &[path.to_owned()], &Written { warnings: warnings.to_vec() })?;
                 }
             }
             None => print(text)?,
@@ -254,16 +262,29 @@ impl Context {
         Ok(())
     }
 
-    /// Prints a result as one line of JSON.
-    pub(crate) fn print(&self, value: &serde_json::Value) -> anyhow::Result<()> {
-        print(&format!("{value}\n"))
+    /// Writes the answer of a verb into `out`, and prints it with `--json` or where there is no file.
+    pub(crate) fn deliver_answer(
+        &self,
+        verb: &'static str,
+        out: Option<&Path>,
+        content: &impl Content,
+        warnings: &[Warning],
+    ) -> anyhow::Result<()> {
+        let file: Vec<PathBuf> = out.filter(|path| !is_stdout(path)).map(Path::to_owned).into_iter().collect();
+        if let [path] = &file[..] {
+            belvedere::output::write_text(path, &answers::line_in_file(verb, &file, content)?, self.common.overwrite)?;
+        }
+        if file.is_empty() || self.common.json {
+            self.print(verb, &file, content)?;
+        }
+        self.warn(warnings);
+        Ok(())
     }
-}
 
-/// What `--json` prints for a verb that wrote files.
-pub(crate) fn done(verb: &str, outputs: &[PathBuf], warnings: &[Warning]) -> serde_json::Value {
-    let outputs: Vec<String> = outputs.iter().map(|p| p.display().to_string()).collect();
-    serde_json::json!({ "verb": verb, "outputs": outputs, "warnings": warnings })
+    /// Prints the answer of a verb as one line of JSON.
+    pub(crate) fn print(&self, verb: &'static str, outputs: &[PathBuf], content: &impl Content) -> anyhow::Result<()> {
+        print(&answers::line(verb, outputs, content)?)
+    }
 }
 
 /// Prints a text on standard output; a closed pipe is not an error.

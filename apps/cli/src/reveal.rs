@@ -5,18 +5,28 @@ use crate::goal::Goal;
 use crate::inputs::as_text;
 use crate::kinds::TechniqueKind;
 use crate::outputs::{self, png_named};
-use crate::report::{Context, done, is_stdout};
+use crate::report::{Context, is_stdout};
 use belvedere::picture::{self, Picture, PictureOptions};
 use belvedere::places::Place;
 use belvedere::scene_file::PaletteDoc;
 use belvedere::verbs::hold_a_city;
 use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
 use belvedere::verbs::reveal_target::{TargetRequest, reveal_target};
-use belvedere::{DataFiles, Needs, Session, output};
+use belvedere::{DataFiles, Needs, Session};
 use std::path::{Path, PathBuf};
 
 /// Draws a picture in which features, a target in models, or one in a city is visible.
-pub(crate) fn reveal(args: RevealArgs, context: &Context) -> anyhow::Result<Goal> {
+pub(crate) fn reveal(mut args: RevealArgs, context: &Context) -> anyhow::Result<Goal> {
+    for name in [&mut args.dem].into_iter().chain(&mut args.features) {
+        *name = as_text(&context.stdin.data(Path::new(name.as_str()))?);
+    }
+    for path in &mut args.rivers {
+        *path = context.stdin.data(path)?;
+    }
+    anyhow::ensure!(
+        args.scene.is_none() || !context.stdin.was_read(),
+        "--scene: a scene file names its data, and standard input has no name; give a file instead of -"
+    );
     let files: Vec<PathBuf> = [&args.dem].into_iter().chain(&args.features).map(PathBuf::from).collect();
     let models = args.see.is_some() || hold_a_city(&files);
     if models {
@@ -112,9 +122,7 @@ fn reveal_target_in(
     let written = answer.write(out, context.common.overwrite)?;
     delivered((&answer.picture, &answer.session), &picture, out, context)?;
     if context.common.json {
-        let mut result = done("reveal", &written, &answer.warnings());
-        result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;
-        context.print(&result)?;
+        context.print("reveal", &written, &answer.document())?;
     } else if !context.common.quiet {
         context.finish();
         context.say(&format!("{}\n", answer.summary()), &picture)?;
@@ -168,11 +176,7 @@ fn reveal_features(
     let written = answer.write(out, context.common.overwrite)?;
     delivered((&answer.picture, &answer.session), &picture, out, context)?;
     if context.common.json {
-        let mut result = done("reveal", &written, &answer.session.warnings());
-        result["report"] = serde_json::from_str(&output::json(&answer.report)?)?;
-        result["shares"] = serde_json::from_str(&output::json(&answer.shares)?)?;
-        result["hidden"] = serde_json::from_str(&output::json(&answer.hidden)?)?;
-        context.print(&result)?;
+        context.print("reveal", &written, &answer.document())?;
     } else if !context.common.quiet {
         context.finish();
         context.say(&format!("{}\n", answer.summary()), &picture)?;

@@ -4,6 +4,7 @@ use crate::goal::Goal;
 use crate::report::{Context, print};
 use anyhow::ensure;
 use belvedere::trust;
+use belvedere::verbs::schemas::TrustAnswer;
 use clap::Args;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -30,7 +31,7 @@ pub(crate) fn trust(args: &TrustArgs, context: &Context) -> anyhow::Result<Goal>
         );
     };
     let mut text = String::new();
-    let mut result = serde_json::json!({ "verb": "trust", "record": record });
+    let mut result = TrustAnswer { record: record.to_owned(), files: None, forgotten: None, scenes: None };
     match &args.scene {
         Some(scene) if !args.forget => {
             let found = trust::outside(scene, &context.common.allow_root)?;
@@ -47,7 +48,7 @@ pub(crate) fn trust(args: &TrustArgs, context: &Context) -> anyhow::Result<Goal>
             if found.files.is_empty() {
                 writeln!(text, "{} names no file outside its folder", scene.display())?;
             }
-            result["files"] = serde_json::json!(found.files);
+            result.files = Some(found.files);
         }
         scene if args.forget => {
             let count = context.trust.forget(scene.as_deref())?;
@@ -57,7 +58,7 @@ pub(crate) fn trust(args: &TrustArgs, context: &Context) -> anyhow::Result<Goal>
                 scene.iter().map(|s| s.display().to_string()).collect::<String>()
             );
             writeln!(text, "forgotten: {count} {}", if count == 1 { "scene" } else { "scenes" })?;
-            result["forgotten"] = count.into();
+            result.forgotten = Some(count);
         }
         _ => {
             let list = context.trust.list();
@@ -65,11 +66,11 @@ pub(crate) fn trust(args: &TrustArgs, context: &Context) -> anyhow::Result<Goal>
                 writeln!(text, "{}", entry.scene.display())?;
                 entry.files.iter().try_for_each(|file| writeln!(text, "  {}", file.display()))?;
             }
-            result["scenes"] = serde_json::json!(list);
+            result.scenes = Some(list);
         }
     }
     if context.common.json {
-        context.print(&result)?;
+        context.print("trust", &[], &result)?;
     } else if !context.common.quiet || args.list {
         print(&text)?;
     }

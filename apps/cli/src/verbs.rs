@@ -9,16 +9,18 @@ use crate::goal::Goal;
 use crate::ground_args::InfoArgs;
 use crate::inputs::as_text;
 use crate::outputs::{self, named, png_named};
-use crate::report::{Context, done, is_stdout, print};
+use crate::report::{Context, is_stdout, print};
 use anyhow::Context as _;
+use belvedere::answers::{self, Content, Warned, Written};
 use belvedere::pick;
 use belvedere::picture::{self, AuxBuffer, AuxFormat, PictureOptions};
 use belvedere::scene::Compositing;
 use belvedere::scene_file::{AnimationDoc, PaletteDoc, StylisationDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{self, AnimateRequest, Film};
 use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest, WrittenGrid};
+use belvedere::verbs::schemas::{Animated, FailedFile, FileAnswer, Informed, Rendered};
 use belvedere::verbs::{check, info, measure, points};
-use belvedere::{CameraPicture, DataFiles, Needs, OpenOptions, Session, output, scene_file};
+use belvedere::{CameraPicture, DataFiles, Needs, OpenOptions, Session, output};
 use belvedere_bench::BenchRequest;
 use std::path::{Path, PathBuf};
 
@@ -30,6 +32,7 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
         Verb::Generalise(args) => crate::city::generalise_city(args, context),
         Verb::Preset(args) => crate::preset::preset(args, context),
         Verb::Animate(args) => animate_scene(args, context),
+        Verb::Export(args) => crate::export::export_scene(&args, context),
         Verb::Project(args) => project(&args, context),
         Verb::Rays(args) => rays(&args, context),
         Verb::Displace(args) => displace(&args, context),
@@ -46,19 +49,34 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
         Verb::View(args) => crate::view::view(&args, context),
         Verb::Pack(args) => crate::pack::pack_scene(args, context),
         Verb::Trust(args) => crate::trust::trust(&args, context),
+        Verb::Completions(args) => crate::shell::completions(&args, context),
+        Verb::Man(args) => crate::shell::man(&args, context),
     }
 }
 
 /// Refuses a bad output before the work starts.
 fn ready(out: Option<&PathBuf>, inputs: &[&Path], context: &Context) -> anyhow::Result<()> {
+    let from_stdin = inputs.iter().filter(|path| is_stdout(path)).count();
+    anyhow::ensure!(from_stdin < 2, "-: only one input can be standard input; give a file for the other");
     let inputs: Vec<PathBuf> = inputs.iter().map(|p| p.to_path_buf()).collect();
     outputs::check(&outputs::file(out).cloned().into_iter().collect::<Vec<_>>(), &inputs, context)
 }
 
-fn answer(verb: &str, session: &Session, out: Option<&PathBuf>, text: &str, context: &Context) -> anyhow::Result<Goal> {
+fn answer(
+    verb: &'static str,
+    session: &Session,
+    out: Option<&PathBuf>,
+    content: &impl Content,
+    context: &Context,
+) -> anyhow::Result<Goal> {
     ready(out, &session.inputs().iter().map(|file| file.path.as_path()).collect::<Vec<_>>(), context)?;
-    context.deliver(verb, out.map(PathBuf::as_path), text, &session.warnings())?;
+    context.deliver_answer(verb, out.map(PathBuf::as_path), content, &session.warnings())?;
     Ok(Goal::Reached)
+}
+
+/// Content with the warnings of opening a scene.
+fn warned<T>(content: T, session: &Session) -> Warned<T> {
+    Warned { content, warnings: session.public_warnings() }
 }
 
 /// Options common to all pictures and frames.
@@ -102,7 +120,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     request.camera =
         args.overhead.then_some(CameraPicture::Overhead).or(args.outside.map(|_| CameraPicture::Outside(None)));
     png_named(&args.out)?;
-    let source = scene_file::read(&args.scene)?;
+    let source = context.stdin.scene(&args.scene)?;
     let mut files = picture::outputs(&args.out, &request, source.document.solves_terrain());
     if is_stdout(&args.out) {
         outputs::check_stdout(context)?;
@@ -138,11 +156,11 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         false => picture.write(&args.out, context.common.overwrite)?,
     };
     if context.common.json {
-        let mut result = done("render", &written, &warnings);
-        result["displacement"] = serde_json::json!(picture.sidecar.displacement);
-        result["render_ms"] = serde_json::json!(picture.sidecar.render_ms);
-        result["fallback"] = serde_json::json!(picture.sidecar.fallback);
-        context.print(&result)?;
+        let record = &picture.sidecar;
+        let (displacement, render_ms) = (record.displacement, record.render_ms);
+        let content =
+            Rendered { displacement, render_ms, fallback: record.fallback.clone(), warnings: warnings.clone() };
+        context.print("render", &written, &content)?;
     } else if let Some(fallback) = picture.sidecar.fallback.as_ref().filter(|_| !context.common.quiet) {
         context.finish();
         context.say(&format!("{fallback}\n"), &args.out)?;
@@ -151,7 +169,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     Ok(Goal::Reached)
 }
 
-fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result<Goal> {
+fn disocclude_terrain(mut args: DisoccludeArgs, context: &Context) -> anyhow::Result<Goal> {
     let files = DisoccludeFiles {
         out: args.out,
         report: args.report,
@@ -166,6 +184,9 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
     let inputs: Vec<PathBuf> = args.features.iter().chain(&args.rivers).chain([&args.dem]).cloned().collect();
     anyhow::ensure!(!is_stdout(&files.out), "-o -: an elevation model is written to a file; name one");
     outputs::check(&files.all(), &inputs, context)?;
+    for path in args.features.iter_mut().chain(&mut args.rivers).chain([&mut args.dem]) {
+        *path = context.stdin.data(path)?;
+    }
     let mode = args.mode.map(|mode| format!("mode=\"{mode}\""));
     let limits = args.no_limits.then(|| "limits=false".to_owned());
     let set: Vec<String> = args.set.into_iter().chain(mode).chain(limits).collect();
@@ -195,9 +216,7 @@ fn disocclude_terrain(args: DisoccludeArgs, context: &Context) -> anyhow::Result
     context.timings.note("disocclusion", serde_json::json!(found.report().times));
     context.finish();
     if context.common.json {
-        let mut result = done("disocclude", &written, &found.session.warnings());
-        result["report"] = serde_json::from_str(&output::json(found.report())?)?;
-        context.print(&result)?;
+        context.print("disocclude", &written, &found.document())?;
     } else if !context.common.quiet {
         print(&format!("{}\n", found.summary()))?;
     }
@@ -230,7 +249,7 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
     let request = AnimateRequest { animation, picture, out: args.out, resume, overwrite, part: args.part };
     // The ground is solved for every frame, not on opening.
     let options = OpenOptions { unsolved: true, ..context.options(Needs::Everything, args.draw.size) };
-    let session = Session::open(&args.scene, &options)?;
+    let session = context.open_with(&args.scene, &options)?;
     let made = animate::animate(&session, &request, &context.progress)?;
     context.finish();
     let warnings = [session.warnings(), made.warnings.clone()].concat();
@@ -246,11 +265,9 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
         Film::Unwanted => None,
     };
     if context.common.json {
-        let mut result = done("animate", &outputs, &warnings);
-        result["frames"] = serde_json::json!(made.manifest.frames.len());
-        result["drawn"] = serde_json::json!(made.drawn);
-        result["fps"] = serde_json::json!(made.manifest.settings.fps);
-        context.print(&result)?;
+        let (frames, fps) = (made.manifest.frames.len(), made.manifest.settings.fps);
+        let content = Animated { frames, drawn: made.drawn, fps, warnings: warnings.clone() };
+        context.print("animate", &outputs, &content)?;
     }
     context.warn(&warnings);
     context.warn(missing.as_slice());
@@ -262,7 +279,7 @@ fn measure_scene(args: &MeasureArgs, context: &Context) -> anyhow::Result<Goal> 
     let session = context.open(&args.scene, Needs::Everything, None)?;
     let report =
         measure::measure(&session, &measure::MeasureOptions::default(), args.renderer.into(), &context.progress)?;
-    answer("measure", &session, args.out.as_ref(), &output::json(&report)?, context)
+    answer("measure", &session, args.out.as_ref(), &report, context)
 }
 
 fn draw_figures(args: &FiguresArgs, context: &Context) -> anyhow::Result<Goal> {
@@ -289,7 +306,7 @@ fn draw_figures(args: &FiguresArgs, context: &Context) -> anyhow::Result<Goal> {
     }
     context.finish();
     if context.common.json {
-        context.print(&done("figures", &written, &[]))?;
+        context.print("figures", &written, &Written::default())?;
     } else if let Some(last) = written.last().filter(|_| !context.common.quiet) {
         print(&format!("open {}\n", last.display()))?;
     }
@@ -304,7 +321,7 @@ fn demonstrate(args: &DemoArgs, context: &Context) -> anyhow::Result<Goal> {
     let written = belvedere_gallery::demo(&args.out, &options, &request, context.common.overwrite)?;
     context.finish();
     if context.common.json {
-        context.print(&done("demo", &written, &[]))?;
+        context.print("demo", &written, &Written::default())?;
     } else if !context.common.quiet {
         print(&format!("open {}\n", args.out.join("index.html").display()))?;
     }
@@ -313,10 +330,7 @@ fn demonstrate(args: &DemoArgs, context: &Context) -> anyhow::Result<Goal> {
 
 fn describe(args: &InfoArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(None, &[], context)?;
-    let mut result = serde_json::json!({ "verb": "info" });
-    if args.adapters {
-        result["machine"] = serde_json::from_str(&output::json(&info::machine())?)?;
-    }
+    let machine = args.adapters.then(info::machine);
     let request = info::InfoRequest {
         source_crs: args.ground.source_crs.clone(),
         nodata: args.ground.nodata,
@@ -326,24 +340,23 @@ fn describe(args: &InfoArgs, context: &Context) -> anyhow::Result<Goal> {
     };
     let (mut files, mut bad) = (Vec::new(), Vec::new());
     for file in &args.files {
+        let file = &as_text(&context.stdin.data(Path::new(file))?);
         match info::describe_as(file, &request, &context.progress) {
-            Ok(found) => files.push(serde_json::from_str(&output::json(&found)?)?),
+            Ok(found) => files.push(FileAnswer::Described(Box::new(found))),
             Err(e) if e.is_cancelled() || args.files.len() == 1 => return Err(e.into()),
             Err(e) => {
                 let reason = e.to_string();
-                files.push(serde_json::json!({ "kind": "error", "path": file, "error": reason }));
+                files.push(FileAnswer::Failed(FailedFile::new(Path::new(file), reason.clone())));
                 bad.push(reason);
             }
         }
     }
     context.finish();
-    if !files.is_empty() {
-        result["files"] = serde_json::Value::Array(files);
-    }
+    let text = answers::line("info", &[], &Informed { machine, files })?;
     if context.common.json {
-        context.print(&result)?;
+        print(&text)?;
     } else {
-        print(&check::plain(&result))?;
+        print(&check::plain(&serde_json::from_str(&text)?))?;
     }
     match bad.as_slice() {
         [] => Ok(Goal::Reached),
@@ -353,7 +366,7 @@ fn describe(args: &InfoArgs, context: &Context) -> anyhow::Result<Goal> {
 
 /// A scene and points in its coordinates; the ground is read if a point is written as a place.
 fn with_points(args: &ProjectArgs, context: &Context) -> anyhow::Result<(Session, Vec<[f64; 3]>)> {
-    let written = points::read_written_points(&args.points)?;
+    let written = points::read_written_points(&context.stdin.json(&args.points)?)?;
     let is_place = |point: &points::WrittenPoint| matches!(point, points::WrittenPoint::Place(_));
     let needs = if written.iter().any(is_place) { Needs::Ground } else { Needs::View };
     let session = context.open(&args.scene, needs, None)?;
@@ -365,42 +378,44 @@ fn with_points(args: &ProjectArgs, context: &Context) -> anyhow::Result<(Session
 fn project(args: &ProjectArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[&args.scene, &args.points], context)?;
     let (session, points) = with_points(args, context)?;
-    answer("project", &session, args.out.as_ref(), &output::json(&points::project(session.view(), &points))?, context)
+    let report = warned(points::project(session.view(), &points), &session);
+    answer("project", &session, args.out.as_ref(), &report, context)
 }
 
 fn displace(args: &ProjectArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[&args.scene, &args.points], context)?;
     let (session, points) = with_points(args, context)?;
-    answer("displace", &session, args.out.as_ref(), &output::json(&points::displace(session.view(), &points))?, context)
+    let report = warned(points::displace(session.view(), &points), &session);
+    answer("displace", &session, args.out.as_ref(), &report, context)
 }
 
 fn rays(args: &RaysArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[&args.scene, &args.pixels], context)?;
-    let source = scene_file::read(&args.scene)?;
+    let source = context.stdin.scene(&args.scene)?;
     // Without a far limit from the arguments or the scene, the layers' extent limits the rays, so they are loaded.
     let needs = if args.far.or(source.document.camera.far).is_some() { Needs::View } else { Needs::Everything };
     let session = Session::from_document(source, &context.options(needs, None))?;
-    let pixels = points::read_points::<2>(&args.pixels)?;
+    let pixels = points::read_points::<2>(&context.stdin.json(&args.pixels)?)?;
     let far = session.ray_end(args.far)?;
     let report = points::rays(session.view(), &pixels, args.samples, far)?;
-    answer("rays", &session, args.out.as_ref(), &output::json(&report)?, context)
+    answer("rays", &session, args.out.as_ref(), &warned(report, &session), context)
 }
 
 fn pick_pixels(args: &PickArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[&args.scene, &args.pixels], context)?;
-    let pixels = points::read_points::<2>(&args.pixels)?;
+    let pixels = points::read_points::<2>(&context.stdin.json(&args.pixels)?)?;
     let session = context.open(&args.scene, Needs::Everything, None)?;
     let report = pick::pick(&session, &pixels, &context.progress)?;
-    answer("pick", &session, args.out.as_ref(), &output::json(&report)?, context)
+    answer("pick", &session, args.out.as_ref(), &warned(report, &session), context)
 }
 
 fn check_scene(args: &SceneArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(None, &[&args.scene], context)?;
     let options = OpenOptions { unsolved: true, ..context.options(Needs::Everything, None) };
-    let session = Session::open(&args.scene, &options)?;
+    let session = context.open_with(&args.scene, &options)?;
     let report = check::check(&session)?;
     if context.common.json {
-        print(&output::json(&report)?)?;
+        context.print("check", &[], &report)?;
     } else if !context.common.quiet {
         print(&report.to_string())?;
     }
@@ -411,7 +426,7 @@ fn check_scene(args: &SceneArgs, context: &Context) -> anyhow::Result<Goal> {
 fn show(args: &ShowArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[&args.scene], context)?;
     let options = OpenOptions { unsolved: true, ..context.options(Needs::Ground, None) };
-    let session = Session::open(&args.scene, &options)?;
+    let session = context.open_with(&args.scene, &options)?;
     let out = outputs::file(args.out.as_ref());
     let named_json = out.is_some_and(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")));
     let json = if out.is_some() { named_json } else { context.common.json };
@@ -430,7 +445,7 @@ fn show(args: &ShowArgs, context: &Context) -> anyhow::Result<Goal> {
 
 fn schema(args: &SchemaArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[], context)?;
-    context.deliver("schema", args.out.as_deref(), &output::schema_json()?, &[])?;
+    context.deliver("schema", args.out.as_deref(), &crate::schemas::text(&args.of)?, &[])?;
     Ok(Goal::Reached)
 }
 
@@ -440,15 +455,13 @@ fn measure_machine(args: &BenchArgs, context: &Context) -> anyhow::Result<Goal> 
     let request = BenchRequest { rounds: args.rounds, nodes: args.nodes, image: args.size, threads };
     let report = belvedere_bench::bench(&request, &context.progress)?;
     context.finish();
-    let text = output::json(&report)?;
+    let report = Warned { content: report, warnings: Vec::new() };
     let to_stdout = args.out.as_deref().is_some_and(is_stdout);
-    match &args.out {
-        Some(_) => context.deliver("bench", args.out.as_deref(), &text, &[])?,
-        None if context.common.json => print(&text)?,
-        None => {}
+    if args.out.is_some() || context.common.json {
+        context.deliver_answer("bench", args.out.as_deref(), &report, &[])?;
     }
     if !to_stdout && !context.common.json && !context.common.quiet {
-        print(&report.to_string())?;
+        print(&report.content.to_string())?;
     }
     Ok(Goal::Reached)
 }

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 /// What the amounts of a feature measure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Amount {
     /// Length along a line, scene units.

@@ -6,6 +6,7 @@ use std::fmt;
 
 /// What a reader learns from a warning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum WarningKind {
@@ -57,6 +58,7 @@ impl fmt::Display for WarningKind {
 
 /// An oddity that does not stop the work: its kind, the thing it is about, its figures, and one sentence that says all of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Warning {
     kind: WarningKind,
     #[serde(default, skip_serializing_if = "Option::is_none")]

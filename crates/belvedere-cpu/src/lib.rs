@@ -29,11 +29,13 @@ mod resolve;
 mod screen;
 mod shade;
 mod simd;
+mod tint;
 mod trace;
 mod volume;
 
 pub use exact::ExactRenderer;
 pub use geometry::project::GroundImage;
 pub use rasteriser::CpuRenderer;
+pub use tint::GroundTint;
 pub use trace::{RayHit, Tracer};
 pub use volume::VolumeTracer;

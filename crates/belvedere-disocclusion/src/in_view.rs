@@ -104,6 +104,7 @@ impl Wedge {
 
 /// Why a reference point is left out in this view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum LeftOut {
     /// Outside the wedge.

@@ -10,6 +10,7 @@ const MOST_POINTS: f64 = 50_000.0;
 
 /// What part of a feature a reference point stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum PointKind {
     /// On a line.
@@ -50,6 +51,7 @@ const FINEST: f64 = 0.002;
 
 /// Why a point cannot be a reference point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum UnusableReason {
     /// Beside the terrain.

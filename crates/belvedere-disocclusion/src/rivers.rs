@@ -75,6 +75,7 @@ impl RiverLine {
 
 /// A river on the displaced ground.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RiverReport {
     /// Index of the layer in the scene.
     pub layer: usize,

@@ -13,6 +13,7 @@ pub(super) const MOST_W: f64 = 1e4;
 
 /// Which passes run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum SolverMode {
     /// Greedy and smooth pass, as published.
     #[serde(rename = "paper")]
@@ -28,6 +29,7 @@ pub enum SolverMode {
 
 /// Treatment of the detail of the ground that the solver's grid cannot hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Detail {
     /// Scaled as the ground under it was.
@@ -38,6 +40,7 @@ pub enum Detail {
 
 /// Parameters of terrain disocclusion. "Cells" of lengths are spacings of the terrain's grid.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TerrainSettings {
     /// Which passes run.
     pub mode: SolverMode,

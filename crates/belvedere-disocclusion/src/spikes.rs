@@ -23,6 +23,7 @@ const ROUGHER: f64 = 6.0;
 
 /// A single sample far above or below all its neighbours.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Spike {
     /// Scene x, y.
     pub at: [f64; 2],

@@ -8,9 +8,11 @@ use std::path::{Path, PathBuf};
 
 /// One file that was read.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct InputFile {
     /// Its path, as found.
     #[serde(serialize_with = "displayed")]
+    #[cfg_attr(feature = "schema", schemars(with = "String"))]
     pub path: PathBuf,
     /// Its size, bytes.
     pub bytes: u64,

@@ -27,6 +27,7 @@
 //! in this crate: [`core`] (views and stages), [`scene`] (layers, frames), [`io`] (loaders), [`construct`], [`disocclusion`],
 //! [`cpu`] (renderers), [`builtin`] (generated scenes).
 
+pub mod answers;
 mod bodies;
 mod camera_path;
 mod city_blocks;
@@ -34,6 +35,7 @@ pub mod city_map;
 mod data;
 pub mod editor;
 mod error;
+pub mod export;
 pub mod fallback;
 mod film;
 mod guard;

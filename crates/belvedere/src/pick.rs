@@ -5,18 +5,19 @@ use belvedere_core::{DVec2, DVec3, View, polygon};
 use belvedere_cpu::{RayHit, Tracer, VolumeTracer};
 use belvedere_scene::{AreaLayer, Heightfield, Layer, LayerKind, LineLayer, PointLayer, Progress, Scene};
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Answer of [`pick`].
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct PickReport {
     /// One per input pixel, in input order; null where only sky is seen.
     pub pixels: Vec<Option<Picked>>,
 }
 
 /// The object and point at one pixel.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct Picked {
     /// Undisplaced world point: of the surface, of the line at its point nearest to the pixel, or of the point feature; scene coordinates.
     pub point: [f64; 3],

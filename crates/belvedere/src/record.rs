@@ -3,6 +3,7 @@
 use crate::BelvedereError;
 use belvedere_core::{Projection, View};
 pub use belvedere_io::InputFile;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The record of every file, in order, each once.
@@ -25,7 +26,7 @@ pub(crate) fn inputs(files: &[InputFile]) -> Result<Vec<InputFile>, BelvedereErr
 }
 
 /// Surface that the areas of a layer are drawn as, and its source.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct AreaRecord {
     /// Id of the layer.
     pub layer: String,
@@ -38,7 +39,7 @@ pub struct AreaRecord {
 }
 
 /// The pinhole in numbers.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct ViewRecord {
     /// Eye, scene coordinates.
     pub eye: [f64; 3],

@@ -55,7 +55,7 @@ fn pack_with(application: &Path, files: &[&Path], out: &Path, threads: bool) -> 
     command.args(threads.then_some("--all-cores"));
     let output = command.output().expect("the program starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    serde_json::from_slice::<Value>(&output.stdout).expect("a report")["report"].take()
+    serde_json::from_slice(&output.stdout).expect("a report")
 }
 
 fn times(page: &mut Page, passes: impl Fn(&Value) -> bool) -> Value {

@@ -169,7 +169,7 @@ fn drafts_of_a_target_come_with_the_commands_that_make_them() {
             let result = place.json(&[&again[..], &["--overwrite", "--json"]].concat());
             let stated = words.split("visible ").nth(1).and_then(|w| w.split(' ').next()).expect("a share");
             let stated: f64 = stated.parse().expect("a number");
-            let visible = share(&result["report"], "visible");
+            let visible = share(&result, "visible");
             assert!((stated - 100.0 * visible).abs() < 0.11, "{line}: {visible}");
         }
     }

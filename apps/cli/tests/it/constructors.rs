@@ -276,8 +276,8 @@ fn a_named_part_of_a_mesh_is_looked_for() {
     place.write("town.obj", &town());
     let from = ["--eye", "0,-80,12", "--look", "0,40,8", "--size", "96x54"];
     let answer = place.json(&[&["reveal", "town.obj", "--see", "church", "-o", "c.png", "--json"][..], &from].concat());
-    assert!(answer["report"]["visible_straight"].as_f64() < Some(0.2), "{answer}");
-    assert!(answer["report"]["visible"].as_f64() > Some(0.9), "{answer}");
+    assert!(answer["visible_straight"].as_f64() < Some(0.2), "{answer}");
+    assert!(answer["visible"].as_f64() > Some(0.9), "{answer}");
     let line = place.fails(&["reveal", "town.obj", "--see", "chruch", "-o", "d.png"]);
     assert!(line.contains("no part of a mesh") && line.contains("did you mean \"Church\""), "{line}");
     assert!(!place.path("d.png").exists());

@@ -63,7 +63,7 @@ fn a_town_becomes_blocks_in_a_folder() {
     let refused = place.fails(&args);
     assert!(refused.contains("--overwrite"), "{refused}");
     let again = place.json(&[&args[..], &["--overwrite", "--json"]].concat());
-    assert_eq!(again["report"]["levels"][1]["blocks"], 1);
+    assert_eq!(again["levels"][1]["blocks"], 1);
     for (name, before) in FILES.iter().zip(before).filter(|(name, _)| **name != "report.json") {
         assert!(read(&place.path(&format!("blocks/{name}"))) == before, "{name}: same input, other bytes");
     }
@@ -88,8 +88,8 @@ fn a_mapped_town_keeps_its_volume() {
     let place = Place::new();
     let [houses, roads] = [houses, roads].map(|p| p.to_string_lossy().into_owned());
     let made = place.json(&["generalise", &houses, &roads, "-o", "town", "--strict", "--json"]);
-    assert_eq!(made["report"]["buildings"], 4708);
-    for level in made["report"]["levels"].as_array().expect("levels") {
+    assert_eq!(made["buildings"], 4708);
+    for level in made["levels"].as_array().expect("levels") {
         let share = level["volume_share"].as_f64().expect("a share");
         assert!((0.9..=1.1).contains(&share), "{level}");
     }

@@ -29,7 +29,7 @@ fn geopackages_are_read_where_they_are_built_in() {
     }
     let said = place.ok(&["info", &buildings]);
     assert!(said.contains("areas: 144") && said.contains("EPSG:3857"), "{said}");
-    let report = &place.json(&[&generalise[..], &["--json"]].concat())["report"];
+    let report = &place.json(&[&generalise[..], &["--json"]].concat());
     assert_eq!((report["buildings"].as_u64(), report["levels"][0]["blocks"].as_u64()), (Some(144), Some(8)));
     place.ok(&render);
     let sidecar: serde_json::Value = serde_json::from_slice(&super::read(&place.path("a.png.json"))).expect("JSON");

@@ -1,6 +1,7 @@
 //! The command line as a user meets it: the built program, its exit codes, its one line about failures.
 
 mod animate;
+mod answers;
 mod areas;
 mod bad_scenes;
 mod broken_off;
@@ -32,6 +33,8 @@ mod reveal_looks;
 mod rigid;
 mod rivers;
 mod scenes;
+mod schema_check;
+mod shell;
 mod speed;
 mod strip;
 mod stylisation;
@@ -98,6 +101,20 @@ impl Place {
         assert_eq!(text.lines().count(), 1, "{args:?}: {text}");
         assert!(text.starts_with("belvedere: "), "{text}");
         text.trim_end().to_owned()
+    }
+
+    /// Runs with `input` as standard input; standard output, standard error, and the code.
+    fn piped(&self, args: &[&str], input: &[u8]) -> (String, String, Option<i32>) {
+        use std::io::Write;
+        use std::process::Stdio;
+        let mut command = self.command(args);
+        let mut child =
+            command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
+        // A program that does not read its input may end before it is written.
+        let _ = child.stdin.take().expect("a pipe").write_all(input);
+        let out = child.wait_with_output().expect("it ends");
+        let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
+        (text(out.stdout), text(out.stderr), out.status.code())
     }
 
     fn json(&self, args: &[&str]) -> serde_json::Value {

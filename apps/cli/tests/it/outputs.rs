@@ -111,6 +111,7 @@ const VERBS: &[&[&str]] = &[
     &["disocclude", "dem.asc", "way.geojson", "--eye", "8.022,46.002,1500", "--look", "8.024,46.03"],
     &["render", "s.toml"],
     &["animate", "s.toml", "--turntable"],
+    &["export", "s.toml"],
     &["project", "s.toml", "--points", "none.json"],
     &["rays", "s.toml", "--pixels", "none.json", "--samples", "2"],
     &["pick", "s.toml", "--pixels", "none.json"],

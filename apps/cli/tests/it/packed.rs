@@ -1,5 +1,6 @@
 //! Pages: one application in a folder, under one policy.
 
+use super::schema_check::{Strictness, check};
 use super::{Place, read};
 use serde_json::Value;
 use std::path::Path;
@@ -22,14 +23,17 @@ fn with_application() -> Place {
 }
 
 fn pack(place: &Place, out: &str, more: &[&str]) -> Value {
-    place.json(&[&["pack", "-o", out, "--app", "app", "--json"], more].concat())
+    let answer = place.json(&[&["pack", "-o", out, "--app", "app", "--json"], more].concat());
+    let schema = place.json(&["schema", "pack"]);
+    assert_eq!(check(&schema, &answer, Strictness::NoUnknownKeys), Ok(()));
+    answer
 }
 
 #[test]
 fn a_folder_holds_one_application() {
     let place = with_application();
     for (out, more, word, threads) in [("plain", &[][..], "one", false), ("fast", &["--all-cores"][..], "many", true)] {
-        let report = &pack(&place, out, more)["report"];
+        let report = &pack(&place, out, more);
         let bundle: Value = serde_json::from_slice(&read(&place.path(&format!("{out}/bundle.json")))).expect("JSON");
         assert_eq!((&bundle["threads"], &report["bundle"]["threads"]), (&threads.into(), &threads.into()));
         for name in ["belvedere.js", "belvedere_bg.wasm"] {

@@ -188,10 +188,10 @@ fn a_missed_goal_is_a_result_and_exit_1_only_when_strict() {
     let code = |out: &std::process::Output| out.status.code();
     assert_eq!((code(&relaxed), code(&strict)), (Some(0), Some(1)), "{}", String::from_utf8_lossy(&strict.stderr));
     let result: serde_json::Value = serde_json::from_slice(&strict.stdout).expect("JSON on standard output");
-    assert_eq!(result["report"]["goal"]["result"], "missed", "{result}");
-    let share = |key: &str| result["shares"][key].as_f64().expect("a share");
+    assert_eq!(result["goal"]["result"], "missed", "{result}");
+    let share = |key: &str| result[key].as_f64().expect("a share");
     assert!(share("in_frame_bent") < 0.7 && share("visible_bent") <= share("in_frame_bent"), "{result}");
-    let reason = result["report"]["goal"]["reasons"][0].as_str().expect("a reason").to_owned();
+    let reason = result["goal"]["reasons"][0].as_str().expect("a reason").to_owned();
     assert!(reason.contains("lies in the frame"), "{reason}");
 }
 
@@ -269,7 +269,7 @@ fn drafts_come_with_their_shares_and_the_command_that_makes_each() {
         let out = again.iter().position(|a| *a == "-o").expect("an output");
         again[out + 1] = "one.png";
         let result = place.json(&[&again[..], &["--overwrite", "--json"]].concat());
-        let visible = result["shares"]["visible_bent"].as_f64().expect("a share");
+        let visible = result["visible_bent"].as_f64().expect("a share");
         let stated = words.split("visible ").nth(1).and_then(|w| w.split(' ').next()).expect("a share");
         let stated: f64 = stated.parse().expect("a number");
         assert!((stated - 100.0 * visible).abs() < 0.11, "{line}: {visible}");

@@ -77,7 +77,7 @@ fn the_looks_hold_for_ground_that_makes_way_and_for_curved_rays() {
         let more =
             ["--technique", technique, "--exaggeration", "1.2", "--light-time", "2026-07-01T08:00Z", "--stylise"];
         let (result, _, scene) = revealed(&place, &[&["--no-mark", "--hidden", "show"][..], &more].concat());
-        assert_eq!(result["shares"]["technique"], technique);
+        assert_eq!(result["technique"], technique);
         for key in [
             "exaggeration = [1.2, 1.2]",
             "time = \"2026",
@@ -140,8 +140,8 @@ fn exaggerated_ground_is_judged_as_it_is_drawn() {
     let shares = |more: &[&str]| {
         let result = place.json(&[&ARGS[..], &VIEW, &["--scene", "out.toml"], more].concat());
         let measured = place.json(&["measure", "out.toml", "--json"]);
-        assert_eq!(result["shares"]["visible_bent"], measured["visible"], "{more:?}");
-        ["visible_straight", "visible_bent"].map(|key| result["shares"][key].as_f64().expect("a share"))
+        assert_eq!(result["visible_bent"], measured["visible"], "{more:?}");
+        ["visible_straight", "visible_bent"].map(|key| result[key].as_f64().expect("a share"))
     };
     let (true_heights, flat) = (shares(&[]), shares(&["--exaggeration", "0.05"]));
     assert_eq!(true_heights[0], flat[0], "the straight picture keeps the true heights");

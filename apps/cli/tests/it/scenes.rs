@@ -39,6 +39,11 @@ fn the_committed_schema_is_fresh() {
     let fresh = Place::new().ok(&["schema"]);
     let committed = std::fs::read_to_string(committed).unwrap_or_default();
     assert!(committed == fresh, "run: belvedere schema -o docs/scene.schema.json --overwrite");
+    let page = Place::new().ok(&["schema", "keys"]);
+    let committed =
+        std::fs::read_to_string(belvedere_testkit::workspace_root().join("docs/scene-keys.md")).expect("a page");
+    assert!(committed == page, "run: belvedere schema keys -o docs/scene-keys.md --overwrite");
+    assert!(page.contains("| `fov_y_deg` | number |") && page.contains("`kind = \"spline_bend\"`"));
 }
 
 #[test]

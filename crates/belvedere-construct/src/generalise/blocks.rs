@@ -9,6 +9,7 @@ use geo::{Area, BooleanOps, MultiPolygon};
 
 /// How a cell is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 pub enum CellKind {
     /// Hardly built: the ground is green, blocks follow the buildings.

@@ -5,6 +5,7 @@ use serde::Serialize;
 
 /// Figures of a generalisation.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GeneraliseReport {
     /// Buildings of the city.
     pub buildings: usize,
@@ -24,6 +25,7 @@ pub struct GeneraliseReport {
 
 /// Figures of one level.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LevelReport {
     /// `loa1` or `loa2`.
     pub name: &'static str,
@@ -92,6 +94,7 @@ impl LevelReport {
 
 /// Figures of one block.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BlockReport {
     /// Name, that of its cell.
     pub block: String,
@@ -113,6 +116,7 @@ pub struct BlockReport {
 
 /// A cell whose block does not hold the volume of its buildings.
 #[derive(Debug, Clone, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FailingCell {
     /// Name of the cell.
     pub cell: String,

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 /// Distortion of the bent picture, over the ground nodes that lie in it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BendMeasure {
     /// Terrain nodes that are tested (a regular subset, at most some ten thousand) and lie in the bent picture.
     pub nodes_in_frame: usize,

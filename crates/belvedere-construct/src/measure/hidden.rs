@@ -9,6 +9,7 @@ use serde::Serialize;
 
 /// Why a part of a feature is not seen.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "reason", rename_all = "snake_case")]
 pub enum HiddenReason {
     /// Something stands before it.
@@ -28,6 +29,7 @@ pub enum HiddenReason {
 
 /// A part of a feature inside the image that is not seen: of a line a stretch, of areas and points all of it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HiddenRun {
     /// Index of the layer in the scene.
     pub layer: usize,

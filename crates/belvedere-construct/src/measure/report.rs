@@ -8,6 +8,7 @@ use serde::Serialize;
 
 /// Everything [`super::measure`] found.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Measures {
     /// One entry per feature of the layers that must be seen.
     pub features: Vec<FeatureMeasure>,
@@ -31,6 +32,7 @@ pub struct Measures {
 
 /// Visibility of one feature in two pictures.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FeatureMeasure {
     /// Id of the layer.
     pub layer: String,
@@ -61,6 +63,7 @@ pub struct FeatureMeasure {
 
 /// Visibility of one feature in one picture.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Visibility {
     /// Length, area or count inside the image.
     pub in_frame: f64,
@@ -89,6 +92,7 @@ pub struct Visibility {
 
 /// Visible amount by one method.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MethodShare {
     /// Visible length, area or count.
     pub visible: f64,
@@ -100,6 +104,7 @@ pub struct MethodShare {
 
 /// Heights of the sight lines over the ground, scene units; negative = under ground, that is hidden. Capped above.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Clearance {
     /// Smallest.
     pub min: f64,

@@ -6,6 +6,7 @@ use serde::Serialize;
 /// Shares of the whole required features in one picture: of lines by length, of areas and surfaces by area, of points by number. What lies
 /// outside the picture is not visible. Source: ours.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Shares {
     /// Visible share, 0..=`in_frame`.
     pub visible: f64,

@@ -45,6 +45,7 @@ pub struct BendFound {
 
 /// Figures of a [`BendFound`].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BendReport {
     /// Share of the whole target that straight rays show.
     pub visible_straight: f64,

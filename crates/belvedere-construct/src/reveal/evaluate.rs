@@ -12,6 +12,7 @@ use serde::Serialize;
 
 /// Figures of one candidate picture.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Evaluation {
     /// Share of the features' amount inside the image, 0..=1.
     pub in_frame: f64,

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 /// Whether the goals were reached. Missing one is a result, not an error.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "result", content = "reasons", rename_all = "snake_case")]
 pub enum Goal {
     /// All of them.

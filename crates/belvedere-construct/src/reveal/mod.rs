@@ -63,6 +63,7 @@ pub struct RevealedBend {
 
 /// Figures of a [`Revealed`], ready for JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RevealReport {
     /// Length of all lines; of areas alone their area, of points alone their number.
     pub total: f64,

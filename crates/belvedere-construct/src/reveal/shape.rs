@@ -13,6 +13,7 @@ use serde::Serialize;
 /// the picture with its distance. Source: ours; a curve that is seen under a constant angle is a logarithmic spiral
 /// around the eye. It is handed on as a B-spline (Pasewaldt et al. 2011).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct BendShape {
     /// Angle under which the foreground is seen, radians, > 0.
     pub near: f64,

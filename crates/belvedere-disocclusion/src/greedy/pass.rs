@@ -17,6 +17,7 @@ const NEAR: f64 = 2.0;
 
 /// Counts of the greedy pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GreedyCounters {
     /// Lines of sight followed, parts of them included.
     pub traces: usize,

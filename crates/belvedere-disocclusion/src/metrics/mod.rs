@@ -37,6 +37,7 @@ pub struct Deformation<'a> {
 
 /// Visibility on a displaced ground, and the size of the displacement. Lengths in scene units.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TerrainMetrics {
     /// Share of the reference points that are seen, 0..=1; 1 without points in view.
     pub visible: f64,
@@ -74,6 +75,7 @@ pub struct TerrainMetrics {
 
 /// Motion of the ground from one frame to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FrameChange {
     /// Root mean square over the nodes.
     pub rms_m: f64,

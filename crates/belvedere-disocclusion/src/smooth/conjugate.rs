@@ -5,6 +5,7 @@ use super::smoother::Smoother;
 
 /// Iterations and residual of a solution.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Convergence {
     /// Iterations, each with one solve with H.
     pub iterations: usize,

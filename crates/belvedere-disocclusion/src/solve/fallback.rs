@@ -10,6 +10,7 @@ use serde::Serialize;
 
 /// A fallback for contradicting rows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Fallback {
     /// Bumps that the solver's grid cannot hold were cut down where they hide something.

@@ -21,6 +21,7 @@ const FEWEST_TIED: usize = 4;
 
 /// A lake and how it moved.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LakeReport {
     /// Index of the layer in the scene.
     pub layer: usize,

@@ -35,6 +35,7 @@ pub(super) struct Limits {
 
 /// Report of the limits.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LimitsReport {
     /// Lowest height that the ground may have: a fifth of the relief below the lowest.
     pub floor_m: f64,

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 /// Everything about a solved displacement. Lengths in scene units.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TerrainReport {
     /// The parameters, with defaults filled in.
     pub parameters: TerrainSettings,
@@ -84,6 +85,7 @@ pub struct TerrainReport {
 
 /// A point that stays covered, in the exact picture too, because clearing it costs more than the price of slack allows.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Covered {
     /// Scene x, y.
     pub at: [f64; 2],
@@ -95,6 +97,7 @@ pub struct Covered {
 
 /// Cost of a feature.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FeatureCost {
     /// Index of the layer in the scene.
     pub layer: usize,
@@ -106,6 +109,7 @@ pub struct FeatureCost {
 
 /// Figures of the quadratic program.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct QpReport {
     /// Rounds in which all lines of sight were checked.
     pub rounds: usize,
@@ -133,6 +137,7 @@ impl QpReport {
 
 /// Wall times, milliseconds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TerrainTimes {
     /// Preparation of cells, points and tables; nearly 0 after the first frame.
     pub prepare_ms: f64,
@@ -148,6 +153,7 @@ pub struct TerrainTimes {
 
 /// Why a part of a feature is not seen.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "reason", rename_all = "snake_case")]
 pub enum UnresolvedReason {
     /// Beside the terrain.
@@ -208,6 +214,7 @@ pub enum UnresolvedReason {
 
 /// A part of a feature that is not seen: points one after the other with the same reason.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct UnresolvedRun {
     /// Index of the layer in the scene.
     pub layer: usize,
@@ -230,6 +237,7 @@ pub struct UnresolvedRun {
 
 /// The ground that was taken where time was up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "ground", rename_all = "snake_case")]
 pub enum Taken {
     /// The undisplaced ground: no other showed more.

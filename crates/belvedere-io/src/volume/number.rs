@@ -15,6 +15,7 @@ pub enum ByteOrder {
 
 /// Type of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "lowercase")]
 #[allow(missing_docs, reason = "the names say all")]
 pub enum Number {

@@ -32,6 +32,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
             "rayon",
             "rusqlite",
             "ruzstd",
+            "schemars",
             "serde",
             "serde_json",
             "sha2",
@@ -51,12 +52,12 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     (
         "belvedere-disocclusion",
         &["belvedere-core", "belvedere-scene", "belvedere-sight"],
-        &["glam", "pulp", "rayon", "rsparse", "rustdct", "serde", "thiserror", "tracing"],
+        &["glam", "pulp", "rayon", "rsparse", "rustdct", "schemars", "serde", "thiserror", "tracing"],
     ),
     (
         "belvedere-construct",
         &["belvedere-core", "belvedere-scene", "belvedere-sight"],
-        &["geo", "glam", "rayon", "serde", "thiserror"],
+        &["geo", "glam", "rayon", "schemars", "serde", "thiserror"],
     ),
     (
         "belvedere-composite",
@@ -83,7 +84,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
         ],
         &["glam", "rayon", "schemars", "serde", "serde_json", "strsim", "thiserror", "toml", "tracing"],
     ),
-    ("belvedere-bench", &["belvedere"], &["anyhow", "rayon", "serde"]),
+    ("belvedere-bench", &["belvedere"], &["anyhow", "rayon", "schemars", "serde"]),
     ("belvedere-gallery", &["belvedere"], &["anyhow", "plotters", "plotters-backend", "serde"]),
     (
         "belvedere-viewer",
@@ -107,7 +108,18 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     (
         "belvedere-cli",
         &["belvedere", "belvedere-bench", "belvedere-gallery"],
-        &["anyhow", "clap", "ctrlc", "indicatif", "serde_json", "tracing", "tracing-subscriber"],
+        &[
+            "anyhow",
+            "clap",
+            "clap_complete",
+            "clap_mangen",
+            "ctrlc",
+            "indicatif",
+            "serde_json",
+            "tempfile",
+            "tracing",
+            "tracing-subscriber",
+        ],
     ),
     ("belvedere-python", &["belvedere", "belvedere-cli"], &["pyo3", "rayon", "serde", "serde_json"]),
 ];

@@ -3,5 +3,7 @@
 mod circles;
 mod dependencies;
 mod layering;
+mod links;
 mod papers;
+mod publishing;
 mod sources;

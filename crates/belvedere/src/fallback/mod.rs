@@ -21,6 +21,7 @@ use belvedere_construct::rays::{Target, TargetSight};
 use belvedere_core::{DVec2, DVec3, Pinhole, View};
 use belvedere_scene::{Color, Frame, LayerKind, Scene};
 use occluders::{Extent, Part};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 
@@ -35,7 +36,7 @@ const SAME_DEPTH: f64 = 2e-4;
 const EDGE: [Color; 2] = [Color::rgb(255, 255, 255), Color::rgb(60, 60, 60)];
 
 /// Report of a fallback.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct FallbackRecord {
     /// Name of the target.
     pub target: String,
@@ -52,7 +53,7 @@ pub struct FallbackRecord {
 }
 
 /// Change of one layer.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct FallbackChange {
     /// Id of the layer.
     pub layer: String,

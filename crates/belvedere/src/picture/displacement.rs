@@ -4,11 +4,12 @@ use crate::bodies::RigidLayers;
 use crate::overlays::badge;
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Frame, Unit};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Displacement of the points in a picture against the same camera without bends, at some thousand of the pixels that show a surface, or
 /// at all of them where they are fewer. Ground outside the picture may have moved farther.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, JsonSchema, Serialize, Deserialize)]
 pub struct DisplacementReport {
     /// Largest displacement, scene units; refined pixel by pixel around the largest samples.
     pub max_m: f64,

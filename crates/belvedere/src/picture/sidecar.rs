@@ -19,7 +19,7 @@ use serde::ser::Error as _;
 use serde::{Serialize, Serializer};
 
 /// Measured and made-up parts of the ground.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, schemars::JsonSchema, Serialize)]
 pub struct TerrainRecord {
     /// Nodes of the grid.
     pub nodes: usize,

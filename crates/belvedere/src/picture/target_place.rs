@@ -3,11 +3,12 @@
 use belvedere_core::DVec3;
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{LayerKind, Scene, Unit, VolumeLayer};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt;
 
 /// Position of a target point.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct TargetPlace {
     /// Scene coordinates as given.
     pub point: [f64; 3],
@@ -23,7 +24,7 @@ pub struct TargetPlace {
 }
 
 /// A position in a volume.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct VoxelPlace {
     /// Id of the layer.
     pub layer: String,

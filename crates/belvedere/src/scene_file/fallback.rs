@@ -1,9 +1,10 @@
 //! Rules of what happens to layers that hide a target where no bend shows it.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// How something gives the view free.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum FallbackKind {
     /// Drawn so that what lies behind shows through.

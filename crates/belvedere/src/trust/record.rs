@@ -2,6 +2,7 @@
 
 use crate::BelvedereError;
 use belvedere_io::IoError;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Write};
@@ -16,7 +17,7 @@ const MOST_SCENES: usize = 500;
 const TRIES: (usize, Duration) = (if cfg!(test) { 3000 } else { 150 }, Duration::from_millis(20));
 
 /// A scene, and the files outside its folder that it may read; canonical paths.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize, Deserialize)]
 pub struct Trusted {
     /// The scene file.
     pub scene: PathBuf,
@@ -24,7 +25,7 @@ pub struct Trusted {
     pub files: Vec<PathBuf>,
 }
 
-#[derive(Serialize, Deserialize)]
+#[derive(JsonSchema, Serialize, Deserialize)]
 struct Content {
     format: u32,
     scenes: Vec<Trusted>,

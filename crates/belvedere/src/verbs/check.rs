@@ -4,10 +4,11 @@ use crate::scene_file::StageDoc;
 use crate::{BelvedereError, Session};
 use belvedere_core::Warning;
 use belvedere_scene::{Bodies, LayerKind};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Answer of [`check`].
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct CheckReport {
     /// The scene file.
     pub scene: String,
@@ -22,7 +23,7 @@ pub struct CheckReport {
 }
 
 /// One checked layer.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct CheckedLayer {
     /// Id.
     pub id: String,
@@ -106,7 +107,7 @@ fn plain_into(value: &serde_json::Value, depth: usize, text: &mut String) {
     let word = |v: &serde_json::Value| v.as_str().map_or_else(|| v.to_string(), str::to_owned);
     match value {
         serde_json::Value::Object(entries) => {
-            for (key, v) in entries.iter().filter(|(k, _)| *k != "verb") {
+            for (key, v) in entries.iter().filter(|(k, _)| !matches!(k.as_str(), "verb" | "outputs")) {
                 if simple(v) {
                     *text += &format!("{indent}{key}: {}\n", word(v));
                 } else {

@@ -3,9 +3,10 @@
 use super::in_time;
 use super::level_lakes::LevelLakes;
 use super::written_rivers::run_downhill;
+use crate::answers;
 use crate::data::DataFiles;
 use crate::guard::guarded;
-use crate::output::{self, pretty};
+use crate::output;
 use crate::picture::{self, PictureOptions};
 use crate::places::{Place, PlaceFinder};
 use crate::record::{self, InputFile};
@@ -26,8 +27,9 @@ use belvedere_io::geotiff::write_geotiff;
 use belvedere_io::raster::Raster;
 use belvedere_io::terrain::{CrsChoice, OriginalTerrain, moved_terrain};
 use belvedere_scene::{Crs, Layer, LayerKind, Progress, Scene};
-use serde::Serialize;
-use serde_json::{Value, json};
+use schemars::JsonSchema;
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -76,7 +78,7 @@ impl DisoccludeRequest {
 }
 
 /// Grid of the written heights.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum WrittenGrid {
     /// The grid of the input, in its coordinate system. Heights are resampled if the solver's grid is another one.
@@ -125,10 +127,36 @@ pub struct Disoccluded {
     record: Record,
 }
 
-/// Contents of the report file.
-#[derive(Debug, Clone, Serialize)]
+/// Content of the report file and of `--json`: the report of the solver, and what is said of the written heights.
+#[derive(Debug, Clone, Copy, JsonSchema)]
+pub struct DisoccludeDocument<'a> {
+    #[serde(flatten)]
+    report: &'a TerrainReport,
+    #[serde(flatten)]
+    record: &'a Record,
+}
+
+impl Serialize for DisoccludeDocument<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let value = |text: Result<String, BelvedereError>| text.ok().and_then(|text| serde_json::from_str(&text).ok());
+        let mut report: Map<String, Value> = value(output::json(self.report)).unwrap_or_default();
+        // The written heights have the last word.
+        report.extend::<Map<String, Value>>(value(output::json(self.record)).unwrap_or_default());
+        report.serialize(serializer)
+    }
+}
+
+/// What is said of the written heights, and what they were made from.
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 struct Record {
     program: String,
+    /// Visible share of the whole features before, 0..=1.
+    visible_straight: f64,
+    /// Visible share of the whole features on the written heights, as `visible_whole`.
+    visible_bent: f64,
+    /// Share of the whole features in view, before and after.
+    in_frame_straight: f64,
+    in_frame_bent: f64,
     crs: String,
     /// Eye: x, y as given, z in metres.
     eye: [f64; 3],
@@ -240,7 +268,12 @@ fn disoccluded(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Dis
     let mut session = data.session(view, camera, vec![stage], earth);
     session.resolved.terrain = Some(solved.report.clone());
     let names = session.public_names();
+    let visible = visible_whole(&solved.report, visible_written);
     let record = Record {
+        visible_straight: solved.report.visible_whole_before,
+        visible_bent: visible,
+        in_frame_straight: solved.report.in_view,
+        in_frame_bent: solved.report.in_view,
         program: format!("belvedere {}", crate::VERSION),
         crs: session.scene().crs.to_string(),
         eye: [eye_x, eye_y, scene_eye[2]],
@@ -251,7 +284,7 @@ fn disoccluded(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Dis
         earth: if request.curved_earth { "curved" } else { "flat" },
         grid: request.grid,
         visible_written,
-        visible_whole: visible_whole(&solved.report, visible_written),
+        visible_whole: visible,
         rivers_written,
         guaranteed: solved.report.guaranteed && visible_written.is_none_or(|share| share >= KEPT_SHARE),
         layers: session.scene().layers.iter().map(|l| l.id.clone()).collect(),
@@ -399,16 +432,9 @@ impl Disoccluded {
         &self.rasters
     }
 
-    /// The text of the report file, JSON.
-    ///
-    /// # Errors
-    /// [`BelvedereError::Text`], which no solution gives.
-    pub fn report_text(&self) -> Result<String, BelvedereError> {
-        let mut report = serde_json::to_value(self.report()).unwrap_or_default();
-        if let (Value::Object(report), Ok(Value::Object(record))) = (&mut report, serde_json::to_value(&self.record)) {
-            report.extend(record);
-        }
-        pretty(&report)
+    /// Content of the report file and of `--json`.
+    pub fn document(&self) -> DisoccludeDocument<'_> {
+        DisoccludeDocument { report: self.report(), record: &self.record }
     }
 
     /// Goals that were missed, one sentence each.
@@ -484,8 +510,8 @@ impl Disoccluded {
             written.extend(self.session.render(&pair)?.write(path, overwrite)?);
         }
         if let Some(path) = &files.report {
-            output::write_text(path, &self.report_text()?, overwrite)?;
             written.push(path.clone());
+            output::write_text(path, &answers::in_file("disocclude", &written, &self.document())?, overwrite)?;
         }
         Ok(written)
     }

@@ -7,6 +7,7 @@ use crate::{BelvedereError, OpenOptions};
 use belvedere_construct::measure::percent;
 use belvedere_core::{DVec3, Projection, View};
 use belvedere_io::png::{self, Channels};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::Path;
 
@@ -18,7 +19,7 @@ const WIDTH: usize = 640;
 const GAP: usize = 8;
 
 /// One view, judged as `reveal` judges it.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct Draft {
     /// Eye, scene x, y, z.
     pub eye: [f64; 3],

@@ -20,12 +20,13 @@ use belvedere_io::vector::{Geometry, Vectors};
 use belvedere_io::{GeoTiff, Limits};
 use belvedere_io::{join_table, split_table};
 use belvedere_scene::Progress;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Description of one file.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum FileInfo {
     /// Terrain.
@@ -51,7 +52,7 @@ pub enum FileInfo {
 }
 
 /// A file of a known format that this version does not read.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct UnreadInfo {
     /// The file.
     pub path: String,
@@ -64,7 +65,7 @@ pub struct UnreadInfo {
 }
 
 /// A mesh.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct MeshInfo {
     /// The file.
     pub path: String,
@@ -91,7 +92,7 @@ pub struct MeshInfo {
 }
 
 /// Terrain: the file, and the ground that a scene gets from it.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct TerrainInfo {
     /// The file.
     pub path: String,
@@ -120,7 +121,7 @@ pub struct TerrainInfo {
 }
 
 /// The ground that a scene gets from a file.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct GroundInfo {
     /// Coordinate system of the scene.
     pub crs: String,
@@ -150,7 +151,7 @@ pub struct InfoRequest {
 }
 
 /// A picture.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct PictureInfo {
     /// The file.
     pub path: String,
@@ -169,7 +170,7 @@ pub struct PictureInfo {
 }
 
 /// Lines, areas, points.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct FeatureInfo {
     /// The file.
     pub path: String,
@@ -192,13 +193,14 @@ pub struct FeatureInfo {
     /// Vertices of all features.
     pub vertices: usize,
     /// Smallest x, y and largest x, y in the file's system.
+    #[schemars(with = "Option<[[f64; 2]; 2]>")]
     pub extent: Option<[DVec2; 2]>,
     /// Warnings.
     pub warnings: Vec<Warning>,
 }
 
 /// A property of features.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct PropertyInfo {
     /// Its name.
     pub name: String,
@@ -211,7 +213,7 @@ pub struct PropertyInfo {
 }
 
 /// A built-in scene.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct BuiltinInfo {
     /// Its name.
     pub path: String,
@@ -230,7 +232,7 @@ pub struct BuiltinInfo {
 }
 
 /// Capabilities of the machine.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct MachineInfo {
     /// Worker threads.
     pub threads: usize,

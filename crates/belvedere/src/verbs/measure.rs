@@ -8,10 +8,11 @@ use belvedere_construct::measure::Shares;
 use belvedere_core::Warning;
 use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::Progress;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Answer of [`measure`].
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct MeasureReport {
     /// The scene file.
     pub scene: String,
@@ -30,7 +31,15 @@ pub struct MeasureReport {
     pub visible: Option<f64>,
     /// Share of the whole required features inside the picture, likewise.
     pub in_frame: Option<f64>,
-    /// The measures.
+    /// The same for the picture without bends, by lines of sight.
+    pub visible_straight: Option<f64>,
+    /// As `visible`: the picture as it is.
+    pub visible_bent: Option<f64>,
+    /// Share of the whole required features inside the picture without bends.
+    pub in_frame_straight: Option<f64>,
+    /// As `in_frame`.
+    pub in_frame_bent: Option<f64>,
+    /// The measures, with all warnings, those of opening the scene included.
     #[serde(flatten)]
     pub measures: Measures,
     /// Warnings of opening the scene.
@@ -74,8 +83,11 @@ fn measured(
 ) -> Result<MeasureReport, BelvedereError> {
     session.check_drawable()?;
     let renderer = renderer.of(session);
-    let measures = belvedere_construct::measure(session.scene(), session.view(), Some(renderer), options, progress)?;
+    let mut measures =
+        belvedere_construct::measure(session.scene(), session.view(), Some(renderer), options, progress)?;
     let shares = shares(&measures, session.terrain_report());
+    let scene_warnings = session.public_warnings();
+    measures.warnings.splice(..0, scene_warnings.iter().cloned());
     Ok(MeasureReport {
         scene: session.name(),
         crs: session.scene().crs.to_string(),
@@ -83,9 +95,13 @@ fn measured(
         renderer: renderer.name(),
         visible: shares.map(|[_, bent]| bent.visible),
         in_frame: shares.map(|[_, bent]| bent.in_frame),
+        visible_straight: shares.map(|[straight, _]| straight.visible),
+        visible_bent: shares.map(|[_, bent]| bent.visible),
+        in_frame_straight: shares.map(|[straight, _]| straight.in_frame),
+        in_frame_bent: shares.map(|[_, bent]| bent.in_frame),
         terrain: session.terrain_report().cloned(),
         measures,
-        scene_warnings: session.public_names().warnings(&session.warnings()),
+        scene_warnings,
     })
 }
 

@@ -20,6 +20,7 @@ pub mod preset;
 pub mod reveal;
 mod reveal_files;
 pub mod reveal_target;
+pub mod schemas;
 pub mod target_drafts;
 mod target_names;
 mod target_request;

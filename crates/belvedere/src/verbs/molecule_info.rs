@@ -3,12 +3,13 @@
 use crate::BelvedereError;
 use belvedere_core::Warning;
 use belvedere_io::{Limits, load_molecule};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A molecule.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct MoleculeInfo {
     /// The file.
     pub path: String,

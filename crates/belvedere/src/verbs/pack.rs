@@ -6,6 +6,7 @@ use crate::guard::guarded;
 use crate::{BelvedereError, Trust, output};
 use belvedere_io::{InputFile, IoError, atomic, fs, split_table};
 use belvedere_scene::Progress;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
@@ -48,7 +49,7 @@ pub struct PackRequest {
 }
 
 /// Contents of a package, besides the application.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Bundle {
     /// Title of the scene.
     pub title: String,
@@ -61,7 +62,7 @@ pub struct Bundle {
 }
 
 /// Result of packing.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
 pub struct Packed {
     /// The folder.
     pub folder: PathBuf,

@@ -4,6 +4,7 @@ use crate::places::Place;
 use crate::scene_file::{Node, Value, json_points, other_kind};
 use crate::{BelvedereError, Session};
 use belvedere_core::{DVec2, DVec3, Miss, View, Warning};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::io::Read;
 use std::path::Path;
@@ -15,14 +16,14 @@ pub const MAX_SAMPLES: usize = 50_000_000;
 pub const MAX_POINT_BYTES: u64 = 512 << 20;
 
 /// Answer of [`project`].
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct ProjectReport {
     /// One per input point, in input order.
     pub points: Vec<ProjectedPoint>,
 }
 
 /// Image of one point.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
 pub struct ProjectedPoint {
     /// Pixel, origin at the outer corner of the top-left pixel.
     pub pixel: Option<[f64; 2]>,
@@ -37,14 +38,14 @@ pub struct ProjectedPoint {
 }
 
 /// Answer of [`rays`].
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct RaysReport {
     /// Samples of each pixel's ray, in input order.
     pub rays: Vec<Vec<RaySample>>,
 }
 
 /// One sample of a ray.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
 pub struct RaySample {
     /// World point; null where the ray leaves the domain of the stages.
     pub point: Option<[f64; 3]>,
@@ -58,14 +59,14 @@ pub struct RaySample {
 }
 
 /// Answer of [`displace`].
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, JsonSchema, Serialize)]
 pub struct DisplaceReport {
     /// One per input point, in input order.
     pub points: Vec<DisplacedPoint>,
 }
 
 /// One displaced point.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
 pub struct DisplacedPoint {
     /// The point after all stages, before the pinhole, scene coordinates.
     pub displaced: Option<[f64; 3]>,

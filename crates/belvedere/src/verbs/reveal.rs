@@ -12,7 +12,7 @@ use crate::resolve::rays::sidestep_stage;
 use crate::resolve::solving::Memory;
 use crate::resolve::solving::Solving;
 use crate::scene_file::{CameraDoc, EarthDoc, PlaneDoc, PresetsDoc, SplineStageDoc, StageDoc, TerrainStageDoc};
-use crate::{BelvedereError, OpenOptions, Session, output};
+use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::measure::{HiddenRun, Shares};
 use belvedere_construct::rays::{AroundOptions, Target, bend_around};
 use belvedere_construct::{
@@ -23,6 +23,7 @@ use belvedere_core::{DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::Instant;
 use belvedere_scene::{Progress, Scene};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -75,7 +76,7 @@ impl From<Viewpoint> for [Place; 2] {
 }
 
 /// Technique that bends the picture.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Technique {
     /// The technique that shows most: a spline is tried first, then both if something stays hidden, then terrain disocclusion alone if
@@ -117,7 +118,7 @@ const SEARCH: f64 = 0.2;
 const FIRST_TRY: f64 = 0.6;
 
 /// A technique that was tried.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, JsonSchema, Serialize)]
 pub struct Tried {
     /// The technique.
     pub technique: Technique,
@@ -132,7 +133,7 @@ pub struct Tried {
 }
 
 /// Shares of the whole features in both pictures, by lines of sight through the whole chain of stages.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, JsonSchema, Serialize)]
 pub struct FinalShares {
     /// Technique that bends the picture; `None` if it is straight, because nothing is hidden or no bend makes a better picture.
     pub technique: Option<Technique>,
@@ -185,15 +186,15 @@ pub struct RevealAnswer {
     pub measured_every: u32,
 }
 
-/// Contents of the report file.
-#[derive(Debug, Clone, Serialize)]
-struct ReportFile<'a> {
+/// Content of the report file and of `--json`.
+#[derive(Debug, Clone, JsonSchema, Serialize)]
+pub struct RevealDocument<'a> {
     program: String,
-    /// Report of the search; its shares, gain and goal are those of the finished picture.
-    #[serde(flatten)]
-    report: &'a RevealReport,
     #[serde(flatten)]
     shares: FinalShares,
+    /// Report of the search; its shares, gain and goal are those of the finished picture.
+    #[serde(flatten)]
+    report: RevealReport,
     #[serde(skip_serializing_if = "Option::is_none")]
     disocclusion: Option<&'a TerrainReport>,
     /// Tried techniques.
@@ -447,28 +448,13 @@ impl RevealAnswer {
         format!("visible in the straight picture: {straight}{taller}; {reason}, and there is no pair of pictures")
     }
 
-    /// Writes the picture with its record, the pair (`OUT.pair.png`) if it is bent, and the other files asked for.
-    ///
-    /// # Errors
-    /// [`BelvedereError::Io`].
-    pub fn write(&self, files: &RevealFiles, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
-        files.write(&self.picture, &self.session, &self.report_file(), overwrite)
-    }
-
-    /// The text of the report file, JSON.
-    ///
-    /// # Errors
-    /// [`BelvedereError::Text`], which no answer gives.
-    pub fn report_text(&self) -> Result<String, BelvedereError> {
-        output::pretty(&self.report_file())
-    }
-
-    fn report_file(&self) -> ReportFile<'_> {
+    /// Content of the report file and of `--json`.
+    pub fn document(&self) -> RevealDocument<'_> {
         let sidecar = &self.picture.sidecar;
-        ReportFile {
+        RevealDocument {
             program: sidecar.program.clone(),
-            report: &self.report,
             shares: self.shares,
+            report: RevealReport { warnings: sidecar.warnings.clone(), ..self.report.clone() },
             disocclusion: self.session.terrain_report(),
             tried: &self.tried,
             hidden: &self.hidden,
@@ -480,6 +466,14 @@ impl RevealAnswer {
             inputs: &sidecar.inputs,
             scene_warnings: &sidecar.warnings,
         }
+    }
+
+    /// Writes the picture with its record, the pair (`OUT.pair.png`) if it is bent, and the other files asked for.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Io`].
+    pub fn write(&self, files: &RevealFiles, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
+        files.write(&self.picture, &self.session, &self.document(), overwrite)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The files of a picture in which something is visible: bent and straight picture, their record, figures, scene.
 
-use crate::output::{self, document_toml, pretty};
+use crate::answers;
+use crate::output::{self, document_toml};
 use crate::picture::Picture;
 use crate::{BelvedereError, Session};
 use belvedere_io::atomic;
@@ -81,13 +82,13 @@ impl RevealFiles {
             let frame = picture.straight.as_ref().unwrap_or(&picture.frame);
             draw(path, [frame.width, frame.height], &frame.color, &title[..1])?;
         }
-        if let Some(path) = &self.report {
-            output::write_text(path, &pretty(report)?, overwrite)?;
-            written.push(path.clone());
-        }
         if let Some((path, document)) = self.scene.as_ref().and_then(|path| Some((path, session.resolved_for(path)?))) {
             output::write_text(path, &document_toml(&document)?, overwrite)?;
             written.push(path.clone());
+        }
+        if let Some(path) = &self.report {
+            written.push(path.clone());
+            output::write_text(path, &answers::in_file("reveal", &written, report)?, overwrite)?;
         }
         Ok(written)
     }

@@ -5,6 +5,7 @@ use super::appearance::Appearance;
 pub use super::target_request::TargetRequest;
 use super::target_scene::{self, Meant, Targets};
 use super::{city_views, target_views};
+use crate::fallback::FallbackRecord;
 use crate::guard::guarded;
 use crate::picture::{Picture, PictureOptions, TargetPlace};
 use crate::places::{Place, PlaceHeight};
@@ -17,6 +18,7 @@ use belvedere_construct::rays::{AroundOptions, BendReport, Sidestep, Target, Tar
 use belvedere_construct::{ConstructError, RevealMemory, RevealOptions, Revealed};
 use belvedere_core::{DVec3, Pinhole, Projection, View, Warning};
 use belvedere_scene::{LayerKind, Unit};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -304,16 +306,23 @@ fn document(session: &Session, view: &View, bend: Option<&Bend>, target: &Target
     Ok(document)
 }
 
-/// Contents of the report file.
-#[derive(Debug, Serialize)]
-struct TargetReport<'a> {
+/// Content of the report file and of `--json`.
+#[derive(Debug, JsonSchema, Serialize)]
+pub struct TargetDocument<'a> {
     program: &'a str,
     see: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
     target: &'a Option<TargetPlace>,
+    /// Visible share in the bent picture, as `visible`.
+    visible_bent: f64,
+    /// Share inside the bent picture, hidden or not, as `in_frame`.
+    in_frame_bent: f64,
     #[serde(flatten)]
     report: BendReport,
     technique: Option<Technique>,
+    /// Report of the fallback; left out if none was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fallback: &'a Option<FallbackRecord>,
     mark: &'static str,
     view: &'a crate::record::ViewRecord,
     inputs: &'a [crate::record::InputFile],
@@ -366,18 +375,18 @@ impl TargetAnswer {
         missed.then(text).into_iter().chain(self.place.iter().filter(|_| missed).filter_map(TargetPlace::why)).collect()
     }
 
-    /// Writes the picture with its record, the pair (`OUT.pair.png`) if it differs from the straight one, and the other files asked for.
-    ///
-    /// # Errors
-    /// [`BelvedereError::Io`].
-    pub fn write(&self, files: &RevealFiles, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
+    /// Content of the report file and of `--json`.
+    pub fn document(&self) -> TargetDocument<'_> {
         let sidecar = &self.picture.sidecar;
-        let report = TargetReport {
+        TargetDocument {
             program: &sidecar.program,
             see: target_scene::shown_name(&self.see),
             target: &self.place,
+            visible_bent: self.report.visible,
+            in_frame_bent: self.report.in_frame,
             report: self.report,
             technique: self.technique,
+            fallback: &sidecar.fallback,
             mark: self.mark,
             view: &sidecar.view,
             inputs: &sidecar.inputs,
@@ -387,8 +396,15 @@ impl TargetAnswer {
                 .cloned()
                 .chain(self.place.as_ref().and_then(TargetPlace::warning))
                 .collect(),
-        };
-        files.write(&self.picture, &self.session, &report, overwrite)
+        }
+    }
+
+    /// Writes the picture with its record, the pair (`OUT.pair.png`) if it differs from the straight one, and the other files asked for.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Io`].
+    pub fn write(&self, files: &RevealFiles, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
+        files.write(&self.picture, &self.session, &self.document(), overwrite)
     }
 }
 

@@ -4,6 +4,7 @@ use crate::BelvedereError;
 use crate::scene_file::suggestion;
 use belvedere_io::load_vectors;
 use belvedere_io::{CityFile, Limits, load_city};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -16,7 +17,7 @@ const EXAMPLES: usize = 3;
 const KINDS: [&str; 8] = ["building", "highway", "railway", "waterway", "leisure", "landuse", "natural", "amenity"];
 
 /// What `reveal --see` understands in a city or map, each with the number of things that it means.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, JsonSchema, Serialize)]
 pub struct CitySee {
     /// Names of buildings, the first forty.
     pub buildings: BTreeMap<String, usize>,

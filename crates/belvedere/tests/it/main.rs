@@ -4,6 +4,7 @@ mod by_property;
 mod escapes;
 mod exact;
 mod examples;
+mod export;
 mod films;
 mod moving_pictures;
 mod names;

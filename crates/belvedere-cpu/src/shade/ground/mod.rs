@@ -3,7 +3,7 @@
 pub(crate) mod batch;
 mod displaced;
 pub(crate) mod lit;
-mod palette;
+pub(crate) mod palette;
 mod patch;
 mod planes;
 mod rows;

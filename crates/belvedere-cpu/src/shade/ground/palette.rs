@@ -11,7 +11,7 @@ const STEPS: usize = 1024;
 const GREY: [u8; 3] = [205, 205, 202];
 
 /// Tint by height, and the colours that steepness and height add.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Tint {
     /// Colours and their changes to the next; the last one is repeated.
     ramp: Box<[[f32; 4]; STEPS + 1]>,

@@ -2,6 +2,7 @@
 
 mod read;
 
+use crate::answers;
 use crate::city_blocks;
 use crate::city_map::overview::{Panel, overview};
 use crate::city_map::{MapPicture, bounds, map_picture};
@@ -17,6 +18,7 @@ use belvedere_io::city_write::{BlockFigures, write_city_json};
 use belvedere_io::png;
 use belvedere_scene::Progress;
 use belvedere_scene::city::City;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -50,9 +52,9 @@ pub struct GeneralisedCity {
     inputs: Vec<InputFile>,
 }
 
-/// Contents of the report file.
-#[derive(Debug, Serialize)]
-struct Record<'a> {
+/// Content of the report file and of `--json`.
+#[derive(Debug, JsonSchema, Serialize)]
+pub struct GeneraliseDocument<'a> {
     program: &'static str,
     crs: Option<String>,
     inputs: Vec<InputFile>,
@@ -88,20 +90,17 @@ pub fn files(folder: &Path, epsg: Option<u32>) -> Vec<PathBuf> {
 }
 
 impl GeneralisedCity {
-    /// The report as JSON.
-    ///
-    /// # Errors
-    /// [`BelvedereError::Text`], which no report gives.
-    pub fn report_json(&self) -> Result<String, BelvedereError> {
+    /// Content of the report file and of `--json`.
+    pub fn document(&self) -> GeneraliseDocument<'_> {
         let files: Vec<PathBuf> = self.inputs.iter().map(|input| input.path.clone()).collect();
         let names = PublicNames::new(None, Vec::new(), &files);
-        output::pretty(&Record {
+        GeneraliseDocument {
             program: concat!("belvedere ", env!("CARGO_PKG_VERSION")),
             crs: self.epsg.map(|code| format!("EPSG:{code}")),
             inputs: names.inputs(&self.inputs),
             report: &self.generalised.report,
             warnings: names.warnings(&self.warnings),
-        })
+        }
     }
 
     /// Levels that do not preserve the volume, one sentence each.
@@ -164,7 +163,7 @@ impl GeneralisedCity {
         let (pixels, width) = self.overview();
         let height = pixels.len() / width;
         png::write(&files[3], overwrite, width, height, png::Channels::Rgb, pixels.as_flattened(), &[])?;
-        output::write_text(&files[2], &self.report_json()?, overwrite)?;
+        output::write_text(&files[2], &answers::in_file("generalise", &files, &self.document())?, overwrite)?;
         Ok(files)
     }
 

@@ -4,11 +4,12 @@ use crate::BelvedereError;
 use crate::verbs::CitySee;
 use belvedere_core::Warning;
 use belvedere_io::{Limits, load_city};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::Path;
 
 /// A city.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct CityInfo {
     /// Path as given.
     pub path: String,

@@ -4,11 +4,12 @@ use crate::BelvedereError;
 use crate::resolve::volume::made;
 use belvedere_core::Warning;
 use belvedere_io::{Number, VolumeRequest, load_volume};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::Path;
 
 /// A volume.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct VolumeInfo {
     /// The file.
     pub path: String,

@@ -4,10 +4,11 @@ use super::{DISTANCE, Shape, seen_at, shapes};
 use belvedere_core::Warning;
 use belvedere_core::map::spline::{EDGE_ON, check_presets};
 use belvedere_core::presets::{BendFrame, PresetDocument};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Answer of [`check`].
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct PresetCheck {
     /// Usability of the document.
     pub verdict: Verdict,
@@ -22,7 +23,7 @@ pub struct PresetCheck {
 }
 
 /// Usability of a valid document.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, JsonSchema, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// At every viewing angle.
@@ -34,7 +35,7 @@ pub enum Verdict {
 }
 
 /// A range of viewing angles, degrees.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
 pub struct Usable {
     /// Smallest.
     pub from_deg: f64,

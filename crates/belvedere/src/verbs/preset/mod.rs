@@ -14,6 +14,7 @@ use belvedere_core::map::spline::{ReferencePlane, SplineBend};
 use belvedere_core::presets::edit::{Clamped, PresetOperation};
 use belvedere_core::presets::{BUILTINS, PresetDocument, PresetError};
 use belvedere_core::{DVec3, Pinhole, Projection};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::Path;
 
@@ -26,7 +27,7 @@ const FOV_Y_DEG: f64 = 50.0;
 const NO_LIMIT: f64 = 1e3 * DISTANCE;
 
 /// A built-in document at its own viewing angle.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct Listed {
     /// Name.
     pub name: &'static str,
@@ -39,7 +40,7 @@ pub struct Listed {
 }
 
 /// The curve of a preset in figures.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, JsonSchema, Serialize)]
 pub struct Shape {
     /// Name, possibly empty.
     pub name: String,

@@ -1,0 +1,33 @@
+//! `schema`: JSON Schemas of scene files and of the answers of verbs.
+
+use belvedere::answers::{Answer, Warned};
+use belvedere::output;
+use belvedere::verbs::schemas;
+use belvedere_bench::BenchReport;
+use clap::builder::PossibleValuesParser;
+
+/// The schema of scene files.
+const SCENE: &str = "scene";
+/// The same as a page for readers.
+const KEYS: &str = "keys";
+/// The verb whose report is not the library's.
+const BENCH: &str = "bench";
+
+/// What has a schema.
+pub(crate) fn names() -> PossibleValuesParser {
+    PossibleValuesParser::new([SCENE, KEYS, BENCH].into_iter().chain(schemas::VERBS))
+}
+
+/// The schema of scene files, or of the answers of a verb.
+pub(crate) fn text(of: &str) -> anyhow::Result<String> {
+    if of == BENCH {
+        return Ok(schemas::schema_of(BENCH, &[schemas::shape::<Answer<Warned<BenchReport>>>()])?);
+    }
+    if of == KEYS {
+        return crate::scene_keys::page(&output::schema_json()?);
+    }
+    match schemas::schema(of) {
+        Some(text) => Ok(text?),
+        None => Ok(output::schema_json()?),
+    }
+}
