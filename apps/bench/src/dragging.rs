@@ -1,11 +1,11 @@
 //! Dragging as the window does it, without a window: a script of a pointer orders pictures at 60 Hz from the painter that the window
 //! uses, and every picture is timed from the input to its arrival.
 
-use crate::clock::{Stopwatch, quantile};
+use crate::clock::{process_ms, quantile};
 use anyhow::{Context, Result, bail, ensure};
 use belvedere::core::DVec2;
 use belvedere::editor::{
-    Answer, Editor, Order, Pace, Painter, Shown, Sides, above_ground, frame_factor, navigation, set_camera,
+    Answer, Editor, Order, Pace, Painter, Quality, Shown, Sides, above_ground, frame_factor, navigation, set_camera,
 };
 use belvedere::scene_file::Document;
 use schemars::JsonSchema;
@@ -19,6 +19,8 @@ const INPUT: Duration = Duration::from_micros(16_667);
 const PATIENCE: Duration = Duration::from_secs(300);
 /// Inputs of one of the three gestures: turning, moving, nearing.
 const INPUTS: usize = 40;
+/// Pictures before [`least`] measures, which prepare what is made once.
+const WARM: usize = 4;
 
 /// Cost of dragging one scene.
 #[derive(Debug, Clone, JsonSchema, Serialize)]
@@ -58,7 +60,6 @@ struct Dragged {
     latencies: Vec<f64>,
     drawing: Vec<f64>,
     densest: f64,
-    cpu: Stopwatch,
 }
 
 /// Drags a scene: turns, moves and nears the camera.
@@ -74,12 +75,12 @@ pub fn drag(name: &str, editor: Editor, image: [u32; 2]) -> Result<DragCost> {
     let shown = picture(&mut painter)?;
     let first_ms = began.elapsed().as_secs_f64() * 1e3;
     let (awaited, latencies, drawing) = (Vec::new(), Vec::new(), Vec::new());
-    let mut dragged =
-        Dragged { editor, painter, image, shown, awaited, latencies, drawing, densest: 0.0, cpu: Stopwatch::start() };
+    let cpu = process_ms();
+    let mut dragged = Dragged { editor, painter, image, shown, awaited, latencies, drawing, densest: 0.0 };
     for gesture in 0..3 {
         dragged.gesture(gesture)?;
     }
-    let cpu_ms = dragged.cpu.cpu_ms().unwrap_or_default();
+    let cpu_ms = process_ms() - cpu;
     let Dragged { editor, mut painter, shown, latencies, drawing, densest, .. } = dragged;
     ensure!(!latencies.is_empty(), "{name}: no moving picture arrived");
     let frame = shown.bent.as_ref().context("no picture")?;
@@ -103,6 +104,54 @@ pub fn drag(name: &str, editor: Editor, image: [u32; 2]) -> Result<DragCost> {
         triangles,
         triangles_per_px: densest,
     })
+}
+
+/// Cost of moving pictures of the least quality, one after the other: the least that dragging a scene costs, whatever else the machine does.
+#[derive(Debug, Clone, Serialize)]
+pub struct LeastCost {
+    /// Name of the scene.
+    pub scene: String,
+    /// Processor time of all threads per picture, solvers beside it included, milliseconds.
+    pub cpu_ms: f64,
+    /// Wall time per picture: median, milliseconds.
+    pub wall_ms: f64,
+    /// Triangles of the last picture.
+    pub triangles: u64,
+}
+
+/// Turns the camera of a scene and draws pictures of the least quality.
+///
+/// * `image`: size of the picture on the screen, pixels. `pictures`: their number.
+///
+/// # Errors
+/// A scene that cannot be drawn.
+pub fn least(name: &str, mut editor: Editor, image: [u32; 2], pictures: usize) -> Result<LeastCost> {
+    let mut painter = Painter::new(|| ());
+    painter.order(order(&editor, image, Pace::Resting));
+    let mut shown = picture(&mut painter)?;
+    let session = shown.session.clone();
+    let resolved = session.resolved().context("no document")?.camera.clone();
+    let factor = frame_factor(editor.document(), image);
+    let written = editor.document().camera.clone();
+    let held = navigation(&written, &resolved, session.view(), session.scene(), (image, factor));
+    let (mut wall, mut before) = (Vec::new(), 0.0);
+    for k in 0..pictures + WARM {
+        if k == WARM {
+            before = process_ms();
+        }
+        let share = k as f64 / (pictures + WARM) as f64;
+        let next = above_ground(held.orbited(-0.5 * share, 0.12 * share)?, session.scene());
+        editor.edit_within(1, |document| set_camera(document, &next));
+        let began = Instant::now();
+        painter.order(order(&editor, image, Pace::Moving { quality: Some(Quality::LEAST) }));
+        shown = picture(&mut painter)?;
+        if k >= WARM {
+            wall.push(began.elapsed().as_secs_f64() * 1e3);
+        }
+    }
+    let triangles = shown.bent.as_ref().context("no picture")?.stats.triangles_drawn;
+    let cpu_ms = (process_ms() - before) / pictures.max(1) as f64;
+    Ok(LeastCost { scene: name.to_owned(), cpu_ms, wall_ms: quantile(wall, 0.5), triangles })
 }
 
 fn order(editor: &Editor, image: [u32; 2], pace: Pace) -> Order {
@@ -185,5 +234,12 @@ impl std::fmt::Display for DragCost {
             "{scene:<28} {pictures:>4} {p50:>8.0} {p95:>8.0} {worst:>8.0} {drawing_ms:>8.0} {cpu_ms:>7.0} {first_ms:>8.0} {rest_ms:>8.0} {:>6.2} {:>2} {:>9} {:>6.2}",
             self.width_share, self.coarseness, self.triangles, self.triangles_per_px
         )
+    }
+}
+
+impl std::fmt::Display for LeastCost {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { scene, cpu_ms, wall_ms, triangles } = self;
+        write!(f, "{scene:<28} {cpu_ms:>8.1} {wall_ms:>8.1} {triangles:>9}")
     }
 }

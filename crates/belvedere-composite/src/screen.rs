@@ -8,6 +8,10 @@ const GUARD_PX: f64 = 131_072.0;
 /// Image rows that are drawn together, a band.
 pub const BAND: usize = 16;
 
+/// Tolerance of bent edges drawn straight from which on a picture is a coarse one, pixels: one that moves. What only shows at rest is then
+/// left out of it.
+pub const COARSE_PX: f64 = 1.0;
+
 /// Number of planes of [`Screen::clip_distances`].
 pub const PLANES: usize = 6;
 
@@ -63,6 +67,11 @@ impl Screen {
     pub fn pixel(&self, v: DVec3) -> DVec2 {
         let s = if self.ortho { self.scale } else { self.scale / v.z };
         DVec2::new(self.center.x + v.x * s, self.center.y + v.y * s)
+    }
+
+    /// Distance between the points that two neighbouring pixels see at the distance of a point from the eye, scene units.
+    pub fn pixel_size(&self, p: DVec3) -> f64 {
+        if self.ortho { 1.0 / self.scale } else { p.distance(self.eye) / self.scale }
     }
 
     /// Depth of a nearness (1 / depth, in parallel projection -depth).

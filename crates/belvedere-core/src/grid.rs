@@ -59,7 +59,12 @@ pub struct Grid {
     rows: usize,
     values: Vec<f64>,
     range: [f64; 2],
+    /// Smallest and largest value of each square of [`TILE`] x [`TILE`] nodes, row by row.
+    tiles: Vec<[f64; 2]>,
 }
+
+/// Nodes along the side of a square whose range is known.
+const TILE: usize = 16;
 
 /// One cell of a [`Grid`]: `c[0] + c[1] u + c[2] v + c[3] u v`, `u` = column - `col`, `v` = row - `row`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -81,6 +86,13 @@ impl Bilinear {
         let (u, v) = (g.x - self.col, g.y - self.row);
         DVec2::new(self.c[1] + self.c[3] * v, self.c[2] + self.c[3] * u)
     }
+}
+
+const EMPTY: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+/// The range grown by all values.
+fn with_all(range: [f64; 2], values: &[f64]) -> [f64; 2] {
+    values.iter().fold(range, |[lo, hi], &v| [lo.min(v), hi.max(v)])
 }
 
 impl Grid {
@@ -110,8 +122,13 @@ impl Grid {
         if let Some(i) = values.iter().position(|v| !v.is_finite()) {
             return Err(GridError::NotFinite { col: i % cols, row: i / cols, value: values[i] });
         }
-        let range = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)]);
-        Ok(Self { north_west, spacing, cols, rows, values, range })
+        let tiles = values.chunks(TILE * cols).flat_map(|lines| {
+            let columns = (0..cols).step_by(TILE).map(|first| first..(first + TILE).min(cols));
+            columns.map(|part| lines.chunks(cols).fold(EMPTY, |range, line| with_all(range, &line[part.clone()])))
+        });
+        let tiles: Vec<[f64; 2]> = tiles.collect();
+        let range = tiles.iter().fold(EMPTY, |range, tile| with_all(range, tile));
+        Ok(Self { north_west, spacing, cols, rows, values, range, tiles })
     }
 
     /// Number of columns.
@@ -182,11 +199,53 @@ impl Grid {
         if a == DVec2::ZERO && b == last {
             return Some(self.range);
         }
-        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-        for row in a.y as usize..=b.y as usize {
-            let line = &self.values[row * self.cols..][a.x as usize..=b.x as usize];
-            range = line.iter().fold(range, |[lo, hi], &v| [lo.min(v), hi.max(v)]);
+        let (cols, rows) = (a.x as usize..b.x as usize + 1, a.y as usize..b.y as usize + 1);
+        // Whole squares, and what lies around them.
+        let [inner_cols, inner_rows] = [&cols, &rows].map(|n| n.start.div_ceil(TILE)..n.end / TILE);
+        let is_inner = !inner_cols.is_empty() && !inner_rows.is_empty();
+        let mut range = EMPTY;
+        for row in rows {
+            let line = &self.values[row * self.cols..][..self.cols];
+            if !(is_inner && inner_rows.contains(&(row / TILE))) {
+                range = with_all(range, &line[cols.clone()]);
+                continue;
+            }
+            if row.is_multiple_of(TILE) {
+                let tiles = &self.tiles[row / TILE * self.cols.div_ceil(TILE)..][inner_cols.clone()];
+                range = tiles.iter().fold(range, |range, tile| with_all(range, tile));
+            }
+            range = with_all(range, &line[cols.start..inner_cols.start * TILE]);
+            range = with_all(range, &line[inner_cols.end * TILE..cols.end]);
         }
         Some(range)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_of_rectangles_are_those_of_their_nodes() {
+        for (cols, rows) in [(2, 2), (15, 70), (64, 33), (101, 97)] {
+            let value = |i: usize| (i as f64 * 0.618_033_988_75).fract() * (1.0 + (i % 7) as f64) - 2.0;
+            let grid = Grid::new(DVec2::new(5.0, 9.0), DVec2::new(2.0, 3.0), cols, rows, (0..cols * rows).map(value).collect());
+            let grid = grid.expect("grid");
+            for k in 0..400u32 {
+                let at = |seed: f64, n: usize| (f64::from(k) * seed).fract() * (n as f64 + 1.0) - 1.0;
+                let (a, b) = (DVec2::new(at(0.317, cols), at(0.731, rows)), DVec2::new(at(0.557, cols), at(0.113, rows)));
+                let (from, to) = (a.min(b), a.max(b));
+                let scene = |g: DVec2| DVec2::new(5.0 + 2.0 * g.x, 9.0 - 3.0 * g.y);
+                let found = grid.range_over(scene(DVec2::new(from.x, to.y)), scene(DVec2::new(to.x, from.y)));
+                let touched = |lo: f64, hi: f64, i: usize| i as f64 >= lo.floor() && i as f64 <= hi.ceil();
+                let nodes = (0..cols * rows).filter(|i| touched(from.x, to.x, i % cols) && touched(from.y, to.y, i / cols));
+                let all: Vec<f64> = nodes.map(value).collect();
+                match found {
+                    Some(range) => assert_eq!(range, with_all(EMPTY, &all), "{cols} x {rows}: {from} to {to}"),
+                    None => assert!(to.min_element() < 0.0 || from.x > (cols - 1) as f64 || from.y > (rows - 1) as f64),
+                }
+            }
+            assert_eq!(grid.range(), with_all(EMPTY, grid.values()));
+        }
     }
 }

@@ -4,7 +4,7 @@ use crate::geometry::pass::{InView, Pass};
 use crate::trace::Tracer;
 use belvedere_composite::drawn::{self, Drawn, Sight};
 use belvedere_composite::marks::Marks;
-use belvedere_composite::screen::Screen;
+use belvedere_composite::screen::{COARSE_PX, Screen};
 use belvedere_composite::sections::{Exposure, Sections};
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{LayerKind, RenderJob};
@@ -12,9 +12,6 @@ use std::sync::OnceLock;
 
 /// Terrain with more nodes is not prepared for lines of sight in every frame.
 const MAX_NODES: usize = 64 << 20;
-/// Tolerance of bent edges from which on a picture is a coarse one, whose lines are hidden by its depths alone, pixels.
-const COARSE_PX: f64 = 1.0;
-
 /// The marks of a job.
 /// * `depth`: surfaces at the pixel centres.
 pub(crate) fn place(job: &RenderJob<'_>, passes: &[Pass<'_>], screen: &Screen, depth: &[f32]) -> Marks {
@@ -46,6 +43,7 @@ fn prepared<'a>(job: &RenderJob<'a>) -> Option<Tracer<'a>> {
         LayerKind::Terrain(t) => t.heightfield.cols() * t.heightfield.rows(),
         _ => 0,
     };
+    // The lines of a coarse picture are hidden by its depths alone.
     let nodes: usize = job.scene.layers.iter().map(|l| nodes(&l.kind)).sum();
     (nodes <= MAX_NODES && job.options.tolerance_px < COARSE_PX)
         .then(|| Tracer::exposed(job.scene, job.view, Sections::new(job), Exposure::even()))

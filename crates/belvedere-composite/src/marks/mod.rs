@@ -17,7 +17,7 @@ mod visibility;
 use crate::canvas::Canvas;
 use crate::color::{Packed, linear};
 use crate::drawn::{Drawn, Pass};
-use crate::screen::{BAND, Screen};
+use crate::screen::{BAND, COARSE_PX, Screen};
 use crate::sections::Sections;
 use alike::alike;
 use belvedere_core::{Aabb, DVec2, DVec3};
@@ -164,12 +164,17 @@ impl<'a> MarkBuilder<'a> {
 }
 
 impl MarkBuilder<'_> {
+    /// The screen of a coarse picture; `None` for any other.
+    fn coarse(&self) -> Option<&Screen> {
+        (self.tolerance_px >= COARSE_PX).then_some(self.screen)
+    }
+
     fn line_sheets(&self, layer: &LineLayer, id: u32) -> Vec<StrokeLayer> {
         let sheet = |group: alike::Alike<'_, LineFeature>| {
             let half_px = 0.5 * width_or_none(group.scale * layer.width_px);
             let casing_px = layer.casing.map(|_| casing_of(half_px));
             let style = Style { half_px, casing_px, hidden: layer.hidden, lift_m: layer.lift_m };
-            let paths = group.features.par_iter().map(|f| path::drape(self.scene, &f.points, layer.lift_m)).collect();
+            let paths = group.features.par_iter().map(|f| path::drape(self.scene, &f.points, layer.lift_m, self.coarse())).collect();
             self.sheet(paths, style, inks(group.color, layer.casing, layer.hidden), id)
         };
         alike(&layer.features, layer.color, |f| f.style).into_iter().map(sheet).collect()
@@ -180,7 +185,7 @@ impl MarkBuilder<'_> {
         let mut paths: Vec<Vec<LinePoint>> = Vec::new();
         for ring in layer.features.iter().flat_map(|f| &f.rings) {
             let closed = ring.iter().chain(ring.first()).map(|xy| xy.extend(0.0));
-            paths.extend(path::lay(self.scene, &closed.collect::<Vec<_>>(), layer.lift_m));
+            paths.extend(path::lay(self.scene, &closed.collect::<Vec<_>>(), layer.lift_m, self.coarse()));
         }
         let half_px = 0.5 * width_or_none(layer.width_px);
         let style = Style { half_px, casing_px: None, hidden: layer.hidden, lift_m: layer.lift_m };
@@ -193,7 +198,7 @@ impl MarkBuilder<'_> {
         let casing_px = line.casing.map(|_| casing_of(half_px));
         let style = Style { half_px, casing_px, hidden: line.hidden, lift_m: 0.0 };
         let paths = match line.on_ground {
-            true => path::lay(self.scene, &line.points, 0.0),
+            true => path::lay(self.scene, &line.points, 0.0, self.coarse()),
             false => vec![path::as_given(&line.points)],
         };
         if !line.label.is_empty() {
@@ -274,7 +279,7 @@ impl MarkBuilder<'_> {
     /// Marks at equal distances along the lines of a layer.
     fn distances(&self, layer: &LineLayer, id: u32, requests: &mut Vec<LabelRequest>) -> Option<StrokeLayer> {
         let markers = layer.markers?;
-        let lines: Vec<_> = layer.features.iter().map(|f| path::drape(self.scene, &f.points, layer.lift_m)).collect();
+        let lines: Vec<_> = layer.features.iter().map(|f| path::drape(self.scene, &f.points, layer.lift_m, self.coarse())).collect();
         let lengths = lines.iter().filter_map(|l| l.last().map(|p| p.along));
         let every = distance::spacing(markers, lengths)?;
         let half_px = (0.5 * width_or_none(layer.width_px)).max(1.0) + 1.2;

@@ -2,7 +2,7 @@
 
 use crate::drawn::Pass;
 use crate::marks::segment;
-use crate::screen::Screen;
+use crate::screen::{COARSE_PX, Screen};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Heightfield, Scene};
 
@@ -41,8 +41,25 @@ impl LinePoint {
     }
 }
 
-/// The line draped on the drawn surface: its vertices, and points every 0.4 node spacings between them, lifted.
-pub(crate) fn drape(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<LinePoint> {
+/// The first and the last point, and those between that are about a pixel or more from the one before.
+fn thinned(points: &[DVec3], screen: &Screen) -> Vec<DVec3> {
+    let mut out: Vec<DVec3> = Vec::new();
+    for (i, &p) in points.iter().enumerate() {
+        let is_near = |last: &DVec3| p.distance(*last) < screen.pixel_size(p);
+        if i + 1 == points.len() || !out.last().is_some_and(is_near) {
+            out.push(p);
+        }
+    }
+    out
+}
+
+/// The line draped on the drawn surface: its vertices, and points every 0.4 node spacings between them, lifted; fewer of both in a coarse
+/// picture.
+///
+/// * `coarse`: the screen of a coarse picture, whose points lie about a pixel apart.
+pub(crate) fn drape(scene: &Scene, points: &[DVec3], lift_m: f64, coarse: Option<&Screen>) -> Vec<LinePoint> {
+    let thinned = coarse.map(|screen| thinned(points, screen));
+    let points = thinned.as_deref().unwrap_or(points);
     let lift = DVec3::Z * lift_m;
     let mut out: Vec<LinePoint> = Vec::with_capacity(points.len() * 3);
     let mut push = |p: DVec3, on_ground: bool| {
@@ -61,6 +78,7 @@ pub(crate) fn drape(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<LinePoi
             continue;
         }
         let ground = is_on_ground(hf, a) && is_on_ground(hf, b);
+        let step = coarse.map_or(step, |screen| screen.pixel_size(a).min(screen.pixel_size(b)).max(step));
         let n = if ground { ((b - a).truncate().length() / step).ceil().clamp(1.0, 4096.0) as usize } else { 1 };
         for i in usize::from(!first)..=n {
             let p = a.lerp(b, i as f64 / n as f64);
@@ -85,8 +103,15 @@ pub(crate) fn as_given(points: &[DVec3]) -> Vec<LinePoint> {
         .collect()
 }
 
-/// The line draped on the drawn surface, whatever its own heights, lifted: pieces without holes.
-pub(crate) fn lay(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<Vec<LinePoint>> {
+/// The line draped on the drawn surface, whatever its own heights, lifted: pieces without holes; `coarse` as in [`drape`].
+pub(crate) fn lay(
+    scene: &Scene,
+    points: &[DVec3],
+    lift_m: f64,
+    coarse: Option<&Screen>,
+) -> Vec<Vec<LinePoint>> {
+    let thinned = coarse.map(|screen| thinned(points, screen));
+    let points = thinned.as_deref().unwrap_or(points);
     let Some(hf) = scene.terrain() else { return Vec::new() };
     let step = 0.9 * hf.spacing().min_element();
     let (mut pieces, mut along) = (vec![Vec::new()], 0.0);
@@ -96,6 +121,7 @@ pub(crate) fn lay(scene: &Scene, points: &[DVec3], lift_m: f64) -> Vec<Vec<LineP
         if !length.is_finite() {
             continue;
         }
+        let step = coarse.map_or(step, |screen| pair.iter().map(|p| screen.pixel_size(*p)).fold(f64::INFINITY, f64::min).max(step));
         let n = (length / step).ceil().clamp(1.0, 65_536.0) as usize;
         for k in usize::from(i > 0)..=n {
             let xy = a.lerp(b, k as f64 / n as f64);
@@ -170,7 +196,9 @@ impl Tracer<'_> {
             && match (a.v, b.v) {
                 (None, None) => false,
                 (Some(_), Some(_)) => {
-                    off(a.v) & off(b.v) == 0 && self.pass.edge_error_px(a.on_line.p, b.on_line.p) > self.tolerance_px
+                    off(a.v) & off(b.v) == 0
+                        && !self.is_short(a.v, b.v)
+                        && self.pass.edge_error_px(a.on_line.p, b.on_line.p) > self.tolerance_px
                 }
                 _ => true,
             };
@@ -198,6 +226,13 @@ impl Tracer<'_> {
         self.open = t == 1.0;
     }
 
+    /// Whether a segment of a coarse picture is shorter than its tolerance, so that its bend does not matter.
+    fn is_short(&self, a: Option<DVec3>, b: Option<DVec3>) -> bool {
+        let pixel = |v: DVec3| self.screen.is_drawable(v).then(|| self.screen.pixel(v));
+        let ends = (a.and_then(pixel), b.and_then(pixel));
+        self.tolerance_px >= COARSE_PX && matches!(ends, (Some(a), Some(b)) if a.distance(b) <= self.tolerance_px)
+    }
+
     /// Parameters of the visible part of a segment.
     fn clip(&self, a: (DVec3, [f64; 2]), b: (DVec3, [f64; 2])) -> Option<[f64; 2]> {
         let distances = |(v, margins): (DVec3, [f64; 2])| {
@@ -208,5 +243,67 @@ impl Tracer<'_> {
 
     fn point(&self, v: DVec3, on_line: LinePoint) -> PathPoint {
         PathPoint { pixel: self.screen.pixel(v), depth: v.z, on_line }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_core::{Pinhole, Projection};
+    use belvedere_scene::{Layer, LayerKind, PaletteName, Relief, TerrainLayer};
+
+    /// Waves of 400 over a square of 20,000 by nodes 50 apart.
+    fn ground() -> Scene {
+        let n = 401;
+        let height = |i: usize| 400.0 * ((i % n) as f32 * 0.05).sin() * ((i / n) as f32 * 0.04).cos();
+        let heights = (0..n * n).map(height).collect();
+        let hf = Heightfield::measured(DVec2::new(0.0, 20e3), DVec2::splat(50.0), n, n, heights).expect("ground");
+        let terrain = TerrainLayer {
+            heightfield: hf.into(),
+            drapes: Vec::new(),
+            relief: Relief::Sun,
+            shading: None,
+            exaggeration: 1.0,
+            palette: PaletteName::Plain.into(),
+        };
+        let layer = Layer { id: "ground".into(), must_see: false, kind: LayerKind::Terrain(terrain) };
+        Scene { layers: vec![layer], ..Scene::default() }
+    }
+
+    fn screen(eye: DVec3, lens: Projection) -> Screen {
+        let target = DVec3::new(10e3, 10e3, 0.0);
+        Screen::new(&Pinhole::look_at(eye, target, DVec3::Z, lens, [268, 151], 1.0, None).expect("pinhole"))
+    }
+
+    #[test]
+    fn lines_of_coarse_pictures_have_few_points_and_lie_where_all_of_them_do() {
+        let scene = ground();
+        let at = |i: u32| {
+            let t = f64::from(i) / 20_000.0;
+            DVec2::new(2e3 + 16e3 * t, 10e3 + 4e3 * (9.0 * t).sin())
+        };
+        let line: Vec<DVec3> = (0..=20_000).map(|i| at(i).extend(0.0)).collect();
+        let perspective = Projection::Perspective { fov_y: 0.8 };
+        let eye = DVec3::new(10e3, -9e3, 5e3);
+        for lens in [perspective, Projection::Orthographic { height: 15e3 }] {
+            let screen = screen(eye, lens);
+            let image = |p: DVec3| screen.pixel(screen.view_from(p));
+            let [fine, coarse] = [None, Some(&screen)].map(|coarse| lay(&scene, &line, 2.0, coarse).concat());
+            assert!(coarse.len() * 20 < fine.len(), "{} of {} points", coarse.len(), fine.len());
+            let ends = |points: &[LinePoint]| [points[0].p, points[points.len() - 1].p];
+            assert_eq!(ends(&fine), ends(&coarse));
+            let chords: Vec<[DVec2; 2]> = coarse.windows(2).map(|pair| [image(pair[0].p), image(pair[1].p)]).collect();
+            for point in &fine {
+                let p = image(point.p);
+                let off = |[a, b]: &[DVec2; 2]| belvedere_core::polygon::to_segment(p, *a, *b).length();
+                let nearest = chords.iter().map(off).fold(f64::INFINITY, f64::min);
+                assert!(nearest < 1.0, "{p} lies {nearest} pixels beside the line");
+            }
+            // Points on the ground are draped alike.
+            let on_ground: Vec<DVec3> = fine.iter().map(|point| point.p - 2.0 * DVec3::Z).collect();
+            let draped = drape(&scene, &on_ground, 2.0, Some(&screen));
+            assert!(draped.len() * 20 < fine.len() && draped.iter().all(|point| point.on_ground));
+            assert_eq!(ends(&draped), ends(&fine));
+        }
     }
 }

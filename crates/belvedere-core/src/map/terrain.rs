@@ -53,7 +53,8 @@ impl TerrainDisocclusion {
         }
         let (g0, g1) = (self.delta.grid_from_scene(p0.truncate()), self.delta.grid_from_scene(p1.truncate()));
         let step = g1 - g0;
-        let chord = |t: f64| (1.0 - t) * self.delta_at(p0) + t * self.delta_at(p1);
+        let ends = [p0, p1].map(|p| self.delta_at(p));
+        let chord = |t: f64| (1.0 - t) * ends[0] + t * ends[1];
         let mut worst = 0.0f64;
         let mut from = 0.0;
         let mut crossings = [Crossings::new(g0.x, step.x), Crossings::new(g0.y, step.y)];

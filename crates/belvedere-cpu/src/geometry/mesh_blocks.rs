@@ -2,7 +2,7 @@
 
 use crate::geometry::block::{Block, Counts, Job, SoupTriangle, SoupVertex};
 use crate::geometry::pass::Pass;
-use crate::geometry::refine::Refiner;
+use crate::geometry::refine::{Refiner, is_short};
 use crate::screen::{ScreenVertex, Snap};
 use belvedere_composite::sections::Shown;
 use belvedere_core::{Aabb, DVec3, EdgePoint};
@@ -126,7 +126,11 @@ impl Job<'_> {
     /// The image of a triangle that may lie in the picture and needs neither clipping nor subdivision; `None` for any other.
     fn whole(&self, pass: &Pass<'_>, corners: [&Vertex; 3], judge: bool) -> Option<[ScreenVertex; 3]> {
         let [(a, beyond_a), (b, beyond_b), (c, beyond_c)] = [corners[0].image?, corners[1].image?, corners[2].image?];
+        let images = [a, b, c];
         let straight = |i: usize| {
+            if is_short(images[i], images[(i + 1) % 3], self.tolerance_px) {
+                return true;
+            }
             let (a, b) = (corners[i], corners[(i + 1) % 3]);
             // Always in the same direction: two triangles must judge their common edge alike to the last bit.
             let swap = a.p.to_array().partial_cmp(&b.p.to_array()) == Some(std::cmp::Ordering::Greater);

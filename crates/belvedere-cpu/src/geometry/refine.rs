@@ -2,7 +2,8 @@
 
 use crate::geometry::block::{SoupTriangle, SoupVertex};
 use crate::geometry::pass::Pass;
-use crate::screen::{PLANES, Screen, ScreenVertex, Snap};
+use crate::screen::{PLANES, SUB, Screen, ScreenVertex, Snap};
+use belvedere_composite::screen::COARSE_PX;
 use belvedere_core::DVec3;
 
 /// An edge is halved at most this often.
@@ -19,6 +20,12 @@ const FINE_PX: f64 = 0.5;
 const MAX_MARGIN_PX: f64 = 4096.0;
 /// Level of an edge that must not be split.
 const FROZEN: u8 = u8::MAX;
+
+/// Whether an edge of a coarse picture is no longer than its tolerance, so that its bend does not matter.
+pub(crate) fn is_short(a: ScreenVertex, b: ScreenVertex, tolerance_px: f64) -> bool {
+    let [x, y] = [a.x - b.x, a.y - b.y].map(|n| f64::from(n) / f64::from(SUB));
+    tolerance_px >= COARSE_PX && x * x + y * y <= tolerance_px * tolerance_px
+}
 
 /// A vertex before clipping.
 #[derive(Debug, Clone, Copy)]
@@ -109,6 +116,13 @@ impl<'a> Refiner<'a> {
         }
         // An edge without images matters only beside an edge with one.
         if a.v.is_none() && b.v.is_none() {
+            return 0.0;
+        }
+        let image = |c: &Corner| c.v.filter(|v| self.screen.is_drawable(*v)).map(|v| self.screen.snap(v));
+        if self.tolerance_px >= COARSE_PX
+            && let (Some(from), Some(to)) = (image(a), image(b))
+            && is_short(from, to, self.tolerance_px)
+        {
             return 0.0;
         }
         // Always in the same direction: two triangles must judge their common edge alike to the last bit.

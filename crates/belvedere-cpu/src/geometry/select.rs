@@ -4,6 +4,7 @@ use crate::geometry::locate::{Held, Locator};
 use crate::geometry::lod::{Tree, nodes};
 use crate::geometry::pass::edge_error_px;
 use crate::geometry::way::Way;
+use belvedere_composite::screen::COARSE_PX;
 use belvedere_core::{Aabb, View};
 use belvedere_scene::Heightfield;
 
@@ -91,11 +92,18 @@ impl DetailSelector<'_> {
         // Where records are clipped from each other, all of them must clip the same triangles, so level 0 is drawn.
         let coarse = level > 0 && held.whole && height_px <= self.lod_px && self.lod_px > 0.0;
         let mut bend_px = 0.0;
-        if !self.view.stages().is_empty() && (coarse || !plain) {
+        // A coarse picture judges the edges of a block only where it may be drawn.
+        let judges = coarse || (!plain && (level == 0 || self.tolerance_px < COARSE_PX));
+        if !self.view.stages().is_empty() && judges {
             let (from, to) = nodes(self.hf, level, block);
             let n = (to[0] - from[0]).max(to[1] - from[1]).div_ceil(1 << level);
-            bend_px = if held.whole { self.cells_error(&bounds, out.ways(&held, self.view), n) } else { f64::INFINITY };
-            plain |= bend_px / (1 << level) as f64 <= self.tolerance_px;
+            let plain_px = self.tolerance_px * (1 << level) as f64;
+            let most_px = if coarse { plain_px.max(self.lod_px) } else { plain_px };
+            bend_px = match held.whole {
+                true => self.cells_error(&bounds, out.ways(&held, self.view), n, most_px),
+                false => f64::INFINITY,
+            };
+            plain |= bend_px <= plain_px;
         }
         if level == 0 || (coarse && height_px + bend_px <= self.lod_px) {
             let edges = level == 0 && !plain;
@@ -129,21 +137,21 @@ impl DetailSelector<'_> {
     ///
     /// The chord of a curve that turns by a given angle deviates in proportion to its length, so the bound of the box's
     /// long edges, shared out over its cells with a factor 2 in hand, covers the cells' edges.
-    /// * `ways`: ways of all passes that draw the box.
-    fn cells_error(&self, bounds: &Aabb, ways: impl Iterator<Item = Way>, n: usize) -> f64 {
+    /// * `ways`: ways of all passes that draw the box. `most_px`: a larger error decides nothing, and infinity stands for it.
+    fn cells_error(&self, bounds: &Aabb, ways: impl Iterator<Item = Way>, n: usize, most_px: f64) -> f64 {
         let c = bounds.corners();
         let pairs = [(0, 7), (1, 6), (2, 5), (3, 4), (0, 1), (2, 3), (0, 2), (1, 3), (4, 7), (5, 6)];
         let mut worst = 0.0f64;
         for way in ways {
             for (a, b) in pairs {
-                let error = edge_error_px(self.view, way, c[a], c[b]);
-                if !error.is_finite() {
+                let error = edge_error_px(self.view, way, c[a], c[b]) * 2.0 / n as f64;
+                if !(error <= most_px) {
                     return f64::INFINITY;
                 }
                 worst = worst.max(error);
             }
         }
-        worst * 2.0 / n as f64
+        worst
     }
 
     /// Halves the neighbour beyond a side until it is at most one level coarser and the error of the seam is small enough.

@@ -105,7 +105,7 @@ impl<'a> Shader<'a> {
             })
             .collect();
         let areas = job.scene.layers.iter().enumerate().filter_map(|(i, l)| match &l.kind {
-            LayerKind::Area(a) => AreaMap::new(i as u32, a),
+            LayerKind::Area(a) => AreaMap::new(i as u32, a, &cache.areas),
             _ => None,
         });
         // The sea is drawn below all other areas.

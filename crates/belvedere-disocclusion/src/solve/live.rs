@@ -6,11 +6,12 @@ use super::super::{Field, ReferencePoint};
 use super::{TerrainMemory, TerrainSolver, in_picture};
 use crate::DisocclusionError;
 use belvedere_core::{TerrainDisocclusion, View};
-use belvedere_scene::{Cancelled, Progress, Scene};
-use std::sync::Arc;
-use std::sync::atomic::Ordering;
+use belvedere_scene::{Cancelled, Instant, Progress, Scene};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 /// Terrain disocclusion while pictures are drawn. A thread of its own solves for the newest view that was requested; every picture
 /// gets the newest ground that is solved, and the number of points that this ground hides.
@@ -48,6 +49,13 @@ struct Order {
     view: View,
 }
 
+/// Rest after each piece of work of a solver apart, as a multiple of the time that the piece took: it works a third of the time, and leaves
+/// the rest to the pictures.
+const REST: u32 = 2;
+/// Longest rest, and time between two looks at whether the work is still wanted.
+const LONGEST_REST: Duration = Duration::from_secs(1);
+const NAP: Duration = Duration::from_millis(5);
+
 type Answer = Result<Ground, DisocclusionError>;
 
 #[derive(Debug)]
@@ -69,8 +77,8 @@ impl LiveTerrain {
         Self::started(solver, scene, false)
     }
 
-    /// The same on one thread alone, for pictures that do not wait for their ground ([`LiveTerrain::newest`]): work of the solver among that
-    /// of a picture would delay it by as long as it takes.
+    /// The same on one thread alone that works a third of the time, for pictures that do not wait for their ground
+    /// ([`LiveTerrain::newest`]): work of the solver among that of a picture would delay it by as long as it takes.
     pub fn apart(solver: TerrainSolver, scene: Arc<Scene>) -> Self {
         Self::started(solver, scene, true)
     }
@@ -78,14 +86,17 @@ impl LiveTerrain {
     fn started(solver: TerrainSolver, scene: Arc<Scene>, apart: bool) -> Self {
         let (orders, inbox) = channel();
         let (outbox, answers) = channel();
-        let progress = Progress::silent();
+        let (rests, progress) = match apart.then(Rests::new) {
+            Some((rests, progress)) => (Some(rests), progress),
+            None => (None, Progress::silent()),
+        };
         let guard = solver.settings().guard;
         let own = progress.clone();
         let worker = std::thread::spawn(move || {
             let pool = apart.then(|| rayon::ThreadPoolBuilder::new().num_threads(1).build().ok()).flatten();
             match pool {
-                Some(pool) => pool.install(|| work(&solver, &scene, inbox, outbox, &own)),
-                None => work(&solver, &scene, inbox, outbox, &own),
+                Some(pool) => pool.install(|| work(&solver, &scene, inbox, outbox, (&own, rests.as_deref()))),
+                None => work(&solver, &scene, inbox, outbox, (&own, rests.as_deref())),
             }
         });
         Self { orders: Some(orders), answers, worker: Some(worker), progress, guard, frame: 0, ground: None }
@@ -171,11 +182,48 @@ impl Drop for LiveTerrain {
     }
 }
 
+/// Rests of a thread that works a third of the time.
+#[derive(Debug)]
+struct Rests {
+    /// When the work began or went on.
+    woke: Mutex<Instant>,
+    cancelled: OnceLock<Arc<AtomicBool>>,
+}
+
+impl Rests {
+    /// Progress at whose reports the thread rests.
+    fn new() -> (Arc<Self>, Progress) {
+        let rests = Arc::new(Self { woke: Mutex::new(Instant::now()), cancelled: OnceLock::new() });
+        let own = rests.clone();
+        let progress = Progress::new(move |_, _| own.rest());
+        let _ = rests.cancelled.set(progress.cancel_flag());
+        (rests, progress)
+    }
+
+    /// Begins a work.
+    fn begin(&self) {
+        *self.woke.lock().unwrap_or_else(PoisonError::into_inner) = Instant::now();
+    }
+
+    fn rest(&self) {
+        let mut woke = self.woke.lock().unwrap_or_else(PoisonError::into_inner);
+        let (began, rest) = (Instant::now(), (REST * woke.elapsed()).min(LONGEST_REST));
+        let is_wanted = || !self.cancelled.get().is_some_and(|flag| flag.load(Ordering::Relaxed));
+        while is_wanted() && began.elapsed() < rest {
+            std::thread::sleep(NAP.min(rest.saturating_sub(began.elapsed())));
+        }
+        *woke = Instant::now();
+    }
+}
+
 /// Solves for the newest view until the inbox is closed.
-fn work(solver: &TerrainSolver, scene: &Scene, inbox: Receiver<Order>, outbox: Sender<Answer>, progress: &Progress) {
+fn work(solver: &TerrainSolver, scene: &Scene, inbox: Receiver<Order>, outbox: Sender<Answer>, (progress, rests): (&Progress, Option<&Rests>)) {
     let mut memory = TerrainMemory::default();
     let mut points: Arc<[ReferencePoint]> = Arc::new([]);
     while let Ok(mut order) = inbox.recv() {
+        if let Some(rests) = rests {
+            rests.begin();
+        }
         while let Ok(newer) = inbox.try_recv() {
             order = newer;
         }
@@ -189,5 +237,31 @@ fn work(solver: &TerrainSolver, scene: &Scene, inbox: Receiver<Order>, outbox: S
         if outbox.send(ground).is_err() {
             return;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thread_apart_rests_twice_as_long_as_it_works_and_not_once_it_is_cancelled() {
+        let (rests, progress) = Rests::new();
+        let work = || std::thread::sleep(Duration::from_millis(15));
+        rests.begin();
+        for _ in 0..3 {
+            work();
+            let began = Instant::now();
+            assert!(progress.tick("work", 0.5).is_ok());
+            assert!(began.elapsed() >= Duration::from_millis(30), "{:?}", began.elapsed());
+        }
+        work();
+        work();
+        rests.begin();
+        let began = Instant::now();
+        progress.cancel_flag().store(true, Ordering::Relaxed);
+        *rests.woke.lock().expect("lock") -= Duration::from_secs(3);
+        assert!(progress.tick("work", 0.5).is_err());
+        assert!(began.elapsed() < LONGEST_REST, "a cancelled work rests");
     }
 }

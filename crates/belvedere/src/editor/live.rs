@@ -3,6 +3,7 @@
 use super::ground::{Ground, with_ground};
 use super::moving::{quick, within};
 use super::rate::{Quality, Rate, TARGET_MS};
+use super::sun::HeldSun;
 use super::thin::Thin;
 use super::{Place, THREADS, camera};
 use crate::fallback;
@@ -131,6 +132,7 @@ pub struct LiveSession {
     judging: Duration,
     judged_at: Option<Instant>,
     ground: Ground,
+    sun: HeldSun,
     thin: Thin,
     /// Pixels per point of the screen; `None`: 1.
     density: Option<f64>,
@@ -291,6 +293,7 @@ impl LiveSession {
             }
             None => self.reopened(&document, &options)?,
         };
+        self.sun.rest(order.document.light.as_ref(), *session.light());
         self.ground.last = session.view().stages().iter().find(|stage| stage.moves_ground()).cloned();
         self.session = Some(session.clone());
         Ok(session)
@@ -321,6 +324,7 @@ impl LiveSession {
         let document = with_known_planes(document, &session);
         let mut memory = self.memory.of_path_sized(image);
         let mut session = session.edited(document, &options, &mut memory)?;
+        session.resolved.light = self.sun.moving(order.document.light.as_ref(), *session.light());
         // What only a picture at rest warns of holds until the next one.
         if let Some(rested) = &self.session {
             let new = |warning: &Warning| !session.resolved.warnings.contains(warning);

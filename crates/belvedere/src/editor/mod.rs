@@ -19,6 +19,7 @@ mod rate;
 mod rays;
 mod sections;
 mod steps;
+mod sun;
 mod thin;
 mod thumbnail;
 

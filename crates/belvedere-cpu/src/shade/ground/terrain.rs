@@ -10,7 +10,7 @@ use crate::shade::ground::shadow::Shadows;
 use crate::shade::ground::surface::{MipPyramid, Surface};
 use crate::shade::ground::texture::stipple;
 use crate::shade::ground::tiles::CELL;
-use crate::shade::overlay::area::AreaMap;
+use crate::shade::overlay::area::{AreaCache, AreaMap};
 use crate::shade::overlay::drape::DrapeMap;
 use crate::shade::relief::ReliefLight;
 use crate::shade::{Shader, lod};
@@ -64,6 +64,7 @@ pub(crate) struct LightCache {
     lit: GroundCache<LitKey, Arc<LitGround>>,
     displaced: GroundCache<LitKey, DisplacedLight>,
     drapes: GroundCache<(), Arc<Vec<DrapeMap>>>,
+    pub(crate) areas: AreaCache,
 }
 
 impl<'a> TerrainShade<'a> {

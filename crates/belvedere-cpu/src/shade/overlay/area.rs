@@ -1,8 +1,13 @@
 //! Areas on the ground: point-in-polygon test and distance from the border, by a grid of edges.
 
+use crate::cache::lock;
 use belvedere_composite::color::{Rgb, linear};
 use belvedere_core::{DVec2, polygon};
 use belvedere_scene::{AreaFeature, AreaLayer, AreaSurface, Color};
+use std::sync::{Arc, Mutex};
+
+/// Largest number of indexes that are kept between frames.
+const KEPT: usize = 8;
 
 /// An area layer ready for look-up per pixel.
 #[derive(Debug)]
@@ -15,6 +20,14 @@ pub(crate) struct AreaMap {
     own_paint: Vec<(Rgb, f32)>,
     pub(crate) surface: AreaSurface,
     pub(crate) has_outline: bool,
+    index: Arc<EdgeIndex>,
+}
+
+/// Edges of areas in a grid.
+#[derive(Debug)]
+struct EdgeIndex {
+    /// All edges, in the order of the areas.
+    source: Vec<Edge>,
     min: DVec2,
     cell: DVec2,
     per_cell: DVec2,
@@ -31,11 +44,35 @@ struct Cell {
     edges: [u32; 2],
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Edge {
     a: DVec2,
     b: DVec2,
     feature: u32,
+}
+
+/// Indexes of the areas of the last frames.
+#[derive(Debug, Default)]
+pub(crate) struct AreaCache(Mutex<Vec<Arc<EdgeIndex>>>);
+
+impl AreaCache {
+    /// The index of edges, from the last frames if it was made for the same ones; `None` without edges.
+    fn get(&self, edges: Vec<Edge>) -> Option<Arc<EdgeIndex>> {
+        let known = |kept: &[Arc<EdgeIndex>]| kept.iter().position(|index| index.source == edges);
+        let mut kept = lock(&self.0);
+        if let Some(at) = known(&kept) {
+            kept[at..].rotate_left(1);
+            return kept.last().cloned();
+        }
+        drop(kept);
+        let made = Arc::new(EdgeIndex::new(edges)?);
+        let mut kept = lock(&self.0);
+        if kept.len() >= KEPT {
+            kept.remove(0);
+        }
+        kept.push(made.clone());
+        Some(made)
+    }
 }
 
 /// Distance and direction of the nearest border.
@@ -51,34 +88,47 @@ pub(crate) struct Border {
 
 impl AreaMap {
     /// `None` for a layer without a finite edge.
-    pub(crate) fn new(layer: u32, area: &AreaLayer) -> Option<Self> {
-        let edges = all_edges(area);
-        let first = edges.first()?.a;
-        let (mut min, mut max) = (first, first);
-        for e in &edges {
-            (min, max) = (min.min(e.a), max.max(e.a));
-        }
-        // About four cells per edge, near square.
-        let extent = (max - min).max(DVec2::splat(1e-6));
-        let pitch = (extent.x * extent.y / (4 * edges.len()) as f64).sqrt().max(extent.max_element() / 1024.0);
-        let size = [extent.x, extent.y].map(|e| (e / pitch).ceil().clamp(1.0, 1024.0) as usize);
-        let cell = DVec2::new(extent.x / size[0] as f64, extent.y / size[1] as f64);
-        let mut map = Self {
+    pub(crate) fn new(layer: u32, area: &AreaLayer, cache: &AreaCache) -> Option<Self> {
+        Some(Self {
             layer,
             paint: paint(area.fill),
             own_paint: own_paint(area),
             surface: area.surface,
             has_outline: area.outline.is_some(),
-            min,
-            cell,
-            per_cell: 1.0 / cell,
-            size,
-            cells: vec![Cell::default(); size[0] * size[1]],
-            features: Vec::new(),
-            edges: Vec::new(),
-        };
-        map.sort_in(&edges);
-        Some(map)
+            index: cache.get(all_edges(area))?,
+        })
+    }
+
+    /// The nearest border; infinitely far where no edge is near.
+    pub(crate) fn border(&self, p: DVec2) -> Border {
+        self.index.border(p)
+    }
+
+    /// Fill of a feature, and its opacity.
+    #[inline]
+    pub(crate) fn paint_of(&self, feature: u32) -> (Rgb, f32) {
+        self.own_paint.get(feature as usize).copied().unwrap_or(self.paint)
+    }
+}
+
+impl EdgeIndex {
+    fn new(source: Vec<Edge>) -> Option<Self> {
+        let first = source.first()?.a;
+        let (mut min, mut max) = (first, first);
+        for e in &source {
+            (min, max) = (min.min(e.a), max.max(e.a));
+        }
+        // About four cells per edge, near square.
+        let extent = (max - min).max(DVec2::splat(1e-6));
+        let pitch = (extent.x * extent.y / (4 * source.len()) as f64).sqrt().max(extent.max_element() / 1024.0);
+        let size = [extent.x, extent.y].map(|e| (e / pitch).ceil().clamp(1.0, 1024.0) as usize);
+        let cell = DVec2::new(extent.x / size[0] as f64, extent.y / size[1] as f64);
+        let cells = vec![Cell::default(); size[0] * size[1]];
+        let (features, edges) = (Vec::new(), Vec::new());
+        let mut index = Self { source: Vec::new(), min, cell, per_cell: 1.0 / cell, size, cells, features, edges };
+        index.sort_in(&source);
+        index.source = source;
+        Some(index)
     }
 
     fn sort_in(&mut self, edges: &[Edge]) {
@@ -127,8 +177,7 @@ impl AreaMap {
         normal.dot(c - e.a).abs() <= reach
     }
 
-    /// The nearest border; infinitely far where no edge is near.
-    pub(crate) fn border(&self, p: DVec2) -> Border {
+    fn border(&self, p: DVec2) -> Border {
         let far = |inside: f64, feature: u32| Border { inside, across: DVec2::X, feature };
         let g = (p - self.min) * self.per_cell;
         let reach = 0.3;
@@ -157,12 +206,6 @@ impl AreaMap {
         let holder = features.iter().copied().chain(edges.iter().map(|e| e.feature)).find(|&f| parity(f));
         let (depth, across) = (nearest.length(), nearest.normalize_or(DVec2::X));
         Border { inside: if holder.is_some() { depth } else { -depth }, across, feature: holder.unwrap_or(beside) }
-    }
-
-    /// Fill of a feature, and its opacity.
-    #[inline]
-    pub(crate) fn paint_of(&self, feature: u32) -> (Rgb, f32) {
-        self.own_paint.get(feature as usize).copied().unwrap_or(self.paint)
     }
 }
 
@@ -224,7 +267,7 @@ mod tests {
         let hole: Vec<DVec2> =
             (0..9).map(|i| DVec2::from_angle(f64::from(i) * 0.698) * 20.0 + DVec2::new(5.0, 3.0)).collect();
         let rings = vec![star, hole];
-        let map = AreaMap::new(0, &layer(rings.clone())).unwrap();
+        let map = AreaMap::new(0, &layer(rings.clone()), &AreaCache::default()).unwrap();
         let mut inside = 0;
         for i in 0..20_000 {
             let p = DVec2::new(
@@ -240,5 +283,20 @@ mod tests {
             assert_eq!(map.border(p).inside > 0.0, expected, "{p}");
         }
         assert!(inside > 3000);
+    }
+    #[test]
+    fn an_index_is_made_once_for_the_same_edges() {
+        let square = |size: f64| vec![vec![DVec2::ZERO, DVec2::X * size, DVec2::splat(size), DVec2::Y * size]];
+        let cache = AreaCache::default();
+        let index = |size: f64, width_px: f64| {
+            let area = AreaLayer { width_px, ..layer(square(size)) };
+            AreaMap::new(3, &area, &cache).unwrap().index
+        };
+        let first = index(10.0, 1.0);
+        assert!(Arc::ptr_eq(&first, &index(10.0, 0.2)), "the same edges in another style");
+        assert!(!Arc::ptr_eq(&first, &index(11.0, 1.0)), "other edges");
+        (0..KEPT).for_each(|k| drop(index(20.0 + k as f64, 1.0)));
+        assert!(!Arc::ptr_eq(&first, &index(10.0, 1.0)), "used long ago");
+        assert!(AreaMap::new(0, &layer(vec![]), &cache).is_none());
     }
 }
