@@ -107,7 +107,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     (
         "belvedere-cli",
         &["belvedere", "belvedere-bench", "belvedere-gallery"],
-        &["anyhow", "clap", "ctrlc", "indicatif", "serde_json", "tracing", "tracing-subscriber"],
+        &["anyhow", "clap", "ctrlc", "indicatif", "serde_json", "signal-hook", "tracing", "tracing-subscriber"],
     ),
 ];
 
