@@ -63,7 +63,9 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError
 fn beside(path: &Path, ending: &str, most: u64) -> Result<Option<(PathBuf, Vec<u8>)>, IoError> {
     let Some(file) = sidecar(path, ending) else { return Ok(None) };
     let size = metadata(&file).map_or(0, |m| m.len()).min(most);
-    budget::ask("the file", size.saturating_mul(TIMES)).map_err(|reason| IoError::format(&file, reason))?;
+    let asked = budget::ask(&format!("its .{ending}"), size.saturating_mul(TIMES));
+    // About the shapefile: a table alone is a file of another kind, and would be told to be one.
+    asked.map_err(|reason| IoError::format(path, reason))?;
     read_sidecar(path, &file, most).map(|bytes| Some((file, bytes)))
 }
 
