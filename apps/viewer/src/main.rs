@@ -26,6 +26,8 @@ mod native {
     pub(super) fn main() -> ExitCode {
         let args = Args::parse();
         std::panic::set_hook(Box::new(|_| {}));
+        // What is too large for the memory beside what is open becomes a notice.
+        belvedere::io::budget::count_own();
         let opening = Opening {
             files: args.files,
             allowed: args.allow_root,

@@ -5,7 +5,7 @@ mod tiles;
 use crate::record::{AreaRecord, InputFile};
 use crate::resolve::vectors::{FeatureKind, kind_of, kinds_of};
 use crate::resolve::{self, LayerRequest};
-use crate::scene_file::paths::Roots;
+use crate::scene_file::paths::{Roots, folder_of};
 use crate::scene_file::{
     AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, LayerDoc, LineDoc, LineStyleDoc, Origin, PaletteDoc, Paths,
     PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, VerticalUnit,
@@ -187,9 +187,13 @@ fn locate(name: &str, roots: &mut Roots) -> Result<String, BelvedereError> {
         return Ok(name.to_owned());
     }
     let (file, table) = split_table(Path::new(name));
-    let file = belvedere_io::fs::canonicalize(file).map_err(|e| belvedere_io::IoError::os(file, e))?;
-    roots.allowed.extend(file.parent().map(Path::to_owned));
-    let path = join_table(file, table);
+    let real = belvedere_io::fs::canonicalize(file).map_err(|e| belvedere_io::IoError::os(file, e))?;
+    let shelf = belvedere_io::fs::shelf(&real);
+    // A store of hashes keeps neighbours apart: they are found by the name that the link gives the file.
+    let named = file.file_name().filter(|_| real.parent() != Some(&shelf)).map(|name| folder_of(file).join(name));
+    roots.allowed.push(shelf);
+    roots.allowed.extend(named.as_deref().and_then(Path::parent).map(Path::to_owned));
+    let path = join_table(named.unwrap_or(real), table);
     path.to_str().map(str::to_owned).ok_or_else(|| BelvedereError::not_utf8(name))
 }
 

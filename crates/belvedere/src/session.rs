@@ -16,10 +16,10 @@ use belvedere_core::Warning;
 use belvedere_core::{Pinhole, SpaceMap, View};
 use belvedere_cpu::CpuRenderer;
 use belvedere_disocclusion::{TerrainReport, TerrainSettings};
-use belvedere_io::split_table;
+use belvedere_io::{budget, split_table};
 use belvedere_scene::{Light, Progress, Renderer, Scene, Stylisation};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Scene, view and light, from memory ([`Session::from_parts`]) or from a scene file ([`Session::open`]).
 ///
@@ -29,6 +29,8 @@ pub struct Session {
     pub(crate) loaded: Loaded,
     pub(crate) resolved: Resolved,
     pub(crate) renderer: Arc<dyn Renderer + Send + Sync>,
+    /// Bytes that the process held before the first picture.
+    pub(crate) held_before: Arc<OnceLock<u64>>,
 }
 
 /// Data read from files; they stay while the view changes.
@@ -69,7 +71,7 @@ pub(crate) struct Description {
 
 impl std::fmt::Debug for Session {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { loaded, resolved, renderer } = self;
+        let Self { loaded, resolved, renderer, held_before: _ } = self;
         f.debug_struct("Session")
             .field("loaded", loaded)
             .field("resolved", resolved)
@@ -151,7 +153,13 @@ impl Session {
     }
 
     fn together(loaded: Loaded, resolved: Resolved) -> Self {
-        Self { loaded, resolved, renderer: Arc::new(CpuRenderer::default()) }
+        Self { loaded, resolved, renderer: Arc::new(CpuRenderer::default()), held_before: Arc::default() }
+    }
+
+    /// Bytes of a budget that a picture may take. What the renderer keeps of the last picture is in its estimate and counts once.
+    pub(crate) fn bytes_for_picture(&self, budget: u64) -> u64 {
+        let held = budget::held();
+        budget::left_beside(budget, held.min(*self.held_before.get_or_init(|| held)))
     }
 
     /// The same with another renderer.

@@ -5,6 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
+/// Address space that a thread may take, bytes: its stack, and the share of the heap that the system's library reserves for it.
+const SPACE_BYTES: u64 = 66 << 20;
 /// Longest time that threads which were tried have to end.
 const END_WITHIN: Duration = Duration::from_secs(1);
 
@@ -14,7 +16,11 @@ const END_WITHIN: Duration = Duration::from_secs(1);
 /// Returns their number; 1 means that the calling thread works alone. Where they run already it changes nothing.
 pub fn start() -> usize {
     let wanted = std::env::var("RAYON_NUM_THREADS").ok().and_then(|n| n.parse().ok()).filter(|n| *n > 0);
-    let mut count = wanted.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+    let mut count = wanted.unwrap_or_else(|| {
+        // Where address space is limited (`ulimit -v`) most of it is left to the work.
+        let fit = usize::try_from(belvedere_io::budget::address_space_left() / 4 / SPACE_BYTES).unwrap_or(usize::MAX);
+        std::thread::available_parallelism().map_or(1, usize::from).min(fit.max(1))
+    });
     // A failed start of the shared threads cannot be repeated, so that of others is tried first.
     while count > 0 && !can_start(count) {
         count /= 2;

@@ -80,18 +80,83 @@ fn a_killed_picture_is_whole_or_absent() {
     assert_eq!(names(&place.path(".")), whole.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>());
 }
 
-#[test]
-fn a_full_disk_leaves_nothing_and_harms_nothing() {
-    let place = place();
-    place.write("before.png", "as it was");
-    place.write("before.png.json", "as it was");
-    // Ground that does not pack into one block.
+/// Ground that does not pack into one block, and a way over it.
+fn write_ground(place: &Place) {
     let heights: String = (0..1600).map(|i| format!("{} ", 5.0 + f64::from(i * 7919 % 97) / 30.0)).collect();
     place.write(
         "dem.asc",
         &format!("ncols 40\nnrows 40\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\n{}", heights),
     );
     place.write("way.geojson", r#"{"type":"LineString","crs":{"type":"name","properties":{"name":"EPSG:32632"}},"coordinates":[[500050,5000200,6],[500350,5000210,6]]}"#);
+}
+
+/// Two houses and a road around them.
+fn write_town(place: &Place) {
+    let feature = |properties: &str, kind: &str, coordinates: &str| {
+        format!(
+            r#"{{"type":"FeatureCollection","features":[{{"type":"Feature","properties":{properties},"geometry":{{"type":"{kind}","coordinates":{coordinates}}}}}]}}"#
+        )
+    };
+    let houses = "[[[[8.01,46.01],[8.0103,46.01],[8.0103,46.0103],[8.01,46.01]]],[[[8.011,46.01],[8.0113,46.01],[8.0113,46.0103],[8.011,46.01]]]]";
+    let road = "[[8.009,46.009],[8.013,46.009],[8.013,46.0115],[8.009,46.0115],[8.009,46.009]]";
+    place.write("houses.geojson", &feature(r#"{"building":"yes","height":9}"#, "MultiPolygon", houses));
+    place.write("roads.geojson", &feature(r#"{"highway":"secondary"}"#, "LineString", road));
+}
+
+#[test]
+fn a_killed_reveal_leaves_what_was_there_or_all_of_it() {
+    let place = Place::new();
+    write_ground(&place);
+    let args = [
+        "reveal",
+        "dem.asc",
+        "way.geojson",
+        "--source-crs",
+        "EPSG:32632",
+        "--eye",
+        "500200,5000020,+5",
+        "--look",
+        "500200,5000300",
+        "-o",
+        "a.png",
+        "--scene",
+        "b.toml",
+        "--report",
+        "r.json",
+        "--size",
+        "64x48",
+    ];
+    let all = ["a.pair.png", "a.png", "a.png.json", "b.toml", "dem.asc", "r.json", "way.geojson"];
+    for ms in MOMENTS {
+        killed(&place, &args, Duration::from_millis(ms));
+        let there: Vec<String> = names(&place.path(".")).into_iter().filter(|name| !name.starts_with('.')).collect();
+        // Names appear one by one, the files behind them are whole.
+        let parts = |name: &str| read(&place.path(name));
+        for name in &there {
+            assert!(all.contains(&name.as_str()), "{name} after {ms} ms");
+            assert!(!name.ends_with(".png") || parts(name).ends_with(b"IEND\xaeB`\x82"), "{name} after {ms} ms");
+            assert!(
+                !name.ends_with(".json") || serde_json::from_slice::<serde_json::Value>(&parts(name)).is_ok(),
+                "{name}"
+            );
+        }
+    }
+    place.ok(&[&args[..], &["--overwrite", "--quiet"]].concat());
+    assert_eq!(names(&place.path(".")), all);
+}
+
+#[test]
+fn a_full_disk_leaves_nothing_and_harms_nothing() {
+    let place = place();
+    place.write("before.png", "as it was");
+    place.write("before.png.json", "as it was");
+    write_ground(&place);
+    write_town(&place);
+    let app = place.path("app");
+    std::fs::create_dir(&app).expect("folder");
+    ["index.html", "page.css", "page.js", "kept.js", "mirror.js", "belvedere.js", "belvedere_bg.wasm"]
+        .iter()
+        .for_each(|name| std::fs::write(app.join(name), [7; 3000]).expect("written"));
     let before = names(&place.path("."));
     let program = env!("CARGO_BIN_EXE_belvedere");
     for args in [
@@ -104,6 +169,11 @@ fn a_full_disk_leaves_nothing_and_harms_nothing() {
         "disocclude dem.asc way.geojson --source-crs EPSG:32632 --eye 500200,5000020,+5 --look 500200,5000300 -o a.tif",
         "schema -o a.json",
         "demo -o demo",
+        "generalise houses.geojson roads.geojson -o city",
+        "pack s.toml -o page --app app",
+        "preset new -o own.toml --from demo",
+        "preset plot demo -o a.png",
+        "figures curved -o figures --scale 0.1",
     ] {
         // Files end after one block: what the system says of a full disk differs by its number alone.
         let limited = format!("ulimit -f 1; trap '' XFSZ; exec '{program}' {args} --no-remember --quiet");
@@ -111,7 +181,7 @@ fn a_full_disk_leaves_nothing_and_harms_nothing() {
         let said = String::from_utf8_lossy(&out.stderr).into_owned();
         assert_eq!(out.status.code(), Some(2), "{args}: {said}");
         assert!(said.lines().count() == 1 && said.starts_with("belvedere: ") && said.len() < 500, "{args}: {said}");
-        ["film", "demo"].iter().for_each(|folder| {
+        ["film", "demo", "city", "page", "figures"].iter().for_each(|folder| {
             assert!(
                 names(&place.path(folder)).iter().all(|name| name.ends_with(".toml")),
                 "{args}: {:?}",

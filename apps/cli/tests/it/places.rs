@@ -118,3 +118,25 @@ fn bad_places_are_refused_with_the_grammar() {
         assert!(line.contains(words), "{line}");
     }
 }
+
+/// Data of a store of hashes, as of git-annex: the elevation model and its .prj are links, each into a folder of its own.
+#[test]
+#[cfg(unix)]
+fn links_into_a_store_are_data_with_their_neighbours() {
+    let place = Place::new();
+    let heights: String = (0..1600).map(|i| format!("{} ", 100 + i * 7919 % 97)).collect();
+    let grid = format!("ncols 40\nnrows 40\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\n{heights}");
+    let system = "PROJCS[\"UTM 32N\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_meridian\",9],PARAMETER[\"scale_factor\",0.9996],PARAMETER[\"false_easting\",500000],PARAMETER[\"false_northing\",0],UNIT[\"metre\",1]]";
+    for (name, key, text) in [("dem.asc", "K1", grid.as_str()), ("dem.prj", "K2", system)] {
+        let folder = format!(".git/annex/objects/{key}");
+        std::fs::create_dir_all(place.path(&folder)).expect("folder");
+        place.write(&format!("{folder}/{key}"), text);
+        std::os::unix::fs::symlink(format!("{folder}/{key}"), place.path(name)).expect("link");
+    }
+    place.write("way.geojson", r#"{"type":"LineString","crs":{"type":"name","properties":{"name":"EPSG:32632"}},"coordinates":[[500050,5000200],[500350,5000210]]}"#);
+    let view = ["--eye", "500200,5000020,+50", "--look", "500200,5000300", "--size", "48x32", "-q"];
+    place.ok(&[&["reveal", "dem.asc", "way.geojson", "-o", "a.png", "--scene", "s.toml"], &view[..]].concat());
+    let scene = String::from_utf8(super::read(&place.path("s.toml"))).expect("UTF-8");
+    assert!(scene.contains("crs = \"EPSG:32632\"") && scene.contains("source = \"dem.asc\""), "{scene}");
+    place.ok(&["render", "s.toml", "-o", "b.png", "--size", "48x32", "-q", "--no-remember"]);
+}

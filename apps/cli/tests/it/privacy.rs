@@ -150,3 +150,60 @@ fn the_same_scene_and_data_in_two_folders_give_the_same_bytes() {
         assert!(a == b, "{name} differs: {} and {}", String::from_utf8_lossy(&a), String::from_utf8_lossy(&b));
     }
 }
+
+/// Ready scenes, smaller than they are.
+const SCENES: [&str; 14] = [
+    "massif",
+    "massif_curved_rays",
+    "massif_plan_oblique",
+    "massif_panorama",
+    "massif_strip",
+    "massif_terrain",
+    "street",
+    "street_split",
+    "street_sections",
+    "street_probe",
+    "church",
+    "engine_curved_rays",
+    "town",
+    "town_rigid",
+];
+
+/// A ready scene over little ground, with a mesh from a file.
+fn small_scene(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../scenes/{name}.toml"));
+    let mut text = std::fs::read_to_string(path).expect("scene");
+    for size in ["&size=513", "&size=1200"] {
+        text = text.replace(size, "");
+    }
+    text = text.replace("massif?seed=7", "massif?seed=7&size=65").replace("town?seed=7", "town?seed=7&size=500");
+    text + "\n[[layer]]\nid = \"own mesh\"\nkind = \"mesh\"\nsource = \"data/a.obj\"\n"
+}
+
+#[test]
+fn fourteen_scenes_in_two_folders_give_the_same_bytes() {
+    let places =
+        [("here", "1"), ("somewhere/quite/else", "3")].map(|(folder, threads)| (Place::new(), folder, threads));
+    let draw = |(place, folder, threads): &(Place, &str, &str)| -> Vec<(String, Vec<u8>)> {
+        std::fs::create_dir_all(place.path(folder).join("data")).expect("folder");
+        place.write(&format!("{folder}/data/a.obj"), "o a\nv 0 0 900\nv 300 0 900\nv 0 300 900\nf 1 2 3\n");
+        let drawn = SCENES.iter().flat_map(|name| {
+            let at = |ending: &str| format!("{folder}/{name}.{ending}");
+            place.write(&at("toml"), &small_scene(name));
+            place.ok(&["render", &at("toml"), "-o", &at("png"), "--size", "48x32", "-q", "--threads", threads]);
+            ["png", "png.json"].map(|ending| (format!("{name}.{ending}"), read(&place.path(&at(ending)))))
+        });
+        drawn.collect()
+    };
+    let [one, two] = &places;
+    let (one, two) = std::thread::scope(|threads| {
+        let one = threads.spawn(|| draw(one));
+        let two = draw(two);
+        (one.join().expect("drawn"), two)
+    });
+    assert_eq!((one.len(), two.len()), (28, 28));
+    for ((name, a), (_, b)) in one.into_iter().zip(two) {
+        assert!(a == b, "{name} differs");
+        assert!(!name.ends_with("json") || holds(&a, "data/a.obj"), "{name}");
+    }
+}

@@ -14,12 +14,32 @@ pub fn of_machine() -> u64 {
     }
 }
 
-/// Bytes that the limit of address space leaves to the process; `u64::MAX` without one.
-pub(super) fn address_space_left() -> u64 {
+/// Bytes that the limit of address space (`ulimit -v`) leaves to the process; `u64::MAX` without one.
+pub fn address_space_left() -> u64 {
     let text = |name: &str| std::fs::read_to_string(name).ok();
     let most = text("/proc/self/limits").and_then(|t| address_space(&t));
     let taken = || text("/proc/self/status").and_then(|t| kib(&t, "VmSize:")).unwrap_or(0);
     most.map_or(u64::MAX, |most| most.saturating_sub(taken()).max(1))
+}
+
+/// Size of a page of memory, bytes; [`pages`] is right where pages are as large.
+const PAGE: u64 = 4096;
+
+/// Memory of the process, bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Pages {
+    /// Address space.
+    pub space: u64,
+    /// Memory that is its own: without that which it shares with others, such as its own code.
+    pub held: u64,
+}
+
+/// Memory of the process; `None` where the system does not tell.
+pub fn pages() -> Option<Pages> {
+    let text = std::fs::read_to_string("/proc/self/statm").ok()?;
+    let mut fields = text.split_whitespace().map_while(|field| field.parse::<u64>().ok());
+    let [space, resident, shared] = [fields.next()?, fields.next()?, fields.next()?];
+    Some(Pages { space: space * PAGE, held: resident.saturating_sub(shared) * PAGE })
 }
 
 #[cfg(not(target_os = "linux"))]

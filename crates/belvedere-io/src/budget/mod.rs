@@ -5,12 +5,14 @@
 
 mod machine;
 
-pub use machine::of_machine;
+pub use machine::{Pages, address_space_left, of_machine, pages};
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError, TryLockError};
 
+/// Requests from this size on are tried before they are granted, bytes.
+const TRIED: u64 = 16 << 20;
 /// Words of every refusal; what can be done follows.
 const REMEDY: &str = "allow more memory";
 
@@ -21,7 +23,7 @@ static IN_WORK: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Sets the budget of the process, bytes, but no more than its limit of address space leaves; 0 = that of the machine.
 pub fn set(bytes: u64) {
-    SET.store(bytes.min(machine::address_space_left()), Ordering::Relaxed);
+    SET.store(bytes.min(address_space_left()), Ordering::Relaxed);
 }
 
 /// The budget of the process, bytes.
@@ -43,9 +45,26 @@ pub fn held() -> u64 {
     METER.get().map_or(0, |meter| meter())
 }
 
-/// Bytes of the budget that are free.
+/// Makes the memory that the process owns count; `false` where the system does not tell it.
+pub fn count_own() -> bool {
+    let tells = pages().is_some();
+    if tells {
+        count_by(|| pages().map_or(0, |pages| pages.held));
+    }
+    tells
+}
+
+/// Bytes of the budget that are free, and that the limit of address space allows.
 pub fn left() -> u64 {
-    bytes().saturating_sub(held())
+    left_beside(bytes(), held())
+}
+
+/// Bytes of a budget that some work may hold in all, and that the limit of address space allows.
+///
+/// * `others`: bytes held beside it; the rest of what the process holds is the work's own, such as a cache of its last picture.
+pub fn left_beside(budget: u64, others: u64) -> u64 {
+    let own = held().saturating_sub(others);
+    budget.saturating_sub(others).min(address_space_left().saturating_add(own))
 }
 
 /// Asks for the peak of some work.
@@ -63,7 +82,7 @@ pub fn ask(what: &str, peak: u64) -> Result<(), String> {
 pub(crate) fn ask_of(budget: u64, what: &str, peak: u64) -> Result<(), String> {
     let held = held();
     if held.saturating_add(peak) <= budget {
-        return Ok(());
+        return if is_given(peak) { Ok(()) } else { Err(not_given(what, peak)) };
     }
     let mib = |b: u64| b.div_ceil(1 << 20);
     let beside = if held > 0 { format!(" beside {} MiB in use", mib(held)) } else { String::new() };
@@ -91,25 +110,44 @@ pub fn room<T>(what: &str, count: usize) -> Result<Vec<T>, String> {
     let mut out = Vec::new();
     match out.try_reserve_exact(count) {
         Ok(()) => Ok(out),
-        Err(_) => {
-            Err(format!("{what} needs {} MiB, which this machine does not give; {REMEDY}", peak.div_ceil(1 << 20)))
-        }
+        Err(_) => Err(not_given(what, peak)),
     }
+}
+
+fn not_given(what: &str, peak: u64) -> String {
+    format!("{what} needs {} MiB, which the system does not give; {REMEDY}", peak.div_ceil(1 << 20))
+}
+
+/// Whether the system gives so much at once. A limit of address space (`ulimit -v`) counts what was reserved and is not used, too, so that
+/// less is left than the budget says.
+fn is_given(bytes: u64) -> bool {
+    if bytes < TRIED || cfg!(target_family = "wasm") {
+        return true;
+    }
+    let mut room: Vec<u8> = Vec::new();
+    let given = usize::try_from(bytes).is_ok_and(|bytes| room.try_reserve_exact(bytes).is_ok());
+    // Else the compiler leaves the request out.
+    std::hint::black_box(&room);
+    given
 }
 
 /// The file in work, until it is dropped.
 #[derive(Debug)]
-pub(crate) struct InWork(());
+pub(crate) struct InWork(PathBuf);
 
 /// Marks a file as the one in work, for the message of a budget that does not suffice.
 pub(crate) fn work_on(path: &Path) -> InWork {
     IN_WORK.lock().unwrap_or_else(PoisonError::into_inner).push(path.to_owned());
-    InWork(())
+    InWork(path.to_owned())
 }
 
 impl Drop for InWork {
     fn drop(&mut self) {
-        IN_WORK.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        let mut files = IN_WORK.lock().unwrap_or_else(PoisonError::into_inner);
+        // Files are read side by side, too, and end in any order.
+        if let Some(at) = files.iter().rposition(|file| *file == self.0) {
+            files.remove(at);
+        }
     }
 }
 
@@ -138,6 +176,24 @@ mod tests {
     fn room_beyond_the_machine_is_an_error() {
         assert!(room::<u64>("the raster", usize::MAX).is_err_and(|e| is_refusal(&e)));
         assert!(room::<u64>("the raster", 100).is_ok_and(|room| room.capacity() >= 100));
+    }
+
+    #[test]
+    fn what_the_system_does_not_give_is_refused() {
+        let text = ask_of(u64::MAX, "the raster", 1 << 62).unwrap_err();
+        assert!(text.contains("which the system does not give") && is_refusal(&text), "{text}");
+        assert_eq!(ask_of(u64::MAX, "the raster", 2 * TRIED), Ok(()));
+        assert!(left_beside(5, 7) == 0 && left_beside(7 << 20, 5 << 20) == 2 << 20);
+    }
+
+    #[test]
+    fn files_leave_the_work_in_any_order() {
+        let [first, second] = ["budget_c", "budget_d"].map(|name| work_on(Path::new(name)));
+        drop(first);
+        let has = |name: &str| IN_WORK.lock().expect("free").iter().any(|p| p == Path::new(name));
+        assert!(has("budget_d") && !has("budget_c"));
+        drop(second);
+        assert!(!has("budget_d"));
     }
 
     #[test]

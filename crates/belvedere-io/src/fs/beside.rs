@@ -26,7 +26,7 @@ pub(crate) fn sidecar(path: &Path, ending: &str) -> Option<PathBuf> {
 /// # Errors
 /// [`IoError::Os`], also for a link that leads out of the folder; [`IoError::Format`] for more than `most` bytes.
 pub(crate) fn read_sidecar(path: &Path, file: &Path, most: u64) -> Result<Vec<u8>, IoError> {
-    if !lies_below(path, file) {
+    if !may_be_read(path, file) {
         // No fault of the format: that is looked for in the file.
         let reason = "is a link that leads out of its folder; put the file itself there";
         return Err(IoError::os(file, io::Error::new(io::ErrorKind::PermissionDenied, reason)));
@@ -39,8 +39,9 @@ pub(crate) fn read_sidecar(path: &Path, file: &Path, most: u64) -> Result<Vec<u8
     super::read(file).map_err(|e| IoError::os(file, e))
 }
 
-/// Whether `file` lies in the folder of `path` or below, after links are followed; also if there is no such file.
-fn lies_below(path: &Path, file: &Path) -> bool {
+/// Whether `file` may be read because `path` names it: after links are followed it lies in the folder of `path` or below, or, where `path`
+/// itself is a link, on the same [`shelf`]; also if there is no such file.
+fn may_be_read(path: &Path, file: &Path) -> bool {
     // Entries of one archive are no links, and there are none in memory.
     let same_archive = archive_of(path) != path && archive_of(path) == archive_of(file);
     if same_archive || cfg!(target_family = "wasm") {
@@ -48,12 +49,31 @@ fn lies_below(path: &Path, file: &Path) -> bool {
     }
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match (canonicalize(folder), canonicalize(file)) {
-        (Ok(folder), Ok(file)) => file.starts_with(folder),
+        (Ok(folder), Ok(file)) => {
+            let on_one_shelf = |real: PathBuf| !real.starts_with(&folder) && file.starts_with(shelf(&real));
+            file.starts_with(&folder) || canonicalize(path).is_ok_and(on_one_shelf)
+        }
         (_, found) => found.is_err_and(|e| e.kind() == io::ErrorKind::NotFound),
     }
 }
 
-/// Path of a file that the file `path` names; refused if it is remote, absolute or leads out of the folder, also by a link.
+/// Folders by which stores of data are known whose files have hashes for names, each in a folder of its own: git-annex, and caches of DVC.
+const STORES: [[&str; 2]; 3] = [["annex", "objects"], [".dvc", "cache"], ["files", "md5"]];
+
+/// The folder in which a file is kept with those that belong to it: its own, or of a store of hashes the whole store.
+///
+/// * `real`: canonical path of the file.
+pub fn shelf(real: &Path) -> PathBuf {
+    let folder = real.parent().unwrap_or(Path::new(""));
+    let is_store = |folder: &Path| {
+        let ends_with = |[above, name]: [&str; 2]| folder.ends_with(Path::new(above).join(name));
+        STORES.into_iter().any(ends_with)
+    };
+    folder.ancestors().find(|folder| is_store(folder)).unwrap_or(folder).to_owned()
+}
+
+/// Path of a file that the file `path` names; refused if it is remote, absolute or leads out of the folder, also by a link
+/// (see `may_be_read`).
 pub(crate) fn beside(path: &Path, name: &str) -> Result<PathBuf, String> {
     let relative = Path::new(name);
     let stays =
@@ -63,7 +83,7 @@ pub(crate) fn beside(path: &Path, name: &str) -> Result<PathBuf, String> {
         return Err(format!("it names {name}, which is not a file below its own folder; put the file beside it"));
     }
     let file = path.parent().unwrap_or(Path::new("")).join(relative);
-    if !lies_below(path, &file) {
+    if !may_be_read(path, &file) {
         return Err(format!(
             "it names {}, a link that leads out of its folder; put the file itself there",
             shown(name)
@@ -115,6 +135,20 @@ pub(crate) fn percent_decoded(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn stores_of_hashes_are_one_shelf() {
+        for (file, want) in [
+            ("/data/alps/dem.asc", "/data/alps"),
+            ("/p/.git/annex/objects/X1/2f/KEY.asc/KEY.asc", "/p/.git/annex/objects"),
+            ("/p/.dvc/cache/files/md5/ab/cdef", "/p/.dvc/cache/files/md5"),
+            ("/p/.dvc/cache/ab/cdef", "/p/.dvc/cache"),
+            ("/mnt/shared/files/md5/ab/cdef", "/mnt/shared/files/md5"),
+            ("/p/objects/ab/cdef", "/p/objects/ab"),
+        ] {
+            assert_eq!(shelf(Path::new(file)), Path::new(want), "{file}");
+        }
+    }
 
     #[test]
     fn names_of_files_have_several_spellings() {

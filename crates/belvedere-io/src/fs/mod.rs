@@ -10,6 +10,7 @@ use memory as plain;
 #[cfg(target_family = "wasm")]
 pub use memory::{remove_file, write};
 
+pub use beside::shelf;
 pub(crate) use beside::{beside, percent_decoded, read_sidecar, sidecar, spellings};
 pub use packed::{File, Metadata, canonicalize, metadata, read, read_to_string, symlink_metadata};
 pub(crate) use packed::{archive_of, names_in, unpacked_size};

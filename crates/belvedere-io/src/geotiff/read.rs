@@ -200,7 +200,8 @@ impl Window<'_> {
         let Some((at, count)) = layout.chunk(plane, row, col) else { return Ok(Decoded::LeftOut) };
         let name = || format!("{} in row {}, column {}", layout.kind(), row + 1, col + 1);
         let rows = layout.rows_in(row);
-        if let Some(known) = shared.get((at, rows)) {
+        let key = (at, count, rows);
+        if let Some(known) = shared.get(key) {
             return Ok(Decoded::Shared(known));
         }
         let count = match layout.compression {
@@ -210,7 +211,7 @@ impl Window<'_> {
         self.container.source.read_into(at, count, layout.kind(), &mut scratch.raw)?;
         let result = scratch.decode(layout, self.container.big_endian, rows);
         result.map_err(|reason| format!("{} {reason}", name()))?;
-        shared.keep((at, rows), &scratch.out);
+        shared.keep(key, &scratch.out);
         Ok(Decoded::Own)
     }
 

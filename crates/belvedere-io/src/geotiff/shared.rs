@@ -5,8 +5,8 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Place in the file, and rows of the chunk.
-type Key = (u64, usize);
+/// Place in the file, its bytes, and rows of the chunk.
+type Key = (u64, u64, usize);
 
 /// Decoded chunks to which several entries of the file point.
 pub(super) struct Shared {

@@ -80,9 +80,30 @@ impl Sites {
             let text = "atoms share numbers, so the bonds that it names cannot be told; distances tell them";
             warnings.push(Warning::new(WarningKind::Fallback, text));
         }
+        check_density(&atoms)?;
         let molecule = Molecule::bonded(atoms, residues, &named).map_err(|e| e.to_string())?;
         Ok((molecule, Found { models, alternates, named_bonds: named.len(), warnings }))
     }
+}
+
+/// Most atoms in a cube of one angstrom. A diamond has 0.2; the search for bonds takes the square of them.
+const MOST_IN_A_CUBE: u32 = 100;
+
+/// An error if more atoms lie at one place than any matter has.
+fn check_density(atoms: &[Atom]) -> Result<(), String> {
+    let mut cubes: HashMap<[i64; 3], u32> = HashMap::new();
+    for atom in atoms {
+        let cube = atom.position.floor().to_array().map(|x| x as i64);
+        let count = cubes.entry(cube).or_default();
+        *count += 1;
+        if *count > MOST_IN_A_CUBE {
+            let [x, y, z] = cube;
+            return Err(format!(
+                "more than {MOST_IN_A_CUBE} atoms lie in the cube of one angstrom at {x} {y} {z}; its coordinates are damaged or not in angstrom"
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// Key of the residue in which alternate locations compete: chain, number and insertion letter of a residue.

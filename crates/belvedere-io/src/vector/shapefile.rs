@@ -1,13 +1,13 @@
 //! ESRI shapefiles: points, multipoints, polylines and polygons, with Z and M, names from the .dbf, system from the .prj.
 
 use super::{
-    Geometry, MAX_BYTES, VectorFeature, Vectors, Vertex, certainly_not_degrees, name_of, not_degrees, rings, shorten,
-    vertex,
+    Geometry, MAX_BYTES, TIMES, VectorFeature, Vectors, Vertex, certainly_not_degrees, name_of, not_degrees, rings,
+    shorten, vertex,
 };
 use crate::crs::CoordinateSystem;
-use crate::fs::{read_sidecar, sidecar};
+use crate::fs::{metadata, read_sidecar, sidecar};
 use crate::text::{table_encoding, text_of};
-use crate::{IoError, Loaded};
+use crate::{IoError, Loaded, budget};
 use belvedere_core::{Warning, WarningKind};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -61,8 +61,12 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError
 
 /// Path and bytes of the file beside a shapefile that has this ending, if there is one.
 fn beside(path: &Path, ending: &str, most: u64) -> Result<Option<(PathBuf, Vec<u8>)>, IoError> {
-    let found = sidecar(path, ending);
-    found.map(|file| read_sidecar(path, &file, most).map(|bytes| (file, bytes))).transpose()
+    let Some(file) = sidecar(path, ending) else { return Ok(None) };
+    let size = metadata(&file).map_or(0, |m| m.len()).min(most);
+    let asked = budget::ask(&format!("its .{ending}"), size.saturating_mul(TIMES));
+    // About the shapefile: a table alone is a file of another kind, and would be told to be one.
+    asked.map_err(|reason| IoError::format(path, reason))?;
+    read_sidecar(path, &file, most).map(|bytes| Some((file, bytes)))
 }
 
 /// The system, and whether a .prj states it.

@@ -17,6 +17,7 @@ mod kinds_crs;
 mod kinds_files;
 mod kinds_packed;
 mod kinds_seeded;
+mod links;
 mod meshes;
 mod molecules;
 mod open_exr;

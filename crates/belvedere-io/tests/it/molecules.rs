@@ -217,3 +217,20 @@ fn files_cut_short_anywhere_are_read_or_told() {
         made(name, &noise).expect_err("no molecule");
     }
 }
+
+/// Bonds are sought between all atoms that are near each other, so that atoms at one place would take for ever.
+#[test]
+fn atoms_that_all_lie_at_one_place_are_refused_soon() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("heap.pdb");
+    let line = |i: usize, apart: f64| {
+        let [x, y, z] = [i % 50, i / 50 % 50, i / 2500].map(|n| n as f64 * apart);
+        format!("ATOM  {:5}  CA  ALA A{:4}    {x:8.3}{y:8.3}{z:8.3}  1.00  0.00           C  \n", i % 99_999, i % 9_999)
+    };
+    let text = |apart: f64| (0..30_000).map(|i| line(i, apart)).collect::<String>();
+    std::fs::write(&path, text(0.0)).expect("written");
+    let error = load(&path).unwrap_err().to_string();
+    assert!(error.contains("atoms lie in the cube of one angstrom at 0 0 0"), "{error}");
+    std::fs::write(&path, text(1.5)).expect("written");
+    assert_eq!(load(&path).expect("a crystal").value.molecule.atoms().len(), 30_000);
+}

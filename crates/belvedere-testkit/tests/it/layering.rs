@@ -116,6 +116,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
             "ctrlc",
             "indicatif",
             "serde_json",
+            "signal-hook",
             "tempfile",
             "tracing",
             "tracing-subscriber",

@@ -4,6 +4,7 @@ use super::rate::Quality;
 use crate::overlays::{grid, widths};
 use crate::{BelvedereError, Session, fallback};
 use belvedere_core::View;
+use belvedere_io::budget;
 use belvedere_scene::{
     Compositing, Frame, Instant, Layer, LayerKind, Progress, RenderJob, RenderOptions, Scene, Stylisation,
 };
@@ -47,6 +48,7 @@ pub(super) fn quick(
         lod_px: quality.ground_px(),
         tolerance_px: quality.edge_px(),
         stylisation: session.resolved.stylisation,
+        max_bytes: session.bytes_for_picture(budget::bytes()),
         ..RenderOptions::default()
     };
     if quality.coarseness() >= UNSTYLED {

@@ -107,7 +107,7 @@ pub(crate) fn draw_view(
     let exact = !request.aux.is_empty();
     let stylisation = request.stylisation.unwrap_or(session.resolved.stylisation);
     let mut options = RenderOptions { aux: Aux { world, exact }, stylisation, ..request.quality.clone() };
-    options.max_bytes = options.max_bytes.saturating_sub(belvedere_io::budget::held());
+    options.max_bytes = session.bytes_for_picture(options.max_bytes);
     options.overlay.under.extend(grid::wanted(scene, grid).into_iter().map(|line| widths::line(line, request.density)));
     let draw = |scene: &Scene, view: &View| {
         let scene = &*widths::scaled(scene, request.density);
@@ -130,7 +130,8 @@ pub(crate) fn draw_view(
     if heatmap {
         // Names and lines are drawn over the heat map, not tinted by it.
         let aux = Aux { world: true, exact: false };
-        let options = RenderOptions { marks: false, aux, ..request.quality.clone() };
+        let max_bytes = options.max_bytes;
+        let options = RenderOptions { marks: false, aux, max_bytes, ..request.quality.clone() };
         let job = RenderJob { scene, view: &view, light: session.light(), options: &options, progress };
         let bare = request.renderer.of(session).render(&job)?;
         heatmap_max = Some(heat::paint(&mut frame, &bare, (&view, &rigid)));
@@ -138,7 +139,8 @@ pub(crate) fn draw_view(
     let highlight = (!marks.is_empty() && !request.straight)
         .then(|| {
             let aux = Aux { world: true, exact: true };
-            let options = RenderOptions { marks: false, aux, ..request.quality.clone() };
+            let max_bytes = options.max_bytes;
+            let options = RenderOptions { marks: false, aux, max_bytes, ..request.quality.clone() };
             let draw = |view: &View| {
                 let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
                 request.renderer.of(session).render(&job)
@@ -195,7 +197,8 @@ pub(crate) fn draw_camera(
     progress: &Progress,
 ) -> Result<Drawn, BelvedereError> {
     let figure = camera::figure((session.scene(), session.view()), session.ray_end(None)?, picture)?;
-    let options = RenderOptions { overlay: figure.overlay.clone(), ..request.quality.clone() };
+    let max_bytes = session.bytes_for_picture(request.quality.max_bytes);
+    let options = RenderOptions { overlay: figure.overlay.clone(), max_bytes, ..request.quality.clone() };
     let (scene, view, light) = (session.scene(), &figure.view, session.light());
     let job = RenderJob { scene, view, light, options: &options, progress };
     let mut frame = request.renderer.of(session).render(&job)?;

@@ -48,7 +48,7 @@ pub struct PictureOptions {
 
 impl Default for PictureOptions {
     fn default() -> Self {
-        let quality = RenderOptions::default();
+        let quality = RenderOptions { max_bytes: belvedere_io::budget::bytes(), ..RenderOptions::default() };
         Self {
             quality: RenderOptions { exposures: THRESHOLDS.div_ceil(quality.samples), ..quality },
             straight: false,

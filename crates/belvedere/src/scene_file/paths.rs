@@ -112,9 +112,17 @@ impl Roots {
             return Err(refused(format!("leads to {real}, outside the folder of the scene file; {outside}"), true));
         }
         match fs::metadata(&real) {
-            Ok(meta) if meta.is_file() => Ok(join_table(real, table)),
+            Ok(meta) if meta.is_file() => Ok(join_table(self.as_named(&found, &real).unwrap_or(real), table)),
             _ => Err(refuse("is not a regular file; give a file".into())),
         }
+    }
+
+    /// A link by its own name, so that the files beside it are found (`dem.prj` beside `dem.asc`); `None` unless both its folder and the folder
+    /// or store in which the file lies, with what may belong to it, are among those of the scene.
+    fn as_named(&self, found: &Path, real: &Path) -> Option<PathBuf> {
+        let named = folder_of(found).join(found.file_name()?);
+        let is_own = named != real && self.contains(named.parent()?) && self.contains(&fs::shelf(real));
+        is_own.then_some(named)
     }
 
     /// The file that a scene means by `name`, wherever it lies, as a canonical path without its table: to ask the user whether it may be

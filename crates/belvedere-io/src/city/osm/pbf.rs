@@ -2,9 +2,11 @@
 //! fileformat.proto and osmformat.proto, of which only what is used is named here.
 
 use super::Tags;
+use crate::budget;
 use glam::DVec2;
 use prost::Message;
 use prost::bytes::Bytes;
+use prost::encoding::{WireType, decode_key, decode_varint};
 use rayon::prelude::*;
 use std::io::Read;
 
@@ -255,5 +257,56 @@ fn unpacked<M: Message + Default>(blob: &[u8]) -> Result<M, String> {
         }
         (None, None) => return Err(format!("{UNKNOWN}its blobs are neither plain nor packed by zlib")),
     };
+    budget::ask("a block", decoded_bytes(&bytes))?;
     M::decode(bytes).map_err(|e| e.to_string())
+}
+
+/// Bytes that a block takes at most when it is decoded: of the numbers in it, and of its groups, objects and texts, each of which may be
+/// written in two bytes.
+fn decoded_bytes(block: &[u8]) -> u64 {
+    // While a list grows it is held twice.
+    8 * block.len() as u64 + 2 * parts(block, 2) * size_of::<Group>() as u64
+}
+
+/// Number of parts of a message that have a length, and of those in them, `levels` deep.
+fn parts(message: &[u8], levels: u32) -> u64 {
+    let (mut rest, mut count) = (message, 0);
+    while let Ok((_, wire)) = decode_key(&mut rest) {
+        let length = match wire {
+            WireType::Varint if decode_varint(&mut rest).is_ok() => 0,
+            WireType::ThirtyTwoBit => 4,
+            WireType::SixtyFourBit => 8,
+            WireType::LengthDelimited => decode_varint(&mut rest).unwrap_or(u64::MAX),
+            _ => break,
+        };
+        let Some((part, after)) = usize::try_from(length).ok().and_then(|n| rest.split_at_checked(n)) else { break };
+        if wire == WireType::LengthDelimited {
+            count += 1 + if levels > 1 { parts(part, levels - 1) } else { 0 };
+        }
+        rest = after;
+    }
+    count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Groups and nodes without content take two bytes in a file and over a hundred in memory.
+    #[test]
+    fn parts_are_counted_before_a_block_is_decoded() {
+        let group = Group {
+            nodes: vec![Node::default(); 5],
+            dense: Some(DenseNodes { id: vec![300; 40], ..DenseNodes::default() }),
+            ..Group::default()
+        };
+        let block =
+            Block { groups: vec![group, Group::default()], lat_offset: Some(-1), ..Block::default() }.encode_to_vec();
+        // The texts, the two groups, five nodes and the dense ones.
+        assert_eq!(parts(&block, 2), 3 + 6);
+        assert_eq!(parts(&block, 1), 3);
+        assert_eq!(parts(&block[..block.len() - 3], 1), 3, "a part that is cut off ends the count");
+        let empty = [0x12, 0].repeat(1 << 20);
+        assert!(decoded_bytes(&empty) > (1 << 20) * size_of::<Group>() as u64);
+    }
 }

@@ -2,8 +2,8 @@
 
 use super::pbf::{self, Blobs};
 use super::{Line, Map, Relation, Tags, is_wanted};
-use crate::IoError;
 use crate::text::text_of;
+use crate::{IoError, budget};
 use glam::DVec2;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -24,6 +24,7 @@ impl Map {
         };
         read.map_err(|e| {
             let reason = match e.strip_prefix(pbf::UNKNOWN) {
+                _ if budget::is_refusal(&e) => e,
                 Some(what) => format!("{format} cannot be read: {what}; write it anew (osmium cat, with zlib)"),
                 None => format!("{format} is damaged or cut off ({e}); fetch it again"),
             };

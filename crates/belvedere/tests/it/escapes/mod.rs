@@ -205,6 +205,43 @@ fn files_beside_files_are_no_links_out_of_the_folder() {
     }
 }
 
+/// A store of hashes below the folder of the scene, as of git-annex: links lead into it, and no further.
+#[test]
+fn links_into_a_store_of_the_scene_are_followed_and_others_are_not() {
+    for carrier in SIDECARS {
+        let folders = Folders::new(carrier);
+        let tells = tells(&folders.inside);
+        folders.opened(carrier, "");
+        let store = folders.inside.join(".git/annex/objects");
+        let into_the_store = |name: &str| {
+            let (kept, link) = (store.join(name).join(name), folders.inside.join(name));
+            fs::create_dir_all(kept.parent().expect("folder")).expect("folder");
+            if fs::symlink_metadata(&link).is_ok() {
+                fs::rename(&link, &kept).expect("moved");
+            } else {
+                fs::write(&kept, (carrier.content)()).expect("written");
+            }
+            symlink(&kept, &link).expect("link");
+            kept
+        };
+        let scene = (carrier.scene)("");
+        let main = (carrier.files)("").into_iter().map(|(name, _)| name).find(|name| scene.contains(name));
+        into_the_store(main.expect("the file of the layer"));
+        let kept = into_the_store(carrier.name);
+        forget_reading(&kept);
+        let told = opened(&folders.inside, &scene);
+        assert!(was_read(&kept) || !tells, "{} is not read: {told}", carrier.name);
+        // The file of the layer is a link into the store, the one beside it leads elsewhere.
+        let link = folders.inside.join(carrier.name);
+        fs::remove_file(&link).expect("removed");
+        symlink(&folders.canary, &link).expect("link");
+        forget_reading(&folders.canary);
+        let told = opened(&folders.inside, &scene);
+        assert!(!was_read(&folders.canary) && !told.contains("CANARY"), "{}: {told}", carrier.name);
+        assert!(told.contains("a link that leads out of its folder"), "{}: {told}", carrier.name);
+    }
+}
+
 #[test]
 fn a_page_holds_no_file_from_elsewhere() {
     let carrier = CARRIERS.iter().find(|carrier| carrier.name == "picture of an OBJ").expect("carrier");
