@@ -60,14 +60,37 @@ const VALUES: &[u64] = &[
 ];
 const BYTES: &[u8] = b"\x00\x01\x7f\x80\xff\n\r\t \"'<>{}[](),:;/\\=#-+.eE09";
 
-/// One of the seeds with one to four changes.
+/// One of the seeds with one change, or up to four.
 pub fn mutated(seeds: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
-    let mut bytes = pick(seeds, random).clone();
-    for _ in 0..1 + random.below(4) {
+    let seed = pick(seeds, random);
+    let mut bytes = seed.clone();
+    // Most files have one fault only: others are refused before the second is met.
+    for _ in 0..[1, 1, 1, 2, 3, 4][random.below(6)] {
         change(&mut bytes, seeds, random);
         bytes.truncate(MOST);
     }
+    while bytes == *seed {
+        change(&mut bytes, seeds, random);
+    }
+    if bytes.starts_with(b"\x89PNG") {
+        mend_png(&mut bytes);
+    }
     bytes
+}
+
+/// Writes the right checksums into the chunks of a PNG, without which its reader refuses any damage.
+fn mend_png(bytes: &mut [u8]) {
+    let mut at = 8;
+    while let Some(length) = bytes.get(at..at + 4).map(|b| b.iter().fold(0usize, |n, b| n << 8 | usize::from(*b))) {
+        let end = at.saturating_add(8).saturating_add(length);
+        let Some(content) = bytes.get(at + 4..end) else { return };
+        let crc = !content.iter().fold(u32::MAX, |crc, byte| {
+            (0..8).fold(crc ^ u32::from(*byte), |c, _| if c & 1 == 1 { c >> 1 ^ 0xedb8_8320 } else { c >> 1 })
+        });
+        let Some(place) = bytes.get_mut(end..end + 4) else { return };
+        place.copy_from_slice(&crc.to_be_bytes());
+        at = end + 4;
+    }
 }
 
 fn pick<'l, T>(list: &'l [T], random: &mut Random) -> &'l T {
@@ -92,25 +115,23 @@ fn change(bytes: &mut Vec<u8>, seeds: &[Vec<u8>], random: &mut Random) {
     }
     let length = bytes.len();
     let at = random.below(length);
-    match random.below(14) {
-        0 => bytes[at] ^= 1 << random.below(8),
-        1 => bytes[at] = *pick(BYTES, random),
-        2 => bytes.truncate(at),
-        3 => drop(bytes.drain(part(length, random))),
-        4 => {
+    match random.below(20) {
+        0 | 1 => bytes[at] ^= 1 << random.below(8),
+        2 => bytes[at] = *pick(BYTES, random),
+        3 => bytes.truncate(at),
+        4 => drop(bytes.drain(part(length, random))),
+        5 => {
             // A chunk again, once or so often that lists and nesting grow.
             let chunk = bytes[part(length, random)].to_vec();
             let times = if random.below(4) == 0 { 64 } else { 1 };
             bytes.splice(at..at, chunk.repeat(times));
         }
-        5 => {
+        6 => {
             let other = pick(seeds, random);
             bytes.truncate(at);
             bytes.extend(&other[random.below(other.len().max(1)).min(other.len())..]);
         }
-        6 | 7 => number_in_text(bytes, at, random),
-        8 | 9 => number_in_binary(bytes, at, random),
-        10 => {
+        7 => {
             let (a, b) = (part(length, random), part(length, random));
             let (first, second) = if a.start <= b.start { (a, b) } else { (b, a) };
             if first.end <= second.start {
@@ -119,12 +140,14 @@ fn change(bytes: &mut Vec<u8>, seeds: &[Vec<u8>], random: &mut Random) {
                 bytes.splice(first, y);
             }
         }
-        11 => {
+        8 => {
             let noise: Vec<u8> = (0..1 + random.below(8)).map(|_| random.bits() as u8).collect();
             bytes.splice(at..at, noise);
         }
-        12 => lines(bytes, random),
-        _ => words(bytes, random),
+        9 | 10 => lines(bytes, random),
+        11 | 12 => words(bytes, random),
+        13..=15 => number_in_binary(bytes, at, random),
+        _ => number_in_text(bytes, at, random),
     }
 }
 
@@ -200,11 +223,22 @@ mod tests {
 
     #[test]
     fn the_same_seed_gives_the_same_damage_and_all_of_it_differs() {
-        let seeds = [b"alpha 12.5 beta\n7 gamma -3e2\n".to_vec(), vec![0, 1, 2, 3, 250, 251, 252, 253]];
+        let seeds = crate::seeds::vectors::gpx();
         let made = |seed| mutated(&seeds, &mut Random::new(seed));
         let all: std::collections::BTreeSet<Vec<u8>> = (0..2000).map(made).collect();
         assert!((0..2000).all(|seed| made(seed) == made(seed) && made(seed).len() <= MOST));
-        assert!(all.len() > 1500, "{}", all.len());
+        assert!(all.len() > 1800, "{}", all.len());
+    }
+
+    #[test]
+    fn checksums_of_a_png_are_mended() {
+        let whole = crate::seeds::rasters::png(5, 4);
+        let mut broken = whole.clone();
+        let place = whole.len() - 4;
+        broken[place..].fill(0);
+        broken[29..33].fill(7);
+        mend_png(&mut broken);
+        assert_eq!(broken, whole);
     }
 
     #[test]
