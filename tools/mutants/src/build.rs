@@ -1,5 +1,6 @@
 //! Building the tree, and finding out which faults do not compile.
 
+use crate::Args;
 use crate::plant::Planted;
 use anyhow::{Context, Result, bail, ensure};
 use serde_json::Value;
@@ -94,9 +95,10 @@ pub(crate) fn fetch(workspace: &Path) -> Result<()> {
 }
 
 /// Compiles the libraries and returns the faults that do not compile; none if all of them compile.
-pub(crate) fn refused(tree: &Path, target: &Path, packages: &[String], planted: &Planted) -> Result<BTreeSet<usize>> {
+pub(crate) fn refused(tree: &Path, target: &Path, args: &Args, planted: &Planted) -> Result<BTreeSet<usize>> {
     let mut command = cargo(tree, target, &["check", "--offline", "--keep-going", "--message-format=json", "--lib"]);
-    command.args(packages.iter().flat_map(|p| ["-p", p])).stderr(Stdio::null());
+    command.args(args.release.then_some("--release"));
+    command.args(args.packages.iter().flat_map(|p| ["-p", p])).stderr(Stdio::null());
     let out = command.output()?;
     let mut found = BTreeSet::new();
     let mut unexplained = String::new();
@@ -137,9 +139,16 @@ fn faults_at(message: &Value, planted: &Planted) -> BTreeSet<usize> {
 }
 
 /// Builds the tests of the packages `only`, of the whole workspace if there are none.
-pub(crate) fn suites(tree: &Path, target: &Path, packages: &Packages, only: &[String]) -> Result<Vec<Suite>> {
+pub(crate) fn suites(
+    tree: &Path,
+    target: &Path,
+    packages: &Packages,
+    only: &[String],
+    release: bool,
+) -> Result<Vec<Suite>> {
     let args = ["test", "--offline", "--tests", "--no-run", "--message-format=json"];
     let mut command = cargo(tree, target, &args);
+    command.args(release.then_some("--release"));
     match only {
         [] => command.args(["--workspace", "--exclude", env!("CARGO_PKG_NAME")]),
         only => command.args(only.iter().flat_map(|p| ["-p", p])),

@@ -33,6 +33,12 @@ struct Args {
     /// Package to plant faults in, may be repeated.
     #[arg(long = "package", default_values_t = ["belvedere-core", "belvedere-disocclusion", "belvedere-io", "belvedere"].map(String::from))]
     packages: Vec<String>,
+    /// The same number of faults from each package; else every line of them has the same chance.
+    #[arg(long)]
+    each: bool,
+    /// Builds with the release profile: without checks of overflow, and with the loops of all crates optimised.
+    #[arg(long)]
+    release: bool,
     /// Tests that run at the same time.
     #[arg(long, default_value_t = 1)]
     jobs: usize,
@@ -101,7 +107,7 @@ fn main() -> Result<()> {
     );
     eprintln!("{} faults at {}", plan.chosen.len(), plan.commit);
     let only = if args.level < 2 { &plan.packages[..] } else { &[] };
-    let suites = build::suites(&home.join("tree"), &home.join("build"), &packages, only)?;
+    let suites = build::suites(&home.join("tree"), &home.join("build"), &packages, only, args.release)?;
     let results = hunt::hunt(&plan, &suites, &home, &args)?;
     let report = table::report(&plan, &results);
     std::fs::write(home.join("report.md"), &report)?;
@@ -112,14 +118,35 @@ fn main() -> Result<()> {
 /// Faults in random order, at most one per line and none inside another. There are a few more than requested, because some will not
 /// compile.
 fn draw(workspace: &Path, packages: &Packages, args: &Args) -> Result<Vec<Fault>> {
+    let mut random = Random(args.seed);
+    let enough = args.count + args.count / 3;
+    if !args.each {
+        return draw_from(workspace, packages, &args.packages, enough, &mut random);
+    }
+    let mut parts = Vec::new();
+    for package in args.packages.chunks(1) {
+        parts.push(draw_from(workspace, packages, package, enough.div_ceil(args.packages.len()), &mut random)?);
+    }
+    // In turn, so that the first ones are from all packages too.
+    let longest = parts.iter().map(Vec::len).max().unwrap_or(0);
+    Ok((0..longest).flat_map(|k| parts.iter().filter_map(move |part| part.get(k).cloned())).collect())
+}
+
+/// At most `enough` faults of these packages.
+fn draw_from(
+    workspace: &Path,
+    packages: &Packages,
+    of: &[String],
+    enough: usize,
+    random: &mut Random,
+) -> Result<Vec<Fault>> {
     let mut by_line: BTreeMap<(PathBuf, usize), Vec<Fault>> = BTreeMap::new();
-    for package in &args.packages {
+    for package in of {
         let root = packages.roots.get(package).with_context(|| format!("there is no library {package}"))?;
         for fault in find::faults(workspace, package, root)? {
             by_line.entry((fault.file.clone(), fault.line)).or_default().push(fault);
         }
     }
-    let mut random = Random(args.seed);
     let mut lines: Vec<Vec<Fault>> = by_line.into_values().collect();
     for k in (1..lines.len()).rev() {
         lines.swap(k, random.below(k + 1));
@@ -131,7 +158,7 @@ fn draw(workspace: &Path, packages: &Packages, args: &Args) -> Result<Vec<Fault>
         if !drawn.iter().any(|f| f.file == fault.file && inside(f)) {
             drawn.push(fault);
         }
-        if drawn.len() == args.count + args.count / 3 {
+        if drawn.len() == enough {
             break;
         }
     }
@@ -148,7 +175,7 @@ fn prepare(workspace: &Path, home: &Path, packages: &Packages, faults: Vec<Fault
     let mut compiling: BTreeSet<usize> = (0..faults.len()).collect();
     loop {
         let planted = plant::plant(workspace, &tree, &faults, &compiling, &roots)?;
-        let refused = build::refused(&tree, &target, &args.packages, &planted)?;
+        let refused = build::refused(&tree, &target, args, &planted)?;
         eprintln!("{} faults planted, {} do not compile", compiling.len(), refused.len());
         if refused.is_empty() {
             break;

@@ -82,7 +82,19 @@ pub(super) fn checked(json: &[u8]) -> Result<Vec<u8>, String> {
         }
     }
     check(root.get("scene"), "scenes", &root).map_err(|e| format!("it {e}"))?;
+    root.get_mut("images").and_then(Value::as_array_mut).into_iter().flatten().for_each(complete);
     serde_json::to_vec(&root).map_err(|e| e.to_string())
+}
+
+/// Gives a picture the members without which the reader panics: a picture inside the file has a type (its content tells the true one), any
+/// other has an address (an empty one is refused where it is read).
+fn complete(picture: &mut Value) {
+    let Some(picture) = picture.as_object_mut() else { return };
+    let lacks = |picture: &serde_json::Map<String, Value>, key: &str| picture.get(key).is_none_or(Value::is_null);
+    let (key, value) = if lacks(picture, "bufferView") { ("uri", "data:") } else { ("mimeType", "image/png") };
+    if lacks(picture, key) {
+        picture.insert(key.into(), value.into());
+    }
 }
 
 fn items<'r>(root: &'r Value, list: &str) -> &'r [Value] {

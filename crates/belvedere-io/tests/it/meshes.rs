@@ -246,6 +246,40 @@ fn text_stl_may_begin_with_blanks() {
     }
 }
 
+/// Found by damaged files: the reader of glTF panicked.
+#[test]
+fn gltf_pictures_without_a_type_or_an_address_are_left_out_or_read() {
+    let numbers: Vec<u8> = [0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect();
+    let mut picture = Vec::new();
+    belvedere_io::png::encode(&mut picture, 1, 1, belvedere_io::png::Channels::Rgb, &[1, 2, 3], &[]).expect("memory");
+    let (length, mut buffer) = (picture.len(), [numbers, picture].concat());
+    buffer.resize(buffer.len().next_multiple_of(3), 0);
+    let folder = tempfile::tempdir().expect("folder");
+    for (image, warned) in [
+        (r#"{"bufferView":1}"#, false),
+        (r#"{"bufferView":1,"mimeType":null}"#, false),
+        (r#"{"bufferView":1,"mimeType":"image/png"}"#, false),
+        ("{}", true),
+        (r#"{"uri":null,"mimeType":"image/png"}"#, true),
+    ] {
+        let text = format!(
+            r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
+            "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0,"TEXCOORD_0":1}},"material":0}}]}}],
+            "materials":[{{"pbrMetallicRoughness":{{"baseColorTexture":{{"index":0}}}}}}],"textures":[{{"source":0}}],"images":[{image}],
+            "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}},
+            {{"bufferView":0,"componentType":5126,"count":3,"type":"VEC2"}}],
+            "bufferViews":[{{"buffer":0,"byteLength":36}},{{"buffer":0,"byteOffset":36,"byteLength":{length}}}],
+            "buffers":[{{"byteLength":{},"uri":"data:application/octet-stream;base64,{}"}}]}}"#,
+            buffer.len(),
+            base64(&buffer)
+        );
+        let loaded = load_mesh(&write(folder.path(), "t.gltf", text.as_bytes()), &Limits::default()).expect(image);
+        assert_eq!(loaded.value.texturing.is_none(), warned, "{image}");
+        let said: Vec<_> = loaded.warnings.iter().map(|w| w.text()).collect();
+        assert_eq!(said.iter().any(|text| text.contains("left out")), warned, "{image}: {said:?}");
+    }
+}
+
 #[test]
 fn gltf_accessors_stay_inside_their_bytes() {
     let folder = tempfile::tempdir().expect("folder");

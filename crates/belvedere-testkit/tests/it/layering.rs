@@ -104,6 +104,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
         ],
     ),
     ("belvedere-testkit", &["belvedere-core", "belvedere-scene"], &["glam", "rayon"]),
+    ("belvedere-fuzz", &["belvedere"], &["anyhow", "clap", "flate2", "rusqlite", "tempfile", "zip"]),
     ("belvedere-mutants", &[], &["anyhow", "clap", "proc-macro2", "serde", "serde_json", "syn"]),
     (
         "belvedere-cli",

@@ -1,0 +1,148 @@
+//! Elevation models, pictures and grids of height changes.
+
+use super::{CORNER, written};
+use belvedere::io::geotiff::write_geotiff;
+use belvedere::io::png::{Channels, encode};
+use belvedere::io::{Affine, CrsKind, Photometric, Raster, RasterInfo, SampleType, Samples, SourceCrs};
+
+/// Nodes along a side of the ground, and their distance in metres.
+const NODES: usize = 12;
+const STEP: f64 = 50.0;
+
+fn height(i: usize) -> f64 {
+    let (x, y) = ((i % NODES) as f64, (i / NODES) as f64);
+    900.0 + 60.0 * (0.7 * x).sin() + 40.0 * (0.5 * y).cos()
+}
+
+fn ascii(number: impl Fn(f64) -> String, gap: &str, end: &str) -> Vec<u8> {
+    let mut text = format!(
+        "ncols {NODES}{end}nrows {NODES}{end}xllcorner {}{end}yllcorner {}{end}cellsize {STEP}{end}NODATA_value -9999{end}",
+        CORNER.x, CORNER.y
+    );
+    for row in 0..NODES {
+        let of = |c: usize| if (row, c) == (3, 4) { "-9999".into() } else { number(height(row * NODES + c)) };
+        text += &(0..NODES).map(of).collect::<Vec<_>>().join(gap);
+        text += end;
+    }
+    text.into_bytes()
+}
+
+/// The ground under other seeds.
+pub fn ascii_ground() -> Vec<u8> {
+    ascii(|h| format!("{h:.1}"), " ", "\n")
+}
+
+/// ESRI ASCII: usual, with decimal commas, in UTF-16.
+pub fn ascii_grids() -> Vec<Vec<u8>> {
+    let wide = String::from_utf8(ascii_ground()).expect("text").encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let commas = ascii(|h| format!("{h:.2}").replace('.', ","), ";", "\r\n");
+    vec![ascii_ground(), commas, ascii(|h| format!("{h:.3e}"), "\t", "\n"), [vec![0xff, 0xfe], wide].concat()]
+}
+
+/// Tiles of SRTM, of 13 and 16 samples along a side.
+pub fn srtm() -> Vec<Vec<u8>> {
+    let tile = |side: usize| (0..side * side).flat_map(|i| (height(i % 100) as i16).to_be_bytes()).collect();
+    vec![tile(13), tile(16)]
+}
+
+fn info(kind: SampleType, bands: usize) -> RasterInfo {
+    let mut info = RasterInfo::new("a.tif", NODES, NODES, kind);
+    let north = CORNER.y + STEP * NODES as f64;
+    info.pixel_to_model = Some(Affine([STEP, 0.0, CORNER.x, 0.0, -STEP, north]));
+    (info.crs, info.crs_kind, info.bands) = (SourceCrs::Epsg(32632), CrsKind::Projected, bands);
+    info
+}
+
+fn geotiff(info: RasterInfo, samples: Samples, mask: Option<Vec<bool>>) -> Vec<u8> {
+    let raster = Raster { info, samples, mask };
+    written("a.tif", |path| write_geotiff(path, &raster, false).expect("written"))
+}
+
+/// TIFF without compression, one strip, with an affine map and a code of the system; in both orders of bytes.
+fn plain_tiff(is_big: bool) -> Vec<u8> {
+    let two = |v: u16| if is_big { v.to_be_bytes() } else { v.to_le_bytes() };
+    let four = |v: u32| if is_big { v.to_be_bytes() } else { v.to_le_bytes() };
+    let eight = |v: f64| if is_big { v.to_be_bytes() } else { v.to_le_bytes() };
+    let samples: Vec<u8> = (0..NODES * NODES).flat_map(|i| two(height(i) as u16)).collect();
+    let scale = [STEP, STEP, 0.0].iter().flat_map(|v| eight(*v)).collect::<Vec<u8>>();
+    let tie = [0.0, 0.0, 0.0, CORNER.x, CORNER.y + STEP * NODES as f64, 0.0];
+    let tie: Vec<u8> = tie.iter().flat_map(|v| eight(*v)).collect();
+    let keys = [1u16, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32632];
+    let keys: Vec<u8> = keys.iter().flat_map(|v| two(*v)).collect();
+    let places = 8 + 2 + 12 * 12 + 4;
+    let at = |k: usize| (places + [0, scale.len(), scale.len() + tie.len()][k]) as u32;
+    let first = (places + scale.len() + tie.len() + keys.len()) as u32;
+    let side = NODES as u32;
+    let entries = [
+        (256, 4, 1, four(side)),
+        (257, 4, 1, four(side)),
+        (258, 3, 1, [two(16), two(0)].concat().try_into().expect("four")),
+        (259, 3, 1, [two(1), two(0)].concat().try_into().expect("four")),
+        (262, 3, 1, [two(1), two(0)].concat().try_into().expect("four")),
+        (273, 4, 1, four(first)),
+        (277, 3, 1, [two(1), two(0)].concat().try_into().expect("four")),
+        (278, 4, 1, four(side)),
+        (279, 4, 1, four(samples.len() as u32)),
+        (33550, 12, 3, four(at(0))),
+        (33922, 12, 6, four(at(1))),
+        (34735, 3, 16, four(at(2))),
+    ];
+    let mut out = if is_big { b"MM".to_vec() } else { b"II".to_vec() };
+    out.extend([two(42).to_vec(), four(8).to_vec(), two(entries.len() as u16).to_vec()].concat());
+    for (tag, kind, count, value) in entries {
+        out.extend([two(tag).to_vec(), two(kind).to_vec(), four(count).to_vec(), value.to_vec()].concat());
+    }
+    out.extend(four(0));
+    [out, scale, tie, keys, samples].concat()
+}
+
+/// Elevation models of several types, compressed and not.
+pub fn geotiffs() -> Vec<Vec<u8>> {
+    let all = || 0..NODES * NODES;
+    let mut gaps = info(SampleType::I16, 1);
+    gaps.nodata = Some(-9999.0);
+    let mask = all().map(|i| i % 17 != 3).collect();
+    vec![
+        geotiff(info(SampleType::F32, 1), Samples::F32(all().map(|i| height(i) as f32).collect()), None),
+        geotiff(gaps, Samples::I16(all().map(|i| height(i) as i16).collect()), Some(mask)),
+        geotiff(info(SampleType::F64, 1), Samples::F64(all().map(height).collect()), None),
+        plain_tiff(false),
+        plain_tiff(true),
+    ]
+}
+
+/// Pictures with a place: colours, with alpha, and grey of 16 bits.
+pub fn pictures() -> Vec<Vec<u8>> {
+    let colors = |bands: usize| {
+        let mut info = info(SampleType::U8, bands);
+        info.photometric = Photometric::Rgb([0, 1, 2]);
+        geotiff(info, Samples::U8((0..NODES * NODES * bands).map(|i| (i * 37) as u8).collect()), None)
+    };
+    let grey = Samples::U16((0..NODES * NODES).map(|i| (i * 400) as u16).collect());
+    vec![colors(3), colors(4), geotiff(info(SampleType::U16, 1), grey, None)]
+}
+
+/// Grids of height changes.
+pub fn deltas() -> Vec<Vec<u8>> {
+    let lowered = (0..NODES * NODES).map(|i| -((i % 7) as f64)).collect();
+    vec![geotiff(info(SampleType::F64, 1), Samples::F64(lowered), None)]
+}
+
+/// A picture of colours.
+pub fn png(width: usize, height: usize) -> Vec<u8> {
+    let pixels: Vec<u8> = (0..width * height * 3).map(|i| (i * 29) as u8).collect();
+    let mut out = Vec::new();
+    encode(&mut out, width, height, Channels::Rgb, &pixels, &[("Title", "a seed")]).expect("memory");
+    out
+}
+
+/// Pictures in colours, with alpha, in grey.
+pub fn pngs() -> Vec<Vec<u8>> {
+    let made = |channels: Channels| {
+        let pixels: Vec<u8> = (0..12 * 9 * channels.count()).map(|i| (i * 29) as u8).collect();
+        let mut out = Vec::new();
+        encode(&mut out, 12, 9, channels, &pixels, &[]).expect("memory");
+        out
+    };
+    vec![png(12, 9), made(Channels::Rgba), made(Channels::Gray)]
+}

@@ -1,0 +1,165 @@
+//! Lines, areas and points.
+
+use super::{CORNER, degrees, square, walk};
+use rusqlite::{Connection, MAIN_DB, params};
+
+fn trackpoints(name: &str) -> String {
+    let one = |(i, [x, y]): (usize, [f64; 2])| {
+        let [lon, lat] = degrees(x, y);
+        format!(
+            "<{name} lat=\"{lat:.6}\" lon=\"{lon:.6}\"><ele>{}</ele><time>2026-05-01T10:{i:02}:00Z</time></{name}>",
+            900 + i
+        )
+    };
+    walk().into_iter().enumerate().map(one).collect()
+}
+
+/// Tracks, routes and waypoints.
+pub fn gpx() -> Vec<Vec<u8>> {
+    let head =
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<gpx version=\"1.1\" xmlns=\"http://www.topografix.com/GPX/1/1\">";
+    let track = format!("<trk><name>T\u{e4}lchen &amp; Weg</name><trkseg>{}</trkseg></trk>", trackpoints("trkpt"));
+    let route = format!("<rte><name><![CDATA[Route]]></name>{}</rte>", trackpoints("rtept"));
+    vec![
+        format!("{head}{track}</gpx>").into_bytes(),
+        format!("{head}\n{route}<!-- end -->\n{track}\n</gpx>").into_bytes(),
+    ]
+}
+
+fn positions(list: &[[f64; 2]], height: bool) -> String {
+    let one = |p: &[f64; 2]| {
+        let [lon, lat] = degrees(p[0], p[1]);
+        if height { format!("[{lon:.6},{lat:.6},905.5]") } else { format!("[{lon:.6},{lat:.6}]") }
+    };
+    format!("[{}]", list.iter().map(one).collect::<Vec<_>>().join(","))
+}
+
+fn feature(kind: &str, coordinates: &str, name: &str) -> String {
+    format!(
+        r#"{{"type":"Feature","id":7,"properties":{{"name":"{name}","height":12.5,"levels":"3","natural":"water","x":null,"tags":["a",{{"b":1}}]}},"geometry":{{"type":"{kind}","coordinates":{coordinates}}}}}"#
+    )
+}
+
+fn collection(features: &[String]) -> Vec<u8> {
+    format!(r#"{{"type":"FeatureCollection","name":"seed","features":[{}]}}"#, features.join(",\n")).into_bytes()
+}
+
+/// Lines, one with heights, one of several parts; and a sequence.
+pub fn geojson_lines() -> Vec<Vec<u8>> {
+    let line = feature("LineString", &positions(&walk(), true), "Weg");
+    let parts = format!("[{},{}]", positions(&walk()[..5], false), positions(&walk()[6..], false));
+    let many = feature("MultiLineString", &parts, "W\u{fc}rm");
+    let sequence = format!("\u{1e}{line}\n\u{1e}{many}\n").into_bytes();
+    vec![collection(&[line, many]), sequence]
+}
+
+fn areas() -> Vec<String> {
+    let ring = |half| positions(&square(280.0, 260.0, half), false);
+    let holed = feature("Polygon", &format!("[{},{}]", ring(120.0), ring(40.0)), "See");
+    let many = feature(
+        "MultiPolygon",
+        &format!("[[{}],[{}]]", ring(30.0), positions(&square(450.0, 400.0, 50.0), false)),
+        "Wald",
+    );
+    vec![holed, many]
+}
+
+/// Areas with a hole and of two parts.
+pub fn geojson_areas() -> Vec<Vec<u8>> {
+    vec![collection(&areas())]
+}
+
+/// Points.
+pub fn geojson_points() -> Vec<Vec<u8>> {
+    let [lon, lat] = degrees(200.0, 300.0);
+    let one = feature("Point", &format!("[{lon:.6},{lat:.6},905.5]"), "Ort");
+    let many = feature("MultiPoint", &positions(&walk(), false), "Orte");
+    vec![collection(&[many.clone()]), collection(&[many, one])]
+}
+
+/// All kinds of geometry.
+pub fn geojson_all() -> Vec<Vec<u8>> {
+    [geojson_lines(), geojson_areas(), geojson_points()].concat()
+}
+
+fn le(ints: &[i32], floats: &[f64]) -> Vec<u8> {
+    ints.iter().flat_map(|i| i.to_le_bytes()).chain(floats.iter().flat_map(|f| f.to_le_bytes())).collect()
+}
+
+fn shapefile(kind: i32, records: &[Vec<u8>]) -> Vec<u8> {
+    let mut body = Vec::new();
+    for (k, record) in records.iter().enumerate() {
+        body.extend([k as i32 + 1, record.len() as i32 / 2].iter().flat_map(|v| v.to_be_bytes()));
+        body.extend(record);
+    }
+    let mut out = vec![0u8; 100];
+    out[..4].copy_from_slice(&9994i32.to_be_bytes());
+    out[24..28].copy_from_slice(&((100 + body.len()) as i32 / 2).to_be_bytes());
+    out[28..36].copy_from_slice(&le(&[1000, kind], &[]));
+    [out, body].concat()
+}
+
+fn flat() -> Vec<f64> {
+    walk().into_iter().flat_map(|[x, y]| [CORNER.x + x, CORNER.y + y]).collect()
+}
+
+/// Two lines, one of them in two parts.
+pub fn shapefile_lines() -> Vec<u8> {
+    let line = |parts: &[i32]| {
+        let head = [&[parts.len() as i32, 12], parts].concat();
+        [le(&[3], &[0.0; 4]), le(&head, &flat())].concat()
+    };
+    shapefile(3, &[line(&[0]), line(&[0, 6])])
+}
+
+/// Lines, and lines with heights.
+pub fn shapefiles() -> Vec<Vec<u8>> {
+    let heights: Vec<f64> = (0..14 + 14).map(|i| 900.0 + f64::from(i)).collect();
+    let line = [le(&[13], &[0.0; 4]), le(&[1, 12, 0], &flat()), le(&[], &heights)].concat();
+    vec![shapefile_lines(), shapefile(13, &[line, le(&[0], &[])])]
+}
+
+/// The table of [`shapefile_lines`].
+pub fn dbf() -> Vec<u8> {
+    let (records, fields) = (2u32, [("NAME", b'C', 10u8), ("H", b'N', 6)]);
+    let size = 1 + fields.iter().map(|f| u16::from(f.2)).sum::<u16>();
+    let mut out = vec![3, 126, 11, 26];
+    out.extend(records.to_le_bytes());
+    out.extend((32 + 32 * fields.len() as u16 + 1).to_le_bytes());
+    out.extend(size.to_le_bytes());
+    out.resize(32, 0);
+    for (name, kind, length) in fields {
+        let mut field = [0u8; 32];
+        field[..name.len()].copy_from_slice(name.as_bytes());
+        (field[11], field[16]) = (kind, length);
+        out.extend(field);
+    }
+    out.push(13);
+    out.extend(b" Weg        12.50");
+    out.extend(b" Bach         -3 ");
+    out.push(26);
+    out
+}
+
+/// A package with a table of lines.
+pub fn geopackages() -> Vec<Vec<u8>> {
+    let mut database = Connection::open_in_memory().expect("memory");
+    let tables = "PRAGMA page_size = 512; PRAGMA application_id = 1196444487;
+        CREATE TABLE gpkg_contents (table_name TEXT PRIMARY KEY, data_type TEXT, identifier TEXT, srs_id INTEGER);
+        CREATE TABLE gpkg_geometry_columns (table_name TEXT, column_name TEXT, geometry_type_name TEXT, srs_id INTEGER, z INTEGER, m INTEGER);
+        CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT, srs_id INTEGER PRIMARY KEY, organization TEXT, organization_coordsys_id INTEGER, definition TEXT);
+        INSERT INTO gpkg_spatial_ref_sys VALUES ('UTM 32N', 32632, 'EPSG', 32632, 'undefined');
+        CREATE TABLE ways (fid INTEGER PRIMARY KEY, geom BLOB, name TEXT, height REAL);
+        INSERT INTO gpkg_contents VALUES ('ways', 'features', 'ways', 32632);
+        INSERT INTO gpkg_geometry_columns VALUES ('ways', 'geom', 'GEOMETRY', 32632, 0, 0);";
+    database.execute_batch(tables).expect("tables");
+    let mut blob =
+        [b"GP\0\x01".to_vec(), 32632i32.to_le_bytes().to_vec(), vec![1], 2u32.to_le_bytes().to_vec()].concat();
+    blob.extend(12u32.to_le_bytes());
+    blob.extend(le(&[], &flat()));
+    let insert = "INSERT INTO ways (geom, name, height) VALUES (?1, ?2, 12.5)";
+    for name in ["Weg", "Bach"] {
+        database.execute(insert, params![blob, name]).expect("a row");
+    }
+    vec![database.serialize(MAIN_DB).expect("bytes").to_vec()]
+}
