@@ -60,7 +60,8 @@ impl Viewer {
         }
         let beside = serde_json::to_value(&present.1).unwrap_or_default();
         self.resumed.told = Some(present);
-        let is_untouched = is_first && self.resumed.scenes <= self.resumed.first && !is_changed && !self.resumed.gave_up;
+        let is_untouched =
+            is_first && self.resumed.scenes <= self.resumed.first && !is_changed && !self.resumed.gave_up;
         (!is_untouched).then(|| Recovered::text_of(&self.model.editor, beside).ok()).flatten()
     }
 

@@ -91,7 +91,9 @@ impl Viewer {
         };
         let [saving, discarding] = match unsaved.next {
             Next::Quit => [tr("save, then quit"), tr("quit; the changes are lost")],
-            Next::Show(_) | Next::Return(_) => [tr("save, then open the other scene"), tr("open the other scene; the changes are lost")],
+            Next::Show(_) | Next::Return(_) => {
+                [tr("save, then open the other scene"), tr("open the other scene; the changes are lost")]
+            }
         };
         let modal = Modal::new(Id::unique("unsaved")).show(ctx, |ui| {
             ui.set_max_width(340.0);

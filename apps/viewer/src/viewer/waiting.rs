@@ -99,7 +99,8 @@ impl Viewer {
 
     /// The scenes that wait, for the menu.
     pub(super) fn waiting(&self) -> Vec<WaitingScene> {
-        let title = |title: &str| if title.is_empty() { tr("the scene without a title").into() } else { title.to_owned() };
+        let title =
+            |title: &str| if title.is_empty() { tr("the scene without a title").into() } else { title.to_owned() };
         let entry = |waiting: &Waiting| WaitingScene { title: title(&waiting.title), missing: list(&waiting.missing) };
         self.resumed.waiting.iter().map(entry).collect()
     }
@@ -169,7 +170,8 @@ mod tests {
     }
 
     fn put(dir: &Path, name: &str, ending: &str) {
-        let [from, to] = [if ending == "obj" { "aside" } else { "obj" }, ending].map(|e| dir.join(format!("{name}.{e}")));
+        let [from, to] =
+            [if ending == "obj" { "aside" } else { "obj" }, ending].map(|e| dir.join(format!("{name}.{e}")));
         std::fs::rename(from, to).expect("renamed");
     }
 
