@@ -6,6 +6,7 @@ mod from_above;
 mod layout;
 mod opening;
 mod resumed;
+mod thumbnails;
 mod unsaved;
 mod waiting;
 mod welcome;
@@ -136,6 +137,7 @@ pub struct Viewer {
     find: Find,
     /// Whether the window of the bookmarks is open.
     lists_bookmarks: bool,
+    bookmark_pictures: thumbnails::BookmarkPictures,
     welcome: welcome::Welcome,
     /// Whether the sheet of a small screen is open.
     sheet: bool,
@@ -189,6 +191,7 @@ impl Viewer {
             help: false,
             find: Find::default(),
             lists_bookmarks: false,
+            bookmark_pictures: thumbnails::BookmarkPictures::default(),
             welcome: welcome::Welcome::default(),
             sheet: false,
             times: Times::default(),
@@ -459,6 +462,7 @@ impl eframe::App for Viewer {
         }
         self.overhead(&ctx);
         self.finding(&ctx);
+        self.draw_bookmarks(&ctx);
         self.bookmark_window(&ctx);
         self.welcome(&ctx);
         self.at_work(&ctx);
