@@ -12,6 +12,7 @@ mod layers;
 mod lengths;
 mod live;
 mod moving;
+mod named;
 mod object;
 mod painter;
 mod place;
