@@ -264,7 +264,7 @@ pub(crate) struct RevealArgs {
     /// Georeferenced picture laid over the ground, such as a map or an aerial photograph; may be given several times, later ones on top
     #[arg(long, value_name = "FILE", conflicts_with = "see")]
     pub(crate) drape: Vec<PathBuf>,
-    /// Write the names of lines and points
+    /// Write the names of lines, areas and points
     #[arg(long, conflicts_with = "see")]
     pub(crate) labels: bool,
     /// Draw the sea as ordinary ground

@@ -95,6 +95,14 @@ impl Application {
         }
     }
 
+    /// Says that the browser did not keep the scene: there is no room for it, or it refuses.
+    pub fn not_remembered(&self, is_full: bool) {
+        if let Some(mut viewer) = self.runner.app_mut::<Viewer>() {
+            viewer.tell_not_remembered(is_full);
+            viewer.wake().now();
+        }
+    }
+
     /// Asks an element of the tree of accessibility for an action.
     ///
     /// * `id`: of the element. `action`: `click`, `focus`, `text` or `number`; the last two set a value.

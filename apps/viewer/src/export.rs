@@ -90,14 +90,14 @@ impl Exporter {
             model.edit_on(|document| document.camera.image = image);
         }
         let idle = self.job.is_none() && self.chosen.is_none();
-        if let Some([w, h]) = model.screen_size().filter(|size| *size != image)
-            && ui
-                .button(tr("As the window"))
-                .on_hover_text(fill(tr("{0} x {1} pixels, the shape of the window"), &[&w, &h]))
-                .clicked()
-        {
-            model.edit(|document| document.camera.image = [w, h]);
-        }
+        // What stands below keeps its identity when the window gets another shape.
+        ui.scope(|ui| {
+            let Some([w, h]) = model.screen_size().filter(|size| *size != image) else { return };
+            let button = ui.button(tr("As the window"));
+            if button.on_hover_text(fill(tr("{0} x {1} pixels, the shape of the window"), &[&w, &h])).clicked() {
+                model.edit(|document| document.camera.image = [w, h]);
+            }
+        });
         ui.separator();
         ui.add_enabled_ui(idle, |ui| {
             if ui.button(tr("Export picture…")).clicked() {

@@ -205,9 +205,8 @@ impl Find {
     fn list(&self, ui: &mut Ui, bookmarks: &[Bookmark], (moved, height): (bool, f32)) -> Option<usize> {
         let answer = self.answer.as_ref()?;
         let mut clicked = None;
-        if self.coming.is_some() {
-            ui.weak(tr("reading the names"));
-        }
+        // The rows keep their identities when the names have come.
+        ui.scope(|ui| self.coming.is_some().then(|| ui.weak(tr("reading the names"))));
         ScrollArea::vertical().max_height(height.clamp(60.0, 360.0)).show(ui, |ui| {
             for (i, hit) in answer.hits.iter().enumerate() {
                 let (name, kind) = self.words(hit, bookmarks);

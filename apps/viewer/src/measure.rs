@@ -3,7 +3,7 @@
 use crate::language::{fill, tr};
 use crate::model::{Model, Tool};
 use crate::pointer::share;
-use crate::points::{coordinates, has_same_layers, image_of};
+use crate::points::{Places, coordinates, has_same_layers};
 use belvedere::core::{DVec2, DVec3};
 use belvedere::editor::{Lengths, ground_way, lengths, lengths_geojson};
 use belvedere::scene::{LayerKind, Scene, Unit};
@@ -87,8 +87,8 @@ impl Measure {
     }
 
     fn draw(&self, painter: &Painter, rect: Rect, model: &Model) {
-        let Some((_, way)) = &self.of else { return };
-        let images: Vec<Option<Pos2>> = way.iter().map(|p| image_of(*p, rect, model)).collect();
+        let (Some((_, way)), Some(places)) = (&self.of, Places::of(rect, model)) else { return };
+        let images: Vec<Option<Pos2>> = way.iter().map(|p| places.at(*p)).collect();
         for (width, color) in [(4.5, Color32::from_white_alpha(210)), (2.2, INK)] {
             for run in images.split(Option::is_none).filter(|run| run.len() > 1) {
                 let line: Vec<Pos2> = run.iter().flatten().copied().collect();
@@ -100,15 +100,17 @@ impl Measure {
     fn handles(&mut self, ui: &Ui, rect: Rect, model: &mut Model) {
         let mut moved = None;
         let mut ends = false;
-        for (i, point) in self.points.iter().enumerate() {
-            let Some(at) = image_of(*point, rect, model) else { continue };
+        let spots: Vec<Option<Pos2>> =
+            Places::of(rect, model).map_or_else(Vec::new, |places| self.points.iter().map(|p| places.at(*p)).collect());
+        for (i, at) in spots.into_iter().enumerate() {
+            let Some(at) = at else { continue };
             let (id, area) = (ui.scope_id().with(("measured", i)), Rect::from_center_size(at, vec2(GRAB, GRAB)));
             let response = ui.interact(area, id, Sense::click_and_drag()).on_hover_cursor(CursorIcon::Move);
             let name = fill(tr("Measured point {0}"), &[&(i + 1)]);
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
             let radius = if response.hovered() || response.dragged() { 6.5 } else { 5.0 };
             ui.painter().circle(at, radius, INK, Stroke::new(2.0, Color32::WHITE));
-            // The second click of a double click meets the point that the first has set.
+            // A second click on the last point ends, soon after the first or late.
             ends |= response.clicked() && i + 1 == self.points.len();
             if response.dragged()
                 && response.drag_delta() != vec2(0.0, 0.0)
@@ -138,10 +140,13 @@ impl Measure {
                 // The panel leaves the picture as much room as it can.
                 (ui.spacing_mut().interact_size.y, ui.spacing_mut().item_spacing) = (15.0, vec2(6.0, 2.0));
                 ui.strong(tr("Measured"));
-                match &self.of {
+                // The buttons below keep their identities when figures come.
+                ui.scope(|ui| match &self.of {
                     Some((of, _)) if self.points.len() > 1 => figures(ui, of, model),
-                    _ => drop(ui.label(tr("Click points in the picture; a double click or Escape ends."))),
-                }
+                    _ => drop(
+                        ui.label(tr("Click points in the picture; a second click on the last one or Escape ends.")),
+                    ),
+                });
                 self.buttons(ui, model);
             });
         });

@@ -18,6 +18,10 @@ pub(crate) enum Choice {
     GoTo(usize),
     /// Removes a bookmark.
     Forget(usize),
+    /// Shows a scene that waited for files.
+    Return(usize),
+    /// Gives up a scene that waits for files.
+    GiveUp(usize),
     /// Undoes or redoes to that number of steps.
     Step(usize),
     /// The browser forgets the files that it keeps.
@@ -30,6 +34,13 @@ pub(crate) enum Choice {
 pub(crate) struct Bookmark {
     pub(crate) name: String,
     pub(crate) camera: CameraDoc,
+}
+
+/// A scene that waits for files.
+pub(crate) struct WaitingScene {
+    pub(crate) title: String,
+    /// The files that are missing, as a list; empty: the scene can come back.
+    pub(crate) missing: String,
 }
 
 /// An entry with its keys at its right. Returns whether it was chosen.
@@ -47,10 +58,11 @@ pub(crate) fn bar(
     settings: &mut Settings,
     recent: &[PathBuf],
     bookmarks: &[Bookmark],
+    waiting: &[WaitingScene],
 ) -> Option<Choice> {
     let mut choice = None;
     MenuBar::new().ui(ui, |ui| {
-        ui.menu_button(tr("File"), |ui| choice = file(ui, recent));
+        ui.menu_button(tr("File"), |ui| choice = file(ui, recent, waiting));
         ui.menu_button(tr("Edit"), |ui| {
             let can = [model.editor.can_undo(), model.editor.can_redo()];
             for (command, can) in [Command::Undo, Command::Redo].into_iter().zip(can) {
@@ -83,7 +95,7 @@ pub(crate) fn bar(
     choice
 }
 
-fn file(ui: &mut Ui, recent: &[PathBuf]) -> Option<Choice> {
+fn file(ui: &mut Ui, recent: &[PathBuf], waiting: &[WaitingScene]) -> Option<Choice> {
     let mut choice = None;
     if item(ui, Command::Open, true) {
         choice = Some(Choice::Command(Command::Open));
@@ -106,6 +118,19 @@ fn file(ui: &mut Ui, recent: &[PathBuf]) -> Option<Choice> {
         }
     });
     ui.separator();
+    for (i, scene) in waiting.iter().enumerate() {
+        let back = ui.add_enabled(scene.missing.is_empty(), Button::new(fill(tr("Back to {0}"), &[&scene.title])));
+        if back.on_disabled_hover_text(fill(tr("It waits for {0}"), &[&scene.missing])).clicked() {
+            choice = Some(Choice::Return(i));
+        }
+        let give_up = ui.button(fill(tr("Give up {0}"), &[&scene.title]));
+        if give_up.on_hover_text(tr("Its changes are in no file; they are lost.")).clicked() {
+            choice = Some(Choice::GiveUp(i));
+        }
+    }
+    if !waiting.is_empty() {
+        ui.separator();
+    }
     #[cfg(target_family = "wasm")]
     {
         let forget = ui.button(tr("Forget my files"));

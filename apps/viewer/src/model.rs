@@ -37,6 +37,8 @@ pub(crate) enum Tool {
     Orbit,
     /// Picks what is to be kept in sight.
     Track,
+    /// Picks the residue that must be seen.
+    Residue,
     /// Sets the points of a measurement.
     Measure,
 }

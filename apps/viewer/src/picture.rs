@@ -62,7 +62,7 @@ impl PictureView {
             self.click(share(rect, at), model);
         }
         let cursor = match (model.look.tool, response.dragged()) {
-            (Tool::Track | Tool::Measure, _) => CursorIcon::Crosshair,
+            (Tool::Track | Tool::Residue | Tool::Measure, _) => CursorIcon::Crosshair,
             (_, true) => CursorIcon::Grabbing,
             (_, false) => CursorIcon::Grab,
         };
@@ -251,6 +251,15 @@ impl PictureView {
             self.picked = None;
             return;
         };
+        if model.look.tool == Tool::Residue {
+            let select = model.object_at(at, &layer);
+            if !crate::panels::layers::choose_clicked(model, &layer, select) {
+                model.notices.tell(tr("There is no molecule; click one of its atoms."));
+                return;
+            }
+            model.look.tool = Tool::Map;
+            return;
+        }
         if model.look.tool == Tool::Track {
             if !crate::panels::rays::can_track(model, &layer) {
                 model

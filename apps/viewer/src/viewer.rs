@@ -6,7 +6,9 @@ mod from_above;
 mod layout;
 mod opening;
 mod resumed;
+mod thumbnails;
 mod unsaved;
+mod waiting;
 mod welcome;
 
 use crate::builtin::BUILTIN;
@@ -96,6 +98,9 @@ struct Extra {
     look: Look,
     tab: Tab,
     bookmarks: Vec<Bookmark>,
+    /// States of scenes that wait for files.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    waiting: Vec<String>,
 }
 
 /// The application.
@@ -132,6 +137,7 @@ pub struct Viewer {
     find: Find,
     /// Whether the window of the bookmarks is open.
     lists_bookmarks: bool,
+    bookmark_pictures: thumbnails::BookmarkPictures,
     welcome: welcome::Welcome,
     /// Whether the sheet of a small screen is open.
     sheet: bool,
@@ -185,6 +191,7 @@ impl Viewer {
             help: false,
             find: Find::default(),
             lists_bookmarks: false,
+            bookmark_pictures: thumbnails::BookmarkPictures::default(),
             welcome: welcome::Welcome::default(),
             sheet: false,
             times: Times::default(),
@@ -192,11 +199,7 @@ impl Viewer {
         viewer.model.system_dialogs = opening.system_dialogs;
         match left {
             Some(left) if opening.files.is_empty() => {
-                viewer.replace(left.editor);
-                viewer.model.stay();
-                let extra: Extra = serde_json::from_value(left.extra).unwrap_or_default();
-                (viewer.model.look, viewer.panels.tab) = (extra.look, extra.tab);
-                viewer.bookmarks = extra.bookmarks;
+                viewer.take_up(left);
                 notes.push(tr("The last session did not end as it should; here is its last state.").into());
             }
             Some(mut left) if left.editor.is_changed() => {
@@ -384,6 +387,8 @@ impl Viewer {
             Choice::Recent(path) => self.open(vec![path]),
             Choice::GoTo(i) => self.go_to_bookmark(ctx, i),
             Choice::Forget(i) => self.forget_bookmark(i),
+            Choice::Return(i) => self.call_waiting(ctx, i),
+            Choice::GiveUp(i) => self.give_up(i),
             Choice::Step(steps) => self.model.editor.go_to(steps),
             #[cfg(target_family = "wasm")]
             Choice::ForgetFiles => self.forget_files(ctx),
@@ -394,7 +399,7 @@ impl Viewer {
     fn write_down(&mut self, ctx: &Context) {
         let Some(recovery) = &self.recovery else { return };
         let now = ctx.input(|input| input.time);
-        let extra = Extra { look: self.model.look.clone(), tab: self.panels.tab, bookmarks: self.bookmarks.clone() };
+        let extra = self.extra();
         let is_written =
             |(written, beside): &(_, Extra)| Arc::ptr_eq(written, self.model.document()) && *beside == extra;
         // A document that is being opened replaces the current one, so this is not written.
@@ -457,6 +462,7 @@ impl eframe::App for Viewer {
         }
         self.overhead(&ctx);
         self.finding(&ctx);
+        self.draw_bookmarks(&ctx);
         self.bookmark_window(&ctx);
         self.welcome(&ctx);
         self.at_work(&ctx);

@@ -9,27 +9,35 @@ const CLOSED_MS = 7 * 24 * 3600e3;
 // For files of a tab that is open, room is made of those that were not seen for this long.
 const OLD_MS = 24 * 3600e3;
 
-const result = (request) => new Promise((done, fail) => {
+// A browser whose store answers nothing for so long, milliseconds, counts as one that keeps nothing; files take longer.
+const ANSWER_MS = 5e3, FILE_MS = 30e3;
+
+const within = (answer, time) => new Promise((done, fail) => {
+  const timer = setTimeout(() => fail(new Error("the browser's store does not answer")), time);
+  answer.then(done, fail).finally(() => clearTimeout(timer));
+});
+const result = (request, time = ANSWER_MS) => within(new Promise((done, fail) => {
   request.onsuccess = () => done(request.result);
   request.onerror = () => fail(request.error);
-});
-const ended = (change) => new Promise((done, fail) => {
+}), time);
+const ended = (change, time = ANSWER_MS) => within(new Promise((done, fail) => {
   change.oncomplete = () => done();
   change.onerror = change.onabort = () => fail(change.error);
-});
+}), time);
 const all = (tab) => IDBKeyRange.bound([tab], [tab, []]);
 
 export class Kept {
   #db; #tab; #sizes = new Map();
 
-  // `tab`: the name of this tab and page.
-  static async open(tab) {
+  // `tab`: the name of this tab and page. `from`: that of the tab that this one is a duplicate of; its files are copied.
+  static async open(tab, from) {
     const request = indexedDB.open("belvedere", 1);
     request.onupgradeneeded = () => ["files", "tabs"].forEach((name) => request.result.createObjectStore(name));
     const kept = new Kept();
     [kept.#db, kept.#tab] = [await result(request), tab];
     await kept.touch();
     await kept.#forgetTabs(CLOSED_MS);
+    if (from) await kept.#copy(from);
     return kept;
   }
 
@@ -42,11 +50,22 @@ export class Kept {
 
   // Names and bytes of the tab's files.
   async files() {
-    const files = this.#db.transaction("files").objectStore("files");
-    const [keys, contents] = await Promise.all([result(files.getAllKeys(all(this.#tab))), result(files.getAll(all(this.#tab)))]);
-    const named = keys.map(([, name], i) => [name, contents[i]]);
+    const named = await this.#read(this.#tab);
     this.#sizes = new Map(named.map(([name, bytes]) => [name, bytes.length]));
     return named;
+  }
+
+  async #read(tab) {
+    const files = this.#db.transaction("files").objectStore("files");
+    const [keys, contents] = await Promise.all([files.getAllKeys(all(tab)), files.getAll(all(tab))].map((request) => result(request, FILE_MS)));
+    return keys.map(([, name], i) => [name, contents[i]]);
+  }
+
+  // Copies the files of another tab, as far as there is room: what either tab forgets stays with the other.
+  async #copy(tab) {
+    try {
+      for (const [name, bytes] of await this.#read(tab)) await this.put(name, bytes);
+    } catch { /* The scene says which files are missing. */ }
   }
 
   // Keeps a file; fails with a RangeError if there is no room for it.
@@ -61,7 +80,7 @@ export class Kept {
     try {
       const change = this.#db.transaction("files", "readwrite");
       change.objectStore("files").put(bytes, [this.#tab, name]);
-      await ended(change);
+      await ended(change, FILE_MS);
     } catch (e) {
       this.#sizes.delete(name);
       throw e?.name === "QuotaExceededError" ? new RangeError("full") : e;

@@ -44,9 +44,35 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", wake);
 // What the tab remembers; a browser may refuse it.
 const place = `belvedere ${location.pathname}`;
 const remembered = (name) => { try { return sessionStorage.getItem(name); } catch { return null; } };
-const remember = (name, value) => { try { sessionStorage.setItem(name, value); return true; } catch { return false; } };
-const tab = remembered("belvedere tab") ?? Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(36)).join("");
-remember("belvedere tab", tab);
+// `true`, or why it is not remembered: `full` or `refused`.
+const remember = (name, value) => {
+  try {
+    sessionStorage.setItem(name, value);
+    return true;
+  } catch (e) {
+    return e?.name === "QuotaExceededError" ? "full" : "refused";
+  }
+};
+// The name of the tab. A duplicate begins with what the other tab remembers, its name included; the other holds the lock of that name as
+// long as it is open, so the duplicate takes a new one. A page that is loaded again waits until its former self has gone.
+const LOCK_MS = 500;
+const held_alone = async (name) => {
+  if (!navigator.locks) return true;
+  return new Promise((done) => {
+    const held = () => {
+      done(true);
+      return new Promise(() => {});
+    };
+    navigator.locks.request(`${name} ${place}`, { signal: AbortSignal.timeout(LOCK_MS) }, held).catch((e) => done(e?.name !== "TimeoutError"));
+  });
+};
+const new_name = () => Array.from(crypto.getRandomValues(new Uint32Array(4)), (n) => n.toString(36)).join("");
+let tab = remembered(`belvedere tab ${location.pathname}`) ?? new_name(), duplicate_of = null;
+if (!(await held_alone(tab))) {
+  [duplicate_of, tab] = [tab, new_name()];
+  await held_alone(tab);
+}
+remember(`belvedere tab ${location.pathname}`, tab);
 
 // The bytes of a file; `told` hears how many came.
 const bytes = async (path, told) => {
@@ -95,7 +121,7 @@ try {
   });
 
   // The visitor's own files, kept for this tab. `since` is the number of the scene that was open when a file came.
-  const kept = await Kept.open(`${tab} ${place}`).catch(() => null);
+  const kept = await Kept.open(`${tab} ${place}`, duplicate_of && `${duplicate_of} ${place}`).catch(() => null);
   const since = new Map();
   let scene_number = 0;
   try {
@@ -123,11 +149,16 @@ try {
   word.hidden = true;
   if (threads) setInterval(() => application.attend(), 8);
   window.belvedere = { application, threads, loaded_ms: performance.now() - began };
+  let not_kept = true;
   const keep = () => {
     const failure = application.failure();
     if (failure) return fail(`Internal error; please report it with the scene, and load the page again. ${failure}`);
     const left = application.left();
-    if (left) remember(place, left);
+    if (!left) return;
+    const is_kept = remember(place, left);
+    // Each cause is told once, until the scene is remembered again.
+    if (is_kept !== true && is_kept !== not_kept) application.not_remembered(is_kept === "full");
+    not_kept = is_kept;
   };
   // The files of a scene that was left are forgotten.
   const tidy = () => {

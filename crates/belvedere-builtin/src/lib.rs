@@ -116,6 +116,7 @@ fn line_layer(id: &str, feature: LineFeature) -> Layer {
             lift_m: 2.0,
             markers: None,
             label_px: None,
+            marker_px: belvedere_scene::SMALL_LETTERS_PX,
         }),
     }
 }

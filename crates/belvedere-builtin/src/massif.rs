@@ -71,6 +71,7 @@ fn lake_layer(lake: Lake) -> Layer {
             surface: AreaSurface::Water,
             hidden: Hidden::Cut,
             lift_m: 0.5,
+            label_px: None,
         }),
     }
 }

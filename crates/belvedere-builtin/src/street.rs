@@ -99,6 +99,7 @@ fn area_layer(id: &str, features: Vec<AreaFeature>, fill: Color) -> Layer {
             surface: AreaSurface::Plain,
             hidden: Hidden::Cut,
             lift_m: 0.1,
+            label_px: None,
         }),
     }
 }

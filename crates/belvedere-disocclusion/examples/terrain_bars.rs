@@ -56,6 +56,7 @@ fn main() -> Result<(), Failure> {
                 surface: AreaSurface::Water,
                 hidden: Hidden::Dash,
                 lift_m: 1.0,
+                label_px: None,
             };
             layers.push(("lakes", LayerKind::Area(lakes)));
         } else {

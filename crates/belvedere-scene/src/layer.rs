@@ -158,6 +158,8 @@ pub struct LineLayer {
     pub lift_m: f64,
     /// Marks along each line at equal distances; `None` = none.
     pub markers: Option<DistanceMarkers>,
+    /// Height of the letters at those marks, pixels; usually [`crate::SMALL_LETTERS_PX`].
+    pub marker_px: f64,
     /// Height of the letters of names, pixels; `None` = no names. Each name is written once, at the middle of the longest stretch that
     /// is seen; names that would overlap earlier ones are left out.
     pub label_px: Option<f64>,
@@ -174,6 +176,7 @@ impl LineLayer {
             hidden: Hidden::Dash,
             lift_m: 1.0,
             markers: None,
+            marker_px: crate::SMALL_LETTERS_PX,
             label_px: None,
         }
     }
@@ -264,6 +267,9 @@ pub struct AreaLayer {
     pub hidden: Hidden,
     /// Height above ground for visibility, metres.
     pub lift_m: f64,
+    /// Height of the letters of names, pixels; `None` = no names. Each name is written once, in the largest of the areas that bear it, where
+    /// the point farthest from its border is seen; names that would overlap earlier ones are left out.
+    pub label_px: Option<f64>,
 }
 
 /// One point.

@@ -45,7 +45,7 @@ pub use mark::{DistanceMarkers, FeatureStyle, Hidden, PointStyle, Symbol};
 pub use mesh::{Mesh, MeshColors, MeshError, MeshLayer, triangle_lattice};
 pub use molecule::{Molecule, MoleculeLayer, MoleculeStyle};
 pub use motion::{Motion, MotionError};
-pub use overlay::{Overlay, OverlayFace, OverlayLine, OverlayPoint};
+pub use overlay::{Overlay, OverlayFace, OverlayLine, OverlayPoint, SMALL_LETTERS_PX};
 pub use placement::Placement;
 pub use progress::{Cancelled, Progress};
 pub use ramp::{Ramp, RampHeight, RampStop};

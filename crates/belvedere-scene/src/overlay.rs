@@ -3,6 +3,9 @@
 use crate::{Color, Hidden, Symbol};
 use belvedere_core::DVec3;
 
+/// Usual height of the letters at the rim of a grid and at distance marks, pixels.
+pub const SMALL_LETTERS_PX: f64 = 11.0;
+
 /// A line that belongs to no layer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OverlayLine {
@@ -20,6 +23,8 @@ pub struct OverlayLine {
     pub hidden: Hidden,
     /// Text at its visible end nearest to the bottom of the picture; possibly empty.
     pub label: String,
+    /// Height of its letters, pixels; usually [`SMALL_LETTERS_PX`].
+    pub label_px: f64,
 }
 
 /// A convex, flat polygon, translucent.

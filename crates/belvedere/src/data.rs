@@ -216,6 +216,7 @@ fn river_layer(id: String, source: Paths) -> LineDoc {
 fn write_names(layer: &mut LayerDoc) {
     match layer {
         LayerDoc::Line(line) => line.style.labels = true,
+        LayerDoc::Area(area) => area.style.labels = true,
         LayerDoc::Point(point) => point.style.labels = true,
         _ => {}
     }

@@ -4,6 +4,7 @@ mod by_property;
 mod fields;
 mod marks;
 mod paint;
+mod residues;
 mod style;
 mod volume;
 
@@ -15,6 +16,8 @@ use belvedere::Warning;
 use belvedere::editor::{with_layer_renamed, without_layer};
 use belvedere::scene_file::LayerDoc;
 use eframe::egui::{Button, CollapsingHeader, Role, Ui, WidgetInfo};
+
+pub(crate) use residues::choose_clicked;
 
 /// Shows the list.
 pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
@@ -57,8 +60,13 @@ fn one(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDoc) {
         }
         ui.weak(heard(layer.kind()));
     });
-    if let Some([seen, in_frame]) = shares(model, id).filter(|_| !is_hidden) {
-        ui.label(fill(tr("{0} visible, {1} in the frame"), &[&percent(Some(seen)), &percent(Some(in_frame))]));
+    // What is measured beside the window has its line from the start: nothing below moves under a click when it comes.
+    match shares(model, id).filter(|_| !is_hidden) {
+        Some([seen, in_frame]) => {
+            ui.label(fill(tr("{0} visible, {1} in the frame"), &[&percent(Some(seen)), &percent(Some(in_frame))]));
+        }
+        None if layer.must_see() && !is_hidden => drop(ui.weak(tr("visible share: being measured"))),
+        None => {}
     }
     steady(ui, "controls", |ui| controls(ui, model, (index, layer), is_hidden));
 }
@@ -72,6 +80,9 @@ fn controls(ui: &mut Ui, model: &mut Model, (index, layer): (usize, &LayerDoc), 
         if ui.checkbox(&mut must_see, fill(tr("{0} must be seen"), &[&id])).changed() {
             model.edit(|d| d.layer[index] = d.layer[index].with_must_see(must_see));
         }
+    }
+    if let LayerDoc::Molecule(molecule) = layer {
+        residues::show(ui, model, index, molecule);
     }
     if let Some(mut rigid) = layer.rigid() {
         let words = tr(

@@ -32,7 +32,22 @@ pub(crate) struct RaysPanel {
 impl RaysPanel {
     /// Shows the panel.
     pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model) {
-        constructors(ui, model);
+        // Scopes: what stands below keeps its identity when something above it comes or goes while a click is under way.
+        ui.scope(|ui| constructors(ui, model));
+        ui.scope(|ui| self.constructed(ui, model));
+        ui.separator();
+        turns(ui, model);
+        // Below everything, so that nothing moves under a pointer that drags.
+        if let Some(reason) = &model.violated {
+            ui.separator();
+            ui.strong(tr("Not possible like this"));
+            ui.label(reason);
+        }
+        model.handles = Some(Handles::Turns);
+    }
+
+    /// What the constructor is about.
+    fn constructed(&mut self, ui: &mut Ui, model: &mut Model) {
         match model.document().constructor.clone() {
             Some(constructor) if constructor.kind == ConstructorKind::PathPreview => {
                 self.preview(ui, model, &constructor);
@@ -44,15 +59,6 @@ impl RaysPanel {
             }
             _ => {}
         }
-        ui.separator();
-        turns(ui, model);
-        // Below everything, so that nothing moves under a pointer that drags.
-        if let Some(reason) = &model.violated {
-            ui.separator();
-            ui.strong(tr("Not possible like this"));
-            ui.label(reason);
-        }
-        model.handles = Some(Handles::Turns);
     }
 
     /// Position and length of a preview.

@@ -116,6 +116,7 @@ impl SplinePanel {
             }
             None => {}
         }
+        // Two rows: the lower one keeps its identities when the angle of the camera is known.
         ui.horizontal_wrapped(|ui| {
             if let Some(phi) = phi {
                 ui.label(fill(tr("camera {0}°"), &[&format!("{phi:.1}")]));
@@ -132,6 +133,8 @@ impl SplinePanel {
                     self.chosen = presets.presets.len();
                 }
             }
+        });
+        ui.horizontal_wrapped(|ui| {
             if ui.button(tr("Mirror")).on_hover_text(tr("near and far change places")).clicked() {
                 self.step(model, presets, PresetChange::Mirror);
             }

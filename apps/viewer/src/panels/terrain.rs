@@ -121,6 +121,36 @@ fn shares(ui: &mut Ui, model: &mut Model) {
         ui.label(tr("Visible shares appear when something must be seen and the view rests."));
         return;
     };
+    // The buttons below keep their identities, whatever was measured.
+    ui.scope(|ui| measured(ui, model, judged));
+    if judged.hidden.is_empty() {
+        ui.label(tr("Nothing in the picture that must be seen is hidden."));
+        return;
+    }
+    ui.label(fill(tr("Still hidden ({0}):"), &[&judged.hidden.len()]));
+    let mut go_to = None;
+    for (i, run) in judged.hidden.iter().take(40).enumerate() {
+        let name = if run.name.is_empty() { &run.layer_id } else { &run.name };
+        let from =
+            run.from_m.map_or_else(String::new, |from| fill(tr(" from {0} km"), &[&format!("{:.1}", from / 1000.0)]));
+        let button = ui.push_id((&run.layer_id, name, &from), |ui| ui.button(format!("{}. {name}{from}", i + 1))).inner;
+        if button.on_hover_text(tr("Look there")).clicked() {
+            go_to = Some(run.at);
+        }
+    }
+    if let Some([x, y]) = go_to {
+        let height = model.shown.as_ref().and_then(|shown| shown.session.scene().terrain()?.surface_at([x, y].into()));
+        let point = DVec3::new(x, y, height.unwrap_or(0.0));
+        model.begin_gesture();
+        model.move_camera(|camera| {
+            let by = 0.5 * (point - camera.target);
+            camera.moved(by.truncate().extend(0.0))?.zoomed(point, 1.6)
+        });
+    }
+}
+
+/// Shares before and after, and how far the picture was moved.
+fn measured(ui: &mut Ui, model: &Model, judged: &Judged) {
     let measures = &judged.measures;
     for (name, of) in [
         (tr("lines"), &measures.lines),
@@ -138,28 +168,5 @@ fn shares(ui: &mut Ui, model: &mut Model) {
     if let Some((shown, moved)) = model.shown.as_ref().and_then(|shown| Some((shown, shown.displacement?))) {
         let most = moved.most(shown.session.scene().unit);
         ui.label(fill(tr("What is in the picture was moved by up to {0}."), &[&most]));
-    }
-    if judged.hidden.is_empty() {
-        ui.label(tr("Nothing in the picture that must be seen is hidden."));
-        return;
-    }
-    ui.label(fill(tr("Still hidden ({0}):"), &[&judged.hidden.len()]));
-    let mut go_to = None;
-    for (i, run) in judged.hidden.iter().take(40).enumerate() {
-        let name = if run.name.is_empty() { &run.layer_id } else { &run.name };
-        let from =
-            run.from_m.map_or_else(String::new, |from| fill(tr(" from {0} km"), &[&format!("{:.1}", from / 1000.0)]));
-        if ui.button(format!("{}. {name}{from}", i + 1)).on_hover_text(tr("Look there")).clicked() {
-            go_to = Some(run.at);
-        }
-    }
-    if let Some([x, y]) = go_to {
-        let height = model.shown.as_ref().and_then(|shown| shown.session.scene().terrain()?.surface_at([x, y].into()));
-        let point = DVec3::new(x, y, height.unwrap_or(0.0));
-        model.begin_gesture();
-        model.move_camera(|camera| {
-            let by = 0.5 * (point - camera.target);
-            camera.moved(by.truncate().extend(0.0))?.zoomed(point, 1.6)
-        });
     }
 }

@@ -1,10 +1,17 @@
 //! Views kept under names: a window to rename, order and remove them.
 
 use super::Viewer;
+use super::layout::SMALL;
 use crate::language::{fill, tr};
 use crate::menu::Bookmark;
 use belvedere::io::fs;
-use eframe::egui::{Button, Context, Grid, Role, ScrollArea, TextEdit, Ui, WidgetInfo, Window};
+use eframe::egui::{
+    Button, Color32, Context, Grid, Pos2, Rect, Role, ScrollArea, Sense, TextEdit, TextureHandle, Ui, Vec2, WidgetInfo,
+    Window, pos2, vec2,
+};
+
+/// Size of a picture in the list, points.
+const PICTURE: Vec2 = vec2(64.0, 36.0);
 
 /// A change of the list.
 enum Change {
@@ -53,15 +60,20 @@ impl Viewer {
     pub(super) fn bookmark_window(&mut self, ctx: &Context) {
         let mut open = self.lists_bookmarks;
         let (mut change, mut renamed) = (None, false);
-        let corner = self.picture.middle_top + eframe::egui::vec2(-150.0, 60.0);
+        let corner = self.picture.middle_top + vec2(-150.0, 60.0);
         Window::new(tr("Bookmarks")).open(&mut open).resizable(false).default_pos(corner).show(ctx, |ui| {
             if self.bookmarks.is_empty() {
                 ui.label(tr("There is none yet: B keeps the present view."));
             }
+            // On a small screen the names and buttons take all its width.
+            let pictures = (ctx.content_rect().width() >= SMALL).then_some(&self.bookmark_pictures);
             let last = self.bookmarks.len().saturating_sub(1);
             ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
-                Grid::new("bookmarks").num_columns(5).show(ui, |ui| {
+                Grid::new("bookmarks").num_columns(6).show(ui, |ui| {
                     for (i, bookmark) in self.bookmarks.iter_mut().enumerate() {
+                        if let Some(pictures) = pictures {
+                            picture(ui, bookmark, pictures.of(bookmark));
+                        }
                         renamed |= name_field(ui, i, &mut bookmark.name);
                         let name = bookmark.name.as_str();
                         for (enabled, sign, label, what) in [
@@ -92,6 +104,18 @@ impl Viewer {
         if renamed {
             self.remember_bookmarks();
         }
+    }
+}
+
+/// A small picture of a bookmark, or its place.
+fn picture(ui: &mut Ui, bookmark: &Bookmark, texture: Option<&TextureHandle>) {
+    let (rect, response) = ui.allocate_exact_size(PICTURE, Sense::hover());
+    ui.painter().rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
+    if let Some(texture) = texture {
+        let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+        ui.painter().image(texture.id(), rect, whole, Color32::WHITE);
+        let name = fill(tr("Picture of {0}"), &[&bookmark.name]);
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
     }
 }
 

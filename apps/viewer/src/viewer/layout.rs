@@ -2,7 +2,7 @@
 
 use super::Viewer;
 use crate::language::tr;
-use crate::menu;
+use crate::menu::{self, Choice};
 use eframe::egui::{Align2, Area, Button, CentralPanel, Frame, Id, Order, Panel, Rect, Ui, pos2, vec2};
 
 /// Width of a window below which the picture fills it and the panel is a sheet, points.
@@ -15,12 +15,15 @@ const SHEET: f32 = 0.46;
 const GRIP: f32 = 40.0;
 
 impl Viewer {
+    fn menu(&mut self, ui: &mut Ui) -> Option<Choice> {
+        let (waiting, recent) = (self.waiting(), &self.remembered.recent);
+        menu::bar(ui, &mut self.model, &mut self.settings, recent, &self.bookmarks, &waiting)
+    }
+
     /// Menu above, panel to the left, picture in the rest.
     pub(super) fn large(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
-        let choice = Panel::top("menu")
-            .show(ui, |ui| menu::bar(ui, &mut self.model, &mut self.settings, &self.remembered.recent, &self.bookmarks))
-            .inner;
+        let choice = Panel::top("menu").show(ui, |ui| self.menu(ui)).inner;
         if let Some(choice) = choice {
             self.choose(&ctx, choice);
         }
@@ -47,7 +50,7 @@ impl Viewer {
         let choice = top.show(&ctx, |ui| {
             Frame::side_top_panel(ui.style()).show(ui, |ui| {
                 ui.set_width(room.width() - 16.0);
-                menu::bar(ui, &mut self.model, &mut self.settings, &self.remembered.recent, &self.bookmarks)
+                self.menu(ui)
             })
         });
         if let Some(choice) = choice.inner.inner {

@@ -1,18 +1,16 @@
 //! What a page keeps for the time when it is loaded again: the scene as it was, and which files it needs.
 
-use super::unsaved::Next;
+use super::waiting::{Waiting, each_file, missing};
 use super::{Extra, Viewer};
-use crate::language::{fill, tr};
-use belvedere::editor::{Editor, Recovered};
+use crate::language::tr;
+use belvedere::editor::Recovered;
 use belvedere::io::fs;
 use belvedere::scene_file::Document;
+#[cfg(target_family = "wasm")]
 use eframe::egui::Context;
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
-
-/// Names of missing files that a message lists.
-const LISTED: usize = 12;
 
 /// State of keeping.
 #[derive(Debug, Default)]
@@ -23,8 +21,10 @@ pub(super) struct Resumed {
     scenes: u32,
     /// The number that the first scene has.
     first: u32,
-    /// State of a scene that waits for files, and their names.
-    awaited: Option<(String, Vec<String>)>,
+    /// Scenes that wait for files.
+    pub(super) waiting: Vec<Waiting>,
+    /// Whether the user gave up a scene that waited.
+    pub(super) gave_up: bool,
 }
 
 impl Resumed {
@@ -36,21 +36,21 @@ impl Resumed {
     /// Another scene comes in place of the current one.
     pub(super) fn another(&mut self) {
         self.scenes += 1;
-        self.awaited = None;
     }
 }
 
 #[cfg_attr(not(target_family = "wasm"), allow(dead_code))]
 impl Viewer {
-    /// The state as text if it has changed since the last call; never that of an untouched first scene, and none while a scene waits for its
-    /// files and nothing was changed.
+    /// The state as text if it has changed since the last call; never that of an untouched first scene.
     pub(crate) fn left(&mut self) -> Option<String> {
+        let is_there = !self.model.is_opening() && self.model.shown.is_some();
+        is_there.then(|| self.state_text()).flatten()
+    }
+
+    /// As [`Viewer::left`], of a scene that may have no picture yet.
+    pub(super) fn state_text(&mut self) -> Option<String> {
         let is_changed = self.is_changed();
-        if self.model.is_opening() || self.model.shown.is_none() || (self.resumed.awaited.is_some() && !is_changed) {
-            return None;
-        }
-        let extra = Extra { look: self.model.look.clone(), tab: self.panels.tab, bookmarks: self.bookmarks.clone() };
-        let present = (self.model.document().clone(), extra, is_changed);
+        let present = (self.model.document().clone(), self.extra(), is_changed);
         let is_first = self.resumed.told.is_none();
         let is_told = self.resumed.told.as_ref().is_some_and(|(document, extra, changed)| {
             Arc::ptr_eq(document, &present.0) && (extra, *changed) == (&present.1, present.2)
@@ -60,8 +60,19 @@ impl Viewer {
         }
         let beside = serde_json::to_value(&present.1).unwrap_or_default();
         self.resumed.told = Some(present);
-        let is_untouched = is_first && self.resumed.scenes <= self.resumed.first && !is_changed;
+        let is_untouched =
+            is_first && self.resumed.scenes <= self.resumed.first && !is_changed && !self.resumed.gave_up;
         (!is_untouched).then(|| Recovered::text_of(&self.model.editor, beside).ok()).flatten()
+    }
+
+    /// State of the window beside the document.
+    pub(super) fn extra(&self) -> Extra {
+        Extra {
+            look: self.model.look.clone(),
+            tab: self.panels.tab,
+            bookmarks: self.bookmarks.clone(),
+            waiting: self.resumed.waiting.iter().map(|waiting| waiting.text.clone()).collect(),
+        }
     }
 
     /// Shows the scene of a state that [`Viewer::left`] wrote; if files of it are missing, says which and waits for them.
@@ -69,61 +80,34 @@ impl Viewer {
     /// Returns whether it is shown.
     pub(super) fn resume(&mut self, text: &str) -> bool {
         let Some(left) = Recovered::of_text(text) else { return false };
-        let missing = missing(&left.editor);
-        if !missing.is_empty() {
-            self.tell_missing(&missing);
-            self.resumed.awaited = Some((text.to_owned(), missing));
+        if !missing(&left.editor).is_empty() {
+            self.wait_for_files(text);
             return false;
         }
+        self.take_up(left);
+        true
+    }
+
+    /// Shows a scene as it was left, and the window as it was beside it.
+    pub(super) fn take_up(&mut self, left: Recovered) {
         self.replace(left.editor);
         self.model.stay();
         let extra: Extra = serde_json::from_value(left.extra).unwrap_or_default();
         (self.model.look, self.panels.tab) = (extra.look, extra.tab);
         self.bookmarks = extra.bookmarks;
-        true
-    }
-
-    /// Whether files that have come belong to the scene that waits: it is shown once all are there.
-    pub(super) fn resumes(&mut self, ctx: &Context) -> bool {
-        let Some((text, before)) = self.resumed.awaited.take() else { return false };
-        let Some(left) = Recovered::of_text(&text) else { return false };
-        let missing = missing(&left.editor);
-        if missing.len() == before.len() {
-            self.resumed.awaited = Some((text, before));
-            return false;
-        }
-        if !missing.is_empty() {
-            self.tell_missing(&missing);
-            self.resumed.awaited = Some((text, missing));
-        } else if self.is_changed() {
-            self.go_on_to(ctx, Next::Show(Box::new(left.editor)));
-        } else {
-            self.resume(&text);
-        }
-        true
-    }
-
-    fn tell_missing(&mut self, missing: &[String]) {
-        let mut list = missing.iter().take(LISTED).cloned().collect::<Vec<_>>().join(", ");
-        if missing.len() > LISTED {
-            list = fill(tr("{0} and {1} more"), &[&list, &(missing.len() - LISTED)]);
-        }
-        let words = tr(
-            "The scene that you had open needs files that the browser does not have any more: {0}. Drop them on the page, and it comes back.",
-        );
-        self.model.notices.error(fill(words, &[&list]));
+        extra.waiting.iter().for_each(|text| self.wait_for_files(text));
     }
 
     /// Number of scenes that came in place of others; `None` while one is on its way.
     pub(crate) fn scene_number(&self) -> Option<u32> {
-        (!self.is_opening() && self.model.shown.is_some() && self.resumed.awaited.is_none())
-            .then_some(self.resumed.scenes)
+        (!self.is_opening() && self.model.shown.is_some()).then_some(self.resumed.scenes)
     }
 
-    /// Files that the scene reads, canonical.
+    /// Files that the scene and those that wait read, canonical.
     pub(crate) fn needs(&self) -> Vec<PathBuf> {
         let mut files: BTreeSet<PathBuf> = BTreeSet::new();
         each_file(&self.model.editor, |_, file| files.extend(file));
+        files.extend(self.resumed.waiting.iter().flat_map(Waiting::files));
         let read = self.model.shown.iter().flat_map(|shown| shown.session.input_paths());
         files.extend(read.map(|file| fs::canonicalize(&file).unwrap_or(file)));
         files.into_iter().collect()
@@ -135,6 +119,20 @@ impl Viewer {
         crate::browser::page::call("forget", &[]);
         let words = tr("The browser has forgotten your files; the scene keeps them until the page is closed.");
         self.model.notices.say(words, ctx.input(|input| input.time));
+    }
+
+    /// Says that the browser does not keep the scene for the time when the page is loaded again.
+    ///
+    /// * `is_full`: whether there is no room for it; else the browser refuses.
+    pub(crate) fn tell_not_remembered(&mut self, is_full: bool) {
+        let words = if is_full {
+            tr(
+                "The browser has no room to keep this scene: if the page is loaded again, an older state of it comes back. Save it to a file.",
+            )
+        } else {
+            tr("The browser keeps no scenes here: when the page is loaded again, this one is gone. Save it to a file.")
+        };
+        self.model.notices.error(words);
     }
 
     /// Says once that the browser keeps no more files.
@@ -154,30 +152,11 @@ impl Viewer {
     }
 }
 
-/// Calls `each` with every name of a file in the document, and the file that it leads to.
-fn each_file(editor: &Editor, mut each: impl FnMut(&str, Option<PathBuf>)) {
-    let mut document = (**editor.document()).clone();
-    document.for_each_path(&mut |name| {
-        let file = editor.place.roots.resolve(name).ok();
-        each(name, file.map(|file| belvedere::io::split_table(Path::new(&file)).0.to_owned()));
-    });
-}
-
-/// Names of files in the document that lead to none.
-fn missing(editor: &Editor) -> Vec<String> {
-    let mut names = Vec::new();
-    each_file(editor, |name, file| {
-        if file.is_none() && !names.iter().any(|other| other == name) {
-            names.push(name.to_owned());
-        }
-    });
-    names
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Opening;
+    use belvedere::editor::Editor;
 
     #[test]
     fn a_scene_comes_back_changed_and_waits_for_files_that_are_missing() {
@@ -190,14 +169,14 @@ mod tests {
         let mut editor = Editor::open(&path, Vec::new()).expect("scene");
         editor.edit(|document| document.title = "mine".into());
         let left = Recovered::text_of(&editor, serde_json::to_value(Extra::default()).expect("extra")).expect("text");
-        let ctx = Context::default();
+        let ctx = eframe::egui::Context::default();
         let open = || Viewer::new(&ctx, &Opening { left: Some(left.clone()), ..Opening::default() });
         let viewer = open();
         assert!(viewer.document().title == "mine" && viewer.is_changed());
         assert_eq!(viewer.needs(), [mesh.canonicalize().expect("file")]);
         std::fs::rename(&mesh, dir.path().join("b.obj")).expect("renamed");
         let mut viewer = open();
-        assert!(viewer.document().title != "mine" && viewer.scene_number().is_none());
+        assert!(viewer.document().title != "mine");
         assert!(!viewer.resumes(&ctx), "nothing has come");
         std::fs::rename(dir.path().join("b.obj"), &mesh).expect("renamed");
         assert!(viewer.resumes(&ctx) && viewer.document().title == "mine" && viewer.is_changed());

@@ -12,6 +12,8 @@ pub(super) enum Next {
     Quit,
     /// Another scene comes.
     Show(Box<Editor>),
+    /// A scene that waited for files comes, of that state.
+    Return(String),
 }
 
 /// The open question.
@@ -19,6 +21,14 @@ pub(super) struct Unsaved {
     next: Next,
     /// Whether the keyboard is at the buttons already.
     has_focus: bool,
+}
+
+#[cfg(test)]
+impl Unsaved {
+    /// What was to be done.
+    pub(super) fn into_next(self) -> Next {
+        self.next
+    }
 }
 
 /// The user's answer.
@@ -57,6 +67,7 @@ impl Viewer {
                 ctx.send_viewport_cmd(ViewportCommand::Close);
             }
             Next::Show(editor) => self.replace(*editor),
+            Next::Return(text) => self.return_to_waiting(&text),
         }
     }
 
@@ -80,7 +91,9 @@ impl Viewer {
         };
         let [saving, discarding] = match unsaved.next {
             Next::Quit => [tr("save, then quit"), tr("quit; the changes are lost")],
-            Next::Show(_) => [tr("save, then open the other scene"), tr("open the other scene; the changes are lost")],
+            Next::Show(_) | Next::Return(_) => {
+                [tr("save, then open the other scene"), tr("open the other scene; the changes are lost")]
+            }
         };
         let modal = Modal::new(Id::unique("unsaved")).show(ctx, |ui| {
             ui.set_max_width(340.0);

@@ -74,7 +74,7 @@ fn clicked_points_are_measured_along_the_ground_also_through_a_bend() {
         harness.key_press(Key::M);
         harness.step();
         harness.step();
-        find(&harness, "Click points in the picture; a double click or Escape ends.");
+        find(&harness, "Click points in the picture; a second click on the last one or Escape ends.");
         let picture = find(&harness, "Picture").rect();
         let middle = picture.center() + vec2(0.0, 0.1 * picture.height());
         for by in [vec2(-120.0, 30.0), vec2(90.0, 40.0), vec2(60.0, -10.0)] {
@@ -160,4 +160,26 @@ fn points_are_dragged_and_a_double_click_or_escape_ends() {
     assert!(harness.query_by_label("Measured point 2").is_none(), "Escape ends");
     press(&mut harness, "Close the measurement");
     assert!(harness.query_by_label("Measured point 1").is_none());
+}
+
+#[test]
+fn a_second_click_on_the_last_point_ends_however_late() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut harness = app(&opened(&[scene(folder.path())]));
+    settle(&mut harness);
+    press(&mut harness, "Look");
+    press(&mut harness, "Measure");
+    let middle = find(&harness, "Picture").rect().center() + vec2(0.0, 60.0);
+    click(&mut harness, middle + vec2(-100.0, 0.0));
+    click(&mut harness, middle + vec2(100.0, 0.0));
+    // A click on another point than the last one changes nothing.
+    let first = find(&harness, "Measured point 1").rect().center();
+    click(&mut harness, first);
+    let last = find(&harness, "Measured point 2").rect().center();
+    (0..120).for_each(|_| harness.step());
+    click(&mut harness, last);
+    assert!(harness.query_by_label("Measured point 3").is_none(), "it set a point");
+    click(&mut harness, middle);
+    find(&harness, "Measured point 2");
+    assert!(harness.query_by_label("Measured point 3").is_none(), "it did not end");
 }

@@ -2,7 +2,7 @@
 
 use crate::{app, find, opened, press, scene, settle};
 use belvedere_viewer::{Opening, Viewer};
-use eframe::egui::{Key, ViewportId};
+use eframe::egui::{Key, Modifiers, ViewportId};
 use egui_kittest::Harness;
 use std::time::{Duration, Instant};
 
@@ -50,6 +50,13 @@ fn a_window_with_a_scene_rests_whatever_panel_is_open() {
         rests(&mut harness, menu);
         harness.key_press(Key::Escape);
     }
+    // The list of the bookmarks rests once it has their pictures.
+    harness.key_press(Key::B);
+    harness.step();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::B);
+    rests(&mut harness, "the list of bookmarks");
+    find(&harness, "Picture of View 1");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::B);
     press(&mut harness, "Flicker");
     harness.step();
     let delay = harness.output().viewport_output[&ViewportId::ROOT].repaint_delay;

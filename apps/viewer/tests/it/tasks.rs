@@ -1,4 +1,4 @@
-//! Four tasks of a newcomer, done by nothing but the names that the window tells a screen reader; their actions are counted.
+//! Five tasks of a newcomer, done by nothing but the names that the window tells a screen reader; their actions are counted.
 
 use crate::{opened, wait_for};
 use belvedere::scene_file::{LayerDoc, PresetsDoc, StageDoc};
@@ -216,6 +216,33 @@ fn the_residues_of_a_molecule_are_told_apart_and_it_is_bent() {
     let LayerDoc::Molecule(molecule) = &document.layer[0] else { panic!("no molecule") };
     assert_eq!((molecule.style.color.as_str(), document.stage.len()), ("residue", 1));
     person.done("the residues of a molecule");
+}
+
+#[test]
+fn a_hidden_residue_of_a_molecule_is_shown() {
+    let Some(file) = belvedere_testkit::data("molecules/1bna.pdb") else { return };
+    let mut person = Person::before(&Opening::default());
+    person.press("Open files…");
+    person.enter("File, or folder to go to", &file.display().to_string());
+    person.wait("the molecule", |harness| {
+        harness.state().document().layer.iter().any(|layer| matches!(layer, LayerDoc::Molecule(_)))
+    });
+    person.wait_for_picture();
+    let id = person.harness.state().document().layer[0].id().to_owned();
+    person.enter(&format!("atoms of {id} that must be seen"), "B 18");
+    person.wait_for_picture();
+    person.press(&format!("Bend rays to show it, {id}"));
+    person.wait_for_picture();
+    person.wait("the share", |harness| harness.state().is_judged());
+    let document = person.harness.state().document().clone();
+    let LayerDoc::Molecule(molecule) = &document.layer[0] else { panic!("no molecule") };
+    assert_eq!((molecule.must_see, molecule.select.as_deref()), (true, Some("chain B and resi 18")));
+    let target = document.constructor.as_ref().and_then(|constructor| constructor.target.as_deref());
+    assert_eq!(target, Some("chain B and resi 18"));
+    person.press("Curved rays");
+    let said = |start: &str| person.harness.query_all_by_label_contains(start).next().is_some();
+    assert!(said("chain B and resi 18"));
+    person.done("a residue of a molecule shown");
 }
 
 #[test]

@@ -26,17 +26,29 @@ pub struct Canvas<'a> {
     pixels: &'a mut [[u8; 3]],
     width: usize,
     height: usize,
+    /// Pixels per unit of all lengths and positions.
+    scale: f64,
 }
 
 impl<'a> Canvas<'a> {
     /// A picture of `width` columns, row-major, row 0 on top.
     pub fn new(pixels: &'a mut [[u8; 3]], width: usize) -> Self {
         let height = pixels.len().checked_div(width).unwrap_or(0);
-        Self { pixels, width, height }
+        Self { pixels, width, height, scale: 1.0 }
+    }
+
+    /// The same picture with lengths and positions in units of `scale` pixels, more than 0; but [`Canvas::blend`] counts pixels.
+    pub fn scaled(self, scale: f64) -> Self {
+        Self { scale, ..self }
+    }
+
+    /// Width and height, pixels, or units if it is scaled.
+    pub fn size(&self) -> DVec2 {
+        self.extent() / self.scale
     }
 
     /// Width and height, pixels.
-    pub fn size(&self) -> DVec2 {
+    fn extent(&self) -> DVec2 {
         DVec2::new(self.width as f64, self.height as f64)
     }
 
@@ -55,7 +67,7 @@ impl<'a> Canvas<'a> {
 
     /// Fills a shape given by its signed distance, negative inside, within the box `lo..hi`.
     fn shape(&mut self, lo: DVec2, hi: DVec2, color: Color, distance: impl Fn(DVec2) -> f64) {
-        let size = self.size();
+        let size = self.extent();
         let (lo, hi) = ((lo - 1.0).floor().clamp(DVec2::ZERO, size), (hi + 1.0).ceil().clamp(DVec2::ZERO, size));
         for y in lo.y as i64..hi.y as i64 {
             for x in lo.x as i64..hi.x as i64 {
@@ -67,6 +79,8 @@ impl<'a> Canvas<'a> {
 
     /// Fills the rectangle between two corners, with corners rounded by `radius`.
     pub fn rect(&mut self, lo: DVec2, hi: DVec2, radius: f64, color: Color) {
+        let [lo, hi] = [lo, hi].map(|p| p * self.scale);
+        let radius = radius * self.scale;
         let (middle, half) = (0.5 * (lo + hi), 0.5 * (hi - lo) - radius);
         self.shape(lo, hi, color, |p| {
             let q = (p - middle).abs() - half;
@@ -76,9 +90,10 @@ impl<'a> Canvas<'a> {
 
     /// Draws a polyline with round ends and joints, `width` pixels wide.
     pub fn line(&mut self, points: &[DVec2], width: f64, color: Color) {
+        let points: Vec<DVec2> = points.iter().map(|p| *p * self.scale).collect();
         let Some(&first) = points.first() else { return };
         let (lo, hi) = points.iter().fold((first, first), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
-        let half = 0.5 * width;
+        let half = 0.5 * width * self.scale;
         self.shape(lo - half, hi + half, color, |p| {
             let nearest = points.windows(2).map(|w| to_segment(p, w[0], w[1]).length());
             nearest.fold(p.distance(first), f64::min) - half
@@ -87,11 +102,41 @@ impl<'a> Canvas<'a> {
 
     /// Fills a disc.
     pub fn disc(&mut self, at: DVec2, radius: f64, color: Color) {
+        let (at, radius) = (at * self.scale, radius * self.scale);
         self.shape(at - radius, at + radius, color, |p| p.distance(at) - radius);
     }
 
     /// Writes a line of text: `at` is the left end of its baseline, `size_px` the height of the letters' em square; `halo` a rim and its width.
     pub fn text(&mut self, at: DVec2, size_px: f64, text: &str, color: Color, halo: Option<(Color, f64)>) {
-        text::draw(self, at, size_px, text, color, halo);
+        let (at, size_px) = (at * self.scale, size_px * self.scale);
+        text::draw(self, at, size_px, text, color, halo.map(|(color, width)| (color, width * self.scale)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn twice_the_scale_draws_the_same_twice_as_large() {
+        let draw = |scale: usize| {
+            let mut pixels = vec![[255u8; 3]; 60 * 40 * scale * scale];
+            let mut canvas = Canvas::new(&mut pixels, 60 * scale).scaled(scale as f64);
+            assert_eq!(canvas.size(), DVec2::new(60.0, 40.0));
+            canvas.rect(DVec2::new(10.0, 5.0), DVec2::new(20.0, 9.0), 0.0, Color::rgb(0, 0, 0));
+            canvas.line(&[DVec2::new(30.0, 8.0), DVec2::new(50.0, 8.0)], 2.0, Color::rgb(0, 0, 0));
+            canvas.text(DVec2::new(4.0, 32.0), 14.0, "bent", Color::rgb(0, 0, 0), None);
+            let corners = [[40.0, 20.0], [56.0, 20.0], [56.0, 36.0]].map(DVec2::from_array);
+            canvas.polygon([&corners[..]], Color::rgb(0, 0, 0));
+            pixels
+        };
+        let (once, twice) = (draw(1), draw(2));
+        let dark = |pixels: &[[u8; 3]]| pixels.iter().map(|p| 1.0 - f64::from(p[0]) / 255.0).sum::<f64>();
+        let ratio = dark(&twice) / dark(&once);
+        assert!((ratio - 4.0).abs() < 0.4, "{ratio} times the ink");
+        // The rectangle and the triangle lie at the same shares.
+        for [x, y] in [[15, 7], [40, 8], [52, 24]] {
+            assert!(once[y * 60 + x][0] < 40 && twice[2 * y * 120 + 2 * x][0] < 40, "{x}, {y}");
+        }
     }
 }

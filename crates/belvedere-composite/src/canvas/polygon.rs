@@ -69,13 +69,14 @@ impl Coverage {
 impl Canvas<'_> {
     /// Fills a polygon: outer rings and holes, closed implicitly, holes oriented against their outer ring.
     pub fn polygon<'r>(&mut self, rings: impl IntoIterator<Item = &'r [DVec2]> + Clone, color: Color) {
-        let points = || rings.clone().into_iter().flatten().copied();
+        let scale = self.scale;
+        let points = || rings.clone().into_iter().flatten().map(|p| *p * scale);
         if points().any(|p| !p.is_finite()) {
             return;
         }
         let Some(first) = points().next() else { return };
         let (low, high) = points().fold((first, first), |(low, high), p| (low.min(p), high.max(p)));
-        let (low, high) = (low.floor().max(DVec2::ZERO), high.ceil().min(self.size()));
+        let (low, high) = (low.floor().max(DVec2::ZERO), high.ceil().min(self.extent()));
         if !low.cmplt(high).all() {
             return;
         }
@@ -83,7 +84,7 @@ impl Canvas<'_> {
         let mut coverage = Coverage::new(width, height);
         for ring in rings {
             for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
-                coverage.edge(*a - low, *b - low);
+                coverage.edge(*a * scale - low, *b * scale - low);
             }
         }
         for (row, changes) in coverage.change.chunks(width + 1).enumerate() {

@@ -50,7 +50,7 @@ pub(super) fn draw(
     color: Color,
     halo: Option<(Color, f64)>,
 ) {
-    let [w, h] = canvas.size().to_array();
+    let [w, h] = canvas.extent().to_array();
     let far = 1e6 + w.max(h);
     if !(at.abs().max_element() < far) {
         return;

@@ -24,6 +24,8 @@ pub(crate) struct LabelRequest {
     pub(crate) color: Color,
     /// Whether the text may be placed away from its point.
     pub(crate) leader: bool,
+    /// Whether the text stands over its point, not beside it.
+    pub(crate) over: bool,
 }
 
 /// A placed text.
@@ -119,6 +121,10 @@ fn candidates(label_request: &LabelRequest) -> Vec<(Rect, Option<[DVec2; 2]>, DV
         DVec2::new(label_request.at.x - side - 4.0 - size.width, level),
         DVec2::new(label_request.at.x - 0.5 * size.width, label_request.at.y + side + 3.0 + size.ascent),
     ];
+    if label_request.over {
+        let baseline = DVec2::new(label_request.at.x - 0.5 * size.width, level);
+        return vec![(rect(baseline), None, baseline)];
+    }
     let mut out = Vec::new();
     for length in LEADERS.into_iter().take(if label_request.leader { LEADERS.len() } else { 1 }) {
         let foot = label_request.at - DVec2::Y * above;
@@ -140,7 +146,15 @@ mod tests {
 
     fn label_request(i: usize, at: DVec2) -> LabelRequest {
         let color = Color::rgb(0, 0, 0);
-        LabelRequest { text: format!("Summit {i}"), at, marker: [5.0, 6.0], size_px: 13.0, color, leader: true }
+        LabelRequest {
+            text: format!("Summit {i}"),
+            at,
+            marker: [5.0, 6.0],
+            size_px: 13.0,
+            color,
+            leader: true,
+            over: false,
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Lines, outlines, points and names, drawn over the surfaces.
 
 mod alike;
+mod area_names;
 mod dash;
 mod distance;
 mod face;
@@ -8,6 +9,7 @@ mod label;
 mod line_of_sight;
 mod names;
 mod path;
+mod pole;
 mod ribbon;
 mod segment;
 mod shown;
@@ -35,8 +37,6 @@ use visibility::{DepthMap, LineVisibility, Run};
 
 /// Width of a hidden line in widths of the visible one.
 const HIDDEN_WIDTH: f64 = 0.6;
-/// Height of the letters at distance marks and at the rim of a grid, pixels.
-const SMALL_PX: f64 = 11.0;
 
 /// All marks of a frame, in the order of the layers.
 #[derive(Debug, Default)]
@@ -79,7 +79,10 @@ impl Marks {
                     sheets.extend(builder.distances(l, id, &mut requests));
                     requests.extend(builder.line_names(l));
                 }
-                LayerKind::Area(a) => sheets.extend(builder.outlines(a, id)),
+                LayerKind::Area(a) => {
+                    sheets.extend(builder.outlines(a, id));
+                    requests.extend(builder.area_names(i, a));
+                }
                 LayerKind::Point(p) => sheets.extend(builder.points(&builder.shown_points(i, p), id, &mut requests)),
                 _ => {}
             }
@@ -210,7 +213,7 @@ impl MarkBuilder<'_> {
     /// The text of a line at its visible end nearest to the bottom of the picture.
     fn rim_label(&self, line: &OverlayLine, paths: &[Vec<LinePoint>], style: Style) -> Option<LabelRequest> {
         let size = 2.0 * self.screen.center;
-        let margin = DVec2::splat(1.5 * SMALL_PX);
+        let margin = DVec2::splat(1.5 * line.label_px);
         let inside = |p: DVec2| p.cmpge(margin).all() && p.cmple(size - margin).all();
         let runs = paths.iter().flat_map(|p| self.runs(p, style));
         let parts = runs.flat_map(|r| r.1.parts()).filter(|(visible, _)| *visible);
@@ -221,7 +224,7 @@ impl MarkBuilder<'_> {
         });
         let at = ends.flatten().max_by(|a, b| a.y.total_cmp(&b.y))?;
         let (text, color) = (line.label.clone(), line.color.with_alpha(255));
-        Some(LabelRequest { text, at, marker: [2.0, 2.0], size_px: SMALL_PX, color, leader: false })
+        Some(LabelRequest { text, at, marker: [2.0, 2.0], size_px: line.label_px, color, leader: false, over: false })
     }
 
     fn sheet(&self, paths: Vec<Vec<LinePoint>>, style: Style, inks: [Ink; 3], id: u32) -> StrokeLayer {
@@ -295,9 +298,10 @@ impl MarkBuilder<'_> {
                     text: text.clone(),
                     at,
                     marker: [side, side],
-                    size_px: SMALL_PX,
+                    size_px: layer.marker_px,
                     color,
                     leader: false,
+                    over: false,
                 });
             }
         }
@@ -397,7 +401,15 @@ fn stamp(at: DVec2, marker: Marker, visible: bool, out: &mut Vec<Stroke>) {
 fn label_request(text: &str, at: DVec2, marker: Marker, size_px: f64, color: Color) -> LabelRequest {
     let side = marker.half_px + 2.0;
     let above = symbol::top(marker.symbol) * marker.half_px + 2.5;
-    LabelRequest { text: text.to_owned(), at, marker: [side, above], size_px, color: darker(color), leader: true }
+    LabelRequest {
+        text: text.to_owned(),
+        at,
+        marker: [side, above],
+        size_px,
+        color: darker(color),
+        leader: true,
+        over: false,
+    }
 }
 
 /// A colour that reads as text.

@@ -55,6 +55,7 @@ impl MarkBuilder<'_> {
             size_px,
             color: darker(color),
             leader: false,
+            over: false,
         };
         names.into_iter().map(label_request).collect()
     }

@@ -9,7 +9,7 @@ use std::borrow::Cow;
 
 impl MarkBuilder<'_> {
     /// Whether a layer is drawn everywhere, nowhere, or partly, and a test whether it is drawn at a point.
-    fn shows(&self, layer: usize) -> (Shown, impl Fn(DVec3) -> bool + '_) {
+    pub(super) fn shows(&self, layer: usize) -> (Shown, impl Fn(DVec3) -> bool + '_) {
         let shown = self.sections.map_or(Shown::Everything, |s| s.of_layer(layer));
         (shown, move |p: DVec3| self.sections.is_none_or(|s| s.prevails(layer, p)))
     }

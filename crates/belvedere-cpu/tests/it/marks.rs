@@ -3,8 +3,9 @@
 use crate::support::{layer, line, options, pinhole, render, scene, terrain};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{
-    Color, DistanceMarkers, Frame, Heightfield, Hidden, LayerKind, NodeState, Overlay, OverlayFace, OverlayLine,
-    OverlayPoint, PaletteName, PointFeature, PointLayer, PointStyle, Relief, RenderOptions, Scene, Symbol,
+    AreaFeature, AreaLayer, AreaSurface, Color, DistanceMarkers, Frame, Heightfield, Hidden, LayerKind, NodeState,
+    Overlay, OverlayFace, OverlayLine, OverlayPoint, PaletteName, PointFeature, PointLayer, PointStyle, Relief,
+    RenderOptions, Scene, Symbol,
 };
 
 const WIDTH_PX: f64 = 4.0;
@@ -160,6 +161,47 @@ fn points_in_sight_have_symbol_and_name_and_hidden_ones_have_neither() {
 }
 
 #[test]
+fn names_of_areas_stand_where_the_area_has_most_room_and_that_is_seen() {
+    let hf = ridge();
+    let draw = |names: &[(&str, f64)], hidden| {
+        // A long strip that widens at its western end.
+        let ring = |y: f64| {
+            [[-160.0, y - 45.0], [-60.0, y - 45.0], [-60.0, y], [240.0, y], [240.0, y + 12.0], [-160.0, y + 45.0]]
+        };
+        let feature = |(name, y): &(&str, f64)| AreaFeature {
+            name: (*name).into(),
+            style: None,
+            rings: vec![ring(*y).map(DVec2::from_array).to_vec()],
+        };
+        let area = AreaLayer {
+            features: names.iter().map(feature).collect(),
+            fill: Color::rgb(60, 120, 60).with_alpha(0),
+            outline: None,
+            width_px: 1.0,
+            surface: AreaSurface::Plain,
+            hidden,
+            lift_m: 1.0,
+            label_px: Some(14.0),
+        };
+        render(
+            &scene(vec![layer("ground", ground(&hf)), layer("woods", LayerKind::Area(area))]),
+            &camera(150.0),
+            &options(4),
+        )
+    };
+    let (before, behind) = (("Wood", -300.0), ("Wood", 110.0));
+    let bare = draw(&[("", before.1)], Hidden::Cut);
+    let touched = changed(&draw(&[before], Hidden::Cut), &bare);
+    assert!(touched.len() > 80, "{} pixels", touched.len());
+    let middle = touched.iter().map(|&i| DVec2::new((i % 400) as f64, (i / 400) as f64)).sum::<DVec2>();
+    let middle = middle / touched.len() as f64;
+    let pole = camera(150.0).project(DVec3::new(-110.0, -300.0, 1.0)).expect("in front").pixel;
+    assert!((middle - pole).abs().max_element() < 12.0, "{middle} is not at {pole}");
+    assert_eq!(changed(&draw(&[behind], Hidden::Cut), &draw(&[("", behind.1)], Hidden::Cut)).len(), 0, "it is hidden");
+    assert!(changed(&draw(&[behind], Hidden::Show), &draw(&[("", behind.1)], Hidden::Show)).len() > 80);
+}
+
+#[test]
 fn distance_marks_belong_to_their_line() {
     let hf = ridge();
     let mut route = with_line(&hf, Hidden::Cut);
@@ -183,6 +225,7 @@ fn overlay() -> Overlay {
         casing: None,
         hidden: Hidden::Dash,
         label: "E -300".into(),
+        label_px: belvedere_scene::SMALL_LETTERS_PX,
     };
     let ray = OverlayLine {
         points: vec![DVec3::new(-100.0, -300.0, 100.0), DVec3::new(150.0, 400.0, 0.0)],

@@ -94,6 +94,7 @@ fn lakes() -> Option<AreaLayer> {
         surface: belvedere_scene::AreaSurface::Water,
         hidden: Hidden::Cut,
         lift_m: 1.0,
+        label_px: None,
     })
 }
 

@@ -73,6 +73,7 @@ pub(crate) fn line(points: Vec<DVec3>, hidden: Hidden) -> LineLayer {
         lift_m: 2.0,
         markers: None,
         label_px: None,
+        marker_px: belvedere_scene::SMALL_LETTERS_PX,
     }
 }
 

@@ -68,6 +68,7 @@ pub(crate) fn load(name: &str) -> Result<Option<Range>, Failure> {
             surface: AreaSurface::Outline,
             hidden: Hidden::Dash,
             lift_m: 1.0,
+            label_px: None,
         });
         areas.push(Layer { id: "areas".into(), must_see: true, kind });
     }

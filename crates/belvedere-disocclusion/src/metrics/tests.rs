@@ -16,6 +16,7 @@ fn line(field: &Field, path: &[[f64; 2]]) -> Scene {
         lift_m: 1.0,
         markers: None,
         label_px: None,
+        marker_px: belvedere_scene::SMALL_LETTERS_PX,
     });
     Scene { layers: vec![Layer { id: "line".into(), must_see: true, kind }], ..Scene::default() }
 }

@@ -33,6 +33,7 @@ fn lines(field: &Field, features: &[&[[f64; 2]]]) -> Scene {
         lift_m: 1.5,
         markers: None,
         label_px: None,
+        marker_px: belvedere_scene::SMALL_LETTERS_PX,
     });
     Scene { layers: vec![Layer { id: "line".into(), must_see: true, kind }], ..Scene::default() }
 }
@@ -49,6 +50,7 @@ fn area(field: &Field, rings: &[&[[f64; 2]]]) -> Scene {
         surface: belvedere_scene::AreaSurface::Plain,
         hidden: Hidden::Cut,
         lift_m: 0.5,
+        label_px: None,
     });
     Scene { layers: vec![Layer { id: "area".into(), must_see: true, kind }], ..Scene::default() }
 }

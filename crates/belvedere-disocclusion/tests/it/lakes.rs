@@ -70,6 +70,7 @@ impl Case {
             surface,
             hidden: Hidden::Cut,
             lift_m: 0.5,
+            label_px: None,
         });
         let areas = Layer { id: "lakes".into(), must_see: lake_must_see, kind };
         let route = trail(&hf);

@@ -1,5 +1,6 @@
 //! Things of a scene by their names: an index that is made once and searched as the user types.
 
+use super::residues::name;
 use crate::BelvedereError;
 use crate::places::{Place, PlaceFinder};
 use crate::targets;
@@ -199,11 +200,7 @@ fn residues(layer: &MoleculeLayer) -> Vec<(String, Aabb)> {
     let chains = with_boxes.clone().filter(|(residue, _)| !residue.chain.is_empty());
     let mut out = joined(chains.map(|(residue, bounds)| (residue.chain.as_str(), *bounds)));
     out.iter_mut().for_each(|(name, _)| *name = format!("chain {name}"));
-    out.extend(with_boxes.map(|(residue, bounds)| {
-        let chain = if residue.chain.is_empty() { String::new() } else { format!("{}:", residue.chain) };
-        let letter = residue.insertion.map(String::from).unwrap_or_default();
-        (format!("{chain}{}{letter} {}", residue.number, residue.name), *bounds)
-    }));
+    out.extend(with_boxes.map(|(residue, bounds)| (name(residue), *bounds)));
     out
 }
 

@@ -2,14 +2,15 @@
 
 use super::ground::{Ground, with_ground};
 use super::moving::{quick, within};
+use super::named::NamedSections;
 use super::rate::{Quality, Rate, TARGET_MS};
 use super::sun::HeldSun;
 use super::thin::Thin;
 use super::{Place, THREADS, camera};
 use crate::fallback;
 use crate::picture::{self, DisplacementReport, PictureOptions};
+use crate::resolve::hidden;
 use crate::resolve::solving::Memory;
-use crate::resolve::{hidden, representations};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{ConstructorKind, Document, LayerDoc, SourceDocument, StageDoc};
 use crate::session::Loaded;
@@ -120,6 +121,7 @@ const BROKEN_OFF: usize = 2;
 #[derive(Debug, Default)]
 pub struct LiveSession {
     session: Option<Session>,
+    named: NamedSections,
     /// The document by which its layers were read.
     opened: Option<Document>,
     /// Duration of the last construction.
@@ -346,10 +348,7 @@ impl LiveSession {
         // Sections name layers, too: each such name is a representation.
         let roots =
             Roots { allowed: options.allow_roots.clone(), files: options.allow_files.clone(), ..Roots::default() };
-        let mut named = Scene {
-            representations: representations::of(&SourceDocument::new(document.clone()), &roots)?,
-            ..Scene::default()
-        };
+        let mut named = Scene { representations: self.named.of(document, &roots)?, ..Scene::default() };
         hidden::apply(&mut named, document);
         if named.representations == session.scene().representations {
             return Ok(Some(session));

@@ -1,12 +1,13 @@
 //! Objects under the pointer.
 
+use super::residues::residue_at;
 use crate::Session;
 use crate::pick::pick;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{BoxShape, LayerKind, Progress};
 
-/// The object at a pixel of the picture, as a constructor's target: a part of a mesh by its name, a box as `LAYER/NUMBER`, else the whole
-/// layer; `None` if the pixel shows no object.
+/// The object at a pixel of the picture, as a constructor's target: a part of a mesh by its name, a box as `LAYER/NUMBER`, a residue of a
+/// molecule as a selection of atoms, else the whole layer; `None` if the pixel shows no object.
 ///
 /// * `layer`: id of the layer that the picture shows there. `point`: world point that is seen, scene coordinates.
 pub fn object_at(session: &Session, layer: &str, pixel: DVec2, point: Option<DVec3>) -> Option<String> {
@@ -21,6 +22,7 @@ pub fn object_at(session: &Session, layer: &str, pixel: DVec2, point: Option<DVe
             let picked = pick(session, &[pixel.to_array()], &Progress::silent()).ok()?.pixels.pop()??;
             picked.feature.filter(|_| picked.layer == layer)
         }
+        LayerKind::Molecule(molecule) => residue_at(molecule, point?),
         _ => None,
     };
     Some(part.unwrap_or_else(|| layer.to_owned()))

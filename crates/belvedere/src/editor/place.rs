@@ -205,7 +205,8 @@ impl Recovery {
     }
 }
 
-/// * `file_counts`: whether a scene without changes is what its file holds now.
+/// * `file_counts`: whether a scene without changes is what its file holds now. On a page it does not: the page brings the scene file as it was
+///   packed, whatever was saved since.
 fn recovered(text: &str, file_counts: bool) -> Option<Recovered> {
     let left: Left = serde_json::from_str(text).ok()?;
     let parsed: Document = scene_file::parse(Path::new("state.json"), &left.document.to_string()).ok()?.document;
@@ -213,13 +214,13 @@ fn recovered(text: &str, file_counts: bool) -> Option<Recovered> {
     let saved = left.scene.as_deref().and_then(|path| scene_file::read(path).ok()).map(|source| source.document);
     let place = Place { scene: left.scene, roots };
     let editor = match (left.changed, saved) {
-        (true, Some(saved)) => {
+        (true, Some(saved)) if file_counts || saved != parsed => {
             let mut editor = Editor::new(saved, place);
             editor.edit(|document| *document = parsed);
             editor
         }
-        // The document was never saved, or its file is gone: this is the only copy.
-        (true, None) => Editor::unsaved(parsed, place),
+        // The document was never saved, its file is gone, or something else was saved since: this is the only copy.
+        (true, _) => Editor::unsaved(parsed, place),
         (false, saved) => Editor::new(saved.filter(|_| file_counts).unwrap_or(parsed), place),
     };
     Some(Recovered { editor, extra: left.extra })
@@ -291,6 +292,21 @@ mod tests {
         let left = Recovered::of_text(&text).expect("state").editor;
         assert!(left.document().title == "changed" && !left.is_changed(), "the file holds an older document");
         assert!(Recovered::of_text("no state").is_none());
+    }
+
+    #[test]
+    fn a_scene_that_was_undone_to_what_the_page_brings_after_a_save_is_changed() {
+        let dir = tempfile::tempdir().expect("folder");
+        let path = scene(dir.path());
+        let packed = std::fs::read(&path).expect("scene");
+        let mut editor = Editor::open(&path, Vec::new()).expect("scene");
+        editor.edit(|d| d.title = "changed".into());
+        editor.save(&path).expect("saved");
+        assert!(editor.undo() && editor.is_changed());
+        let text = Recovered::text_of(&editor, serde_json::Value::Null).expect("text");
+        std::fs::write(&path, packed).expect("the page is loaded again");
+        let left = Recovered::of_text(&text).expect("state").editor;
+        assert!(left.is_changed() && left.document() == editor.document());
     }
 
     #[test]

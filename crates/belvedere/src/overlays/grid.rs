@@ -46,6 +46,7 @@ pub(crate) fn lines(scene: &Scene, spacing: f64) -> Vec<OverlayLine> {
         casing: None,
         hidden: Hidden::Cut,
         label,
+        label_px: belvedere_scene::SMALL_LETTERS_PX,
     };
     let name = |axis: &str, v: f64| match spacing >= 1000.0 && spacing % 500.0 == 0.0 {
         true => format!("{axis} {}", v / 1000.0),

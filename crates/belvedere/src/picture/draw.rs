@@ -161,7 +161,7 @@ pub(crate) fn draw_view(
         _ if request.steady_mark => Some(badge::WORDS.to_owned()),
         moved => moved.map(|moved| badge::words(room(frame.width), moved.max_m, scene.unit)),
     };
-    let mut canvas = Canvas::new(&mut frame.color, frame.width);
+    let mut canvas = Canvas::new(&mut frame.color, frame.width).scaled(request.density);
     if let Some(most) = heatmap_max {
         heat::legend(&mut canvas, most);
     }
@@ -169,6 +169,7 @@ pub(crate) fn draw_view(
         let taken = if heatmap_max.is_some() { heat::LEGEND_HEIGHT + 10.0 } else { 0.0 };
         highlight::legend(&mut canvas, record, taken);
     }
+    let mut canvas = canvas.scaled(1.0);
     let figure = wanted.inset.and_then(|inset| Some((inset, curve_inset::CurveFigure::of(&view)?)));
     let inset = figure.filter(|(_, figure)| curve_inset::draw(&mut canvas, figure)).map(|(inset, _)| inset);
     if let Some(words) = &mark {

@@ -271,6 +271,7 @@ fn line(
             AutoOrLength::Length(every) => DistanceMarkers::Every(every),
         }),
         label_px: style.labels.then_some(style.label_px),
+        marker_px: belvedere_scene::SMALL_LETTERS_PX,
     }))
 }
 

@@ -161,6 +161,7 @@ fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
                 within("distance_markers_m", every, 0.0, 1e9)?;
             }
             within("label_px", l.style.label_px, 0.0, 200.0)?;
+            within("label_px", l.style.label_px, 0.0, 200.0)?;
             lift(l.style.lift_m)
         }
         LayerDoc::Area(l) => {

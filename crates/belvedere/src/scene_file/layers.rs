@@ -427,6 +427,10 @@ pub struct AreaStyleDoc {
     pub hidden: Hidden,
     /// Height above ground at which it is judged visible, metres, in [0, 1000].
     pub lift_m: f64,
+    /// Whether names are written: each once, in the largest of the areas that bear it.
+    pub labels: bool,
+    /// Height of the letters, pixels, in (0, 200].
+    pub label_px: f64,
 }
 
 impl Default for AreaStyleDoc {
@@ -440,6 +444,8 @@ impl Default for AreaStyleDoc {
             surface: None,
             hidden: Hidden::Cut,
             lift_m: 1.0,
+            labels: false,
+            label_px: 13.0,
         }
     }
 }

@@ -6,7 +6,8 @@ use crate::language::{fill, tr};
 use belvedere::by_property::{CATEGORIES, Class, Coloring, Field, SCALES};
 use belvedere::scene::Color;
 use belvedere::scene_file::{ColorByDoc, ScaleName, SizeByDoc, StepsDoc};
-use eframe::egui::{Color32, ComboBox, DragValue, Sense, Slider, Ui, pos2, vec2};
+use eframe::egui::{Color32, ComboBox, DragValue, Id, Sense, Slider, Ui, pos2, vec2};
+use std::sync::Arc;
 
 /// Values that are offered for a colour of their own.
 const OFFERED: usize = 200;
@@ -40,7 +41,8 @@ pub(super) fn colors(ui: &mut Ui, id: &str, reading: &Reading, by: &mut Option<C
         ui.colored_label(ui.visuals().warn_fg_color, tr("The file has no such property."));
         return;
     };
-    match Coloring::new(doc, &field.values) {
+    let classed = classed(ui, id, reading, doc, field);
+    match &*classed {
         Ok(coloring) if coloring.is_of_numbers() => {
             numbers(ui, id, doc);
             let is_smooth = doc.steps == Some(StepsDoc::Smooth);
@@ -56,11 +58,30 @@ pub(super) fn colors(ui: &mut Ui, id: &str, reading: &Reading, by: &mut Option<C
             others(ui, id, doc, coloring.others, usual);
         }
         Ok(coloring) => {
-            texts(ui, id, (doc, field), &coloring);
+            texts(ui, id, (doc, field), coloring);
             others(ui, id, doc, coloring.others, usual);
         }
         Err((_, reason)) => drop(ui.colored_label(ui.visuals().warn_fg_color, reason)),
     }
+}
+
+/// The classes of a property, or what is wrong with their style.
+type Classed = Arc<Result<Coloring, (&'static str, String)>>;
+
+/// The classes, made anew when their style or the file changes.
+fn classed(ui: &Ui, id: &str, reading: &Reading, doc: &ColorByDoc, field: &Field) -> Classed {
+    #[derive(Clone)]
+    struct Kept(Reading, ColorByDoc, Classed);
+    let key = Id::unique(("classes", id));
+    if let Some(Kept(of, by, classed)) = ui.data(|data| data.get_temp::<Kept>(key))
+        && Arc::ptr_eq(&of, reading)
+        && by == *doc
+    {
+        return classed;
+    }
+    let classed = Classed::new(Coloring::new(doc, &field.values));
+    ui.data_mut(|data| data.insert_temp(key, Kept(reading.clone(), doc.clone(), classed.clone())));
+    classed
 }
 
 /// The properties; words while there are none.

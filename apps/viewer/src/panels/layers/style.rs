@@ -44,6 +44,8 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDo
             ui.scope(|ui| by_property::colors(ui, &id, &reading, &mut l.style.color_by, &text));
             marks::outline(ui, &id, &mut l.style.outline);
             width(ui, &fill(tr("outline of {0}, pixels"), &[&id]), &mut l.style.width_px);
+            labels(ui, &id, (&mut l.style.labels, &mut l.style.label_px));
+            ui.scope(|ui| l.style.labels.then(|| by_property::names(ui, &id, &reading, &mut l.name_field)));
         }
         LayerDoc::Point(l) => {
             let reading = fields::of(ui, model, layer);

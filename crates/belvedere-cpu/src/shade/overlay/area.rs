@@ -257,6 +257,7 @@ mod tests {
             surface: AreaSurface::Water,
             hidden: Hidden::Cut,
             lift_m: 0.0,
+            label_px: None,
         }
     }
 

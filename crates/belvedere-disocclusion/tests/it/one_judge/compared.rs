@@ -76,6 +76,7 @@ pub(crate) fn case(hf: Heightfield, seed: u64, image: [u32; 2]) -> Case {
         surface: AreaSurface::Plain,
         hidden: Hidden::Cut,
         lift_m: LIFT_M,
+        label_px: None,
     });
     let summit = place(&mut random, 0.2, 0.8);
     let on = |xy: DVec2| xy.extend(hf.surface_at(xy).unwrap());

@@ -81,7 +81,16 @@ impl Subject<'_> {
 }
 
 pub(super) fn line(points: Vec<DVec3>, color: Color, width_px: f64) -> OverlayLine {
-    OverlayLine { points, on_ground: false, color, width_px, casing: None, hidden: Hidden::Fade, label: String::new() }
+    OverlayLine {
+        points,
+        on_ground: false,
+        color,
+        width_px,
+        casing: None,
+        hidden: Hidden::Fade,
+        label: String::new(),
+        label_px: belvedere_scene::SMALL_LETTERS_PX,
+    }
 }
 
 pub(super) fn point(position: DVec3, symbol: Symbol, size_px: f64, color: Color, label: &str) -> OverlayPoint {
