@@ -22,7 +22,7 @@ class Folder:
 
     def __init__(self) -> None:
         try:
-            name = tempfile.mkdtemp(prefix="belvedere-")
+            name = os.path.realpath(tempfile.mkdtemp(prefix="belvedere-"))
         except OSError as error:
             raise FileError(f"no temporary folder can be made: {error}; set TMPDIR to a folder with room") from error
         self.path = Path(name)

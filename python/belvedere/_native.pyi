@@ -1,7 +1,34 @@
 """The extension module; its callers are the modules of this package."""
 
 from os import PathLike
-from typing import Callable, Optional, Sequence, Tuple
+from typing import Callable, Optional, Sequence, Tuple, final
+
+__all__ = [
+    "NativeGround",
+    "NativePicture",
+    "NativeReveal",
+    "NativeScene",
+    "animate",
+    "builtin_names",
+    "builtin_scene",
+    "command_line",
+    "disocclude",
+    "displace",
+    "ground",
+    "panics",
+    "pick",
+    "preset_check",
+    "preset_list",
+    "preset_plot",
+    "preset_set",
+    "preset_text",
+    "project",
+    "rays",
+    "reveal",
+    "schema",
+    "set_memory_limit",
+    "version",
+]
 
 _Ask = Tuple[int, Optional[float], Optional[Callable[[str, float], object]]]
 
@@ -13,6 +40,7 @@ def schema() -> str: ...
 def builtin_names() -> list[str]: ...
 def builtin_scene(name: str) -> str: ...
 
+@final
 class NativePicture:
     @property
     def size(self) -> list[int]: ...
@@ -27,6 +55,7 @@ class NativePicture:
     def png(self) -> bytes: ...
     def save(self, path: str, buffers: list[str], exr: bool, overwrite: bool) -> list[PathLike[str]]: ...
 
+@final
 class NativeScene:
     @staticmethod
     def open(path: str, options: str, ask: _Ask) -> NativeScene: ...
@@ -40,12 +69,15 @@ class NativeScene:
     def layers(self) -> list[str]: ...
     @property
     def bounds(self) -> list[list[float]] | None: ...
+    @property
+    def input_paths(self) -> list[PathLike[str]]: ...
     def resized(self, size: list[int], ask: _Ask) -> NativeScene: ...
     def render(self, options: str, ask: _Ask) -> NativePicture: ...
     def measure(self, spacing_m: float | None, renderer: str, ask: _Ask) -> str: ...
     def warnings(self) -> str: ...
     def resolved(self, path: str | None) -> str | None: ...
 
+@final
 class NativeReveal:
     @property
     def report(self) -> str: ...
@@ -57,6 +89,7 @@ class NativeReveal:
         self, out: str, before: str | None, report: str | None, scene: str | None, overwrite: bool
     ) -> list[PathLike[str]]: ...
 
+@final
 class NativeGround:
     @property
     def report(self) -> str: ...

@@ -143,7 +143,8 @@ def reveal(
     Raises :class:`belvedere.InputError`, :class:`belvedere.FileError`, :class:`belvedere.MemoryLimitError`. Ctrl-C ends the work within a second.
 
     >>> import belvedere
-    >>> found = belvedere.reveal("builtin:massif", "builtin:massif", size=(160, 90))
+    >>> view = {"eye": (7972, -7337, 3780), "look_at": (-952, 1587, 221)}
+    >>> found = belvedere.reveal("builtin:massif", "builtin:massif", size=(160, 90), **view)
     >>> found.report.bent.visible > found.report.straight.visible
     True
     """

@@ -174,8 +174,8 @@ class Scene(Layers):
         scene = cls()
         scene._document = json.loads(native.resolved(None) or "{}")
         scene._base = Path(os.path.abspath("."))
-        # Its files were read; it is never opened again but with the same roots.
-        scene._folder, scene._roots = folder, []
+        # Those that were read may be read again.
+        scene._folder, scene._roots = folder, sorted({os.path.dirname(os.path.realpath(p)) for p in native.input_paths})
         scene._natives = {None: native}
         return scene
 
@@ -230,7 +230,8 @@ class Scene(Layers):
         return document
 
     def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
-        """Writes the scene as a scene file (``.json``), with its arrays as files in its folder, for the command line and for others."""
+        """Writes the scene as a scene file (``.json``), with its arrays as files in its folder, for the command line and for others. Files that were
+        given by their paths stay where they are; other programs read them with ``--allow-root``."""
         out = Path(os.fspath(path))
         if out.suffix.lower() != ".json":
             raise InputError(f"{out}: scenes are written as JSON; name the file .json")
@@ -246,7 +247,10 @@ class Scene(Layers):
         try:
             for file in files:
                 shutil.copyfile(file, out.parent / file.name)
-            out.write_text(_text("the scene", document), encoding="utf-8")
+            text = _text("the scene", document)
+            if self._folder is not None:
+                text = text.replace(json.dumps(os.fspath(self._folder.path) + os.sep)[1:-1], "")
+            out.write_text(text, encoding="utf-8")
         except OSError as error:
             raise FileError(f"{out}: {error.strerror or error}") from error
         return out

@@ -36,6 +36,14 @@ mod native {
     use super::solve::{NativeGround, disocclude};
     #[pymodule_export]
     use super::{command_line, panics, set_memory_limit, version};
+    use pyo3::prelude::*;
+
+    #[pymodule_init]
+    fn start(_module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // A panic becomes an exception, which says what there is to say.
+        std::panic::set_hook(Box::new(|_| {}));
+        Ok(())
+    }
 }
 
 /// Version of the engine.

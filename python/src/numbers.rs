@@ -4,10 +4,11 @@ use crate::errors::wrong;
 use crate::picture::filled;
 use crate::scene::NativeScene;
 use crate::work::{Ask, run};
-use belvedere::core::{DVec3, View};
+use belvedere::core::{DVec2, View};
 use belvedere::verbs::points::{self, ProjectedPoint};
-use belvedere::{output, pick as picking};
+use belvedere::{BelvedereError, output, pick as picking};
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::{PyByteArray, PyTuple};
 use rayon::prelude::*;
 
@@ -37,10 +38,9 @@ fn floats<'py>(py: Python<'py>, values: &[f64]) -> PyResult<Bound<'py, PyByteArr
     filled(py, values.iter().map(|v| v.to_ne_bytes()), values.len())
 }
 
-/// Images of points as columns.
-#[derive(Default)]
+/// Images of some points as columns.
 struct Images {
-    pixels: Vec<f64>,
+    pixels: Vec<[f64; 2]>,
     depths: Vec<f64>,
     segments: Vec<i32>,
     inside: Vec<u8>,
@@ -48,55 +48,85 @@ struct Images {
 }
 
 impl Images {
-    fn of(view: &View, points: &[[f64; 3]]) -> Self {
-        let mut out = Self::default();
+    fn of(view: &View, points: &[[u8; 24]]) -> Self {
+        let count = points.len();
+        let (pixels, depths, segments) =
+            (Vec::with_capacity(count), Vec::with_capacity(count), Vec::with_capacity(count));
+        let (inside, misses) = (Vec::with_capacity(count), Vec::with_capacity(count));
+        let mut out = Self { pixels, depths, segments, inside, misses };
+        let mut some = Vec::with_capacity(CHUNK.min(count));
         for chunk in points.chunks(CHUNK) {
-            points::project(view, chunk).points.iter().for_each(|point| out.push(point));
+            some.clear();
+            some.extend(chunk.iter().map(coordinates));
+            points::project(view, &some).points.iter().for_each(|point| out.push(point));
         }
         out
     }
 
     fn push(&mut self, point: &ProjectedPoint) {
-        self.pixels.extend(point.pixel.unwrap_or([f64::NAN; 2]));
+        self.pixels.push(point.pixel.unwrap_or([f64::NAN; 2]));
         self.depths.push(point.depth.unwrap_or(f64::NAN));
         self.segments.push(point.segment.map_or(-1, |segment| segment as i32));
         self.inside.push(u8::from(point.inside));
         self.misses.push(code(point.miss));
     }
+}
 
-    fn append(mut self, other: Self) -> Self {
-        self.pixels.extend(other.pixels);
-        self.depths.extend(other.depths);
-        self.segments.extend(other.segments);
-        self.inside.extend(other.inside);
-        self.misses.extend(other.misses);
-        self
-    }
+/// The coordinates of a point of their bytes.
+fn coordinates(point: &[u8; 24]) -> [f64; 3] {
+    let (values, _) = point.as_chunks::<8>();
+    std::array::from_fn(|i| f64::from_ne_bytes(values[i]))
+}
+
+/// One column of all parts.
+fn joined<'py, T: Copy, const N: usize>(
+    py: Python<'py>,
+    parts: &[Images],
+    column: impl Fn(&Images) -> &[T],
+    bytes: impl Fn(T) -> [u8; N],
+) -> PyResult<Bound<'py, PyByteArray>> {
+    let count: usize = parts.iter().map(|part| column(part).len()).sum();
+    PyByteArray::new_with(py, N * count, |all| {
+        let (mut rest, _) = all.as_chunks_mut::<N>();
+        for part in parts.iter().map(&column) {
+            let (own, next) = rest.split_at_mut(part.len());
+            own.iter_mut().zip(part).for_each(|(to, value)| *to = bytes(*value));
+            rest = next;
+        }
+        Ok(())
+    })
 }
 
 /// Columns `(pixels, depths, segments, inside, misses)` of points, 3 x f64 each.
 #[pyfunction]
 pub(crate) fn project<'py>(
-    scene: &NativeScene,
     py: Python<'py>,
-    points: &[u8],
+    scene: &NativeScene,
+    points: PyBackedBytes,
     ask: Ask,
 ) -> PyResult<Bound<'py, PyTuple>> {
-    let points = numbers::<3>("points", points)?;
     let session = scene.session.clone();
-    let images = run(py, &ask, move |progress| {
-        let view = session.view();
+    let parts = run(py, &ask, move |progress| {
+        let (points, _) = points.as_chunks::<24>();
         let part = points.len().div_ceil(4 * rayon::current_num_threads()).max(CHUNK);
-        let parts: Vec<Images> = points
-            .par_chunks(part)
-            .map(|chunk| progress.tick("project", 0.0).map(|()| Images::of(view, chunk)))
-            .collect::<Result<_, _>>()?;
-        Ok(parts.into_iter().fold(Images::default(), Images::append))
+        let images = |chunk: &[[u8; 24]]| {
+            progress.tick("project", 0.0)?;
+            Ok::<_, BelvedereError>(Images::of(session.view(), chunk))
+        };
+        points.par_chunks(part).map(images).collect::<Result<Vec<_>, _>>()
     })?;
-    let Images { pixels, depths, segments, inside, misses } = images;
-    let segments = filled(py, segments.iter().map(|v| v.to_ne_bytes()), segments.len())?;
-    let [inside, misses] = [inside, misses].map(|flags| PyByteArray::new(py, &flags));
-    (floats(py, &pixels)?, floats(py, &depths)?, segments, inside, misses).into_pyobject(py)
+    let pixel = |[x, y]: [f64; 2]| {
+        let mut bytes = [0; 16];
+        bytes[..8].copy_from_slice(&x.to_ne_bytes());
+        bytes[8..].copy_from_slice(&y.to_ne_bytes());
+        bytes
+    };
+    let pixels = joined(py, &parts, |part| &part.pixels, pixel)?;
+    let depths = joined(py, &parts, |part| &part.depths, f64::to_ne_bytes)?;
+    let segments = joined(py, &parts, |part| &part.segments, i32::to_ne_bytes)?;
+    let inside = joined(py, &parts, |part| &part.inside, |flag| [flag])?;
+    let misses = joined(py, &parts, |part| &part.misses, |flag| [flag])?;
+    (pixels, depths, segments, inside, misses).into_pyobject(py)
 }
 
 /// Columns `(displaced, folded, misses)` of points, 3 x f64 each.
@@ -159,7 +189,6 @@ pub(crate) fn pick(scene: &NativeScene, py: Python<'_>, pixels: &[u8], ask: Ask)
 pub(crate) fn ground<'py>(scene: &NativeScene, py: Python<'py>, points: &[u8]) -> PyResult<Bound<'py, PyByteArray>> {
     let points = numbers::<2>("points", points)?;
     let terrain = scene.session.scene().terrain();
-    let height =
-        |[x, y]: &[f64; 2]| terrain.and_then(|t| t.surface_at(DVec3::new(*x, *y, 0.0).truncate())).unwrap_or(f64::NAN);
+    let height = |[x, y]: &[f64; 2]| terrain.and_then(|t| t.surface_at(DVec2::new(*x, *y))).unwrap_or(f64::NAN);
     floats(py, &points.iter().map(height).collect::<Vec<_>>())
 }

@@ -13,7 +13,12 @@ use std::path::PathBuf;
 
 /// Options from their JSON text.
 pub(crate) fn read<T: DeserializeOwned>(what: &str, text: &str) -> PyResult<T> {
-    serde_json::from_str(text).map_err(|e| wrong(&format!("{what}: {e}")))
+    serde_json::from_str(text).map_err(|e| {
+        let said = e.to_string();
+        // Python gave no text, so that it has no lines.
+        let words = said.rsplit_once(" at line ").map_or(said.as_str(), |(words, _)| words);
+        wrong(&format!("{what}: {words}"))
+    })
 }
 
 /// A place as Python gives it.

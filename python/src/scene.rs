@@ -96,6 +96,12 @@ impl NativeScene {
         (!bounds.is_empty()).then(|| [bounds.min.to_array(), bounds.max.to_array()])
     }
 
+    /// Files that were read.
+    #[getter]
+    fn input_paths(&self) -> Vec<PathBuf> {
+        self.session.input_paths()
+    }
+
     /// Warnings, JSON.
     fn warnings(&self) -> PyResult<String> {
         output::json(&self.session.warnings()).map_err(|e| raised(&e))

@@ -117,20 +117,28 @@ pub(crate) fn run<T: Send + 'static>(
         if let Err(stop) = py.check_signals().and_then(|()| tell(now)) {
             cancel.store(true, Ordering::SeqCst);
             let rest = &mut receiver;
-            py.detach(move || ended(rest));
+            if !py.detach(move || ended(rest)) {
+                forget(&pool);
+            }
             return Err(stop);
         }
     }
 }
 
-/// Waits until cancelled work has ended, but not for long.
-fn ended<T>(receiver: &mut Receiver<T>) {
+/// Waits until cancelled work has ended, but not for long; returns whether it has.
+fn ended<T>(receiver: &mut Receiver<T>) -> bool {
     let until = Instant::now() + GRACE;
     while let Err(RecvTimeoutError::Timeout) = receiver.recv_timeout(EVERY) {
         if Instant::now() >= until {
-            return;
+            return false;
         }
     }
+    true
+}
+
+/// Leaves a pool to the work that does not end, so that later calls do not wait for it.
+fn forget(left: &Arc<ThreadPool>) {
+    POOLS.lock().unwrap_or_else(PoisonError::into_inner).retain(|(.., pool)| !Arc::ptr_eq(pool, left));
 }
 
 fn broken(panic: &(dyn std::any::Any + Send)) -> BelvedereError {

@@ -25,7 +25,13 @@ def test_reveal_of_arrays(tmp_path: Path) -> None:
     assert {p.name for p in written} == {"a.png", "a.png.json", "a.pair.png", "a.report.json", "before.png"}
     assert json.loads((tmp_path / "a.report.json").read_text()) == found.report.raw
     assert found.scene.project([LOOK]).inside.all()
-    assert found.scene.render(size=(64, 36)).size == (64, 36)
+    # The scene that was found is one like others: it is drawn, changed, and written for the command line.
+    wanted = found.scene.render(size=(64, 36))
+    (tmp_path / "found").mkdir()
+    again = belvedere.Scene.open(found.scene.save(tmp_path / "found" / "scene.json"))
+    assert (again.render(size=(64, 36)).rgba == wanted.rgba).all()
+    changed = found.scene.add_points([(1200.0, 500.0)], id="more")
+    assert changed.layers[-1] == "more" and 3 in changed.render(size=(160, 90)).id
 
 
 def test_holes_of_arrays_stay_and_those_of_files_are_filled_as_by_the_program(tmp_path: Path) -> None:
