@@ -13,7 +13,7 @@ use crate::parse::{
     parse_position, parse_scale, parse_size, parse_spacing, parse_sweep,
 };
 use crate::preset::PresetArgs;
-use crate::shell::{CompletionsArgs, ManArgs};
+use crate::shell_args::{CompletionsArgs, ManArgs};
 use crate::trust::TrustArgs;
 use belvedere::RendererChoice;
 use belvedere::places::Place;

@@ -25,6 +25,7 @@ mod reveal;
 mod scene_keys;
 mod schemas;
 mod shell;
+mod shell_args;
 mod stdin;
 mod timings;
 mod trust;

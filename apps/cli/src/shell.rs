@@ -4,56 +4,14 @@ use crate::args::Cli;
 use crate::goal::Goal;
 use crate::outputs;
 use crate::report::{Context, is_stdout, print};
+use crate::shell_args::{CompletionsArgs, ManArgs};
 use anyhow::Context as _;
 use belvedere::answers::Written;
 use belvedere::io::atomic;
 use belvedere::output;
-use clap::{Args, CommandFactory, ValueEnum};
+use clap::CommandFactory;
 use clap_complete::Shell;
 use std::path::PathBuf;
-
-/// Completions.
-#[derive(Debug, Args)]
-pub(crate) struct CompletionsArgs {
-    /// Shell
-    #[arg(value_enum)]
-    shell: ShellKind,
-    /// Output; standard output if left out
-    #[arg(short, long, value_name = "FILE")]
-    out: Option<PathBuf>,
-}
-
-/// Shells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum ShellKind {
-    /// Bash
-    Bash,
-    /// Zsh
-    Zsh,
-    /// Fish
-    Fish,
-    /// PowerShell
-    #[value(name = "powershell")]
-    PowerShell,
-}
-
-impl From<ShellKind> for Shell {
-    fn from(kind: ShellKind) -> Self {
-        match kind {
-            ShellKind::Bash => Self::Bash,
-            ShellKind::Zsh => Self::Zsh,
-            ShellKind::Fish => Self::Fish,
-            ShellKind::PowerShell => Self::PowerShell,
-        }
-    }
-}
-
-/// Manual pages.
-#[derive(Debug, Args)]
-pub(crate) struct ManArgs {
-    /// Folder for the pages
-    dir: PathBuf,
-}
 
 /// Writes what a shell needs to complete the command line.
 pub(crate) fn completions(args: &CompletionsArgs, context: &Context) -> anyhow::Result<Goal> {

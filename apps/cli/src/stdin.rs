@@ -1,6 +1,5 @@
 //! Inputs named `-`: standard input, kept in a temporary file where a loader needs one.
 
-use crate::report::is_stdout;
 use anyhow::{Context as _, ensure};
 use belvedere::scene_file::{self, SourceDocument};
 use std::io::{IsTerminal, Read};
@@ -78,7 +77,7 @@ impl Stdin {
 
 /// Whether an input is standard input, which is written as standard output is.
 fn is_stdin(path: &Path) -> bool {
-    is_stdout(path)
+    path == Path::new("-")
 }
 
 /// The ending of files with such contents.

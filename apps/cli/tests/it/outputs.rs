@@ -51,6 +51,7 @@ fn pictures_and_documents_go_to_standard_output() {
     }
     assert!(place.ok(&["preset", "new", "-o", "-"]).contains("[[presets]]"));
     assert!(place.run(&["preset", "plot", "map", "-o", "-"]).stdout.starts_with(b"\x89PNG"));
+    assert!(place.run(&["export", "s.toml", "-o", "-"]).stdout.starts_with(b"glTF"));
     assert!(!place.path("-").exists());
 }
 
@@ -152,6 +153,7 @@ fn outputs_that_cannot_be_written_are_noticed_before_the_work() {
         assert!(place.fails(&[&args[..], &["none/x.png"]].concat()).contains("folder none does not exist"));
     }
     assert!(place.fails(&["render", "s.toml", "-o", "."]).contains("is no file name"));
+    assert!(place.fails(&["export", "s.toml", "-o", "a.obj"]).contains("name the output .glb"));
     assert_eq!(files(&place), before, "nothing is left of the tries");
 }
 

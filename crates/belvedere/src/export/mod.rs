@@ -189,7 +189,7 @@ fn exported(session: &Session, options: &ExportOptions) -> Result<Exported, Belv
 fn origin(sheets: &[(String, Sheet)], balls: &[Ball]) -> Option<DVec3> {
     let places = sheets.iter().flat_map(|(_, sheet)| sheet.carried.iter().flatten().copied());
     let bounds = Aabb::of(places.chain(balls.iter().map(|ball| ball.at)));
-    (!bounds.is_empty()).then(|| bounds.center().round())
+    (!bounds.is_empty()).then(|| bounds.center().round() + DVec3::ZERO)
 }
 
 fn unit(unit: Unit) -> &'static str {
