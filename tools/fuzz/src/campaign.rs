@@ -87,7 +87,7 @@ const MEMORY: u64 = 512 << 20;
 
 /// Runs `inputs` mutated files, divided among `readers`, on `workers` threads. A hang or too much memory ends the process with one line.
 ///
-/// * `time`: longest time of one file.
+/// * `time`: longest time of a core for one file.
 pub fn run(readers: &[&'static Reader], inputs: usize, seed: u64, workers: usize, time: Duration) -> Outcome {
     belvedere::io::budget::set(2 * crate::readers::MAX_BYTES);
     note_panics();

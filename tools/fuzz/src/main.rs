@@ -25,8 +25,8 @@ enum Args {
         /// Threads.
         #[arg(long, default_value_t = 2)]
         workers: usize,
-        /// Longest time of one file, seconds.
-        #[arg(long, default_value_t = 2.0)]
+        /// Longest time of a core for one file, seconds.
+        #[arg(long, default_value_t = 5.0)]
         time: f64,
     },
     /// Repeats one file: reader, seed, number.

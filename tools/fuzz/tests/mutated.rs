@@ -6,8 +6,11 @@ use std::time::Duration;
 
 /// Files of a run.
 const INPUTS: usize = 10_000;
-/// Longest time of one file. Debug builds on busy machines are slow; a release build needs a tenth.
-const TIME: Duration = Duration::from_secs(20);
+/// Longest time of a core for one file; the slowest needs two seconds (the check of odd presets at 361 angles).
+const TIME: Duration = Duration::from_secs(10);
+
+/// Readers of parts that are left out with a warning where they are damaged. Damaged gzip, on the other hand, fails its checksum.
+const WITH_A_WARNING: [&str; 5] = ["mtl", "texture_png", "texture_jpeg", "shapefile_table", "trust_record"];
 
 #[test]
 fn every_seed_is_read() {
@@ -30,11 +33,9 @@ fn no_mutated_file_is_a_panic_or_a_hang() {
     assert!(outcome.panics.is_empty(), "{} panics:\n{}", outcome.panics.len(), outcome.panics.join("\n"));
     let all: usize = outcome.counts.values().flatten().sum();
     assert_eq!((all, outcome.counts.len()), (INPUTS, READERS.len()));
-    // Damage that every reader refuses at once would try nothing, damage that it never refuses is none.
+    // Damage that a reader always refuses would try nothing, damage that it never refuses is none.
     for (name, [accepted, refused]) in outcome.counts {
-        assert!(
-            accepted >= 5 && (refused >= 5 || name == "trust_record"),
-            "{name}: {accepted} accepted, {refused} refused"
-        );
+        assert!(accepted > 0 || name == "gzip", "{name}: {refused} refused, none accepted");
+        assert!(refused > 0 || WITH_A_WARNING.contains(&name), "{name}: {accepted} accepted, none refused");
     }
 }

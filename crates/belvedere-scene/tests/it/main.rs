@@ -1,0 +1,5 @@
+//! Tests of belvedere-scene against independent references.
+
+mod ground;
+mod looks;
+mod shapes;
