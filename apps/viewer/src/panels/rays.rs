@@ -18,6 +18,8 @@ const AHEAD: f64 = 0.25;
 
 /// Size of the field of a coordinate, points; the same for any number of digits.
 const COORDINATE: [f32; 2] = [92.0, 20.0];
+/// Least width of that field in a narrow panel, points.
+const LEAST_COORDINATE: f32 = 56.0;
 
 /// Visible share from which on a target counts as in sight.
 const WHOLE: f64 = 0.99;
@@ -323,12 +325,14 @@ fn one(ui: &mut Ui, model: &mut Model, n: usize, turn: &TurnDoc, next: &mut Turn
         let now = *part(&mut turn.clone());
         ui.label(name).on_hover_text(help);
         ui.horizontal(|ui| {
+            let third = (ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0;
+            let size = [third.floor().clamp(LEAST_COORDINATE, COORDINATE[0]), COORDINATE[1]];
             for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
                 let mut value = now[axis];
                 let field =
                     eframe::egui::DragValue::new(&mut value).speed(speed).max_decimals(2).prefix(format!("{letter} "));
                 let whole = format!("{name} {n}, {letter}");
-                let response = ui.add_sized(COORDINATE, field).accessible_name(whole.as_str()).on_hover_text(whole);
+                let response = ui.add_sized(size, field).accessible_name(whole.as_str()).on_hover_text(whole);
                 if let Some(value) = super::changed(model, &response, value) {
                     part(next)[axis] = value;
                 }

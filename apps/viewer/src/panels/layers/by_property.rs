@@ -128,7 +128,12 @@ fn numbers(ui: &mut Ui, id: &str, doc: &mut ColorByDoc) {
     }
     if steps != StepsDoc::Smooth && doc.breaks.is_none() {
         let mut count = doc.classes.unwrap_or(5);
-        if ui.add(Slider::new(&mut count, 3..=7).text(fill(tr("classes of {0}"), &[&id]))).changed() {
+        let row = ui.horizontal_wrapped(|ui| {
+            let response = ui.add(Slider::new(&mut count, 3..=7));
+            let label = ui.label(fill(tr("classes of {0}"), &[&id]));
+            response.labelled_by(label.id)
+        });
+        if row.inner.changed() {
             doc.classes = Some(count);
         }
     }
@@ -228,7 +233,7 @@ pub(super) fn sizes(ui: &mut Ui, words: [String; 2], reading: &Reading, by: &mut
         }
     });
     if let Some(doc) = by {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let ends = [tr("pixels of the lowest number"), tr("of the highest")];
             for (px, words) in doc.px.iter_mut().zip(ends) {
                 let label = ui.label(words);

@@ -12,14 +12,14 @@ const EVERY: f64 = 1000.0;
 /// A colour that may be none.
 pub(super) fn casing(ui: &mut Ui, id: &str, text: &mut String) {
     let mut on = !text.eq_ignore_ascii_case("none");
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         if ui.checkbox(&mut on, fill(tr("rim of {0}"), &[&id])).changed() {
             *text = if on { "#ffffff" } else { "none" }.to_owned();
         }
-        if on {
-            color(ui, &fill(tr("colour of the rim of {0}"), &[&id]), text);
-        }
     });
+    if on {
+        color(ui, &fill(tr("colour of the rim of {0}"), &[&id]), text);
+    }
 }
 
 /// Marks at equal distances along lines.

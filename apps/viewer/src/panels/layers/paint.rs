@@ -8,7 +8,7 @@ pub(super) fn color(ui: &mut Ui, name: &str, text: &mut String) -> bool {
     let now = opaque(text);
     let mut rgb = [now.r(), now.g(), now.b()];
     let changed = ui
-        .horizontal(|ui| {
+        .horizontal_wrapped(|ui| {
             let response = ui.color_edit_button_srgb(&mut rgb).on_hover_text(name);
             let label = ui.label(name);
             response.labelled_by(label.id).changed()
@@ -31,7 +31,14 @@ pub(super) fn opacity(ui: &mut Ui, id: &str, text: &mut String) -> bool {
     let now = opaque(text);
     let alpha = text.get(7..9).and_then(|digits| u8::from_str_radix(digits, 16).ok()).unwrap_or(255);
     let mut percent = (f64::from(alpha) / 2.55).round();
-    let response = ui.add(Slider::new(&mut percent, 0.0..=100.0).suffix(" %").text(fill(tr("opacity of {0}"), &[&id])));
+    // In a narrow panel the words stand below.
+    let slider = Slider::new(&mut percent, 0.0..=100.0).suffix(" %");
+    let row = ui.horizontal_wrapped(|ui| {
+        let response = ui.add(slider);
+        let label = ui.label(fill(tr("opacity of {0}"), &[&id]));
+        response.labelled_by(label.id)
+    });
+    let response = row.inner;
     if response.changed() {
         let [r, g, b, _] = now.to_array();
         let alpha = (percent * 2.55).round().clamp(0.0, 255.0) as u8;

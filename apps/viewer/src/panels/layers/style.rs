@@ -7,7 +7,7 @@ use crate::model::Model;
 use belvedere::scene::Hidden;
 use belvedere::scene::molecule::Representation;
 use belvedere::scene_file::{LayerDoc, MoleculeStyleDoc, PaletteDoc, PaletteName};
-use eframe::egui::{ComboBox, DragValue, Ui};
+use eframe::egui::{ComboBox, DragValue, TextWrapMode, Ui};
 
 /// Shows the style of a layer.
 pub(super) fn show(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDoc) {
@@ -15,6 +15,8 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDo
     let pending = ui.data(|data| data.get_temp::<Pending>(key));
     let mut next = pending.map_or_else(|| layer.clone(), |pending| pending.0);
     let id = layer.id().to_owned();
+    // The words beside a field or a list go on below where the panel is narrow.
+    ui.style_mut().wrap_mode = Some(TextWrapMode::Wrap);
     // Scopes around what appears once a file is read: the controls below keep their identities, and so their clicks.
     match &mut next {
         LayerDoc::Terrain(l) => {
@@ -104,7 +106,7 @@ const REACH: f64 = 40.0;
 
 fn occlusion(ui: &mut Ui, id: &str, value: &mut Option<f64>) {
     let mut on = value.is_some();
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         if ui.checkbox(&mut on, fill(tr("ambient occlusion of {0}"), &[&id])).changed() {
             *value = on.then_some(REACH);
         }
@@ -117,7 +119,7 @@ fn occlusion(ui: &mut Ui, id: &str, value: &mut Option<f64>) {
 
 /// Whether names are written, and how large.
 fn labels(ui: &mut Ui, id: &str, (on, size): (&mut bool, &mut f64)) {
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.checkbox(on, fill(tr("names of {0}"), &[&id]));
         if *on {
             let label = ui.label(tr("letters, pixels"));
