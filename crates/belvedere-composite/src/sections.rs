@@ -118,6 +118,17 @@ impl<'a> Sections<'a> {
         self.of_range(layer, [range[0] - 1e-9, range[1] + 1e-9])
     }
 
+    /// Visible share of a part of a layer, by the positions along the curve of its corners, between which the position is linear.
+    pub fn of_corners(&self, layer: usize, positions: [f64; 3]) -> Shown {
+        let [from, to] = [
+            positions.iter().fold(f64::INFINITY, |a, b| a.min(*b)),
+            positions.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b)),
+        ];
+        // Widened for the rounding of positions in single precision.
+        let slack = |t: f64| 1e-3 * (1.0 + t.abs());
+        self.of_range(layer, [from - slack(from), to + slack(to)])
+    }
+
     fn of_range(&self, layer: usize, range: [f64; 2]) -> Shown {
         let supported = self.styling.supported(range);
         if let Some(number) = self.only {

@@ -229,16 +229,24 @@ mod tests {
     fn ranges_of_rectangles_are_those_of_their_nodes() {
         for (cols, rows) in [(2, 2), (15, 70), (64, 33), (101, 97)] {
             let value = |i: usize| (i as f64 * 0.618_033_988_75).fract() * (1.0 + (i % 7) as f64) - 2.0;
-            let grid = Grid::new(DVec2::new(5.0, 9.0), DVec2::new(2.0, 3.0), cols, rows, (0..cols * rows).map(value).collect());
+            let grid = Grid::new(
+                DVec2::new(5.0, 9.0),
+                DVec2::new(2.0, 3.0),
+                cols,
+                rows,
+                (0..cols * rows).map(value).collect(),
+            );
             let grid = grid.expect("grid");
             for k in 0..400u32 {
                 let at = |seed: f64, n: usize| (f64::from(k) * seed).fract() * (n as f64 + 1.0) - 1.0;
-                let (a, b) = (DVec2::new(at(0.317, cols), at(0.731, rows)), DVec2::new(at(0.557, cols), at(0.113, rows)));
+                let (a, b) =
+                    (DVec2::new(at(0.317, cols), at(0.731, rows)), DVec2::new(at(0.557, cols), at(0.113, rows)));
                 let (from, to) = (a.min(b), a.max(b));
                 let scene = |g: DVec2| DVec2::new(5.0 + 2.0 * g.x, 9.0 - 3.0 * g.y);
                 let found = grid.range_over(scene(DVec2::new(from.x, to.y)), scene(DVec2::new(to.x, from.y)));
                 let touched = |lo: f64, hi: f64, i: usize| i as f64 >= lo.floor() && i as f64 <= hi.ceil();
-                let nodes = (0..cols * rows).filter(|i| touched(from.x, to.x, i % cols) && touched(from.y, to.y, i / cols));
+                let nodes =
+                    (0..cols * rows).filter(|i| touched(from.x, to.x, i % cols) && touched(from.y, to.y, i / cols));
                 let all: Vec<f64> = nodes.map(value).collect();
                 match found {
                     Some(range) => assert_eq!(range, with_all(EMPTY, &all), "{cols} x {rows}: {from} to {to}"),

@@ -177,7 +177,11 @@ impl MarkBuilder<'_> {
             let half_px = 0.5 * width_or_none(group.scale * layer.width_px);
             let casing_px = layer.casing.map(|_| casing_of(half_px));
             let style = Style { half_px, casing_px, hidden: layer.hidden, lift_m: layer.lift_m };
-            let paths = group.features.par_iter().map(|f| path::drape(self.scene, &f.points, layer.lift_m, self.coarse())).collect();
+            let paths = group
+                .features
+                .par_iter()
+                .map(|f| path::drape(self.scene, &f.points, layer.lift_m, self.coarse()))
+                .collect();
             self.sheet(paths, style, inks(group.color, layer.casing, layer.hidden), id)
         };
         alike(&layer.features, layer.color, |f| f.style).into_iter().map(sheet).collect()
@@ -282,7 +286,8 @@ impl MarkBuilder<'_> {
     /// Marks at equal distances along the lines of a layer.
     fn distances(&self, layer: &LineLayer, id: u32, requests: &mut Vec<LabelRequest>) -> Option<StrokeLayer> {
         let markers = layer.markers?;
-        let lines: Vec<_> = layer.features.iter().map(|f| path::drape(self.scene, &f.points, layer.lift_m, self.coarse())).collect();
+        let lines: Vec<_> =
+            layer.features.iter().map(|f| path::drape(self.scene, &f.points, layer.lift_m, self.coarse())).collect();
         let lengths = lines.iter().filter_map(|l| l.last().map(|p| p.along));
         let every = distance::spacing(markers, lengths)?;
         let half_px = (0.5 * width_or_none(layer.width_px)).max(1.0) + 1.2;

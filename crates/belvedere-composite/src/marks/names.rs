@@ -32,7 +32,11 @@ impl MarkBuilder<'_> {
             .filter(|f| !f.name.trim().is_empty())
             .map(|f| {
                 let color = f.style.and_then(|own| own.color).unwrap_or(layer.color);
-                (f.name.trim(), color, self.longest(&path::drape(self.scene, &f.points, layer.lift_m, self.coarse()), style))
+                (
+                    f.name.trim(),
+                    color,
+                    self.longest(&path::drape(self.scene, &f.points, layer.lift_m, self.coarse()), style),
+                )
             })
             .collect();
         let mut names: Vec<(&str, Color, Stretch)> = Vec::new();

@@ -104,12 +104,7 @@ pub(crate) fn as_given(points: &[DVec3]) -> Vec<LinePoint> {
 }
 
 /// The line draped on the drawn surface, whatever its own heights, lifted: pieces without holes; `coarse` as in [`drape`].
-pub(crate) fn lay(
-    scene: &Scene,
-    points: &[DVec3],
-    lift_m: f64,
-    coarse: Option<&Screen>,
-) -> Vec<Vec<LinePoint>> {
+pub(crate) fn lay(scene: &Scene, points: &[DVec3], lift_m: f64, coarse: Option<&Screen>) -> Vec<Vec<LinePoint>> {
     let thinned = coarse.map(|screen| thinned(points, screen));
     let points = thinned.as_deref().unwrap_or(points);
     let Some(hf) = scene.terrain() else { return Vec::new() };
@@ -121,7 +116,8 @@ pub(crate) fn lay(
         if !length.is_finite() {
             continue;
         }
-        let step = coarse.map_or(step, |screen| pair.iter().map(|p| screen.pixel_size(*p)).fold(f64::INFINITY, f64::min).max(step));
+        let step = coarse
+            .map_or(step, |screen| pair.iter().map(|p| screen.pixel_size(*p)).fold(f64::INFINITY, f64::min).max(step));
         let n = (length / step).ceil().clamp(1.0, 65_536.0) as usize;
         for k in usize::from(i > 0)..=n {
             let xy = a.lerp(b, k as f64 / n as f64);

@@ -2,7 +2,7 @@
 
 use crate::geometry::pass::{InView, Pass, displaced};
 use crate::screen::Screen;
-use belvedere_core::{Aabb, View};
+use belvedere_core::{Aabb, DVec3, View};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -74,13 +74,25 @@ impl<'a> Locator<'a> {
     }
 
     /// Bound on the pixels per unit of height inside the box, infinite where unknown; `None` if no pass shows it.
-    pub(crate) fn px_per_height(&self, bounds: &Aabb, passes: impl Iterator<Item = u32>) -> Option<f64> {
+    ///
+    /// * `coarse`: whether the picture is a coarse one, see [`Pass::shown_extent`].
+    pub(crate) fn px_per_height(&self, bounds: &Aabb, passes: impl Iterator<Item = u32>, coarse: bool) -> Option<f64> {
         let of = |number: u32| {
             let pass = &self.passes[number as usize];
-            let InView::Maybe(extent) = pass.in_view(self.screen, bounds) else { return None };
+            let InView::Maybe(mut extent) = pass.in_view(self.screen, bounds) else { return None };
+            if coarse {
+                extent = pass.shown_extent(self.screen, bounds, extent);
+            }
             Some(pass.px_per_height(self.screen, bounds, extent))
         };
         passes.filter_map(of).reduce(f64::max)
+    }
+
+    /// Whether part of a box lies beside or behind the eye; `false` for curved rays.
+    pub(crate) fn reaches_behind(&self, bounds: &Aabb) -> bool {
+        let [pass] = self.passes else { return false };
+        let depth = |p: DVec3| pass.displace(p).map(|v| self.screen.view_from(v).z);
+        bounds.corners().into_iter().filter_map(depth).any(|depth| depth <= 0.0)
     }
 
     /// Whether a pass shows part of the box.

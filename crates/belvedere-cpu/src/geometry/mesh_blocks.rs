@@ -4,7 +4,7 @@ use crate::geometry::block::{Block, Counts, Job, SoupTriangle, SoupVertex};
 use crate::geometry::pass::Pass;
 use crate::geometry::refine::{Refiner, is_short};
 use crate::screen::{ScreenVertex, Snap};
-use belvedere_composite::sections::Shown;
+use belvedere_composite::sections::{Sections, Shown};
 use belvedere_core::{Aabb, DVec3, EdgePoint};
 use belvedere_scene::Mesh;
 use belvedere_sight::CarriedLayer;
@@ -94,11 +94,18 @@ impl Job<'_> {
         if places.is_empty() || self.shown(&bounds) == Shown::Nothing {
             return None;
         }
+        let thin = self.sections.filter(|_| self.shown(&bounds) == Shown::Partly);
+        // Positions of the corners along the deformation curve.
+        let along: Vec<f64> = thin.iter().flat_map(|s| places.iter().map(|p| s.parameter(p[0]))).collect();
         let judge = !pass.is_straight_in(&carried, self.tolerance_px);
         let vertices: Vec<Vertex> = places.iter().map(|p| self.mesh_vertex(pass, p[1], judge)).collect();
         let missed = vertices.iter().filter(|v| v.missed).count() as u64;
         let mut refiner = Refiner::new(pass, self.screen, self.tolerance_px, self.spare.soup());
         for (t, corners) in triangles.iter().zip(&corners) {
+            let of_corners = |s: &Sections<'_>| s.of_corners(self.layer as usize, corners.map(|c| along[c as usize]));
+            if thin.is_some_and(|s| of_corners(s) == Shown::Nothing) {
+                continue;
+            }
             let (parent, corners) = (t - first as u32, corners.map(|c| &vertices[c as usize]));
             match self.whole(pass, corners, judge) {
                 Some([a, b, c]) => {
@@ -111,7 +118,7 @@ impl Job<'_> {
         let counts = Counts { drawn: refiner.out.len() as u64, split: refiner.splits, missed };
         let block = Block::soup(self.layer, pass.numbers, first, refiner.out, counts)?;
         let block = Block { bodies: matches!(drawn, Drawn::Bodies(..)), ..block };
-        let Some(sections) = self.sections.filter(|_| self.shown(&bounds) == Shown::Partly) else { return Some(block) };
+        let Some(sections) = thin else { return Some(block) };
         Some(block.thinned(|k| mesh.corners(first + k as usize).map(|p| sections.parameter(p))))
     }
 

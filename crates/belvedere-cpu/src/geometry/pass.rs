@@ -257,6 +257,24 @@ impl<'a> Pass<'a> {
         if self.view.records() == 1 { image_of(screen, &Aabb::of(hull).corners()) } else { image_of(screen, &hull) }
     }
 
+    /// Extent of the part of a box that the image shows, for a view without curved rays: no point of it is nearer to the eye than the
+    /// displaced box, nor farther from the axis than the corners of the image. The box itself may reach behind the eye.
+    ///
+    /// * `extent`: of the whole box, see [`InView::Maybe`].
+    pub(crate) fn shown_extent(&self, screen: &Screen, bounds: &Aabb, extent: Option<Extent>) -> Option<Extent> {
+        if screen.ortho || self.view.curved_rays().is_some() {
+            return extent;
+        }
+        let Some(displaced) = displaced(self.view.stages(), bounds) else { return extent };
+        let eye = self.view.pinhole().eye;
+        let distance = eye.clamp(displaced.min, displaced.max).distance(eye);
+        let depth = distance * screen.scale / screen.scale.hypot(screen.center.length());
+        match extent {
+            Some(extent) => Some(Extent { depth: extent.depth.max(depth), ..extent }),
+            None => (depth > 0.0).then_some(Extent { depth, image: [-screen.center, screen.center] }),
+        }
+    }
+
     /// Bound on the pixels that a unit of height inside the box spans on the image; infinite where unknown.
     /// * `extent`: of the box, see [`InView::Maybe`].
     pub(crate) fn px_per_height(&self, screen: &Screen, bounds: &Aabb, extent: Option<Extent>) -> f64 {
@@ -406,6 +424,36 @@ mod tests {
         let flat = View::straight(camera(Projection::Orthographic { height: 6000.0 }));
         let stages = [vec![], vec![earth.clone()], vec![earth, Stage::CurvedRays(rays)]];
         stages.into_iter().map(|s| View::new(wide.clone(), s).unwrap()).chain([flat]).collect()
+    }
+
+    #[test]
+    fn nor_in_what_the_image_shows_of_boxes_that_reach_behind_the_eye() {
+        let mut around = 0;
+        for view in views().iter().filter(|view| view.curved_rays().is_none() && !view.pinhole().is_orthographic()) {
+            let (screen, pass) = (Screen::new(view.pinhole()), &Pass::all(view)[0]);
+            let (eye, size) = (view.pinhole().eye, 2.0 * screen.center);
+            for k in 0..40 {
+                let turn = |seed: f64| (f64::from(k) * seed).fract();
+                let min = eye + DVec3::new(-4e3 * turn(0.618), -4e3 * turn(0.755), -200.0 - 1500.0 * turn(0.57));
+                let bounds = Aabb { min, max: min + DVec3::new(5e3, 5e3, 150.0) };
+                let InView::Maybe(extent) = pass.in_view(&screen, &bounds) else { continue };
+                let shown = pass.shown_extent(&screen, &bounds, extent);
+                assert!(shown.is_some(), "{bounds:?}");
+                let most = pass.px_per_height(&screen, &bounds, shown);
+                assert!(most.is_finite() && most <= pass.px_per_height(&screen, &bounds, extent));
+                around += usize::from(extent.is_none());
+                for i in 0..1600 {
+                    let low = min + DVec3::new(125.0 * f64::from(i % 40), 125.0 * f64::from(i / 40), 0.0);
+                    let image =
+                        |p: DVec3| view.displace_in(0, p).ok().and_then(|d| view.pinhole().project(d.point).ok());
+                    let (Some((a, _)), Some((b, _))) = (image(low), image(low + DVec3::Z * 0.5)) else { continue };
+                    if [a, b].iter().all(|p| p.cmpge(DVec2::ZERO).all() && p.cmple(size).all()) {
+                        assert!(a.distance(b) / 0.5 <= most * (1.0 + 1e-9), "{low}: {} > {most}", a.distance(b) / 0.5);
+                    }
+                }
+            }
+        }
+        assert!(around > 20, "{around} boxes reach behind the eye");
     }
 
     #[test]

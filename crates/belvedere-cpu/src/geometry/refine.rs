@@ -256,3 +256,17 @@ struct ClipVertex {
     margins: [f64; 2],
     distance: [f64; PLANES + 2],
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_short_edges_of_coarse_pictures_are_not_judged() {
+        let at = |x: i32, y: i32| ScreenVertex { x: x * SUB, y: y * SUB, q: 1.0 };
+        assert!(is_short(at(3, 4), at(6, 8), 5.0) && is_short(at(6, 8), at(3, 4), 5.0));
+        assert!(!is_short(at(3, 4), at(7, 8), 5.0), "longer than the tolerance");
+        assert!(!is_short(at(3, 4), at(3, 4), 0.5), "a picture at rest");
+        assert!(!is_short(at(-100_000, 0), at(100_000, 0), 8.0), "no overflow");
+    }
+}

@@ -87,13 +87,15 @@ impl DetailSelector<'_> {
     fn visit(&self, level: usize, block: [usize; 2], larger: &Held, mut plain: bool, out: &mut Selection) {
         let Some(bounds) = self.tree.bounds(self.hf, level, block) else { return };
         let held = self.locator.locate(&bounds, larger, &mut out.passes);
-        let Some(px_per_unit) = self.locator.px_per_height(&bounds, out.drawn_by(&held)) else { return };
+        let Some(px_per_unit) = self.locator.px_per_height(&bounds, out.drawn_by(&held), self.is_coarse()) else {
+            return;
+        };
         let height_px = f64::from(self.tree.span(level, block).error) * px_per_unit;
         // Where records are clipped from each other, all of them must clip the same triangles, so level 0 is drawn.
         let coarse = level > 0 && held.whole && height_px <= self.lod_px && self.lod_px > 0.0;
         let mut bend_px = 0.0;
         // A coarse picture judges the edges of a block only where it may be drawn.
-        let judges = coarse || (!plain && (level == 0 || self.tolerance_px < COARSE_PX));
+        let judges = coarse || (!plain && (level == 0 || !self.is_coarse()));
         if !self.view.stages().is_empty() && judges {
             let (from, to) = nodes(self.hf, level, block);
             let n = (to[0] - from[0]).max(to[1] - from[1]).div_ceil(1 << level);
@@ -133,25 +135,36 @@ impl DetailSelector<'_> {
         }
     }
 
+    /// Whether the picture is a coarse one: less is judged, and only what the image shows of a block that reaches behind the eye.
+    fn is_coarse(&self) -> bool {
+        self.tolerance_px >= COARSE_PX
+    }
+
     /// Bound on the error in pixels of drawing the edges of cells straight, `n` cells to a side of the box.
     ///
     /// The chord of a curve that turns by a given angle deviates in proportion to its length, so the bound of the box's
-    /// long edges, shared out over its cells with a factor 2 in hand, covers the cells' edges.
+    /// long edges, shared out over its cells with a factor 2 in hand, covers the cells' edges. In a coarse picture two diagonals stand for
+    /// all edges, and edges without an image do not count.
     /// * `ways`: ways of all passes that draw the box. `most_px`: a larger error decides nothing, and infinity stands for it.
     fn cells_error(&self, bounds: &Aabb, ways: impl Iterator<Item = Way>, n: usize, most_px: f64) -> f64 {
         let c = bounds.corners();
-        let pairs = [(0, 7), (1, 6), (2, 5), (3, 4), (0, 1), (2, 3), (0, 2), (1, 3), (4, 7), (5, 6)];
-        let mut worst = 0.0f64;
+        let all = [(0, 7), (2, 5), (1, 6), (3, 4), (0, 1), (2, 3), (0, 2), (1, 3), (4, 7), (5, 6)];
+        let behind = self.is_coarse() && self.locator.reaches_behind(bounds);
+        let pairs = if self.is_coarse() && !behind { &all[..2] } else { &all };
+        let (mut worst, mut known) = (0.0f64, false);
         for way in ways {
-            for (a, b) in pairs {
+            for &(a, b) in pairs {
                 let error = edge_error_px(self.view, way, c[a], c[b]) * 2.0 / n as f64;
+                if behind && error == f64::INFINITY {
+                    continue;
+                }
                 if !(error <= most_px) {
                     return f64::INFINITY;
                 }
-                worst = worst.max(error);
+                (worst, known) = (worst.max(error), true);
             }
         }
-        worst
+        if known || !behind { worst } else { f64::INFINITY }
     }
 
     /// Halves the neighbour beyond a side until it is at most one level coarser and the error of the seam is small enough.
@@ -181,7 +194,8 @@ impl DetailSelector<'_> {
             }
             let Some(bounds) = self.tree.bounds(self.hf, level, block) else { continue };
             let held = self.locator.locate(&bounds, &parent.held, &mut out.passes);
-            if let Some(px_per_unit) = self.locator.px_per_height(&bounds, out.drawn_by(&held)) {
+            let px_per_unit = self.locator.px_per_height(&bounds, out.drawn_by(&held), self.is_coarse());
+            if let Some(px_per_unit) = px_per_unit {
                 out.add(SelectedBlock { level, block, px_per_unit, held, ..parent });
             }
         }

@@ -217,7 +217,13 @@ impl Rests {
 }
 
 /// Solves for the newest view until the inbox is closed.
-fn work(solver: &TerrainSolver, scene: &Scene, inbox: Receiver<Order>, outbox: Sender<Answer>, (progress, rests): (&Progress, Option<&Rests>)) {
+fn work(
+    solver: &TerrainSolver,
+    scene: &Scene,
+    inbox: Receiver<Order>,
+    outbox: Sender<Answer>,
+    (progress, rests): (&Progress, Option<&Rests>),
+) {
     let mut memory = TerrainMemory::default();
     let mut points: Arc<[ReferencePoint]> = Arc::new([]);
     while let Ok(mut order) = inbox.recv() {
@@ -255,13 +261,13 @@ mod tests {
             assert!(progress.tick("work", 0.5).is_ok());
             assert!(began.elapsed() >= Duration::from_millis(30), "{:?}", began.elapsed());
         }
-        work();
-        work();
-        rests.begin();
+        // Cancelled while it rests for a second.
+        *rests.woke.lock().expect("lock") -= Duration::from_secs(60);
+        let flag = progress.cancel_flag();
+        let canceller = std::thread::spawn(move || flag.store(true, Ordering::Relaxed));
         let began = Instant::now();
-        progress.cancel_flag().store(true, Ordering::Relaxed);
-        *rests.woke.lock().expect("lock") -= Duration::from_secs(3);
         assert!(progress.tick("work", 0.5).is_err());
         assert!(began.elapsed() < LONGEST_REST, "a cancelled work rests");
+        canceller.join().expect("thread");
     }
 }
