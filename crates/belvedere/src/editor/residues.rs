@@ -38,7 +38,8 @@ pub fn read_residues(scene: &Scene, layer: &str, text: &str) -> Result<String, B
     let Some((index, molecule)) = molecule(scene, layer) else {
         return Err(BelvedereError::Target(format!("layer \"{layer}\" is no molecule")));
     };
-    let mut refused = None;
+    // The reason of the reading that comes nearest to atoms, the likeliest of them.
+    let (mut refused, mut near) = (String::new(), 0);
     // Letters of numbers are large in most files.
     let short = [text, &text.to_uppercase()].map(|text| short_forms(molecule, text)).concat();
     let written = std::iter::once(text.trim().to_owned()).chain(short);
@@ -50,15 +51,19 @@ pub fn read_residues(scene: &Scene, layer: &str, text: &str) -> Result<String, B
                 if Target::atoms(scene, index, &atoms).is_some() {
                     return Ok(text);
                 }
-                let what = if atoms.is_empty() { "no atom is meant by" } else { "no atom is drawn of those meant by" };
-                refused = Some(format!("{what} \"{text}\""));
+                let (what, nearer) = match atoms.is_empty() {
+                    true => ("no atom is meant by", 1),
+                    false => ("no atom is drawn of those meant by", 2),
+                };
+                if nearer > near {
+                    (refused, near) = (format!("{what} \"{text}\""), nearer);
+                }
             }
-            Err(e) if i == 0 => refused = Some(e.to_string()),
+            Err(e) if i == 0 => refused = e.to_string(),
             Err(_) => {}
         }
     }
-    let reason = refused.unwrap_or_default();
-    Err(BelvedereError::Target(format!("{reason}; write chain and number, as B 102, or a selection, as resn ALA")))
+    Err(BelvedereError::Target(format!("{refused}; write chain and number, as B 102, or a selection, as resn ALA")))
 }
 
 /// The selection of the residue whose drawn atom is nearest to a point of the scene.
