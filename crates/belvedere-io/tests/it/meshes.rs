@@ -249,7 +249,8 @@ fn text_stl_may_begin_with_blanks() {
 /// Found by damaged files: the reader of glTF panicked.
 #[test]
 fn gltf_pictures_without_a_type_or_an_address_are_left_out_or_read() {
-    let numbers: Vec<u8> = [0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect();
+    let numbers: Vec<u8> =
+        [0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0].iter().flat_map(|v| v.to_le_bytes()).collect();
     let mut picture = Vec::new();
     belvedere_io::png::encode(&mut picture, 1, 1, belvedere_io::png::Channels::Rgb, &[1, 2, 3], &[]).expect("memory");
     let (length, mut buffer) = (picture.len(), [numbers, picture].concat());

@@ -1,3 +1,4 @@
 //! Tests of belvedere-sight.
 
+mod near;
 mod obstacles;

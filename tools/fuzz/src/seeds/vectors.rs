@@ -74,7 +74,7 @@ pub fn geojson_points() -> Vec<Vec<u8>> {
     let [lon, lat] = degrees(200.0, 300.0);
     let one = feature("Point", &format!("[{lon:.6},{lat:.6},905.5]"), "Ort");
     let many = feature("MultiPoint", &positions(&walk(), false), "Orte");
-    vec![collection(&[many.clone()]), collection(&[many, one])]
+    vec![collection(std::slice::from_ref(&many)), collection(&[many, one])]
 }
 
 /// All kinds of geometry.
