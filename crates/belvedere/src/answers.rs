@@ -60,7 +60,7 @@ pub fn line(verb: &'static str, outputs: &[PathBuf], content: &impl Content) -> 
 /// The answer of a verb as a file holds it: indented, with bare names of files.
 ///
 /// # Errors
-/// As [`line`].
+/// As [`line()`].
 pub fn in_file(verb: &'static str, outputs: &[PathBuf], content: &impl Content) -> Result<String, BelvedereError> {
     output::pretty(&Answer { verb, outputs: bare(outputs), content })
 }
@@ -68,7 +68,7 @@ pub fn in_file(verb: &'static str, outputs: &[PathBuf], content: &impl Content) 
 /// The same on one line, for answers that may be long.
 ///
 /// # Errors
-/// As [`line`].
+/// As [`line()`].
 pub fn line_in_file(verb: &'static str, outputs: &[PathBuf], content: &impl Content) -> Result<String, BelvedereError> {
     output::json(&Answer { verb, outputs: bare(outputs), content })
 }

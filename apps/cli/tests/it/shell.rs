@@ -26,7 +26,7 @@ fn bash_takes_its_completions_and_completes_a_verb() {
     let ask =
         "COMP_WORDS=(belvedere disoc); COMP_CWORD=1; _belvedere belvedere disoc belvedere; echo \"${COMPREPLY[@]}\"";
     let Ok(mut bash) = Command::new("bash").stdin(Stdio::piped()).stdout(Stdio::piped()).spawn() else {
-        println!("SKIPPED: there is no bash on this machine");
+        let _ = writeln!(std::io::stderr(), "SKIPPED: there is no bash on this machine");
         return;
     };
     bash.stdin.take().expect("a pipe").write_all(format!("{script}\n{ask}\n").as_bytes()).expect("written");

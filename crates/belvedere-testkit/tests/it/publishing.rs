@@ -59,7 +59,8 @@ fn library_crates_can_be_published() {
     let list = script.split_once("crates=\"").and_then(|(_, rest)| rest.split_once('"')).expect("a list of crates").0;
     let mut listed: Vec<&str> = list.split_whitespace().collect();
     let mut sorted = names.clone();
-    (listed.sort_unstable(), sorted.sort_unstable());
+    listed.sort_unstable();
+    sorted.sort_unstable();
     assert_eq!(listed, sorted, "left: tools/release, right: crates without publish = false");
     let found: Vec<String> = packages.iter().flat_map(|package| reasons(package, &names)).collect();
     assert_eq!(found, Vec::<String>::new());
