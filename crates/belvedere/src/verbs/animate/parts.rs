@@ -73,7 +73,7 @@ fn key(manifest: &Manifest) -> Result<String, BelvedereError> {
 /// Takes over a plan that another process made for the same film; whether there is one.
 pub(super) fn read_plan(folder: &Path, manifest: &Manifest, path: &mut CameraPath) -> Result<bool, BelvedereError> {
     let Some(following) = &mut path.following else { return Ok(false) };
-    let text = belvedere_io::fs::read_to_string(&folder.join(PLAN)).unwrap_or_default();
+    let text = belvedere_io::fs::read_to_string(folder.join(PLAN)).unwrap_or_default();
     let Ok(plan) = serde_json::from_str::<Plan>(&text) else { return Ok(false) };
     if plan.film != key(manifest)? || plan.frames.len() != following.adjustments.len() {
         return Ok(false);
