@@ -96,7 +96,7 @@ class Dask:
     @property
     def slots(self) -> int:
         """See :class:`Adapter`."""
-        return max(1, sum(self.client.nthreads().values()))
+        return max(1, sum(int(threads) for threads in self.client.nthreads().values()))
 
     def run(self, tasks: Sequence[Task], records: str) -> Iterator[Done]:
         """See :class:`Adapter`."""
