@@ -228,7 +228,7 @@ fn disocclude_terrain(mut args: DisoccludeArgs, context: &Context) -> anyhow::Re
 fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
     let (folder, film) = animate::outputs(&args.out)?;
     outputs::check_folder(&folder, context)?;
-    if let Some(film) = &film {
+    if let (Some(film), None) = (&film, &args.part) {
         let replaces = context.common.overwrite || args.resume;
         output::check(film, std::slice::from_ref(&args.scene), replaces)?;
     }

@@ -108,8 +108,8 @@ def _frames(task: Task, threads: int) -> tuple[int, list[str], dict[str, str]]:
     made = belvedere.animate(scene, task.out, part=task.part, threads=threads, **task.options)
     first, last = task.part or (0, made.frames - 1)
     records = made.raw["manifest"]["frames"][first : last + 1]
-    inputs = {entry["path"]: entry["sha256"] for entry in made.raw["manifest"]["inputs"]}
-    return made.drawn, [os.path.join(made.raw["folder"], record["file"]) for record in records], inputs
+    files = [os.path.join(made.raw["folder"], record["file"]) for record in records]
+    return made.drawn, files, _data(made.raw["manifest"]["inputs"])
 
 
 def _picture(task: Task, threads: int) -> tuple[int, list[str], dict[str, str]]:
@@ -122,7 +122,12 @@ def _picture(task: Task, threads: int) -> tuple[int, list[str], dict[str, str]]:
         scene = belvedere.Scene.from_document(document, folder=folder, allow_roots=task.allow_roots)
     picture = scene.render(threads=threads, **task.options)
     files = [os.fspath(path) for path in picture.save(task.out, overwrite=True)]
-    return 1, files, {entry["path"]: entry["sha256"] for entry in picture.record["inputs"]}
+    return 1, files, _data(picture.record["inputs"])
+
+
+def _data(inputs: list[dict[str, str]]) -> dict[str, str]:
+    """Names and hashes of data files; the first entry is the scene, whose hash the task holds."""
+    return {entry["path"]: entry["sha256"] for entry in inputs[1:]}
 
 
 def change(document: dict[str, Any], key: str, value: Any) -> None:

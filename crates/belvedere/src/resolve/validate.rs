@@ -161,7 +161,6 @@ fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
                 within("distance_markers_m", every, 0.0, 1e9)?;
             }
             within("label_px", l.style.label_px, 0.0, 200.0)?;
-            within("label_px", l.style.label_px, 0.0, 200.0)?;
             lift(l.style.lift_m)
         }
         LayerDoc::Area(l) => {
@@ -171,6 +170,7 @@ fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
             }
             l.style.outline.as_deref().map_or(Ok(()), |c| optional_color("outline", c).map(|_| ()))?;
             width(l.style.width_px)?;
+            within("label_px", l.style.label_px, 0.0, 200.0)?;
             lift(l.style.lift_m)
         }
         LayerDoc::Point(l) => {

@@ -99,8 +99,34 @@ fn parts_of_another_film_or_beyond_its_end_are_refused() {
     let words = |result: Result<Animation, BelvedereError>| result.expect_err("refused").to_string();
     let other = words(draw("", &turning(), &out, Some(0..=1)));
     assert!(other.contains("the scene has changed"), "{other}");
+    let wider = words(draw("", &turning(), &out, Some(0..=4)));
+    assert!(wider.contains("the scene has changed"), "{wider}");
     let beyond = words(draw(SPLINE, &turning(), &out, Some(5..=7)));
     assert_eq!(beyond, "the part 5:7 is not in 0:6; frames are counted from 0");
     let chained = words(draw(TERRAIN, &along(), &folder.path().join("other"), Some(0..=1)));
     assert!(chained.contains("in one part"), "{chained}");
+}
+
+#[test]
+fn frames_of_others_are_not_replaced_and_a_film_is_made_anew_in_parts() {
+    let folder = tempfile::tempdir().expect("folder");
+    let out = folder.path().join("film");
+    std::fs::create_dir(&out).expect("folder");
+    std::fs::write(out.join(frame_name(1)), "theirs").expect("file");
+    let kept = draw(SPLINE, &turning(), &out, Some(0..=3)).expect_err("kept").to_string();
+    assert!(kept.contains("holds frames without their record"), "{kept}");
+    assert_eq!(std::fs::read(out.join(frame_name(1))).expect("file"), b"theirs");
+    std::fs::remove_file(out.join(frame_name(1))).expect("file");
+
+    draw(SPLINE, &turning(), &out, None).expect("a film");
+    let session = Session::from_text(Path::new("scene.toml"), SCENE, &OpenOptions::default()).expect("scene");
+    let part = |part, overwrite| {
+        let request =
+            AnimateRequest { animation: turning(), out: out.clone(), part, overwrite, ..AnimateRequest::default() };
+        animate(&session, &request, &Progress::silent())
+    };
+    assert!(part(Some(0..=3), false).is_err(), "another film is there");
+    part(Some(0..=3), true).expect("anew");
+    part(Some(4..=6), true).expect("anew");
+    assert_eq!(draw("", &turning(), &out, None).expect("collected").drawn, 0);
 }

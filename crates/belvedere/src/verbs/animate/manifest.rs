@@ -183,11 +183,6 @@ impl Manifest {
         })
     }
 
-    /// Reads the manifest of a folder; `None` if there is none.
-    pub(super) fn read(folder: &Path) -> Result<Option<Self>, BelvedereError> {
-        Self::read_file(&folder.join(parts::record_name(None)))
-    }
-
     /// Reads a manifest; `None` if there is none.
     pub(super) fn read_file(path: &Path) -> Result<Option<Self>, BelvedereError> {
         let refuse = |reason: String| BelvedereError::Output { path: path.to_owned(), reason };

@@ -43,7 +43,7 @@ pub struct AnimateRequest {
     /// Replaces existing frames and films.
     pub overwrite: bool,
     /// Draws these frames alone, and makes no film: one of several processes that draw a film into one folder. A run without it and with
-    /// `resume` collects the parts. Frames of a part that exist are kept unless `overwrite` is set.
+    /// `resume` collects the parts. Frames of the same film that exist are kept unless `overwrite` is set.
     pub part: Option<Part>,
 }
 
@@ -90,22 +90,22 @@ pub fn outputs(out: &Path) -> Result<(PathBuf, Option<PathBuf>), BelvedereError>
 /// # Errors
 /// [`BelvedereError::Interrupted`] if cancelled, [`BelvedereError::Frame`] for a frame that cannot be drawn,
 /// [`BelvedereError::FramesThere`] if the folder holds another animation, [`BelvedereError::Animation`] for a part beyond the film, or of
-/// a film along a route over ground that makes way: there each frame depends on those before it.
+/// a film along a route over ground that makes way or with rays that track a target: there each frame depends on those before it.
 pub fn animate(session: &Session, request: &AnimateRequest, progress: &Progress) -> Result<Animation, BelvedereError> {
     guarded(|| animated(session, request, progress))
 }
 
 fn animated(session: &Session, request: &AnimateRequest, progress: &Progress) -> Result<Animation, BelvedereError> {
     let (folder, film) = outputs(&request.out)?;
-    if let Some(film) = &film {
+    if let (Some(film), None) = (&film, &request.part) {
         output::check(film, &session.input_paths(), request.overwrite || request.resume)?;
     }
     let mut path = CameraPath::new(session, &request.animation)?;
     let mut manifest = Manifest::new(session, &path, &request.picture)?;
     if let Some(part) = &request.part {
         parts::check(part, path.len())?;
-        if path.following.is_some() && sinks(session, &path, request.picture.straight) {
-            let reason = "along a route over ground that makes way each frame depends on those before it; draw the film in one part";
+        if path.following.is_some() && (sinks(session, &path, request.picture.straight) || session.tracks()) {
+            let reason = "along a route, with ground that makes way or rays that track a target, each frame depends on those before it; draw the film in one part";
             return Err(BelvedereError::Animation(reason.into()));
         }
     }

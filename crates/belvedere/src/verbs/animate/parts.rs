@@ -1,5 +1,5 @@
-//! Films drawn in parts by several processes in one folder. Each part keeps a record of its own frames, so that no two processes write
-//! one file; a run over the whole film collects the records and removes them.
+//! Films drawn in parts by several processes in one folder. Each part keeps a record of its own frames, so that no process
+//! replaces what another wrote; a run over the whole film collects the records and removes them.
 
 use super::manifest::Manifest;
 use crate::camera_path::CameraPath;
@@ -56,7 +56,7 @@ pub(super) fn forget(folder: &Path) {
     }
 }
 
-/// Lifts and strengths of all frames, as one process planned them for all.
+/// Lifts and strengths of all frames, which are the same in every process: the first that has planned them spares it the others.
 #[derive(Serialize, Deserialize)]
 struct Plan {
     /// sha256 of the record of the film without frames.
