@@ -103,14 +103,14 @@ def test_a_full_folder_ends_the_batch_with_one_error(tmp_path: Path) -> None:
     (out / "b.png").mkdir()
     scene = scene_file(tmp_path)
     with pytest.raises(belvedere.Error, match="b.png"):
-        batch.pictures({"a": scene, "b": scene}, out, on=batch.Local(1), size=(32, 18))
+        batch.pictures({"a": scene, "b": scene}, out, on=batch.Local(1), size=(32, 18), overwrite=True)
     (out / "b.png").rmdir()
     report = batch.pictures({"a": scene, "b": scene}, out, on=batch.Local(1), size=(32, 18))
     assert report.kept == 1
 
 
 def test_a_sweep_has_every_combination(tmp_path: Path) -> None:
-    values = {"camera.fov_y_deg": [30.0, 45.0], "stage.0.presets": ["progressive", "degressive"]}
+    values = {"camera.fov_y_deg": np.arange(30, 50, 15), "stage.0.presets": ["progressive", "degressive"]}
     report = batch.sweep(scene_file(tmp_path), values, tmp_path / "out", on=batch.Local(1), size=(32, 18))
     index = json.loads((tmp_path / "out/sweep.json").read_text())
     assert report.tasks == report.pictures == len(index) == 4
@@ -123,11 +123,55 @@ def test_a_sweep_has_every_combination(tmp_path: Path) -> None:
     assert batch.sweep(tmp_path / "scene.toml", values, tmp_path / "out", on=batch.Local(1), size=(32, 18)).kept == 0
 
 
+def test_data_beside_the_scene_is_known_again(tmp_path: Path) -> None:
+    """Data in another folder counts as unchanged while it is, and as changed when it is changed."""
+    data = tmp_path / "data"
+    data.mkdir()
+    rows = [" ".join(str(100 + x * y % 70) for x in range(30)) for y in range(30)]
+    head = "ncols 30\nnrows 30\nxllcorner 0\nyllcorner 0\ncellsize 30\n"
+    ground = data / "ground.asc"
+    ground.write_text(head + "\n".join(rows) + "\n")
+    scenes = tmp_path / "scenes"
+    scenes.mkdir()
+    scene = scenes / "s.toml"
+    scene.write_text(
+        "format = 1\ncrs = 'local'\n[camera]\neye = [450, -900, 700]\nlook_at = [450, 450, 100]\n"
+        "[[layer]]\nkind = 'terrain'\nid = 'g'\nsource = '../data/ground.asc'\n")
+    draw = lambda: batch.pictures({"a": scene}, tmp_path / "out", on=batch.Local(1), allow_roots=[data], size=(32, 18))
+    assert (draw().kept, draw().kept) == (0, 1)
+    ground.write_text(head + "\n".join(reversed(rows)) + "\n")
+    again = draw()
+    assert (again.kept, again.retries) == (0, 0)
+
+
+def test_files_of_others_are_kept(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "a.png").write_text("theirs")
+    scene = scene_file(tmp_path)
+    draw = lambda **more: batch.pictures({"a": scene}, out, on=batch.Local(1), size=(32, 18), **more)
+    with pytest.raises(belvedere.FileError, match="a.png exists"):
+        draw()
+    assert (out / "a.png").read_text() == "theirs"
+    assert draw(overwrite=True).pictures == 1
+
+
+def test_a_film_is_made_anew(tmp_path: Path, whole: dict[str, bytes]) -> None:
+    out, on = tmp_path / "film", batch.Local(1)
+    batch.film(scene_file(tmp_path, ""), out, on=on, frames_per_task=4, **{**FILM, "frames": 11})
+    with pytest.raises(belvedere.Error):
+        batch.film(scene_file(tmp_path), out, on=on, frames_per_task=4, **FILM)
+    batch.film(scene_file(tmp_path), out, on=on, frames_per_task=4, overwrite=True, **FILM)
+    assert files(out) == whole
+
+
 def test_wrong_keys_and_scenes_are_named(tmp_path: Path) -> None:
     with pytest.raises(belvedere.InputError, match="stage.3"):
         batch.sweep(scene_file(tmp_path), {"stage.3.presets": ["map"]}, tmp_path / "out", on=batch.Local(1))
     with pytest.raises(belvedere.InputError, match="parallel projection"):
         batch.tiles(scene_file(tmp_path, ""), tmp_path / "tiles", size=(64, 64))
+    with pytest.raises(belvedere.InputError, match="threads"):
+        batch.pictures({"a": scene_file(tmp_path)}, tmp_path / "out", threads=1)
     with pytest.raises(belvedere.InputError, match="workers=0"):
         batch.Local(0)
 

@@ -13,6 +13,7 @@ from qgis.core import (
     QgsRasterFileWriter,
     QgsRasterPipe,
     QgsVectorFileWriter,
+    QgsVectorLayer,
 )
 from qgis.PyQt.QtCore import QSize
 from qgis.PyQt.QtGui import QColor
@@ -45,6 +46,11 @@ def _file(layer):
     return parts.get("path") or "", parts.get("layerName") or ""
 
 
+def _was_moved(layer):
+    """Whether the user gave a layer another coordinate system than its file has."""
+    return QgsVectorLayer(layer.source(), "as stored", layer.providerType()).crs() != layer.crs()
+
+
 class Folder:
     """A folder for what has to be written, and the names that are taken in it."""
 
@@ -63,7 +69,10 @@ class Folder:
         A system that the user gave to the layer by hand counts before the one in the file.
         """
         path, _ = _file(layer)
-        if layer.providerType() != "gdal" or not path.lower().endswith(READ_RASTERS) or not os.path.isfile(path):
+        provider = layer.dataProvider()
+        # What the user calls no data beside the file, or no longer, is known to QGIS alone.
+        is_as_stored = provider.useSourceNoDataValue(1) and not provider.userNoDataValues(1)
+        if layer.providerType() != "gdal" or not is_as_stored or not path.lower().endswith(READ_RASTERS) or not os.path.isfile(path):
             path = self._written_raster(layer)
         authority = layer.crs().authid()
         is_known = authority.upper().startswith("EPSG:") and not path.lower().endswith(".hgt")
@@ -87,7 +96,7 @@ class Folder:
     def features(self, layer):
         """The file of a vector layer: its own where it holds nothing else, else GeoJSON in degrees."""
         path, name = _file(layer)
-        is_whole = not layer.subsetString() and not layer.isEditable() and not name
+        is_whole = not layer.subsetString() and not layer.isEditable() and not name and not _was_moved(layer)
         if layer.providerType() == "ogr" and is_whole and path.lower().endswith(READ_VECTORS) and os.path.isfile(path):
             return path
         path = self.new(layer, ".geojson")

@@ -115,7 +115,7 @@ class Headless(unittest.TestCase):
         self.assertTrue((self.folder / "a_data/dem_map.png").is_file(), "the draped map lies beside the scene")
 
         table = self.results("measure", SCENE=self.path("a.toml"), TABLE=self.path("shares.csv"), REPORT=self.path("m.json"))
-        self.assertAlmostEqual(table["VISIBLE_BENT"], done["VISIBLE_BENT"], delta=0.02)
+        self.assertAlmostEqual(table["VISIBLE_BENT"], done["VISIBLE_BENT"], delta=1e-3)
         self.assertIn("Valley way", (self.folder / "shares.csv").read_text())
 
         self.results("render", SCENE=self.path("a.toml"), KIND=2, WIDTH=320, HEIGHT=180, PICTURE=self.path("pair.png"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import concurrent.futures as futures
 import multiprocessing
 import os
+import uuid
 from collections import deque
 from concurrent.futures.process import BrokenProcessPool
 from typing import Any, Iterator, Protocol, Sequence
@@ -34,6 +35,8 @@ class Local:
 
     * ``workers``: their number, by default one per core. ``threads``: threads of each, by default the cores shared evenly.
     * ``retries``: how often a task begins again when its process was killed.
+
+    A script that uses it does its work under ``if __name__ == "__main__":``, for each process reads the script again.
     """
 
     name = "local"
@@ -71,9 +74,7 @@ class Local:
                             yield future.result()
                         except BrokenProcessPool:
                             if tries >= self.retries:
-                                raise InternalError(
-                                    f"the process of a task was killed {tries + 1} times ({_words(task)}); give it more memory, or fewer workers"
-                                ) from None
+                                raise InternalError(_lost(task, tries, records)) from None
                             lost.append((task, tries + 1))
                 waiting.extendleft(reversed(lost))
             finally:
@@ -85,13 +86,14 @@ class Dask:
     """A cluster of Dask: ``dask.distributed``.
 
     * ``client``: a ``distributed.Client``. ``threads``: threads of each task; a worker runs as many tasks at once as it has threads of its own.
-    * ``retries``: how often a task begins again when it fails for want of its worker.
+
+    Dask gives the task of a lost worker to another, as often as its ``allowed-failures`` say.
     """
 
     name = "dask"
 
-    def __init__(self, client: Any, *, threads: int = 1, retries: int = 3) -> None:
-        self.client, self.threads, self.retries = client, _count("threads", threads), retries
+    def __init__(self, client: Any, *, threads: int = 1) -> None:
+        self.client, self.threads = client, _count("threads", threads)
 
     @property
     def slots(self) -> int:
@@ -102,9 +104,11 @@ class Dask:
         """See :class:`Adapter`."""
         from distributed import as_completed
 
-        # Dask runs a task again when its worker is lost; `retries` would repeat errors of ours, which fail each time.
+        # No `retries`: they would repeat errors of ours, which fail each time. A key of its own: a result that somebody still holds would be
+        # taken for this one.
+        call = uuid.uuid4().hex
         work = [
-            self.client.submit(perform, task, records, self.threads, key=f"belvedere-{task.key}", pure=False)
+            self.client.submit(perform, task, records, self.threads, key=f"belvedere-{task.key}-{call}", pure=False)
             for task in tasks
         ]
         try:
@@ -131,6 +135,8 @@ class Ray:
         """See :class:`Adapter`."""
         import ray
 
+        if not ray.is_initialized():
+            ray.init()
         return max(1, int(ray.cluster_resources().get("CPU", 1)) // self.threads)
 
     def run(self, tasks: Sequence[Task], records: str) -> Iterator[Done]:
@@ -174,6 +180,15 @@ def _count(what: str, value: object) -> int:
     if isinstance(value, bool) or not isinstance(value, int) or value < 1:
         raise InputError(f"{what}={value!r} is not a number of {what}; give a whole number above 0")
     return value
+
+
+def _lost(task: Task, tries: int, records: str) -> str:
+    if not os.path.exists(os.path.join(records, f"{task.key}.begun")):
+        return (
+            f"the process of a task ended {tries + 1} times before it began ({_words(task)}); in a script, call this under "
+            'if __name__ == "__main__":'
+        )
+    return f"the process of a task was killed {tries + 1} times ({_words(task)}); give it more memory, or fewer workers"
 
 
 def _words(task: Task) -> str:

@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import Any, Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._ask import Progress
+from .._json import text
 from ..errors import FileError, InputError
 from ..scene import Scene
 from ._adapters import Adapter, Local
@@ -24,20 +26,21 @@ def pictures(
     *,
     on: Adapter | None = None,
     allow_roots: Sequence[str | os.PathLike[str]] = (),
+    overwrite: bool = False,
     progress: Progress = None,
     **options: Any,
 ) -> Report:
     """Draws several scene files into a folder, each as ``NAME.png`` with its record.
 
-    * ``scenes``: names and paths of scene files. ``options``: those of :meth:`belvedere.Scene.render`.
+    * ``scenes``: names and paths of scene files.
+    * ``overwrite``: replaces pictures that no batch drew there. ``options``: those of :meth:`belvedere.Scene.render`.
     """
-    roots = _roots(allow_roots)
-    folder = _folder(out)
+    roots, folder, options = _roots(allow_roots), _folder(out), _options(options)
     tasks = []
     for name, scene in scenes.items():
         path = os.path.abspath(os.fspath(scene))
         tasks.append(Task("picture", path, _hash(path), _file(folder, name), options, allow_roots=roots))
-    return run(tasks, _records(folder), on or Local(), progress, "pictures")
+    return run(tasks, _records(folder), on or Local(), progress, "pictures", overwrite)
 
 
 def sweep(
@@ -47,6 +50,7 @@ def sweep(
     *,
     on: Adapter | None = None,
     allow_roots: Sequence[str | os.PathLike[str]] = (),
+    overwrite: bool = False,
     progress: Progress = None,
     **options: Any,
 ) -> Report:
@@ -54,13 +58,13 @@ def sweep(
 
     * ``values``: keys of the scene file and lists of values: ``{"camera.fov_y_deg": [30, 45], "stage.0.presets": ["progressive", "degressive"]}``;
       dots lead inwards, numbers count the entries of a list from 0.
-    * ``options``: those of :meth:`belvedere.Scene.render`.
+    * ``overwrite``: replaces pictures that no batch drew there. ``options``: those of :meth:`belvedere.Scene.render`.
     """
-    path, roots, folder = os.path.abspath(os.fspath(scene)), _roots(allow_roots), _folder(out)
+    path, roots, folder, options = os.path.abspath(os.fspath(scene)), _roots(allow_roots), _folder(out), _options(options)
     empty = [key for key, choices in values.items() if not len(choices)]
     if empty or not values:
         raise InputError(f"{empty[0] if empty else 'values'} has no value; give a list of at least one")
-    combinations = [dict(zip(values, chosen)) for chosen in itertools.product(*values.values())]
+    combinations = [dict(zip(values, chosen)) for chosen in itertools.product(*(_plain(list(choices)) for choices in values.values()))]
     digits = len(str(len(combinations) - 1))
     named = {f"picture_{index:0{digits}}": changes for index, changes in enumerate(combinations)}
     digest = _hash(path)
@@ -68,8 +72,8 @@ def sweep(
         Task("picture", path, digest, _file(folder, name), options, changes=changes, allow_roots=roots)
         for name, changes in named.items()
     ]
-    _write(folder / "sweep.json", {f"{name}.png": changes for name, changes in named.items()})
-    return run(tasks, _records(folder), on or Local(), progress, "pictures")
+    _write(folder / "sweep.json", {f"{name}.png": changes for name, changes in named.items()}, overwrite)
+    return run(tasks, _records(folder), on or Local(), progress, "pictures", overwrite)
 
 
 def tiles(
@@ -80,6 +84,7 @@ def tiles(
     tile_px: int = 2048,
     on: Adapter | None = None,
     allow_roots: Sequence[str | os.PathLike[str]] = (),
+    overwrite: bool = False,
     progress: Progress = None,
     **options: Any,
 ) -> Report:
@@ -91,7 +96,7 @@ def tiles(
     Only straight plans and plan obliques have tiles: where a stage bends the view, what a tile shows depends on its own camera. Names and marks are
     placed for each tile.
     """
-    path, roots, folder = os.path.abspath(os.fspath(scene)), _roots(allow_roots), _folder(out)
+    path, roots, folder, options = os.path.abspath(os.fspath(scene)), _roots(allow_roots), _folder(out), _options(options)
     opened = Scene.open(path, allow_roots=roots)
     document = opened.resolved()
     camera = document["camera"]
@@ -100,12 +105,13 @@ def tiles(
     bends = [stage["kind"] for stage in document.get("stage", []) if stage["kind"] != "relief"]
     if bends and not options.get("straight"):
         raise InputError(f"{path}: tiles of a view that {bends[0]} bends would not join; give straight=True, or draw one picture")
+    if document.get("earth") == "curved":
+        raise InputError(f"{path}: tiles of a curved earth would not join; set earth to flat, or draw one picture")
     width, height = (int(side) for side in size)
     if min(width, height, tile_px) < 1:
         raise InputError(f"size={size}, tile_px={tile_px}: give whole numbers of pixels above 0")
     unit = camera["ortho_height_m"] / height
-    eye, target = np.array(camera["eye"], float), np.array(camera["look_at"], float)
-    forward = (target - eye) / np.linalg.norm(target - eye)
+    eye, forward = np.array(camera["eye"], float), _forward(camera)
     right = np.cross(forward, np.array(camera.get("up", [0.0, 0.0, 1.0]), float))
     right /= np.linalg.norm(right)
     down = np.cross(forward, right)
@@ -116,15 +122,17 @@ def tiles(
             shift = unit * ((left + 0.5 * w - 0.5 * width) * right + (top + 0.5 * h - 0.5 * height) * down)
             changes = {
                 "camera.eye": (eye + shift).tolist(),
-                "camera.look_at": (target + shift).tolist(),
+                "camera.look_at": (eye + shift + forward).tolist(),
+                "camera.heading_deg": None,
+                "camera.pitch_deg": None,
                 "camera.ortho_height_m": unit * h,
                 "camera.image": [w, h],
             }
             name = f"tile_{row}_{column}"
             places[f"{name}.png"] = [left, top, w, h]
             tasks.append(Task("picture", path, digest, _file(folder, name), options, changes=changes, allow_roots=roots))
-    _write(folder / "tiles.json", {"size": [width, height], "left_top_width_height": places})
-    return run(tasks, _records(folder), on or Local(), progress, "tiles")
+    _write(folder / "tiles.json", {"size": [width, height], "left_top_width_height": places}, overwrite)
+    return run(tasks, _records(folder), on or Local(), progress, "tiles", overwrite)
 
 
 def _roots(allow_roots: Sequence[str | os.PathLike[str]]) -> tuple[str, ...]:
@@ -157,7 +165,32 @@ def _hash(path: str) -> str:
         raise FileError(f"{path}: {error.strerror or error}") from error
 
 
-def _write(path: Path, value: object) -> None:
+def _options(options: Mapping[str, Any]) -> dict[str, Any]:
+    for word in ("threads", "progress"):
+        if word in options:
+            raise InputError(f"{word} is not an option of the pictures of a batch; give it to the adapter, such as batch.Local(threads=2)")
+    plain: dict[str, Any] = _plain(options)
+    return plain
+
+
+def _plain(value: object) -> Any:
+    """A value as JSON holds it: numbers and arrays of NumPy become those of Python."""
+    return json.loads(text("the batch", value))
+
+
+def _forward(camera: Mapping[str, Any]) -> NDArray[np.float64]:
+    """Direction of view of a resolved camera, unit length."""
+    if camera.get("look_at") is not None:
+        way = np.array(camera["look_at"], float) - np.array(camera["eye"], float)
+        unit: NDArray[np.float64] = way / np.linalg.norm(way)
+        return unit
+    heading, pitch = np.radians(float(camera["heading_deg"])), np.radians(float(camera["pitch_deg"]))
+    return np.array([np.sin(heading) * np.cos(pitch), np.cos(heading) * np.cos(pitch), -np.sin(pitch)])
+
+
+def _write(path: Path, value: object, overwrite: bool) -> None:
+    if path.exists() and not overwrite and not _records(path.parent).exists():
+        raise FileError(f"{path} exists; give overwrite=True, or another folder")
     try:
         write_whole(path, json.dumps(value, indent=1) + "\n")
     except OSError as error:

@@ -7,6 +7,7 @@ import os
 import shutil
 import time
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Callable, Sequence
 
@@ -69,9 +70,22 @@ class _Kept:
             return None
         if any(self._hash(path) != found for path, found in done.files.items()):
             return None
-        base = Path(task.scene).parent
-        same = all(self._hash(base / path) == found for path, found in done.inputs.items() if not path.startswith("builtin:"))
-        return done if same else None
+        return done if all(self._hash(path) == found for path, found in done.inputs.items()) else None
+
+    def owns(self, task: Task) -> bool:
+        """Whether the picture of a task is one that a batch in this folder drew."""
+        return (self.records / f"{task.key}.begun").exists() or task.out in self.files
+
+    @cached_property
+    def files(self) -> set[str]:
+        """Files of all records."""
+        found: set[str] = set()
+        for path in self.records.glob("*.json"):
+            try:
+                found.update(json.loads(path.read_text(encoding="utf-8"))["files"])
+            except (OSError, ValueError, KeyError, TypeError):
+                continue
+        return found
 
     def _hash(self, path: str | os.PathLike[str]) -> str | None:
         name = os.fspath(path)
@@ -83,8 +97,8 @@ class _Kept:
         return self.hashes[name]
 
 
-def run(tasks: Sequence[Task], records: Path, on: Adapter, progress: Progress, words: str) -> Report:
-    """Does the tasks whose records are missing.
+def run(tasks: Sequence[Task], records: Path, on: Adapter, progress: Progress, words: str, overwrite: bool = False) -> Report:
+    """Does the tasks whose records are missing. Pictures of others are replaced with ``overwrite`` alone.
 
     Ctrl-C and errors cancel what is not done; what is done stays, and the same call goes on from there.
     """
@@ -96,6 +110,9 @@ def run(tasks: Sequence[Task], records: Path, on: Adapter, progress: Progress, w
     kept = _Kept(records)
     done = {task.key: found for task in tasks if (found := kept.of(task)) is not None}
     missing = [task for task in tasks if task.key not in done]
+    for task in missing:
+        if task.kind == "picture" and not overwrite and os.path.exists(task.out) and not kept.owns(task):
+            raise FileError(f"{task.out} exists; give overwrite=True, or another folder")
     before = len(done)
     fresh: list[Done] = []
     with asked(None, progress) as (_, _, listener):

@@ -9,7 +9,7 @@ import tempfile
 import time
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Iterator
 
 import belvedere
 
@@ -79,7 +79,7 @@ class Done:
     #: Files with their hashes, and bytes together.
     files: dict[str, str]
     bytes: int
-    #: Data files that were read, by their names from the scene, with their hashes.
+    #: Data files that were read, with their hashes; an empty path for one whose place is not known.
     inputs: dict[str, str]
     #: Runs of the task that began.
     begun: int = 1
@@ -89,17 +89,23 @@ def perform(task: Task, records: str, threads: int) -> Done:
     """Does a task and writes its record; what workers call."""
     folder = Path(records)
     # A byte for each run that begins: what was retried, whoever retried it.
-    with open(folder / f"{task.key}.begun", "ab") as file:
+    mark = folder / f"{task.key}.begun"
+    with open(mark, "ab") as file:
         file.write(b".")
-    if sha256_of(task.scene) != task.sha256:
-        raise belvedere.InputError(f"{task.scene} has changed since the batch began; begin it anew")
     started = time.monotonic()
-    drawn = {"frames": _frames, "picture": _picture}[task.kind](task, threads)
-    begun = os.stat(folder / f"{task.key}.begun").st_size
+    try:
+        if sha256_of(task.scene) != task.sha256:
+            raise belvedere.InputError(f"{task.scene} has changed since the batch began; begin it anew")
+        drawn = {"frames": _frames, "picture": _picture}[task.kind](task, threads)
+    except belvedere.Error:
+        mark.unlink(missing_ok=True)
+        raise
+    begun = mark.stat().st_size
     files = {path: sha256_of(path) for path in drawn[1]}
     size = sum(os.stat(path).st_size for path in files)
     done = Done(task.key, drawn[0], time.monotonic() - started, files, size, drawn[2], begun)
     write_whole(folder / f"{task.key}.json", json.dumps(asdict(done), sort_keys=True))
+    mark.unlink(missing_ok=True)
     return done
 
 
@@ -109,7 +115,7 @@ def _frames(task: Task, threads: int) -> tuple[int, list[str], dict[str, str]]:
     first, last = task.part or (0, made.frames - 1)
     records = made.raw["manifest"]["frames"][first : last + 1]
     files = [os.path.join(made.raw["folder"], record["file"]) for record in records]
-    return made.drawn, files, _data(made.raw["manifest"]["inputs"])
+    return made.drawn, files, _data(made.raw["manifest"]["inputs"], task, scene)
 
 
 def _picture(task: Task, threads: int) -> tuple[int, list[str], dict[str, str]]:
@@ -122,12 +128,28 @@ def _picture(task: Task, threads: int) -> tuple[int, list[str], dict[str, str]]:
         scene = belvedere.Scene.from_document(document, folder=folder, allow_roots=task.allow_roots)
     picture = scene.render(threads=threads, **task.options)
     files = [os.fspath(path) for path in picture.save(task.out, overwrite=True)]
-    return 1, files, _data(picture.record["inputs"])
+    return 1, files, _data(picture.record["inputs"], task, scene)
 
 
-def _data(inputs: list[dict[str, str]]) -> dict[str, str]:
-    """Names and hashes of data files; the first entry is the scene, whose hash the task holds."""
-    return {entry["path"]: entry["sha256"] for entry in inputs[1:]}
+def _data(inputs: list[dict[str, str]], task: Task, scene: belvedere.Scene) -> dict[str, str]:
+    """Places and hashes of data files, which records name without their folders. The first entry is the scene, whose hash the task holds."""
+    base = Path(task.scene).parent
+    named = [base / text for text in _texts(scene.document) if "\0" not in text and len(text) < 4096]
+    folders = dict.fromkeys([base, *(path.parent for path in named), *named, *map(Path, task.allow_roots)])
+    found: dict[str, str] = {}
+    for entry in inputs[1:]:
+        places = (folder / entry["path"] for folder in folders)
+        place = next((p for p in places if p.is_file() and sha256_of(p) == entry["sha256"]), None)
+        found["" if place is None else os.path.abspath(place)] = entry["sha256"]
+    return found
+
+
+def _texts(value: Any) -> Iterator[str]:
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, (list, dict)):
+        for inner in value.values() if isinstance(value, dict) else value:
+            yield from _texts(inner)
 
 
 def change(document: dict[str, Any], key: str, value: Any) -> None:

@@ -103,20 +103,13 @@ class Algorithm(QgsProcessingAlgorithm):
         return run(arguments, feedback)
 
 
-# Where answers keep their shares, beside the top.
-INNER = {"visible_straight": "visible_before", "visible_bent": "visible"}
-
-
 def share(answer, name):
-    """A share of an answer, 0 to 1; None if there is none.
+    """A share at the top of an answer, 0 to 1; None if there is none.
 
     * `name`: `visible_straight` or `visible_bent`.
     """
-    report = answer.get("report") or {}
-    for place, key in ((answer, name), (answer.get("shares") or {}, name), (report, name), (report, INNER[name])):
-        if isinstance(place.get(key), (int, float)):
-            return float(place[key])
-    return None
+    value = answer.get(name)
+    return None if value is None else float(value)
 
 
 def percent(value):

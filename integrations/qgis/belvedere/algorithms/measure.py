@@ -16,7 +16,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QVariant
 
-from .base import Algorithm, percent
+from .base import Algorithm, percent, share
 
 COLUMNS = [
     ("layer", QVariant.String),
@@ -87,8 +87,7 @@ class Measure(Algorithm):
             fields.append(QgsField(name, kind))
         sink, table = self.parameterAsSink(parameters, "TABLE", context, fields, QgsWkbTypes.NoGeometry)
         flags = getattr(QgsFeatureSink, "Flag", QgsFeatureSink)
-        rows = [row(one) for one in answer["features"]]
-        for values in rows:
+        for values in map(row, answer["features"]):
             feature = QgsFeature(fields)
             feature.setAttributes(values)
             sink.addFeature(feature, flags.FastInsert)
@@ -98,15 +97,7 @@ class Measure(Algorithm):
             with open(self.given["REPORT"], "w", encoding="utf-8") as file:
                 json.dump(answer, file, indent=1)
             results["REPORT"] = self.given["REPORT"]
-        names = [name for name, _ in COLUMNS]
-        shares = {}
-        for name in ("visible_straight", "visible_bent"):
-            column = [values[names.index(name)] for values in rows]
-            weights = [values[names.index("amount")] for values in rows]
-            if len({values[names.index("unit")] for values in rows}) == 1 and sum(weights) > 0:
-                shares[name] = sum(a * b for a, b in zip(column, weights)) / sum(weights)
-            else:
-                shares[name] = sum(column) / len(column) if column else None
+        shares = {name: share(answer, name) for name in ("visible_straight", "visible_bent")}
         feedback.pushInfo(
             f"Visible: {percent(shares['visible_straight'])} without bend, {percent(shares['visible_bent'])} with it.")
         return results | {"VISIBLE_STRAIGHT": shares["visible_straight"], "VISIBLE_BENT": shares["visible_bent"]}

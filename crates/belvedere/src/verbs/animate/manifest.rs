@@ -1,7 +1,6 @@
 //! The manifest of a folder of frames, by which an interrupted animation is resumed.
 
 use super::overlay::MarkerRecord;
-use super::parts;
 use crate::camera_path::CameraPath;
 use crate::output;
 use crate::picture::{DisplacementReport, PictureOptions};
