@@ -242,3 +242,12 @@ fn buffers_are_written_as_open_exr_too() {
     }
     assert!(!place.path("p.depth.npy").exists());
 }
+
+#[test]
+fn names_of_areas_have_a_size_that_is_checked() {
+    let place = Place::new();
+    let area = "[[layer]]\nid = 'lake'\nkind = 'area'\nsource = 'builtin:massif?size=65'\nstyle = { labels = true, label_px = -3 }\n";
+    place.write("s.toml", &format!("{}{area}", super::BARE));
+    let line = place.fails(&["check", "s.toml"]);
+    assert!(line.contains("label_px is -3"), "{line}");
+}

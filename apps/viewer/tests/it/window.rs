@@ -133,7 +133,7 @@ fn a_preset_is_made_in_a_window_saved_and_drawn_and_a_killed_window_comes_back()
     let state = written(&place, "captured", |state| state["document"]["stage"][0]["presets"]["presets"].is_array());
     let far = |state: &Value| state["document"]["stage"][0]["presets"]["presets"][0]["control"][3][1].as_f64();
     let before = far(&state);
-    display.drag([243, 519], [243, 493]); // the far end of the curve is raised
+    display.drag([243, 542], [243, 516]); // the far end of the curve is raised
     operations += 1;
     written(&place, "raised", |state| far(state) > before);
     display.click(18, 12); // the menu of files
