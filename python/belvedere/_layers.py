@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any, Mapping, Sequence, TypeVar
 
 import numpy as np
 
-from . import _models, _rasters, _vectors
+from . import _data, _models, _rasters, _vectors
 from ._crs import Crs, crs_of
 from ._folder import Folder
+from ._masks import joined
 from .errors import InputError
 
 S = TypeVar("S", bound="Layers")
@@ -49,13 +50,15 @@ class Layers:
         * or ``spacing``: distance between samples, coordinate units, one number or (along x, along y), and ``origin``: x, y of the first sample of
           the first row.
         * ``crs``: ``"EPSG:n"``, its number, an object of pyproj or rasterio; ``None`` = local, metres.
-        * ``nodata``: value that stands for no data.
+        * ``nodata``: stored value that stands for no data, before scale and offset of a dataset.
+        * Files say themselves where they lie: of the five only ``crs`` and ``nodata`` go with a path, instead of what the file says.
         * ``fill_voids=True`` fills holes; other ``keys`` and ``style`` are those of scene files.
         """
         if not _rasters.is_raster(heights):
             if isinstance(heights, (str, os.PathLike)):
-                return self._add("terrain", id, style, keys, source=self._given(heights))
-            heights = np.asanyarray(heights)
+                stated = _data.stated_by_caller(transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata)
+                return self._add("terrain", id, style, {**stated, **keys}, source=self._given(heights))
+            heights = np.asanyarray(joined("heights", heights))
         found = _rasters.heights_of(heights, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata)
         path = self._new_file(id, ".tif")
         _rasters.write_geotiff(path, found)
@@ -147,6 +150,8 @@ class Layers:
 
     def _add_features(self: S, kind: str, source: object, id: str, crs: object, style: Mapping[str, Any] | None, keys: dict[str, Any]) -> S:
         if isinstance(source, (str, os.PathLike)):
+            if crs is not None:
+                raise InputError("crs is that of arrays; a file states the system of its coordinates itself")
             return self._add(kind, id, style, keys, source=self._given(source))
         collection, stated = _vectors.features_of(source, kind, crs)
         if stated is None and not (isinstance(source, Mapping) and "type" in source):

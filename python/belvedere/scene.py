@@ -19,7 +19,7 @@ from ._crs import Crs, crs_of
 from ._drawing import drawing
 from ._folder import Folder, Named
 from ._layers import Layers
-from ._masks import masked_count
+from ._masks import joined, masked_count
 from ._json import size as _size
 from ._json import text as _text
 from .camera import Camera, camera_document
@@ -449,7 +449,7 @@ class Scene(Layers):
 
 
 def _bytes(what: str, values: object, columns: int) -> tuple[bytes, int]:
-    array = np.asanyarray(values)
+    array = np.asanyarray(joined(what, values))
     if array.size == 0 and array.ndim == 2 and array.shape[1] == columns:
         return b"", 0
     if masked_count(array):
