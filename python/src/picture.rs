@@ -80,6 +80,14 @@ impl NativePicture {
         Ok(PyBytes::new(py, &run(py, &Ask::default(), move |_| picture.to_png())?))
     }
 
+    /// The same with the depths and world positions of another drawing of it.
+    fn with_buffers_of(&self, drawn: &Self) -> Self {
+        let mut picture = self.picture.clone();
+        picture.frame.depth.clone_from(&drawn.picture.frame.depth);
+        picture.frame.world.clone_from(&drawn.picture.frame.world);
+        Self { picture, inputs: self.inputs.clone() }
+    }
+
     /// Writes picture, record and buffers; returns their paths.
     fn save(
         &self,
