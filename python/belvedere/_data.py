@@ -8,8 +8,10 @@ from typing import Any, Mapping, Sequence
 import numpy as np
 
 from . import _rasters, _vectors
+from ._ask import number
 from ._crs import Crs, crs_of
 from ._folder import Folder
+from ._masks import joined
 from .errors import InputError
 
 
@@ -31,14 +33,9 @@ def files_of(
     terrain_crs: Crs | None = None
     if isinstance(dem, (str, os.PathLike)):
         files["dem"] = os.fspath(dem)
-        if transform is not None or spacing is not None or origin is not None:
-            raise InputError("transform, spacing and origin are of arrays; a file says itself where it lies")
-        if crs is not None:
-            files["source_crs"] = str(crs_of(crs))
-        if nodata is not None:
-            files["nodata"] = nodata
+        files.update(stated_by_caller(transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata))
     else:
-        source = dem if _rasters.is_raster(dem) else np.asanyarray(dem)
+        source = dem if _rasters.is_raster(dem) else np.asanyarray(joined("heights", dem))
         heights = _rasters.heights_of(source, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata)
         path = folder.file("terrain.tif")
         _rasters.write_geotiff(path, heights)
@@ -54,6 +51,18 @@ def files_of(
     return files
 
 
+def stated_by_caller(*, transform: object, spacing: object, origin: object, crs: object, nodata: object) -> dict[str, Any]:
+    """What a caller says of a terrain file, as keys of its layer."""
+    if transform is not None or spacing is not None or origin is not None:
+        raise InputError("transform, spacing and origin are of arrays; a file says itself where it lies")
+    stated: dict[str, Any] = {}
+    if crs is not None:
+        stated["source_crs"] = str(crs_of(crs))
+    if nodata is not None:
+        stated["nodata"] = number("nodata", nodata)
+    return stated
+
+
 def _several(routes: object) -> list[object]:
     if routes is None:
         return []
@@ -64,6 +73,8 @@ def _several(routes: object) -> list[object]:
 
 def _file_of(i: int, source: object, crs: object, terrain: Crs | None, folder: Folder) -> str:
     if isinstance(source, (str, os.PathLike)):
+        if crs is not None:
+            raise InputError("features_crs is that of arrays; a file states the system of its coordinates itself")
         return os.fspath(source)
     collection, stated = _vectors.features_of(source, "line", crs)
     if stated is None and not (isinstance(source, Mapping) and "type" in source):

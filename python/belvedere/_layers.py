@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any, Mapping, Sequence, TypeVar
 
 import numpy as np
 
-from . import _models, _rasters, _vectors
+from . import _data, _models, _rasters, _vectors
 from ._crs import Crs, crs_of
 from ._folder import Folder
+from ._masks import joined
 from .errors import InputError
 
 S = TypeVar("S", bound="Layers")
@@ -21,6 +22,7 @@ class Layers:
 
     _document: dict[str, Any]
     _folder: Folder | None
+    _base: Path | None
     _roots: list[str]
     _array_crs: Crs | None
 
@@ -49,22 +51,24 @@ class Layers:
         * or ``spacing``: distance between samples, coordinate units, one number or (along x, along y), and ``origin``: x, y of the first sample of
           the first row.
         * ``crs``: ``"EPSG:n"``, its number, an object of pyproj or rasterio; ``None`` = local, metres.
-        * ``nodata``: value that stands for no data.
+        * ``nodata``: stored value that stands for no data, before scale and offset of a dataset.
+        * Files say themselves where they lie: of the five only ``crs`` and ``nodata`` go with a path, instead of what the file says.
         * ``fill_voids=True`` fills holes; other ``keys`` and ``style`` are those of scene files.
         """
         if not _rasters.is_raster(heights):
             if isinstance(heights, (str, os.PathLike)):
-                return self._add("terrain", id, style, keys, source=self._given(heights))
-            heights = np.asanyarray(heights)
+                stated = _data.stated_by_caller(transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata)
+                return self._add("terrain", id, style, {**stated, **keys}, source=self._given(heights))
+            heights = np.asanyarray(joined("heights", heights))
         found = _rasters.heights_of(heights, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata)
         path = self._new_file(id, ".tif")
         _rasters.write_geotiff(path, found)
         if found.crs.code is not None:
             keys.setdefault("source_crs", str(found.crs))
-        elif self._document["crs"] == "auto":
+        elif self._document.get("crs", "auto") == "auto":
             self._document["crs"] = "local"
         self._array_crs = self._array_crs or found.crs
-        return self._add("terrain", id, style, keys, source=path.name)
+        return self._add("terrain", id, style, keys, source=self._source(path))
 
     def add_lines(self: S, lines: object, *, id: str = "lines", crs: object = None, must_see: bool = False,
                   style: Mapping[str, Any] | None = None, **keys: Any) -> S:  # fmt: skip
@@ -100,7 +104,7 @@ class Layers:
             return self._add("mesh", id, style, keys, source=self._given(vertices))
         path = self._new_file(id, ".ply")
         _models.write_ply(path, vertices, faces, colors)
-        return self._add("mesh", id, style, keys, source=path.name)
+        return self._add("mesh", id, style, keys, source=self._source(path))
 
     def add_volume(self: S, values: object, *, spacing: object = 1.0, origin: object = 0.0, id: str = "volume", must_see: bool = False,
                    **keys: Any) -> S:  # fmt: skip
@@ -117,7 +121,7 @@ class Layers:
             return self._add("volume", id, None, keys, source=self._given(values))
         path = self._new_file(id, ".nrrd")
         _models.write_nrrd(path, values, spacing, origin)
-        return self._add("volume", id, None, keys, source=path.name)
+        return self._add("volume", id, None, keys, source=self._source(path))
 
     def add_atoms(self: S, elements: Sequence[str] | str | os.PathLike[str], positions: object = None, *, names: Sequence[str] | None = None,
                   residues: Sequence[str] | None = None, chains: Sequence[str] | None = None, numbers: Sequence[int] | None = None,
@@ -133,7 +137,7 @@ class Layers:
             return self._add("molecule", id, style, keys, source=self._given(elements))
         path = self._new_file(id, ".cif")
         _models.write_mmcif(path, elements, positions, names, residues, chains, numbers)
-        return self._add("molecule", id, style, keys, source=path.name)
+        return self._add("molecule", id, style, keys, source=self._source(path))
 
     def add_layer(self: S, kind: str, *, id: str, **keys: Any) -> S:
         """Adds a layer of any kind by the keys of scene files, such as ``add_layer("boxes", id="houses", source="houses.csv")``."""
@@ -147,17 +151,20 @@ class Layers:
 
     def _add_features(self: S, kind: str, source: object, id: str, crs: object, style: Mapping[str, Any] | None, keys: dict[str, Any]) -> S:
         if isinstance(source, (str, os.PathLike)):
+            if crs is not None:
+                raise InputError("crs is that of arrays; a file states the system of its coordinates itself")
             return self._add(kind, id, style, keys, source=self._given(source))
         collection, stated = _vectors.features_of(source, kind, crs)
         if stated is None and not (isinstance(source, Mapping) and "type" in source):
             stated = self._own_crs(kind)
         path = self._new_file(id, ".geojson")
         _vectors.write_geojson(path, collection, stated)
-        return self._add(kind, id, style, keys, source=path.name)
+        return self._add(kind, id, style, keys, source=self._source(path))
 
     def _own_crs(self, kind: str) -> Crs:
-        if self._document["crs"] != "auto":
-            return crs_of(self._document["crs"])
+        stated = self._document.get("crs", "auto")
+        if stated != "auto":
+            return crs_of(stated)
         if self._array_crs is None:
             raise InputError(f"nothing says in which system the coordinates of the {kind} are; give crs='EPSG:n' (4326 for longitude and latitude), or add the terrain first")
         return self._array_crs
@@ -182,8 +189,14 @@ class Layers:
         self._changed()
         if self._folder is None:
             self._folder = Folder()
+        if self._base is not None and os.fspath(self._folder.path) not in self._roots:
+            self._roots.append(os.fspath(self._folder.path))
         stem = "".join(c if c.isalnum() or c in "-_" else "_" for c in str(id)) or "layer"
         path = self._folder.file(stem + ending)
         if path.exists():
             raise InputError(f"there is a layer {id!r} already; give id= another name")
         return path
+
+    def _source(self, path: Path) -> str:
+        """The name of an array's file in the document: bare where its folder is that of the scene."""
+        return path.name if self._base is None else os.fspath(path)

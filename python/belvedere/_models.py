@@ -8,7 +8,7 @@ from typing import Any, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ._masks import data_of, mask_of, masked_count
+from ._masks import data_of, joined, mask_of, masked_count
 from .errors import FileError, InputError
 
 #: Names of NRRD for the types of voxels.
@@ -21,6 +21,9 @@ _NRRD = {
 def write_ply(path: Path, vertices: object, faces: object, colors: object = None) -> None:
     """Triangles as binary PLY."""
     points = rows_of("vertices", vertices, 3)
+    faces = joined("faces", faces)
+    if masked_count(faces):
+        raise InputError("faces holds masked values; leave those rows out")
     indices = np.asarray(faces)
     if indices.dtype.kind not in "iu" or indices.ndim != 2 or indices.shape[1] != 3 or len(indices) == 0:
         raise InputError(f"faces of type {indices.dtype} and shape {indices.shape} are no triangles; give rows of three whole numbers")
@@ -37,6 +40,9 @@ def write_ply(path: Path, vertices: object, faces: object, colors: object = None
     for i, name in enumerate("xyz"):
         table[name] = points[:, i]
     if colors is not None:
+        colors = joined("colors", colors)
+        if masked_count(colors):
+            raise InputError("colors holds masked values; give a colour to each vertex")
         rgb = np.asarray(colors)
         if rgb.dtype != np.uint8 or rgb.ndim != 2 or rgb.shape[0] != len(points) or rgb.shape[1] not in (3, 4):
             raise InputError(f"colors of type {rgb.dtype} and shape {rgb.shape} do not suit; give uint8 of the shape ({len(points)}, 3)")
@@ -53,6 +59,7 @@ def write_ply(path: Path, vertices: object, faces: object, colors: object = None
 
 def write_nrrd(path: Path, values: object, spacing: object, origin: object) -> None:
     """Voxels as NRRD; ``values[k, j, i]``: x runs along the last axis."""
+    values = joined("voxels", values)
     data, holes = data_of(values), mask_of(values)
     if data.ndim != 3 or min(data.shape) < 2:
         raise InputError(f"voxels have the shape {data.shape}; give three axes z, y, x of at least 2 each")
@@ -118,6 +125,7 @@ def write_mmcif(
 
 def rows_of(what: str, values: object, columns: int) -> NDArray[np.float64]:
     """Finite rows of so many numbers."""
+    values = joined(what, values)
     if masked_count(values):
         raise InputError(f"{what} holds masked values; leave those rows out")
     try:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from ._ask import number
 from ._crs import Crs, crs_of
 from ._masks import data_of, mask_of
+from ._xarray import Stored, is_xarray, of_xarray
 from .errors import FileError, InputError
 
 
@@ -31,7 +32,7 @@ class Heights:
 
 def is_raster(source: object) -> bool:
     """Whether it is an array, a rasterio dataset or an xarray object."""
-    return isinstance(source, np.ndarray) or _is_dataset(source) or _is_xarray(source)
+    return isinstance(source, np.ndarray) or _is_dataset(source) or is_xarray(source)
 
 
 def heights_of(
@@ -44,19 +45,16 @@ def heights_of(
     nodata: object = None,
 ) -> Heights:
     """Heights of an array or dataset; what is given overrides what the dataset says."""
-    values: Any = source
+    placed = transform is not None or spacing is not None
     if _is_dataset(source):
-        values, found_transform, found_crs, found_nodata = _of_dataset(source)
-    elif _is_xarray(source):
-        values, found_transform, found_crs, found_nodata = _of_xarray(source)
+        found = _of_dataset(source)
+    elif is_xarray(source):
+        found = of_xarray(source, placed)
     else:
-        found_transform = found_crs = found_nodata = None
-    if transform is None and spacing is None:
-        transform = found_transform
-    crs = found_crs if crs is None else crs
-    nodata = found_nodata if nodata is None else nodata
-    grid = _floats(values, nodata)
-    affine = _affine(transform, spacing, origin, grid.shape)
+        found = Stored(source)
+    crs = found.crs if crs is None else crs
+    grid = _floats(found, found.nodata if nodata is None else (nodata,))
+    affine = _affine(transform if placed else found.transform, spacing, origin, grid.shape)
     return _north_up(grid, affine, crs_of(crs))
 
 
@@ -64,60 +62,14 @@ def _is_dataset(source: object) -> bool:
     return all(hasattr(source, name) for name in ("read", "transform", "crs", "nodata", "count"))
 
 
-def _is_xarray(source: object) -> bool:
-    return hasattr(source, "dims") and hasattr(source, "coords") and hasattr(source, "values")
-
-
-def _of_dataset(source: Any) -> tuple[Any, Any, Any, Any]:
-    values = source.read(1, masked=True)
+def _of_dataset(source: Any) -> Stored:
     scale, offset = (source.scales or (1.0,))[0], (source.offsets or (0.0,))[0]
-    if (scale, offset) != (1.0, 0.0):
-        values = values * scale + offset
-    return values, source.transform, source.crs, None
+    return Stored(source.read(1, masked=True), source.transform, source.crs, (), float(scale), float(offset))
 
 
-def _of_xarray(source: Any) -> tuple[Any, Any, Any, Any]:
-    if not hasattr(source, "dtype"):
-        names = list(source.data_vars)
-        if len(names) != 1:
-            raise InputError(f"the xarray dataset has {len(names)} variables; give one of them, such as dataset['height']")
-        source = source[names[0]]
-    source = source.squeeze(drop=True)
-    if len(source.dims) != 2:
-        raise InputError(f"the DataArray has the dimensions {tuple(source.dims)}; give two, rows and columns")
-    rows, columns = source.dims
-    named = {"x", "lon", "longitude", "easting"}
-    if rows.lower() in named:
-        source = source.transpose(columns, rows)
-        rows, columns = columns, rows
-    x, y = (np.asarray(source.coords[d].values, float) if d in source.coords else None for d in (columns, rows))
-    if x is None or y is None:
-        raise InputError(f"the DataArray has no coordinates along {columns} or {rows}; give transform=")
-    (x0, dx), (y0, dy) = _steps(columns, x), _steps(rows, y)
-    crs = nodata = None
-    rio = getattr(source, "rio", None)
-    if rio is not None:
-        crs, nodata = rio.crs, rio.nodata
-    if nodata is None:
-        nodata = source.attrs.get("_FillValue")
-    if crs is None and columns.lower() in ("lon", "longitude"):
-        crs = 4326
-    return source.values, (dx, 0.0, x0 - 0.5 * dx, 0.0, dy, y0 - 0.5 * dy), crs, nodata
-
-
-def _steps(name: str, values: NDArray[np.float64]) -> tuple[float, float]:
-    if values.size < 2:
-        raise InputError(f"the coordinate {name} has {values.size} values; a terrain needs at least 2 rows and columns")
-    steps = np.diff(values)
-    step = float(values[-1] - values[0]) / (values.size - 1)
-    if step == 0 or not np.isfinite(step) or np.abs(steps - step).max() > 1e-3 * abs(step):
-        raise InputError(f"the coordinate {name} is not evenly spaced (steps {steps.min():g} to {steps.max():g}); resample it")
-    return float(values[0]), step
-
-
-def _floats(values: Any, nodata: object) -> NDArray[np.float32]:
+def _floats(stored: Stored, nodata: Sequence[object]) -> NDArray[np.float32]:
     """Float32 with NaN in holes."""
-    mask, data = mask_of(values), data_of(values)
+    mask, data = mask_of(stored.values), data_of(stored.values)
     if data.dtype.kind not in "iuf":
         raise InputError(f"heights of type {data.dtype} are not numbers with an order; give integers or floats, metres")
     if data.ndim == 3 and data.shape[0] == 1:
@@ -128,13 +80,15 @@ def _floats(values: Any, nodata: object) -> NDArray[np.float32]:
         data = data.astype(np.float64)
     grid = data.astype(np.float64 if data.dtype.kind == "f" and data.dtype.itemsize == 8 else np.float32)
     holes = ~np.isfinite(grid) if mask is None else ~np.isfinite(grid) | mask
-    if nodata is not None:
+    for value in nodata:
         try:
-            void = float(nodata)  # type: ignore[arg-type]
+            void = float(value)  # type: ignore[arg-type]
         except (TypeError, ValueError):
-            raise InputError(f"nodata={nodata!r} is not a number; give the value that stands for no data") from None
+            raise InputError(f"nodata={value!r} is not a number; give the value that stands for no data") from None
         # Compared as stored: a float32 of -3.4028235e38 is that of a float64 only after both are rounded alike.
         holes |= data == (np.asarray(void).astype(data.dtype) if data.dtype.kind == "f" else void)
+    if (stored.scale, stored.offset) != (1.0, 0.0):
+        grid = grid.astype(np.float64) * stored.scale + stored.offset
     beyond = np.abs(np.where(holes, 0.0, grid)).max()
     if beyond > 1e30:
         raise InputError(f"a height is {beyond:g} m; if that stands for no data, give nodata=")

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._crs import Crs, crs_of
-from ._masks import masked_count
+from ._masks import joined, masked_count
 from .errors import FileError, InputError
 
 _LEAST = {"line": 2, "area": 3, "point": 1}
@@ -78,6 +78,8 @@ def _lists(value: Any) -> Any:
 
 def _named(source: Any, kind: str) -> list[tuple[str, Any]]:
     if isinstance(source, Mapping):
+        if kind == "point":
+            return [(str(name), p[None, :]) for name, value in source.items() for p in _points(f"the points {str(name)!r}", value, 1)]
         return [(str(name), value) for name, value in source.items()]
     if kind == "point":
         points = _points("points", source, 1)
@@ -101,6 +103,7 @@ def _is_one(source: Any) -> bool:
 
 
 def _points(what: str, source: Any, least: int) -> NDArray[np.float64]:
+    source = joined(what, source)
     if masked_count(source):
         raise InputError(f"{what}: {masked_count(source)} coordinates are masked; leave such points out")
     try:

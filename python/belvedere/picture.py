@@ -132,8 +132,8 @@ class Picture:
 
     def _with_buffers(self) -> NativePicture:
         if not self._exact and self._again is not None:
-            # Colours and ids stay those of the first drawing, which are the same.
-            self._native, self._exact = self._again(), True
+            # Colours, ids and record stay those of the first drawing: a picture does not change when it is looked at.
+            self._native, self._exact = self._native.with_buffers_of(self._again()), True
         return self._native
 
     def _array(self, data: bytearray, dtype: Any, channels: int = 0) -> NDArray[Any]:

@@ -73,12 +73,8 @@ class RevealReport:
     @classmethod
     def of(cls, raw: Raw) -> RevealReport:
         """The typed form of a report."""
-        technique = raw.get("technique")
-        if "visible_bent" in raw:
-            straight = Shares(raw["visible_straight"], raw["in_frame_straight"])
-            return cls(technique, straight, Shares(raw["visible_bent"], raw["in_frame_bent"]), raw)
         straight = Shares(raw["visible_straight"], raw["in_frame_straight"])
-        return cls(technique, straight, Shares(raw["visible"], raw["in_frame"]), raw)
+        return cls(raw.get("technique"), straight, Shares(raw["visible_bent"], raw["in_frame_bent"]), raw)
 
 
 @dataclass(frozen=True)
@@ -91,13 +87,14 @@ class MeasureReport:
     in_frame: float | None
     #: Stages in order of application.
     stages: tuple[str, ...]
+    #: Warnings of opening the scene and of measuring.
     warnings: tuple[Note, ...]
     raw: Raw = field(repr=False)
 
     @classmethod
     def of(cls, raw: Raw) -> MeasureReport:
         """The typed form of a report."""
-        return cls(raw["visible"], raw["in_frame"], tuple(raw["stages"]), tuple(notes_of(raw["scene_warnings"])), raw)
+        return cls(raw["visible"], raw["in_frame"], tuple(raw["stages"]), tuple(notes_of(raw["warnings"])), raw)
 
 
 @dataclass(frozen=True)

@@ -24,20 +24,19 @@ if TYPE_CHECKING:
     from ._native import NativeReveal
 
 
-
 class Revealed:
     """A picture in which something is visible, and how it was found. In a notebook it shows the picture."""
 
-    def __init__(self, native: NativeReveal, folder: Folder) -> None:
+    def __init__(self, native: NativeReveal, folder: Folder, drawn: Mapping[str, Any]) -> None:
         self._native = native
         self._folder = folder
+        self._drawn = drawn
 
     @cached_property
     def picture(self) -> Picture:
         """The picture; its ``straight`` is the one without bends, unless nothing is bent."""
-        scene = self._native.scene()
-        again = lambda: scene.render(text("render", drawing(compare=True, buffers=True)), (0, None, None))
-        return Picture(self._native.picture(), again)
+        scene, options = self._native.scene(), text("render", {**self._drawn, "buffers": True})
+        return Picture(self._native.picture(), lambda: scene.render(options, (0, None, None)))
 
     @cached_property
     def scene(self) -> Scene:
@@ -61,8 +60,8 @@ class Revealed:
 
     @property
     def warnings(self) -> list[Note]:
-        """Warnings of loading and searching."""
-        return notes_of(json.loads(self._native.scene().warnings()))
+        """Warnings of loading, searching and drawing."""
+        return notes_of(self.report.raw["warnings"])
 
     def save(
         self,
@@ -181,4 +180,4 @@ def reveal(
         "open": {} if see is None else {"size": size_of(size)},
     }
     with asked(threads, progress, time_limit_s) as ask, Named(os.fspath(folder.path)):
-        return Revealed(_native.reveal(text("reveal", request), ask), folder)
+        return Revealed(_native.reveal(text("reveal", request), ask), folder, drawn)

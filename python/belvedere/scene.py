@@ -8,7 +8,7 @@ import os
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from ._crs import Crs, crs_of
 from ._drawing import drawing
 from ._folder import Folder, Named
 from ._layers import Layers
-from ._masks import masked_count
+from ._masks import joined, masked_count
 from ._json import size as _size
 from ._json import text as _text
 from .camera import Camera, camera_document
@@ -231,14 +231,14 @@ class Scene(Layers):
 
     def save(self, path: str | os.PathLike[str], *, overwrite: bool = False) -> Path:
         """Writes the scene as a scene file (``.json``), with its arrays as files in its folder, for the command line and for others. Files that were
-        given by their paths stay where they are; other programs read them with ``--allow-root``."""
+        given by their paths, and those of an opened scene, stay where they are and are named from the new file's folder; where they lie outside
+        it, the scene is opened with ``--allow-root`` or ``allow_roots``."""
         out = Path(os.fspath(path))
         if out.suffix.lower() != ".json":
             raise InputError(f"{out}: scenes are written as JSON; name the file .json")
-        document = self.document
-        if "camera" not in document:
+        if self._file is None and "camera" not in self._document:
             self.overview()
-            document = self.document
+        document = self._document_for(out)
         files = [] if self._folder is None else sorted(p for p in self._folder.path.iterdir() if p.suffix != ".json")
         there = [out, *(out.parent / f.name for f in files)]
         taken = [p for p in there if p.exists()]
@@ -247,10 +247,7 @@ class Scene(Layers):
         try:
             for file in files:
                 shutil.copyfile(file, out.parent / file.name)
-            text = _text("the scene", document)
-            if self._folder is not None:
-                text = text.replace(json.dumps(os.fspath(self._folder.path) + os.sep)[1:-1], "")
-            out.write_text(text, encoding="utf-8")
+            out.write_text(_text("the scene", document), encoding="utf-8")
         except OSError as error:
             raise FileError(f"{out}: {error.strerror or error}") from error
         return out
@@ -411,6 +408,28 @@ class Scene(Layers):
         self._natives.clear()
         return self._document
 
+    def _document_for(self, out: Path) -> dict[str, Any]:
+        """The document for a scene file at ``out``: files are named from its folder, those of arrays bare."""
+        there = os.path.realpath(out.parent)
+        if self._file is None and (self._base is None or os.path.realpath(self._base) == there):
+            document = copy.deepcopy(self._document)
+        else:
+            with asked() as ask:
+                document = json.loads(self._opened(ask).resolved(os.fspath(out)) or "{}")
+        arrays = None if self._folder is None else os.fspath(self._folder.path)
+
+        def named(value: Any) -> Any:
+            if isinstance(value, dict):
+                return {key: named(item) for key, item in value.items()}
+            if isinstance(value, list):
+                return [named(item) for item in value]
+            if isinstance(value, str) and arrays is not None:
+                folder, name = os.path.split(os.path.normpath(os.path.join(there, value)))
+                return name if folder == arrays else value
+            return value
+
+        return cast("dict[str, Any]", named(document))
+
     def _sized(self, size: list[int] | None, ask: Ask) -> NativeScene:
         if size is None:
             return self._opened(ask)
@@ -449,7 +468,7 @@ class Scene(Layers):
 
 
 def _bytes(what: str, values: object, columns: int) -> tuple[bytes, int]:
-    array = np.asanyarray(values)
+    array = np.asanyarray(joined(what, values))
     if array.size == 0 and array.ndim == 2 and array.shape[1] == columns:
         return b"", 0
     if masked_count(array):

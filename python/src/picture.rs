@@ -3,9 +3,9 @@
 use crate::errors::{raised, wrong};
 use crate::request::BUFFERS;
 use crate::work::{Ask, run};
-use belvedere::picture::{AuxBuffer, AuxFormat};
+use belvedere::picture::{AuxBuffer, AuxFormat, PictureOptions, outputs};
 use belvedere::scene::Frame;
-use belvedere::{Picture, output};
+use belvedere::{Picture, Session, output};
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyBytes};
 use std::path::PathBuf;
@@ -13,7 +13,16 @@ use std::path::PathBuf;
 /// A finished picture with its record.
 #[pyclass(frozen)]
 pub(crate) struct NativePicture {
-    pub(crate) picture: Picture,
+    picture: Picture,
+    /// Files that its scene reads, which it never replaces.
+    inputs: Vec<PathBuf>,
+}
+
+impl NativePicture {
+    /// A picture of the session's scene.
+    pub(crate) fn of(session: &Session, picture: Picture) -> Self {
+        Self { picture, inputs: session.input_paths() }
+    }
 }
 
 #[pymethods]
@@ -71,6 +80,14 @@ impl NativePicture {
         Ok(PyBytes::new(py, &run(py, &Ask::default(), move |_| picture.to_png())?))
     }
 
+    /// The same with the depths and world positions of another drawing of it.
+    fn with_buffers_of(&self, drawn: &Self) -> Self {
+        let mut picture = self.picture.clone();
+        picture.frame.depth.clone_from(&drawn.picture.frame.depth);
+        picture.frame.world.clone_from(&drawn.picture.frame.world);
+        Self { picture, inputs: self.inputs.clone() }
+    }
+
     /// Writes picture, record and buffers; returns their paths.
     fn save(
         &self,
@@ -81,9 +98,12 @@ impl NativePicture {
         overwrite: bool,
     ) -> PyResult<Vec<PathBuf>> {
         let aux = buffers.iter().map(|name| buffer(name)).collect::<PyResult<Vec<_>>>()?;
-        let picture = self.picture.clone().with_buffers(aux, if exr { AuxFormat::Exr } else { AuxFormat::Npy });
+        let aux_format = if exr { AuxFormat::Exr } else { AuxFormat::Npy };
+        let picture = self.picture.clone().with_buffers(aux.clone(), aux_format);
+        let options = PictureOptions { aux, aux_format, ..PictureOptions::default() };
+        let (files, inputs) = (outputs(&path, &options, false), self.inputs.clone());
         run(py, &Ask::default(), move |_| {
-            output::check(&path, &[], overwrite)?;
+            output::check_all(&files, &inputs, overwrite)?;
             picture.write(&path, overwrite)
         })
     }

@@ -173,7 +173,7 @@ impl NativeReveal {
 
     /// Both pictures.
     fn picture(&self) -> NativePicture {
-        NativePicture { picture: self.answer.picture().clone() }
+        NativePicture::of(self.answer.session(), self.answer.picture().clone())
     }
 
     /// The report, JSON.

@@ -5,7 +5,7 @@ use crate::picture::NativePicture;
 use crate::request::{self, Drawing, Opening, RendererName};
 use crate::work::{Ask, run};
 use belvedere::verbs::measure::{self, MeasureOptions};
-use belvedere::{Session, output};
+use belvedere::{Session, answers, output};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
@@ -51,15 +51,14 @@ impl NativeScene {
         // Mistakes are told before the work begins.
         drawing.options(Default::default())?;
         let session = self.session.clone();
-        let picture = run(py, &ask, move |progress| {
+        run(py, &ask, move |progress| {
             // Checked above.
             let options = drawing.options(progress).unwrap_or_default();
-            session.render(&options)
-        })?;
-        Ok(NativePicture { picture })
+            Ok(NativePicture::of(&session, session.render(&options)?))
+        })
     }
 
-    /// Visible shares, JSON.
+    /// Visible shares, JSON, as the program writes them into a file.
     fn measure(&self, py: Python<'_>, spacing_m: Option<f64>, renderer: &str, ask: Ask) -> PyResult<String> {
         if spacing_m.is_some_and(|s| !(s > 0.0 && s.is_finite())) {
             let given = spacing_m.unwrap_or_default();
@@ -68,7 +67,10 @@ impl NativeScene {
         let renderer: RendererName = request::read("renderer", &format!("{renderer:?}"))?;
         let session = self.session.clone();
         let options = MeasureOptions { spacing_m, ..MeasureOptions::default() };
-        run(py, &ask, move |progress| output::json(&measure::measure(&session, &options, renderer.into(), &progress)?))
+        run(py, &ask, move |progress| {
+            let report = measure::measure(&session, &options, renderer.into(), &progress)?;
+            answers::in_file("measure", &[], &report)
+        })
     }
 
     /// Size of the picture, pixels.
