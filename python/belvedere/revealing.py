@@ -126,8 +126,8 @@ def reveal(
 
     * ``dem``: heights as in :meth:`belvedere.Scene.add_terrain`, or a path (a file, a folder of tiles, ``builtin:massif``); or a path of a mesh,
       molecule, volume, city or scene file, with ``see``.
-    * ``routes``: what must be seen: a path or several, arrays of x, y, GeoJSON, shapely, a GeoDataFrame. ``features_crs``: their system; by default
-      what they state, else that of ``dem``.
+    * ``routes``: what must be seen: a path or several, arrays of x, y, GeoJSON, shapely, a GeoDataFrame. ``features_crs``: their system, unless
+      they are files; by default what they state, else that of ``dem``.
     * ``transform``, ``spacing``, ``origin``, ``crs``, ``nodata``: as in :meth:`belvedere.Scene.add_terrain`.
     * ``fill_voids``: ``True`` fills all holes, ``False`` none; ``None``: those of files up to 3 % of the ground, as the command line does, none of arrays.
     * ``eye``, ``look_at``: ``(x, y[, z])`` in scene coordinates or degrees, or texts such as ``"46.5N,11.3E,+20"`` (20 m above the ground).

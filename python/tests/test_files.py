@@ -44,7 +44,8 @@ def test_arrays_are_added_to_a_document_of_another_folder(file: Path) -> None:
 def test_an_opened_scene_is_saved_in_another_folder(file: Path) -> None:
     opened = belvedere.Scene.open(file)
     copied = opened.save(file.parent.parent / "b" / "scene.json")
-    again = belvedere.Scene.open(copied, allow_roots=[file.parent])
+    assert [layer["source"] for layer in json.loads(copied.read_text())["layer"]] == ["../a/ground.tif", "../a/lines.geojson"]
+    again = belvedere.Scene.open(copied, allow_roots=[file.parent.parent])
     assert (again.render(size=(64, 36)).rgba == opened.render(size=(64, 36)).rgba).all()
     beside = belvedere.Scene.open(opened.save(file.parent / "other.json"))
     assert beside.layers == opened.layers
