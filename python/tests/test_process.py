@@ -62,8 +62,10 @@ def test_the_interpreter_is_free_while_drawing() -> None:
     assert ticks[0] > 20 * took, f"{ticks[0]} ticks in {took:.2f} s"
 
 
+# Background jobs of a shell begin with Ctrl-C ignored, and so would their children.
 INTERRUPTED = """
-import belvedere, sys
+import belvedere, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
 scene = belvedere.Scene.builtin("massif")
 print("ready", flush=True)
 try:
