@@ -1,4 +1,4 @@
-//! What crates.io asks for: `cargo publish --dry-run` is tried by tools/release, these are its reasons to fail that need no build.
+//! What publishing asks of a crate: `cargo publish --dry-run` is tried by tools/release, these are its reasons to fail that need no build.
 
 use std::process::Command;
 
