@@ -6,7 +6,7 @@ use crate::draw_args::DrawArgs;
 use crate::export::ExportArgs;
 use crate::ground_args::{GroundArgs, InfoArgs};
 use crate::kinds::{self, RendererKind, TechniqueKind};
-use crate::look_args::LookArgs;
+use crate::look_args::{AirArgs, LookArgs};
 use crate::pack::PackArgs;
 use crate::parse::{
     Outside, parse_drafts, parse_eye, parse_fallback, parse_highlight, parse_number, parse_outside, parse_part,
@@ -257,9 +257,9 @@ pub(crate) struct RevealArgs {
     /// Leave holes of the terrain open instead of filling them
     #[arg(long)]
     pub(crate) keep_voids: bool,
-    /// Tint of the terrain by height: auto (the default), alpine, desert, glacial, clear, plain, or a file of colours by height
-    /// (GDAL colour-relief text, GMT .cpt)
-    #[arg(long, value_name = "NAME|FILE")]
+    /// Look of the terrain: auto (the default: meadows, forest, rock and snow as the climate of the place has them), swiss, winter, autumn,
+    /// alpine, desert, glacial, atlas, clear, plain, night, or a file of colours by height (GDAL colour-relief text, GMT .cpt)
+    #[arg(long, visible_alias = "look", value_name = "NAME|FILE")]
     pub(crate) palette: Option<String>,
     /// Georeferenced picture laid over the ground, such as a map or an aerial photograph; may be given several times, later ones on top
     #[arg(long, value_name = "FILE", conflicts_with = "see")]
@@ -434,10 +434,12 @@ pub(crate) struct RenderArgs {
     /// Draw the camera itself from another eye: eye and point to look at, in scene coordinates or lon,lat, or auto
     #[arg(long, value_name = "X,Y,Z,X,Y,Z", allow_hyphen_values = true, conflicts_with_all = CAMERA_CONFLICTS, conflicts_with = "overhead", value_parser = parse_outside)]
     pub(crate) outside: Option<Outside>,
-    /// Tint of the terrain by height instead of the scene's: auto, alpine, desert, glacial, clear, plain, or a file of
-    /// colours by height (GDAL colour-relief text, GMT .cpt)
-    #[arg(long, value_name = "NAME|FILE")]
+    /// Look of the terrain instead of the scene's: auto, swiss, winter, autumn, alpine, desert, glacial, atlas, clear, plain, night, or a
+    /// file of colours by height (GDAL colour-relief text, GMT .cpt)
+    #[arg(long, visible_alias = "look", value_name = "NAME|FILE")]
     pub(crate) palette: Option<String>,
+    #[command(flatten)]
+    pub(crate) air: AirArgs,
     /// Draw the sea as ordinary ground
     #[arg(long)]
     pub(crate) no_sea: bool,

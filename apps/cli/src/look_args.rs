@@ -1,10 +1,21 @@
 //! Arguments of `reveal` that say how its picture looks.
 
-use crate::parse::{parse_exaggeration, parse_light, parse_stylise, parse_time};
+use crate::parse::{parse_exaggeration, parse_haze, parse_light, parse_stylise, parse_time};
 use belvedere::scene::{Hidden, Relief};
-use belvedere::scene_file::{LightDoc, StylisationDoc};
+use belvedere::scene_file::{LightDoc, StylisationDoc, SwitchOrVisibility};
 use belvedere::verbs::appearance::Appearance;
 use clap::{Args, ValueEnum};
+
+/// Sky and haze.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct AirArgs {
+    /// Sky: auto (by the height of the sun), day, dusk, night, white, or a colour #rrggbb
+    #[arg(long, value_name = "NAME|COLOUR")]
+    pub(crate) sky: Option<String>,
+    /// Haze: on (the farther part of the view, the default), off, or the visibility in kilometres
+    #[arg(long, value_name = "on|off|KM", allow_negative_numbers = true, value_parser = parse_haze)]
+    pub(crate) haze: Option<SwitchOrVisibility>,
+}
 
 /// Look of the picture; all of it is written into the scene file too.
 #[derive(Debug, Clone, Default, Args)]
@@ -16,6 +27,8 @@ pub(crate) struct LookArgs {
     /// Light from a direction: degrees clockwise from north, and over the horizon; 315,45 by default
     #[arg(long, value_name = "AZIMUTH,ALTITUDE", allow_hyphen_values = true, conflicts_with = "light_time", value_parser = parse_light)]
     pub(crate) light: Option<[f64; 2]>,
+    #[command(flatten)]
+    pub(crate) air: AirArgs,
     /// Draw cast shadows
     #[arg(long)]
     pub(crate) shadows: bool,
@@ -90,9 +103,10 @@ impl LookArgs {
         let [azimuth_deg, altitude_deg] = [0, 1].map(|i| self.light.map(|light| light[i]));
         let time = self.light_time.clone();
         let shadows = self.shadows || time.is_some();
-        let stated = shadows || self.light.is_some();
+        let AirArgs { sky, haze } = self.air.clone();
+        let stated = shadows || self.light.is_some() || sky.is_some() || haze.is_some();
         Appearance {
-            light: stated.then_some(LightDoc { azimuth_deg, altitude_deg, time, shadows }),
+            light: stated.then_some(LightDoc { azimuth_deg, altitude_deg, time, shadows, sky, haze }),
             relief: self.relief.map(Into::into),
             stylisation: self.stylise,
             no_mark: self.no_mark,

@@ -1,7 +1,7 @@
 //! Values of arguments.
 
 use belvedere::places::Place;
-use belvedere::scene_file::{HighlightMark, StylisationDoc, SwitchOrStrength};
+use belvedere::scene_file::{HighlightMark, StylisationDoc, SwitchOrStrength, SwitchOrVisibility};
 use belvedere::verbs::animate::Part;
 use belvedere::verbs::appearance::EXAGGERATION;
 use belvedere::verbs::drafts::MOST_DRAFTS;
@@ -146,6 +146,19 @@ pub(crate) fn parse_light(text: &str) -> Result<[f64; 2], String> {
     angles.filter(fits).ok_or_else(|| {
         "give the azimuth, degrees clockwise from north, and the altitude above 0 and up to 90, such as 250,12".into()
     })
+}
+
+/// Parses haze: a switch, or the visibility in kilometres.
+pub(crate) fn parse_haze(text: &str) -> Result<SwitchOrVisibility, String> {
+    match text.trim() {
+        "on" => Ok(SwitchOrVisibility::Switch(true)),
+        "off" => Ok(SwitchOrVisibility::Switch(false)),
+        text => {
+            let km = text.parse().ok().filter(|km| (1e-6..=1e6).contains(km));
+            km.map(SwitchOrVisibility::Kilometres)
+                .ok_or_else(|| "give on, off, or a visibility in kilometres, such as 40".into())
+        }
+    }
 }
 
 /// Parses a factor of heights.

@@ -8,6 +8,7 @@ use crate::draw_args::{CompositingKind, DrawArgs};
 use crate::goal::Goal;
 use crate::ground_args::InfoArgs;
 use crate::inputs::as_text;
+use crate::look_args::AirArgs;
 use crate::outputs::{self, named, png_named};
 use crate::report::{Context, is_stdout, print};
 use anyhow::Context as _;
@@ -135,8 +136,16 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     // A straight picture does not need the ground solved.
     let unsolved = request.straight;
     let (area_style, sea) = (args.area_style, args.no_sea.then_some(false));
-    let options =
-        OpenOptions { palette, area_style, sea, unsolved, ..context.options(Needs::Everything, args.draw.size) };
+    let AirArgs { sky, haze } = args.air.clone();
+    let options = OpenOptions {
+        palette,
+        sky,
+        haze,
+        area_style,
+        sea,
+        unsolved,
+        ..context.options(Needs::Everything, args.draw.size)
+    };
     let session = Session::from_document(source, &options)?;
     outputs::check(&files, &session.input_paths(), context)?;
     let mut warnings = session.warnings();

@@ -1,6 +1,7 @@
 //! Tints of the ground without light, for programs that light it themselves.
 
 use crate::shade::ground::palette::Tint;
+use belvedere_core::DVec2;
 use belvedere_scene::Palette;
 
 /// Colours of ground by height and slope, as pictures show them before they are lit.
@@ -16,8 +17,9 @@ impl GroundTint {
     /// Linear red, green and blue, 0..=1.
     ///
     /// * `height_m`: true height;
-    /// * `steep`: tangent of the slope, >= 0.
-    pub fn color(&self, height_m: f64, steep: f64) -> [f32; 3] {
-        self.0.colors(&[height_m as f32], &[steep as f32]).map(|[v]| v.clamp(0.0, 1.0))
+    /// * `slope`: rise to the east and to the north, metres per metre.
+    pub fn color(&self, height_m: f64, slope: DVec2) -> [f32; 3] {
+        let [r, g, b, _] = self.0.colors(&[height_m as f32], &[slope.length() as f32], &[-slope.y as f32]);
+        [r, g, b].map(|[v]| v.clamp(0.0, 1.0))
     }
 }

@@ -1,7 +1,8 @@
 //! Layers and their styles.
 
 use crate::{
-    Color, DistanceMarkers, FeatureStyle, Heightfield, Hidden, MeshLayer, MoleculeLayer, PointStyle, Ramp, VolumeLayer,
+    Climate, Color, DistanceMarkers, FeatureStyle, Heightfield, Hidden, MeshLayer, MoleculeLayer, PointStyle, Ramp,
+    VolumeLayer,
 };
 use belvedere_core::{Aabb, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -38,9 +39,15 @@ pub enum Shading {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum PaletteName {
-    /// Chosen by the range of heights.
+    /// Chosen by the place and the season, or by the range of heights where the place is not known.
     #[default]
     Auto,
+    /// Meadows, forest, rock and snow by the climate of the place, in summer.
+    Swiss,
+    /// The same in winter, with snow down to the valleys.
+    Winter,
+    /// The same in autumn.
+    Autumn,
     /// Green valleys, brown slopes, white summits.
     Alpine,
     /// Sand and rust.
@@ -51,17 +58,26 @@ pub enum PaletteName {
     Clear,
     /// One light grey.
     Plain,
+    /// By height over the sea alone, as in an atlas.
+    Atlas,
+    /// Dark blue.
+    Night,
 }
 
 impl PaletteName {
     /// All of them, as files write them.
-    pub const ALL: [(&'static str, Self); 6] = [
+    pub const ALL: [(&'static str, Self); 11] = [
         ("auto", Self::Auto),
+        ("swiss", Self::Swiss),
+        ("winter", Self::Winter),
+        ("autumn", Self::Autumn),
         ("alpine", Self::Alpine),
         ("desert", Self::Desert),
         ("glacial", Self::Glacial),
         ("clear", Self::Clear),
         ("plain", Self::Plain),
+        ("atlas", Self::Atlas),
+        ("night", Self::Night),
     ];
 }
 
@@ -70,6 +86,8 @@ impl PaletteName {
 pub enum Palette {
     /// A built-in one.
     Named(PaletteName),
+    /// A built-in one at a place on the earth, whose climate is known.
+    Placed(PaletteName, Climate),
     /// A colour ramp given by the user.
     Ramp(Arc<Ramp>),
 }

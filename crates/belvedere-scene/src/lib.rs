@@ -5,6 +5,7 @@ pub mod bodies;
 pub mod cell;
 mod chain;
 pub mod city;
+pub mod climate;
 pub mod color;
 pub mod drape;
 pub mod frame;
@@ -32,6 +33,7 @@ pub use city::{
     Building, City, CityArea, CityFace, FacePicture, HeightSource, LandCover, Polygon, Structure, StructureKind,
     Surface, Way, WayClass,
 };
+pub use climate::Climate;
 pub use color::Color;
 pub use drape::{Draped, drape_polyline};
 pub use frame::{Aux, Compositing, Frame, FrameStats, RenderError, RenderJob, RenderOptions, Renderer, Stylisation};
@@ -40,7 +42,7 @@ pub use layer::{
     AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Drape, Layer, LayerKind, LineFeature, LineLayer, Palette,
     PaletteName, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
 };
-pub use light::Light;
+pub use light::{Haze, Light, Sky};
 pub use mark::{DistanceMarkers, FeatureStyle, Hidden, PointStyle, Symbol};
 pub use mesh::{Mesh, MeshColors, MeshError, MeshLayer, triangle_lattice};
 pub use molecule::{Molecule, MoleculeLayer, MoleculeStyle};

@@ -45,6 +45,11 @@ impl Session {
         let document = &mut source.document;
         let mut allowed = options.allow_roots.clone();
         document.camera.image = options.image.unwrap_or(document.camera.image);
+        if options.sky.is_some() || options.haze.is_some() {
+            let light = document.light.get_or_insert_default();
+            light.sky = options.sky.clone().or(light.sky.take());
+            light.haze = options.haze.or(light.haze);
+        }
         if let Some(palette) = &options.palette {
             let palette = palette.located(&mut allowed)?;
             for layer in &mut document.layer {

@@ -1,6 +1,6 @@
 //! Options for opening a scene.
 
-use crate::scene_file::{PaletteDoc, SurfaceDoc};
+use crate::scene_file::{PaletteDoc, SurfaceDoc, SwitchOrVisibility};
 use crate::trust::Trust;
 use belvedere_io::Limits;
 use belvedere_scene::Progress;
@@ -35,6 +35,10 @@ pub struct OpenOptions {
     pub seed: Option<u64>,
     /// Tint of terrain instead of the scene's.
     pub palette: Option<PaletteDoc>,
+    /// Sky instead of the scene's, see [`crate::scene_file::LightDoc::sky`].
+    pub sky: Option<String>,
+    /// Haze instead of the scene's.
+    pub haze: Option<SwitchOrVisibility>,
     /// Whether the sea is drawn as such, instead of the scene's setting.
     pub sea: Option<bool>,
     /// Surface of the areas of all layers, instead of the scene's settings; `Some(Auto)`: as the files say.

@@ -4,9 +4,9 @@ use super::slider;
 use crate::language::tr;
 use crate::model::{Compare, Model, Tool};
 use belvedere::scene_file::{
-    HighlightMark, Inset, LightDoc, OverlayDoc, StylisationDoc, SwitchOrLength, SwitchOrStrength,
+    HighlightMark, Inset, LightDoc, OverlayDoc, StylisationDoc, SwitchOrLength, SwitchOrStrength, SwitchOrVisibility,
 };
-use eframe::egui::Ui;
+use eframe::egui::{ComboBox, Ui};
 
 /// Shows the panel.
 pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
@@ -100,9 +100,19 @@ fn stylisation(ui: &mut Ui, model: &mut Model) {
     }
 }
 
+fn sky_name(name: &str) -> &str {
+    match name {
+        "auto" => tr("by the sun"),
+        "day" => tr("clear day"),
+        "dusk" => tr("dusk"),
+        "night" => tr("night"),
+        "white" => tr("white"),
+        color => color,
+    }
+}
+
 fn light(ui: &mut Ui, model: &mut Model) {
-    let usual = LightDoc { azimuth_deg: None, altitude_deg: None, time: None, shadows: false };
-    let light = model.document().light.clone().unwrap_or(usual);
+    let light = model.document().light.clone().unwrap_or_default();
     let mut set = |ui: &mut Ui, name: &str, value: f64, range, help: &str, put: fn(&mut LightDoc, f64)| {
         if let Some(value) = slider(ui, model, name, value, range, help) {
             let mut light = light.clone();
@@ -117,6 +127,22 @@ fn light(ui: &mut Ui, model: &mut Model) {
     set(ui, tr("sun high, degrees"), altitude, 1.0..=90.0, tr("over the horizon"), |l, v| l.altitude_deg = Some(v));
     let mut shadows = light.shadows;
     if ui.checkbox(&mut shadows, tr("Shadows")).changed() {
-        model.edit(|document| document.light = Some(LightDoc { shadows, ..light }));
+        model.edit(|document| document.light = Some(LightDoc { shadows, ..light.clone() }));
+    }
+    let mut sky = light.sky.clone().unwrap_or_else(|| "auto".into());
+    let before = sky.clone();
+    ComboBox::from_label(tr("Sky")).selected_text(sky_name(&before)).show_ui(ui, |ui| {
+        for name in LightDoc::SKIES {
+            ui.selectable_value(&mut sky, name.to_owned(), sky_name(name));
+        }
+    });
+    if sky != before {
+        let sky = (sky != "auto").then_some(sky);
+        model.edit(|document| document.light = Some(LightDoc { sky, ..light.clone() }));
+    }
+    let mut haze = light.haze != Some(SwitchOrVisibility::Switch(false));
+    if ui.checkbox(&mut haze, tr("Haze")).changed() {
+        let haze = (!haze).then_some(SwitchOrVisibility::Switch(false));
+        model.edit(|document| document.light = Some(LightDoc { haze, ..light }));
     }
 }

@@ -143,8 +143,13 @@ mod tests {
     };
 
     /// Sun in the west, 45 degrees high.
-    const SUN: Light =
-        Light { azimuth: 1.5 * std::f64::consts::PI, altitude: std::f64::consts::FRAC_PI_4, shadows: true };
+    const SUN: Light = Light {
+        azimuth: 1.5 * std::f64::consts::PI,
+        altitude: std::f64::consts::FRAC_PI_4,
+        shadows: true,
+        sky: belvedere_scene::Sky::Auto,
+        haze: belvedere_scene::Haze::Auto,
+    };
     const AXES: [DVec2; 2] = [DVec2::new(0.5, 0.0), DVec2::new(0.0, 0.5)];
 
     fn layer(kind: LayerKind) -> Layer {

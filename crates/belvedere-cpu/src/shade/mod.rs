@@ -114,7 +114,7 @@ impl<'a> Shader<'a> {
         let mut surfaces = layers.iter().filter(|l| !matches!(l, LayerShade::Other));
         let only_terrain = matches!((surfaces.next(), surfaces.next()), (Some(LayerShade::Terrain(_)), None));
         Self {
-            sky: Sky::of(job.scene, job.view.pinhole()),
+            sky: Sky::of(job.scene, job.light, job.view.pinhole()),
             screen,
             blocks,
             areas,

@@ -45,7 +45,7 @@ pub(crate) struct ReliefLight {
 impl ReliefLight {
     pub(crate) fn new(relief: Relief, light: &Light) -> Self {
         let towards = |azimuth: f64, altitude: f64| {
-            let d = Light { azimuth, altitude, shadows: false }.direction();
+            let d = Light { azimuth, altitude, shadows: false, ..Light::default() }.direction();
             (d / d.z).to_array().map(|v| v as f32)
         };
         let mut altitude = light.altitude.clamp(0.05, 1.5);

@@ -47,8 +47,10 @@ mod tests {
             azimuth_deg: None,
             altitude_deg: None,
             shadows: true,
+            ..LightDoc::default()
         };
-        let sun = |degrees: f64| Light { azimuth: degrees.to_radians(), altitude: 0.3, shadows: true };
+        let sun =
+            |degrees: f64| Light { azimuth: degrees.to_radians(), altitude: 0.3, shadows: true, ..Light::default() };
         let timed = doc(Some("2026-08-20T16:20:00Z"));
         let mut held = HeldSun::default();
         held.rest(Some(&timed), sun(250.0));

@@ -82,7 +82,8 @@ fn tints(terrain: &TerrainLayer, cols: &[usize], rows: &[usize]) -> Vec<[f32; 3]
         let slope = |a: Option<f64>, b: Option<f64>, length: f64| a.zip(b).map_or(0.0, |(a, b)| (b - a) / length);
         let across = slope(height(col.saturating_sub(1), row), height(col + 1, row), 2.0 * spacing.x);
         let along = slope(height(col, row.saturating_sub(1)), height(col, row + 1), 2.0 * spacing.y);
-        tint.color(z, DVec2::new(across, along).length())
+        // Rows go south.
+        tint.color(z, DVec2::new(across, -along))
     };
     rows.par_iter().flat_map_iter(|row| cols.iter().map(move |col| color(*col, *row))).collect()
 }

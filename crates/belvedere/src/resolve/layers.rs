@@ -18,8 +18,8 @@ use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
 use belvedere_io::{InputFile, Loaded};
 use belvedere_scene::{
-    Crs, DistanceMarkers, Drape, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Palette, PointLayer,
-    PointStyle, TerrainLayer, drape_polyline,
+    Climate, Crs, DistanceMarkers, Drape, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Palette, PaletteName,
+    PointLayer, PointStyle, TerrainLayer, drape_polyline,
 };
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -183,15 +183,28 @@ fn terrain(
             (heightfield.into(), crs)
         }
     };
+    let palette = placed(palette(loader, index, &style.palette)?, &heightfield, crs);
     let layer = TerrainLayer {
         heightfield,
         drapes: Vec::new(),
         relief: style.relief,
         shading: style.shading,
         exaggeration: style.exaggeration,
-        palette: palette(loader, index, &style.palette)?,
+        palette,
     };
     Ok((layer, crs))
+}
+
+/// A palette that depends on the place, with the climate in the middle of the ground.
+fn placed(palette: Palette, ground: &Heightfield, crs: Crs) -> Palette {
+    use PaletteName::{Auto, Autumn, Swiss, Winter};
+    let Palette::Named(name @ (Auto | Swiss | Winter | Autumn)) = palette else { return palette };
+    let bounds = ground.bounds();
+    let middle = (0.5 * (bounds.min + bounds.max)).truncate();
+    match (Ground { crs, terrain: None }).lon_lat(middle) {
+        Some(at) => Palette::Placed(name, Climate::at(at.x, at.y)),
+        None => palette,
+    }
 }
 
 /// A palette by name or from its file.

@@ -1,12 +1,13 @@
 //! The light of a document: a direction, or the sun at a time.
 
+use super::color::color;
 use super::ground::Ground;
 use crate::BelvedereError;
-use crate::scene_file::{LightDoc, SourceDocument};
+use crate::scene_file::{LightDoc, SourceDocument, SwitchOrVisibility};
 use crate::sun::{check_time, days_since_j2000, nearest_day_time, sun_position_deg, written_time};
 use belvedere_core::DVec3;
 use belvedere_core::{Warning, WarningKind};
-use belvedere_scene::Light;
+use belvedere_scene::{Color, Haze, Light, Sky};
 
 /// Height of the sun from which on a picture by day is proposed, degrees.
 const DAY_DEG: f64 = 5.0;
@@ -26,6 +27,7 @@ pub(crate) fn resolve(
             azimuth: doc.azimuth_deg.map_or(default.azimuth, f64::to_radians),
             altitude: doc.altitude_deg.map_or(default.altitude, f64::to_radians),
             shadows: doc.shadows,
+            ..default
         },
     };
     let altitude_deg = light.altitude.to_degrees();
@@ -35,7 +37,56 @@ pub(crate) fn resolve(
             format!("light altitude_deg is {altitude_deg}, it must lie above 0 and up to 90"),
         ));
     }
-    Ok(light)
+    let air = |(key, reason): (&'static str, String)| source.error(&["light", key], reason);
+    Ok(Light { sky: sky(doc).map_err(air)?, haze: haze(doc).map_err(air)?, ..light })
+}
+
+/// Limits of the visibility, kilometres.
+const VISIBILITY_KM: [f64; 2] = [1e-6, 1e6];
+
+/// The sky of a document.
+///
+/// # Errors
+/// The key, and a sentence with the names.
+pub(crate) fn sky(doc: &LightDoc) -> Result<Sky, (&'static str, String)> {
+    let Some(text) = doc.sky.as_deref() else { return Ok(Sky::Auto) };
+    match text {
+        "auto" => return Ok(Sky::Auto),
+        "day" => return Ok(Sky::Day),
+        "dusk" => return Ok(Sky::Dusk),
+        "night" => return Ok(Sky::Night),
+        "white" => return Ok(Sky::Plain(Color::rgb(255, 255, 255))),
+        _ => {}
+    }
+    let color = color("sky", text).ok().filter(|color| color.a == 255);
+    color.map(Sky::Plain).ok_or_else(|| {
+        let names = LightDoc::SKIES.join(", ");
+        (
+            "sky",
+            format!(
+                "the sky \"{}\" is not known; give {names}, or a colour such as #ffffff",
+                text.chars().take(40).collect::<String>()
+            ),
+        )
+    })
+}
+
+/// The haze of a document.
+///
+/// # Errors
+/// The key, and a sentence with the limits.
+pub(crate) fn haze(doc: &LightDoc) -> Result<Haze, (&'static str, String)> {
+    match doc.haze {
+        None | Some(SwitchOrVisibility::Switch(true)) => Ok(Haze::Auto),
+        Some(SwitchOrVisibility::Switch(false)) => Ok(Haze::None),
+        Some(SwitchOrVisibility::Kilometres(km)) => {
+            let [least, most] = VISIBILITY_KM;
+            let fits = (least..=most).contains(&km);
+            fits.then_some(Haze::Visibility(1000.0 * km)).ok_or_else(|| {
+                ("haze", format!("haze is {km}, it must be true, false, or a visibility of {least} to {most} km"))
+            })
+        }
+    }
 }
 
 fn from_time(
@@ -70,5 +121,5 @@ fn from_time(
     }
     // Below the horizon all ground lies in the shadow of the earth, whether other shadows are wanted or not.
     let shadows = doc.shadows || is_night;
-    Ok(Light { azimuth: azimuth_deg.to_radians(), altitude: altitude_deg.to_radians(), shadows })
+    Ok(Light { azimuth: azimuth_deg.to_radians(), altitude: altitude_deg.to_radians(), shadows, ..Light::default() })
 }

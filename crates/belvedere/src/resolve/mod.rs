@@ -17,6 +17,7 @@ pub(crate) mod ground;
 pub(crate) mod hidden;
 mod layers;
 mod light;
+pub(crate) use light::{haze, sky};
 mod loader;
 mod mesh;
 mod molecule;

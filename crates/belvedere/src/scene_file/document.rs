@@ -284,8 +284,8 @@ impl<'de> Deserialize<'de> for PointDoc {
     }
 }
 
-/// The sun: a direction, or a time.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+/// The sun: a direction, or a time; the sky and the haze.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LightDoc {
     /// Direction the light comes from, degrees clockwise from north; 315 by default.
@@ -300,4 +300,25 @@ pub struct LightDoc {
     /// Whether cast shadows are wanted.
     #[serde(default)]
     pub shadows: bool,
+    /// What stands behind everything: `auto` (by the height of the sun), `day`, `dusk`, `night`, `white`, or a colour `#rrggbb`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sky: Option<String>,
+    /// Haze: `true` dims the farther part of the view, `false` nothing; a number is the visibility in kilometres.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub haze: Option<SwitchOrVisibility>,
+}
+
+impl LightDoc {
+    /// Names of skies.
+    pub const SKIES: [&'static str; 5] = ["auto", "day", "dusk", "night", "white"];
+}
+
+/// On or off, or the visibility.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "true, false or the visibility in kilometres was expected")]
+pub enum SwitchOrVisibility {
+    /// On or off.
+    Switch(bool),
+    /// Distance at which a black thing is seen in 2 % contrast, kilometres.
+    Kilometres(f64),
 }

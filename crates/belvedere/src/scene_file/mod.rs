@@ -31,7 +31,7 @@ pub use choices::choices;
 pub use city::{CityDoc, CityStyleDoc};
 pub use common::{Paths, PlaneDoc, TransformDoc};
 pub(crate) use doc_error::{DocError, suggestion};
-pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDoc, ProjectionDoc};
+pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDoc, ProjectionDoc, SwitchOrVisibility};
 pub use fallback::{Fallback, FallbackKind};
 pub use intent::{AnimationDoc, CentrelineDoc, ConstructorDoc, ConstructorKind, SweepDoc, TurntableDoc};
 pub use layers::{

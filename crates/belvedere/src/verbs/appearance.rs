@@ -3,7 +3,7 @@
 use crate::scene_file::{
     Document, LayerDoc, LightDoc, OneOrTwo, OverlayDoc, PlaneDoc, ReliefStageDoc, StageDoc, StylisationDoc,
 };
-use crate::{BelvedereError, Session};
+use crate::{BelvedereError, Session, resolve};
 use belvedere_scene::{Crs, Heightfield, LayerKind, Relief, Scene};
 use std::sync::Arc;
 
@@ -40,6 +40,11 @@ impl Appearance {
             let reason = "the position of the sun at a time needs a georeferenced scene, and this one is local; give a direction of \
                           light instead";
             return Err(BelvedereError::Appearance { option: "light-time", reason: reason.into() });
+        }
+        if let Some(light) = &self.light {
+            let unfit = |(option, reason): (&'static str, String)| BelvedereError::Appearance { option, reason };
+            resolve::sky(light).map_err(unfit)?;
+            resolve::haze(light).map_err(unfit)?;
         }
         let strengths = self.stylisation.unwrap_or_default().strengths();
         strengths.map(|_| ()).map_err(|(_, reason)| BelvedereError::Appearance { option: "stylise", reason })

@@ -201,11 +201,29 @@ impl Batch {
         let at = self.fixed(&positions, terrain);
         let inputs = terrain.inputs();
         let colors = terrain.lit.colors_of(&at, &lods, self.len, &inputs);
-        let color = terrain.colors(shader, &colors, &lods, &positions.depth);
+        let grain = terrain.grain(
+            [&self.node[0], &self.node[1]],
+            [&positions.u, &positions.v],
+            &self.extents(&positions, terrain, shader),
+        );
+        let color = terrain.colors(shader, &colors, grain.as_ref(), &lods, &positions.depth);
         painted.set_roots(&self.out[..self.len], &color, self.layer as u32 + 1);
         if terrain.is_covered(shader) {
             self.cover(shader, terrain, &positions, &at, samples, painted);
         }
+    }
+
+    /// Longest extents of the pixels on the ground, cells.
+    #[inline(always)]
+    fn extents(&self, positions: &SamplePositions, terrain: &TerrainShade<'_>, shader: &Shader<'_>) -> Lanes {
+        let [near, _] = terrain.footprints(shader, &positions.depth);
+        let mut out = [0.0; LANES];
+        for i in 0..LANES {
+            let (across, area) = (near[i].sqrt(), positions.cells_per_px[i]);
+            let along = area / across;
+            out[i] = if along > across { along } else { across };
+        }
+        out
     }
 
     /// Positions of the samples on the ground.
@@ -336,14 +354,27 @@ impl TerrainShade<'_> {
 
     /// Square roots of the lit colours, with haze.
     #[inline(always)]
-    fn colors(&self, shader: &Shader<'_>, colors: &Colors, lods: &[u32; LANES], depth: &Lanes) -> [Lanes; 3] {
+    fn colors(
+        &self,
+        shader: &Shader<'_>,
+        colors: &Colors,
+        grain: Option<&Lanes>,
+        lods: &[u32; LANES],
+        depth: &Lanes,
+    ) -> [Lanes; 3] {
         let air = shader.sky.haze();
-        let mut out = [[0.0; LANES]; 3];
+        let (mut out, mut textured) = ([[0.0; LANES]; 3], [1.0; LANES]);
+        if let Some(grain) = grain {
+            for i in 0..LANES {
+                textured[i] = 1.0 + colors.rough(i) * grain[i];
+            }
+        }
         for i in 0..LANES {
             let haze = shader.sky.haze_at(depth[i]);
             let root = colors.between(i, (lods[i] & 255) as i32 as f32 * (1.0 / 256.0));
             for k in 0..3 {
-                let c = root[k] * root[k];
+                let c = root[k] * textured[i];
+                let c = c * c;
                 out[k][i] = (c + haze * (air[k] - c)).sqrt();
             }
         }

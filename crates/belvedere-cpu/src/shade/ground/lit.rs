@@ -29,6 +29,8 @@ pub(crate) struct Lit {
     /// Amounts of direct light and of light from the sky.
     pub(crate) direct: f32,
     pub(crate) sky: f32,
+    /// Strength of the texture, 0..=1.
+    pub(crate) rough: f32,
 }
 
 /// Inputs of the lit ground, besides the ground itself.
@@ -43,9 +45,9 @@ pub(crate) struct LitKey {
 /// The two pictures of a ground, see the module.
 #[derive(Debug)]
 pub(crate) struct LitGround {
-    /// Square roots of the lit colour of the level and of the next one, each with a spare byte.
+    /// Square roots of the lit colour of the level and the strength of its texture, and of the next level with a spare byte.
     colors: Tiles,
-    /// Square roots of the colour without light, direct light, light from the sky.
+    /// Square roots of the colour without light, direct light, light from the sky, strength of the texture.
     parts: Tiles,
 }
 
@@ -113,12 +115,12 @@ impl LitGround {
         out
     }
 
-    /// Square roots of the lit colour at a point.
+    /// Square roots of the lit colour at a point, and the strength of the texture there.
     /// * `lod`: level of averages, 256 steps to a level.
-    pub(crate) fn color(&self, at: [i32; 2], lod: u32, inputs: &LightingInputs<'_>) -> [f32; 3] {
+    pub(crate) fn color(&self, at: [i32; 2], lod: u32, inputs: &LightingInputs<'_>) -> ([f32; 3], f32) {
         let places = [0, 1].map(|axis| [at[axis]; LANES]);
         let colors = self.colors_of(&places, &[lod; LANES], 1, inputs);
-        colors.between(0, (lod & 255) as f32 / 256.0)
+        (colors.between(0, (lod & 255) as f32 / 256.0), colors.rough(0))
     }
 
     /// Colour and light at a point, see [`LitGround::color`].
@@ -188,9 +190,15 @@ impl Colors {
         let (even, odd) = ([self.fine[0][i], self.coarse[0][i]], [self.fine[1][i], self.coarse[1][i]]);
         [
             between(even[0] & 0xffff, even[1] & 0xffff, share),
-            between(odd[0], odd[1], share),
+            between(odd[0] & 0xffff, odd[1] & 0xffff, share),
             between(even[0] >> 16, even[1] >> 16, share),
         ]
+    }
+
+    /// Strength of the texture at point `i`, 0..=1.
+    #[inline(always)]
+    pub(crate) fn rough(&self, i: usize) -> f32 {
+        (self.fine[1][i] >> 16) as i32 as f32 * (1.0 / (256.0 * 255.0))
     }
 }
 
@@ -244,11 +252,11 @@ impl Kernel for Parts<'_> {
     fn run(self) -> Box<Tile> {
         let mut out = Vec::with_capacity(tiles::NODES);
         for nodes in self.0.nodes() {
-            let ([r, g, b], direct, sky) = (&nodes.root, &nodes.direct, &nodes.sky);
+            let ([r, g, b], direct, sky, rough) = (&nodes.root, &nodes.direct, &nodes.sky, &nodes.rough);
             let (mut low, mut high) = ([0; LANES], [0; LANES]);
             for i in 0..LANES {
                 low[i] = word([r[i], g[i], b[i], direct[i] * (1.0 / MOST_DIRECT)]);
-                high[i] = word([sky[i] * (1.0 / MOST_SKY), 0.0, 0.0, 0.0]);
+                high[i] = word([sky[i] * (1.0 / MOST_SKY), rough[i], 0.0, 0.0]);
             }
             push(&mut out, &low, &high);
         }
@@ -273,9 +281,9 @@ impl Kernel for Writing<'_> {
         let next = self.next.map(CoarseColors::finer);
         for (n, nodes) in self.patch.nodes().iter().enumerate() {
             let here = nodes.lit_roots(self.light);
-            let low = Self::words(&here);
+            let low = Self::words(&here, &nodes.rough);
             let high = match &next {
-                Some(next) => next.get(n).map_or([0; LANES], |roots| Self::words(&roots)),
+                Some(next) => next.get(n).map_or([0; LANES], |roots| Self::words(&roots, &[0.0; LANES])),
                 None => low,
             };
             push(&mut out, &low, &high);
@@ -286,11 +294,11 @@ impl Kernel for Writing<'_> {
 
 impl Writing<'_> {
     #[inline(always)]
-    fn words([r, g, b]: &[Lanes; 3]) -> [u32; LANES] {
+    fn words([r, g, b]: &[Lanes; 3], rough: &Lanes) -> [u32; LANES] {
         let mut out = [0; LANES];
         for i in 0..LANES {
             let [r, g, b] = [r[i] * (1.0 / BRIGHTEST), g[i] * (1.0 / BRIGHTEST), b[i] * (1.0 / BRIGHTEST)];
-            out[i] = word([r, g, b, 0.0]);
+            out[i] = word([r, g, b, rough[i]]);
         }
         out
     }
@@ -300,8 +308,9 @@ impl Lit {
     /// Converts a weighted sum of nodes, 256 times the stored values.
     fn of(sum: [u16; 8]) -> Self {
         const ONE: f32 = 256.0 * 255.0;
-        let [r, g, b, direct, sky, ..] = sum.map(f32::from);
-        Self { root: [r / ONE, g / ONE, b / ONE], direct: direct * (MOST_DIRECT / ONE), sky: sky * (MOST_SKY / ONE) }
+        let [r, g, b, direct, sky, rough, ..] = sum.map(f32::from);
+        let root = [r / ONE, g / ONE, b / ONE];
+        Self { root, direct: direct * (MOST_DIRECT / ONE), sky: sky * (MOST_SKY / ONE), rough: rough / ONE }
     }
 
     /// Linear colour of the ground without light.
@@ -380,7 +389,7 @@ mod tests {
                         let want = m.tint.color(shape.z, steep) * light;
                         let apart = parts.albedo() * (m.light.warm * parts.direct + m.light.cool * parts.sky);
                         let steps = |c: Rgb| c.max(Rgb::ZERO).to_array().map(|v| 255.0 * v.sqrt());
-                        for has in [apart, linear(ground.color(at, 0, m))] {
+                        for has in [apart, linear(ground.color(at, 0, m).0)] {
                             for (a, b) in steps(want).into_iter().zip(steps(has)) {
                                 (worst, sum, n) = (worst.max((a - b).abs()), sum + (a - b).abs(), n + 1.0);
                             }
@@ -438,7 +447,7 @@ mod tests {
                 assert_eq!(ground.color(at, lod, m), color, "{at:?}");
             }
             for at in [[i32::MAX; 2], [-5 * CELL, 0], [0, 900 * CELL], [i32::MIN; 2]] {
-                assert_eq!(ground.color(at, 0, m), [0.0; 3], "off the ground: {at:?}");
+                assert_eq!(ground.color(at, 0, m).0, [0.0; 3], "off the ground: {at:?}");
             }
         });
     }
@@ -456,11 +465,11 @@ mod tests {
             };
             for i in 0..side * side {
                 let at = [(c + i % side) * CELL, (r + i / side) * CELL];
-                let now = values(ground.sample(at, 0, m), linear(ground.color(at, 0, m)));
+                let now = values(ground.sample(at, 0, m), linear(ground.color(at, 0, m).0));
                 mean.iter_mut().zip(now).for_each(|(s, v)| *s += v / (side * side) as f32);
             }
             let at = [c * CELL + (side - 1) * CELL / 2, r * CELL + (side - 1) * CELL / 2];
-            let got = values(ground.sample(at, 5 << 8, m), linear(ground.color(at, 5 << 8, m)));
+            let got = values(ground.sample(at, 5 << 8, m), linear(ground.color(at, 5 << 8, m).0));
             assert!(mean.iter().zip(got).all(|(a, b)| (a - b).abs() < 0.1), "{mean:?} {got:?}");
         });
     }
@@ -473,7 +482,7 @@ mod tests {
             for i in 0..20_000i32 {
                 let at = [i * 7919 % (149 * CELL), i * 104_729 % (130 * CELL)];
                 for k in 1..4 {
-                    let steps = |lod: u32| linear(ground.color(at, lod, m)).to_array().map(|v| 255.0 * v.sqrt());
+                    let steps = |lod: u32| linear(ground.color(at, lod, m).0).to_array().map(|v| 255.0 * v.sqrt());
                     for (a, b) in steps((k << 8) - 1).into_iter().zip(steps(k << 8)) {
                         (worst, sum, n) = (worst.max((a - b).abs()), sum + (a - b).abs(), n + 1.0);
                     }

@@ -1,6 +1,7 @@
 //! Hypsometric tints. The built-in ramps are ours: muted, lighter the higher for every kind of colour vision, so that they
 //! also read without colour.
 
+use crate::shade::ground::climate_tint::{self, Stop};
 use crate::simd::nearest;
 use belvedere_composite::color::{Rgb, linear};
 use belvedere_scene::{Palette, PaletteName, Ramp};
@@ -13,7 +14,7 @@ const GREY: [u8; 3] = [205, 205, 202];
 /// Tint by height, and the colours that steepness and height add.
 #[derive(Debug, Clone)]
 pub(crate) struct Tint {
-    /// Colours and their changes to the next; the last one is repeated.
+    /// Colours and the strength of the texture of the ground; the last one is repeated.
     ramp: Box<[[f32; 4]; STEPS + 1]>,
     bottom_m: f32,
     per_m: f32,
@@ -23,6 +24,12 @@ pub(crate) struct Tint {
     snow: Rgb,
     /// Heights at which snow begins and at which it covers gentle slopes, metres.
     snow_m: Step,
+    snow_slope: Step,
+    /// Height that a slope away from the sun adds for snow, metres for a tangent of 1 to the north.
+    north_m: f32,
+    /// Strengths of the texture of rock and snow.
+    rock_rough: f32,
+    snow_rough: f32,
 }
 
 type Stops = &'static [(f32, [u8; 3])];
@@ -30,7 +37,7 @@ type Stops = &'static [(f32, [u8; 3])];
 /// A step that no height reaches; finite, since a step between infinities is NaN.
 const NEVER: [f32; 2] = [1e30, 2e30];
 /// Tangents of the slopes at which snow begins to slide off and has gone.
-const SNOW_SLOPE: Step = Step::new([0.7, 1.3]);
+const SNOW_SLOPE: [f32; 2] = [0.7, 1.3];
 
 const ALPINE: Stops = &[
     (0.0, [101, 138, 104]),
@@ -70,47 +77,124 @@ const CLEAR: Stops = &[
 /// Not white, since slopes in the light are brighter than this and must stay below white.
 const SNOW: [u8; 3] = [229, 233, 238];
 const PLAIN: Stops = &[(0.0, GREY), (1.0, GREY)];
+const NIGHT: Stops = &[(0.0, [38, 48, 72]), (0.5, [66, 80, 112]), (1.0, [118, 134, 168])];
+/// Heights over the sea, metres.
+const ATLAS: Stops = &[
+    (0.0, [104, 148, 112]),
+    (200.0, [130, 166, 118]),
+    (500.0, [164, 186, 128]),
+    (1000.0, [198, 198, 138]),
+    (2000.0, [212, 200, 148]),
+    (3500.0, [222, 208, 172]),
+    (5000.0, [234, 226, 208]),
+    (7000.0, [244, 243, 242]),
+];
 
 impl Tint {
     /// * `z_range_m`: heights that the ramp spans.
     pub(crate) fn new(palette: &Palette, z_range_m: [f64; 2]) -> Self {
         let [bottom, top] = z_range_m.map(|z| z as f32);
         let span = (top - bottom).max(1e-3);
-        let palette = match palette {
+        let name = match palette {
+            Palette::Ramp(ramp) => {
+                return Self::even(from_ramp(ramp, z_range_m), GREY, z_range_m);
+            }
+            Palette::Placed(name, climate) => {
+                if let Some(look) = climate_tint::look(*name, climate, z_range_m) {
+                    return Self::of_look(&look);
+                }
+                *name
+            }
             // Ground that is high everywhere is rock and ice; other ground is green in its valleys.
-            Palette::Named(PaletteName::Auto) if top > 5000.0 => &Palette::Named(PaletteName::Glacial),
-            p => p,
+            Palette::Named(PaletteName::Auto) if top > 5000.0 => PaletteName::Glacial,
+            Palette::Named(name) => *name,
         };
         let built_in = |stops: Stops| (0..STEPS).map(|i| ramp_at(stops, i as f32 / (STEPS - 1) as f32)).collect();
-        let (ramp, rock, rock_slope, snow_m): (Vec<Rgb>, _, _, _) = match palette {
-            Palette::Named(PaletteName::Desert) => (built_in(DESERT), [148, 98, 72], [0.7, 1.6], NEVER),
-            Palette::Named(PaletteName::Glacial) => {
-                (built_in(GLACIAL), [112, 106, 102], [0.6, 1.15], [bottom + 0.42 * span, bottom + 0.62 * span])
+        let even = |stops: Stops| Self::even(built_in(stops), GREY, z_range_m);
+        match name {
+            PaletteName::Desert => {
+                let rock = (linear([148, 98, 72]), Step::new([0.7, 1.6]));
+                Self { rock: rock.0, rock_slope: rock.1, ..even(DESERT) }
             }
-            Palette::Named(PaletteName::Clear) => (built_in(CLEAR), GREY, NEVER, NEVER),
-            Palette::Named(PaletteName::Plain) => (built_in(PLAIN), GREY, NEVER, NEVER),
-            Palette::Ramp(ramp) => (from_ramp(ramp, z_range_m), GREY, NEVER, NEVER),
-            Palette::Named(PaletteName::Alpine | PaletteName::Auto) => {
+            PaletteName::Glacial => Self {
+                rock: linear([112, 106, 102]),
+                rock_slope: Step::new([0.6, 1.15]),
+                snow_m: Step::new([bottom + 0.42 * span, bottom + 0.62 * span]),
+                ..even(GLACIAL)
+            },
+            PaletteName::Clear => even(CLEAR),
+            PaletteName::Plain => even(PLAIN),
+            PaletteName::Night => even(NIGHT),
+            PaletteName::Atlas => {
+                let height = |i: usize| bottom + span * i as f32 / (STEPS - 1) as f32;
+                Self::even((0..STEPS).map(|i| ramp_at(ATLAS, height(i))).collect(), GREY, z_range_m)
+            }
+            // Without a place the seasons have the line of snow that the range of heights gives.
+            PaletteName::Winter | PaletteName::Autumn => Self::of_look(&climate_tint::unplaced(name, z_range_m)),
+            PaletteName::Alpine | PaletteName::Auto | PaletteName::Swiss => {
                 let line = (bottom + 0.70 * span).max(2450.0);
-                (built_in(ALPINE), [156, 149, 137], [0.66, 1.3], [line, line + 0.14 * span.max(300.0)])
+                Self {
+                    rock: linear([156, 149, 137]),
+                    rock_slope: Step::new([0.66, 1.3]),
+                    snow_m: Step::new([line, line + 0.14 * span.max(300.0)]),
+                    ..even(ALPINE)
+                }
             }
-        };
-        let per_m = (STEPS - 1) as f32 / span;
-        Self {
-            ramp: Box::new(std::array::from_fn(|i| ramp[i.min(STEPS - 1)].extend(0.0).to_array())),
-            bottom_m: bottom,
-            per_m,
-            rock: linear(rock),
-            rock_slope: Step::new(rock_slope),
-            snow: linear(SNOW),
-            snow_m: Step::new(snow_m),
         }
     }
 
-    /// Colours of ground at heights, with the tangents of its slopes, linear: the tint, rock where it is steep, snow where
-    /// it is high and not steep.
+    /// Colours by height alone, without snow or texture.
+    fn even(ramp: Vec<Rgb>, rock: [u8; 3], z_range_m: [f64; 2]) -> Self {
+        let [bottom, top] = z_range_m.map(|z| z as f32);
+        let span = (top - bottom).max(1e-3);
+        Self {
+            ramp: Box::new(std::array::from_fn(|i| ramp[i.min(STEPS - 1)].extend(0.0).to_array())),
+            bottom_m: bottom,
+            per_m: (STEPS - 1) as f32 / span,
+            rock: linear(rock),
+            rock_slope: Step::new(NEVER),
+            snow: linear(SNOW),
+            snow_m: Step::new(NEVER),
+            snow_slope: Step::new(SNOW_SLOPE),
+            north_m: 0.0,
+            rock_rough: 0.0,
+            snow_rough: 0.0,
+        }
+    }
+
+    fn of_look(look: &climate_tint::Look) -> Self {
+        let [bottom, top] = [&look.stops[0], &look.stops[look.stops.len() - 1]].map(|stop| stop.height_m);
+        let span = (top - bottom).max(1e-3);
+        let at = |i: usize| stop_at(&look.stops, bottom + span * i.min(STEPS - 1) as f32 / (STEPS - 1) as f32);
+        Self {
+            ramp: Box::new(std::array::from_fn(at)),
+            bottom_m: bottom,
+            per_m: (STEPS - 1) as f32 / span,
+            rock: linear(look.rock),
+            rock_slope: Step::new(look.rock_slope),
+            snow: linear(SNOW),
+            snow_m: Step::new(look.snow_m),
+            snow_slope: Step::new(look.snow_slope),
+            north_m: look.north_m,
+            rock_rough: 0.9,
+            snow_rough: 0.12,
+        }
+    }
+
+    /// Whether the ground has a texture.
+    pub(crate) fn is_textured(&self) -> bool {
+        self.rock_rough > 0.0
+    }
+
+    /// Colours of ground at heights, with the tangents of its slopes and those of their parts that fall to the north, linear: the tint, rock
+    /// where it is steep, snow where it is high and not steep; fourth, the strength of its texture.
     #[inline(always)]
-    pub(crate) fn colors<const N: usize>(&self, height_m: &[f32; N], steep: &[f32; N]) -> [[f32; N]; 3] {
+    pub(crate) fn colors<const N: usize>(
+        &self,
+        height_m: &[f32; N],
+        steep: &[f32; N],
+        north: &[f32; N],
+    ) -> [[f32; N]; 4] {
         // The last index of the table lies just before its end.
         const MOST: f32 = (STEPS - 1) as f32 - 0.001;
         let (mut below, mut share, mut rock, mut snow) = ([0; N], [0.0; N], [0.0; N], [0.0; N]);
@@ -122,7 +206,9 @@ impl Tint {
             below[i] = nearest(t - 0.5);
             share[i] = t - below[i] as f32;
             rock[i] = 0.85 * self.rock_slope.at(steep[i]);
-            snow[i] = self.snow_m.at(height_m[i]) * (1.0 - SNOW_SLOPE.at(steep[i]));
+            let shaded = if north[i] > -1.0 { north[i] } else { -1.0 };
+            let shaded = if shaded < 1.0 { shaded } else { 1.0 };
+            snow[i] = self.snow_m.at(height_m[i] + self.north_m * shaded) * (1.0 - self.snow_slope.at(steep[i]));
         }
         let mut tint = [[0.0f32; 4]; N];
         for i in 0..N {
@@ -130,8 +216,9 @@ impl Tint {
             let (a, b) = (self.ramp[k], self.ramp[k + 1]);
             tint[i] = std::array::from_fn(|c| a[c] + share[i] * (b[c] - a[c]));
         }
-        let (stone, white) = (self.rock.to_array(), self.snow.to_array());
-        let mut out = [[0.0; N]; 3];
+        let (stone, white) =
+            (self.rock.extend(self.rock_rough).to_array(), self.snow.extend(self.snow_rough).to_array());
+        let mut out = [[0.0; N]; 4];
         for (k, out) in out.iter_mut().enumerate() {
             for i in 0..N {
                 let bare = tint[i][k] + rock[i] * (stone[k] - tint[i][k]);
@@ -144,7 +231,8 @@ impl Tint {
     /// The colour of one point, see [`Tint::colors`].
     #[cfg(test)]
     pub(crate) fn color(&self, height_m: f32, steep: f32) -> Rgb {
-        Rgb::from_array(self.colors(&[height_m], &[steep]).map(|[v]| v))
+        let [[r], [g], [b], _] = self.colors(&[height_m], &[steep], &[0.0]);
+        Rgb::new(r, g, b)
     }
 }
 
@@ -173,6 +261,15 @@ fn ramp_at(stops: Stops, t: f32) -> Rgb {
     let i = stops.partition_point(|s| s.0 <= t).clamp(1, stops.len() - 1);
     let ((t0, a), (t1, b)) = (stops[i - 1], stops[i]);
     linear(a).lerp(linear(b), ((t - t0) / (t1 - t0)).clamp(0.0, 1.0))
+}
+
+/// Colour and strength of the texture at a height.
+fn stop_at(stops: &[Stop], height_m: f32) -> [f32; 4] {
+    let i = stops.partition_point(|s| s.height_m <= height_m).clamp(1, stops.len() - 1);
+    let (a, b) = (&stops[i - 1], &stops[i]);
+    let t = ((height_m - a.height_m) / (b.height_m - a.height_m).max(1e-3)).clamp(0.0, 1.0);
+    let color = linear(a.color).lerp(linear(b.color), t);
+    color.extend(a.rough + t * (b.rough - a.rough)).to_array()
 }
 
 /// The table of a ramp with colours of its own.
@@ -232,6 +329,10 @@ mod tests {
     #[test]
     fn every_palette_tells_snow_from_ground_even_where_there_is_none() {
         for palette in PaletteName::ALL.map(|(_, name)| Palette::Named(name)) {
+            // Winters have snow down to the valleys.
+            if palette == PaletteName::Winter.into() {
+                continue;
+            }
             for range in [[0.0, 4000.0], [12.0, 12.0]] {
                 let tint = Tint::new(&palette, range);
                 let snow = tint.snow_m.at(range[0] as f32);
@@ -258,7 +359,7 @@ mod tests {
                 for z in [range[0], 0.5 * (range[0] + range[1]), range[1], -1e9, 1e9] {
                     for steep in [0.0, 0.9, 50.0] {
                         let c = tint.color(z as f32, steep);
-                        assert!(c.min_element() > 0.02 && c.max_element() <= 1.0, "{palette:?} {range:?} at {z}: {c}");
+                        assert!(c.min_element() > 0.01 && c.max_element() <= 1.0, "{palette:?} {range:?} at {z}: {c}");
                     }
                 }
             }

@@ -37,6 +37,8 @@ pub(crate) struct LitNodes {
     /// Amounts of direct light and of light from the sky.
     pub(crate) direct: Lanes,
     pub(crate) sky: Lanes,
+    /// Strength of the texture, 0..=1.
+    pub(crate) rough: Lanes,
 }
 
 /// Inputs of the light on nodes, plane by plane, padded to whole lanes.
@@ -233,11 +235,16 @@ fn light_up(
         (normal[0][i], normal[1][i], normal[2][i]) = (a * scale, b * scale, scale);
     }
     let [direct, sky] = m.light.parts_of(&normal, &open, sun);
-    let mut root = m.tint.colors(map_z, &steep);
+    let mut north = NOTHING;
+    for i in 0..LANES {
+        north[i] = -map_y[i];
+    }
+    let [red, green, blue, rough] = m.tint.colors(map_z, &steep, &north);
+    let mut root = [red, green, blue];
     for plane in &mut root {
         for v in plane {
             *v = v.sqrt();
         }
     }
-    LitNodes { root, direct, sky }
+    LitNodes { root, direct, sky, rough }
 }

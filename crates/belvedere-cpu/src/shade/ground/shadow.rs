@@ -261,7 +261,12 @@ mod tests {
         for (azimuth, altitude) in
             [(315f64, 20f64), (10.0, 12.0), (93.0, 16.0), (200.0, 25.0), (260.0, 8.0), (45.0, 30.0)]
         {
-            let light = Light { azimuth: azimuth.to_radians(), altitude: altitude.to_radians(), shadows: true };
+            let light = Light {
+                azimuth: azimuth.to_radians(),
+                altitude: altitude.to_radians(),
+                shadows: true,
+                ..Light::default()
+            };
             let shadows = Shadows::new(&surface, &means, &light);
             let lit = &shadows.levels[0].2;
             for i in (0..N * N).step_by(7) {
@@ -286,7 +291,8 @@ mod tests {
         // A wall of 100 m in column 20, sun in the west at 45 degrees, cells of 10 m.
         let (cols, rows) = (60, 9);
         let heights: Vec<f32> = (0..cols * rows).map(|i| if i % cols == 20 { 100.0 } else { 0.0 }).collect();
-        let light = Light { azimuth: 270f64.to_radians(), altitude: 45f64.to_radians(), shadows: true };
+        let light =
+            Light { azimuth: 270f64.to_radians(), altitude: 45f64.to_radians(), shadows: true, ..Light::default() };
         let lit = sweep([cols, rows], DVec2::splat(10.0), &light, &|i| heights[i]);
         for c in 0..cols {
             let want = if c > 20 && c < 30 { 0 } else { 255 };
@@ -305,7 +311,8 @@ mod tests {
     #[test]
     fn voids_throw_no_shadow_and_the_border_softens_with_distance() {
         let (cols, rows) = (400, 5);
-        let light = Light { azimuth: 270f64.to_radians(), altitude: 10f64.to_radians(), shadows: true };
+        let light =
+            Light { azimuth: 270f64.to_radians(), altitude: 10f64.to_radians(), shadows: true, ..Light::default() };
         let void: Vec<f32> = (0..cols * rows).map(|i| if i % cols == 20 { f32::NEG_INFINITY } else { 0.0 }).collect();
         assert!(sweep([cols, rows], DVec2::splat(10.0), &light, &|i| void[i]).iter().all(|&l| l == 255));
         let soft = |wall: f32| {

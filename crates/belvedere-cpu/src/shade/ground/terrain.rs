@@ -3,6 +3,7 @@
 use crate::cache::GroundCache;
 use crate::shade::footprint::{Footprint, LONGEST};
 use crate::shade::ground::displaced::{self, DisplacedLight};
+use crate::shade::ground::grain::grain;
 use crate::shade::ground::lit::{Lit, LitGround, LitKey};
 use crate::shade::ground::palette::Tint;
 use crate::shade::ground::patch::{GroundShape, LightingInputs};
@@ -35,6 +36,8 @@ pub(crate) struct TerrainShade<'a> {
     map: Option<(Surface<'a>, Arc<MipPyramid>)>,
     shadows: Option<Arc<Shadows>>,
     tint: Tint,
+    /// Direction of the light on the map, columns and rows.
+    to_light: [f32; 2],
     exaggeration: f32,
     drapes: Arc<Vec<DrapeMap>>,
 }
@@ -113,6 +116,7 @@ impl<'a> TerrainShade<'a> {
             map,
             shadows,
             tint: Tint::new(&layer.palette, hf.z_range()),
+            to_light: [light.azimuth.sin() as f32, -light.azimuth.cos() as f32],
             exaggeration: layer.exaggeration as f32,
             drapes: drapes(layer, cache),
         }
@@ -129,6 +133,27 @@ impl<'a> TerrainShade<'a> {
             light: &self.light,
             exaggeration: self.exaggeration,
         }
+    }
+
+    /// Texture of the ground at points, see [`grain`]; `None` where it has none.
+    #[inline(always)]
+    pub(crate) fn grain<const N: usize>(
+        &self,
+        node: [&[i32; N]; 2],
+        at: [&[f32; N]; 2],
+        px: &[f32; N],
+    ) -> Option<[f32; N]> {
+        self.tint.is_textured().then(|| grain(node, at, px, self.to_light))
+    }
+
+    /// The texture at one point.
+    /// * `g`: column and row;
+    /// * `px`: longest extent of a pixel on the ground, cells.
+    fn grain_at(&self, g: DVec2, px: f64) -> f32 {
+        let node = g.floor();
+        let (from, [c, r]) = (g - node, [node.x as i32, node.y as i32]);
+        let at = [from.x as f32, from.y as f32];
+        self.grain([&[c], &[r]], [&[at[0]], &[at[1]]], &[px as f32]).map_or(0.0, |[v]| v)
     }
 
     /// Whether a drape, an area or a cast shadow may lie over the ground.
@@ -156,7 +181,9 @@ impl<'a> TerrainShade<'a> {
         let print = || Footprint::new(axes, shader.screen.footprint(depth));
         let ground = || self.lit.sample(at, lod, &inputs);
         self.covered(shader, g, side, print, ground, pixel.as_vec2().to_array()).unwrap_or_else(|| {
-            let root = Rgb::from_array(self.lit.color(at, lod, &inputs));
+            let (root, rough) = self.lit.color(at, lod, &inputs);
+            let longest = axes[0].length().max(axes[1].length()) / self.pitch;
+            let root = Rgb::from_array(root) * (1.0 + rough * self.grain_at(g, longest));
             (root * root, None)
         })
     }
@@ -218,7 +245,8 @@ impl<'a> TerrainShade<'a> {
             return None;
         }
         let lit = ground();
-        let mut albedo = lit.albedo();
+        let textured = 1.0 + lit.rough * self.grain_at(g, print.length() / self.pitch);
+        let mut albedo = lit.albedo() * (textured * textured);
         let mut draped = 0.0f32;
         for (color, alpha) in drapes {
             albedo = albedo.lerp(color, alpha);

@@ -6,7 +6,7 @@ use crate::screen::SUB;
 use crate::simd::nearest;
 use belvedere_composite::color::{PIXELS, Rgb, linear, smoothstep};
 use belvedere_core::{Aabb, DVec3, Pinhole};
-use belvedere_scene::{Scene, Unit};
+use belvedere_scene::{Haze, Light, Scene, Sky as Choice, Unit};
 
 /// Thresholds of ordered dithering, 8 x 8 (Bayer 1973), each 0..64 once.
 const BAYER: [[u8; 8]; 8] = [
@@ -51,9 +51,19 @@ const THICKEST: f32 = 0.54;
 /// Downward components of the direction of view between which haze fades out: a map seen from above has none.
 const FROM_ABOVE: [f32; 2] = [0.77, 0.985];
 
+/// Visible depth of small models, scene units: none has haze up to the first, all have theirs from the second on.
+const SMALL: [f32; 2] = [100.0, 500.0];
+
 /// The same in a studio, and its backdrop: above, in the middle, below.
 const THICKEST_IN_STUDIO: f32 = 0.32;
 const STUDIO: [[u8; 3]; 3] = [[252, 252, 251], [243, 245, 246], [222, 228, 234]];
+
+/// Skies after sunset and at night, and their haze; the sun stands lower than this by night.
+const DUSK: [[u8; 3]; 4] = [[86, 104, 150], [150, 146, 172], [243, 208, 170], [206, 184, 170]];
+const DUSK_HAZE: [u8; 3] = [214, 194, 184];
+const NIGHT: [[u8; 3]; 4] = [[14, 20, 40], [24, 34, 62], [62, 76, 108], [38, 47, 70]];
+const NIGHT_HAZE: [u8; 3] = [58, 72, 104];
+const NIGHT_DEG: f64 = 6.0;
 
 /// Steps of the table of sky colours per unit of the sine of the elevation.
 const STEPS: f32 = 512.0;
@@ -78,6 +88,10 @@ pub(crate) struct Sky {
     haze_per: f32,
     /// Largest share of haze in a colour: 0 in parallel projection, which has no eye point, and 0 straight down.
     thickest: f32,
+    /// Haze by distance instead: optical depth per scene unit; 0 = not.
+    per_depth: f32,
+    /// 1 with dithering, 0 for one plain colour.
+    dither: f32,
 }
 
 impl Sky {
@@ -108,15 +122,49 @@ impl Sky {
             even: off <= f64::from(EVEN_OFF),
             haze_from: near + 0.22 * span,
             haze_per: 1.0 / ((1.15 - 0.22) * span),
-            thickest: if pinhole.is_orthographic() { 0.0 } else { THICKEST * (1.0 - from_above) },
+            thickest: if pinhole.is_orthographic() {
+                0.0
+            } else {
+                THICKEST * (1.0 - from_above) * smoothstep(SMALL[0], SMALL[1], span)
+            },
+            per_depth: 0.0,
+            dither: 1.0,
         }
     }
 
     /// Sky and haze over a scene; a light studio behind molecules and other scenes without landscape.
-    pub(crate) fn of(scene: &Scene, pinhole: &Pinhole) -> Self {
+    pub(crate) fn of(scene: &Scene, light: &Light, pinhole: &Pinhole) -> Self {
+        let sky = Self::outside(scene, light, pinhole);
+        match light.haze {
+            Haze::Auto => sky,
+            Haze::None => Self { thickest: 0.0, ..sky },
+            // Koschmieder 1924: the contrast of a black thing falls to 2 % at the visibility.
+            Haze::Visibility(length) => Self { thickest: 1.0, per_depth: (3.912 / length) as f32, ..sky },
+        }
+    }
+
+    fn outside(scene: &Scene, light: &Light, pinhole: &Pinhole) -> Self {
         let sky = Self::new(&scene.bounds(), pinhole);
-        if scene.unit == Unit::Metre || scene.terrain().is_some() {
-            return sky;
+        let is_landscape = scene.unit == Unit::Metre || scene.terrain().is_some();
+        let shown = match light.sky {
+            Choice::Auto if is_landscape => match light.altitude.to_degrees() {
+                altitude if altitude < -NIGHT_DEG => Choice::Night,
+                altitude if altitude < NIGHT_DEG => Choice::Dusk,
+                _ => Choice::Day,
+            },
+            shown => shown,
+        };
+        match shown {
+            Choice::Auto => {}
+            Choice::Day => return sky,
+            Choice::Dusk => return Self { steps: steps(|sine| of_air(&DUSK, sine)), haze: linear(DUSK_HAZE), ..sky },
+            Choice::Night => {
+                return Self { steps: steps(|sine| of_air(&NIGHT, sine)), haze: linear(NIGHT_HAZE), ..sky };
+            }
+            Choice::Plain(color) => {
+                let plain = linear([color.r, color.g, color.b]);
+                return Self { steps: steps(|_| plain), dither: 0.0, ..sky };
+            }
         }
         // The gradient of a studio is fixed to the picture, for every direction of the camera.
         let thickest = if pinhole.is_orthographic() { 0.0 } else { THICKEST_IN_STUDIO };
@@ -135,7 +183,7 @@ impl Sky {
     pub(crate) fn at(&self, pixel: [f32; 2]) -> Rgb {
         let [x, y] = pixel.map(|v| v.max(0.0) as usize % 8);
         // Square roots of linear light are nearly even in 8-bit steps.
-        let root = self.root(self.sine(pixel)) + Rgb::splat(THRESHOLDS[8 * y + x]);
+        let root = self.root(self.sine(pixel)) + Rgb::splat(self.dither * THRESHOLDS[8 * y + x]);
         root * root
     }
 
@@ -152,7 +200,7 @@ impl Sky {
                 _ => None,
             };
             match line {
-                Some(line) => line.paint(&thresholds(x[0], y[0]), out),
+                Some(line) => line.paint(&self.thresholds(x[0], y[0]), out),
                 None => self.paint_each(x, y, out),
             }
         }
@@ -227,7 +275,7 @@ impl Sky {
             share[i] = at - below[i] as f32;
         }
         for i in 0..LANES {
-            threshold[i] = THRESHOLDS[((py[i] >> 5) & 56 | (px[i] >> 8) & 7) as usize];
+            threshold[i] = self.dither * THRESHOLDS[((py[i] >> 5) & 56 | (px[i] >> 8) & 7) as usize];
         }
         let mut root = [[0.0f32; 4]; LANES];
         for i in 0..LANES {
@@ -261,6 +309,11 @@ impl Sky {
     /// Share of haze in a colour at `depth`: none in the nearer part of the scene, then slowly more.
     #[inline(always)]
     pub(crate) fn haze_at(&self, depth: f32) -> f32 {
+        if self.per_depth > 0.0 {
+            let t = if depth > 0.0 { self.per_depth * depth } else { 0.0 };
+            // 1 - exp(-t) within 0.3 %.
+            return 1.0 - 1.0 / (1.0 + t * (1.0 + t * (0.48 + t * 0.235)));
+        }
         let t = (depth - self.haze_from) * self.haze_per;
         let t = if t > 0.0 { t } else { 0.0 };
         let t = if t < 1.0 { t } else { 1.0 };
@@ -330,16 +383,18 @@ impl Line {
     }
 }
 
-/// Offsets that dithering adds to a row of pixels.
-/// * `x`, `y`: first sample, fixed-point steps.
-#[inline(always)]
-pub(crate) fn thresholds(x: i32, y: i32) -> [f32; LANES] {
-    let row = &THRESHOLDS[((y >> 5) & 56) as usize..][..8];
-    let mut out = [0.0; LANES];
-    for i in 0..LANES {
-        out[i] = row[((x >> 8) as usize + i) & 7];
+impl Sky {
+    /// Offsets that dithering adds to a row of pixels.
+    /// * `x`, `y`: first sample, fixed-point steps.
+    #[inline(always)]
+    pub(crate) fn thresholds(&self, x: i32, y: i32) -> [f32; LANES] {
+        let row = &THRESHOLDS[((y >> 5) & 56) as usize..][..8];
+        let mut out = [0.0; LANES];
+        for i in 0..LANES {
+            out[i] = self.dither * row[((x >> 8) as usize + i) & 7];
+        }
+        out
     }
-    out
 }
 
 /// Whether samples are those of neighbouring pixels of a row.
@@ -352,7 +407,7 @@ fn is_row(x: &[i32; LANES], y: &[i32; LANES]) -> bool {
     off == 0
 }
 
-fn steps(towards: fn(f32) -> Rgb) -> Box<[[[f32; 4]; 2]; 2 * STEPS as usize]> {
+fn steps(towards: impl Fn(f32) -> Rgb) -> Box<[[[f32; 4]; 2]; 2 * STEPS as usize]> {
     let at = |i: usize| roots(towards(i as f32 / STEPS - 1.0));
     let (mut next, mut before, mut turned) = (at(0), Rgb::ZERO, 0.0);
     Box::new(std::array::from_fn(|i| {
@@ -371,8 +426,12 @@ fn roots(c: Rgb) -> Rgb {
 
 /// The clear sky at an elevation, given its sine, linear.
 fn towards(sine: f32) -> Rgb {
-    let [zenith, middle, horizon, below] =
-        [[88, 136, 188], [140, 181, 216], [224, 232, 236], [203, 213, 220]].map(linear);
+    of_air(&[[88, 136, 188], [140, 181, 216], [224, 232, 236], [203, 213, 220]], sine)
+}
+
+/// The sky of air with these colours at the zenith, in the middle, at the horizon and below it.
+fn of_air(colors: &[[u8; 3]; 4], sine: f32) -> Rgb {
+    let [zenith, middle, horizon, below] = colors.map(linear);
     if sine < 0.0 {
         return horizon.lerp(below, smoothstep(0.0, 0.25, -sine));
     }
@@ -395,6 +454,35 @@ fn studio(sine: f32) -> Rgb {
 mod tests {
     use super::*;
     use belvedere_core::{DVec2, Projection};
+    use belvedere_scene::Color;
+
+    #[test]
+    fn haze_and_sky_are_as_the_light_says() {
+        let scene = Scene::default();
+        let screen = Projection::Perspective { fov_y: 1.0 };
+        let p = Pinhole::look_at(DVec3::ZERO, DVec3::X, DVec3::Z, screen, [64, 48], 1.0, None).unwrap();
+        let seen = |light: Light| Sky::of(&scene, &light, &p);
+        let clear = seen(Light { haze: Haze::None, ..Light::default() });
+        assert_eq!(clear.haze_at(1e9), 0.0);
+        let air = seen(Light { haze: Haze::Visibility(4000.0), ..Light::default() });
+        for depth in [0.0f32, 100.0, 1000.0, 4000.0, 1e6] {
+            let want = 1.0 - (-3.912 * depth / 4000.0).exp();
+            assert!((air.haze_at(depth) - want).abs() < 4e-3, "{depth}: {} for {want}", air.haze_at(depth));
+        }
+        // A plain sky is one colour in every pixel, to the byte.
+        for color in [Color::rgb(255, 255, 255), Color::rgb(0, 0, 0), Color::rgb(17, 130, 201)] {
+            let sky = seen(Light { sky: Choice::Plain(color), ..Light::default() });
+            let mut row = [[7; 3]; 64];
+            for y in 0..48 {
+                sky.store([SUB / 2, y * SUB + SUB / 2], &mut row);
+                assert!(row.iter().all(|pixel| *pixel == [color.r, color.g, color.b]), "{color:?}: {:?}", row[0]);
+            }
+        }
+        let light = |degrees: f64| Light { altitude: degrees.to_radians(), ..Light::default() };
+        let up = |sky: &Sky| sky.towards(0.9).element_sum();
+        let [day, dusk, night] = [30.0, 2.0, -20.0].map(|height| up(&seen(light(height))));
+        assert!(day > dusk && dusk > 2.0 * night, "{day} {dusk} {night}");
+    }
 
     #[test]
     fn pixels_see_the_sky_that_their_rays_point_at() {

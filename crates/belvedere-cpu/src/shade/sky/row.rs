@@ -2,7 +2,7 @@
 
 use crate::screen::SUB;
 use crate::shade::painted::interleave;
-use crate::shade::sky::{LANES, Sky, thresholds};
+use crate::shade::sky::{LANES, Sky};
 use crate::simd::{self, Kernel};
 use belvedere_composite::color::{Encoder, PIXELS};
 
@@ -27,7 +27,7 @@ impl Kernel for Store<'_> {
     fn run(self) {
         let Self { sky, at: [x, y], out } = self;
         let (encoder, rows) = (Encoder::default(), [y; LANES]);
-        let (mut planes, threshold) = ([[0; PIXELS]; 3], thresholds(x, y));
+        let (mut planes, threshold) = ([[0; PIXELS]; 3], sky.thresholds(x, y));
         for (i, out) in out.chunks_mut(PIXELS).enumerate() {
             let points = sky.points(x + (i * PIXELS) as i32 * SUB, y);
             for j in 0..out.len().div_ceil(LANES) {
