@@ -310,9 +310,11 @@ impl Sky {
     #[inline(always)]
     pub(crate) fn haze_at(&self, depth: f32) -> f32 {
         if self.per_depth > 0.0 {
-            let t = if depth > 0.0 { self.per_depth * depth } else { 0.0 };
-            // 1 - exp(-t) within 0.3 %.
-            return 1.0 - 1.0 / (1.0 + t * (1.0 + t * (0.48 + t * 0.235)));
+            let t = if depth > 0.0 { 0.25 * self.per_depth * depth } else { 0.0 };
+            // exp(-4 t) within 0.05 %, without a branch.
+            let quarter = 1.0 / (1.0 + t * (1.0 + t * (0.48 + t * 0.235)));
+            let half = quarter * quarter;
+            return 1.0 - half * half;
         }
         let t = (depth - self.haze_from) * self.haze_per;
         let t = if t > 0.0 { t } else { 0.0 };
