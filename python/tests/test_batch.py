@@ -5,8 +5,11 @@ from __future__ import annotations
 import json
 import multiprocessing
 import os
+import shutil
 import signal
+import subprocess
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -225,18 +228,70 @@ def png_pixels(path: Path) -> np.ndarray:
     return pixels.astype(np.uint8)
 
 
-def test_dask(tmp_path: Path, whole: dict[str, bytes]) -> None:
+@pytest.fixture(scope="module")
+def dask() -> Any:
+    """A client of two workers."""
     distributed = pytest.importorskip("distributed", reason="SKIPPED: the adapter of Dask is not tried; distributed is not installed")
-    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, distributed.Client(cluster) as client:
-        killed: list[int] = []
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+        with distributed.Client(cluster) as client:
+            yield client
 
-        def kill(work: str, share: float) -> None:
-            if share > 0 and not killed:
-                killed.append(next(iter(cluster.workers.values())).process.pid)
-                os.kill(killed[0], signal.SIGKILL)
 
-        _, report = batch.film(
-            scene_file(tmp_path), tmp_path / "film", on=batch.Dask(client), frames_per_task=1, progress=kill, **FILM)
+def test_dask(tmp_path: Path, whole: dict[str, bytes], dask: Any) -> None:
+    killed: list[int] = []
+
+    def kill(work: str, share: float) -> None:
+        if share > 0 and not killed:
+            killed.append(next(iter(dask.cluster.workers.values())).process.pid)
+            os.kill(killed[0], signal.SIGKILL)
+
+    _, report = batch.film(
+        scene_file(tmp_path), tmp_path / "film", on=batch.Dask(dask), frames_per_task=1, progress=kill, **FILM)
     assert killed
     assert files(tmp_path / "film") == whole
     assert report.adapter == "dask"
+
+
+def test_a_cancelled_run_of_dask_goes_on(tmp_path: Path, whole: dict[str, bytes], dask: Any) -> None:
+    def interrupt(work: str, share: float) -> None:
+        if share > 0.2:
+            raise KeyboardInterrupt
+
+    scene, out = scene_file(tmp_path), tmp_path / "film"
+    with pytest.raises(KeyboardInterrupt):
+        batch.film(scene, out, on=batch.Dask(dask), frames_per_task=1, progress=interrupt, **FILM)
+    are_whole(out, whole)
+    _, report = batch.film(scene, out, on=batch.Dask(dask), frames_per_task=1, **FILM)
+    assert 2 <= report.kept <= report.tasks
+    assert files(out) == whole
+
+
+@pytest.mark.parametrize("where", ["local", "dask"])
+def test_a_full_disk_ends_the_batch_and_room_lets_it_go_on(
+    tmp_path: Path, whole: dict[str, bytes], where: str, request: pytest.FixtureRequest) -> None:
+    on = batch.Local(2, threads=1) if where == "local" else batch.Dask(request.getfixturevalue("dask"))
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    pages = sum(-(-len(data) // 4096) for data in whole.values())
+    mount = ["mount", "-t", "tmpfs", "-o", f"size={4096 * (pages * 2 // 3)}", "none", os.fspath(disk)]
+    if not shutil.which("mount") or subprocess.run(mount, capture_output=True).returncode:
+        pytest.skip("SKIPPED: a full disk is not tried; no small file system can be mounted")
+    try:
+        scene, out = scene_file(tmp_path), disk / "film"
+        with pytest.raises(belvedere.FileError, match="disk is full|No space left"):
+            batch.film(scene, out, on=on, frames_per_task=1, **FILM)
+        are_whole(out, whole)
+        subprocess.run(["mount", "-o", "remount,size=64m", os.fspath(disk)], check=True)
+        _, report = batch.film(scene, out, on=on, frames_per_task=1, **FILM)
+        assert 0 < report.kept < report.tasks
+        assert files(out) == whole
+    finally:
+        # What a worker still writes ends first.
+        subprocess.run(["umount", "-l", os.fspath(disk)], check=True)
+
+
+def are_whole(folder: Path, whole: dict[str, bytes]) -> None:
+    """Every frame that is there is that of the whole film; some are missing."""
+    found = {path.name: path.read_bytes() for path in folder.glob("frame_*.png")}
+    assert 0 < len(found) < 10
+    assert found == {name: whole[name] for name in found}

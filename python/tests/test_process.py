@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -171,3 +172,16 @@ def test_mistakes_in_scenes_are_told_by_key(tmp_path: "os.PathLike[str]") -> Non
         belvedere.Scene.open("nothing.toml")
     with pytest.raises(belvedere.InputError, match="samples"):
         belvedere.Scene.builtin("massif").render(samples=3)
+
+
+def test_pack_takes_the_application_of_the_package(tmp_path: Path) -> None:
+    """Wheels of releases hold the application for browsers; those of tests do not, and say where it belongs."""
+    web = Path(belvedere.__file__).parent / "web"
+    env = {name: value for name, value in os.environ.items() if name != "BELVEDERE_WEB_APP"}
+    done = subprocess.run(
+        [sys.executable, "-m", "belvedere", "pack", "-o", tmp_path / "site"], capture_output=True, text=True, env=env)
+    if web.is_dir():
+        assert done.returncode == 0, done.stderr
+        assert (tmp_path / "site" / "belvedere_bg.wasm").stat().st_size == (web / "belvedere_bg.wasm").stat().st_size
+    else:
+        assert done.returncode == 2 and str(web) in done.stderr, done.stderr

@@ -1,18 +1,19 @@
-//! Ctrl-C: the work ends within a second, whatever it is at, and the user is told what was written.
+//! Ctrl-C, and the signal by which schedulers and containers end a program (SIGTERM): the work ends within a second, whatever it is at, and
+//! the user is told what was written.
 //!
 //! Work that looks at the flag of cancellation ends by itself. Other work, as reading a large file, is given [`GRACE`], and then the process ends:
-//! outputs are written beside their names and renamed, so that they are whole at any moment. A second Ctrl-C ends the process at once.
+//! outputs are written beside their names and renamed, so that they are whole at any moment. A second signal ends the process at once.
 
 use crate::report;
 use belvedere::BelvedereError;
 use belvedere::io::atomic;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::time::Duration;
 
-/// Exit code of an interrupted program: 128 and the number of the signal, as of shells.
-pub(crate) const CODE: u8 = 130;
+/// Exit code of an interrupted program: 128 and the number of the signal, as of shells. Of Ctrl-C 130, of SIGTERM 143.
+static CODE: AtomicU8 = AtomicU8::new(130);
 /// Time in which the work may end by itself.
 const GRACE: Duration = Duration::from_millis(500);
 
@@ -21,25 +22,54 @@ static ENDING: AtomicBool = AtomicBool::new(false);
 /// Whether a picture is written on standard output.
 static ON_STDOUT: AtomicBool = AtomicBool::new(false);
 
-/// Sets what Ctrl-C does.
+/// Exit code of the program that was interrupted.
+pub(crate) fn code() -> u8 {
+    CODE.load(Ordering::SeqCst)
+}
+
+/// Sets what Ctrl-C and SIGTERM do.
 pub(crate) fn install(flag: Arc<AtomicBool>, verb: &'static str) {
-    // Without a handler Ctrl-C still ends the process, only less politely.
-    let _ = ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::SeqCst) {
-            // An end that waits for a slow disk is not waited for.
-            if ENDING.load(Ordering::SeqCst) {
-                std::process::exit(i32::from(CODE));
-            }
-            end(verb);
+    let of_signal = Arc::clone(&flag);
+    // Without a handler the signals still end the process, only less politely.
+    let _ = ctrlc::set_handler(move || interrupted(&of_signal, verb));
+    let _ = on_termination(move || interrupted(&flag, verb));
+}
+
+/// Calls `act` for each SIGTERM. The feature `termination` of `ctrlc` would take SIGHUP as well, which `nohup` ignores.
+#[cfg(unix)]
+fn on_termination(act: impl Fn() + Send + 'static) -> std::io::Result<()> {
+    use std::io::Read;
+    let (mut read, write) = std::os::unix::net::UnixStream::pair()?;
+    std::thread::Builder::new().spawn(move || {
+        while read.read_exact(&mut [0]).is_ok() {
+            CODE.store(143, Ordering::SeqCst);
+            act();
         }
-        let later = std::thread::Builder::new().spawn(move || {
-            std::thread::sleep(GRACE);
-            end(verb);
-        });
-        if later.is_err() {
-            end(verb);
+    })?;
+    signal_hook::low_level::pipe::register(signal_hook::consts::SIGTERM, write).map(|_| ())
+}
+
+#[cfg(not(unix))]
+fn on_termination(_: impl Fn() + Send + 'static) -> std::io::Result<()> {
+    Ok(())
+}
+
+/// The first signal cancels the work, and ends the process if the work does not; the second ends it at once.
+fn interrupted(flag: &AtomicBool, verb: &'static str) {
+    if flag.swap(true, Ordering::SeqCst) {
+        // An end that waits for a slow disk is not waited for.
+        if ENDING.load(Ordering::SeqCst) {
+            std::process::exit(i32::from(code()));
         }
+        end(verb);
+    }
+    let later = std::thread::Builder::new().spawn(move || {
+        std::thread::sleep(GRACE);
+        end(verb);
     });
+    if later.is_err() {
+        end(verb);
+    }
 }
 
 /// Lets the calling thread alone end the process: another one that wants to waits for that end.
@@ -57,7 +87,7 @@ pub(crate) fn note_stdout() {
 fn end(verb: &str) {
     claim_end();
     report::fail(&said(&atomic::abandon(), verb));
-    std::process::exit(i32::from(CODE));
+    std::process::exit(i32::from(code()));
 }
 
 /// What is told of work that ended by itself.

@@ -45,7 +45,7 @@ const STACK_BYTES: usize = 64 << 20;
 /// Words of the command line, the first the program's own name.
 static WORDS: OnceLock<Vec<OsString>> = OnceLock::new();
 
-/// Runs the program with the words of a command line, of which the first is its own name; once in a process. Returns the exit code; Ctrl-C and
+/// Runs the program with the words of a command line, of which the first is its own name; once in a process. Returns the exit code; Ctrl-C, SIGTERM and
 /// memory beyond the budget end the process.
 pub fn command_line(words: Vec<OsString>) -> u8 {
     std::panic::set_hook(Box::new(|_| {}));
@@ -94,7 +94,7 @@ fn run(cli: Cli) -> u8 {
         Err(e) if context.progress.is_cancelled() => {
             context.finish();
             report::fail(&interrupt::told(&e, verb));
-            interrupt::CODE
+            interrupt::code()
         }
         Err(e) => {
             context.finish();

@@ -33,7 +33,7 @@ pub(crate) fn view(args: &ViewArgs, context: &Context) -> anyhow::Result<Goal> {
         return Ok(Goal::Reached);
     }
     // The application has printed its reason.
-    let interrupted = context.progress.is_cancelled().then_some(i32::from(interrupt::CODE));
+    let interrupted = context.progress.is_cancelled().then(|| i32::from(interrupt::code()));
     exit(interrupted.or(status.code()).unwrap_or(2))
 }
 

@@ -86,8 +86,16 @@ class Done:
 
 
 def perform(task: Task, records: str, threads: int) -> Done:
-    """Does a task and writes its record; what workers call."""
-    folder = Path(records)
+    """Does a task and writes its record; what workers call. Errors of files are :class:`belvedere.FileError`."""
+    try:
+        return _performed(task, Path(records), threads)
+    except belvedere.Error:
+        raise
+    except OSError as error:
+        raise belvedere.FileError(f"{error.filename or records}: {error.strerror or error}") from error
+
+
+def _performed(task: Task, folder: Path, threads: int) -> Done:
     # A byte for each run that begins: what was retried, whoever retried it.
     mark = folder / f"{task.key}.begun"
     with open(mark, "ab") as file:

@@ -33,7 +33,14 @@ fn odd_files_give_a_description_or_one_line() {
 
 #[cfg(unix)]
 #[test]
-fn ctrl_c_ends_cleanly() {
+fn ctrl_c_and_the_signal_of_schedulers_end_cleanly() {
+    for (signal, code) in [("-INT", 130), ("-TERM", 143)] {
+        ends_cleanly(signal, code);
+    }
+}
+
+#[cfg(unix)]
+fn ends_cleanly(signal: &str, code: i32) {
     let place = Place::new();
     let scene = belvedere_testkit::workspace_root().join("scenes/massif.toml");
     let child = std::process::Command::new(env!("CARGO_BIN_EXE_belvedere"))
@@ -43,9 +50,9 @@ fn ctrl_c_ends_cleanly() {
         .spawn()
         .expect("the program starts");
     std::thread::sleep(Duration::from_millis(300));
-    std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
+    std::process::Command::new("kill").args([signal, &child.id().to_string()]).status().expect("kill");
     let out = child.wait_with_output().expect("it ends");
-    assert_eq!(out.status.code(), Some(130));
+    assert_eq!(out.status.code(), Some(code));
     assert_eq!(String::from_utf8_lossy(&out.stderr), "belvedere: interrupted; nothing was written\n");
     let left: Vec<_> = std::fs::read_dir(place.path(".")).expect("folder").collect();
     assert!(left.is_empty(), "{left:?}");

@@ -94,6 +94,26 @@ fn what_no_bend_reaches_is_said_with_the_best_share_that_was_found() {
 }
 
 #[test]
+fn a_scene_file_is_drawn_at_the_size_that_is_asked_for() {
+    let place = Place::new();
+    place.write("wall.nrrd", &wall());
+    place.write("s.toml", SCENE);
+    let image = |size: &[&str]| {
+        let args = ["reveal", "s.toml", "--see", "block", "-o", "o.png", "--scene", "o.toml", "--overwrite"];
+        place.ok(&[&args[..], size].concat());
+        let png = std::fs::read(place.path("o.png")).expect("a picture");
+        let drawn = [16, 20].map(|k| u32::from_be_bytes(png[k..k + 4].try_into().expect("four bytes")));
+        let written = std::fs::read_to_string(place.path("o.toml")).expect("a scene");
+        (drawn, written.replace(char::is_whitespace, ""))
+    };
+    for (size, [width, height]) in [(&[][..], [96, 54]), (&["--size", "64x48"], [64, 48])] {
+        let (drawn, written) = image(size);
+        assert_eq!(drawn, [width, height]);
+        assert!(written.contains(&format!("image=[{width},{height}")), "{written}");
+    }
+}
+
+#[test]
 fn volumes_hide_layers_and_are_layers_that_are_hidden() {
     let place = Place::new();
     place.write("wall.nrrd", &wall());

@@ -119,7 +119,8 @@ pub(super) fn open(request: &TargetRequest, options: &OpenOptions) -> Result<(Se
                 "a scene file states its transfer functions itself; leave --transfer out".into(),
             ));
         }
-        return Ok((Session::open(file, options)?, named()));
+        let options = OpenOptions { image: request.image.or(options.image), ..options.clone() };
+        return Ok((Session::open(file, &options)?, named()));
     }
     let mut options = options.clone();
     let mut map = Map { see: request.see.clone(), ..Map::default() };

@@ -10,6 +10,8 @@ fn main() -> Result<()> {
         .input_path(module)
         .out_name("belvedere")
         .typescript(false)
+        // Names of functions are 14 of 32 MB.
+        .remove_name_section(true)
         .omit_default_module_path(false)
         .web(true)?
         .generate(folder)
