@@ -16,6 +16,7 @@ from .picture import Picture, set_memory_limit
 from .revealing import Revealed, reveal
 from .scene import MISSES, Displaced, Projected, Rays, Scene
 from .terrain import Ground, disocclude
+from .viewing import View, pack, view
 
 __version__ = _version()
 
@@ -35,10 +36,13 @@ __all__ = [
     "Rays",
     "Revealed",
     "Scene",
+    "View",
     "animate",
     "disocclude",
+    "pack",
     "presets",
     "reports",
     "reveal",
     "set_memory_limit",
+    "view",
 ]

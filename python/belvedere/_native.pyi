@@ -15,6 +15,7 @@ __all__ = [
     "disocclude",
     "displace",
     "ground",
+    "pack",
     "panics",
     "pick",
     "preset_check",
@@ -135,6 +136,15 @@ def animate(
     resume: bool,
     overwrite: bool,
     part: list[int] | None,
+    ask: _Ask,
+) -> str: ...
+def pack(
+    scene: str,
+    allowed: list[str],
+    application: str,
+    remedy: str,
+    out: str,
+    overwrite: bool,
     ask: _Ask,
 ) -> str: ...
 def preset_list() -> str: ...

@@ -19,6 +19,7 @@ from .errors import InputError
 from .picture import Picture
 from .reports import Note, RevealReport, notes_of
 from .scene import Scene
+from .viewing import View
 
 if TYPE_CHECKING:
     from ._native import NativeReveal
@@ -62,6 +63,10 @@ class Revealed:
     def warnings(self) -> list[Note]:
         """Warnings of loading, searching and drawing."""
         return notes_of(self.report.raw["warnings"])
+
+    def view(self, **options: Any) -> View:
+        """The scene in the view that was found, as a page that can be moved in; options as of :func:`belvedere.view`."""
+        return self.scene.view(**options)
 
     def save(
         self,

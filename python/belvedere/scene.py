@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _native
+from . import _native, viewing
 from ._ask import Ask, Progress, asked, number
 from ._crs import Crs, crs_of
 from ._drawing import drawing
@@ -394,6 +394,10 @@ class Scene(Layers):
         data, _ = _bytes("xy", xy, 2)
         with asked() as ask:
             return np.frombuffer(_native.ground(self._opened(ask), data), np.float64)
+
+    # In a browser; see :mod:`belvedere.viewing`.
+    view = viewing.view
+    pack = viewing.pack
 
     def __repr__(self) -> str:
         name = str(self._file) if self._file is not None else self._document.get("title") or "untitled"

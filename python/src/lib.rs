@@ -5,6 +5,7 @@ mod builtin;
 mod errors;
 mod film;
 mod numbers;
+mod pack;
 mod picture;
 mod presets;
 mod request;
@@ -24,6 +25,8 @@ mod native {
     use super::film::animate;
     #[pymodule_export]
     use super::numbers::{displace, ground, pick, project, rays};
+    #[pymodule_export]
+    use super::pack::pack;
     #[pymodule_export]
     use super::picture::NativePicture;
     #[pymodule_export]
