@@ -150,7 +150,7 @@ def test_colours_are_those_of_the_plotter(plotter: pv.Plotter) -> None:
     # Light and haze are ours.
     reds = picture.rgba[picture.id == 2].astype(int)
     more = reds[:, 0] - reds[:, 1]
-    assert len(reds) > 20 and more.min() >= 0 and more.mean() > 25
+    assert len(reds) > 20 and more.min() > -10 and more.mean() > 25
 
 
 def test_actors_stand_where_the_plotter_has_them(plotter: pv.Plotter) -> None:
