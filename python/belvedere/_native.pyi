@@ -14,6 +14,8 @@ __all__ = [
     "command_line",
     "disocclude",
     "displace",
+    "drafts",
+    "generalise",
     "ground",
     "pack",
     "panics",
@@ -127,6 +129,15 @@ def rays(
 def pick(scene: NativeScene, pixels: bytes, ask: _Ask) -> str: ...
 def ground(scene: NativeScene, points: bytes) -> bytearray: ...
 def reveal(asked: str, ask: _Ask) -> NativeReveal: ...
+def drafts(asked: str, count: int, ask: _Ask) -> tuple[str, int, bytes]: ...
+def generalise(
+    city: str,
+    roads: list[str],
+    out: str,
+    margin_m: float | None,
+    overwrite: bool,
+    ask: _Ask,
+) -> str: ...
 def disocclude(asked: str, ask: _Ask) -> NativeGround: ...
 def animate(
     scene: NativeScene,
