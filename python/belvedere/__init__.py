@@ -10,12 +10,15 @@ from __future__ import annotations
 from . import presets, reports
 from ._native import version as _version
 from .camera import Camera
+from .drafting import Draft, Drafts, drafts
 from .errors import Cancelled, Error, FileError, InputError, InternalError, MemoryLimitError
 from .film import animate
+from .generalising import Generalised, generalise
 from .picture import Picture, set_memory_limit
 from .revealing import Revealed, reveal
 from .scene import MISSES, Displaced, Projected, Rays, Scene
 from .terrain import Ground, disocclude
+from .viewing import View, pack, view
 
 __version__ = _version()
 
@@ -24,8 +27,11 @@ __all__ = [
     "Camera",
     "Cancelled",
     "Displaced",
+    "Draft",
+    "Drafts",
     "Error",
     "FileError",
+    "Generalised",
     "Ground",
     "InputError",
     "InternalError",
@@ -35,10 +41,15 @@ __all__ = [
     "Rays",
     "Revealed",
     "Scene",
+    "View",
     "animate",
     "disocclude",
+    "drafts",
+    "generalise",
+    "pack",
     "presets",
     "reports",
     "reveal",
     "set_memory_limit",
+    "view",
 ]

@@ -27,6 +27,8 @@ def files_of(
     features_crs: object,
     fill_voids: bool | None,
     folder: Folder,
+    rivers: object = None,
+    drape: object = None,
 ) -> dict[str, Any]:
     """Files of terrain and features, as the engine takes them; arrays are written into ``folder``."""
     files: dict[str, Any] = {}
@@ -47,8 +49,16 @@ def files_of(
         # Holes of an array are what the caller masked.
         fill_voids = bool(fill_voids)
     files["keep_voids"], files["fill_voids"] = fill_voids is False, fill_voids is True
-    files["features"] = [_file_of(i, source, features_crs, terrain_crs, folder) for i, source in enumerate(_several(routes))]
+    files["features"] = [_file_of("features", i, source, features_crs, terrain_crs, folder) for i, source in enumerate(_several(routes))]
+    files["rivers"] = [_file_of("rivers", i, source, features_crs, terrain_crs, folder) for i, source in enumerate(_several(rivers))]
+    files["drape"] = [_path("drape", picture) for picture in _several(drape)]
     return files
+
+
+def _path(what: str, value: object) -> str:
+    if not isinstance(value, (str, os.PathLike)):
+        raise InputError(f"{what} holds {type(value).__name__}; give paths of georeferenced pictures")
+    return os.fspath(value)
 
 
 def stated_by_caller(*, transform: object, spacing: object, origin: object, crs: object, nodata: object) -> dict[str, Any]:
@@ -71,16 +81,16 @@ def _several(routes: object) -> list[object]:
     return [routes]
 
 
-def _file_of(i: int, source: object, crs: object, terrain: Crs | None, folder: Folder) -> str:
+def _file_of(what: str, i: int, source: object, crs: object, terrain: Crs | None, folder: Folder) -> str:
     if isinstance(source, (str, os.PathLike)):
-        if crs is not None:
+        if crs is not None and what == "features":
             raise InputError("features_crs is that of arrays; a file states the system of its coordinates itself")
         return os.fspath(source)
     collection, stated = _vectors.features_of(source, "line", crs)
     if stated is None and not (isinstance(source, Mapping) and "type" in source):
         if terrain is None:
-            raise InputError("nothing says in which system the coordinates of the routes are; give features_crs='EPSG:n' (4326 for longitude and latitude)")
+            raise InputError(f"nothing says in which system the coordinates of the {what} are; give features_crs='EPSG:n' (4326 for longitude and latitude)")
         stated = terrain
-    path = folder.file(f"features{i + 1}.geojson")
+    path = folder.file(f"{what}{i + 1}.geojson")
     _vectors.write_geojson(path, collection, stated)
     return os.fspath(path)

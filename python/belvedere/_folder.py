@@ -28,6 +28,10 @@ class Folder:
         self.path = Path(name)
         self._finalizer = weakref.finalize(self, _remove, name, os.getpid())
 
+    def close(self) -> None:
+        """Removes the folder at once."""
+        self._finalizer()
+
     def file(self, name: str) -> Path:
         """A file of this name."""
         return self.path / name

@@ -14,7 +14,10 @@ __all__ = [
     "command_line",
     "disocclude",
     "displace",
+    "drafts",
+    "generalise",
     "ground",
+    "pack",
     "panics",
     "pick",
     "preset_check",
@@ -117,7 +120,7 @@ class NativeGround:
     ) -> list[PathLike[str]]: ...
 
 def project(
-    scene: NativeScene, points: bytes, ask: _Ask
+    scene: NativeScene, points: bytes, straight: bool, ask: _Ask
 ) -> tuple[bytearray, bytearray, bytearray, bytearray, bytearray]: ...
 def displace(scene: NativeScene, points: bytes, ask: _Ask) -> tuple[bytearray, bytearray, bytearray]: ...
 def rays(
@@ -126,6 +129,15 @@ def rays(
 def pick(scene: NativeScene, pixels: bytes, ask: _Ask) -> str: ...
 def ground(scene: NativeScene, points: bytes) -> bytearray: ...
 def reveal(asked: str, ask: _Ask) -> NativeReveal: ...
+def drafts(asked: str, count: int, ask: _Ask) -> tuple[str, int, bytes]: ...
+def generalise(
+    city: str,
+    roads: list[str],
+    out: str,
+    margin_m: float | None,
+    overwrite: bool,
+    ask: _Ask,
+) -> str: ...
 def disocclude(asked: str, ask: _Ask) -> NativeGround: ...
 def animate(
     scene: NativeScene,
@@ -135,6 +147,15 @@ def animate(
     resume: bool,
     overwrite: bool,
     part: list[int] | None,
+    ask: _Ask,
+) -> str: ...
+def pack(
+    scene: str,
+    allowed: list[str],
+    application: str,
+    remedy: str,
+    out: str,
+    overwrite: bool,
     ask: _Ask,
 ) -> str: ...
 def preset_list() -> str: ...

@@ -19,6 +19,7 @@ from .errors import InputError
 from .picture import Picture
 from .reports import Note, RevealReport, notes_of
 from .scene import Scene
+from .viewing import View
 
 if TYPE_CHECKING:
     from ._native import NativeReveal
@@ -62,6 +63,10 @@ class Revealed:
     def warnings(self) -> list[Note]:
         """Warnings of loading, searching and drawing."""
         return notes_of(self.report.raw["warnings"])
+
+    def view(self, **options: Any) -> View:
+        """The scene in the view that was found, as a page that can be moved in; options as of :func:`belvedere.view`."""
+        return self.scene.view(**options)
 
     def save(
         self,
@@ -117,6 +122,8 @@ def reveal(
     exaggeration: float | None = None,
     mark: bool = True,
     sea: bool = True,
+    rivers: object = None,
+    drape: object = None,
     samples: int | None = None,
     threads: int | None = None,
     progress: Progress = None,
@@ -135,6 +142,8 @@ def reveal(
     * ``technique``: ``spline`` (default), ``terrain``, ``both``, ``curved_rays``, or ``auto``, which tries them.
     * ``see``: a target in models or a city: id of a layer, atoms, a building, or x,y,z. ``fallback``, ``transfer``: see ``belvedere reveal --help``.
     * ``hidden``: ``show``, ``fade``, ``dash`` or ``cut``. ``palette``, ``relief``, ``light``, ``stylise``, ``exaggeration``: how it looks.
+    * ``rivers``: lines, given as ``routes`` are, that do not run uphill where the ground makes way (``technique`` ``terrain``, ``both`` or ``auto``).
+    * ``drape``: a georeferenced picture that is laid over the ground, such as an aerial photograph, or several, later ones on top: paths.
     * ``threads``: number of threads; ``None``: one per core. The picture does not depend on it.
     * ``progress``: a callable of (name of the work, share done), ``True`` for a bar of tqdm, or a bar of tqdm. What it raises ends the work.
     * ``time_limit_s``: limit for solving, seconds; then the best so far is taken.
@@ -148,11 +157,64 @@ def reveal(
     True
     """
     folder = Folder()
+    request = _request(
+        dem, routes, folder, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata, features_crs=features_crs,
+        fill_voids=fill_voids, size=size, technique=technique, curved_earth=curved_earth, no_limits=no_limits, labels=labels, hidden=hidden,
+        palette=palette, relief=relief, light=light, stylise=stylise, exaggeration=exaggeration, mark=mark, sea=sea, rivers=rivers, drape=drape,
+        samples=samples,
+    )  # fmt: skip
+    if see is not None and (request["files"]["rivers"] or request["files"]["drape"]):
+        raise InputError("rivers and drape are of terrain with routes; leave them out with see")
+    request.update(
+        see=see,
+        fallback=[fallback] if isinstance(fallback, str) else list(fallback),
+        transfer=transfer,
+        eye=place("eye", eye),
+        look_at=place("look_at", look_at),
+        fov_y_deg=None if fov_y_deg is None else number("fov_y_deg", fov_y_deg),
+        open={} if see is None else {"size": request["size"]},
+    )
+    with asked(threads, progress, time_limit_s) as ask, Named(os.fspath(folder.path)):
+        return Revealed(_native.reveal(text("reveal", request), ask), folder, request["draw"])
+
+
+def _request(
+    dem: object,
+    routes: object,
+    folder: Folder,
+    *,
+    transform: object = None,
+    spacing: object = None,
+    origin: Sequence[float] | None = None,
+    crs: object = None,
+    nodata: object = None,
+    features_crs: object = None,
+    fill_voids: bool | None = None,
+    size: tuple[int, int] | None = None,
+    technique: str | None = None,
+    curved_earth: bool = False,
+    no_limits: bool = False,
+    labels: bool = False,
+    hidden: str | None = None,
+    palette: str | None = None,
+    relief: str | None = None,
+    light: Mapping[str, Any] | None = None,
+    stylise: bool | tuple[float, float] = False,
+    exaggeration: float | None = None,
+    mark: bool = True,
+    sea: bool = True,
+    rivers: object = None,
+    drape: object = None,
+    samples: int | None = None,
+) -> dict[str, Any]:
+    """The request as the engine takes it, but for the view and a target."""
     if routes is None and not isinstance(dem, (str, os.PathLike)):
         raise InputError("routes are missing: nothing says what must be seen; give routes, areas or points")
+    if rivers is not None and technique not in ("terrain", "both", "auto"):
+        raise InputError("rivers are kept from running uphill where the ground moves; give technique='terrain', 'both' or 'auto'")
     files = files_of(
         dem, routes, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata, features_crs=features_crs,
-        fill_voids=fill_voids, folder=folder,
+        fill_voids=fill_voids, folder=folder, rivers=rivers, drape=drape,
     )  # fmt: skip
     files.update(labels=bool(labels), hidden=hidden, palette=palette, no_sea=not sea)
     drawn = drawing(stylise=stylise, mark=mark, samples=samples)
@@ -163,21 +225,12 @@ def reveal(
         "no_mark": drawn.pop("no_mark"),
         "exaggeration": None if exaggeration is None else number("exaggeration", exaggeration),
     }
-    request = {
+    return {
         "files": files,
         "look": look,
-        "see": see,
-        "fallback": [fallback] if isinstance(fallback, str) else list(fallback),
-        "transfer": transfer,
-        "eye": place("eye", eye),
-        "look_at": place("look_at", look_at),
-        "fov_y_deg": None if fov_y_deg is None else number("fov_y_deg", fov_y_deg),
         "size": size_of(size),
         "curved_earth": bool(curved_earth),
         "technique": technique,
         "no_limits": bool(no_limits),
         "draw": drawn,
-        "open": {} if see is None else {"size": size_of(size)},
     }
-    with asked(threads, progress, time_limit_s) as ask, Named(os.fspath(folder.path)):
-        return Revealed(_native.reveal(text("reveal", request), ask), folder, drawn)

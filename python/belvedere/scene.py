@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _native
+from . import _native, viewing
 from ._ask import Ask, Progress, asked, number
 from ._crs import Crs, crs_of
 from ._drawing import drawing
@@ -345,12 +345,13 @@ class Scene(Layers):
         with asked(threads, progress, time_limit_s) as ask, self._named():
             return MeasureReport.of(json.loads(self._sized(_size(size), ask).measure(spacing_m, str(renderer), ask)))
 
-    def project(self, points: object, *, size: tuple[int, int] | None = None, threads: int | None = None, progress: Progress = None) -> Projected:
+    def project(self, points: object, *, size: tuple[int, int] | None = None, straight: bool = False, threads: int | None = None,
+                progress: Progress = None) -> Projected:  # fmt: skip
         """Pixels and depths of points ``(n, 3)``, scene coordinates. A point outside the picture has its pixel too.
-        ``size``: that of the picture, as of :meth:`render`."""
+        ``size``: that of the picture, as of :meth:`render`. ``straight``: without bends."""
         data, count = _bytes("points", points, 3)
         with asked(threads, progress) as ask:
-            pixel, depth, segment, inside, miss = _native.project(self._sized(_size(size), ask), data, ask)
+            pixel, depth, segment, inside, miss = _native.project(self._sized(_size(size), ask), data, bool(straight), ask)
         return Projected(
             np.frombuffer(pixel, np.float64).reshape(count, 2),
             np.frombuffer(depth, np.float64),
@@ -394,6 +395,10 @@ class Scene(Layers):
         data, _ = _bytes("xy", xy, 2)
         with asked() as ask:
             return np.frombuffer(_native.ground(self._opened(ask), data), np.float64)
+
+    # In a browser; see :mod:`belvedere.viewing`.
+    view = viewing.view
+    pack = viewing.pack
 
     def __repr__(self) -> str:
         name = str(self._file) if self._file is not None else self._document.get("title") or "untitled"

@@ -118,6 +118,7 @@ def disocclude(
     limits: bool = True,
     curved_earth: bool = False,
     grid: str = "input",
+    rivers: object = None,
     threads: int | None = None,
     progress: Progress = None,
     time_limit_s: float | None = None,
@@ -130,6 +131,7 @@ def disocclude(
     * ``mode``: ``qp`` (default), ``paper`` or ``paper+qp``. ``parameters``: those of the stage ``terrain_disocclusion``, such as ``{"w": 0.6}``.
     * ``limits=False`` lifts the limits of depth and slope of the displaced ground.
     * ``grid``: ``input``, or ``scene``: the grid in metres that was solved on, on which guarantees hold at every node.
+    * ``rivers``: lines that do not run uphill on the displaced ground, given as features are.
     * ``threads``, ``progress``, ``time_limit_s``: see :func:`belvedere.reveal`.
     """
     if grid not in ("input", "scene"):
@@ -142,7 +144,7 @@ def disocclude(
     folder = Folder()
     files = files_of(
         dem, features, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata, features_crs=features_crs,
-        fill_voids=fill_voids, folder=folder,
+        fill_voids=fill_voids, folder=folder, rivers=rivers,
     )  # fmt: skip
     request = {
         "files": files,

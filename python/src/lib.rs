@@ -4,7 +4,9 @@
 mod builtin;
 mod errors;
 mod film;
+mod generalise;
 mod numbers;
+mod pack;
 mod picture;
 mod presets;
 mod request;
@@ -23,13 +25,17 @@ mod native {
     #[pymodule_export]
     use super::film::animate;
     #[pymodule_export]
+    use super::generalise::generalise;
+    #[pymodule_export]
     use super::numbers::{displace, ground, pick, project, rays};
+    #[pymodule_export]
+    use super::pack::pack;
     #[pymodule_export]
     use super::picture::NativePicture;
     #[pymodule_export]
     use super::presets::{preset_check, preset_list, preset_plot, preset_set, preset_text};
     #[pymodule_export]
-    use super::reveal::{NativeReveal, reveal};
+    use super::reveal::{NativeReveal, drafts, reveal};
     #[pymodule_export]
     use super::scene::{NativeScene, schema};
     #[pymodule_export]

@@ -97,21 +97,23 @@ fn joined<'py, T: Copy, const N: usize>(
     })
 }
 
-/// Columns `(pixels, depths, segments, inside, misses)` of points, 3 x f64 each.
+/// Columns `(pixels, depths, segments, inside, misses)` of points, 3 x f64 each; `straight`: without bends.
 #[pyfunction]
 pub(crate) fn project<'py>(
     py: Python<'py>,
     scene: &NativeScene,
     points: PyBackedBytes,
+    straight: bool,
     ask: Ask,
 ) -> PyResult<Bound<'py, PyTuple>> {
     let session = scene.session.clone();
     let parts = run(py, &ask, move |progress| {
+        let view = if straight { session.view().straightened() } else { session.view().clone() };
         let (points, _) = points.as_chunks::<24>();
         let part = points.len().div_ceil(4 * rayon::current_num_threads()).max(CHUNK);
         let images = |chunk: &[[u8; 24]]| {
             progress.tick("project", 0.0)?;
-            Ok::<_, BelvedereError>(Images::of(session.view(), chunk))
+            Ok::<_, BelvedereError>(Images::of(&view, chunk))
         };
         points.par_chunks(part).map(images).collect::<Result<Vec<_>, _>>()
     })?;

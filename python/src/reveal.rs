@@ -10,11 +10,13 @@ use belvedere::core::DVec3;
 use belvedere::scene::{Hidden, Relief};
 use belvedere::scene_file::{LightDoc, PaletteDoc, StylisationDoc, SurfaceDoc, VerticalUnit};
 use belvedere::verbs::appearance::Appearance;
+use belvedere::verbs::drafts::drafts as drafted;
 use belvedere::verbs::hold_a_city;
 use belvedere::verbs::reveal::{self as verb, RevealAnswer, RevealFiles, RevealRequest, Technique};
 use belvedere::verbs::reveal_target::{TargetAnswer, TargetRequest, reveal_target};
 use belvedere::{BelvedereError, DataFiles, Picture, Session, output};
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use serde::Deserialize;
 use std::path::PathBuf;
 
@@ -127,6 +129,39 @@ struct Asked {
     open: Opening,
 }
 
+impl Asked {
+    /// The request for features of terrain.
+    fn of_features(self) -> PyResult<RevealRequest> {
+        Ok(RevealRequest {
+            data: self.files.data(),
+            places: request::places(self.eye.as_deref(), self.look_at.as_deref())?,
+            appearance: self.look.appearance(),
+            fov_y_deg: self.fov_y_deg,
+            image: self.size,
+            curved_earth: self.curved_earth,
+            technique: self.technique.map_or(Technique::Spline, Into::into),
+            no_limits: self.no_limits,
+            picture: self.draw.options(Default::default())?,
+            ..RevealRequest::default()
+        })
+    }
+}
+
+/// Views from several sides: their numbers and warnings as JSON, and width and colours (RGB) of the sheet.
+#[pyfunction]
+pub(crate) fn drafts(py: Python<'_>, asked: &str, count: usize, ask: Ask) -> PyResult<(String, usize, Py<PyBytes>)> {
+    let asked: Asked = request::read("drafts", asked)?;
+    let open = asked.open.clone();
+    let request = asked.of_features()?;
+    let (numbers, width, colors) = run(py, &ask, move |progress| {
+        let found = drafted(&request, count, &open.options(progress))?;
+        let (width, _, colors) = found.sheet();
+        let numbers = serde_json::json!({ "drafts": found.drafts, "warnings": found.warnings });
+        Ok((output::json(&numbers)?, width, colors))
+    })?;
+    Ok((numbers, width, PyBytes::new(py, colors.as_flattened()).unbind()))
+}
+
 /// A picture in which something is visible, and how it was found.
 enum Answer {
     Features(Box<RevealAnswer>),
@@ -218,24 +253,10 @@ impl NativeReveal {
 #[pyfunction]
 pub(crate) fn reveal(py: Python<'_>, asked: &str, ask: Ask) -> PyResult<NativeReveal> {
     let mut asked: Asked = request::read("reveal", asked)?;
-    let places = request::places(asked.eye.as_deref(), asked.look_at.as_deref())?;
-    let picture = asked.draw.options(Default::default())?;
-    let open = std::mem::take(&mut asked.open);
-    let appearance = std::mem::take(&mut asked.look).appearance();
     let files: Vec<PathBuf> = [&asked.files.dem].into_iter().chain(&asked.files.features).map(PathBuf::from).collect();
+    let open = std::mem::take(&mut asked.open);
     if asked.see.is_none() && !hold_a_city(&files) {
-        let request = RevealRequest {
-            data: asked.files.data(),
-            places,
-            appearance,
-            fov_y_deg: asked.fov_y_deg,
-            image: asked.size,
-            curved_earth: asked.curved_earth,
-            technique: asked.technique.map_or(Technique::Spline, Into::into),
-            no_limits: asked.no_limits,
-            picture,
-            ..RevealRequest::default()
-        };
+        let request = asked.of_features()?;
         let (answer, report) = run(py, &ask, move |progress| {
             let answer = verb::reveal(&request, &open.options(progress))?;
             let report = answers::in_file("reveal", &[], &answer.document())?;
@@ -248,6 +269,9 @@ pub(crate) fn reveal(py: Python<'_>, asked: &str, ask: Ask) -> PyResult<NativeRe
             "technique: targets in models and cities are shown by \"curved_rays\" or \"spline\"; give one of them, or None",
         ));
     }
+    let places = request::places(asked.eye.as_deref(), asked.look_at.as_deref())?;
+    let picture = asked.draw.options(Default::default())?;
+    let appearance = std::mem::take(&mut asked.look).appearance();
     let technique = asked.technique.filter(|name| !matches!(name, TechniqueName::Auto));
     let request = TargetRequest {
         files,

@@ -24,6 +24,16 @@ def test_the_blocks_of_the_guide(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     assert (tmp_path / "path.png").is_file() and (tmp_path / "moved.tif").is_file()
 
 
+def test_the_blocks_of_the_page_on_pyvista(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("pyvista", reason="SKIPPED: the page on PyVista is not tried; pyvista is not installed")
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"```python\n(.*?)```", (GUIDE.parent / "pyvista.md").read_text(encoding="utf-8"), re.DOTALL)
+    names: dict[str, object] = {}
+    for block in blocks:
+        exec(compile(block, "pyvista.md", "exec"), names)
+    assert len(blocks) == 3 and (tmp_path / "bent.png").is_file() and (tmp_path / "by-vtk.png").is_file()
+
+
 @pytest.mark.parametrize("module", [scene, revealing])
 def test_the_examples_of_docstrings(module: object) -> None:
     result = doctest.testmod(module)  # type: ignore[arg-type]
