@@ -2,7 +2,7 @@
 
 use super::by_property::{ColorByDoc, SizeByDoc};
 use super::city::CityDoc;
-use super::common::{Paths, TransformDoc, is_false};
+use super::common::{Paths, TransformDoc, is_false, is_opaque};
 use super::mesh::MeshDoc;
 use super::molecule::MoleculeDoc;
 use super::overlay::AutoOrLength;
@@ -108,6 +108,28 @@ impl LayerDoc {
             _ => {}
         }
         layer
+    }
+
+    /// Opacity of boxes, meshes, cities and molecules, 0..=1; `None` for kinds that have none.
+    pub fn opacity(&self) -> Option<f64> {
+        match self {
+            Self::Boxes(l) => Some(l.style.opacity),
+            Self::Mesh(l) => Some(l.style.opacity),
+            Self::City(l) => Some(l.style.opacity),
+            Self::Molecule(l) => Some(l.style.opacity),
+            _ => None,
+        }
+    }
+
+    /// The opacity itself, to be changed.
+    pub fn opacity_mut(&mut self) -> Option<&mut f64> {
+        match self {
+            Self::Boxes(l) => Some(&mut l.style.opacity),
+            Self::Mesh(l) => Some(&mut l.style.opacity),
+            Self::City(l) => Some(&mut l.style.opacity),
+            Self::Molecule(l) => Some(&mut l.style.opacity),
+            _ => None,
+        }
     }
 
     /// The layer with another wish of whether it is seen; terrain has none.
@@ -550,11 +572,14 @@ pub struct BoxesDoc {
 pub struct BoxStyleDoc {
     /// Colour of boxes that have none of their own.
     pub color: String,
+    /// Opacity, 0..=1: below 1 what is behind is seen through, at 0 the layer is not drawn.
+    #[serde(skip_serializing_if = "is_opaque")]
+    pub opacity: f64,
 }
 
 impl Default for BoxStyleDoc {
     fn default() -> Self {
-        Self { color: "#c9c2b8".into() }
+        Self { color: "#c9c2b8".into(), opacity: 1.0 }
     }
 }
 

@@ -258,13 +258,7 @@ mod tests {
             .with_layer("box", LayerKind::Boxes(BoxLayer::new(vec![shape])))
             .with_layer(
                 "mesh",
-                LayerKind::Mesh(MeshLayer {
-                    mesh: mesh.clone(),
-                    color: Color::rgb(1, 2, 3),
-                    names: Vec::new(),
-                    wanted: None,
-                    rigid: belvedere_scene::RigidParts::None,
-                }),
+                LayerKind::Mesh(MeshLayer::new(mesh.clone(), Color::rgb(1, 2, 3))),
             );
         let voxels = Voxels::new(&scene, &region());
         assert!(voxels.len() <= MOST_CELLS as usize * 5 / 4 && voxels.size().into_iter().max() >= Some(64));
