@@ -320,10 +320,10 @@ impl Model {
     }
 
     /// The object of a layer that the picture shows at a position (shares of width and height): a target for constructors.
-    pub(crate) fn object_at(&self, share: DVec2, layer: &str) -> Option<String> {
+    pub(crate) fn object_at(&self, share: DVec2, layer: &str, point: Option<DVec3>) -> Option<String> {
         let session = &self.shown.as_ref()?.session;
         let [w, h] = session.view().pinhole().image.map(f64::from);
-        object_at(session, layer, share * DVec2::new(w, h), self.world_at(share))
+        object_at(session, layer, share * DVec2::new(w, h), point)
     }
 
     /// Time for which the picture at rest has been in work, seconds; `None` if none is in work.
@@ -366,6 +366,17 @@ impl Model {
         let at = share * DVec2::new(frame.width as f64, frame.height as f64);
         let id = *frame.id.get(at.y as usize * frame.width + at.x as usize)? as usize;
         Some(shown.session.scene().layers.get(id.checked_sub(1)?)?.id.clone())
+    }
+
+    /// Layer and world point that a click takes: of solids that something shines through the nearest, else what the picture shows.
+    pub(crate) fn clicked(&self, share: DVec2) -> Option<(String, Option<DVec3>)> {
+        let session = &self.shown.as_ref()?.session;
+        if self.look.bent && session.scene().has_see_through() {
+            let [w, h] = session.view().pinhole().image.map(f64::from);
+            let picked = session.pick(&[(share * DVec2::new(w, h)).to_array()]).ok()?.pop()??;
+            return Some((picked.layer, Some(DVec3::from_array(picked.point))));
+        }
+        Some((self.layer_at(share)?, self.world_at(share)))
     }
 
     /// Whether two pictures are compared.

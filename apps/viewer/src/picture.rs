@@ -247,12 +247,12 @@ impl PictureView {
             self.measure.add(at, model);
             return;
         }
-        let Some(layer) = model.layer_at(at) else {
+        let Some((layer, point)) = model.clicked(at) else {
             self.picked = None;
             return;
         };
         if model.look.tool == Tool::Residue {
-            let select = model.object_at(at, &layer);
+            let select = model.object_at(at, &layer, point);
             if !crate::panels::layers::choose_clicked(model, &layer, select) {
                 model.notices.tell(tr("There is no molecule; click one of its atoms."));
                 return;
@@ -267,12 +267,12 @@ impl PictureView {
                     .tell(tr("The ground cannot be kept in sight; click a line, a point, a building or a model."));
                 return;
             }
-            let target = model.object_at(at, &layer).unwrap_or(layer);
+            let target = model.object_at(at, &layer, point).unwrap_or(layer);
             crate::panels::rays::track(model, &target);
             model.look.tool = Tool::Map;
             return;
         }
-        self.picked = model.world_at(at).map(|point| (point, layer));
+        self.picked = point.map(|point| (point, layer));
     }
 
     /// The bar between the two halves.

@@ -26,8 +26,13 @@ pub fn buffers_in(job: &RenderJob<'_>, color: Vec<Packed>, old: Frame) -> Buffer
 }
 
 /// Draws stylisation, lines and points over the surfaces, and encodes the colours.
-/// * `relief`: depths and faces of all samples, if they are known; `veiled`: solids that something shines through, if there are any.
-pub fn finish(
+/// * `relief`: depths and faces of all samples, if they are known.
+pub fn finish(job: &RenderJob<'_>, marks: &Marks, screen: &Screen, relief: Option<Relief>, buffers: &mut Buffers) {
+    finish_veiled(job, (marks, None), screen, relief, buffers);
+}
+
+/// [`finish`], with solids that something shines through over it, if there are any.
+pub fn finish_veiled(
     job: &RenderJob<'_>,
     (marks, veiled): (&Marks, Option<Veiled<'_>>),
     screen: &Screen,

@@ -17,7 +17,7 @@ use crate::volume::{self, Way};
 use belvedere_composite::branches;
 use belvedere_composite::buffers::Buffers;
 use belvedere_composite::color::{Packed, Rgb};
-use belvedere_composite::finish::{buffers, finish};
+use belvedere_composite::finish::{buffers, finish_veiled};
 use belvedere_composite::layers;
 use belvedere_composite::marks::Marks;
 use belvedere_composite::sections::{Exposure, Sections};
@@ -84,7 +84,7 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     let seen = picture.trace()?;
     picture.color(&seen, &mut buffers)?;
     let veil = match TracedVeil::new(job, (&shader, &tracer), &picture.offsets, &exposure) {
-        Some(layers) => Some(layers.trace(&seen, &mut buffers.id)?),
+        Some(layers) => Some(layers.trace(&seen)?),
         None => None,
     };
     let samples = volume::compose(job, Way::Exact, &mut buffers)?;
@@ -96,7 +96,7 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
         front.map(|veil| marks::place(job, &passes, &screen, (&veil.nearest(&buffers.depth), Solids::Drawn)));
     let front = front.unwrap_or_default();
     let veiled = veil.as_ref().map(|veil| Veiled { veil, front: &front });
-    finish(job, (&marks, veiled), &screen, None, &mut buffers);
+    finish_veiled(job, (&marks, veiled), &screen, None, &mut buffers);
     job.progress.tick("lines", 1.0)?;
     let triangles_in = job.scene.layers.iter().map(|l| match &l.kind {
         LayerKind::Terrain(t) => 2 * ((t.heightfield.cols() - 1) * (t.heightfield.rows() - 1)) as u64,

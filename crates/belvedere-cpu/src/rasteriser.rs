@@ -18,7 +18,7 @@ use crate::volume::{self, Way};
 use belvedere_composite::branches;
 use belvedere_composite::buffers::Buffers;
 use belvedere_composite::color::Packed;
-use belvedere_composite::finish::{buffers_in, finish};
+use belvedere_composite::finish::{buffers_in, finish_veiled};
 use belvedere_composite::layers;
 use belvedere_composite::marks::Marks;
 use belvedere_composite::sections::{Exposure, Sections};
@@ -131,7 +131,7 @@ impl CpuRenderer {
             let front = front.unwrap_or_default();
             job.progress.tick("lines", 0.0)?;
             let veiled = veil.as_ref().map(|veil| Veiled { veil, front: &front });
-            finish(job, (&marks, veiled), &screen, relief, &mut buffers);
+            finish_veiled(job, (&marks, veiled), &screen, relief, &mut buffers);
             job.progress.tick("lines", 1.0)?;
         }
         let counts = blocks.counts();
@@ -241,7 +241,7 @@ impl Surfaces<'_> {
                     let thin = thin.map(|(sections, exposure)| (sections, exposure, &offsets[..]));
                     see_through::draw((job.scene, layers), blocks, &mut bands, (screen.ortho, thin));
                     let composer = Composer { layers, behind: &band, bands: &bands, shader, screen };
-                    composer.compose(veil, id);
+                    composer.compose(veil);
                     lock(spare).extend(bands);
                 }
                 lock(spare).push(band);

@@ -109,8 +109,8 @@ impl Colors {
 }
 
 impl Composer<'_> {
-    /// Fills in the rows of the veil, and writes the nearest layer of the pixel centres into `id`.
-    pub(crate) fn compose(&self, veil: &mut VeilRows<'_>, id: &mut [u32]) {
+    /// Fills in the rows of the veil.
+    pub(crate) fn compose(&self, veil: &mut VeilRows<'_>) {
         let width = self.behind.width.max(0) as usize;
         let mut colors = Colors::default();
         for y in self.behind.y0..self.behind.y1 {
@@ -118,7 +118,7 @@ impl Composer<'_> {
             colors.clear();
             for columns in self.columns() {
                 for x in columns {
-                    self.pixel([x as i32, y], row + x, veil, id, &mut colors);
+                    self.pixel([x as i32, y], row + x, veil, &mut colors);
                 }
             }
             let Colors { prim, q, x, y, of, painted } = &mut colors;
@@ -167,7 +167,7 @@ impl Composer<'_> {
         i
     }
 
-    fn pixel(&self, at: [i32; 2], pixel: usize, veil: &mut VeilRows<'_>, id: &mut [u32], colors: &mut Colors) {
+    fn pixel(&self, at: [i32; 2], pixel: usize, veil: &mut VeilRows<'_>, colors: &mut Colors) {
         let count = self.behind.offsets.len();
         let (from, n) = if count > 1 { (1, (count - 1) as f32) } else { (0, 1.0) };
         let mut front = Vec::with_capacity(self.bands.len());
@@ -178,7 +178,6 @@ impl Composer<'_> {
         let i = self.in_front(0, at, &mut front);
         if let Some((k, _)) = front.first() {
             veil.depth[pixel] = self.screen.depth_of(self.bands[*k].q[i]);
-            id[pixel] = self.layers[*k].layer as u32 + 1;
         }
         let first = colors.prim.len();
         // The colour of the centre stands for other samples of its surface.

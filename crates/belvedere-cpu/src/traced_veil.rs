@@ -26,11 +26,11 @@ pub(crate) struct TracedVeil<'a> {
     layers: Vec<(SeeThrough, Tracer<'a>)>,
 }
 
-/// Light, share of what is behind that is seen, depth and id of a pixel.
-type Pixel = (Rgb, f32, f32, u32);
+/// Light, share of what is behind that is seen, and depth of a pixel.
+type Pixel = (Rgb, f32, f32);
 
 /// Nothing in front.
-const CLEAR: Pixel = (Rgb::ZERO, 1.0, f32::INFINITY, 0);
+const CLEAR: Pixel = (Rgb::ZERO, 1.0, f32::INFINITY);
 
 impl<'a> TracedVeil<'a> {
     /// `None` where a scene has no see-through layer.
@@ -49,8 +49,8 @@ impl<'a> TracedVeil<'a> {
     }
 
     /// The veil over a picture.
-    /// * `seen`: first hits on what hides at the pixel centres; `id`: gets the nearest layer of each centre.
-    pub(crate) fn trace(&self, seen: &[Option<RayHit>], id: &mut [u32]) -> Result<Veil, RenderError> {
+    /// * `seen`: first hits on what hides at the pixel centres.
+    pub(crate) fn trace(&self, seen: &[Option<RayHit>]) -> Result<Veil, RenderError> {
         let width = self.job.view.pinhole().image[0] as usize;
         let mut hits: Vec<Vec<Option<RayHit>>> = Vec::new();
         for (_, tracer) in &self.layers {
@@ -67,11 +67,8 @@ impl<'a> TracedVeil<'a> {
         });
         let pixels = rows.collect::<Result<Vec<Vec<Pixel>>, RenderError>>()?.concat();
         let mut veil = Veil::clear(seen.len());
-        for (i, (light, through, depth, layer)) in pixels.into_iter().enumerate() {
+        for (i, (light, through, depth)) in pixels.into_iter().enumerate() {
             (veil.light[i], veil.through[i], veil.depth[i]) = (light, through, depth);
-            if layer != 0 {
-                id[i] = layer;
-            }
         }
         Ok(veil)
     }
@@ -103,9 +100,8 @@ impl<'a> TracedVeil<'a> {
             let even = self.offsets.len() == 1 || (is_even(seen) && hits.iter().all(|own| is_even(own)));
             let centre: Vec<Option<RayHit>> = hits.iter().map(|own| own[i]).collect();
             let centre = self.sample(seen[i], &centre, place(0, x));
-            let (depth, layer) = (centre.depth, centre.layer);
             if even {
-                return (centre.light, centre.through, depth, layer);
+                return (centre.light, centre.through, centre.depth);
             }
             let samples = 1..self.offsets.len();
             let found: Vec<Sample> = samples
@@ -125,7 +121,7 @@ impl<'a> TracedVeil<'a> {
                 };
                 sum + (s.light + own) / n
             });
-            (light, mean, depth, layer)
+            (light, mean, centre.depth)
         };
         (0..width).map(pixel).collect()
     }
@@ -150,7 +146,6 @@ impl<'a> TracedVeil<'a> {
             light,
             through,
             depth: nearest.map_or(f32::INFINITY, |(_, hit)| hit.depth as f32),
-            layer: nearest.map_or(0, |(layer, _)| layer.layer as u32 + 1),
         }
     }
 }
@@ -162,5 +157,4 @@ struct Sample {
     light: Rgb,
     through: f32,
     depth: f32,
-    layer: u32,
 }

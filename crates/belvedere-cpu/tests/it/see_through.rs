@@ -79,31 +79,31 @@ fn pictures_are_linear_in_the_opacities_of_layers_in_every_view() {
     for (name, view) in views(IMAGE) {
         let draw = |a: f32, b: f32| drawn(&with(&town, &[(1, a), (2, b)]), &view, false, &options);
         let (frame, whole, bare) = (draw(0.35, 0.6), draw(1.0, 1.0), draw(0.0, 0.0));
-        let wrong = off(&frame.color, &mixture([0.35, 0.6], &draw), 1);
+        let want = mixture([0.35, 0.6], &draw);
+        let [some, much] = [2, 8].map(|steps| off(&frame.color, &want, steps));
         // Samples of the ground share colours in one picture and not in the other.
-        assert!(wrong * 400 <= frame.color.len(), "{name}: {wrong} pixels are no mixture");
+        assert!(some * 500 <= frame.color.len() && much == 0, "{name}: {some} and {much} pixels are no mixture");
         assert!(off(&frame.color, &bare.color, 12) > frame.color.len() / 8, "{name}: nothing is seen of the layers");
-        assert!(frame.id == whole.id, "{name}: what is picked is nearest");
-        assert!(frame.depth == bare.depth && bare.id != whole.id, "{name}: the depth is that of what hides");
+        assert!(bare.id != whole.id && frame.id == bare.id && frame.depth == bare.depth, "{name}: as of what hides");
         assert!(bare.id.contains(&3), "{name}: the plate stays");
     }
 }
 
 #[test]
 fn traced_pictures_are_mixtures_too_and_those_of_the_rasteriser() {
-    let town = town();
-    for (name, view) in views([64, 48]).into_iter().take(5) {
-        let draw = |a: f32, b: f32| {
-            let light = Light { shadows: false, ..Light::default() };
-            let (scene, options) = (with(&town, &[(1, a), (2, b)]), options(4));
-            let job = RenderJob { scene: &scene, view: &view, light: &light, options: &options, progress: &Progress::silent() };
-            belvedere_cpu::ExactRenderer.render(&job).expect("picture is possible")
+    let (town, options) = (town(), options(4));
+    for (name, view) in views([48, 36]).into_iter().step_by(2) {
+        let draw = |a: f32, b: f32| trace(&with(&town, &[(1, a), (2, b)]), &view, &options);
+        let apart = |a: f32, b: f32| {
+            let other = drawn(&with(&town, &[(1, a), (2, b)]), &view, false, &options);
+            off(&draw(a, b).color, &other.color, 6)
         };
-        let (frame, own) = (draw(0.35, 0.6), mixture([0.35, 0.6], &draw));
-        let other = drawn(&with(&town, &[(1, 0.35), (2, 0.6)]), &view, false, &options(4));
-        let [own, other] = [off(&frame.color, &own, 2), off(&frame.color, &other.color, 6)];
-        let most = frame.color.len() / 50;
-        assert!(own <= most && other <= most, "{name}: {own} pixels are no mixture, {other} are not the rasteriser's");
+        let frame = draw(0.35, 0.6);
+        let own = off(&frame.color, &mixture([0.35, 0.6], &draw), 2);
+        assert!(own * 50 <= frame.color.len(), "{name}: {own} pixels are no mixture");
+        // The tracer finds borders by pixel centres, the rasteriser by samples.
+        let (found, usual) = (apart(0.35, 0.6), apart(1.0, 1.0));
+        assert!(2 * found <= 3 * usual + 20, "{name}: {found} pixels are not the rasteriser's, usually {usual}");
     }
 }
 
@@ -123,15 +123,18 @@ fn the_nearer_of_two_boxes_tints_the_other_from_either_side() {
     let [red, blue] = [Color::rgb(230, 30, 30), Color::rgb(30, 30, 230)];
     let boxes = |y: f64, color| LayerKind::Boxes(BoxLayer { opacity: 0.5, ..BoxLayer::new(vec![cube(0.0, y, 80.0, color)]) });
     let scene = scene(vec![layer("red", boxes(-100.0, red)), layer("blue", boxes(100.0, blue))]);
-    for (from, near) in [(-1.0, 0), (1.0, 2)] {
+    for from in [-1.0, 1.0] {
         let camera = pinhole(DVec3::new(0.0, 900.0 * from, 60.0), DVec3::new(0.0, 0.0, 20.0), 20.0, IMAGE);
         let view = View::straight(camera);
         let frame = drawn(&scene, &view, false, &options(4));
-        let middle = frame.color[36 * 96 + 48];
-        let far = 2 - near;
-        assert!(middle[near] > middle[far] + 20, "{middle:?} from {from}");
-        assert_eq!(frame.id[36 * 96 + 48], 1 + near as u32 / 2);
         let draw = |a: f32, b: f32| drawn(&with(&scene, &[(0, a), (1, b)]), &view, false, &options(4));
+        let middle = 36 * 96 + 48;
+        let [both, red, blue, none] =
+            [(0.5, 0.5), (1.0, 0.0), (0.0, 1.0), (0.0, 0.0)].map(|(a, b)| draw(a, b).color[middle]);
+        let over = |near: [u8; 3], far: [u8; 3]| encode(0.5 * linear(near) + 0.25 * (linear(far) + linear(none)));
+        let (want, other) = if from < 0.0 { (over(red, blue), over(blue, red)) } else { (over(blue, red), over(red, blue)) };
+        assert!(off(&[both], &[want], 1) == 0 && off(&[both], &[other], 8) == 1, "{both:?}, {want:?} from {from}");
+        assert_eq!((frame.id[middle], frame.depth[middle]), (0, f32::INFINITY));
         assert!(off(&frame.color, &mixture([0.5, 0.5], &draw), 1) == 0);
     }
 }
@@ -144,6 +147,7 @@ fn a_line_is_under_the_colour_of_what_it_is_behind_and_over_what_it_is_before() 
         yaw: 0.0,
         color: Color::rgb(90, 90, 200),
     };
+    let mut whole_and_cut = None;
     for hidden in [Hidden::Cut, Hidden::Dash] {
         let across = |y: f64, z: f64| line(vec![DVec3::new(-150.0, y, z), DVec3::new(150.0, y, z)], hidden);
         let lines = |y: f64| LayerKind::Line(across(y, if y < 0.0 { 60.0 } else { 30.0 }));
@@ -155,21 +159,19 @@ fn a_line_is_under_the_colour_of_what_it_is_behind_and_over_what_it_is_before() 
         let view = View::straight(pinhole(DVec3::new(0.0, -400.0, 45.0), DVec3::new(0.0, 0.0, 45.0), 24.0, IMAGE));
         let draw = |a: f32, scene: &Scene| drawn(&with(scene, &[(0, a)]), &view, false, &options(4));
         let [half, whole, none] = [0.5, 1.0, 0.0].map(|a| draw(a, &scene));
-        let without = belvedere_scene::Scene { layers: scene.layers[..2].to_vec(), ..scene.clone() };
-        let bare = draw(0.5, &without);
         // Columns in the middle: the wall hides the line behind, which shows through whole at one half, without dashes.
         let rows = |frame: &Frame, id: u32| (0..72).filter(|y| frame.id[y * 96 + 48] == id).collect::<Vec<_>>();
         let (before, behind) = (rows(&none, 2), rows(&none, 3));
         assert!(before.len() >= 2 && behind.len() >= 2, "both lines are drawn");
-        assert!(rows(&whole, 3).is_empty() && rows(&half, 2) == before && rows(&half, 3) == behind);
+        let whole = &*whole_and_cut.get_or_insert(whole);
+        assert!(rows(whole, 3).is_empty() && rows(&half, 2) == before && rows(&half, 3) == behind);
         for x in 40..56 {
             for y in &before {
                 assert_eq!(half.color[y * 96 + x], none.color[y * 96 + x], "over the wall");
             }
             for y in &behind {
                 let i = y * 96 + x;
-                let solid = linear(bare.color[i]) - 0.5 * linear(draw(0.0, &without).color[i]);
-                let want = encode(solid + 0.5 * linear(none.color[i]));
+                let want = encode(0.5 * (linear(whole.color[i]) + linear(none.color[i])));
                 assert!(off(&[half.color[i]], &[want], 1) == 0, "{:?} is not {want:?}", half.color[i]);
             }
         }

@@ -132,6 +132,15 @@ impl LayerDoc {
         }
     }
 
+    /// The layer with another opacity; as it is if its kind has none.
+    pub fn with_opacity(&self, opacity: Option<f64>) -> Self {
+        let mut layer = self.clone();
+        if let (Some(own), Some(opacity)) = (layer.opacity_mut(), opacity) {
+            *own = opacity;
+        }
+        layer
+    }
+
     /// The layer with another wish of whether it is seen; terrain has none.
     pub fn with_must_see(&self, wanted: bool) -> Self {
         let mut layer = self.clone();
