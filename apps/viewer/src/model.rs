@@ -368,17 +368,6 @@ impl Model {
         Some(shown.session.scene().layers.get(id.checked_sub(1)?)?.id.clone())
     }
 
-    /// Layer and world point that a click takes: of solids that something shines through the nearest, else what the picture shows.
-    pub(crate) fn clicked(&self, share: DVec2) -> Option<(String, Option<DVec3>)> {
-        let session = &self.shown.as_ref()?.session;
-        if self.look.bent && session.scene().has_see_through() {
-            let [w, h] = session.view().pinhole().image.map(f64::from);
-            let picked = session.pick(&[(share * DVec2::new(w, h)).to_array()]).ok()?.pop()??;
-            return Some((picked.layer, Some(DVec3::from_array(picked.point))));
-        }
-        Some((self.layer_at(share)?, self.world_at(share)))
-    }
-
     /// Whether two pictures are compared.
     fn compares(&self) -> bool {
         self.look.compare != Compare::Off || self.look.inset

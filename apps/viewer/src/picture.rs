@@ -247,7 +247,7 @@ impl PictureView {
             self.measure.add(at, model);
             return;
         }
-        let Some((layer, point)) = model.clicked(at) else {
+        let Some((layer, point)) = clicked(at, model) else {
             self.picked = None;
             return;
         };
@@ -338,4 +338,15 @@ fn label(painter: &Painter, at: Pos2, align: Align2, words: &str) {
 /// A frame as an image of the window.
 pub(crate) fn image_of_frame(frame: &Frame) -> ColorImage {
     ColorImage::from_rgb([frame.width, frame.height], frame.color.as_flattened())
+}
+
+/// Layer and world point that a click takes: of solids that something shines through the nearest, else what the picture shows.
+fn clicked(at: DVec2, model: &Model) -> Option<(String, Option<DVec3>)> {
+    let session = &model.shown.as_ref()?.session;
+    if model.look.bent && session.scene().has_see_through() {
+        let [w, h] = session.view().pinhole().image.map(f64::from);
+        let picked = session.pick(&[(at * DVec2::new(w, h)).to_array()]).ok()?.pop()??;
+        return Some((picked.layer, Some(DVec3::from_array(picked.point))));
+    }
+    Some((model.layer_at(at)?, model.world_at(at)))
 }

@@ -38,11 +38,7 @@ impl Veil {
 
     /// A veil of `pixels` pixels that lets everything through.
     pub fn clear(pixels: usize) -> Self {
-        Self {
-            light: vec![Rgb::ZERO; pixels],
-            through: vec![1.0; pixels],
-            depth: vec![f32::INFINITY; pixels],
-        }
+        Self { light: vec![Rgb::ZERO; pixels], through: vec![1.0; pixels], depth: vec![f32::INFINITY; pixels] }
     }
 
     /// Rows of `chunk` pixels each, from the top.

@@ -11,7 +11,8 @@ use crate::raster::band::{BAND, sample_offsets};
 use crate::screen::{SUB, Screen};
 use crate::shade::{LightCache, Shader};
 use crate::trace::beam::RowRays;
-use crate::trace::{Part, RayHit, Tracer};
+use crate::trace::same_surface::same_surface;
+use crate::trace::{RayHit, Tracer};
 use crate::traced_veil::TracedVeil;
 use crate::volume::{self, Way};
 use belvedere_composite::branches;
@@ -32,8 +33,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Rows that a thread traces at a time.
 const ROWS: usize = 4;
-/// Neighbours farther apart than this share of their depth lie on different surfaces.
-const SAME_SURFACE: f64 = 0.02;
 
 /// Draws scenes by following curved rays: slow, without subdivision, as exact as the colours allow.
 ///
@@ -92,8 +91,7 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     job.progress.tick("lines", 0.0)?;
     let passes = Pass::all(job.view);
     let front = veil.as_ref().filter(|_| Marks::are_in(job));
-    let front =
-        front.map(|veil| marks::place(job, &passes, &screen, (&veil.nearest(&buffers.depth), Solids::Drawn)));
+    let front = front.map(|veil| marks::place(job, &passes, &screen, (&veil.nearest(&buffers.depth), Solids::Drawn)));
     let front = front.unwrap_or_default();
     let veiled = veil.as_ref().map(|veil| Veiled { veil, front: &front });
     finish_veiled(job, (&marks, veiled), &screen, None, &mut buffers);
@@ -207,17 +205,5 @@ impl Picture<'_> {
         let (x, y) = (i % width, i / width);
         (y.saturating_sub(1)..(y + 2).min(height))
             .any(|v| (x.saturating_sub(1)..(x + 2).min(width)).any(|u| !same_surface(seen[i], seen[v * width + u])))
-    }
-}
-
-/// Whether two hits lie on one surface, whose colours change smoothly.
-pub(crate) fn same_surface(a: Option<RayHit>, b: Option<RayHit>) -> bool {
-    match (a, b) {
-        (None, None) => true,
-        (Some(a), Some(b)) if a.layer == b.layer => match (a.part, b.part) {
-            (Part::Cell(..), Part::Cell(..)) => (a.depth - b.depth).abs() <= SAME_SURFACE * a.depth.min(b.depth),
-            (p, q) => p == q,
-        },
-        _ => false,
     }
 }

@@ -125,9 +125,10 @@ impl CpuRenderer {
         let samples = volume::compose(job, Way::Fast, &mut buffers)?;
         if buffers.open {
             let marks = marks::place(job, &passes, &screen, (&buffers.depth, Solids::Opaque));
-            let front = veil.as_ref().filter(|_| Marks::are_in(job)).map(|veil| {
-                marks::place(job, &passes, &screen, (&veil.nearest(&buffers.depth), Solids::Drawn))
-            });
+            let front = veil
+                .as_ref()
+                .filter(|_| Marks::are_in(job))
+                .map(|veil| marks::place(job, &passes, &screen, (&veil.nearest(&buffers.depth), Solids::Drawn)));
             let front = front.unwrap_or_default();
             job.progress.tick("lines", 0.0)?;
             let veiled = veil.as_ref().map(|veil| Veiled { veil, front: &front });

@@ -135,8 +135,11 @@ impl Composer<'_> {
 
     /// Columns in which any layer was drawn.
     fn columns(&self) -> Vec<Range<usize>> {
-        let mut drawn: Vec<Range<usize>> =
-            self.bands.iter().flat_map(|band| band.parts().filter(|part| part.drawn).map(|part| part.columns)).collect();
+        let mut drawn: Vec<Range<usize>> = self
+            .bands
+            .iter()
+            .flat_map(|band| band.parts().filter(|part| part.drawn).map(|part| part.columns))
+            .collect();
         drawn.sort_by_key(|columns| columns.start);
         let mut joined: Vec<Range<usize>> = Vec::new();
         for columns in drawn {

@@ -1,10 +1,10 @@
 //! The veil of a traced picture: rays meet every see-through layer on its own.
 
-use crate::exact::same_surface;
 use crate::screen::SUB;
 use crate::see_through::SeeThrough;
 use crate::shade::Shader;
 use crate::trace::beam::RowRays;
+use crate::trace::same_surface::same_surface;
 use crate::trace::{RayHit, Tracer};
 use belvedere_composite::color::Rgb;
 use belvedere_composite::sections::{Exposure, Sections};
@@ -140,13 +140,7 @@ impl<'a> TracedVeil<'a> {
             through *= 1.0 - layer.opacity;
         }
         let nearest = front.first();
-        Sample {
-            number: 0,
-            behind,
-            light,
-            through,
-            depth: nearest.map_or(f32::INFINITY, |(_, hit)| hit.depth as f32),
-        }
+        Sample { number: 0, behind, light, through, depth: nearest.map_or(f32::INFINITY, |(_, hit)| hit.depth as f32) }
     }
 }
 

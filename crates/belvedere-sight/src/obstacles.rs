@@ -89,7 +89,8 @@ impl<'a> Obstacles<'a> {
     pub fn seen_by(scene: &'a Scene, view: &View) -> Self {
         match Carried::new(scene, view) {
             Some(carried) => {
-                let bodies = Some(Box::new((Self::of_bodies(scene, &carried, Solids::Opaque), carried.after().clone())));
+                let bodies =
+                    Some(Box::new((Self::of_bodies(scene, &carried, Solids::Opaque), carried.after().clone())));
                 Self { bodies, ..Self::beside_bodies(scene, None, &carried, Solids::Opaque) }
             }
             None => Self::new(scene),

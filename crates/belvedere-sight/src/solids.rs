@@ -32,7 +32,8 @@ impl Solids {
     /// What of a layer, by its index, is among them.
     pub fn of(self, index: usize, kind: &LayerKind) -> LayerPart {
         let has_plate = kind.triangles().is_some_and(|mesh| mesh.has_plate);
-        let part = |see_through: bool| if has_plate { LayerPart::Triangles { see_through } } else { LayerPart::Nothing };
+        let part =
+            |see_through: bool| if has_plate { LayerPart::Triangles { see_through } } else { LayerPart::Nothing };
         match self {
             Self::Alone(layer) if layer != index => LayerPart::Nothing,
             Self::Alone(_) if has_plate => LayerPart::Triangles { see_through: true },

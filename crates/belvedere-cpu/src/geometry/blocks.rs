@@ -3,11 +3,11 @@
 use crate::cache::GroundCache;
 use crate::geometry::block::{Block, BufferPool, Counts, DrawnTriangle, Geometry, Job, SoupVertex};
 use crate::geometry::box_blocks::box_chunks;
+use crate::geometry::drawn_solids::DrawnSolids;
 use crate::geometry::grid::{CELL_TRIANGLES, cell_weights};
 use crate::geometry::layer_show::LayerShow;
 use crate::geometry::locate::{Held, JoinedPasses, Locator};
 use crate::geometry::lod::Tree;
-use crate::geometry::drawn_solids::DrawnSolids;
 use crate::geometry::mesh_blocks::Drawn;
 use crate::geometry::pass::{BodyPasses, InView, Pass};
 use crate::geometry::select::{DetailSelector, Selection};

@@ -121,7 +121,8 @@ fn sections_show_what_shines_through_in_their_part_of_the_picture() {
 #[test]
 fn the_nearer_of_two_boxes_tints_the_other_from_either_side() {
     let [red, blue] = [Color::rgb(230, 30, 30), Color::rgb(30, 30, 230)];
-    let boxes = |y: f64, color| LayerKind::Boxes(BoxLayer { opacity: 0.5, ..BoxLayer::new(vec![cube(0.0, y, 80.0, color)]) });
+    let boxes =
+        |y: f64, color| LayerKind::Boxes(BoxLayer { opacity: 0.5, ..BoxLayer::new(vec![cube(0.0, y, 80.0, color)]) });
     let scene = scene(vec![layer("red", boxes(-100.0, red)), layer("blue", boxes(100.0, blue))]);
     for from in [-1.0, 1.0] {
         let camera = pinhole(DVec3::new(0.0, 900.0 * from, 60.0), DVec3::new(0.0, 0.0, 20.0), 20.0, IMAGE);
@@ -132,7 +133,8 @@ fn the_nearer_of_two_boxes_tints_the_other_from_either_side() {
         let [both, red, blue, none] =
             [(0.5, 0.5), (1.0, 0.0), (0.0, 1.0), (0.0, 0.0)].map(|(a, b)| draw(a, b).color[middle]);
         let over = |near: [u8; 3], far: [u8; 3]| encode(0.5 * linear(near) + 0.25 * (linear(far) + linear(none)));
-        let (want, other) = if from < 0.0 { (over(red, blue), over(blue, red)) } else { (over(blue, red), over(red, blue)) };
+        let (want, other) =
+            if from < 0.0 { (over(red, blue), over(blue, red)) } else { (over(blue, red), over(red, blue)) };
         assert!(off(&[both], &[want], 1) == 0 && off(&[both], &[other], 8) == 1, "{both:?}, {want:?} from {from}");
         assert_eq!((frame.id[middle], frame.depth[middle]), (0, f32::INFINITY));
         assert!(off(&frame.color, &mixture([0.5, 0.5], &draw), 1) == 0);

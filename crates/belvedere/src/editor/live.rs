@@ -372,7 +372,8 @@ impl LiveSession {
             true => a.with_must_see(b.must_see()).with_opacity(b.opacity()) == *b,
             false => a == b,
         };
-        let opacities = document.layer.iter().map(|l| l.opacity().filter(|o| (0.0..=1.0).contains(o)).unwrap_or(1.0) as f32);
+        let opacities =
+            document.layer.iter().map(|l| l.opacity().filter(|o| (0.0..=1.0).contains(o)).unwrap_or(1.0) as f32);
         let opacities: Vec<f32> = opacities.collect();
         let same = opened.crs == document.crs
             && opened.unit == document.unit

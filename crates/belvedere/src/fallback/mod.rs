@@ -294,8 +294,7 @@ impl FallbackPlan {
         let Some(alone) = occluders::target_alone(&self.scene, &self.target) else { return Ok(self.record.clone()) };
         let alone = draw(&alone, view)?;
         let whole = in_sight::with_opaque_target(before, &self.target);
-        let (_, visible_before) =
-            in_sight::share(&self.target, &draw(whole.as_ref().unwrap_or(before), view)?, &alone);
+        let (_, visible_before) = in_sight::share(&self.target, &draw(whole.as_ref().unwrap_or(before), view)?, &alone);
         let (pixels, visible) = in_sight::share(&self.target, frame, &alone);
         let pixels_alone = Some(pixels);
         Ok(FallbackRecord { visible_before, visible, pixels_alone, ..self.record.clone() })

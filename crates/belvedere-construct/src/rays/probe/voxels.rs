@@ -261,10 +261,7 @@ mod tests {
         let scene = Scene::default()
             .with_terrain("ground", ground)
             .with_layer("box", LayerKind::Boxes(BoxLayer::new(vec![shape])))
-            .with_layer(
-                "mesh",
-                LayerKind::Mesh(MeshLayer::new(mesh.clone(), Color::rgb(1, 2, 3))),
-            );
+            .with_layer("mesh", LayerKind::Mesh(MeshLayer::new(mesh.clone(), Color::rgb(1, 2, 3))));
         let voxels = Voxels::new(&scene, &region());
         assert!(voxels.len() <= MOST_CELLS as usize * 5 / 4 && voxels.size().into_iter().max() >= Some(64));
         let mut points = Vec::new();

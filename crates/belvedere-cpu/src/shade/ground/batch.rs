@@ -354,10 +354,9 @@ impl TerrainShade<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::drawn_solids::DrawnSolids;
-    use belvedere_sight::Solids;
     use crate::cache::GroundCache;
     use crate::geometry::blocks::Blocks;
+    use crate::geometry::drawn_solids::DrawnSolids;
     use crate::geometry::pass::Pass;
     use crate::raster::band::{Band, SKY, sample_offsets};
     use crate::screen::Screen;
@@ -367,6 +366,7 @@ mod tests {
         Heightfield, Layer, LayerKind, Light, PaletteName, Progress, Relief, RenderJob, RenderOptions, Scene,
         TerrainLayer,
     };
+    use belvedere_sight::Solids;
 
     fn hills() -> Scene {
         let h =
