@@ -33,13 +33,14 @@ fn a_wall_that_is_seen_through_hides_nothing_and_is_recorded_and_picked() {
     assert!((pane["see_through"][0]["opacity"].as_f64().expect("a number") - 0.4).abs() < 1e-6);
 
     // Measures agree by both methods: the wall hides the target, what is seen through does not.
-    for (name, seen) in [("wall.toml", 0.0), ("pane.toml", 1.0), ("none.toml", 1.0)] {
+    let share = |name: &str, method: &str| {
         let measured = place.json(&["measure", name]);
-        let feature = &measured["features"][0];
-        for method in ["sight", "buffer"] {
-            let share = feature["straight"][method]["visible_share"].as_f64();
-            assert_eq!(share, Some(seen), "{name} {method}: {feature}");
-        }
+        let share = measured["features"][0]["straight"][method]["share"].as_f64();
+        share.unwrap_or_else(|| panic!("{name}: {measured}"))
+    };
+    for method in ["sight", "buffer"] {
+        let [wall, pane, none] = ["wall.toml", "pane.toml", "none.toml"].map(|name| share(name, method));
+        assert!(wall == 0.0 && pane == none && none > 0.3, "{method}: {wall}, {pane}, {none}");
     }
     place.write("p.json", "[[640, 360]]");
     let picked = |name: &str| place.json(&["pick", name, "--pixels", "p.json"])["pixels"][0]["layer"].clone();
