@@ -18,7 +18,7 @@ image = [160, 90]
 [[layer]]
 id = "town"
 kind = "city"
-source = "builtin:town?seed=7&size=400"
+source = "builtin:town?seed=7&size=500"
 [[stage]]
 kind = "spline_bend"
 presets = "progressive"
