@@ -36,12 +36,15 @@ impl SeeThrough {
     }
 }
 
+/// Sections that are drawn sample by sample, the exposures, and the offsets of all their samples.
+pub(crate) type Exposed<'a> = (&'a Sections<'a>, &'a Exposure, &'a [[i32; 2]]);
+
 /// Draws the layers into bands of their own, which hold the samples of the band `behind`, of what hides.
 pub(crate) fn draw(
     (scene, layers): (&Scene, &[SeeThrough]),
     blocks: &Blocks,
     bands: &mut [Band],
-    (ortho, thin): (bool, Option<(&Sections<'_>, &Exposure, &[[i32; 2]])>),
+    (ortho, thin): (bool, Option<Exposed<'_>>),
 ) {
     for (layer, band) in layers.iter().zip(bands) {
         blocks.draw(band, layer.solids(scene));
