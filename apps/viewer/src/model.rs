@@ -320,10 +320,10 @@ impl Model {
     }
 
     /// The object of a layer that the picture shows at a position (shares of width and height): a target for constructors.
-    pub(crate) fn object_at(&self, share: DVec2, layer: &str) -> Option<String> {
+    pub(crate) fn object_at(&self, share: DVec2, layer: &str, point: Option<DVec3>) -> Option<String> {
         let session = &self.shown.as_ref()?.session;
         let [w, h] = session.view().pinhole().image.map(f64::from);
-        object_at(session, layer, share * DVec2::new(w, h), self.world_at(share))
+        object_at(session, layer, share * DVec2::new(w, h), point)
     }
 
     /// Time for which the picture at rest has been in work, seconds; `None` if none is in work.

@@ -247,12 +247,12 @@ impl PictureView {
             self.measure.add(at, model);
             return;
         }
-        let Some(layer) = model.layer_at(at) else {
+        let Some((layer, point)) = clicked(at, model) else {
             self.picked = None;
             return;
         };
         if model.look.tool == Tool::Residue {
-            let select = model.object_at(at, &layer);
+            let select = model.object_at(at, &layer, point);
             if !crate::panels::layers::choose_clicked(model, &layer, select) {
                 model.notices.tell(tr("There is no molecule; click one of its atoms."));
                 return;
@@ -267,12 +267,12 @@ impl PictureView {
                     .tell(tr("The ground cannot be kept in sight; click a line, a point, a building or a model."));
                 return;
             }
-            let target = model.object_at(at, &layer).unwrap_or(layer);
+            let target = model.object_at(at, &layer, point).unwrap_or(layer);
             crate::panels::rays::track(model, &target);
             model.look.tool = Tool::Map;
             return;
         }
-        self.picked = model.world_at(at).map(|point| (point, layer));
+        self.picked = point.map(|point| (point, layer));
     }
 
     /// The bar between the two halves.
@@ -338,4 +338,15 @@ fn label(painter: &Painter, at: Pos2, align: Align2, words: &str) {
 /// A frame as an image of the window.
 pub(crate) fn image_of_frame(frame: &Frame) -> ColorImage {
     ColorImage::from_rgb([frame.width, frame.height], frame.color.as_flattened())
+}
+
+/// Layer and world point that a click takes: of solids that something shines through the nearest, else what the picture shows.
+fn clicked(at: DVec2, model: &Model) -> Option<(String, Option<DVec3>)> {
+    let session = &model.shown.as_ref()?.session;
+    if model.look.bent && session.scene().has_see_through() {
+        let [w, h] = session.view().pinhole().image.map(f64::from);
+        let picked = session.pick(&[(at * DVec2::new(w, h)).to_array()]).ok()?.pop()??;
+        return Some((picked.layer, Some(DVec3::from_array(picked.point))));
+    }
+    Some((model.layer_at(at)?, model.world_at(at)))
 }

@@ -67,7 +67,7 @@ fn with_marks(
     let color = frame.color.iter().map(|c| Packed::new(linear(*c))).collect();
     let (depth, id, out) = (frame.depth, frame.id, frame.color);
     let mut buffers = Buffers { open: true, color, depth, id, world: frame.world, out };
-    draw_marks(&marks, &screen, &mut buffers);
+    draw_marks(&marks, None, &screen, &mut buffers);
     let Buffers { depth, id, world, out, .. } = buffers;
     (frame.depth, frame.id, frame.world, frame.color) = (depth, id, world, out);
     frame

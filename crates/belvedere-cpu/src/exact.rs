@@ -5,30 +5,34 @@
 
 use crate::frame::checked;
 use crate::geometry::blocks::Blocks;
+use crate::geometry::pass::Pass;
 use crate::marks;
 use crate::raster::band::{BAND, sample_offsets};
 use crate::screen::{SUB, Screen};
 use crate::shade::{LightCache, Shader};
 use crate::trace::beam::RowRays;
-use crate::trace::{Part, RayHit, Tracer};
+use crate::trace::same_surface::same_surface;
+use crate::trace::{RayHit, Tracer};
+use crate::traced_veil::TracedVeil;
 use crate::volume::{self, Way};
 use belvedere_composite::branches;
 use belvedere_composite::buffers::Buffers;
 use belvedere_composite::color::{Packed, Rgb};
-use belvedere_composite::finish::{buffers, finish};
+use belvedere_composite::finish::{buffers, finish_veiled};
 use belvedere_composite::layers;
+use belvedere_composite::marks::Marks;
 use belvedere_composite::sections::{Exposure, Sections};
+use belvedere_composite::veil::Veiled;
 use belvedere_core::DVec2;
 use belvedere_scene::Instant;
 use belvedere_scene::{Frame, FrameStats, LayerKind, RenderError, RenderJob, Renderer};
+use belvedere_sight::Solids;
 use rayon::prelude::*;
 use std::cell::OnceCell;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Rows that a thread traces at a time.
 const ROWS: usize = 4;
-/// Neighbours farther apart than this share of their depth lie on different surfaces.
-const SAME_SURFACE: f64 = 0.02;
 
 /// Draws scenes by following curved rays: slow, without subdivision, as exact as the colours allow.
 ///
@@ -70,7 +74,7 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     let (sections, own) = (Sections::new(job), sample_offsets(job.options.samples));
     let exposure = Exposure::new(if sections.is_some() { job.options.exposures as usize } else { 1 }, own.len());
     let offsets = exposure.offsets(&own);
-    let tracer = Tracer::exposed(job.scene, job.view, sections, exposure);
+    let tracer = Tracer::exposed((job.scene, Solids::Opaque), job.view, sections, exposure.clone());
     let (blocks, light) = (Blocks::default(), LightCache::default());
     let shader = Shader::new(job, &screen, &blocks, &light);
     job.progress.tick("prepare", 1.0)?;
@@ -78,10 +82,19 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     let picture = Picture { job, screen: &screen, tracer: &tracer, shader: &shader, offsets };
     let seen = picture.trace()?;
     picture.color(&seen, &mut buffers)?;
+    let veil = match TracedVeil::new(job, (&shader, &tracer), &picture.offsets, &exposure) {
+        Some(layers) => Some(layers.trace(&seen)?),
+        None => None,
+    };
     let samples = volume::compose(job, Way::Exact, &mut buffers)?;
     let marks = marks::place_alone(job, &screen, &buffers.depth);
     job.progress.tick("lines", 0.0)?;
-    finish(job, &marks, &screen, None, &mut buffers);
+    let passes = Pass::all(job.view);
+    let front = veil.as_ref().filter(|_| Marks::are_in(job));
+    let front = front.map(|veil| marks::place(job, &passes, &screen, (&veil.nearest(&buffers.depth), Solids::Drawn)));
+    let front = front.unwrap_or_default();
+    let veiled = veil.as_ref().map(|veil| Veiled { veil, front: &front });
+    finish_veiled(job, (&marks, veiled), &screen, None, &mut buffers);
     job.progress.tick("lines", 1.0)?;
     let triangles_in = job.scene.layers.iter().map(|l| match &l.kind {
         LayerKind::Terrain(t) => 2 * ((t.heightfield.cols() - 1) * (t.heightfield.rows() - 1)) as u64,
@@ -192,16 +205,5 @@ impl Picture<'_> {
         let (x, y) = (i % width, i / width);
         (y.saturating_sub(1)..(y + 2).min(height))
             .any(|v| (x.saturating_sub(1)..(x + 2).min(width)).any(|u| !same_surface(seen[i], seen[v * width + u])))
-    }
-}
-
-fn same_surface(a: Option<RayHit>, b: Option<RayHit>) -> bool {
-    match (a, b) {
-        (None, None) => true,
-        (Some(a), Some(b)) if a.layer == b.layer => match (a.part, b.part) {
-            (Part::Cell(..), Part::Cell(..)) => (a.depth - b.depth).abs() <= SAME_SURFACE * a.depth.min(b.depth),
-            (p, q) => p == q,
-        },
-        _ => false,
     }
 }

@@ -1,8 +1,10 @@
 //! Checks before a picture is drawn: options, threads, memory.
 
 use crate::raster::band::BAND;
+use crate::see_through::SeeThrough;
 use crate::shade::ground_bytes;
 use belvedere_composite::stylise::{self, Relief};
+use belvedere_composite::veil::Veil;
 use belvedere_scene::{Frame, LayerKind, RenderError, RenderJob};
 
 /// Checks the options and runs `render` on the given number of threads.
@@ -38,9 +40,11 @@ fn check_memory(job: &RenderJob<'_>) -> Result<(), RenderError> {
         + 4
         + 6
         + if job.options.aux.world { 24 } else { 0 }
+        + if job.scene.has_see_through() { Veil::BYTES } else { 0 }
         + if stylise::is_on(job) { 64 + Relief::bytes(u64::from(samples)) } else { 0 };
     let threads = if job.options.threads == 0 { rayon::current_num_threads() } else { job.options.threads } as u64;
-    let bands = threads * (BAND as u64) * u64::from(width) * (u64::from(samples) + 1) * 8;
+    let layers = 1 + SeeThrough::of(job.scene).len() as u64;
+    let bands = layers * threads * (BAND as u64) * u64::from(width) * (u64::from(samples) + 1) * 8;
     // Where planes cross, ground beside the picture may be drawn by several records.
     let passes = job.view.records().min(2) as u64;
     let drawn = |nodes: u64| {

@@ -9,8 +9,9 @@
 //! 3. `raster`: bands of image rows are drawn independently, the nearest primitive at every sample. No order of drawing and no
 //!    number of threads changes a byte.
 //! 4. `shade`: samples become colours. The light on the ground is fixed to the map and remembered (`cache`) from frame to frame.
-//! 5. `volume`: light that rays gather in voxels, up to the surfaces, is laid over them.
-//! 6. [`belvedere_composite`]: stylisation, then lines, outlines, points and names, by lines of sight through the surfaces themselves
+//! 5. `see_through`: solids that something shines through are drawn into samples of their own, which become a veil over the picture.
+//! 6. `volume`: light that rays gather in voxels, up to the surfaces, is laid over them.
+//! 7. [`belvedere_composite`]: stylisation, then lines, outlines, points and names, then the veil, by lines of sight through the surfaces themselves
 //!    (`marks`, `trace`).
 //!
 //! Where styling sections show layers in part, samples choose by thresholds, and exposures of a band are averaged. Where rays part,
@@ -27,10 +28,12 @@ mod raster;
 mod rasteriser;
 mod resolve;
 mod screen;
+mod see_through;
 mod shade;
 mod simd;
 mod tint;
 mod trace;
+mod traced_veil;
 mod volume;
 
 pub use exact::ExactRenderer;

@@ -8,37 +8,44 @@ use belvedere_composite::screen::{COARSE_PX, Screen};
 use belvedere_composite::sections::{Exposure, Sections};
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{LayerKind, RenderJob};
+use belvedere_sight::Solids;
 use std::sync::OnceLock;
 
 /// Terrain with more nodes is not prepared for lines of sight in every frame.
 const MAX_NODES: usize = 64 << 20;
 /// The marks of a job.
-/// * `depth`: surfaces at the pixel centres.
-pub(crate) fn place(job: &RenderJob<'_>, passes: &[Pass<'_>], screen: &Screen, depth: &[f32]) -> Marks {
+/// * `depth`: surfaces at the pixel centres; `solids`: those that hide lines and points.
+pub(crate) fn place(
+    job: &RenderJob<'_>,
+    passes: &[Pass<'_>],
+    screen: &Screen,
+    (depth, solids): (&[f32], Solids),
+) -> Marks {
     let passes: Vec<&dyn drawn::Pass> = passes.iter().map(|pass| pass as &dyn drawn::Pass).collect();
-    let sight = TracedSight { job, tracer: OnceLock::new() };
+    let sight = TracedSight { job, solids, tracer: OnceLock::new() };
     let tolerance_px = job.options.tolerance_px.max(0.01);
     Marks::new(job, &Drawn { passes: &passes, screen, tolerance_px, depth, sight: &sight })
 }
 
 /// The same for surfaces that were not drawn by passes.
 pub(crate) fn place_alone(job: &RenderJob<'_>, screen: &Screen, depth: &[f32]) -> Marks {
-    place(job, &Pass::all(job.view), screen, depth)
+    place(job, &Pass::all(job.view), screen, (depth, Solids::Opaque))
 }
 
 /// Lines of sight through the exact tracer, which is prepared on first use.
 struct TracedSight<'j> {
     job: &'j RenderJob<'j>,
+    solids: Solids,
     tracer: OnceLock<Option<Tracer<'j>>>,
 }
 
 impl TracedSight<'_> {
     fn tracer(&self) -> Option<&Tracer<'_>> {
-        self.tracer.get_or_init(|| prepared(self.job)).as_ref()
+        self.tracer.get_or_init(|| prepared(self.job, self.solids)).as_ref()
     }
 }
 
-fn prepared<'a>(job: &RenderJob<'a>) -> Option<Tracer<'a>> {
+fn prepared<'a>(job: &RenderJob<'a>, solids: Solids) -> Option<Tracer<'a>> {
     let nodes = |kind: &LayerKind| match kind {
         LayerKind::Terrain(t) => t.heightfield.cols() * t.heightfield.rows(),
         _ => 0,
@@ -46,7 +53,7 @@ fn prepared<'a>(job: &RenderJob<'a>) -> Option<Tracer<'a>> {
     // The lines of a coarse picture are hidden by its depths alone.
     let nodes: usize = job.scene.layers.iter().map(|l| nodes(&l.kind)).sum();
     (nodes <= MAX_NODES && job.options.tolerance_px < COARSE_PX)
-        .then(|| Tracer::exposed(job.scene, job.view, Sections::new(job), Exposure::even()))
+        .then(|| Tracer::exposed((job.scene, solids), job.view, Sections::new(job), Exposure::even()))
 }
 
 impl Sight for TracedSight<'_> {

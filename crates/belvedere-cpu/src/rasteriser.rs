@@ -3,6 +3,7 @@
 use crate::cache::{GroundCache, lock};
 use crate::frame::checked;
 use crate::geometry::blocks::Blocks;
+use crate::geometry::drawn_solids::DrawnSolids;
 use crate::geometry::lod::Tree;
 use crate::geometry::pass::{BodyPasses, Pass};
 use crate::marks;
@@ -10,19 +11,22 @@ use crate::raster::band::{BAND, Band, sample_offsets};
 use crate::resolve::relief::resolve_relief;
 use crate::resolve::{Colors, Rows, resolve};
 use crate::screen::Screen;
+use crate::see_through::{self, Composer, SeeThrough};
 use crate::shade::pixel_center::PixelCenters;
 use crate::shade::{LightCache, Shader};
 use crate::volume::{self, Way};
 use belvedere_composite::branches;
 use belvedere_composite::buffers::Buffers;
 use belvedere_composite::color::Packed;
-use belvedere_composite::finish::{buffers_in, finish};
+use belvedere_composite::finish::{buffers_in, finish_veiled};
 use belvedere_composite::layers;
+use belvedere_composite::marks::Marks;
 use belvedere_composite::sections::{Exposure, Sections};
 use belvedere_composite::stylise::Relief;
+use belvedere_composite::veil::{Veil, Veiled};
 use belvedere_scene::Instant;
 use belvedere_scene::{Frame, FrameStats, RenderError, RenderJob, Renderer};
-use belvedere_sight::Carried;
+use belvedere_sight::{Carried, Solids};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex};
@@ -114,12 +118,21 @@ impl CpuRenderer {
         let centers = job.options.aux.exact.then(|| PixelCenters::new(job.scene, &passes, bodies.as_ref(), &screen));
         let surfaces = Surfaces { job, screen: &screen, blocks, shader: &shader, centers: centers.as_ref() };
         let mut relief = Relief::room(job, sample_offsets(job.options.samples).len().max(2) - 1);
-        surfaces.draw(sections.as_ref(), bands, &mut buffers, relief.as_mut())?;
+        let see_through = SeeThrough::of(job.scene);
+        let mut veil = (!see_through.is_empty()).then(|| Veil::clear(buffers.out.len()));
+        let spare = Spare { bands, layers: &see_through };
+        surfaces.draw(sections.as_ref(), spare, &mut buffers, (relief.as_mut(), veil.as_mut()))?;
         let samples = volume::compose(job, Way::Fast, &mut buffers)?;
         if buffers.open {
-            let marks = marks::place(job, &passes, &screen, &buffers.depth);
+            let marks = marks::place(job, &passes, &screen, (&buffers.depth, Solids::Opaque));
+            let front = veil
+                .as_ref()
+                .filter(|_| Marks::are_in(job))
+                .map(|veil| marks::place(job, &passes, &screen, (&veil.nearest(&buffers.depth), Solids::Drawn)));
+            let front = front.unwrap_or_default();
             job.progress.tick("lines", 0.0)?;
-            finish(job, &marks, &screen, relief, &mut buffers);
+            let veiled = veil.as_ref().map(|veil| Veiled { veil, front: &front });
+            finish_veiled(job, (&marks, veiled), &screen, relief, &mut buffers);
             job.progress.tick("lines", 1.0)?;
         }
         let counts = blocks.counts();
@@ -146,6 +159,13 @@ impl CpuRenderer {
     }
 }
 
+/// Bands for reuse, and the layers that need bands of their own.
+#[derive(Clone, Copy)]
+struct Spare<'a> {
+    bands: &'a Mutex<Vec<Band>>,
+    layers: &'a [SeeThrough],
+}
+
 /// Inputs for rasterising the bands of a frame.
 struct Surfaces<'a> {
     job: &'a RenderJob<'a>,
@@ -159,11 +179,13 @@ impl Surfaces<'_> {
     fn draw(
         &self,
         sections: Option<&Sections<'_>>,
-        spare: &Mutex<Vec<Band>>,
+        spare: Spare<'_>,
         buffers: &mut Buffers,
-        relief: Option<&mut Relief>,
+        (relief, veil): (Option<&mut Relief>, Option<&mut Veil>),
     ) -> Result<(), RenderError> {
         let Self { job, screen, blocks, shader, centers } = *self;
+        let Spare { bands: spare, layers } = spare;
+        let opaque = DrawnSolids { scene: job.scene, solids: Solids::Opaque };
         let chunk = BAND * screen.width as usize;
         let bands = (screen.height as usize).div_ceil(BAND);
         let done = AtomicUsize::new(0);
@@ -175,6 +197,10 @@ impl Surfaces<'_> {
         };
         let mut relief = match relief {
             Some(relief) => relief.bands(chunk),
+            None => (0..bands).map(|_| None).collect(),
+        };
+        let mut veil = match veil {
+            Some(veil) => veil.bands(chunk),
             None => (0..bands).map(|_| None).collect(),
         };
         let mut colors: Vec<Colors<'_>> = if buffers.open {
@@ -189,21 +215,36 @@ impl Surfaces<'_> {
             .zip(depth)
             .zip(id)
             .zip(worlds.par_iter_mut())
-            .zip(relief.par_iter_mut())
+            .zip(relief.par_iter_mut().zip(veil.par_iter_mut()))
             .enumerate()
-            .try_for_each(|(i, ((((color, depth), id), world), relief))| {
+            .try_for_each(|(i, ((((color, depth), id), world), (relief, veil)))| {
                 let y0 = (i * BAND) as i32;
-                let mut band = lock(spare).pop().unwrap_or_default();
-                band.clear(y0, (y0 + BAND as i32).min(screen.height), screen.width, &offsets);
-                blocks.draw(&mut band);
+                let cleared = || {
+                    let mut band = lock(spare).pop().unwrap_or_default();
+                    band.clear(y0, (y0 + BAND as i32).min(screen.height), screen.width, &offsets);
+                    band
+                };
+                let mut band = cleared();
+                blocks.draw(&mut band, opaque);
+                let mut thin = None;
                 if let Some(sections) = sections.filter(|_| blocks.are_thin_in(&band)) {
                     band.expose(exposure.offsets(&offsets));
-                    blocks.draw_thin(&mut band, screen.ortho, sections, &exposure);
+                    blocks.draw_thin(&mut band, screen.ortho, (sections, &exposure), opaque);
+                    thin = Some((sections, &exposure));
                 }
                 if let Some(relief) = relief {
                     resolve_relief(&band, shader, relief);
                 }
                 resolve(&band, shader, screen, &mut Rows { color, depth, id, world: world.as_deref_mut(), centers });
+                if let Some(veil) = veil {
+                    let mut bands: Vec<Band> = layers.iter().map(|_| cleared()).collect();
+                    let offsets = band.offsets.clone();
+                    let thin = thin.map(|(sections, exposure)| (sections, exposure, &offsets[..]));
+                    see_through::draw((job.scene, layers), blocks, &mut bands, (screen.ortho, thin));
+                    let composer = Composer { layers, behind: &band, bands: &bands, shader, screen };
+                    composer.compose(veil);
+                    lock(spare).extend(bands);
+                }
                 lock(spare).push(band);
                 let done = done.fetch_add(1, Ordering::Relaxed) + 1;
                 Ok(job.progress.tick("draw", done as f64 / bands as f64)?)

@@ -171,7 +171,7 @@ mod tests {
         let bodies = Bodies::of(&LayerKind::Mesh(wall)).unwrap();
         assert!(bodies.feet()[0].distance(DVec3::X / 3.0) < 1e-7, "a wall stands on the mean of its corners");
         let shape = BoxShape { base: DVec3::ONE, size: DVec3::ONE, yaw: 0.0, color: Color::rgb(1, 2, 3) };
-        let boxes = |rigid| Bodies::of(&LayerKind::Boxes(BoxLayer { boxes: vec![shape; 2], rigid }));
+        let boxes = |rigid| Bodies::of(&LayerKind::Boxes(BoxLayer { rigid, ..BoxLayer::new(vec![shape; 2]) }));
         assert_eq!(boxes(false), None);
         let bodies = boxes(true).unwrap();
         assert_eq!([11, 12, 24].map(|t| bodies.of_triangle(t)), [Some(0), Some(1), None]);

@@ -370,18 +370,26 @@ impl BoxShape {
 }
 
 /// A layer of boxes.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct BoxLayer {
     /// Boxes.
     pub boxes: Vec<BoxShape>,
     /// Whether each box is a rigid body, see [`crate::Bodies`].
     pub rigid: bool,
+    /// Opacity, 0..=1, see [`LayerKind::opacity`].
+    pub opacity: f32,
+}
+
+impl Default for BoxLayer {
+    fn default() -> Self {
+        Self::new(Vec::new())
+    }
 }
 
 impl BoxLayer {
-    /// Boxes that are displaced point by point.
+    /// Opaque boxes that are displaced point by point.
     pub fn new(boxes: Vec<BoxShape>) -> Self {
-        Self { boxes, rigid: false }
+        Self { boxes, rigid: false, opacity: 1.0 }
     }
 }
 
@@ -447,11 +455,15 @@ impl LayerKind {
     }
 
     /// Whether both are known to be one surface and differ at most in colour: terrain on the same heights, meshes of the same triangles
-    /// that move alike.
+    /// that move alike and are as opaque.
     pub fn is_surface_of(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Terrain(a), Self::Terrain(b)) => Arc::ptr_eq(&a.heightfield, &b.heightfield),
-            (Self::Mesh(a), Self::Mesh(b)) => a.mesh.is_surface_of(&b.mesh) && a.rigid == b.rigid,
+            (Self::Mesh(a), Self::Mesh(b)) => {
+                a.mesh.is_surface_of(&b.mesh)
+                    && a.rigid == b.rigid
+                    && (a.opacity, a.has_plate) == (b.opacity, b.has_plate)
+            }
             _ => false,
         }
     }
@@ -463,6 +475,31 @@ impl LayerKind {
                 a.heightfield = Arc::clone(&b.heightfield);
             }
             (Self::Mesh(a), Self::Mesh(b)) => a.mesh.share(&b.mesh),
+            _ => {}
+        }
+    }
+
+    /// Opacity of a solid (boxes, mesh, molecule), 0..=1: 1 hides what is behind, at 0 the layer is not drawn. Of each layer the nearest
+    /// surface of a line of sight counts alone, so no inner side shows. 1 for everything else.
+    pub fn opacity(&self) -> f32 {
+        match self {
+            Self::Boxes(boxes) => boxes.opacity,
+            kind => kind.triangles().map_or(1.0, |mesh| mesh.opacity),
+        }
+    }
+
+    /// Whether what is behind the layer shines through it: it then hides nothing, but for its plate
+    /// ([`MeshLayer::has_plate`]).
+    pub fn is_see_through(&self) -> bool {
+        self.opacity() < 1.0
+    }
+
+    /// Sets the opacity of a solid, 0..=1; other layers stay as they are.
+    pub fn set_opacity(&mut self, opacity: f32) {
+        match self {
+            Self::Boxes(boxes) => boxes.opacity = opacity,
+            Self::Mesh(mesh) => mesh.opacity = opacity,
+            Self::Molecule(molecule) => molecule.surface.opacity = opacity,
             _ => {}
         }
     }

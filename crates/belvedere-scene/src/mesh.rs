@@ -349,12 +349,22 @@ pub struct MeshLayer {
     pub wanted: Option<Vec<u32>>,
     /// The parts that bends carry as rigid bodies.
     pub rigid: RigidParts,
+    /// Opacity, 0..=1, see [`crate::LayerKind::opacity`].
+    pub opacity: f32,
+    /// Whether part 0 is the ground between the others, which stays opaque.
+    pub has_plate: bool,
 }
 
 impl MeshLayer {
-    /// A mesh without names.
+    /// An opaque mesh without names.
     pub fn new(mesh: Mesh, color: Color) -> Self {
-        Self { mesh, color, names: Vec::new(), wanted: None, rigid: RigidParts::None }
+        let (names, wanted, rigid) = (Vec::new(), None, RigidParts::None);
+        Self { mesh, color, names, wanted, rigid, opacity: 1.0, has_plate: false }
+    }
+
+    /// Whether what is behind a triangle, by its number, shines through it.
+    pub fn is_see_through_at(&self, triangle: usize) -> bool {
+        self.opacity < 1.0 && !(self.has_plate && self.mesh.part(triangle) == Some(0))
     }
 
     /// Numbers of the parts whose path, or a step of it, is `name`; case does not matter.

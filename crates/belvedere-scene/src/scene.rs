@@ -81,6 +81,11 @@ impl Scene {
         self
     }
 
+    /// Whether something shines through any layer, see [`LayerKind::is_see_through`].
+    pub fn has_see_through(&self) -> bool {
+        self.layers.iter().any(|layer| layer.kind.is_see_through())
+    }
+
     /// The first terrain layer's heightfield.
     pub fn terrain(&self) -> Option<&Heightfield> {
         self.layers.iter().find_map(|l| match &l.kind {

@@ -12,6 +12,7 @@ mod mesh_tree;
 mod obstacles;
 mod openness;
 mod pyramid;
+mod solids;
 mod voxels;
 
 pub use boxes::{BoxTree, UprightBox};
@@ -26,4 +27,5 @@ pub use mesh_tree::MeshTree;
 pub use obstacles::{Obstacles, SightOptions};
 pub use openness::{GroundHeight, OpennessSettings, with_ambient_occlusion};
 pub use pyramid::Pyramid;
+pub use solids::{LayerPart, Solids};
 pub use voxels::Voxels;

@@ -1,10 +1,11 @@
 //! Lines of sight along straight and curved rays, past terrain, boxes and meshes.
 
-use crate::{BoxTree, Carried, Ground, Lift, MeshTree};
+use crate::{BoxTree, Carried, Ground, LayerPart, Lift, MeshTree, Solids};
 use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::{LayerKind, Scene};
 
-/// Terrain, boxes and meshes of a scene, which can hide points.
+/// Terrain, boxes and meshes of a scene, which can hide points. Those that something shines through hide none, and are left out unless
+/// other [`Solids`] are asked for.
 pub struct Obstacles<'a> {
     grounds: Vec<(usize, Ground<'a>)>,
     boxes: BoxTree,
@@ -19,6 +20,8 @@ struct Without<'w> {
     layers: &'w [usize],
     /// Parts of a mesh or boxes of a layer, by its index and their numbers.
     parts: Option<(usize, &'w [u32])>,
+    /// Those that are kept.
+    solids: Solids,
 }
 
 /// Options of the test of a line of sight.
@@ -36,7 +39,12 @@ pub struct SightOptions {
 impl<'a> Obstacles<'a> {
     /// Prepares terrain, boxes and meshes of `scene`: one pass over the nodes and the triangles.
     pub fn new(scene: &'a Scene) -> Self {
-        Self::lifted(scene, None)
+        Self::of_solids(scene, Solids::Opaque)
+    }
+
+    /// The same with other solids.
+    pub fn of_solids(scene: &'a Scene, solids: Solids) -> Self {
+        Self::lifted(scene, None, solids)
     }
 
     /// The same without some layers, by their index, so that a feature does not hide itself.
@@ -50,18 +58,28 @@ impl<'a> Obstacles<'a> {
     }
 
     /// The same where the ground, and boxes and meshes with it, may be displaced vertically.
-    pub fn lifted(scene: &'a Scene, lift: Option<Lift<'_>>) -> Self {
-        Self::of(scene, Without::default(), lift, None)
+    pub fn lifted(scene: &'a Scene, lift: Option<Lift<'_>>, solids: Solids) -> Self {
+        Self::of(scene, Without { solids, ..Without::default() }, lift, None)
     }
 
     /// The same without rigid bodies, see [`Obstacles::of_bodies`].
-    pub fn beside_bodies(scene: &'a Scene, lift: Option<Lift<'_>>, carried: &Carried) -> Self {
-        Self::of(scene, Without::default(), lift, Some(carried))
+    pub fn beside_bodies(scene: &'a Scene, lift: Option<Lift<'_>>, carried: &Carried, solids: Solids) -> Self {
+        Self::of(scene, Without { solids, ..Without::default() }, lift, Some(carried))
     }
 
     /// Rigid bodies alone, as a view carries them: in the space of [`Carried::after`]. Triangles are numbered by [`belvedere_scene::Mesh::part`].
-    pub fn of_bodies(scene: &Scene, carried: &Carried) -> Obstacles<'static> {
-        let mesh = |i: usize| Some((i, MeshTree::owned(carried.mesh(scene, i)?)));
+    pub fn of_bodies(scene: &Scene, carried: &Carried, solids: Solids) -> Obstacles<'static> {
+        let mesh = |i: usize| {
+            let (kind, mesh) = (&scene.layers[i].kind, carried.mesh(scene, i)?);
+            match (solids.of(i, kind), kind.triangles()) {
+                (LayerPart::Nothing, _) => None,
+                (held @ LayerPart::Triangles { .. }, Some(layer)) => {
+                    let holds = |t: usize| mesh.part(t).is_none_or(|number| held.holds(layer, number as usize));
+                    Some((i, MeshTree::owned(mesh.only(&holds))))
+                }
+                _ => Some((i, MeshTree::owned(mesh))),
+            }
+        };
         let meshes = (0..scene.layers.len()).filter_map(mesh).collect();
         Obstacles { grounds: Vec::new(), boxes: BoxTree::new([], None), meshes, bodies: None }
     }
@@ -71,8 +89,9 @@ impl<'a> Obstacles<'a> {
     pub fn seen_by(scene: &'a Scene, view: &View) -> Self {
         match Carried::new(scene, view) {
             Some(carried) => {
-                let bodies = Some(Box::new((Self::of_bodies(scene, &carried), carried.after().clone())));
-                Self { bodies, ..Self::beside_bodies(scene, None, &carried) }
+                let bodies =
+                    Some(Box::new((Self::of_bodies(scene, &carried, Solids::Opaque), carried.after().clone())));
+                Self { bodies, ..Self::beside_bodies(scene, None, &carried, Solids::Opaque) }
             }
             None => Self::new(scene),
         }
@@ -81,25 +100,33 @@ impl<'a> Obstacles<'a> {
     fn of(scene: &'a Scene, without: Without<'_>, lift: Option<Lift<'_>>, carried: Option<&Carried>) -> Self {
         let (mut grounds, mut boxes, mut meshes) = (Vec::new(), Vec::new(), Vec::new());
         for (i, layer) in scene.layers.iter().enumerate().filter(|(i, _)| !without.layers.contains(i)) {
+            let held = without.solids.of(i, &layer.kind);
+            if held == LayerPart::Nothing {
+                continue;
+            }
             let left_out = without.parts.filter(|(layer, _)| *layer == i).map_or(&[][..], |(_, parts)| parts);
             match &layer.kind {
                 LayerKind::Terrain(t) => grounds.push((i, Ground::lifted(&t.heightfield, lift))),
                 LayerKind::Boxes(_) if carried.is_some_and(|c| c.layer(i).is_some()) => {}
                 LayerKind::Boxes(b) => {
-                    let held = b.boxes.iter().enumerate().filter(|(k, _)| !left_out.contains(&(*k as u32)));
-                    boxes.extend(held.map(|(k, shape)| ([i, k], shape)));
+                    let kept = b.boxes.iter().enumerate().filter(|(k, _)| !left_out.contains(&(*k as u32)));
+                    boxes.extend(kept.map(|(k, shape)| ([i, k], shape)));
                 }
                 LayerKind::Mesh(_) | LayerKind::Molecule(_) => {
                     let Some(m) = layer.kind.triangles() else { continue };
-                    if !left_out.is_empty() {
+                    if !left_out.is_empty() && held == LayerPart::Everything {
                         meshes.push((i, MeshTree::without_parts(&m.mesh, left_out)));
                         continue;
                     }
                     let b = m.mesh.bounds();
                     let lift = lift.filter(|_| !b.is_empty()).map(|lift| lift(b.min.truncate(), b.max.truncate()));
                     let lift = lift.unwrap_or([0.0; 2]);
-                    let loose = carried.and_then(|c| c.layer(i)).map(|bodies| {
-                        (0..m.mesh.triangles().len() as u32).filter(|t| !bodies.holds(*t as usize)).collect::<Vec<_>>()
+                    let bodies = carried.and_then(|c| c.layer(i));
+                    let is_in = |t: usize| !left_out.iter().any(|part| m.mesh.part(t) == Some(*part));
+                    let is_loose = |t: usize| bodies.is_none_or(|b| !b.holds(t)) && held.holds(m, t) && is_in(t);
+                    let some = bodies.is_some() || held != LayerPart::Everything;
+                    let loose = some.then(|| {
+                        (0..m.mesh.triangles().len() as u32).filter(|t| is_loose(*t as usize)).collect::<Vec<_>>()
                     });
                     match loose {
                         Some(loose) if loose.is_empty() => {}

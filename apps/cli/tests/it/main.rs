@@ -34,6 +34,7 @@ mod rigid;
 mod rivers;
 mod scenes;
 mod schema_check;
+mod see_through;
 mod shell;
 mod speed;
 mod strip;

@@ -119,6 +119,17 @@ impl Marks {
         }
     }
 
+    /// Coverage of the pixels of a band by parts of lines, outlines and points that nothing hides, 0..=1 with their opacity; empty if
+    /// there are none. `y0` is the first row, `pixels` the size of the band.
+    pub(crate) fn visible_cover(&self, y0: i32, screen: &Screen, pixels: usize) -> Vec<f32> {
+        let mut masks = ribbon::CoverageMasks::default();
+        let mut cover = Vec::new();
+        for sheet in &self.sheets {
+            sheet.add_visible(&mut masks, y0, screen.width, pixels, &mut cover);
+        }
+        cover
+    }
+
     /// Writes the names over the finished picture.
     pub fn write_names(&self, pixels: &mut [[u8; 3]], width: usize) {
         self.labels.draw(&mut Canvas::new(pixels, width));

@@ -104,17 +104,45 @@ impl StrokeLayer {
         Self { strokes, bands, inks, id, rows }
     }
 
-    /// Draws the band whose first row is `y0`.
-    pub(crate) fn draw(&self, masks: &mut CoverageMasks, y0: i32, width: i32, color: &mut [Packed], id: &mut [u32]) {
-        let Some(band) = self.bands.get(y0 as usize / self.rows).filter(|b| !b.is_empty()) else { return };
+    /// Coverage of the band whose first row is `y0`, a band of `pixels` pixels; whether it has any stroke.
+    fn fill(&self, masks: &mut CoverageMasks, y0: i32, width: i32, pixels: usize) -> bool {
+        let Some(band) = self.bands.get(y0 as usize / self.rows).filter(|b| !b.is_empty()) else { return false };
         for lane in &mut masks.lanes {
             lane.clear();
-            lane.resize(color.len(), 0.0);
+            lane.resize(pixels, 0.0);
         }
-        let rows = color.len() as i32 / width.max(1);
+        let rows = pixels as i32 / width.max(1);
         for &i in band {
             let s = &self.strokes[i as usize];
             cover(s, &mut masks.lanes[s.lane as usize], y0, rows, width);
+        }
+        true
+    }
+
+    /// Adds the coverage by visible parts, with their opacity, to that of other layers; `all` stays empty while there is none.
+    pub(crate) fn add_visible(
+        &self,
+        masks: &mut CoverageMasks,
+        y0: i32,
+        width: i32,
+        pixels: usize,
+        all: &mut Vec<f32>,
+    ) {
+        if !self.fill(masks, y0, width, pixels) {
+            return;
+        }
+        all.resize(pixels, 0.0);
+        let [_, casing, fill, _] = &masks.lanes;
+        let [_, rim, ink] = self.inks.map(|ink| ink.alpha);
+        for (all, (c, f)) in all.iter_mut().zip(casing.iter().zip(fill)) {
+            *all = 1.0 - (1.0 - *all) * (1.0 - rim * c) * (1.0 - ink * f);
+        }
+    }
+
+    /// Draws the band whose first row is `y0`.
+    pub(crate) fn draw(&self, masks: &mut CoverageMasks, y0: i32, width: i32, color: &mut [Packed], id: &mut [u32]) {
+        if !self.fill(masks, y0, width, color.len()) {
+            return;
         }
         let [hidden, casing, fill, shown] = &masks.lanes;
         for i in 0..color.len() {

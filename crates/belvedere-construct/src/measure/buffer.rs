@@ -73,7 +73,9 @@ impl Job<'_> {
         let aux = Aux { exact: true, ..Aux::default() };
         let options =
             RenderOptions { samples: 1, lod_px: 0.0, tolerance_px: STRAIGHT_PX, aux, ..RenderOptions::default() };
-        let job = RenderJob { scene: self.scene, view, light: self.light, options: &options, progress: self.progress };
+        let judged = judged(self.scene);
+        let scene = judged.as_ref().unwrap_or(self.scene);
+        let job = RenderJob { scene, view, light: self.light, options: &options, progress: self.progress };
         let frame = self.renderer.render(&job)?;
         let expected = frame.width * frame.height;
         let [width, height] = view.pinhole().image.map(|n| n as usize);
@@ -109,6 +111,19 @@ impl Job<'_> {
         }
         Ok(())
     }
+}
+
+/// The scene as it hides: without solids that something shines through, but for those that must be seen, which are drawn whole; `None` if
+/// the scene is that already.
+fn judged(scene: &Scene) -> Option<Scene> {
+    if !scene.has_see_through() {
+        return None;
+    }
+    let mut judged = scene.clone();
+    for layer in judged.layers.iter_mut().filter(|layer| layer.kind.is_see_through()) {
+        layer.kind.set_opacity(f32::from(u8::from(layer.must_see)));
+    }
+    Some(judged)
 }
 
 /// Tolerance within which the picture for the depth test draws bent edges straight, pixels: half a pixel, as in usual pictures, is

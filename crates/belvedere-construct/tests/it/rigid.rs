@@ -47,7 +47,7 @@ fn scene(rigid: bool, towers_must_be_seen: bool) -> Scene {
     let layer = |id: &str, must_see, kind| Layer { id: id.into(), must_see, kind };
     let layers = vec![
         layer("ground", false, LayerKind::Terrain(TerrainLayer::new(flat))),
-        layer("towers", towers_must_be_seen, LayerKind::Boxes(BoxLayer { boxes: towers(), rigid })),
+        layer("towers", towers_must_be_seen, LayerKind::Boxes(BoxLayer { rigid, ..BoxLayer::new(towers()) })),
         layer("streets", !towers_must_be_seen, LayerKind::Line(lines)),
     ];
     Scene { layers, ..Scene::default() }

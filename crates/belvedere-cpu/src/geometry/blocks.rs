@@ -3,6 +3,7 @@
 use crate::cache::GroundCache;
 use crate::geometry::block::{Block, BufferPool, Counts, DrawnTriangle, Geometry, Job, SoupVertex};
 use crate::geometry::box_blocks::box_chunks;
+use crate::geometry::drawn_solids::DrawnSolids;
 use crate::geometry::grid::{CELL_TRIANGLES, cell_weights};
 use crate::geometry::layer_show::LayerShow;
 use crate::geometry::locate::{Held, JoinedPasses, Locator};
@@ -16,6 +17,7 @@ use crate::screen::Screen;
 use belvedere_composite::sections::{Exposure, Sections, Shown};
 use belvedere_core::Aabb;
 use belvedere_scene::{LayerKind, Progress, RenderJob};
+use belvedere_sight::LayerPart;
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -184,16 +186,17 @@ impl Blocks {
             .sort_unstable_by(|&a, &b| list[b as usize].cover.q.total_cmp(&list[a as usize].cover.q).then(a.cmp(&b)));
     }
 
-    /// Draws the blocks that touch the band and are not hidden, nearest first, except those shown sample by sample.
-    pub(crate) fn draw(&self, band: &mut Band) {
+    /// Draws the blocks of some layers that touch the band and are not hidden, nearest first, except those shown sample by sample.
+    pub(crate) fn draw(&self, band: &mut Band, shown: DrawnSolids<'_>) {
         for (i, block) in self.in_band(band).filter(|(_, block)| block.thin.is_empty()) {
-            if band.hides(block.cover.x, block.cover.q) {
+            let held = shown.of(block);
+            if held == LayerPart::Nothing || band.hides(block.cover.x, block.cover.q) {
                 continue;
             }
             match &block.geometry {
                 Geometry::Grid(nodes) => nodes.draw(i << CELL_BITS, band),
                 Geometry::Soup(soup) => {
-                    for (k, t) in soup.iter().enumerate() {
+                    for (k, t) in soup.iter().enumerate().filter(|(_, t)| shown.holds(held, block, t.parent)) {
                         band.draw(t.v.map(|v| v.screen), SOUP | (block.soup_base + k as u32));
                     }
                 }
@@ -208,14 +211,24 @@ impl Blocks {
     }
 
     /// Draws the blocks that are shown sample by sample; the band has the samples of `exposure`.
-    pub(crate) fn draw_thin(&self, band: &mut Band, ortho: bool, sections: &Sections<'_>, exposure: &Exposure) {
+    pub(crate) fn draw_thin(
+        &self,
+        band: &mut Band,
+        ortho: bool,
+        (sections, exposure): (&Sections<'_>, &Exposure),
+        shown: DrawnSolids<'_>,
+    ) {
         for (_, block) in self.in_band(band).filter(|(_, block)| !block.thin.is_empty()) {
             let Geometry::Soup(soup) = &block.geometry else { continue };
-            if band.hides(block.cover.x, block.cover.q) {
+            let held = shown.of(block);
+            if held == LayerPart::Nothing || band.hides(block.cover.x, block.cover.q) {
                 continue;
             }
             let show = LayerShow { sections, exposure, layer: block.layer as usize };
             for (k, (t, at)) in soup.iter().zip(&block.thin).enumerate() {
+                if !shown.holds(held, block, t.parent) {
+                    continue;
+                }
                 let prim = SOUP | (block.soup_base + k as u32);
                 band.draw_thin(t.v.map(|v| v.screen), *at, (ortho, exposure.places()), prim, &show);
             }

@@ -4,6 +4,7 @@ pub(crate) mod block;
 pub(crate) mod blocks;
 pub(crate) mod box_blocks;
 mod displace;
+pub(crate) mod drawn_solids;
 pub(crate) mod grid;
 mod layer_show;
 pub(crate) mod locate;

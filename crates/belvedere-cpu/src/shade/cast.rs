@@ -2,7 +2,7 @@
 
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{LayerKind, Light, Scene};
-use belvedere_sight::Obstacles;
+use belvedere_sight::{Obstacles, Solids};
 
 /// Angular radius of the sun, radians.
 const SUN_RADIUS: f64 = 0.004_65;
@@ -69,7 +69,8 @@ impl<'a> Casters<'a> {
         if !scene.layers.iter().any(|l| matches!(l.kind, LayerKind::Boxes(_)) || l.kind.triangles().is_some()) {
             return None;
         }
-        let obstacles = Obstacles::new(scene);
+        // What something shines through casts its whole shadow.
+        let obstacles = Obstacles::of_solids(scene, Solids::Drawn);
         let solid = obstacles.solid_bounds();
         if solid.is_empty() {
             return None;

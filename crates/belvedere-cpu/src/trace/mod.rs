@@ -5,6 +5,7 @@ pub(crate) mod curve;
 mod meshes;
 mod root;
 mod row;
+pub(crate) mod same_surface;
 mod tracer;
 
 pub(crate) use tracer::{Part, deepest};

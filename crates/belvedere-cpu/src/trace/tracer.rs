@@ -6,7 +6,7 @@ use crate::trace::root::root;
 use belvedere_composite::sections::{Exposure, Sections, Shown};
 use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::{CellTriangle, Heightfield, LayerKind, NodeState, Scene};
-use belvedere_sight::{Carried, GridLine, Lift, MeshTree, Obstacles, UprightBox};
+use belvedere_sight::{Carried, GridLine, Lift, MeshTree, Obstacles, Solids, UprightBox};
 use std::ops::ControlFlow;
 
 /// Distance of a ray from its chord, pixels, below which the chord is used to find its hits.
@@ -78,14 +78,16 @@ pub struct Tracer<'a> {
 impl<'a> Tracer<'a> {
     /// Prepares terrain, boxes and meshes of `scene`: one pass over the nodes and the triangles.
     ///
-    /// Where styling sections show layers in part, a ray hits only surfaces that its pixel's threshold shows.
+    /// Where styling sections show layers in part, a ray hits only surfaces that its pixel's threshold shows. Solids that something shines
+    /// through are hit, those with an opacity of 0 are not.
     pub fn new(scene: &'a Scene, view: &'a View) -> Self {
-        Self::exposed(scene, view, Sections::of(scene, view, None, true), Exposure::new(1, 1))
+        let sections = Sections::of(scene, view, None, true);
+        Self::exposed((scene, Solids::Drawn), view, sections, Exposure::new(1, 1))
     }
 
-    /// * `exposure`: thresholds of the samples.
+    /// * `solids`: those of the scene that rays meet; `exposure`: thresholds of the samples.
     pub(crate) fn exposed(
-        scene: &'a Scene,
+        (scene, solids): (&'a Scene, Solids),
         view: &'a View,
         sections: Option<Sections<'a>>,
         exposure: Exposure,
@@ -100,19 +102,24 @@ impl<'a> Tracer<'a> {
         let lift: Option<Lift<'_>> = if split.ground.is_some() { Some(&lift) } else { None };
         let carried = Carried::new(scene, view);
         let obstacles = match &carried {
-            Some(carried) => Obstacles::beside_bodies(scene, lift, carried),
-            None => Obstacles::lifted(scene, lift),
+            Some(carried) => Obstacles::beside_bodies(scene, lift, carried, solids),
+            None => Obstacles::lifted(scene, lift, solids),
         };
-        let bodies = carried.map(|c| Box::new(Self::of_bodies(scene, c, sections.clone(), exposure.clone())));
+        let bodies = carried.map(|c| Box::new(Self::of_bodies((scene, solids), c, sections.clone(), exposure.clone())));
         let range = [view.pinhole().near, deepest(scene, view)];
         let (screen, solid) = (Screen::new(view.pinhole()), obstacles.solid_bounds());
         Self { split, screen, obstacles, solid, range, sections, exposure, carried: None, bodies }
     }
 
     /// A tracer of the rigid bodies, in the space to which they are carried.
-    fn of_bodies(scene: &'a Scene, carried: Carried, sections: Option<Sections<'a>>, exposure: Exposure) -> Self {
+    fn of_bodies(
+        (scene, solids): (&'a Scene, Solids),
+        carried: Carried,
+        sections: Option<Sections<'a>>,
+        exposure: Exposure,
+    ) -> Self {
         let view = carried.after();
-        let obstacles = Obstacles::of_bodies(scene, &carried);
+        let obstacles = Obstacles::of_bodies(scene, &carried, solids);
         let solid = obstacles.solid_bounds();
         let range = [view.pinhole().near, deepest_in(&solid, view)];
         let (screen, split) = (Screen::new(view.pinhole()), Split::after_bodies(view.clone()));

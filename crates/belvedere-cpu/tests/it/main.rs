@@ -14,6 +14,7 @@ mod reference;
 mod rigid;
 mod robust;
 mod sections;
+mod see_through;
 mod steady;
 mod steady_lines;
 mod strip;

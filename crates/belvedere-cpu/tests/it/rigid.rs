@@ -58,7 +58,7 @@ fn town(rigid: bool) -> Scene {
     parts.retain(|_| keep.next() == Some(true));
     let of_parts = if rigid { RigidParts::Only((1..=parts.len() as u32).collect()) } else { RigidParts::None };
     scene(vec![
-        layer("towers", LayerKind::Boxes(BoxLayer { boxes, rigid })),
+        layer("towers", LayerKind::Boxes(BoxLayer { rigid, ..BoxLayer::new(boxes) })),
         layer("houses", LayerKind::Mesh(houses(&parts, of_parts))),
     ])
 }
@@ -109,7 +109,7 @@ fn rigid_bodies_stand_on_hills() {
         BoxShape { base: b.base.with_z(z - 2.0), ..*b }
     };
     let boxes: Vec<BoxShape> = shapes().iter().filter(|b| b.base.y < 230.0).map(on).collect();
-    let towers = LayerKind::Boxes(BoxLayer { boxes, rigid: true });
+    let towers = LayerKind::Boxes(BoxLayer { rigid: true, ..BoxLayer::new(boxes) });
     let scene = scene(vec![layer("ground", LayerKind::Terrain(terrain(hf))), layer("towers", towers)]);
     let found = difference(&scene, &view);
     assert!(found.is_small(), "{found:?}");
@@ -179,7 +179,7 @@ fn towers_beyond_the_fold_limit_are_drawn_whole() {
     assert!(bend.is_folded(foot + 60.0 * DVec3::Z));
     let tall = BoxShape { base: foot, ..tower(0.0, 0.0, 70.0, 0.2) };
     let drawn = |rigid: bool| {
-        let boxes = LayerKind::Boxes(BoxLayer { boxes: vec![tall], rigid });
+        let boxes = LayerKind::Boxes(BoxLayer { rigid, ..BoxLayer::new(vec![tall]) });
         let scene = scene(vec![layer("tower", boxes)]);
         render(&scene, &view, &options(1))
     };

@@ -37,6 +37,20 @@ fn land() -> Scene {
     Scene { representations, ..scene(layers) }
 }
 
+/// A scene whose last layer is seen in the front alone, and a bend that blends from front to back.
+pub(crate) fn styled(land: &Scene, tags: &[TagPoint], image: [u32; 2]) -> (Scene, View) {
+    let ids: Vec<&str> = land.layers.iter().map(|layer| layer.id.as_str()).collect();
+    let representations = vec![representation("near", &ids), representation("far", &ids[..ids.len() - 1])];
+    let camera = pinhole(DVec3::new(0.0, -1100.0, 620.0), DVec3::ZERO, 45.0, image);
+    let plane = ReferencePlane::level(0.0);
+    let mut document = PresetDocument::builtin("degressive").expect("built in");
+    document.presets[0].tags = tags.to_vec();
+    document.presets[0].sections = ["near", "far"].map(str::to_owned).to_vec();
+    let bend = SplineBend::new(&camera, &document, &plane, default_pivot(&camera, &plane)).expect("a preset");
+    let view = View::new(camera, vec![Stage::SplineBend(bend)]).expect("one stage is in order");
+    (Scene { representations, ..land.clone() }, view)
+}
+
 /// A degressive bend with these sections; phi is 30 degrees.
 fn view(tags: &[TagPoint], sections: &[&str]) -> View {
     let camera = pinhole(DVec3::new(0.0, -2200.0, 1270.0), DVec3::ZERO, 45.0, IMAGE);

@@ -17,7 +17,8 @@ const SAME: f64 = 0.9999;
 pub(super) fn layer(layer: &MeshLayer, most: usize) -> Option<MeshLayer> {
     let mesh = clustered(&layer.mesh, most, layer.rigid != RigidParts::None, layer.color)?;
     let (names, wanted, rigid) = (layer.names.clone(), layer.wanted.clone(), layer.rigid.clone());
-    Some(MeshLayer { mesh, color: layer.color, names, wanted, rigid })
+    let (opacity, has_plate) = (layer.opacity, layer.has_plate);
+    Some(MeshLayer { mesh, color: layer.color, names, wanted, rigid, opacity, has_plate })
 }
 
 /// * `apart`: whether parts share no vertices. `plain`: colour where the mesh has none.

@@ -368,7 +368,13 @@ impl LiveSession {
         let layers = session.scene().layers.iter();
         // A file of lines and points makes several layers; then they are known by the document that was read.
         let one_each = session.scene().layers.len() == document.layer.len();
-        let alike = |a: &LayerDoc, b: &LayerDoc| if one_each { a.with_must_see(b.must_see()) == *b } else { a == b };
+        let alike = |a: &LayerDoc, b: &LayerDoc| match one_each {
+            true => a.with_must_see(b.must_see()).with_opacity(b.opacity()) == *b,
+            false => a == b,
+        };
+        let opacities =
+            document.layer.iter().map(|l| l.opacity().filter(|o| (0.0..=1.0).contains(o)).unwrap_or(1.0) as f32);
+        let opacities: Vec<f32> = opacities.collect();
         let same = opened.crs == document.crs
             && opened.unit == document.unit
             && opened.representations == document.representations
@@ -380,13 +386,16 @@ impl LiveSession {
             && opened.layer.iter().zip(&document.layer).all(|(a, b)| alike(a, b));
         let is_current = !one_each
             || (session.scene().title == document.title
-                && layers.clone().zip(&must_see).all(|(layer, must)| layer.must_see == *must));
+                && layers.clone().zip(&must_see).all(|(layer, must)| layer.must_see == *must)
+                && layers.zip(&opacities).all(|(layer, opacity)| layer.kind.opacity() == *opacity));
         match (same, is_current) {
             (false, _) => None,
             (true, true) => Some(session.clone()),
             (true, false) => {
                 let mut scene = Scene { title: document.title.clone(), ..session.scene().clone() };
                 scene.layers.iter_mut().zip(must_see).for_each(|(layer, must)| layer.must_see = must);
+                let kinds = scene.layers.iter_mut().map(|layer| &mut layer.kind);
+                kinds.zip(opacities).for_each(|(kind, opacity)| kind.set_opacity(opacity));
                 let loaded = Loaded { scene: Arc::new(scene), ..session.loaded.clone() };
                 let session = Session { loaded, ..session.clone() };
                 self.session = Some(session.clone());

@@ -32,6 +32,19 @@ pub(crate) fn target_alone(scene: &Scene, target: &Target) -> Option<Scene> {
     occluders::target_alone(scene, target)
 }
 
+/// The scene with its target opaque; `None` where it is. Ids and depths are those of what hides, so a target that something shines
+/// through is looked for in a picture of this scene.
+pub(crate) fn with_opaque_target(scene: &Scene, target: &Target) -> Option<Scene> {
+    let is_own = |i: usize| is_target(target, i as u32 + 1) && scene.layers[i].kind.is_see_through();
+    let own: Vec<usize> = (0..scene.layers.len()).filter(|i| is_own(*i)).collect();
+    if own.is_empty() {
+        return None;
+    }
+    let mut scene = scene.clone();
+    own.into_iter().for_each(|i| scene.layers[i].kind.set_opacity(1.0));
+    Some(scene)
+}
+
 /// The pixels that a target fills where it is drawn alone, and those of them that a picture shows.
 pub(crate) struct Mask {
     /// Whether a pixel is one of the target's, row by row.
@@ -83,5 +96,6 @@ pub(crate) fn of_session(
     let Some(name) = doc.and_then(|doc| doc.target.as_deref()) else { return Ok(None) };
     let target = targets::target(session.scene(), name)?;
     let Some(alone) = occluders::target_alone(session.scene(), &target) else { return Ok(None) };
-    Ok(Some(share(&target, frame, &draw(&alone, view)?).1))
+    let whole = with_opaque_target(session.scene(), &target).map(|scene| draw(&scene, view)).transpose()?;
+    Ok(Some(share(&target, whole.as_ref().unwrap_or(frame), &draw(&alone, view)?).1))
 }

@@ -187,7 +187,9 @@ pub fn plan(
         change.parts += 1;
     }
     let by: Vec<(&Part, DVec3)> = moves.iter().map(|(part, by)| (part, *by)).collect();
-    let scene = explode::moved(scene, &by);
+    // Pictures that find their target by its pixels draw it opaque.
+    let whole = in_sight::with_opaque_target(scene, target);
+    let scene = explode::moved(whole.as_ref().unwrap_or(scene), &by);
     let open = occluders::without(&scene, &transparent.iter().chain(&cut).collect::<Vec<_>>());
     let visible = TargetSight::new(&open, target).share(view, 0.0);
     let record = FallbackRecord { target: name.into(), visible_before: before, visible, pixels_alone: None, changed };
@@ -291,7 +293,8 @@ impl FallbackPlan {
     ) -> Result<FallbackRecord, BelvedereError> {
         let Some(alone) = occluders::target_alone(&self.scene, &self.target) else { return Ok(self.record.clone()) };
         let alone = draw(&alone, view)?;
-        let (_, visible_before) = in_sight::share(&self.target, &draw(before, view)?, &alone);
+        let whole = in_sight::with_opaque_target(before, &self.target);
+        let (_, visible_before) = in_sight::share(&self.target, &draw(whole.as_ref().unwrap_or(before), view)?, &alone);
         let (pixels, visible) = in_sight::share(&self.target, frame, &alone);
         let pixels_alone = Some(pixels);
         Ok(FallbackRecord { visible_before, visible, pixels_alone, ..self.record.clone() })

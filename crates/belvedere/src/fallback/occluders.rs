@@ -106,6 +106,7 @@ pub(super) fn target_alone(scene: &Scene, target: &Target) -> Option<Scene> {
     let own = target.own_parts.as_ref();
     Some(filtered(scene, &|i| {
         let mut kind = scene.layers[i].kind.clone();
+        kind.set_opacity(1.0);
         if target.own_layers.contains(&i) {
             return Some(kind);
         }

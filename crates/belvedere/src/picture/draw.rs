@@ -2,7 +2,7 @@
 
 use super::displacement::{self, DisplacementReport};
 use super::options::{AuxBuffer, PictureOptions};
-use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, Sidecar, TerrainRecord};
+use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, SeeThroughRecord, Sidecar, TerrainRecord};
 use super::volume_record::VolumeRecord;
 use crate::bodies::RigidLayers;
 use crate::fallback::{self, FallbackPlan, FallbackRecord};
@@ -57,6 +57,7 @@ pub(crate) fn draw(
         displacement,
         terrain: session.scene().terrain().map(TerrainRecord::of),
         molecules: MoleculeRecord::all_of(session.scene()),
+        see_through: SeeThroughRecord::all_of(session.scene()),
         volumes,
         rigid: rigid.ids(session.scene()),
         areas: session.areas().to_vec(),

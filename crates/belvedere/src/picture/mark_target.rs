@@ -1,7 +1,7 @@
 //! Marks of targets in pictures: a ring around points, an outline around everything that has a surface.
 
 use super::{Picture, PictureOptions, TargetPlace};
-use crate::fallback::in_sight::{Mask, target_alone};
+use crate::fallback::in_sight::{Mask, target_alone, with_opaque_target};
 use crate::overlays::{contour, ring};
 use crate::{BelvedereError, Session};
 use belvedere_construct::rays::{BendReport, Target};
@@ -56,7 +56,8 @@ impl Picture {
             let Some(frame) = frame else { continue };
             let own = draw(&alone, view)?;
             let above = ground.as_ref().map(|scene| draw(scene, view)).transpose()?;
-            let mask = Mask::of(target, frame, &own, above.as_ref());
+            let whole = with_opaque_target(session.scene(), target).map(|scene| draw(&scene, view)).transpose()?;
+            let mask = Mask::of(target, whole.as_ref().unwrap_or(frame), &own, above.as_ref());
             *share = mask.share();
             if has_others {
                 contour::draw(frame, &mask.own, &mask.seen);

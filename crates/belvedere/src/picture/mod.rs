@@ -13,7 +13,7 @@ mod write;
 pub use displacement::DisplacementReport;
 pub(crate) use draw::{draw, draw_camera, draw_view};
 pub use options::{AuxBuffer, AuxFormat, PictureOptions, RendererChoice, THRESHOLDS};
-pub use sidecar::{MoleculeRecord, OverlayRecord, Picture, Sidecar, TerrainRecord};
+pub use sidecar::{MoleculeRecord, OverlayRecord, Picture, SeeThroughRecord, Sidecar, TerrainRecord};
 pub use target_place::{TargetPlace, VoxelPlace};
 pub use volume_record::VolumeRecord;
 pub use write::{delta_path, outputs, side_by_side};

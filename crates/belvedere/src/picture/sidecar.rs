@@ -71,6 +71,22 @@ impl MoleculeRecord {
     }
 }
 
+/// A layer that something shines through.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SeeThroughRecord {
+    /// Id of the layer.
+    pub layer: String,
+    /// Its opacity, at least 0 and below 1.
+    pub opacity: f32,
+}
+
+impl SeeThroughRecord {
+    pub(super) fn all_of(scene: &Scene) -> Vec<Self> {
+        let layers = scene.layers.iter().filter(|layer| layer.kind.is_see_through());
+        layers.map(|layer| Self { layer: layer.id.clone(), opacity: layer.kind.opacity() }).collect()
+    }
+}
+
 /// Marks over the layers of a picture.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct OverlayRecord {
@@ -131,6 +147,9 @@ pub struct Sidecar {
     /// Ids of the layers whose parts were carried as rigid bodies.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rigid: Vec<String>,
+    /// Layers that something shines through; they hide nothing from measures.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub see_through: Vec<SeeThroughRecord>,
     /// Surfaces that areas were drawn as, and the sources of this choice.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub areas: Vec<AreaRecord>,

@@ -31,7 +31,7 @@ pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &BoxesDoc) -> Re
         check(transform).map_err(|reason| loader.fail(index, "transform", reason))?;
         boxes.iter_mut().for_each(|b| apply(b, transform));
     }
-    Ok(LayerKind::Boxes(BoxLayer { boxes, rigid: doc.rigid }))
+    Ok(LayerKind::Boxes(BoxLayer { rigid: doc.rigid, ..BoxLayer::new(boxes) }))
 }
 
 fn shapes(docs: &[BoxDoc], default: Color) -> Result<Vec<BoxShape>, String> {

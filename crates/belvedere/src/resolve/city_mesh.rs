@@ -26,5 +26,5 @@ pub(super) fn mesh(
     }
     let mesh = Mesh::textured(&file.positions, file.triangles, file.colors, file.parts, file.texturing);
     let mesh = mesh.map_err(|e| e.to_string())?;
-    Ok(MeshLayer { names: file.names, ..MeshLayer::new(mesh, colors.wall) })
+    Ok(MeshLayer { names: file.names, has_plate: terrain.is_none(), ..MeshLayer::new(mesh, colors.wall) })
 }

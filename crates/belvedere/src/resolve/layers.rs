@@ -360,7 +360,7 @@ fn layer(
     doc: &LayerDoc,
     ground: &Ground<'_>,
 ) -> Result<Option<Layer>, BelvedereError> {
-    let kind = match doc {
+    let mut kind = match doc {
         LayerDoc::Terrain(_) => return Ok(None),
         LayerDoc::Line(doc) => line(loader, index, doc, ground)?,
         LayerDoc::Area(doc) => areas::layer(loader, index, doc, ground)?,
@@ -371,6 +371,7 @@ fn layer(
         LayerDoc::Volume(doc) => volume::layer(loader, index, doc)?,
         LayerDoc::City(doc) => city::layer(loader, index, doc, ground)?,
     };
+    kind.set_opacity(doc.opacity().unwrap_or(1.0) as f32);
     Ok(Some(Layer { id: doc.id().to_owned(), must_see: doc.must_see(), kind }))
 }
 

@@ -148,6 +148,9 @@ fn one_of(a: &str, b: &str, both: bool) -> String {
 
 fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
     let width = |v: f64| within("width_px", v, 0.0, 100.0);
+    if let Some(opacity) = layer.opacity().filter(|opacity| !(0.0..=1.0).contains(opacity)) {
+        return Err(("opacity", format!("opacity is {}, it must be in 0..=1", number(opacity))));
+    }
     match layer {
         LayerDoc::Terrain(l) => {
             l.largest_hole.map_or(Ok(()), |share| within("largest_hole", share, 0.0, 1.0))?;

@@ -1,6 +1,6 @@
 //! Layers of cities in the scene document.
 
-use super::common::{Paths, is_false};
+use super::common::{Paths, is_false, is_opaque};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -76,6 +76,9 @@ pub struct CityStyleDoc {
     pub wall: String,
     /// Colour of the ground between, in scenes without terrain.
     pub ground: String,
+    /// Opacity, 0..=1: below 1 what is behind is seen through (the ground between stays opaque), at 0 the layer is not drawn.
+    #[serde(skip_serializing_if = "is_opaque")]
+    pub opacity: f64,
     /// Ambient occlusion: how far away something may be that takes light, scene units, > 0; 40 suits a town. Computed when the scene is opened.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ambient_occlusion: Option<f64>,
@@ -84,6 +87,6 @@ pub struct CityStyleDoc {
 impl Default for CityStyleDoc {
     fn default() -> Self {
         let [roof, wall, ground] = ["#ba6e56", "#ece4d6", "#e8e5dc"].map(str::to_owned);
-        Self { roof, wall, ground, ambient_occlusion: None }
+        Self { roof, wall, ground, opacity: 1.0, ambient_occlusion: None }
     }
 }

@@ -10,6 +10,11 @@ pub(super) fn is_false(value: &bool) -> bool {
     !value
 }
 
+/// Whether an opacity is 1, as it is by default.
+pub(super) fn is_opaque(opacity: &f64) -> bool {
+    *opacity == 1.0
+}
+
 /// Placement of a model: scaled, then rotated about z (and x, y), then moved.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]

@@ -2,7 +2,7 @@
 
 use super::by_property::{ColorByDoc, SizeByDoc};
 use super::city::CityDoc;
-use super::common::{Paths, TransformDoc, is_false};
+use super::common::{Paths, TransformDoc, is_false, is_opaque};
 use super::mesh::MeshDoc;
 use super::molecule::MoleculeDoc;
 use super::overlay::AutoOrLength;
@@ -550,11 +550,14 @@ pub struct BoxesDoc {
 pub struct BoxStyleDoc {
     /// Colour of boxes that have none of their own.
     pub color: String,
+    /// Opacity, 0..=1: below 1 what is behind is seen through, at 0 the layer is not drawn.
+    #[serde(skip_serializing_if = "is_opaque")]
+    pub opacity: f64,
 }
 
 impl Default for BoxStyleDoc {
     fn default() -> Self {
-        Self { color: "#c9c2b8".into() }
+        Self { color: "#c9c2b8".into(), opacity: 1.0 }
     }
 }
 

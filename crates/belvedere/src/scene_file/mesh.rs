@@ -1,6 +1,6 @@
 //! Layers of triangles in the scene document.
 
-use super::common::{Paths, TransformDoc, is_false};
+use super::common::{Paths, TransformDoc, is_false, is_opaque};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -59,6 +59,9 @@ impl MeshDoc {
 pub struct MeshStyleDoc {
     /// Colour of meshes that have none of their own.
     pub color: String,
+    /// Opacity, 0..=1: below 1 what is behind is seen through, at 0 the layer is not drawn.
+    #[serde(skip_serializing_if = "is_opaque")]
+    pub opacity: f64,
     /// Whether normals of the file smooth the shading.
     pub smooth: bool,
     /// Ambient occlusion: how far away something may be that takes light, scene units, > 0. Computed when the scene is opened.
@@ -68,6 +71,6 @@ pub struct MeshStyleDoc {
 
 impl Default for MeshStyleDoc {
     fn default() -> Self {
-        Self { color: "#c9c2b8".into(), smooth: true, ambient_occlusion: None }
+        Self { color: "#c9c2b8".into(), opacity: 1.0, smooth: true, ambient_occlusion: None }
     }
 }

@@ -15,6 +15,7 @@ mod layers;
 mod mesh;
 mod molecule;
 mod node;
+mod opacity;
 pub(crate) mod other_kind;
 mod overlay;
 mod palette;

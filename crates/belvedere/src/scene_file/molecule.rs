@@ -1,6 +1,6 @@
 //! Layers of atoms in the scene document.
 
-use super::common::TransformDoc;
+use super::common::{TransformDoc, is_opaque};
 use belvedere_scene::molecule::Representation;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -46,6 +46,9 @@ pub struct MoleculeStyleDoc {
     pub representation: Representation,
     /// `element`, `chain`, `residue`, or one colour for all, `#rrggbb`.
     pub color: String,
+    /// Opacity, 0..=1: below 1 what is behind is seen through, at 0 the layer is not drawn.
+    #[serde(skip_serializing_if = "is_opaque")]
+    pub opacity: f64,
     /// Atoms that are drawn; by default all but water, unless there is nothing else.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub selection: Option<String>,
@@ -64,6 +67,7 @@ impl Default for MoleculeStyleDoc {
         Self {
             representation: Representation::default(),
             color: "element".into(),
+            opacity: 1.0,
             selection: None,
             paint: Vec::new(),
             highlight: "#ffb000".into(),

@@ -9,6 +9,7 @@ mod films;
 mod moving_pictures;
 mod names;
 mod parts;
+mod see_through;
 mod sessions;
 mod sweeps;
 mod tiles;

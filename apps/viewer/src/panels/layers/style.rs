@@ -1,6 +1,6 @@
 //! Style of a layer.
 
-use super::paint::{color, opacity};
+use super::paint::{color, opacity, opacity_of_solid};
 use super::{by_property, fields, marks};
 use crate::language::{fill, heard, later, tr};
 use crate::model::Model;
@@ -78,6 +78,9 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDo
         }
         LayerDoc::Molecule(l) => molecule(ui, &id, &mut l.style),
         LayerDoc::Volume(l) => super::volume::show(ui, model, &id, &mut l.transfer),
+    }
+    if let Some(opacity) = next.opacity_mut() {
+        opacity_of_solid(ui, &id, opacity);
     }
     // Changes are applied when the pointer is released, since a layer is read again for each new style.
     if next == *layer {

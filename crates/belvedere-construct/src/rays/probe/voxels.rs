@@ -3,6 +3,7 @@
 use crate::distance::{Around, squared};
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{BoxShape, Heightfield, LayerKind, Mesh, Scene};
+use belvedere_sight::{LayerPart, Solids};
 
 /// Cells there are at most, and along the longest side.
 const MOST_CELLS: f64 = 262_144.0;
@@ -27,11 +28,15 @@ impl Voxels {
         let size = (extent / cell).to_array().map(|n| (n.ceil() as usize).clamp(1, LONGEST_SIDE as usize));
         let count = size[0] * size[1] * size[2];
         let mut voxels = Self { low: region.min, cell, size, solid: vec![false; count], clearance: Vec::new() };
-        for layer in &scene.layers {
-            match &layer.kind {
-                LayerKind::Terrain(t) => voxels.add_ground(&t.heightfield),
-                LayerKind::Boxes(b) => b.boxes.iter().for_each(|shape| voxels.add_box(shape)),
-                kind => kind.triangles().into_iter().for_each(|m| voxels.add_mesh(&m.mesh)),
+        for (i, layer) in scene.layers.iter().enumerate() {
+            let part = Solids::Opaque.of(i, &layer.kind);
+            match (&layer.kind, part, layer.kind.triangles()) {
+                (_, LayerPart::Nothing, _) => {}
+                (LayerKind::Terrain(t), ..) => voxels.add_ground(&t.heightfield),
+                (LayerKind::Boxes(b), ..) => b.boxes.iter().for_each(|shape| voxels.add_box(shape)),
+                (_, LayerPart::Everything, Some(m)) => voxels.add_mesh(&m.mesh),
+                (_, _, Some(m)) => voxels.add_mesh(&m.mesh.only(&|t| part.holds(m, t))),
+                _ => {}
             }
         }
         // The solid part of a cell reaches half a cell from its middle, on the average.
@@ -256,16 +261,7 @@ mod tests {
         let scene = Scene::default()
             .with_terrain("ground", ground)
             .with_layer("box", LayerKind::Boxes(BoxLayer::new(vec![shape])))
-            .with_layer(
-                "mesh",
-                LayerKind::Mesh(MeshLayer {
-                    mesh: mesh.clone(),
-                    color: Color::rgb(1, 2, 3),
-                    names: Vec::new(),
-                    wanted: None,
-                    rigid: belvedere_scene::RigidParts::None,
-                }),
-            );
+            .with_layer("mesh", LayerKind::Mesh(MeshLayer::new(mesh.clone(), Color::rgb(1, 2, 3))));
         let voxels = Voxels::new(&scene, &region());
         assert!(voxels.len() <= MOST_CELLS as usize * 5 / 4 && voxels.size().into_iter().max() >= Some(64));
         let mut points = Vec::new();

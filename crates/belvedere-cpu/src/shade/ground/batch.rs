@@ -387,6 +387,7 @@ mod tests {
     use super::*;
     use crate::cache::GroundCache;
     use crate::geometry::blocks::Blocks;
+    use crate::geometry::drawn_solids::DrawnSolids;
     use crate::geometry::pass::Pass;
     use crate::raster::band::{Band, SKY, sample_offsets};
     use crate::screen::Screen;
@@ -396,6 +397,7 @@ mod tests {
         Heightfield, Layer, LayerKind, Light, PaletteName, Progress, Relief, RenderJob, RenderOptions, Scene,
         TerrainLayer,
     };
+    use belvedere_sight::Solids;
 
     fn hills() -> Scene {
         let h =
@@ -435,7 +437,7 @@ mod tests {
             blocks.build(&job, (&passes, None), &screen, None, &GroundCache::default());
             let shader = Shader::new(&job, &screen, &blocks, &light_cache);
             let mut band = Band::new(0, 160, 331, sample_offsets(1));
-            blocks.draw(&mut band);
+            blocks.draw(&mut band, DrawnSolids { scene: &scene, solids: Solids::Opaque });
             let x: Vec<i32> = (0..331).map(|x| x * SUB + SUB / 2).collect();
             for row in 0..160 {
                 let (y, from) = (vec![row * SUB + SUB / 2; 331], band.index(0, 0, row));
