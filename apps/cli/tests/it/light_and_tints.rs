@@ -91,6 +91,37 @@ fn a_palette_is_a_name_or_a_file_in_the_scene_and_on_the_command_line() {
 }
 
 #[test]
+fn sky_and_haze_are_keys_and_options() {
+    let place = Place::new();
+    let plain = picture(&place, &scene("", "", ""), &[]);
+    let dusk = picture(&place, &scene("[light]\nsky = 'dusk'\nhaze = 2.5", "", ""), &[]);
+    assert!(plain != dusk);
+    assert_eq!(dusk, picture(&place, &scene("", "", ""), &["--sky", "dusk", "--haze", "2.5"]));
+    assert_eq!(plain, picture(&place, &scene("[light]\nsky = 'auto'\nhaze = true", "", ""), &[]));
+    let clear = picture(&place, &scene("[light]\nhaze = false", "", ""), &[]);
+    assert!(clear != plain && clear == picture(&place, &scene("", "", ""), &["--haze", "off"]));
+    for (light, named) in [("sky = 'pink'", "pink"), ("haze = -1.0", "-1"), ("haze = 'thick'", "kilometres")] {
+        place.write("s.toml", &scene(&format!("[light]\n{light}"), "", ""));
+        let line = place.fails(&["check", "s.toml"]);
+        assert!(line.contains(named) && line.contains("s.toml:"), "{line}");
+    }
+}
+
+#[test]
+fn the_seasons_of_a_place_on_the_earth_differ() {
+    let place = Place::new();
+    // The massif, in the Alps.
+    let there = |palette: &str| {
+        let local = scene("", &format!("palette = '{palette}'"), "");
+        picture(&place, &local.replace("crs = 'local'", "crs = 'EPSG:32632'"), &[])
+    };
+    let looks = ["auto", "winter", "autumn", "atlas", "alpine", "desert", "night"].map(there);
+    for (i, a) in looks.iter().enumerate() {
+        assert!(looks[i + 1..].iter().all(|b| a != b), "look {i} is also another one");
+    }
+}
+
+#[test]
 fn surfaces_are_chosen_by_key_and_look_their_own() {
     let place = Place::new();
     let of = |lake: &str| picture(&place, &scene("", "", lake), &[]);

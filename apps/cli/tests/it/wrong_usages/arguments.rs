@@ -36,6 +36,8 @@ const VALUES: &[(&str, &str, &[&str])] = &[
     (REVEAL, "--vertical-unit", &["feet"]),
     (REVEAL, "--nodata", &["none"]),
     (REVEAL, "--palette", &["alpin", "gone.txt"]),
+    (REVEAL, "--sky", &["blue", "#12", "''"]),
+    (REVEAL, "--haze", &["0", "-3", "fog"]),
     (REVEAL, "--area-style", &["forests"]),
     (REVEAL, "--name-field", &["nom"]),
 ];
