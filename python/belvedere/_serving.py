@@ -8,6 +8,7 @@ import threading
 import weakref
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from urllib.parse import unquote
 
 from .errors import FileError
 
@@ -29,6 +30,9 @@ class _Server(ThreadingHTTPServer):
         self.files = {f"/{self.secret}/{p.relative_to(folder).as_posix()}": p for p in folder.rglob("*") if p.is_file()}
         super().__init__(("127.0.0.1", 0), _Answer)
 
+    def handle_error(self, request: object, client_address: object) -> None:
+        """A browser that goes away in the middle of an answer is no error of the notebook."""
+
 
 class _Answer(BaseHTTPRequestHandler):
     protocol_version = "HTTP/1.1"
@@ -41,8 +45,6 @@ class _Answer(BaseHTTPRequestHandler):
         self._answer(False)
 
     def _answer(self, with_body: bool) -> None:
-        from urllib.parse import unquote
-
         path = unquote(self.path.split("?")[0].split("#")[0])
         file = self.server.files.get(path)
         try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import sys
 import tempfile
 from pathlib import Path
@@ -54,6 +55,11 @@ def main() -> None:
         for cell in code_cells(done):
             # Times of the run.
             cell["metadata"].pop("execution", None)
+            # Pages that are gone; their pictures stay.
+            for output in cell["outputs"]:
+                page = output.get("data", {}).get("text/html")
+                if page is not None:
+                    output["data"]["text/html"] = re.sub(r"<object[^>]*>(.*)</object>", r"\1", "".join(page), flags=re.DOTALL)
         done["metadata"] = {
             "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
             "language_info": {"name": "python"},
