@@ -35,6 +35,7 @@ mod volume;
 
 pub use exact::ExactRenderer;
 pub use geometry::project::GroundImage;
+pub use marks::mark_shapes;
 pub use rasteriser::CpuRenderer;
 pub use tint::GroundTint;
 pub use trace::{RayHit, Tracer};

@@ -24,6 +24,8 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
             "glam",
             "gltf",
             "gpx",
+            "image-webp",
+            "jpeg-encoder",
             "ply-rs-bw",
             "png",
             "proj4rs",
