@@ -235,7 +235,7 @@ pub(crate) struct RevealArgs {
     /// Colours and opacities of volumes with --see: auto, solid, engine, ct-bone, ct-soft, vessels, grey, or a file
     #[arg(long, value_name = "NAME|FILE", requires = "see")]
     pub(crate) transfer: Option<String>,
-    /// Picture to write: PNG, TIFF, JPEG, WebP or SVG, as its name ends; its record goes to OUT.png.json, and if it is bent, the straight beside the bent picture to OUT.pair.png; - =
+    /// Picture to write: PNG, TIFF, JPEG, WebP, SVG or PDF, as its name ends; its record goes to OUT.png.json, and if it is bent, the straight beside the bent picture to OUT.pair.png; - =
     /// standard output, and the picture alone
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
@@ -403,7 +403,7 @@ impl From<RendererKind> for RendererChoice {
 pub(crate) struct RenderArgs {
     /// Scene file, TOML or JSON; - = standard input
     pub(crate) scene: PathBuf,
-    /// Output: PNG, TIFF, JPEG, WebP or SVG, as its name ends; the record is written beside it as OUT.png.json; - = standard output, a PNG,
+    /// Output: PNG, TIFF, JPEG, WebP, SVG or PDF, as its name ends; the record is written beside it as OUT.png.json; - = standard output, a PNG,
     /// and no record
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,

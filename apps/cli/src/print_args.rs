@@ -22,7 +22,7 @@ pub(crate) struct PrintArgs {
     /// White margin of the paper on every side, millimetres; files of pixels leave it out
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = parse_number)]
     pub(crate) margin_mm: Option<f64>,
-    /// Leave the raster of the surfaces out of an SVG
+    /// Leave the raster of the surfaces out of an SVG or PDF
     #[arg(long)]
     pub(crate) vectors_only: bool,
 }
@@ -54,15 +54,15 @@ impl PrintArgs {
 
     /// Refuses names of pictures with the ending of a format that is not written.
     pub(crate) fn check_name(&self, out: &Path) -> anyhow::Result<()> {
-        let what = "pictures are written as PNG, TIFF, JPEG, WebP or SVG";
-        named(out, &["png", "tif", "tiff", "jpg", "jpeg", "webp", "svg"], what)?;
-        anyhow::ensure!(!self.vectors_only || is_svg(out), "--vectors-only needs an output named .svg");
+        let what = "pictures are written as PNG, TIFF, JPEG, WebP, SVG or PDF";
+        named(out, &["png", "tif", "tiff", "jpg", "jpeg", "webp", "svg", "pdf"], what)?;
+        anyhow::ensure!(!self.vectors_only || is_vectors(out), "--vectors-only needs an output named .svg or .pdf");
         Ok(())
     }
 
     /// Options of a picture in the format of its name, on its paper.
     pub(crate) fn apply(&self, request: PictureOptions, out: &Path, sheet: Option<Sheet>) -> PictureOptions {
-        let vectors = match (is_svg(out), self.vectors_only) {
+        let vectors = match (is_vectors(out), self.vectors_only) {
             (false, _) => VectorContent::Nothing,
             (true, false) => VectorContent::OverRaster,
             (true, true) => VectorContent::Alone,
@@ -76,6 +76,6 @@ impl PrintArgs {
 }
 
 /// Whether a picture of this name is one of vectors.
-pub(crate) fn is_svg(out: &Path) -> bool {
-    out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"))
+pub(crate) fn is_vectors(out: &Path) -> bool {
+    out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg") || ending.eq_ignore_ascii_case("pdf"))
 }

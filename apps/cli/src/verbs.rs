@@ -9,7 +9,7 @@ use crate::goal::Goal;
 use crate::ground_args::InfoArgs;
 use crate::inputs::as_text;
 use crate::outputs::{self, named, png_named};
-use crate::print_args::is_svg;
+use crate::print_args::is_vectors;
 use crate::report::{Context, is_stdout, print};
 use anyhow::Context as _;
 use belvedere::answers::{self, Content, Warned, Written};
@@ -127,7 +127,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     let size = sheet.map(|sheet| sheet.pixels()).or(args.draw.size);
     let mut request = args.print.apply(request, &args.out, sheet);
     anyhow::ensure!(
-        !(is_svg(&args.out) && args.draw.compare),
+        !(is_vectors(&args.out) && args.draw.compare),
         "{}: --compare draws two pictures of pixels; name the output .png",
         args.out.display()
     );

@@ -5,6 +5,7 @@ mod polygon;
 mod shape;
 mod text;
 
+pub use font::{FONT_FILE, Letter, letters};
 pub use shape::CanvasShape;
 pub use text::{TextSize, can_set, text_size};
 

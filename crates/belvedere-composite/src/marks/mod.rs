@@ -326,11 +326,13 @@ impl MarkBuilder<'_> {
     fn line_shape(&self, number: usize, visible: bool, part: &[Station], style: Style) -> LineShape {
         let drawn = visible || style.hidden == Hidden::Show;
         let width = 2.0 * style.half_px * if drawn { 1.0 } else { HIDDEN_WIDTH };
-        let along = |station: Option<&Station>| station.map_or(0.0, |s| s.on_line.along);
+        let size = 2.0 * self.screen.center;
+        let inside = |p: DVec2| p.cmpge(DVec2::ZERO).all() && p.cmple(size).all();
+        let lengths = part.windows(2).filter(|pair| inside(0.5 * (pair[0].pixel + pair[1].pixel)));
         LineShape {
             number,
             points: part.iter().map(|station| station.pixel).collect(),
-            length: along(part.last()) - along(part.first()),
+            length: lengths.map(|pair| pair[1].on_line.along - pair[0].on_line.along).sum(),
             visible,
             drawn: drawn || style.hidden != Hidden::Cut,
             role: if drawn { Role::Fill } else { Role::Hidden },

@@ -32,7 +32,7 @@ pub struct LineShape {
     pub number: usize,
     /// Vertices about a pixel apart, pixels.
     pub points: Vec<DVec2>,
-    /// Length of the line in the world, scene units.
+    /// Length in the world of what lies inside the picture, scene units.
     pub length: f64,
     /// Whether it is visible.
     pub visible: bool,

@@ -7,7 +7,7 @@ use crate::BelvedereError;
 use crate::output;
 use crate::overlays::badge;
 use crate::scene_file::StageDoc;
-use crate::vectors::{SvgPage, svg};
+use crate::vectors::{Page, VectorPicture, pdf, svg};
 use belvedere_io::atomic;
 use belvedere_io::picture_file::{PictureFile, PictureFormat};
 use belvedere_io::png::{self, Channels};
@@ -94,14 +94,15 @@ impl Picture {
         Ok(Some(this))
     }
 
-    /// Writes the picture alone in the format that the ending of its name says: PNG, TIFF, JPEG, WebP, or SVG for one with vectors; PNG for any
-    /// other name.
+    /// Writes the picture alone in the format that the ending of its name says: PNG, TIFF, JPEG or WebP, PNG for any other name; PDF or SVG
+    /// for one with vectors.
     ///
     /// # Errors
     /// [`BelvedereError::Io`]; [`BelvedereError::Output`] for more pixels than the format holds.
     pub fn write_picture(&self, out: &Path, overwrite: bool) -> Result<(), BelvedereError> {
-        if let Some(svg) = self.to_svg()? {
-            return output::write_text(out, &svg, overwrite);
+        let is_pdf = out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pdf"));
+        if let Some(bytes) = if is_pdf { self.to_pdf()? } else { self.to_svg()?.map(String::into_bytes) } {
+            return Ok(atomic::write_atomic(out, overwrite, |out| out.write_all(&bytes))?);
         }
         let format = PictureFormat::of(out).unwrap_or(PictureFormat::Png);
         let (width, height, pixels) = self.pixels();
@@ -124,6 +125,18 @@ impl Picture {
     /// # Errors
     /// [`BelvedereError::Io`] for a picture without pixels.
     pub fn to_svg(&self) -> Result<Option<String>, BelvedereError> {
+        self.as_vectors(svg)
+    }
+
+    /// The picture as PDF of one page; `None` for one without vectors.
+    ///
+    /// # Errors
+    /// As [`Picture::to_svg`].
+    pub fn to_pdf(&self) -> Result<Option<Vec<u8>>, BelvedereError> {
+        self.as_vectors(pdf)
+    }
+
+    fn as_vectors<T>(&self, write: impl Fn(&VectorPicture, &Page<'_>) -> T) -> Result<Option<T>, BelvedereError> {
         let Some(vectors) = &self.vectors else { return Ok(None) };
         let (width, height) = (self.frame.width, self.frame.height);
         let mut raster = Vec::new();
@@ -134,14 +147,14 @@ impl Picture {
         let note = self.sidecar.note.as_deref();
         let description =
             [Some(self.sidecar.program.as_str()), note].into_iter().flatten().collect::<Vec<_>>().join("; ");
-        let page = SvgPage {
+        let page = Page {
             size: [width, height],
             sheet: self.sidecar.print,
             title: &self.sidecar.title,
             description: &description,
             raster: vectors.over_raster.then_some(&raster[..]),
         };
-        Ok(Some(svg(vectors, &page)))
+        Ok(Some(write(vectors, &page)))
     }
 
     fn dpi(&self) -> Option<f64> {

@@ -1,13 +1,16 @@
 //! Pictures as vectors: lines, areas, points, names and legends as shapes by layer, over the raster of the surfaces.
 
 mod area;
+mod pdf;
 mod svg;
 
+use crate::print::Sheet;
 pub use area::AreaShape;
 pub(crate) use area::areas;
 use belvedere_composite::canvas::{Canvas, CanvasShape};
 use belvedere_composite::marks::Shapes;
-pub(crate) use svg::{SvgPage, write as svg};
+pub(crate) use pdf::write as pdf;
+pub(crate) use svg::write as svg;
 
 /// Most distance of simplified lines from the whole ones on paper, millimetres.
 const SIMPLE_MM: f64 = 0.05;
@@ -66,6 +69,20 @@ pub struct VectorPicture {
     pub layers: Vec<String>,
     /// Whether the raster of the surfaces lies below.
     pub over_raster: bool,
+}
+
+/// What a file of vectors says beside its shapes.
+pub(crate) struct Page<'a> {
+    /// Size of the picture, pixels.
+    pub(crate) size: [usize; 2],
+    /// Its place on paper.
+    pub(crate) sheet: Option<Sheet>,
+    /// Title, possibly empty.
+    pub(crate) title: &'a str,
+    /// Program, and the note of bent pictures.
+    pub(crate) description: &'a str,
+    /// The surfaces as PNG, not interlaced.
+    pub(crate) raster: Option<&'a [u8]>,
 }
 
 /// Largest distance of simplified shapes from whole ones, pixels.

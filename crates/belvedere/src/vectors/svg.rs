@@ -1,7 +1,7 @@
 //! SVG with layers of Inkscape and live text; its units are the pixels of the picture, its page is the paper.
 
-use super::{AreaShape, VectorPicture, tolerance_px};
-use crate::print::{REFERENCE_DPI, Sheet};
+use super::{AreaShape, Page, VectorPicture, tolerance_px};
+use crate::print::REFERENCE_DPI;
 use belvedere_composite::canvas::CanvasShape;
 use belvedere_composite::marks::{LayerShapes, LineShape, Paint, Role, SymbolShape, outline, simplified};
 use belvedere_core::DVec2;
@@ -14,22 +14,8 @@ const PARTS: f64 = 100.0;
 /// Families of letters, the embedded one of pictures first.
 const FAMILIES: &str = "'DejaVu Sans Condensed', 'DejaVu Sans', sans-serif";
 
-/// What a file of vectors says beside its shapes.
-pub(crate) struct SvgPage<'a> {
-    /// Size of the picture, pixels.
-    pub(crate) size: [usize; 2],
-    /// Its place on paper.
-    pub(crate) sheet: Option<Sheet>,
-    /// Title, possibly empty.
-    pub(crate) title: &'a str,
-    /// Program, and the note of bent pictures.
-    pub(crate) description: &'a str,
-    /// The surfaces as PNG.
-    pub(crate) raster: Option<&'a [u8]>,
-}
-
 /// The document.
-pub(crate) fn write(picture: &VectorPicture, page: &SvgPage<'_>) -> String {
+pub(crate) fn write(picture: &VectorPicture, page: &Page<'_>) -> String {
     let [w, h] = page.size.map(|side| side as f64);
     let dpi = page.sheet.map_or(REFERENCE_DPI, |sheet| sheet.dpi);
     let margin = page.sheet.map_or(0.0, |sheet| sheet.margin_mm / 25.4 * dpi);
