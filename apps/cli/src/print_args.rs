@@ -42,6 +42,10 @@ impl PrintArgs {
         shape: [u32; 2],
     ) -> anyhow::Result<Option<Sheet>> {
         let scene = scene.cloned().unwrap_or_default();
+        if Sheet::of(&scene, None, shape).is_err() {
+            // Opening the scene tells the line of the mistake.
+            return Ok(None);
+        }
         let paper = self.paper.clone().or(scene.paper);
         anyhow::ensure!(
             !(paper.is_some() && self.dpi.is_some() && size.is_some()),

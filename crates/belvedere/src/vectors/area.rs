@@ -35,12 +35,16 @@ pub struct AreaShape {
 pub(crate) fn areas((scene, view): (&Scene, &View), frame: &Frame, tolerance: f64) -> Vec<AreaShape> {
     let is_ground = |kind: &LayerKind| matches!(kind, LayerKind::Terrain(_));
     let Some(ground) = scene.layers.iter().position(|layer| is_ground(&layer.kind)) else { return Vec::new() };
+    // Where areas are painted the ids are theirs.
+    let shows_ground: Vec<bool> = std::iter::once(false)
+        .chain(scene.layers.iter().map(|layer| is_ground(&layer.kind) || matches!(layer.kind, LayerKind::Area(_))))
+        .collect();
     let mut tracer = None;
     let mut shapes = Vec::new();
     for (index, layer) in scene.layers.iter().enumerate() {
         let LayerKind::Area(layer) = &layer.kind else { continue };
         let plans: Vec<Plan> = layer.features.par_iter().map(|f| Plan::new(&f.rings)).collect();
-        let inside = pixels_inside(&plans, frame, ground);
+        let inside = pixels_inside(&plans, frame, &shows_ground);
         let tracer = tracer.get_or_insert_with(|| Tracer::new(scene, view));
         let seen = |number: usize, pixel: DVec2| {
             let hit = tracer.first_hit(pixel).filter(|hit| hit.layer == ground);
@@ -107,7 +111,9 @@ impl Plan {
 }
 
 /// Numbers of the pixels whose centres show ground inside each polygon, ascending.
-fn pixels_inside(plans: &[Plan], frame: &Frame, ground: usize) -> Vec<Vec<usize>> {
+///
+/// * `shows_ground`: by the ids of the frame.
+fn pixels_inside(plans: &[Plan], frame: &Frame, shows_ground: &[bool]) -> Vec<Vec<usize>> {
     let lo = plans.iter().fold(DVec2::INFINITY, |lo, plan| lo.min(plan.lo));
     let hi = plans.iter().fold(DVec2::NEG_INFINITY, |hi, plan| hi.max(plan.hi));
     let size = (hi - lo).max(DVec2::splat(1e-9));
@@ -124,7 +130,8 @@ fn pixels_inside(plans: &[Plan], frame: &Frame, ground: usize) -> Vec<Vec<usize>
     let world = frame.world.as_deref().unwrap_or_default();
     let hits = |i: usize| -> Vec<(u32, usize)> {
         let at = DVec2::new(world[i][0], world[i][1]);
-        if frame.id[i] as usize != ground + 1 || !(at.cmpge(lo).all() && at.cmple(hi).all()) {
+        let is_ground = shows_ground.get(frame.id[i] as usize).copied().unwrap_or(false);
+        if !is_ground || !(at.cmpge(lo).all() && at.cmple(hi).all()) {
             return Vec::new();
         }
         let c = cell(at);

@@ -9,8 +9,8 @@ use belvedere::scene_file::{PrintDoc, parse};
 use belvedere::vectors::VectorContent;
 use belvedere::verbs::measure::MeasureOptions;
 use belvedere::{OpenOptions, Session};
-use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
+use quick_xml::{Reader, XmlVersion};
 use std::path::Path;
 
 const LAYERS: &str = "[[layer]]
@@ -59,8 +59,8 @@ fn svg(session: &Session, vectors: VectorContent) -> String {
 }
 
 fn attribute(tag: &BytesStart<'_>, name: &str) -> Option<String> {
-    let found = tag.attributes().map(|a| a.expect("an attribute")).find(|a| a.key.as_ref() == name.as_bytes())?;
-    Some(found.unescape_value().expect("its value").into_owned())
+    let found = tag.attributes().map(|a| a.expect("an attribute")).find(|a| a.key.as_ref() == name)?;
+    Some(found.normalized_value(XmlVersion::Implicit1_0).expect("its value").into_owned())
 }
 
 /// A path with the layer and the class of the group that it stands in.
@@ -95,12 +95,12 @@ fn read(svg: &str) -> Document {
                 let (mut layer, mut class) = open.last().cloned().unwrap_or_default();
                 let get = |name: &str| attribute(tag, name);
                 match tag.name().as_ref() {
-                    b"svg" => {
+                    "svg" => {
                         let numbers = get("viewBox").expect("a box");
                         out.view_box = numbers.split(' ').map(|v| v.parse().expect("a number")).collect();
                         out.size = [get("width").expect("a width"), get("height").expect("a height")];
                     }
-                    b"g" => {
+                    "g" => {
                         if get("inkscape:groupmode").as_deref() == Some("layer") {
                             layer = get("inkscape:label").expect("a name");
                             out.layers.push(layer.clone());
@@ -110,13 +110,13 @@ fn read(svg: &str) -> Document {
                             out.lengths.push((layer.clone(), [a, b].map(|v| v.parse().expect("a number"))));
                         }
                     }
-                    b"path" => {
+                    "path" => {
                         let class = get("class").unwrap_or(class.clone());
                         let lines = lines(&get("d").expect("data"));
                         out.paths.push(Path2 { layer: layer.clone(), class, lines });
                     }
-                    b"image" => out.images += 1,
-                    b"text" => text = Some(String::new()),
+                    "image" => out.images += 1,
+                    "text" => text = Some(String::new()),
                     _ => {}
                 }
                 if matches!(event, Event::Start(_)) {
@@ -125,12 +125,12 @@ fn read(svg: &str) -> Document {
             }
             Event::Text(found) => {
                 if let Some(text) = &mut text {
-                    text.push_str(&found.decode().expect("text"));
+                    text.push_str(&found.xml10_content());
                 }
             }
             Event::GeneralRef(found) => {
                 if let Some(text) = &mut text {
-                    text.push_str(match &found.decode().expect("a name")[..] {
+                    text.push_str(match &found[..] {
                         "amp" => "&",
                         "lt" => "<",
                         "gt" => ">",
@@ -140,7 +140,7 @@ fn read(svg: &str) -> Document {
             }
             Event::End(tag) => {
                 open.pop();
-                if tag.name().as_ref() == b"text" {
+                if tag.name().as_ref() == "text" {
                     out.texts.extend(text.take());
                 }
             }
