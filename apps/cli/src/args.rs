@@ -13,6 +13,7 @@ use crate::parse::{
     parse_position, parse_scale, parse_size, parse_spacing, parse_sweep,
 };
 use crate::preset::PresetArgs;
+use crate::print_args::PrintArgs;
 use crate::shell_args::{CompletionsArgs, ManArgs};
 use crate::trust::TrustArgs;
 use belvedere::RendererChoice;
@@ -234,7 +235,7 @@ pub(crate) struct RevealArgs {
     /// Colours and opacities of volumes with --see: auto, solid, engine, ct-bone, ct-soft, vessels, grey, or a file
     #[arg(long, value_name = "NAME|FILE", requires = "see")]
     pub(crate) transfer: Option<String>,
-    /// Picture to write; its record goes to OUT.png.json, and if it is bent, the straight beside the bent picture to OUT.pair.png; - =
+    /// Picture to write: PNG, TIFF, JPEG, WebP, SVG or PDF, as its name ends; its record goes to OUT.png.json, and if it is bent, the straight beside the bent picture to OUT.pair.png; - =
     /// standard output, and the picture alone
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
@@ -251,6 +252,8 @@ pub(crate) struct RevealArgs {
     /// Size of the picture, such as 1920x1080
     #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = parse_size)]
     pub(crate) size: Option<[u32; 2]>,
+    #[command(flatten)]
+    pub(crate) print: PrintArgs,
     /// Lower the ground with the distance, as on a sphere, with refraction
     #[arg(long)]
     pub(crate) curved_earth: bool,
@@ -400,11 +403,14 @@ impl From<RendererKind> for RendererChoice {
 pub(crate) struct RenderArgs {
     /// Scene file, TOML or JSON; - = standard input
     pub(crate) scene: PathBuf,
-    /// Output; the record is written beside it as OUT.png.json; - = standard output, and no record
+    /// Output: PNG, TIFF, JPEG, WebP, SVG or PDF, as its name ends; the record is written beside it as OUT.png.json; - = standard output, a PNG,
+    /// and no record
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
     pub(crate) draw: DrawArgs,
+    #[command(flatten)]
+    pub(crate) print: PrintArgs,
     /// Buffers to write beside the picture
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     pub(crate) aux: Vec<AuxKind>,

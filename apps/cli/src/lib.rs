@@ -20,6 +20,7 @@ mod outputs;
 mod pack;
 mod parse;
 mod preset;
+mod print_args;
 mod report;
 mod reveal;
 mod scene_keys;

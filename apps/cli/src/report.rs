@@ -137,6 +137,9 @@ fn option_for(error: &BelvedereError) -> Option<&'static str> {
         BelvedereError::Io(_) | BelvedereError::Memory(_) if belvedere::io::budget::is_refusal(&error.to_string()) => {
             " (--max-mem)"
         }
+        BelvedereError::Paper { key: "paper", .. } => " (--paper)",
+        BelvedereError::Paper { key: "margin_mm", .. } => " (--margin-mm)",
+        BelvedereError::Paper { .. } => " (--dpi)",
         BelvedereError::RayEnd { .. } => "; give a larger --far",
         BelvedereError::NoRayEnd => "; give --far or camera.far",
         BelvedereError::FramesThere { resumable: true, .. } => {

@@ -8,9 +8,10 @@ use crate::outputs::{self, png_named};
 use crate::report::{Context, is_stdout};
 use belvedere::picture::{self, Picture, PictureOptions};
 use belvedere::places::Place;
+use belvedere::print::Sheet;
 use belvedere::scene_file::PaletteDoc;
 use belvedere::verbs::hold_a_city;
-use belvedere::verbs::reveal::{self, RevealFiles, RevealRequest};
+use belvedere::verbs::reveal::{self, IMAGE, RevealFiles, RevealRequest};
 use belvedere::verbs::reveal_target::{TargetRequest, reveal_target};
 use belvedere::{DataFiles, Needs, Session};
 use std::path::{Path, PathBuf};
@@ -57,7 +58,10 @@ fn ready(args: &RevealArgs, out: &RevealFiles, context: &Context) -> anyhow::Res
     let named = [&args.see, &args.palette, &args.transfer].into_iter().flatten().map(PathBuf::from);
     let inputs = inputs.chain(args.rivers.iter().chain(&args.drape).cloned()).chain(named);
     let inputs: Vec<PathBuf> = inputs.collect();
-    png_named(&args.out)?;
+    match args.drafts {
+        Some(_) => png_named(&args.out)?,
+        None => args.print.check_name(&args.out)?,
+    }
     out.before.as_deref().map_or(Ok(()), png_named)?;
     let moves_ground = !matches!(technique(args), TechniqueKind::Spline | TechniqueKind::CurvedRays);
     anyhow::ensure!(
@@ -71,6 +75,11 @@ fn ready(args: &RevealArgs, out: &RevealFiles, context: &Context) -> anyhow::Res
         anyhow::ensure!(args.drafts.is_none(), "-o -: --drafts prints commands on standard output; name a file");
     }
     outputs::check(&out.all().into_iter().chain(delta).collect::<Vec<_>>(), &inputs, context)
+}
+
+/// Paper of the picture.
+fn sheet(args: &RevealArgs) -> anyhow::Result<Option<Sheet>> {
+    args.print.sheet(None, args.size, args.size.unwrap_or(IMAGE))
 }
 
 fn places(args: &RevealArgs) -> anyhow::Result<Option<[Place; 2]>> {
@@ -100,6 +109,7 @@ fn reveal_target_in(
             "--see bends rays, or in a city the ground by a spline; give --technique curved_rays or spline, or leave it out"
         );
     }
+    let (print, sheet) = (args.print.clone(), sheet(&args)?);
     let see = args.see.unwrap_or_default();
     let mut request = TargetRequest {
         files,
@@ -110,10 +120,11 @@ fn reveal_target_in(
         appearance: args.look_args.appearance(),
         fov_y_deg: args.fov,
         up: args.up.map(belvedere::core::DVec3::from_array),
-        image: args.size,
+        image: sheet.map(|sheet| sheet.pixels()).or(args.size),
         technique: args.technique.filter(|kind| *kind != TechniqueKind::Auto).map(Into::into),
         ..TargetRequest::default()
     };
+    request.picture = print.apply(request.picture, &picture, sheet);
     quality(&mut request.picture, context);
     if let Some(count) = args.drafts {
         return crate::drafts::of_target(&request, count, &out.out, context);
@@ -140,6 +151,7 @@ fn reveal_features(
     context: &Context,
 ) -> anyhow::Result<Goal> {
     let (picture, technique) = (args.out.clone(), technique(&args));
+    let (print, sheet) = (args.print.clone(), sheet(&args)?);
     let mut request = RevealRequest {
         data: DataFiles {
             dem: args.dem,
@@ -162,12 +174,13 @@ fn reveal_features(
         places,
         appearance: args.look_args.appearance(),
         fov_y_deg: args.fov,
-        image: args.size,
+        image: sheet.map(|sheet| sheet.pixels()).or(args.size),
         curved_earth: args.curved_earth,
         technique: technique.into(),
         no_limits: args.no_limits,
         ..RevealRequest::default()
     };
+    request.picture = print.apply(request.picture, &picture, sheet);
     quality(&mut request.picture, context);
     if let Some(count) = args.drafts {
         return crate::drafts::drafts(&request, count, &out.out, context);

@@ -10,6 +10,7 @@ use crate::ground_args::InfoArgs;
 use crate::inputs::as_text;
 use crate::look_args::AirArgs;
 use crate::outputs::{self, named, png_named};
+use crate::print_args::is_vectors;
 use crate::report::{Context, is_stdout, print};
 use anyhow::Context as _;
 use belvedere::answers::{self, Content, Warned, Written};
@@ -120,8 +121,17 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     request.highlight = args.highlight.clone();
     request.camera =
         args.overhead.then_some(CameraPicture::Overhead).or(args.outside.map(|_| CameraPicture::Outside(None)));
-    png_named(&args.out)?;
+    args.print.check_name(&args.out)?;
     let source = context.stdin.scene(&args.scene)?;
+    let document = &source.document;
+    let sheet = args.print.sheet(document.print.as_ref(), args.draw.size, document.camera.image)?;
+    let size = sheet.map(|sheet| sheet.pixels()).or(args.draw.size);
+    let mut request = args.print.apply(request, &args.out, sheet);
+    anyhow::ensure!(
+        !(is_vectors(&args.out) && args.draw.compare),
+        "{}: --compare draws two pictures of pixels; name the output .png",
+        args.out.display()
+    );
     let mut files = picture::outputs(&args.out, &request, source.document.solves_terrain());
     if is_stdout(&args.out) {
         outputs::check_stdout(context)?;
@@ -137,15 +147,8 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     let unsolved = request.straight;
     let (area_style, sea) = (args.area_style, args.no_sea.then_some(false));
     let AirArgs { sky, haze } = args.air.clone();
-    let options = OpenOptions {
-        palette,
-        sky,
-        haze,
-        area_style,
-        sea,
-        unsolved,
-        ..context.options(Needs::Everything, args.draw.size)
-    };
+    let options =
+        OpenOptions { palette, sky, haze, area_style, sea, unsolved, ..context.options(Needs::Everything, size) };
     let session = Session::from_document(source, &options)?;
     outputs::check(&files, &session.input_paths(), context)?;
     let mut warnings = session.warnings();

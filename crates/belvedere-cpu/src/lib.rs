@@ -38,6 +38,7 @@ mod volume;
 
 pub use exact::ExactRenderer;
 pub use geometry::project::GroundImage;
+pub use marks::mark_shapes;
 pub use rasteriser::CpuRenderer;
 pub use tint::GroundTint;
 pub use trace::{RayHit, Tracer};

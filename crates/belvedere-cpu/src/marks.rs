@@ -3,7 +3,7 @@
 use crate::geometry::pass::{InView, Pass};
 use crate::trace::Tracer;
 use belvedere_composite::drawn::{self, Drawn, Sight};
-use belvedere_composite::marks::Marks;
+use belvedere_composite::marks::{Marks, Shapes};
 use belvedere_composite::screen::{COARSE_PX, Screen};
 use belvedere_composite::sections::{Exposure, Sections};
 use belvedere_core::{Aabb, DVec2, DVec3};
@@ -27,7 +27,22 @@ pub(crate) fn place(
     Marks::new(job, &Drawn { passes: &passes, screen, tolerance_px, depth, sight: &sight })
 }
 
-/// The same for surfaces that were not drawn by passes.
+/// Largest error of bent lines as shapes, pixels.
+const SHAPE_TOLERANCE_PX: f64 = 0.05;
+
+/// The marks of a picture as shapes, for files of vectors: what the renderers draw over its surfaces, judged by the same lines of sight.
+///
+/// * `job`: the job by which the surfaces were drawn, with its marks.
+/// * `depth`: depths of the surfaces at the pixel centres, row by row, see [`belvedere_scene::Frame::depth`].
+pub fn mark_shapes(job: &RenderJob<'_>, depth: &[f32]) -> Shapes {
+    let passes = Pass::all(job.view);
+    let passes: Vec<&dyn drawn::Pass> = passes.iter().map(|pass| pass as &dyn drawn::Pass).collect();
+    let (screen, sight) = (Screen::new(job.view.pinhole()), TracedSight { job, tracer: OnceLock::new() });
+    let tolerance_px = job.options.tolerance_px.clamp(0.01, SHAPE_TOLERANCE_PX);
+    Marks::shapes(job, &Drawn { passes: &passes, screen: &screen, tolerance_px, depth, sight: &sight })
+}
+
+/// The same as [`place`] for surfaces that were not drawn by passes.
 pub(crate) fn place_alone(job: &RenderJob<'_>, screen: &Screen, depth: &[f32]) -> Marks {
     place(job, &Pass::all(job.view), screen, (depth, Solids::Opaque))
 }

@@ -20,6 +20,7 @@ pub mod mesh;
 pub mod molecule;
 pub mod open_exr;
 mod packed;
+pub mod picture_file;
 pub mod png;
 pub mod ramp;
 pub mod raster;

@@ -2,7 +2,7 @@
 
 use crate::fs::File;
 use crate::{Alpha, IoError, Limits, Photometric, Raster, RasterInfo, SampleType, Samples, atomic, budget};
-use png::{BitDepth, ColorType, Compression, Encoder, Filter, SrgbRenderingIntent};
+use png::{BitDepth, ColorType, Compression, Encoder, Filter, PixelDimensions, SrgbRenderingIntent, Unit};
 use std::io::{self, BufReader, Write};
 use std::path::Path;
 
@@ -46,6 +46,23 @@ pub fn encode(
     pixels: &[u8],
     text: &[(&str, &str)],
 ) -> io::Result<()> {
+    encode_at(out, (width, height), channels, pixels, text, None)
+}
+
+/// [`encode`] with a physical size in a `pHYs` chunk.
+///
+/// * `dpi`: pixels per inch, > 0.
+///
+/// # Errors
+/// As [`encode`].
+pub fn encode_at(
+    out: &mut dyn Write,
+    (width, height): (usize, usize),
+    channels: Channels,
+    pixels: &[u8],
+    text: &[(&str, &str)],
+    dpi: Option<f64>,
+) -> io::Result<()> {
     let bad = |message: String| io::Error::new(io::ErrorKind::InvalidInput, message);
     let expected = width.checked_mul(height).and_then(|n| n.checked_mul(channels.count()));
     let side = |n: usize| u32::try_from(n).ok().filter(|n| (1..=i32::MAX as u32).contains(n));
@@ -65,6 +82,10 @@ pub fn encode(
     encoder.set_compression(Compression::Fast);
     encoder.set_filter(Filter::Adaptive);
     encoder.set_source_srgb(SrgbRenderingIntent::Perceptual);
+    if let Some(dpi) = dpi {
+        let per_metre = (dpi / 0.0254).round().clamp(1.0, f64::from(u32::MAX)) as u32;
+        encoder.set_pixel_dims(Some(PixelDimensions { xppu: per_metre, yppu: per_metre, unit: Unit::Meter }));
+    }
     for (keyword, value) in text {
         let printable = keyword.bytes().all(|b| (0x20..0x7f).contains(&b)) && keyword.trim() == *keyword;
         if keyword.is_empty() || keyword.len() > MAX_KEYWORD || !printable {

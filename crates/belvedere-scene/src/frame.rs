@@ -39,6 +39,9 @@ pub struct RenderOptions {
     pub representation: Option<usize>,
     /// Whether lines, outlines, points and names are drawn, those of the overlay too; else surfaces alone.
     pub marks: bool,
+    /// Pixels per unit of the lengths of marks that styles do not state: rims, gaps, leaders, > 0. Widths and heights that styles state are
+    /// pixels.
+    pub density: f64,
     /// Memory the renderer may use for one picture, bytes; more is [`RenderError::TooLarge`].
     pub max_bytes: u64,
 }
@@ -57,6 +60,7 @@ impl Default for RenderOptions {
             compositing: Compositing::default(),
             representation: None,
             marks: true,
+            density: 1.0,
             max_bytes: 4 << 30,
         }
     }

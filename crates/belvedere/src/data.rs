@@ -166,6 +166,7 @@ impl Data {
             camera,
             overlay: None,
             stylisation: None,
+            print: None,
             light: None,
             representations: Default::default(),
             hidden: Vec::new(),

@@ -89,6 +89,17 @@ pub enum BelvedereError {
         /// The measured value, the limit, and what to do.
         reason: String,
     },
+    /// A paper that a picture cannot have.
+    #[error("{reason}")]
+    Paper {
+        /// Key of `[print]` that is at fault.
+        key: &'static str,
+        /// The measured value, the limit, and what to do.
+        reason: String,
+    },
+    /// A picture that cannot be written as vectors.
+    #[error("{0} cannot be written as vectors; write a PNG")]
+    NoVectors(&'static str),
     /// Highlights that cannot be drawn together.
     #[error("{0}")]
     Highlight(&'static str),

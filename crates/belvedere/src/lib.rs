@@ -47,6 +47,7 @@ mod overlays;
 pub mod pick;
 pub mod picture;
 pub mod places;
+pub mod print;
 pub mod record;
 mod resolve;
 pub mod scene_file;
@@ -55,6 +56,7 @@ pub mod sun;
 mod targets;
 pub mod threads;
 pub mod trust;
+pub mod vectors;
 pub mod verbs;
 
 pub use belvedere_builtin as builtin;

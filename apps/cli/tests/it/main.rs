@@ -27,6 +27,7 @@ mod pick;
 mod pictures;
 mod places;
 mod presets;
+mod print;
 mod privacy;
 mod reveal;
 mod reveal_looks;

@@ -29,9 +29,40 @@ pub(super) fn has(letter: char) -> bool {
     glyph.is_some_and(|glyph| glyph != GlyphId::NOTDEF)
 }
 
+/// The font file, for documents that embed it.
+pub const FONT_FILE: &[u8] = BYTES;
+
+/// A letter of a text that is set in one line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Letter {
+    /// Number of the glyph in [`FONT_FILE`].
+    pub glyph: u16,
+    /// Place from the beginning of the text, right and up, em.
+    pub at: [f64; 2],
+    /// The glyph's own width, em.
+    pub width: f64,
+    /// Number of the first character that the glyph stands for, bytes from the beginning of the text.
+    pub cluster: usize,
+}
+
+/// The letters of a text as they are set, see [`FONT_FILE`].
+pub fn letters(text: &str) -> Vec<Letter> {
+    let Some(font) = FONT.as_ref() else { return Vec::new() };
+    let metrics = font.letters.glyph_metrics(Size::unscaled(), LocationRef::default());
+    let line = set(text);
+    let em = |v: f32| f64::from(v / font.em);
+    let letter = |(glyph, [x, y], cluster): &(GlyphId, [f32; 2], u32)| Letter {
+        glyph: glyph.to_u32() as u16,
+        at: [em(*x), em(*y)],
+        width: metrics.advance_width(*glyph).map_or(0.0, em),
+        cluster: *cluster as usize,
+    };
+    line.glyphs.iter().map(letter).collect()
+}
+
 /// A text set in one line: its letters and where each begins, in units of the font.
 pub(super) struct Line {
-    glyphs: Vec<(GlyphId, [f32; 2])>,
+    glyphs: Vec<(GlyphId, [f32; 2], u32)>,
     width: f32,
 }
 
@@ -46,7 +77,7 @@ pub(super) fn set(text: &str) -> Line {
     let set = shaper.shape(buffer, ShapeOptions::new());
     for (glyph, place) in set.glyph_infos().iter().zip(set.glyph_positions()) {
         let at = [line.width + place.x_offset as f32, place.y_offset as f32];
-        line.glyphs.push((GlyphId::new(glyph.glyph_id), at));
+        line.glyphs.push((GlyphId::new(glyph.glyph_id), at, glyph.cluster));
         line.width += place.x_advance as f32;
     }
     line
@@ -74,7 +105,7 @@ impl Line {
         let scale = size_px / font.em;
         let mut pen = Pen::default();
         let outlines = font.letters.outline_glyphs();
-        for (glyph, [x, y]) in &self.glyphs {
+        for (glyph, [x, y], _) in &self.glyphs {
             pen.origin = [origin[0] + x * scale, origin[1] - y * scale];
             let settings = DrawSettings::unhinted(Size::new(size_px), LocationRef::default());
             // A letter without an outline, or with a damaged one, is left out.

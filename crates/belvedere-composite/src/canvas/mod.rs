@@ -2,8 +2,11 @@
 
 mod font;
 mod polygon;
+mod shape;
 mod text;
 
+pub use font::{FONT_FILE, Letter, letters};
+pub use shape::CanvasShape;
 pub use text::{TextSize, can_set, text_size};
 
 use crate::color::{encode, linear};
@@ -28,13 +31,28 @@ pub struct Canvas<'a> {
     height: usize,
     /// Pixels per unit of all lengths and positions.
     scale: f64,
+    /// What is recorded instead of drawn.
+    record: Option<&'a mut Vec<CanvasShape>>,
 }
 
 impl<'a> Canvas<'a> {
     /// A picture of `width` columns, row-major, row 0 on top.
     pub fn new(pixels: &'a mut [[u8; 3]], width: usize) -> Self {
         let height = pixels.len().checked_div(width).unwrap_or(0);
-        Self { pixels, width, height, scale: 1.0 }
+        Self { pixels, width, height, scale: 1.0, record: None }
+    }
+
+    /// A picture of this size, pixels, that records shapes and draws nothing; [`Canvas::blend`] is left out.
+    pub fn recording(shapes: &'a mut Vec<CanvasShape>, [width, height]: [usize; 2]) -> Self {
+        Self { pixels: &mut [], width, height, scale: 1.0, record: Some(shapes) }
+    }
+
+    /// Records a shape; whether that is all there is to do.
+    fn records(&mut self, shape: impl FnOnce() -> CanvasShape) -> bool {
+        if let Some(record) = &mut self.record {
+            record.push(shape());
+        }
+        self.record.is_some()
     }
 
     /// The same picture with lengths and positions in units of `scale` pixels, more than 0; but [`Canvas::blend`] counts pixels.
@@ -54,7 +72,7 @@ impl<'a> Canvas<'a> {
 
     /// Blends `color` over a pixel; `coverage` in 0..=1 scales its opacity.
     pub fn blend(&mut self, x: i64, y: i64, color: Color, coverage: f32) {
-        if x < 0 || y < 0 || x >= self.width as i64 || y >= self.height as i64 {
+        if self.record.is_some() || x < 0 || y < 0 || x >= self.width as i64 || y >= self.height as i64 {
             return;
         }
         let alpha = coverage.clamp(0.0, 1.0) * f32::from(color.a) / 255.0;
@@ -81,6 +99,9 @@ impl<'a> Canvas<'a> {
     pub fn rect(&mut self, lo: DVec2, hi: DVec2, radius: f64, color: Color) {
         let [lo, hi] = [lo, hi].map(|p| p * self.scale);
         let radius = radius * self.scale;
+        if self.records(|| CanvasShape::Rect { corners: [lo, hi], radius, color }) {
+            return;
+        }
         let (middle, half) = (0.5 * (lo + hi), 0.5 * (hi - lo) - radius);
         self.shape(lo, hi, color, |p| {
             let q = (p - middle).abs() - half;
@@ -94,6 +115,9 @@ impl<'a> Canvas<'a> {
         let Some(&first) = points.first() else { return };
         let (lo, hi) = points.iter().fold((first, first), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
         let half = 0.5 * width * self.scale;
+        if self.records(|| CanvasShape::Line { points: points.clone(), width: 2.0 * half, color }) {
+            return;
+        }
         self.shape(lo - half, hi + half, color, |p| {
             let nearest = points.windows(2).map(|w| to_segment(p, w[0], w[1]).length());
             nearest.fold(p.distance(first), f64::min) - half
@@ -103,19 +127,52 @@ impl<'a> Canvas<'a> {
     /// Fills a disc.
     pub fn disc(&mut self, at: DVec2, radius: f64, color: Color) {
         let (at, radius) = (at * self.scale, radius * self.scale);
+        if self.records(|| CanvasShape::Disc { at, radius, color }) {
+            return;
+        }
         self.shape(at - radius, at + radius, color, |p| p.distance(at) - radius);
     }
 
     /// Writes a line of text: `at` is the left end of its baseline, `size_px` the height of the letters' em square; `halo` a rim and its width.
     pub fn text(&mut self, at: DVec2, size_px: f64, text: &str, color: Color, halo: Option<(Color, f64)>) {
         let (at, size_px) = (at * self.scale, size_px * self.scale);
-        text::draw(self, at, size_px, text, color, halo.map(|(color, width)| (color, width * self.scale)));
+        let halo = halo.map(|(color, width)| (color, width * self.scale));
+        let recorded = || CanvasShape::Text {
+            at,
+            size: text::drawn_size(size_px),
+            text: text::shown(text),
+            width: text_size(size_px, text).width,
+            color,
+            halo,
+        };
+        if !self.records(recorded) {
+            text::draw(self, at, size_px, text, color, halo);
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_recording_canvas_holds_in_pixels_what_another_one_draws() {
+        let mut shapes = Vec::new();
+        let mut canvas = Canvas::recording(&mut shapes, [60, 40]).scaled(2.0);
+        assert_eq!(canvas.size(), DVec2::new(30.0, 20.0));
+        let black = Color::rgb(0, 0, 0);
+        canvas.rect(DVec2::ONE, DVec2::splat(3.0), 0.5, black);
+        canvas.text(DVec2::new(4.0, 9.0), 7.0, "be\nnt", black, Some((black, 1.5)));
+        canvas.polygon([&[DVec2::ZERO, DVec2::X, DVec2::Y][..]], black);
+        canvas.blend(1, 1, black, 1.0);
+        let rect = CanvasShape::Rect { corners: [DVec2::splat(2.0), DVec2::splat(6.0)], radius: 1.0, color: black };
+        assert_eq!((shapes.len(), &shapes[0]), (3, &rect));
+        let width = text_size(14.0, "bent").width;
+        let (at, text, halo) = (DVec2::new(8.0, 18.0), "bent".to_owned(), Some((black, 3.0)));
+        assert_eq!(shapes[1], CanvasShape::Text { at, size: 14.0, text, width, color: black, halo });
+        let rings = vec![vec![DVec2::ZERO, 2.0 * DVec2::X, 2.0 * DVec2::Y]];
+        assert_eq!(shapes[2], CanvasShape::Polygon { rings, color: black });
+    }
 
     #[test]
     fn twice_the_scale_draws_the_same_twice_as_large() {

@@ -75,6 +75,10 @@ impl Canvas<'_> {
             return;
         }
         let Some(first) = points().next() else { return };
+        let scaled = || rings.clone().into_iter().map(|ring| ring.iter().map(|p| *p * scale).collect()).collect();
+        if self.records(|| super::CanvasShape::Polygon { rings: scaled(), color }) {
+            return;
+        }
         let (low, high) = points().fold((first, first), |(low, high), p| (low.min(p), high.max(p)));
         let (low, high) = (low.floor().max(DVec2::ZERO), high.ceil().min(self.extent()));
         if !low.cmplt(high).all() {

@@ -31,15 +31,19 @@ pub fn text_size(size_px: f64, text: &str) -> TextSize {
 }
 
 /// Sizes of letters that are drawn, pixels per em.
-fn drawn_size(size_px: f64) -> f64 {
+pub(super) fn drawn_size(size_px: f64) -> f64 {
     size_px.clamp(1.0, 400.0)
 }
 
 /// The text as it is set: without control characters, and not too long.
-fn line(text: &str) -> font::Line {
+pub(super) fn shown(text: &str) -> String {
     let long = text.chars().count() > MAX_CHARS;
     let shown = text.chars().take(MAX_CHARS - usize::from(long)).chain(long.then_some('…'));
-    font::set(&shown.filter(|c| !c.is_control()).collect::<String>())
+    shown.filter(|c| !c.is_control()).collect()
+}
+
+fn line(text: &str) -> font::Line {
+    font::set(&shown(text))
 }
 
 pub(super) fn draw(

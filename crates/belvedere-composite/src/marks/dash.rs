@@ -36,8 +36,8 @@ pub(crate) fn trace(part: &[Station], half: f64, lane: Lane, out: &mut Vec<Strok
 
 /// Dashes that stay fixed to the ground: they begin at multiples of a period along the line, which is a power of two in scene units
 /// and one to two times as long on the image as the width requires.
-pub(crate) fn dashes(part: &[Station], width: f64, half: f64, out: &mut Vec<Stroke>) {
-    let wanted_px = PERIOD * width.max(1.5);
+pub(crate) fn dashes(part: &[Station], width: f64, density: f64, half: f64, out: &mut Vec<Stroke>) {
+    let wanted_px = PERIOD * width.max(1.5 * density);
     let periods = periods(part, wanted_px);
     let mut dash: Vec<Station> = Vec::new();
     for (pair, &period) in part.windows(2).zip(&periods) {
@@ -55,6 +55,20 @@ pub(crate) fn dashes(part: &[Station], width: f64, half: f64, out: &mut Vec<Stro
         }
     }
     trace(&dash, half, Lane::Hidden, out);
+}
+
+/// Lengths of ink and of gap in the middle of a part drawn by [`dashes`], pixels; 0 for a part without length.
+pub(crate) fn pattern(part: &[Station], width: f64, density: f64) -> [f64; 2] {
+    let wanted_px = PERIOD * width.max(1.5 * density);
+    let middle = part.len() / 2;
+    let (Some(first), Some(last), Some(period)) =
+        (part.first(), part.last(), periods(part, wanted_px).get(middle).copied())
+    else {
+        return [0.0; 2];
+    };
+    let px_per_unit = (last.arc_px - first.arc_px) / (last.on_line.along - first.on_line.along).max(1e-9);
+    let period = (period * px_per_unit).clamp(0.0, 4.0 * wanted_px);
+    [INK * period, (1.0 - INK) * period]
 }
 
 /// Length of a period along the line at every station, scene units.
@@ -118,7 +132,7 @@ mod tests {
             })
             .collect();
         let mut strokes = Vec::new();
-        dashes(&part, 3.0, 1.0, &mut strokes);
+        dashes(&part, 3.0, 1.0, 1.0, &mut strokes);
         let mut starts: Vec<f64> = Vec::new();
         let mut end = f64::NEG_INFINITY;
         for s in &strokes {

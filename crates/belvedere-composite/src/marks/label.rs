@@ -40,6 +40,8 @@ struct Placed {
 #[derive(Debug, Default)]
 pub(crate) struct Labels {
     placed: Vec<Placed>,
+    /// Pixels per unit of gaps, leaders and rims.
+    density: f64,
 }
 
 type Rect = [DVec2; 2];
@@ -50,7 +52,9 @@ fn overlap(a: &Rect, b: &Rect) -> bool {
 
 impl Labels {
     /// Places the texts that fit into a picture of `size` pixels, in the order of the requests.
-    pub(crate) fn place(requests: Vec<LabelRequest>, size: DVec2) -> Self {
+    ///
+    /// * `density`: pixels per unit of gaps, leaders and rims.
+    pub(crate) fn place(requests: Vec<LabelRequest>, size: DVec2, density: f64) -> Self {
         let markers: Vec<Rect> = requests.iter().map(marker).collect();
         let mut taken: Vec<Rect> = Vec::new();
         let mut placed: Vec<Placed> = Vec::new();
@@ -64,16 +68,16 @@ impl Labels {
                     && !taken.iter().any(|t| overlap(t, r))
                     && !markers.iter().enumerate().any(|(k, m)| k != i && overlap(m, r))
             };
-            let found = candidates(&label_request).into_iter().find(|(text, leader, _)| {
-                free(text) && leader.as_ref().is_none_or(|l| !taken.iter().any(|t| overlap(t, &line_box(l))))
+            let found = candidates(&label_request, density).into_iter().find(|(text, leader, _)| {
+                free(text) && leader.as_ref().is_none_or(|l| !taken.iter().any(|t| overlap(t, &line_box(l, density))))
             });
             if let Some((text, leader, baseline)) = found {
                 taken.push(text);
-                taken.extend(leader.as_ref().map(line_box));
+                taken.extend(leader.as_ref().map(|leader| line_box(leader, density)));
                 placed.push(Placed { label_request, baseline, leader });
             }
         }
-        Self { placed }
+        Self { placed, density }
     }
 
     /// Draws the texts.
@@ -81,12 +85,13 @@ impl Labels {
         for p in &self.placed {
             let ink = p.label_request.color;
             if let Some(leader) = &p.leader {
-                canvas.line(leader, 2.6, rim(ink).with_alpha(150));
-                canvas.line(leader, 1.0, ink);
+                canvas.line(leader, 2.6 * self.density, rim(ink).with_alpha(150));
+                canvas.line(leader, self.density, ink);
             }
         }
         for Placed { label_request, baseline, .. } in &self.placed {
-            let halo = (rim(label_request.color).with_alpha(225), (label_request.size_px / 7.0).clamp(1.2, 3.0));
+            let width = (label_request.size_px / 7.0).clamp(1.2 * self.density, 3.0 * self.density);
+            let halo = (rim(label_request.color).with_alpha(225), width);
             canvas.text(*baseline, label_request.size_px, &label_request.text, label_request.color, Some(halo));
         }
     }
@@ -103,23 +108,23 @@ fn marker(label_request: &LabelRequest) -> Rect {
     [label_request.at - DVec2::new(side, above), label_request.at + side]
 }
 
-fn line_box(line: &[DVec2; 2]) -> Rect {
-    [line[0].min(line[1]) - 1.5, line[0].max(line[1]) + 1.5]
+fn line_box(line: &[DVec2; 2], density: f64) -> Rect {
+    [line[0].min(line[1]) - 1.5 * density, line[0].max(line[1]) + 1.5 * density]
 }
 
 /// Boxes of text to try, best first, with leader and baseline.
-fn candidates(label_request: &LabelRequest) -> Vec<(Rect, Option<[DVec2; 2]>, DVec2)> {
+fn candidates(label_request: &LabelRequest, density: f64) -> Vec<(Rect, Option<[DVec2; 2]>, DVec2)> {
     let size = text_size(label_request.size_px, &label_request.text);
     let [side, above] = label_request.marker;
     let rect = |baseline: DVec2| {
         let (lo, hi) = (DVec2::new(0.0, -size.ascent), DVec2::new(size.width, size.descent));
-        [baseline + lo - ROOM, baseline + hi + ROOM]
+        [baseline + lo - ROOM * density, baseline + hi + ROOM * density]
     };
     let level = label_request.at.y + 0.36 * label_request.size_px;
     let beside = [
-        DVec2::new(label_request.at.x + side + 4.0, level),
-        DVec2::new(label_request.at.x - side - 4.0 - size.width, level),
-        DVec2::new(label_request.at.x - 0.5 * size.width, label_request.at.y + side + 3.0 + size.ascent),
+        DVec2::new(label_request.at.x + side + 4.0 * density, level),
+        DVec2::new(label_request.at.x - side - 4.0 * density - size.width, level),
+        DVec2::new(label_request.at.x - 0.5 * size.width, label_request.at.y + side + 3.0 * density + size.ascent),
     ];
     if label_request.over {
         let baseline = DVec2::new(label_request.at.x - 0.5 * size.width, level);
@@ -127,10 +132,11 @@ fn candidates(label_request: &LabelRequest) -> Vec<(Rect, Option<[DVec2; 2]>, DV
     }
     let mut out = Vec::new();
     for length in LEADERS.into_iter().take(if label_request.leader { LEADERS.len() } else { 1 }) {
+        let length = length * density;
         let foot = label_request.at - DVec2::Y * above;
-        let top = foot - DVec2::Y * (length + 2.0);
+        let top = foot - DVec2::Y * (length + 2.0 * density);
         for shift in [0.5, 0.15, 0.85] {
-            let baseline = DVec2::new(top.x - shift * size.width, top.y - size.descent - 1.0);
+            let baseline = DVec2::new(top.x - shift * size.width, top.y - size.descent - density);
             out.push((rect(baseline), (length > 0.0).then_some([foot, top]), baseline));
         }
         if length == 0.0 {
@@ -162,7 +168,7 @@ mod tests {
         // Fifty summits in a tight row: not all names fit.
         let requests: Vec<LabelRequest> =
             (0..50).map(|i| label_request(i, DVec2::new(100.0 + 4.0 * i as f64, 230.0))).collect();
-        let labels = Labels::place(requests.clone(), DVec2::new(400.0, 300.0));
+        let labels = Labels::place(requests.clone(), DVec2::new(400.0, 300.0), 1.0);
         let n = labels.placed.len();
         assert!((8..50).contains(&n), "{n} names of 50");
         assert_eq!(labels.placed[0].label_request, requests[0]);

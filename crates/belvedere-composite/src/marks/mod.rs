@@ -9,9 +9,11 @@ mod label;
 mod line_of_sight;
 mod names;
 mod path;
+mod point;
 mod pole;
 mod ribbon;
 mod segment;
+mod shapes;
 mod shown;
 mod symbol;
 mod visibility;
@@ -22,10 +24,9 @@ use crate::drawn::{Drawn, Pass};
 use crate::screen::{BAND, COARSE_PX, Screen};
 use crate::sections::Sections;
 use alike::alike;
-use belvedere_core::{Aabb, DVec2, DVec3};
+use belvedere_core::{Aabb, DVec2};
 use belvedere_scene::{
-    AreaLayer, Color, Hidden, LayerKind, LineFeature, LineLayer, Overlay, OverlayLine, OverlayPoint, PointFeature,
-    PointLayer, PointStyle, RenderJob, Scene, Symbol,
+    AreaLayer, Color, Hidden, LayerKind, LineFeature, LineLayer, Overlay, OverlayLine, RenderJob, Scene, Symbol,
 };
 use face::Face;
 use label::{LabelRequest, Labels};
@@ -33,7 +34,8 @@ use line_of_sight::LineOfSight;
 use path::LinePoint;
 use rayon::prelude::*;
 use ribbon::{Ink, Lane, Stroke, StrokeLayer};
-use visibility::{DepthMap, LineVisibility, Run};
+pub use shapes::{LayerShapes, LineShape, Paint, Role, Shapes, SymbolShape, outline, simplified};
+use visibility::{DepthMap, LineVisibility, Run, Station};
 
 /// Width of a hidden line in widths of the visible one.
 const HIDDEN_WIDTH: f64 = 0.6;
@@ -50,6 +52,20 @@ pub struct Marks {
 impl Marks {
     /// Places all marks of a job over its drawn surfaces.
     pub fn new(job: &RenderJob<'_>, drawn: &Drawn<'_>) -> Self {
+        Self::place(job, drawn, false)
+    }
+
+    /// The marks of a job as shapes: the ones that [`Marks::new`] places, to be written instead of drawn.
+    pub fn shapes(job: &RenderJob<'_>, drawn: &Drawn<'_>) -> Shapes {
+        let marks = Self::place(job, drawn, true);
+        let of = |sheets: &[StrokeLayer]| sheets.iter().map(StrokeLayer::shapes).collect();
+        let mut names = Vec::new();
+        marks.labels.draw(&mut Canvas::recording(&mut names, job.view.pinhole().image.map(|side| side as usize)));
+        Shapes { under: of(&marks.under), layers: of(&marks.sheets), names }
+    }
+
+    /// * `keep`: whether lines are kept as shapes.
+    fn place(job: &RenderJob<'_>, drawn: &Drawn<'_>, keep: bool) -> Self {
         if !job.options.marks {
             return Self::default();
         }
@@ -66,6 +82,8 @@ impl Marks {
             tolerance_px,
             map,
             sight: &sight,
+            density: job.options.density,
+            keep,
         };
         let overlay = &job.options.overlay;
         let mut requests: Vec<LabelRequest> = Vec::new();
@@ -94,7 +112,8 @@ impl Marks {
             .faces
             .iter()
             .flat_map(|f| passes.iter().take(job.view.records()).filter_map(|p| Face::new(f, *p, screen)));
-        Self { under, faces: faces.collect(), sheets, labels: Labels::place(requests, 2.0 * screen.center) }
+        let labels = Labels::place(requests, 2.0 * screen.center, job.options.density);
+        Self { under, faces: faces.collect(), sheets, labels }
     }
 
     /// Whether the job may have any marks.
@@ -146,6 +165,10 @@ struct MarkBuilder<'a> {
     tolerance_px: f64,
     map: DepthMap<'a>,
     sight: &'a LineOfSight<'a>,
+    /// Pixels per unit of lengths that styles do not state.
+    density: f64,
+    /// Whether lines are kept as shapes.
+    keep: bool,
 }
 
 /// Width and treatment of hidden parts of a line.
@@ -178,6 +201,10 @@ impl<'a> MarkBuilder<'a> {
 }
 
 impl MarkBuilder<'_> {
+    fn casing_of(&self, half_px: f64) -> f64 {
+        casing_of(half_px, self.density)
+    }
+
     /// The screen of a coarse picture; `None` for any other.
     fn coarse(&self) -> Option<&Screen> {
         (self.tolerance_px >= COARSE_PX).then_some(self.screen)
@@ -186,7 +213,7 @@ impl MarkBuilder<'_> {
     fn line_sheets(&self, layer: &LineLayer, id: u32) -> Vec<StrokeLayer> {
         let sheet = |group: alike::Alike<'_, LineFeature>| {
             let half_px = 0.5 * width_or_none(group.scale * layer.width_px);
-            let casing_px = layer.casing.map(|_| casing_of(half_px));
+            let casing_px = layer.casing.map(|_| self.casing_of(half_px));
             let style = Style { half_px, casing_px, hidden: layer.hidden, lift_m: layer.lift_m };
             let paths = group
                 .features
@@ -213,7 +240,7 @@ impl MarkBuilder<'_> {
 
     fn overlay_line(&self, line: &OverlayLine, requests: &mut Vec<LabelRequest>) -> StrokeLayer {
         let half_px = 0.5 * width_or_none(line.width_px);
-        let casing_px = line.casing.map(|_| casing_of(half_px));
+        let casing_px = line.casing.map(|_| self.casing_of(half_px));
         let style = Style { half_px, casing_px, hidden: line.hidden, lift_m: 0.0 };
         let paths = match line.on_ground {
             true => path::lay(self.scene, &line.points, 0.0, self.coarse()),
@@ -239,21 +266,34 @@ impl MarkBuilder<'_> {
         });
         let at = ends.flatten().max_by(|a, b| a.y.total_cmp(&b.y))?;
         let (text, color) = (line.label.clone(), line.color.with_alpha(255));
-        Some(LabelRequest { text, at, marker: [2.0, 2.0], size_px: line.label_px, color, leader: false, over: false })
+        Some(LabelRequest {
+            text,
+            at,
+            marker: [2.0 * self.density; 2],
+            size_px: line.label_px,
+            color,
+            leader: false,
+            over: false,
+        })
     }
 
     fn sheet(&self, paths: Vec<Vec<LinePoint>>, style: Style, inks: [Ink; 3], id: u32) -> StrokeLayer {
-        let strokes: Vec<Vec<Stroke>> = paths
+        let drawn: Vec<(Vec<Stroke>, Vec<LineShape>)> = paths
             .par_iter()
-            .map(|line| {
-                let mut strokes = Vec::new();
+            .enumerate()
+            .map(|(number, line)| {
+                let (mut strokes, mut lines) = (Vec::new(), Vec::new());
                 for (_, run) in self.runs(line, style) {
-                    self.strokes(&run, style, &mut strokes);
+                    for (visible, part) in run.parts() {
+                        self.strokes(visible, &part, style, &mut strokes);
+                        lines.extend(self.keep.then(|| self.line_shape(number, visible, &part, style)));
+                    }
                 }
-                strokes
+                (strokes, lines)
             })
             .collect();
-        StrokeLayer::new(strokes.concat(), inks, id, self.screen.height as usize, BAND)
+        let (strokes, lines): (Vec<_>, Vec<_>) = drawn.into_iter().unzip();
+        StrokeLayer::new(strokes.concat(), inks, id, self.screen.height as usize, BAND).with_lines(lines.concat())
     }
 
     /// Images of a line in every pass, with the number of the pass.
@@ -276,21 +316,41 @@ impl MarkBuilder<'_> {
         runs
     }
 
-    fn strokes(&self, run: &Run, style: Style, out: &mut Vec<Stroke>) {
-        for (visible, part) in run.parts() {
-            if visible || style.hidden == Hidden::Show {
-                if let Some(casing) = style.casing_px {
-                    dash::trace(&part, casing, Lane::Casing, out);
-                }
-                dash::trace(&part, style.half_px, if visible { Lane::Fill } else { Lane::Shown }, out);
-            } else {
-                let half = style.half_px * HIDDEN_WIDTH;
-                match style.hidden {
-                    Hidden::Fade => dash::trace(&part, half, Lane::Hidden, out),
-                    Hidden::Dash => dash::dashes(&part, style.half_px * 2.0, half, out),
-                    Hidden::Show | Hidden::Cut => {}
-                }
+    /// Draws a stretch of equal visibility.
+    fn strokes(&self, visible: bool, part: &[Station], style: Style, out: &mut Vec<Stroke>) {
+        if visible || style.hidden == Hidden::Show {
+            if let Some(casing) = style.casing_px {
+                dash::trace(part, casing, Lane::Casing, out);
             }
+            dash::trace(part, style.half_px, if visible { Lane::Fill } else { Lane::Shown }, out);
+        } else {
+            let half = style.half_px * HIDDEN_WIDTH;
+            match style.hidden {
+                Hidden::Fade => dash::trace(part, half, Lane::Hidden, out),
+                Hidden::Dash => dash::dashes(part, style.half_px * 2.0, self.density, half, out),
+                Hidden::Show | Hidden::Cut => {}
+            }
+        }
+    }
+
+    /// The same stretch as a shape; hidden ones are kept whatever the style, so that nothing of a line is lost.
+    fn line_shape(&self, number: usize, visible: bool, part: &[Station], style: Style) -> LineShape {
+        let drawn = visible || style.hidden == Hidden::Show;
+        let width = 2.0 * style.half_px * if drawn { 1.0 } else { HIDDEN_WIDTH };
+        let size = 2.0 * self.screen.center;
+        let inside = |p: DVec2| p.cmpge(DVec2::ZERO).all() && p.cmple(size).all();
+        let lengths = part.windows(2).filter(|pair| inside(0.5 * (pair[0].pixel + pair[1].pixel)));
+        LineShape {
+            number,
+            points: part.iter().map(|station| station.pixel).collect(),
+            length: lengths.map(|pair| pair[1].on_line.along - pair[0].on_line.along).sum(),
+            visible,
+            drawn: drawn || style.hidden != Hidden::Cut,
+            role: if drawn { Role::Fill } else { Role::Hidden },
+            width,
+            casing: style.casing_px.filter(|_| drawn).map(|half| 2.0 * half),
+            dash: (!drawn && style.hidden == Hidden::Dash)
+                .then(|| dash::pattern(part, 2.0 * style.half_px, self.density)),
         }
     }
 
@@ -301,7 +361,7 @@ impl MarkBuilder<'_> {
             layer.features.iter().map(|f| path::drape(self.scene, &f.points, layer.lift_m, self.coarse())).collect();
         let lengths = lines.iter().filter_map(|l| l.last().map(|p| p.along));
         let every = distance::spacing(markers, lengths)?;
-        let half_px = (0.5 * width_or_none(layer.width_px)).max(1.0) + 1.2;
+        let half_px = (0.5 * width_or_none(layer.width_px)).max(self.density) + 1.2 * self.density;
         // A hidden mark cannot be told from the dashes.
         let hidden = if layer.hidden == Hidden::Show { Hidden::Show } else { Hidden::Cut };
         let marker = Marker { symbol: Symbol::Dot, half_px, casing: true, hidden };
@@ -309,7 +369,7 @@ impl MarkBuilder<'_> {
         for (on_line, text) in lines.iter().flat_map(|l| distance::marks(l, every)) {
             for at in self.mark(&on_line, layer.lift_m, marker, &mut strokes) {
                 let color = darker(layer.color);
-                let side = half_px + 2.0;
+                let side = half_px + 2.0 * self.density;
                 requests.push(LabelRequest {
                     text: text.clone(),
                     at,
@@ -325,107 +385,6 @@ impl MarkBuilder<'_> {
         let inks = inks(white, Some(layer.color), hidden);
         Some(StrokeLayer::new(strokes, inks, id, self.screen.height as usize, BAND))
     }
-
-    fn points(&self, layer: &PointLayer, id: u32, requests: &mut Vec<LabelRequest>) -> Vec<StrokeLayer> {
-        let sheet = |group| self.points_alike(layer, group, id, requests);
-        alike(&layer.features, layer.color, |f| f.style).into_iter().map(sheet).collect()
-    }
-
-    fn points_alike(
-        &self,
-        layer: &PointLayer,
-        group: alike::Alike<'_, PointFeature>,
-        id: u32,
-        requests: &mut Vec<LabelRequest>,
-    ) -> StrokeLayer {
-        let half_px = 0.5 * width_or_none(group.scale * layer.size_px);
-        let PointStyle { symbol, casing, label_px } = layer.style;
-        let marker = Marker { symbol, half_px, casing: casing.is_some(), hidden: layer.hidden };
-        let found: Vec<(Vec<Stroke>, Vec<DVec2>)> = group
-            .features
-            .par_iter()
-            .map(|feature| {
-                let p = feature.position + DVec3::Z * layer.lift_m;
-                let mut strokes = Vec::new();
-                let on_line = LinePoint { p, along: 0.0, on_ground: false };
-                let named = self.mark(&on_line, layer.lift_m, marker, &mut strokes);
-                (strokes, named)
-            })
-            .collect();
-        let mut strokes = Vec::new();
-        for (feature, (s, named)) in group.features.iter().zip(found) {
-            strokes.extend(s);
-            let Some(size_px) = label_px.filter(|_| !feature.name.trim().is_empty()) else { continue };
-            requests.extend(
-                named.into_iter().map(|at| label_request(feature.name.trim(), at, marker, size_px, group.color)),
-            );
-        }
-        StrokeLayer::new(strokes, inks(group.color, casing, layer.hidden), id, self.screen.height as usize, BAND)
-    }
-
-    fn overlay_point(&self, point: &OverlayPoint, requests: &mut Vec<LabelRequest>) -> StrokeLayer {
-        let half_px = 0.5 * width_or_none(point.size_px);
-        let marker = Marker { symbol: point.symbol, half_px, casing: true, hidden: point.hidden };
-        let on_line = LinePoint { p: point.position, along: 0.0, on_ground: false };
-        let mut strokes = Vec::new();
-        let named = self.mark(&on_line, 0.0, marker, &mut strokes);
-        if !point.label.is_empty() {
-            requests.extend(named.into_iter().map(|at| label_request(&point.label, at, marker, 13.0, point.color)));
-        }
-        let casing = Some(Color::rgb(255, 255, 255));
-        StrokeLayer::new(strokes, inks(point.color, casing, point.hidden), 0, self.screen.height as usize, BAND)
-    }
-
-    /// Draws a marker at every image of a point; returns where a name belongs.
-    fn mark(&self, on_line: &LinePoint, lift_m: f64, marker: Marker, out: &mut Vec<Stroke>) -> Vec<DVec2> {
-        let mut named = Vec::new();
-        let p = self.sight.on_surface(on_line, lift_m);
-        for pass in self.passes_for(std::iter::once(Aabb::of([p; 2]))) {
-            let Some(v) = pass.displace(p).map(|d| self.screen.view_from(d)) else { continue };
-            if !v.is_finite() || !self.screen.is_drawable(v) || pass.margins(p).iter().any(|m| !(*m >= 0.0)) {
-                continue;
-            }
-            let pixel = self.screen.pixel(v);
-            let Some(behind) = self.map.behind(self.screen, pixel, v.z) else { continue };
-            let visible = self.sight.sees(self.screen, pixel, v.z).unwrap_or(behind <= 1.5);
-            stamp(pixel, marker, visible, out);
-            if visible || marker.hidden == Hidden::Show {
-                named.push(pixel);
-            }
-        }
-        named
-    }
-}
-
-/// Strokes of a marker.
-fn stamp(at: DVec2, marker: Marker, visible: bool, out: &mut Vec<Stroke>) {
-    let Marker { symbol, half_px: half, casing, hidden } = marker;
-    let mut put = |half: f64, grow: f64, lane: Lane| out.push(Stroke::symbol(symbol, at, half, grow, lane));
-    match (visible, hidden) {
-        (true, _) | (false, Hidden::Show) => {
-            if casing {
-                put(half, casing_of(half) - half, Lane::Casing);
-            }
-            put(half, 0.0, if visible { Lane::Fill } else { Lane::Shown });
-        }
-        (false, Hidden::Fade) => put(half, 0.0, Lane::Hidden),
-        (false, Hidden::Dash) => put(half * HIDDEN_WIDTH, 0.0, Lane::Hidden),
-        (false, Hidden::Cut) => {}
-    }
-}
-
-fn label_request(text: &str, at: DVec2, marker: Marker, size_px: f64, color: Color) -> LabelRequest {
-    let side = marker.half_px + 2.0;
-    let above = symbol::top(marker.symbol) * marker.half_px + 2.5;
-    LabelRequest {
-        text: text.to_owned(),
-        at,
-        marker: [side, above],
-        size_px,
-        color: darker(color),
-        leader: true,
-        over: false,
-    }
 }
 
 /// A colour that reads as text.
@@ -439,13 +398,15 @@ fn width_or_none(width_px: f64) -> f64 {
     if width_px.is_finite() { width_px.clamp(0.0, 1000.0) } else { 0.0 }
 }
 
-fn casing_of(half_px: f64) -> f64 {
-    half_px + (0.6 * half_px).clamp(0.9, 2.5)
+/// Half width of a casing.
+fn casing_of(half_px: f64, density: f64) -> f64 {
+    half_px + (0.6 * half_px).clamp(0.9 * density, 2.5 * density)
 }
 
 /// Inks of hidden, casing and fill.
 fn inks(color: Color, casing: Option<Color>, hidden: Hidden) -> [Ink; 3] {
-    let ink = |c: Color, share: f32| Ink { color: linear([c.r, c.g, c.b]), alpha: share * f32::from(c.a) / 255.0 };
+    let ink =
+        |c: Color, share: f32| Ink { color: linear([c.r, c.g, c.b]), alpha: share * f32::from(c.a) / 255.0, stored: c };
     let faint = if hidden == Hidden::Fade { 0.45 } else { 0.75 };
     [ink(color, faint), ink(casing.unwrap_or(color), if casing.is_some() { 0.9 } else { 0.0 }), ink(color, 1.0)]
 }

@@ -3,7 +3,7 @@
 use crate::canvas::text_size;
 use crate::marks::label::LabelRequest;
 use crate::marks::visibility::{Run, Station};
-use crate::marks::{MarkBuilder, Style, casing_of, darker, path, width_or_none};
+use crate::marks::{MarkBuilder, Style, darker, path, width_or_none};
 use belvedere_core::DVec2;
 use belvedere_scene::{Color, Hidden, LineLayer};
 use rayon::prelude::*;
@@ -51,7 +51,7 @@ impl MarkBuilder<'_> {
         names.retain(|(name, _, s)| s.length >= LEAST_SHARE * text_size(size_px, name).width);
         // Names of lines with longer visible stretches are placed first.
         names.sort_by(|a, b| b.2.length.total_cmp(&a.2.length).then(a.0.cmp(b.0)));
-        let side = casing_of(half_px);
+        let side = self.casing_of(half_px);
         let label_request = |(name, color, s): (&str, Color, Stretch)| LabelRequest {
             text: name.to_owned(),
             at: s.middle,
@@ -72,13 +72,13 @@ impl MarkBuilder<'_> {
             _ => run.parts().into_iter().filter(|(visible, _)| *visible).map(|(_, part)| part).collect(),
         };
         let parts = self.runs(line, style).into_iter().flat_map(|(_, run)| drawn(run));
-        parts.flat_map(|part| within(&part, size)).max_by(|a, b| a.length.total_cmp(&b.length))
+        parts.flat_map(|part| within(&part, size, RIM * self.density)).max_by(|a, b| a.length.total_cmp(&b.length))
     }
 }
 
 /// Stretches of a line within the picture.
-fn within(part: &[Station], size: DVec2) -> Vec<Stretch> {
-    let inside = |s: &Station| s.pixel.cmpge(DVec2::splat(RIM)).all() && s.pixel.cmple(size - RIM).all();
+fn within(part: &[Station], size: DVec2, rim: f64) -> Vec<Stretch> {
+    let inside = |s: &Station| s.pixel.cmpge(DVec2::splat(rim)).all() && s.pixel.cmple(size - rim).all();
     let stretch = |stations: &[Station]| {
         let (first, last) = (stations.first()?, stations.last()?);
         let half = 0.5 * (first.arc_px + last.arc_px);
@@ -105,8 +105,8 @@ mod tests {
             on_line: LinePoint { p: DVec3::ZERO, along: 0.0, on_ground: true },
         };
         let line: Vec<Station> = (-30..200).map(station).collect();
-        let found = within(&line, DVec2::new(100.0, 80.0));
+        let found = within(&line, DVec2::new(100.0, 80.0), RIM);
         assert_eq!(found, [Stretch { length: 92.0, middle: DVec2::new(50.0, 50.0) }]);
-        assert!(within(&line, DVec2::new(100.0, 40.0)).is_empty());
+        assert!(within(&line, DVec2::new(100.0, 40.0), RIM).is_empty());
     }
 }

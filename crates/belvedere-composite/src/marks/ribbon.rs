@@ -1,9 +1,10 @@
 //! Anti-aliased ribbons and symbols: the union of strokes, so that overlaps are not darker.
 
 use crate::color::{Packed, Rgb};
+use crate::marks::shapes::{LayerShapes, LineShape, Paint, Role, SymbolShape};
 use crate::marks::symbol;
 use belvedere_core::DVec2;
-use belvedere_scene::Symbol;
+use belvedere_scene::{Color, Symbol};
 use glam::Vec2;
 
 /// Colour with opacity.
@@ -11,6 +12,8 @@ use glam::Vec2;
 pub(crate) struct Ink {
     pub(crate) color: Rgb,
     pub(crate) alpha: f32,
+    /// The colour as stored.
+    pub(crate) stored: Color,
 }
 
 /// Coverage mask that a stroke is drawn into.
@@ -49,6 +52,17 @@ impl Stroke {
         Self { a: at, b: at, half: half as f32, grow: grow as f32, symbol: Some(symbol), lane }
     }
 
+    fn symbol_shape(&self) -> Option<SymbolShape> {
+        let symbol = self.symbol?;
+        let (at, half, grow) = (self.a.as_dvec2(), f64::from(self.half), f64::from(self.grow));
+        let role = match self.lane {
+            Lane::Hidden => Role::Hidden,
+            Lane::Casing => Role::Casing,
+            Lane::Fill | Lane::Shown => Role::Fill,
+        };
+        Some(SymbolShape { symbol, at, half, grow, role })
+    }
+
     #[cfg(test)]
     pub(crate) fn ends(&self) -> [Vec2; 2] {
         [self.a, self.b]
@@ -80,6 +94,8 @@ pub(crate) struct StrokeLayer {
     /// 0 leaves the id buffer alone.
     id: u32,
     rows: usize,
+    /// Lines as shapes, where they are wanted.
+    lines: Vec<LineShape>,
 }
 
 /// Coverage of a band by lane.
@@ -101,7 +117,26 @@ impl StrokeLayer {
             let last = (bottom as usize / rows).min(bands.len() - 1);
             bands[top.max(0.0) as usize / rows..=last].iter_mut().for_each(|b| b.push(i as u32));
         }
-        Self { strokes, bands, inks, id, rows }
+        Self { strokes, bands, inks, id, rows, lines: Vec::new() }
+    }
+
+    /// The same with its lines as shapes.
+    pub(crate) fn with_lines(self, lines: Vec<LineShape>) -> Self {
+        Self { lines, ..self }
+    }
+
+    /// The layer as shapes.
+    pub(crate) fn shapes(&self) -> LayerShapes {
+        let paint = |ink: &Ink| Paint { color: ink.stored, opacity: ink.alpha };
+        let [hidden, casing, fill] = &self.inks;
+        LayerShapes {
+            id: self.id,
+            hidden: paint(hidden),
+            casing: paint(casing),
+            fill: paint(fill),
+            lines: self.lines.clone(),
+            symbols: self.strokes.iter().filter_map(Stroke::symbol_shape).collect(),
+        }
     }
 
     /// Coverage of the band whose first row is `y0`, a band of `pixels` pixels; whether it has any stroke.

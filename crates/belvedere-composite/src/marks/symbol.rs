@@ -1,7 +1,9 @@
 //! Outlines of point markers as signed distances, y down.
 
+use belvedere_core::DVec2;
 use belvedere_scene::Symbol;
 use glam::Vec2;
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 
 /// Centre of a pin's head over its tip, and radius of the head, in half sizes.
 const PIN: [f32; 2] = [1.9, 0.95];
@@ -23,6 +25,43 @@ pub(crate) fn top(symbol: Symbol) -> f64 {
         Symbol::Triangle => 1.15,
         Symbol::Pin => f64::from(PIN[0] + PIN[1]),
         _ => 1.0,
+    }
+}
+
+/// Corners of the outline of half size 1; curves in steps of less than 4 degrees.
+pub(crate) fn corners(symbol: Symbol) -> Vec<DVec2> {
+    let arc = |centre: DVec2, radius: f64, from: f64, to: f64| -> Vec<DVec2> {
+        let steps = ((to - from).abs().to_degrees() / 4.0).ceil().max(1.0) as usize;
+        (0..=steps).map(|i| centre + radius * DVec2::from_angle(from + (to - from) * i as f64 / steps as f64)).collect()
+    };
+    match symbol {
+        Symbol::Dot => {
+            let mut ring = arc(DVec2::ZERO, 1.0, 0.0, TAU);
+            ring.pop();
+            ring
+        }
+        Symbol::Triangle => {
+            let side = 0.577;
+            [[0.0, -2.0], [3f64.sqrt(), 1.0], [-3f64.sqrt(), 1.0]].map(|p| side * DVec2::from_array(p)).to_vec()
+        }
+        Symbol::Square => {
+            [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|p| 0.85 * DVec2::from_array(p)).to_vec()
+        }
+        Symbol::Cross => {
+            let (long, arm) = (1.2, f64::from(ARM));
+            let quarter = [DVec2::new(long, -arm), DVec2::new(long, arm), DVec2::new(arm, arm)];
+            // The arms lie along the diagonals.
+            let turned = |k: usize| DVec2::from_angle(FRAC_PI_2 * k as f64 - FRAC_PI_4);
+            (0..4).flat_map(|k| quarter.map(|p| turned(k).rotate(p))).collect()
+        }
+        Symbol::Pin => {
+            let [centre, radius] = PIN.map(f64::from);
+            // The tangents from the tip touch the head this far from the direction to the tip.
+            let touch = (radius / centre).acos();
+            let mut ring = arc(DVec2::new(0.0, -centre), radius, FRAC_PI_2 + touch, FRAC_PI_2 + TAU - touch);
+            ring.push(DVec2::ZERO);
+            ring
+        }
     }
 }
 

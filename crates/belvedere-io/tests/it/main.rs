@@ -21,6 +21,7 @@ mod links;
 mod meshes;
 mod molecules;
 mod open_exr;
+mod picture_files;
 mod png;
 mod rasters;
 mod support_files;

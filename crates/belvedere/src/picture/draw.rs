@@ -3,13 +3,15 @@
 use super::displacement::{self, DisplacementReport};
 use super::options::{AuxBuffer, PictureOptions};
 use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, SeeThroughRecord, Sidecar, TerrainRecord};
+use super::vectors;
 use super::volume_record::VolumeRecord;
 use crate::bodies::RigidLayers;
 use crate::fallback::{self, FallbackPlan, FallbackRecord};
 use crate::guard::guarded;
 use crate::overlays::{badge, camera, curve_inset, ghost, grid, heat, highlight, thin, widths};
 use crate::record::{self, InputFile, ViewRecord};
-use crate::scene_file::HighlightMark;
+use crate::scene_file::{Document, HighlightMark};
+use crate::vectors::{Furnish, VectorContent, VectorPicture};
 use crate::{BelvedereError, CameraPicture, Session};
 use belvedere_composite::canvas::Canvas;
 use belvedere_core::View;
@@ -36,12 +38,15 @@ pub(crate) fn draw(
     progress: &Progress,
 ) -> Result<Picture, BelvedereError> {
     session.check_drawable()?;
+    if request.vectors != VectorContent::Nothing {
+        vectors::check(session, request)?;
+    }
     let started = Instant::now();
     let drawn = match request.camera {
         Some(picture) => draw_camera(session, request, picture, progress)?,
         None => draw_view(session, request, progress)?,
     };
-    let Drawn { view, frame, straight, overlay, displacement, fallback } = drawn;
+    let Drawn { view, frame, straight, overlay, displacement, fallback, vectors } = drawn;
     let rigid = RigidLayers::of(session.scene(), &view);
     let render_ms = started.elapsed().as_secs_f64() * 1e3;
     let names = session.public_names();
@@ -52,6 +57,7 @@ pub(crate) fn draw(
         renderer: request.renderer.of(session).name(),
         picture_sha256: None,
         note: displacement.map(|d| note(&view, &d, session.scene().unit)),
+        print: request.print,
         stages: view.stages().iter().map(|s| s.name()).collect(),
         overlay,
         displacement,
@@ -67,7 +73,10 @@ pub(crate) fn draw(
         target: None,
         fallback,
         view: ViewRecord::of(&view),
-        scene: session.public_document(&names),
+        scene: session.public_document(&names).map(|document| Document {
+            print: request.print.map_or(document.print.clone(), |sheet| Some(sheet.document())),
+            ..document
+        }),
         title: session.scene().title.clone(),
         inputs,
         warnings: names.warnings(&session.warnings()),
@@ -76,7 +85,7 @@ pub(crate) fn draw(
     };
     let (aux, aux_format, crs) = (request.aux.clone(), request.aux_format, session.scene().crs);
     let unit = session.scene().unit;
-    Ok(Picture { frame, straight, sidecar, aux, aux_format, view, rigid, crs, unit })
+    Ok(Picture { frame, straight, sidecar, vectors, aux, aux_format, view, rigid, crs, unit })
 }
 
 /// Pictures with all marks.
@@ -87,6 +96,7 @@ pub(crate) struct Drawn {
     overlay: OverlayRecord,
     pub(crate) displacement: Option<DisplacementReport>,
     fallback: Option<FallbackRecord>,
+    vectors: Option<VectorPicture>,
 }
 
 /// Draws the view with all marks.
@@ -98,21 +108,30 @@ pub(crate) fn draw_view(
     let view = if request.straight { session.view().straightened() } else { session.view().clone() };
     let plan = if request.straight { None } else { fallback::of_session(session, &view)? };
     let scene = plan.as_ref().map_or(session.scene(), FallbackPlan::scene);
+    if plan.is_some() && request.vectors != VectorContent::Nothing {
+        return Err(BelvedereError::NoVectors("pictures with a fallback for a target"));
+    }
     let wanted = &session.resolved.overlay;
     let (marks, heatmap) = highlight::chosen((&request.highlight, request.heatmap), wanted)?;
     let ghost = (request.ghost || wanted.ghost) && view.is_bent();
     let grid = request.grid.or(grid::stated(wanted));
     let grid_spacing = grid.and_then(|spacing| grid::spacing(scene, spacing));
     let rigid = RigidLayers::of(scene, &view);
-    let world = rigid.any() || request.aux.iter().any(|a| matches!(a, AuxBuffer::World | AuxBuffer::Displacement));
+    let as_vectors = request.vectors != VectorContent::Nothing;
+    let world = rigid.any()
+        || as_vectors
+        || request.aux.iter().any(|a| matches!(a, AuxBuffer::World | AuxBuffer::Displacement));
     let exact = !request.aux.is_empty();
     let stylisation = request.stylisation.unwrap_or(session.resolved.stylisation);
     let mut options = RenderOptions { aux: Aux { world, exact }, stylisation, ..request.quality.clone() };
     options.max_bytes = session.bytes_for_picture(options.max_bytes);
     options.overlay.under.extend(grid::wanted(scene, grid).into_iter().map(|line| widths::line(line, request.density)));
+    options.density = request.density;
+    // What becomes vectors is not drawn.
+    let surfaces = RenderOptions { marks: !as_vectors, ..options.clone() };
     let draw = |scene: &Scene, view: &View| {
         let scene = &*widths::scaled(scene, request.density);
-        let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
+        let job = RenderJob { scene, view, light: session.light(), options: &surfaces, progress };
         Ok::<_, BelvedereError>(request.renderer.of(session).render(&job)?)
     };
     let mut frame = plan.as_ref().map_or_else(|| draw(scene, &view), |plan| plan.draw(&view, &draw))?;
@@ -122,11 +141,24 @@ pub(crate) fn draw_view(
         session.terrain_report().map(|r| &r.covered[..]).filter(|c| !c.is_empty() && !request.straight)
         && let Some(cut) = thin::cut(scene, &view, covered)?
     {
-        let job = RenderJob { scene: &cut, view: &view, light: session.light(), options: &options, progress };
+        let job = RenderJob { scene: &cut, view: &view, light: session.light(), options: &surfaces, progress };
         let behind = request.renderer.of(session).render(&job)?;
         thin::draw(&mut frame, &behind, scene, &view, covered);
     }
-    let straight = if request.compare || ghost { Some(draw(session.scene(), &view.straightened())?) } else { None };
+    let mut vectors = as_vectors.then(|| {
+        let scene = &*widths::scaled(scene, request.density);
+        let job = RenderJob { scene, view: &view, light: session.light(), options: &options, progress };
+        vectors::of_marks(&job, &frame, request)
+    });
+    let straight = (request.compare || ghost)
+        .then(|| {
+            // The straight picture is always one of pixels.
+            let scene = &*widths::scaled(session.scene(), request.density);
+            let job =
+                RenderJob { scene, view: &view.straightened(), light: session.light(), options: &options, progress };
+            request.renderer.of(session).render(&job)
+        })
+        .transpose()?;
     let mut heatmap_max = None;
     if heatmap {
         // Names and lines are drawn over the heat map, not tinted by it.
@@ -162,19 +194,33 @@ pub(crate) fn draw_view(
         _ if request.steady_mark => Some(badge::WORDS.to_owned()),
         moved => moved.map(|moved| badge::words(room(frame.width), moved.max_m, scene.unit)),
     };
-    let mut canvas = Canvas::new(&mut frame.color, frame.width).scaled(request.density);
-    if let Some(most) = heatmap_max {
-        heat::legend(&mut canvas, most);
-    }
-    if let Some(record) = &highlight {
-        let taken = if heatmap_max.is_some() { heat::LEGEND_HEIGHT + 10.0 } else { 0.0 };
-        highlight::legend(&mut canvas, record, taken);
-    }
-    let mut canvas = canvas.scaled(1.0);
+    let size = [frame.width, frame.height];
+    let mut shapes = Vec::new();
+    let mut furniture = Furnish { pixels: &mut frame.color, size, record: as_vectors.then_some(&mut shapes) };
+    furniture.draw("legend", |canvas| {
+        let mut canvas = canvas.scaled(request.density);
+        if let Some(most) = heatmap_max {
+            heat::legend(&mut canvas, most);
+        }
+        if let Some(record) = &highlight {
+            let taken = if heatmap_max.is_some() { heat::LEGEND_HEIGHT + 10.0 } else { 0.0 };
+            highlight::legend(&mut canvas, record, taken);
+        }
+    });
     let figure = wanted.inset.and_then(|inset| Some((inset, curve_inset::CurveFigure::of(&view)?)));
-    let inset = figure.filter(|(_, figure)| curve_inset::draw(&mut canvas, figure)).map(|(inset, _)| inset);
-    if let Some(words) = &mark {
-        badge::draw(&mut canvas, words, request.density);
+    let mut inset = None;
+    furniture.draw("inset", |canvas| {
+        // Its letters are of one size in windows of every density; on paper they are lengths.
+        let mut canvas = canvas.scaled(if request.print.is_some() { request.density } else { 1.0 });
+        inset = figure.filter(|(_, figure)| curve_inset::draw(&mut canvas, figure)).map(|(inset, _)| inset);
+    });
+    furniture.draw("mark", |mut canvas| {
+        if let Some(words) = &mark {
+            badge::draw(&mut canvas, words, request.density);
+        }
+    });
+    if let Some(vectors) = &mut vectors {
+        vectors.furniture = shapes;
     }
     let overlay = OverlayRecord {
         edges: (stylisation.edges > 0.0).then_some(stylisation.edges),
@@ -188,7 +234,8 @@ pub(crate) fn draw_view(
         highlight,
         camera: None,
     };
-    Ok(Drawn { view, frame, straight: straight.filter(|_| request.compare), overlay, displacement, fallback })
+    let straight = straight.filter(|_| request.compare);
+    Ok(Drawn { view, frame, straight, overlay, displacement, fallback, vectors })
 }
 
 /// Draws the picture of the camera.
@@ -211,7 +258,7 @@ pub(crate) fn draw_camera(
         .view
         .is_bent()
         .then(|| displacement::measure(&figure.view, &RigidLayers::of(scene, &figure.view), &frame));
-    Ok(Drawn { view: figure.view, frame, straight: None, overlay, displacement, fallback: None })
+    Ok(Drawn { view: figure.view, frame, straight: None, overlay, displacement, fallback: None, vectors: None })
 }
 
 fn note(view: &View, d: &DisplacementReport, unit: Unit) -> String {

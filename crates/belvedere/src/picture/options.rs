@@ -1,6 +1,8 @@
 //! Options for drawing a picture.
 
+use crate::print::Sheet;
 use crate::scene_file::HighlightMark;
+use crate::vectors::VectorContent;
 use crate::{CameraPicture, Session};
 use belvedere_cpu::ExactRenderer;
 use belvedere_scene::{Progress, RenderOptions, Renderer, Stylisation};
@@ -40,10 +42,21 @@ pub struct PictureOptions {
     /// Draws a picture of the camera instead of the picture that it takes.
     pub camera: Option<CameraPicture>,
     /// Widths of lines and marks and heights of names, in multiples of those that the scene states: pixels per point of a
-    /// screen. 1 for pictures that are written.
+    /// screen. 1 for pictures that are written without a paper.
     pub density: f64,
+    /// The picture's place on paper; its files say so. See [`PictureOptions::on`].
+    pub print: Option<Sheet>,
+    /// Lines, areas, points, names and legends that become shapes instead of pixels, see [`Picture::vectors`](super::Picture::vectors).
+    pub vectors: VectorContent,
     /// Progress and cancellation.
     pub progress: Progress,
+}
+
+impl PictureOptions {
+    /// The same picture on paper: lengths that the scene states in pixels are 1/96 inch each.
+    pub fn on(self, sheet: Sheet) -> Self {
+        Self { density: sheet.density(), print: Some(sheet), ..self }
+    }
 }
 
 impl Default for PictureOptions {
@@ -65,6 +78,8 @@ impl Default for PictureOptions {
             steady_mark: false,
             camera: None,
             density: 1.0,
+            print: None,
+            vectors: VectorContent::Nothing,
             progress: Progress::default(),
         }
     }

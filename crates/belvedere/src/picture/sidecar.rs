@@ -7,10 +7,12 @@ use super::volume_record::VolumeRecord;
 use crate::bodies::RigidLayers;
 use crate::fallback::FallbackRecord;
 use crate::overlays::highlight::HighlightRecord;
+use crate::print::Sheet;
 use crate::record::{AreaRecord, InputFile, ViewRecord};
 use crate::resolve::StripReport;
 use crate::resolve::constructor::ConstructorReport;
 use crate::scene_file::{Document, Inset};
+use crate::vectors::VectorPicture;
 use belvedere_core::View;
 use belvedere_core::Warning;
 use belvedere_disocclusion::TerrainReport;
@@ -130,6 +132,9 @@ pub struct Sidecar {
     /// Note that the picture is bent, if it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub note: Option<String>,
+    /// Place on paper: its size, margin and pixels per inch.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub print: Option<Sheet>,
     /// Stages in order of application.
     pub stages: Vec<&'static str>,
     /// Marks over the layers.
@@ -215,6 +220,8 @@ pub struct Picture {
     pub straight: Option<Frame>,
     /// The record.
     pub sidecar: Sidecar,
+    /// Lines, areas, points, names and legends, where they were asked for as shapes; then the picture has no pixels of them.
+    pub vectors: Option<VectorPicture>,
     pub(crate) aux: Vec<AuxBuffer>,
     pub(crate) aux_format: AuxFormat,
     pub(crate) view: View,

@@ -7,7 +7,9 @@ use crate::BelvedereError;
 use crate::output;
 use crate::overlays::badge;
 use crate::scene_file::StageDoc;
+use crate::vectors::{Page, VectorPicture, pdf, svg};
 use belvedere_io::atomic;
+use belvedere_io::picture_file::{PictureFile, PictureFormat};
 use belvedere_io::png::{self, Channels};
 use belvedere_scene::Frame;
 use std::path::{Path, PathBuf};
@@ -47,7 +49,7 @@ impl Picture {
         let mut written = vec![out.to_owned(), sibling(out, ".json")];
         let solved = self.with_delta(out, overwrite, &mut written)?;
         let this = solved.as_ref().unwrap_or(self);
-        this.write_png(out, overwrite)?;
+        this.write_picture(out, overwrite)?;
         let mut sidecar = this.sidecar.clone();
         // A device keeps nothing that could be read again.
         let place = atomic::contents_of(out);
@@ -92,6 +94,73 @@ impl Picture {
         Ok(Some(this))
     }
 
+    /// Writes the picture alone in the format that the ending of its name says: PNG, TIFF, JPEG or WebP, PNG for any other name; PDF or SVG
+    /// for one with vectors.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Io`]; [`BelvedereError::Output`] for more pixels than the format holds.
+    pub fn write_picture(&self, out: &Path, overwrite: bool) -> Result<(), BelvedereError> {
+        let is_pdf = out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pdf"));
+        if let Some(bytes) = if is_pdf { self.to_pdf()? } else { self.to_svg()?.map(String::into_bytes) } {
+            return Ok(atomic::write_atomic(out, overwrite, |out| out.write_all(&bytes))?);
+        }
+        let format = PictureFormat::of(out).unwrap_or(PictureFormat::Png);
+        let (width, height, pixels) = self.pixels();
+        let most = format.most_side();
+        if width.max(height) > most {
+            let name = format.name();
+            let reason = format!(
+                "a {name} has at most {most} pixels along a side, the picture has {width} x {height}; write a PNG or a TIFF"
+            );
+            return Err(BelvedereError::Output { path: out.to_owned(), reason });
+        }
+        let text = self.text()?;
+        let text: Vec<(&str, &str)> = text.iter().map(|(k, v)| (*k, v.as_str())).collect();
+        let file = PictureFile { width, height, pixels: pixels.as_flattened(), dpi: self.dpi(), text: &text };
+        Ok(atomic::write_atomic(out, overwrite, |out| file.encode(format, out))?)
+    }
+
+    /// The picture as SVG; `None` for one without vectors.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Io`] for a picture without pixels.
+    pub fn to_svg(&self) -> Result<Option<String>, BelvedereError> {
+        self.as_vectors(svg)
+    }
+
+    /// The picture as PDF of one page; `None` for one without vectors.
+    ///
+    /// # Errors
+    /// As [`Picture::to_svg`].
+    pub fn to_pdf(&self) -> Result<Option<Vec<u8>>, BelvedereError> {
+        self.as_vectors(pdf)
+    }
+
+    fn as_vectors<T>(&self, write: impl Fn(&VectorPicture, &Page<'_>) -> T) -> Result<Option<T>, BelvedereError> {
+        let Some(vectors) = &self.vectors else { return Ok(None) };
+        let (width, height) = (self.frame.width, self.frame.height);
+        let mut raster = Vec::new();
+        if vectors.over_raster {
+            png::encode(&mut raster, width, height, Channels::Rgb, self.frame.color.as_flattened(), &[])
+                .map_err(|e| belvedere_io::IoError::os(Path::new("the picture"), e))?;
+        }
+        let note = self.sidecar.note.as_deref();
+        let description =
+            [Some(self.sidecar.program.as_str()), note].into_iter().flatten().collect::<Vec<_>>().join("; ");
+        let page = Page {
+            size: [width, height],
+            sheet: self.sidecar.print,
+            title: &self.sidecar.title,
+            description: &description,
+            raster: vectors.over_raster.then_some(&raster[..]),
+        };
+        Ok(Some(write(vectors, &page)))
+    }
+
+    fn dpi(&self) -> Option<f64> {
+        self.sidecar.print.map(|sheet| sheet.dpi)
+    }
+
     /// Writes the picture alone. Its bytes depend on scene, options and inputs only, not on threads or time.
     ///
     /// # Errors
@@ -100,7 +169,9 @@ impl Picture {
         let (width, height, pixels) = self.pixels();
         let text = self.text()?;
         let text: Vec<(&str, &str)> = text.iter().map(|(k, v)| (*k, v.as_str())).collect();
-        Ok(png::write(out, overwrite, width, height, Channels::Rgb, pixels.as_flattened(), &text)?)
+        Ok(atomic::write_atomic(out, overwrite, |out| {
+            png::encode_at(out, (width, height), Channels::Rgb, pixels.as_flattened(), &text, self.dpi())
+        })?)
     }
 
     /// The bytes of the picture, as [`Picture::write_png`] writes them.
@@ -112,7 +183,7 @@ impl Picture {
         let text = self.text()?;
         let text: Vec<(&str, &str)> = text.iter().map(|(k, v)| (*k, v.as_str())).collect();
         let mut bytes = Vec::new();
-        png::encode(&mut bytes, width, height, Channels::Rgb, pixels.as_flattened(), &text)
+        png::encode_at(&mut bytes, (width, height), Channels::Rgb, pixels.as_flattened(), &text, self.dpi())
             .map_err(|e| belvedere_io::IoError::os(Path::new("the picture"), e))?;
         Ok(bytes)
     }

@@ -3,6 +3,7 @@
 use super::color::{Complaint, color, optional_color};
 use crate::BelvedereError;
 use crate::overlays::highlight;
+use crate::print::Sheet;
 use crate::scene_file::Fallback;
 use crate::scene_file::{
     AnimationDoc, AutoOrLength, ConstructorDoc, ConstructorKind, LayerDoc, Paths, SourceDocument, StageDoc,
@@ -41,6 +42,12 @@ pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
     terrain_intent(source)?;
     if let Some(SwitchOrLength::Length(spacing)) = source.document.overlay.as_ref().and_then(|o| o.grid) {
         within("grid", spacing, 0.0, 1e9).map_err(|(key, reason)| source.error(&["overlay", key], reason))?;
+    }
+    if let Some(doc) = &source.document.print {
+        Sheet::of(doc, None, source.document.camera.image).map_err(|e| match e {
+            BelvedereError::Paper { key, reason } => source.error(&["print", key], reason),
+            other => other,
+        })?;
     }
     if let Some(doc) = &source.document.stylisation {
         doc.strengths().map_err(|(key, reason)| source.error(&["stylisation", key], reason))?;

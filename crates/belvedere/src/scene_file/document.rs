@@ -40,6 +40,9 @@ pub struct Document {
     /// What is done to the surfaces of the picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stylisation: Option<super::stylisation::StylisationDoc>,
+    /// Paper of the pictures that `render` writes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub print: Option<super::print::PrintDoc>,
     /// Layers, a flat list; terrain first in drawing order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layer: Vec<LayerDoc>,
@@ -74,6 +77,7 @@ impl Document {
             light: None,
             overlay: None,
             stylisation: None,
+            print: None,
             layer: Vec::new(),
             representations: BTreeMap::new(),
             hidden: Vec::new(),
@@ -107,6 +111,7 @@ pub(super) struct Head {
     pub(super) light: Option<LightDoc>,
     pub(super) overlay: Option<super::overlay::OverlayDoc>,
     pub(super) stylisation: Option<super::stylisation::StylisationDoc>,
+    pub(super) print: Option<super::print::PrintDoc>,
     #[serde(default)]
     pub(super) representations: BTreeMap<String, Vec<String>>,
     #[serde(default)]

@@ -20,6 +20,7 @@ pub(crate) mod other_kind;
 mod overlay;
 mod palette;
 pub mod paths;
+mod print;
 mod relief;
 mod stages;
 mod strip;
@@ -44,6 +45,7 @@ pub use molecule::{MoleculeDoc, MoleculeStyleDoc, PaintDoc};
 pub(crate) use node::{Node, Value};
 pub use overlay::{AutoOrLength, AutoWord, HighlightMark, Inset, OverlayDoc, SwitchOrLength};
 pub use palette::{PaletteDoc, PaletteName};
+pub use print::PrintDoc;
 pub use relief::{OneOrTwo, ReliefStageDoc};
 pub use stages::{
     AxisDoc, DetailDoc, MergeDoc, PresetsDoc, RaysStageDoc, SolverMode, SplineStageDoc, SplitDoc, StageDoc,
@@ -267,6 +269,7 @@ fn document(root: &Node) -> Result<Document, DocError> {
         light: head.light,
         overlay: head.overlay,
         stylisation: head.stylisation,
+        print: head.print,
         representations: head.representations,
         hidden: head.hidden,
         layer: each(root, "layer", layers::LAYER_KINDS, layer)?,

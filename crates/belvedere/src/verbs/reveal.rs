@@ -29,7 +29,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 /// Size of the picture unless given, pixels.
-pub(super) const IMAGE: [u32; 2] = [1280, 720];
+pub const IMAGE: [u32; 2] = [1280, 720];
 /// Full vertical field of view unless given, degrees.
 const FOV_Y_DEG: f64 = 45.0;
 

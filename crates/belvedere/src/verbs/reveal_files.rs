@@ -3,6 +3,7 @@
 use crate::answers;
 use crate::output::{self, document_toml};
 use crate::picture::Picture;
+use crate::scene_file::Document;
 use crate::{BelvedereError, Session};
 use belvedere_io::atomic;
 use belvedere_io::png::{self, Channels};
@@ -74,7 +75,8 @@ impl RevealFiles {
             Ok::<(), BelvedereError>(())
         };
         let differs = picture.straight.as_ref().is_some_and(|straight| straight.color != picture.frame.color);
-        if differs && self.writes_pictures() {
+        // A pair is one of pixels, and marks that are vectors have none.
+        if differs && self.writes_pictures() && picture.vectors.is_none() {
             let (width, height, pixels) = picture.pixels();
             draw(&self.pair(), [width, height], &pixels, &title)?;
         }
@@ -83,6 +85,7 @@ impl RevealFiles {
             draw(path, [frame.width, frame.height], &frame.color, &title[..1])?;
         }
         if let Some((path, document)) = self.scene.as_ref().and_then(|path| Some((path, session.resolved_for(path)?))) {
+            let document = Document { print: picture.sidecar.print.map(|sheet| sheet.document()), ..document };
             output::write_text(path, &document_toml(&document)?, overwrite)?;
             written.push(path.clone());
         }

@@ -14,6 +14,7 @@ mod sessions;
 mod sweeps;
 mod tiles;
 mod typed_warnings;
+mod vectors;
 mod walls;
 mod warnings;
 mod written_lakes;

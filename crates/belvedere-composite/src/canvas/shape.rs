@@ -1,0 +1,58 @@
+//! Shapes that a canvas records instead of drawing them.
+
+use belvedere_core::DVec2;
+use belvedere_scene::Color;
+
+/// A shape on the picture; positions and lengths in pixels, (0, 0) the outer corner of the top-left one.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CanvasShape {
+    /// A filled rectangle with rounded corners.
+    Rect {
+        /// Upper left and lower right corner.
+        corners: [DVec2; 2],
+        /// Radius of the corners.
+        radius: f64,
+        /// Colour with opacity.
+        color: Color,
+    },
+    /// A polyline with round ends and joints.
+    Line {
+        /// Vertices.
+        points: Vec<DVec2>,
+        /// Width.
+        width: f64,
+        /// Colour with opacity.
+        color: Color,
+    },
+    /// A filled disc.
+    Disc {
+        /// Centre.
+        at: DVec2,
+        /// Radius.
+        radius: f64,
+        /// Colour with opacity.
+        color: Color,
+    },
+    /// A filled polygon, closed implicitly; holes are oriented against their outer ring.
+    Polygon {
+        /// Outer rings and holes.
+        rings: Vec<Vec<DVec2>>,
+        /// Colour with opacity.
+        color: Color,
+    },
+    /// A line of text.
+    Text {
+        /// Left end of the baseline.
+        at: DVec2,
+        /// Height of the em square.
+        size: f64,
+        /// The text as it is set: without control characters, and not too long.
+        text: String,
+        /// Width of the text in the embedded font.
+        width: f64,
+        /// Colour with opacity.
+        color: Color,
+        /// Colour and width of the rim around the letters.
+        halo: Option<(Color, f64)>,
+    },
+}

@@ -1,0 +1,136 @@
+//! Finished pictures as files of several formats, with their resolution.
+
+mod tiff;
+
+use crate::png::{self, Channels};
+use image_webp::{ColorType, WebPEncoder};
+use jpeg_encoder::{Encoder, PixelDensity};
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Quality of JPEG pictures, 1..=100.
+const JPEG_QUALITY: u8 = 92;
+/// Most bytes in a segment of a JPEG file.
+const MOST_IN_SEGMENT: usize = 65_000;
+
+/// Format of a picture file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PictureFormat {
+    /// PNG.
+    Png,
+    /// TIFF: deflate, horizontal differences.
+    Tiff,
+    /// JPEG of quality 92.
+    Jpeg,
+    /// WebP without loss.
+    WebP,
+}
+
+impl PictureFormat {
+    /// The format that the ending of a file name says; `None` for other endings and for names without one.
+    ///
+    /// ```
+    /// use belvedere_io::picture_file::PictureFormat;
+    /// assert_eq!(PictureFormat::of("map.TIF".as_ref()), Some(PictureFormat::Tiff));
+    /// assert_eq!(PictureFormat::of("map.bmp".as_ref()), None);
+    /// ```
+    pub fn of(path: &Path) -> Option<Self> {
+        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+        Some(match ending.as_str() {
+            "png" => Self::Png,
+            "tif" | "tiff" => Self::Tiff,
+            "jpg" | "jpeg" => Self::Jpeg,
+            "webp" => Self::WebP,
+            _ => return None,
+        })
+    }
+
+    /// Name of the format.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Png => "PNG",
+            Self::Tiff => "TIFF",
+            Self::Jpeg => "JPEG",
+            Self::WebP => "WebP",
+        }
+    }
+
+    /// Most pixels along a side.
+    pub fn most_side(self) -> usize {
+        match self {
+            Self::Png | Self::Tiff => i32::MAX as usize,
+            Self::Jpeg => 65_535,
+            Self::WebP => 16_384,
+        }
+    }
+}
+
+/// A finished picture of 8 bits per channel, sRGB, row 0 first.
+#[derive(Debug, Clone, Copy)]
+pub struct PictureFile<'a> {
+    /// Width, pixels.
+    pub width: usize,
+    /// Height, pixels.
+    pub height: usize,
+    /// Red, green and blue of every pixel.
+    pub pixels: &'a [u8],
+    /// Pixels per inch, > 0; `None` for a picture without a size on paper.
+    pub dpi: Option<f64>,
+    /// Keywords and texts: all of them in PNG; program, title and comment in the other formats.
+    pub text: &'a [(&'a str, &'a str)],
+}
+
+impl PictureFile<'_> {
+    /// Writes the picture; the same input gives the same bytes.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::InvalidInput`] for a size that does not fit the pixels or that the format cannot hold, else what `out` says.
+    pub fn encode(&self, format: PictureFormat, out: &mut dyn Write) -> io::Result<()> {
+        let (width, height, most) = (self.width, self.height, format.most_side());
+        let bad = |message: String| io::Error::new(io::ErrorKind::InvalidInput, message);
+        if width.checked_mul(height).and_then(|n| n.checked_mul(3)) != Some(self.pixels.len()) || width * height == 0 {
+            return Err(bad(format!("{width} x {height} pixels cannot be made of {} bytes", self.pixels.len())));
+        }
+        if width.max(height) > most {
+            let name = format.name();
+            return Err(bad(format!(
+                "a {name} has at most {most} pixels along a side, the picture has {width} x {height}; write a PNG or a TIFF"
+            )));
+        }
+        match format {
+            PictureFormat::Png => png::encode_at(out, (width, height), Channels::Rgb, self.pixels, self.text, self.dpi),
+            PictureFormat::Tiff => tiff::encode(self, out),
+            PictureFormat::Jpeg => self.jpeg(out),
+            PictureFormat::WebP => WebPEncoder::new(out)
+                .encode(self.pixels, width as u32, height as u32, ColorType::Rgb8)
+                .map_err(|e| io::Error::other(e.to_string())),
+        }
+    }
+
+    fn jpeg(&self, out: &mut dyn Write) -> io::Result<()> {
+        let failed = |e: jpeg_encoder::EncodingError| match e {
+            jpeg_encoder::EncodingError::IoError(e) => e,
+            other => io::Error::other(other.to_string()),
+        };
+        let mut encoder = Encoder::new(out, JPEG_QUALITY);
+        if let Some(dpi) = self.dpi {
+            encoder.set_density(PixelDensity::dpi(dpi.round().clamp(1.0, 65_535.0) as u16));
+        }
+        // A comment is a segment of its own kind; readers show the description of EXIF instead.
+        let mut exif = tiff::description_only(&self.words());
+        exif.truncate(MOST_IN_SEGMENT);
+        encoder.add_exif_metadata(&exif).map_err(failed)?;
+        encoder.encode(self.pixels, self.width as u16, self.height as u16, jpeg_encoder::ColorType::Rgb).map_err(failed)
+    }
+
+    /// Title and comment in one line; empty without both.
+    fn words(&self) -> String {
+        let of = |key: &str| self.text.iter().find(|(k, _)| *k == key).map(|(_, v)| *v);
+        let words: Vec<&str> = [of("Title"), of("Comment")].into_iter().flatten().collect();
+        words.join(": ")
+    }
+
+    fn program(&self) -> &str {
+        self.text.iter().find(|(key, _)| *key == "Software").map_or("", |(_, value)| value)
+    }
+}

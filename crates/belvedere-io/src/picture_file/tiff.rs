@@ -1,0 +1,114 @@
+//! TIFF of a finished picture: strips, deflate, resolution. Georeferenced grids are written by [`crate::geotiff`].
+
+use super::PictureFile;
+use flate2::{Compression, write::ZlibEncoder};
+use rayon::prelude::*;
+use std::io::{self, Write};
+
+/// Bytes of a strip before it is compressed, about.
+const STRIP: usize = 1 << 20;
+
+/// A field of the directory: tag, type, count, bytes.
+struct Field(u16, u16, u32, Vec<u8>);
+
+fn short(tag: u16, values: &[u16]) -> Field {
+    Field(tag, 3, values.len() as u32, values.iter().flat_map(|v| v.to_le_bytes()).collect())
+}
+
+fn long(tag: u16, values: &[u32]) -> Field {
+    Field(tag, 4, values.len() as u32, values.iter().flat_map(|v| v.to_le_bytes()).collect())
+}
+
+fn text(tag: u16, words: &str) -> Field {
+    let bytes: Vec<u8> = words.bytes().filter(|b| *b != 0).chain([0]).collect();
+    Field(tag, 2, bytes.len() as u32, bytes)
+}
+
+/// Thousandths of a number, > 0.
+fn rational(tag: u16, value: f64) -> Field {
+    let numerator = (value * 1000.0).round().clamp(1.0, f64::from(u32::MAX)) as u32;
+    Field(tag, 5, 1, [numerator, 1000].iter().flat_map(|v| v.to_le_bytes()).collect())
+}
+
+/// Header, directory, and the values that do not fit into it; the fields sorted by tag.
+fn directory(fields: &[Field]) -> Vec<u8> {
+    let mut values_at = 8 + 2 + 12 * fields.len() + 4;
+    let mut out = b"II*\0\x08\0\0\0".to_vec();
+    out.extend((fields.len() as u16).to_le_bytes());
+    let mut values = Vec::new();
+    for Field(tag, kind, count, bytes) in fields {
+        out.extend(tag.to_le_bytes());
+        out.extend(kind.to_le_bytes());
+        out.extend(count.to_le_bytes());
+        if bytes.len() <= 4 {
+            out.extend(bytes.iter().copied().chain(std::iter::repeat(0)).take(4));
+            continue;
+        }
+        out.extend((values_at as u32).to_le_bytes());
+        let even = bytes.len() + bytes.len() % 2;
+        values.extend(bytes.iter().copied().chain(std::iter::repeat(0)).take(even));
+        values_at += even;
+    }
+    out.extend([0; 4]);
+    out.extend(values);
+    out
+}
+
+/// A directory with a description alone, as EXIF has it.
+pub(super) fn description_only(words: &str) -> Vec<u8> {
+    directory(&[text(270, words)])
+}
+
+pub(super) fn encode(picture: &PictureFile<'_>, out: &mut dyn Write) -> io::Result<()> {
+    let row = 3 * picture.width;
+    let rows = (STRIP / row).clamp(1, picture.height);
+    let strips: Vec<Vec<u8>> =
+        picture.pixels.par_chunks(rows * row).map(|strip| compress(strip, row)).collect::<io::Result<_>>()?;
+    let counts: Vec<u32> = strips.iter().map(|strip| strip.len() as u32).collect();
+    let fields = |offsets: &[u32]| {
+        let mut fields = vec![
+            long(256, &[picture.width as u32]),
+            long(257, &[picture.height as u32]),
+            short(258, &[8, 8, 8]),
+            short(259, &[8]),
+            short(262, &[2]),
+            long(273, offsets),
+            short(277, &[3]),
+            long(278, &[rows as u32]),
+            long(279, &counts),
+            short(284, &[1]),
+            short(317, &[2]),
+        ];
+        let words = [(270, picture.words()), (305, picture.program().to_owned())];
+        fields.extend(words.iter().filter(|(_, words)| !words.is_empty()).map(|(tag, words)| text(*tag, words)));
+        if let Some(dpi) = picture.dpi {
+            fields.extend([rational(282, dpi), rational(283, dpi), short(296, &[2])]);
+        }
+        fields.sort_by_key(|field| field.0);
+        fields
+    };
+    let too_large = || {
+        io::Error::new(io::ErrorKind::InvalidInput, "the TIFF would need 4 GiB or more; write a PNG, or fewer pixels")
+    };
+    let mut at = directory(&fields(&vec![0; strips.len()])).len() as u64;
+    let mut offsets = Vec::with_capacity(strips.len());
+    for strip in &strips {
+        offsets.push(u32::try_from(at).map_err(|_| too_large())?);
+        at += strip.len() as u64;
+    }
+    u32::try_from(at).map_err(|_| too_large())?;
+    out.write_all(&directory(&fields(&offsets)))?;
+    strips.iter().try_for_each(|strip| out.write_all(strip))
+}
+
+fn compress(strip: &[u8], row: usize) -> io::Result<Vec<u8>> {
+    let mut rows = strip.to_vec();
+    for row in rows.chunks_exact_mut(row) {
+        for i in (3..row.len()).rev() {
+            row[i] = row[i].wrapping_sub(row[i - 3]);
+        }
+    }
+    let mut encoder = ZlibEncoder::new(Vec::with_capacity(strip.len() / 2), Compression::fast());
+    encoder.write_all(&rows)?;
+    encoder.finish()
+}

@@ -1,0 +1,93 @@
+//! Pictures as vectors: lines, areas, points, names and legends as shapes by layer, over the raster of the surfaces.
+
+mod area;
+mod pdf;
+mod svg;
+
+use crate::print::Sheet;
+pub use area::AreaShape;
+pub(crate) use area::areas;
+use belvedere_composite::canvas::{Canvas, CanvasShape};
+use belvedere_composite::marks::Shapes;
+pub(crate) use pdf::write as pdf;
+pub(crate) use svg::write as svg;
+
+/// Most distance of simplified lines from the whole ones on paper, millimetres.
+const SIMPLE_MM: f64 = 0.05;
+/// The same on the picture, pixels: shapes lie on the raster within 0.1 pixels.
+const SIMPLE_PX: f64 = 0.08;
+
+/// What of a picture becomes vectors.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum VectorContent {
+    /// Nothing: a picture of pixels.
+    #[default]
+    Nothing,
+    /// Marks, over the raster of the surfaces.
+    OverRaster,
+    /// Marks alone; areas are filled.
+    Alone,
+}
+
+/// Shapes of one kind that belong to no layer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Furniture {
+    /// Name of the kind: `legend`, `inset`, `mark`.
+    pub name: &'static str,
+    /// The shapes, in the order of drawing.
+    pub shapes: Vec<CanvasShape>,
+}
+
+/// Where furniture goes: onto the picture, or into a list.
+pub(crate) struct Furnish<'a> {
+    pub(crate) pixels: &'a mut [[u8; 3]],
+    /// Size of the picture, pixels.
+    pub(crate) size: [usize; 2],
+    pub(crate) record: Option<&'a mut Vec<Furniture>>,
+}
+
+impl Furnish<'_> {
+    /// Draws one kind of furniture on a canvas, or records it.
+    pub(crate) fn draw(&mut self, name: &'static str, draw: impl FnOnce(Canvas<'_>)) {
+        let Some(record) = &mut self.record else { return draw(Canvas::new(self.pixels, self.size[0])) };
+        let mut shapes = Vec::new();
+        draw(Canvas::recording(&mut shapes, self.size));
+        record.push(Furniture { name, shapes });
+    }
+}
+
+/// The vectors of a picture, in its pixels.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct VectorPicture {
+    /// Lines, symbols and names.
+    pub marks: Shapes,
+    /// Areas, cut to what is seen of them.
+    pub areas: Vec<AreaShape>,
+    /// Legends, inset and mark.
+    pub furniture: Vec<Furniture>,
+    /// Ids of the scene's layers.
+    pub layers: Vec<String>,
+    /// Whether the raster of the surfaces lies below.
+    pub over_raster: bool,
+}
+
+/// What a file of vectors says beside its shapes.
+pub(crate) struct Page<'a> {
+    /// Size of the picture, pixels.
+    pub(crate) size: [usize; 2],
+    /// Its place on paper.
+    pub(crate) sheet: Option<Sheet>,
+    /// Title, possibly empty.
+    pub(crate) title: &'a str,
+    /// Program, and the note of bent pictures.
+    pub(crate) description: &'a str,
+    /// The surfaces as PNG, not interlaced.
+    pub(crate) raster: Option<&'a [u8]>,
+}
+
+/// Largest distance of simplified shapes from whole ones, pixels.
+///
+/// * `dpi`: pixels per inch.
+pub(crate) fn tolerance_px(dpi: f64) -> f64 {
+    (SIMPLE_MM / 25.4 * dpi).min(SIMPLE_PX)
+}

@@ -1,0 +1,362 @@
+//! SVG with layers of Inkscape and live text; its units are the pixels of the picture, its page is the paper.
+
+use super::{AreaShape, Page, VectorPicture, tolerance_px};
+use crate::print::REFERENCE_DPI;
+use belvedere_composite::canvas::CanvasShape;
+use belvedere_composite::marks::{LayerShapes, LineShape, Paint, Role, SymbolShape, outline, simplified};
+use belvedere_core::DVec2;
+use belvedere_core::plain::escaped;
+use belvedere_scene::{Color, Symbol};
+use std::fmt::Write;
+
+/// Parts of a pixel that positions are rounded to.
+const PARTS: f64 = 100.0;
+/// Families of letters, the embedded one of pictures first.
+const FAMILIES: &str = "'DejaVu Sans Condensed', 'DejaVu Sans', sans-serif";
+
+/// The document.
+pub(crate) fn write(picture: &VectorPicture, page: &Page<'_>) -> String {
+    let [w, h] = page.size.map(|side| side as f64);
+    let dpi = page.sheet.map_or(REFERENCE_DPI, |sheet| sheet.dpi);
+    let margin = page.sheet.map_or(0.0, |sheet| sheet.margin_mm / 25.4 * dpi);
+    let paper = page.sheet.map_or([w, h].map(|px| px / dpi * 25.4), |sheet| sheet.paper_mm);
+    let mut out = Svg { text: String::new(), tolerance: tolerance_px(dpi), alone: !picture.over_raster };
+    out.line("<?xml version=\"1.0\" encoding=\"UTF-8\"?>");
+    out.line(&format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
+         xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" version=\"1.1\" width=\"{}mm\" height=\"{}mm\" \
+         viewBox=\"{} {} {} {}\">",
+        number(paper[0]),
+        number(paper[1]),
+        number(-margin),
+        number(-margin),
+        number(w + 2.0 * margin),
+        number(h + 2.0 * margin)
+    ));
+    if !page.title.is_empty() {
+        out.line(&format!("<title>{}</title>", xml(page.title)));
+    }
+    out.line(&format!("<desc>{}</desc>", xml(page.description)));
+    out.line(&format!(
+        "<defs><clipPath id=\"frame\"><rect width=\"{}\" height=\"{}\"/></clipPath></defs>",
+        number(w),
+        number(h)
+    ));
+    if let Some(png) = page.raster {
+        out.open("surfaces", "surfaces");
+        out.line(&format!(
+            "<image width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" xlink:href=\"data:image/png;base64,{}\"/>",
+            number(w),
+            number(h),
+            base64(png)
+        ));
+        out.close();
+    }
+    out.layers(picture);
+    if !picture.marks.names.is_empty() {
+        out.open("names", "names");
+        picture.marks.names.iter().for_each(|shape| out.shape(shape));
+        out.close();
+    }
+    for furniture in picture.furniture.iter().filter(|f| !f.shapes.is_empty()) {
+        out.open(furniture.name, furniture.name);
+        furniture.shapes.iter().for_each(|shape| out.shape(shape));
+        out.close();
+    }
+    out.line("</svg>");
+    out.text
+}
+
+struct Svg {
+    text: String,
+    /// Of simplified lines, pixels.
+    tolerance: f64,
+    /// Whether there is no raster below.
+    alone: bool,
+}
+
+impl Svg {
+    fn line(&mut self, text: &str) {
+        self.text.push_str(text);
+        self.text.push('\n');
+    }
+
+    fn open(&mut self, id: &str, label: &str) {
+        self.line(&format!(
+            "<g inkscape:groupmode=\"layer\" id=\"{id}\" inkscape:label=\"{}\" clip-path=\"url(#frame)\">",
+            xml(label)
+        ));
+    }
+
+    fn close(&mut self) {
+        self.line("</g>");
+    }
+
+    /// The grid, the layers in the order of the scene, and marks of no layer over them.
+    fn layers(&mut self, picture: &VectorPicture) {
+        let drawn = |layers: &[LayerShapes]| layers.iter().any(|l| !l.lines.is_empty() || !l.symbols.is_empty());
+        if drawn(&picture.marks.under) {
+            self.open("grid", "grid");
+            picture.marks.under.iter().for_each(|sheet| self.sheet(sheet));
+            self.close();
+        }
+        for (index, label) in picture.layers.iter().enumerate() {
+            let of_layer = |sheet: &&LayerShapes| sheet.id as usize == index + 1;
+            let sheets: Vec<&LayerShapes> = picture.marks.layers.iter().filter(of_layer).collect();
+            let areas: Vec<&AreaShape> = picture.areas.iter().filter(|area| area.layer == index).collect();
+            if sheets.is_empty() && areas.is_empty() {
+                continue;
+            }
+            self.open(&format!("layer{}", index + 1), label);
+            areas.into_iter().for_each(|area| self.area(area));
+            sheets.into_iter().for_each(|sheet| self.sheet(sheet));
+            self.close();
+        }
+        let over: Vec<&LayerShapes> = picture.marks.layers.iter().filter(|sheet| sheet.id == 0).collect();
+        if over.iter().any(|l| !l.lines.is_empty() || !l.symbols.is_empty()) {
+            self.open("overlay", "overlay");
+            over.into_iter().for_each(|sheet| self.sheet(sheet));
+            self.close();
+        }
+    }
+
+    /// Lines and symbols that are painted alike: hidden parts, rims, visible parts.
+    fn sheet(&mut self, sheet: &LayerShapes) {
+        let lengths = [true, false].map(|visible| {
+            let of = sheet.lines.iter().filter(|line| line.visible == visible);
+            of.map(|line| line.length).sum::<f64>()
+        });
+        let said = match sheet.lines.is_empty() {
+            true => String::new(),
+            false => {
+                format!(" data-visible-length=\"{}\" data-hidden-length=\"{}\"", number(lengths[0]), number(lengths[1]))
+            }
+        };
+        self.line(&format!("<g fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\"{said}>"));
+        for (role, paint, class) in [
+            (Role::Hidden, sheet.hidden, "hidden"),
+            (Role::Casing, sheet.casing, "casing"),
+            (Role::Fill, sheet.fill, "visible"),
+        ] {
+            self.role(sheet, (role, paint, class));
+        }
+        self.close();
+    }
+
+    fn role(&mut self, sheet: &LayerShapes, (role, paint, class): (Role, Paint, &str)) {
+        let width = |line: &LineShape| match role {
+            Role::Casing => line.casing,
+            _ => (line.role == role).then_some(line.width),
+        };
+        let lines: Vec<(&LineShape, f64)> = sheet
+            .lines
+            .iter()
+            .filter(|line| line.drawn)
+            .filter_map(|line| Some((line, width(line)?)))
+            .filter(|(_, width)| *width > 0.0)
+            .collect();
+        let symbols: Vec<&SymbolShape> = sheet.symbols.iter().filter(|symbol| symbol.role == role).collect();
+        if paint.opacity <= 0.0 || (lines.is_empty() && symbols.is_empty()) {
+            return;
+        }
+        let opacity = if paint.opacity < 1.0 { format!(" opacity=\"{}\"", part(paint.opacity)) } else { String::new() };
+        let color = hex(paint.color);
+        let stroke_width = lines.first().map(|(_, width)| *width);
+        let attributes = stroke_width
+            .map_or(String::new(), |width| format!(" stroke=\"{color}\" stroke-width=\"{}\"", number(width)));
+        self.line(&format!("<g class=\"{class}\"{attributes}{opacity}>"));
+        for (line, own) in lines {
+            let data = path(&simplified(&line.points, self.tolerance), false);
+            let own = match stroke_width {
+                Some(width) if number(width) != number(own) => format!(" stroke-width=\"{}\"", number(own)),
+                _ => String::new(),
+            };
+            let dash = match line.dash.filter(|dash| dash.iter().all(|length| *length > 0.0)) {
+                Some([ink, gap]) => format!(" stroke-dasharray=\"{},{}\"", number(ink), number(gap)),
+                None => String::new(),
+            };
+            self.line(&format!("<path d=\"{data}\"{own}{dash}/>"));
+        }
+        for symbol in symbols {
+            self.symbol(symbol, &color);
+        }
+        self.close();
+    }
+
+    fn symbol(&mut self, symbol: &SymbolShape, color: &str) {
+        // A rim is the outline drawn with a pen.
+        let pen = match symbol.grow > 0.0 {
+            true => format!(" stroke=\"{color}\" stroke-width=\"{}\"", number(2.0 * symbol.grow)),
+            false => " stroke=\"none\"".to_owned(),
+        };
+        let shape = match symbol.symbol {
+            Symbol::Dot => format!(
+                "<circle cx=\"{}\" cy=\"{}\" r=\"{}\"",
+                number(symbol.at.x),
+                number(symbol.at.y),
+                number(symbol.half)
+            ),
+            other => {
+                let corners: Vec<DVec2> = outline(other, symbol.half).into_iter().map(|p| symbol.at + p).collect();
+                format!("<path d=\"{}\"", path(&corners, true))
+            }
+        };
+        self.line(&format!("{shape} fill=\"{color}\"{pen}/>"));
+    }
+
+    fn area(&mut self, area: &AreaShape) {
+        let data: Vec<String> =
+            area.rings.iter().map(|ring| path(&ring[..ring.len().saturating_sub(1)], true)).collect();
+        // In the raster areas are coloured with the light and the relief of the ground.
+        let fill = match self.alone {
+            true => format!("fill=\"{}\"{}", hex(area.fill), opacity("fill-opacity", area.fill)),
+            false => "fill=\"none\"".to_owned(),
+        };
+        let name = if area.name.is_empty() { String::new() } else { format!("<title>{}</title>", xml(&area.name)) };
+        self.line(&format!("<path class=\"area\" {fill} fill-rule=\"evenodd\" d=\"{}\">{name}</path>", data.join("")));
+    }
+
+    fn shape(&mut self, shape: &CanvasShape) {
+        let text = match shape {
+            CanvasShape::Rect { corners: [lo, hi], radius, color } => format!(
+                "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"{} fill=\"{}\"{}/>",
+                number(lo.x),
+                number(lo.y),
+                number(hi.x - lo.x),
+                number(hi.y - lo.y),
+                if *radius > 0.0 { format!(" rx=\"{}\"", number(*radius)) } else { String::new() },
+                hex(*color),
+                opacity("fill-opacity", *color)
+            ),
+            CanvasShape::Line { points, width, color } => format!(
+                "<path d=\"{}\" fill=\"none\" stroke=\"{}\"{} stroke-width=\"{}\" stroke-linecap=\"round\" \
+                 stroke-linejoin=\"round\"/>",
+                path(&simplified(points, self.tolerance), false),
+                hex(*color),
+                opacity("stroke-opacity", *color),
+                number(*width)
+            ),
+            CanvasShape::Disc { at, radius, color } => format!(
+                "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{}\"{}/>",
+                number(at.x),
+                number(at.y),
+                number(*radius),
+                hex(*color),
+                opacity("fill-opacity", *color)
+            ),
+            CanvasShape::Polygon { rings, color } => {
+                let data: String = rings.iter().map(|ring| path(ring, true)).collect();
+                let (fill, alpha) = (hex(*color), opacity("fill-opacity", *color));
+                format!("<path d=\"{data}\" fill=\"{fill}\"{alpha} fill-rule=\"evenodd\"/>")
+            }
+            CanvasShape::Text { at, size, text, color, halo, .. } => {
+                let halo = halo.map_or(String::new(), |(color, width)| {
+                    let alpha = opacity("stroke-opacity", color);
+                    format!(
+                        " stroke=\"{}\"{alpha} stroke-width=\"{}\" stroke-linejoin=\"round\" paint-order=\"stroke\"",
+                        hex(color),
+                        number(2.0 * width)
+                    )
+                });
+                format!(
+                    "<text x=\"{}\" y=\"{}\" font-family=\"{FAMILIES}\" font-stretch=\"condensed\" font-size=\"{}\" \
+                     fill=\"{}\"{}{halo}>{}</text>",
+                    number(at.x),
+                    number(at.y),
+                    number(*size),
+                    hex(*color),
+                    opacity("fill-opacity", *color),
+                    xml(text)
+                )
+            }
+        };
+        self.line(&text);
+    }
+}
+
+/// Path data of a polyline, positions relative to the one before.
+fn path(points: &[DVec2], closed: bool) -> String {
+    let rounded = |p: &DVec2| (*p * PARTS).round().as_i64vec2();
+    let mut out = String::new();
+    let mut last = None;
+    for point in points.iter().map(rounded) {
+        let (sign, at) = match last.replace(point) {
+            None => ("M", point),
+            Some(before) if before == point => continue,
+            Some(before) => ("l", point - before),
+        };
+        let [x, y] = [at.x, at.y].map(|v| number(v as f64 / PARTS));
+        let _ = write!(out, "{sign}{x}{}{y}", if y.starts_with('-') { "" } else { " " });
+    }
+    if closed {
+        out.push('Z');
+    } else if points.len() > 1 && !out.contains('l') {
+        // A dot: a line shorter than its rounding.
+        out.push_str("l0 0");
+    }
+    out
+}
+
+/// A number with at most two decimals.
+fn number(value: f64) -> String {
+    let rounded = (value * PARTS).round() / PARTS;
+    // No negative zero.
+    format!("{}", rounded + 0.0)
+}
+
+fn part(share: f32) -> String {
+    format!("{}", (f64::from(share) * 1000.0).round() / 1000.0)
+}
+
+fn hex(c: Color) -> String {
+    format!("#{:02x}{:02x}{:02x}", c.r, c.g, c.b)
+}
+
+/// The opacity of a colour as an attribute; empty for an opaque one.
+fn opacity(attribute: &str, c: Color) -> String {
+    if c.a == 255 { String::new() } else { format!(" {attribute}=\"{}\"", part(f32::from(c.a) / 255.0)) }
+}
+
+/// Text without control characters and with the signs of XML replaced.
+fn xml(text: &str) -> String {
+    let plain = escaped(text);
+    plain.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut out = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for three in bytes.chunks(3) {
+        let word = (0..3).fold(0u32, |word, i| word << 8 | u32::from(three.get(i).copied().unwrap_or(0)));
+        for i in 0..4 {
+            let digit = DIGITS[(word >> (18 - 6 * i)) as usize & 63] as char;
+            out.push(if i <= three.len() { digit } else { '=' });
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn base64_is_that_of_the_standard() {
+        // Test vectors of RFC 4648, section 10.
+        for (text, wanted) in [("", ""), ("f", "Zg=="), ("fo", "Zm8="), ("foo", "Zm9v"), ("foobar", "Zm9vYmFy")] {
+            assert_eq!(base64(text.as_bytes()), wanted);
+        }
+    }
+
+    #[test]
+    fn roundings_of_a_path_do_not_add_up() {
+        let points: Vec<DVec2> = (0..5000).map(|i| DVec2::new(0.3337 * f64::from(i), -0.0049 * f64::from(i))).collect();
+        let data = path(&points, false);
+        let numbers = data.replace(['M', 'l'], " ").replace('-', " -");
+        let values: Vec<f64> = numbers.split_whitespace().map(|v| v.parse().expect("a number")).collect();
+        let sum = values.chunks(2).fold(DVec2::ZERO, |sum, v| sum + DVec2::new(v[0], v[1]));
+        assert!(sum.distance(points[4999]) < 0.008, "{sum} instead of {}", points[4999]);
+        assert_eq!(path(&[DVec2::ONE, DVec2::ONE], false), "M1 1l0 0");
+        assert_eq!(number(-0.001), "0");
+    }
+}
