@@ -9,7 +9,7 @@ use clap::{Args, ValueEnum};
 /// Sky and haze.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct AirArgs {
-    /// Sky: auto (by the height of the sun), day, dusk, night, white, or a colour #rrggbb
+    /// Sky: auto (by the height of the sun), day, dusk, night, white, a colour #rrggbb, or transparent (PNG and SVG)
     #[arg(long, value_name = "NAME|COLOUR")]
     pub(crate) sky: Option<String>,
     /// Haze: on (the farther part of the view, the default), off, or the visibility in kilometres

@@ -13,6 +13,7 @@ use std::sync::OnceLock;
 
 /// Terrain with more nodes is not prepared for lines of sight in every frame.
 const MAX_NODES: usize = 64 << 20;
+
 /// The marks of a job.
 /// * `depth`: surfaces at the pixel centres; `solids`: those that hide lines and points.
 pub(crate) fn place(
@@ -37,7 +38,8 @@ const SHAPE_TOLERANCE_PX: f64 = 0.05;
 pub fn mark_shapes(job: &RenderJob<'_>, depth: &[f32]) -> Shapes {
     let passes = Pass::all(job.view);
     let passes: Vec<&dyn drawn::Pass> = passes.iter().map(|pass| pass as &dyn drawn::Pass).collect();
-    let (screen, sight) = (Screen::new(job.view.pinhole()), TracedSight { job, tracer: OnceLock::new() });
+    let screen = Screen::new(job.view.pinhole());
+    let sight = TracedSight { job, solids: Solids::Opaque, tracer: OnceLock::new() };
     let tolerance_px = job.options.tolerance_px.clamp(0.01, SHAPE_TOLERANCE_PX);
     Marks::shapes(job, &Drawn { passes: &passes, screen: &screen, tolerance_px, depth, sight: &sight })
 }

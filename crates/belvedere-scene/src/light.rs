@@ -17,6 +17,8 @@ pub enum Sky {
     Night,
     /// One colour.
     Plain(Color),
+    /// What is laid behind the picture; renderers draw white.
+    Transparent,
 }
 
 /// How the air dims what is far.

@@ -98,6 +98,10 @@ fn sky_and_haze_are_keys_and_options() {
     assert!(plain != dusk);
     assert_eq!(dusk, picture(&place, &scene("", "", ""), &["--sky", "dusk", "--haze", "2.5"]));
     assert_eq!(plain, picture(&place, &scene("[light]\nsky = 'auto'\nhaze = true", "", ""), &[]));
+    place.ok(&["render", "s.toml", "-o", "clear.png", "--sky", "transparent"]);
+    let bytes = super::read(&place.path("clear.png"));
+    assert_eq!(bytes[25], 6, "a PNG with alpha");
+    assert!(place.fails(&["render", "s.toml", "-o", "clear.jpg", "--sky", "transparent"]).contains("PNG"));
     let clear = picture(&place, &scene("[light]\nhaze = false", "", ""), &[]);
     assert!(clear != plain && clear == picture(&place, &scene("", "", ""), &["--haze", "off"]));
     for (light, named) in [("sky = 'pink'", "pink"), ("haze = -1.0", "-1"), ("haze = 'thick'", "kilometres")] {

@@ -3,8 +3,8 @@
 use super::displacement::{self, DisplacementReport};
 use super::options::{AuxBuffer, PictureOptions};
 use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, SeeThroughRecord, Sidecar, TerrainRecord};
-use super::vectors;
 use super::volume_record::VolumeRecord;
+use super::{transparent, vectors};
 use crate::bodies::RigidLayers;
 use crate::fallback::{self, FallbackPlan, FallbackRecord};
 use crate::guard::guarded;
@@ -42,8 +42,14 @@ pub(crate) fn draw(
         vectors::check(session, request)?;
     }
     let started = Instant::now();
+    let mut alpha = None;
     let drawn = match request.camera {
         Some(picture) => draw_camera(session, request, picture, progress)?,
+        None if transparent::is_asked(session) => {
+            let (drawn, cover) = transparent::draw(session, request, progress)?;
+            alpha = Some(cover);
+            drawn
+        }
         None => draw_view(session, request, progress)?,
     };
     let Drawn { view, frame, straight, overlay, displacement, fallback, vectors } = drawn;
@@ -85,7 +91,7 @@ pub(crate) fn draw(
     };
     let (aux, aux_format, crs) = (request.aux.clone(), request.aux_format, session.scene().crs);
     let unit = session.scene().unit;
-    Ok(Picture { frame, straight, sidecar, vectors, aux, aux_format, view, rigid, crs, unit })
+    Ok(Picture { frame, alpha, straight, sidecar, vectors, aux, aux_format, view, rigid, crs, unit })
 }
 
 /// Pictures with all marks.

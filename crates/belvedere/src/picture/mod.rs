@@ -7,6 +7,7 @@ mod mark_target;
 mod options;
 mod sidecar;
 mod target_place;
+mod transparent;
 mod vectors;
 mod volume_record;
 mod write;

@@ -216,6 +216,8 @@ fn counts<S: Serializer>(stats: &FrameStats, serializer: S) -> Result<S::Ok, S::
 pub struct Picture {
     /// The picture (the bent one of a pair).
     pub frame: Frame,
+    /// How much each pixel covers what is laid behind the picture, where the sky is transparent: 0 = not, 255 = wholly.
+    pub alpha: Option<Vec<u8>>,
     /// The straight one of a pair.
     pub straight: Option<Frame>,
     /// The record.

@@ -12,6 +12,7 @@ use belvedere_io::atomic;
 use belvedere_io::picture_file::{PictureFile, PictureFormat};
 use belvedere_io::png::{self, Channels};
 use belvedere_scene::Frame;
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// Width of the white gap between two pictures side by side, pixels.
@@ -101,10 +102,22 @@ impl Picture {
     /// [`BelvedereError::Io`]; [`BelvedereError::Output`] for more pixels than the format holds.
     pub fn write_picture(&self, out: &Path, overwrite: bool) -> Result<(), BelvedereError> {
         let is_pdf = out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pdf"));
+        if is_pdf && self.alpha.is_some() {
+            let reason = "a PDF of this program holds no transparent sky; write a PNG or an SVG".to_owned();
+            return Err(BelvedereError::Output { path: out.to_owned(), reason });
+        }
         if let Some(bytes) = if is_pdf { self.to_pdf()? } else { self.to_svg()?.map(String::into_bytes) } {
             return Ok(atomic::write_atomic(out, overwrite, |out| out.write_all(&bytes))?);
         }
         let format = PictureFormat::of(out).unwrap_or(PictureFormat::Png);
+        if self.alpha.is_some() {
+            if format != PictureFormat::Png {
+                let reason =
+                    format!("a {} of this program holds no transparent sky; write a PNG or an SVG", format.name());
+                return Err(BelvedereError::Output { path: out.to_owned(), reason });
+            }
+            return self.write_png(out, overwrite);
+        }
         let (width, height, pixels) = self.pixels();
         let most = format.most_side();
         if width.max(height) > most {
@@ -141,7 +154,8 @@ impl Picture {
         let (width, height) = (self.frame.width, self.frame.height);
         let mut raster = Vec::new();
         if vectors.over_raster {
-            png::encode(&mut raster, width, height, Channels::Rgb, self.frame.color.as_flattened(), &[])
+            let (channels, bytes) = self.channels(&self.frame.color);
+            png::encode(&mut raster, width, height, channels, &bytes, &[])
                 .map_err(|e| belvedere_io::IoError::os(Path::new("the picture"), e))?;
         }
         let note = self.sidecar.note.as_deref();
@@ -157,6 +171,16 @@ impl Picture {
         Ok(Some(write(vectors, &page)))
     }
 
+    /// Channels and bytes of pixels of the picture.
+    fn channels<'p>(&self, pixels: &'p [[u8; 3]]) -> (Channels, Cow<'p, [u8]>) {
+        match &self.alpha {
+            Some(alpha) if alpha.len() == pixels.len() => {
+                (Channels::Rgba, pixels.iter().zip(alpha).flat_map(|([r, g, b], a)| [*r, *g, *b, *a]).collect())
+            }
+            _ => (Channels::Rgb, Cow::Borrowed(pixels.as_flattened())),
+        }
+    }
+
     fn dpi(&self) -> Option<f64> {
         self.sidecar.print.map(|sheet| sheet.dpi)
     }
@@ -170,7 +194,8 @@ impl Picture {
         let text = self.text()?;
         let text: Vec<(&str, &str)> = text.iter().map(|(k, v)| (*k, v.as_str())).collect();
         Ok(atomic::write_atomic(out, overwrite, |out| {
-            png::encode_at(out, (width, height), Channels::Rgb, pixels.as_flattened(), &text, self.dpi())
+            let (channels, bytes) = self.channels(&pixels);
+            png::encode_at(out, (width, height), channels, &bytes, &text, self.dpi())
         })?)
     }
 
@@ -182,8 +207,8 @@ impl Picture {
         let (width, height, pixels) = self.pixels();
         let text = self.text()?;
         let text: Vec<(&str, &str)> = text.iter().map(|(k, v)| (*k, v.as_str())).collect();
-        let mut bytes = Vec::new();
-        png::encode_at(&mut bytes, (width, height), Channels::Rgb, pixels.as_flattened(), &text, self.dpi())
+        let (mut bytes, (channels, samples)) = (Vec::new(), self.channels(&pixels));
+        png::encode_at(&mut bytes, (width, height), channels, &samples, &text, self.dpi())
             .map_err(|e| belvedere_io::IoError::os(Path::new("the picture"), e))?;
         Ok(bytes)
     }

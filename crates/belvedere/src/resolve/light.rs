@@ -56,6 +56,7 @@ pub(crate) fn sky(doc: &LightDoc) -> Result<Sky, (&'static str, String)> {
         "dusk" => return Ok(Sky::Dusk),
         "night" => return Ok(Sky::Night),
         "white" => return Ok(Sky::Plain(Color::rgb(255, 255, 255))),
+        LightDoc::TRANSPARENT => return Ok(Sky::Transparent),
         _ => {}
     }
     let color = color("sky", text).ok().filter(|color| color.a == 255);
@@ -64,7 +65,7 @@ pub(crate) fn sky(doc: &LightDoc) -> Result<Sky, (&'static str, String)> {
         (
             "sky",
             format!(
-                "the sky \"{}\" is not known; give {names}, or a colour such as #ffffff",
+                "the sky \"{}\" is not known; give {names}, transparent, or a colour such as #ffffff",
                 text.chars().take(40).collect::<String>()
             ),
         )

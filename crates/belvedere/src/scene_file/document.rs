@@ -305,7 +305,8 @@ pub struct LightDoc {
     /// Whether cast shadows are wanted.
     #[serde(default)]
     pub shadows: bool,
-    /// What stands behind everything: `auto` (by the height of the sun), `day`, `dusk`, `night`, `white`, or a colour `#rrggbb`.
+    /// What stands behind everything: `auto` (by the height of the sun), `day`, `dusk`, `night`, `white`, a colour `#rrggbb`, or
+    /// `transparent` (PNG and SVG).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sky: Option<String>,
     /// Haze: `true` dims the farther part of the view, `false` nothing; a number is the visibility in kilometres.
@@ -316,6 +317,8 @@ pub struct LightDoc {
 impl LightDoc {
     /// Names of skies.
     pub const SKIES: [&'static str; 5] = ["auto", "day", "dusk", "night", "white"];
+    /// Name of the sky that lets through what is laid behind the picture.
+    pub const TRANSPARENT: &'static str = "transparent";
 }
 
 /// On or off, or the visibility.

@@ -6,7 +6,7 @@ use crate::screen::SUB;
 use crate::simd::nearest;
 use belvedere_composite::color::{PIXELS, Rgb, linear, smoothstep};
 use belvedere_core::{Aabb, DVec3, Pinhole};
-use belvedere_scene::{Haze, Light, Scene, Sky as Choice, Unit};
+use belvedere_scene::{Color, Haze, Light, Scene, Sky as Choice, Unit};
 
 /// Thresholds of ordered dithering, 8 x 8 (Bayer 1973), each 0..64 once.
 const BAYER: [[u8; 8]; 8] = [
@@ -161,7 +161,8 @@ impl Sky {
             Choice::Night => {
                 return Self { steps: steps(|sine| of_air(&NIGHT, sine)), haze: linear(NIGHT_HAZE), ..sky };
             }
-            Choice::Plain(color) => {
+            Choice::Plain(_) | Choice::Transparent => {
+                let color = if let Choice::Plain(color) = shown { color } else { Color::rgb(255, 255, 255) };
                 let plain = linear([color.r, color.g, color.b]);
                 return Self { steps: steps(|_| plain), dither: 0.0, ..sky };
             }
@@ -456,7 +457,6 @@ fn studio(sine: f32) -> Rgb {
 mod tests {
     use super::*;
     use belvedere_core::{DVec2, Projection};
-    use belvedere_scene::Color;
 
     #[test]
     fn haze_and_sky_are_as_the_light_says() {
