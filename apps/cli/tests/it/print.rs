@@ -105,7 +105,7 @@ fn papers_that_cannot_be_drawn_are_refused_in_one_line() {
         (&["s.toml", "-o", "a.png", "--paper", "A0", "--max-mem", "300MiB"], "--max-mem"),
         (&["s.toml", "-o", "a.png", "--vectors-only"], "--vectors-only needs an output named .svg or .pdf"),
         (&["s.toml", "-o", "a.svg", "--compare"], "two pictures of pixels"),
-        (&["p.toml", "-o", "a.png"], "p.toml:15: \"A9\" is not a paper"),
+        (&["p.toml", "-o", "a.png"], "p.toml:13: \"A9\" is not a paper"),
     ];
     for (args, words) in cases {
         let said = place.fails(&[&["render"], args].concat());
