@@ -49,10 +49,11 @@ impl Sites {
             let text = format!("it holds {models} models; the first is taken");
             warnings.push(Warning::new(WarningKind::Ignored, text).with("models", models as f64));
         }
-        let keep = likeliest(&sites);
+        let mut keep = likeliest(&sites);
         let alternates = keep.iter().filter(|k| !**k).count();
         let left_out = "atoms at alternate locations are left out; the likeliest stay";
         warnings.extend(Warning::counted(WarningKind::Ignored, alternates, left_out));
+        warnings.extend(leave_out_unplaced(&sites, &mut keep)?);
         let (mut atoms, mut residues): (Vec<Atom>, Vec<Residue>) = (Vec::new(), Vec::new());
         for (site, _) in sites.into_iter().zip(keep).filter(|(_, keep)| *keep) {
             if residues.last() != Some(&site.residue) {
@@ -84,6 +85,37 @@ impl Sites {
         let molecule = Molecule::bonded(atoms, residues, &named).map_err(|e| e.to_string())?;
         Ok((molecule, Found { models, alternates, named_bonds: named.len(), warnings }))
     }
+}
+
+/// Most atoms at exactly one place. Alternate locations without a letter are two or three; programs that know no place of an atom write 0 0 0.
+const MOST_AT_A_PLACE: u32 = 10;
+
+/// Leaves out atoms of which more stand at exactly one place than [`MOST_AT_A_PLACE`]: their places are not known. An error if no other is left.
+fn leave_out_unplaced(sites: &[Site], keep: &mut [bool]) -> Result<Option<Warning>, String> {
+    // 0 and -0 are one place.
+    let place = |site: &Site| site.position.to_array().map(|x| (x + 0.0).to_bits());
+    let mut counts: HashMap<[u64; 3], u32> = HashMap::new();
+    for (site, _) in sites.iter().zip(&*keep).filter(|(_, keep)| **keep) {
+        *counts.entry(place(site)).or_default() += 1;
+    }
+    let (mut count, mut first) = (0, None);
+    for (site, keep) in sites.iter().zip(&mut *keep).filter(|(_, keep)| **keep) {
+        if counts[&place(site)] > MOST_AT_A_PLACE {
+            *keep = false;
+            count += 1;
+            first.get_or_insert(site.position + DVec3::ZERO);
+        }
+    }
+    let [x, y, z] = first.unwrap_or_default().to_array();
+    let all_at = format!("stand at exactly one place with more than {} others ({x} {y} {z})", MOST_AT_A_PLACE - 1);
+    if count > 0 && !keep.contains(&true) {
+        return Err(format!("all {count} atoms {all_at}; a file with coordinates is needed"));
+    }
+    Ok(Warning::counted(
+        WarningKind::Ignored,
+        count,
+        &format!("atoms {all_at}: their places are not known, and they are left out"),
+    ))
 }
 
 /// Most atoms in a cube of one angstrom. A diamond has 0.2; the search for bonds takes the square of them.

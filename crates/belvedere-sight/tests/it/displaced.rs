@@ -70,3 +70,20 @@ fn the_largest_excess_is_that_of_many_points() {
     }
     assert!(hidden > 300 && free > 40, "{hidden} {free}");
 }
+
+/// In cell 12, ground and displacement are largest at opposite corners, so that the traced ground is higher in its middle (1.5 m) than at any
+/// node (1 m). Ground met before comes within 0.1 m of the line.
+#[test]
+fn the_middle_of_a_cell_may_stand_over_all_its_corners() {
+    let (cols, rows) = (20, 2);
+    let is = |i: usize, nodes: [[usize; 2]; 2]| nodes.contains(&[i % cols, i / cols]);
+    let height = |i: usize| if is(i, [[12, 0], [13, 1]]) { 1.0 } else { 0.0 };
+    let heights = (0..cols * rows).map(|i| if i % cols < 4 { 1.1 } else { height(i) }).collect();
+    let hf = Heightfield::measured(DVec2::ZERO, DVec2::splat(SPACING), cols, rows, heights).expect("ground");
+    let delta = (0..cols * rows).map(|i| if is(i, [[13, 0], [12, 1]]) { 1.0 } else { 0.0 }).collect();
+    let delta = Grid::new(DVec2::ZERO, DVec2::splat(SPACING), cols, rows, delta).expect("grid");
+    let field = Field::new(&hf, |_| 0.0).expect("heights");
+    let line = [0.0, 19.0].map(|x| (DVec2::new(x, 0.5), 1.2));
+    let traced = DisplacedGround::new(&field, &delta).prepared().excess(&line, 0.0);
+    assert!((traced.over - 0.3).abs() < 0.01 && traced.at.distance(DVec2::new(12.5, 0.5)) < 0.1, "{traced:?}");
+}

@@ -1,0 +1,45 @@
+//! Areas that lie over one another.
+
+use crate::support::{hills, layer, options, pinhole, render, scene, terrain};
+use belvedere_core::{DVec2, DVec3, View};
+use belvedere_scene::{AreaFeature, AreaLayer, AreaSurface, Color, Hidden, LayerKind};
+
+fn square(middle: [f64; 2], half: f64, surface: AreaSurface) -> LayerKind {
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+    let ring = corners.map(|c| DVec2::from_array(middle) + half * DVec2::from_array(c)).to_vec();
+    LayerKind::Area(AreaLayer {
+        features: vec![AreaFeature { name: String::new(), style: None, rings: vec![ring] }],
+        fill: Color::rgb(90, 140, 180),
+        outline: None,
+        width_px: 1.0,
+        surface,
+        hidden: Hidden::Cut,
+        lift_m: 1.0,
+        label_px: None,
+    })
+}
+
+/// Water shines where it is seen, and nothing of it is left under an area that covers it.
+#[test]
+fn areas_over_water_look_as_without_the_water() {
+    let hf = hills(33, 20.0, 8.0, 3);
+    let view = View::straight(pinhole(DVec3::new(0.0, -300.0, 130.0), DVec3::ZERO, 50.0, [120, 80]));
+    let draw = |water: [f64; 2], surface: AreaSurface| {
+        let layers = vec![
+            layer("ground", LayerKind::Terrain(terrain(hf.clone()))),
+            layer("water", square(water, 120.0, AreaSurface::Water)),
+            layer("over", square([0.0, 0.0], 140.0, surface)),
+        ];
+        render(&scene(layers), &view, &options(1))
+    };
+    for surface in [AreaSurface::Plain, AreaSurface::Park, AreaSurface::Forest, AreaSurface::Glacier] {
+        let (with, without) = (draw([0.0, 0.0], surface), draw([5000.0, 0.0], surface));
+        let over = without.id.iter().filter(|id| **id == 3).count();
+        assert!(over > 800, "{surface:?}: {over} pixels");
+        assert_eq!(with.color, without.color, "{surface:?}");
+    }
+    // The water is there.
+    let [alone, none] = [[0.0, 0.0], [5000.0, 0.0]].map(|at| draw(at, AreaSurface::Outline));
+    let changed = alone.color.iter().zip(&none.color).filter(|(a, b)| a != b).count();
+    assert!(changed > 800, "{changed} pixels");
+}
