@@ -119,21 +119,36 @@ fn leave_out_unplaced(sites: &[Site], keep: &mut [bool]) -> Result<Option<Warnin
 }
 
 /// Most atoms in a cube of one angstrom. A diamond has 0.2; the search for bonds takes the square of them.
-const MOST_IN_A_CUBE: u32 = 100;
+const MOST_IN_A_CUBE: u64 = 100;
+
+/// Most atoms in a cube of four angstrom, on the average over the atoms. A diamond has 11, twenty models laid over one another have some 200.
+const MOST_AROUND: u64 = 300;
+const AROUND: f64 = 4.0;
+
+/// Number of atoms in each cube of a side, angstrom.
+fn cubes(atoms: &[Atom], side: f64) -> HashMap<[i64; 3], u64> {
+    let mut cubes = HashMap::new();
+    for atom in atoms {
+        *cubes.entry((atom.position / side).floor().to_array().map(|x| x as i64)).or_default() += 1;
+    }
+    cubes
+}
 
 /// An error if more atoms lie at one place than any matter has.
 fn check_density(atoms: &[Atom]) -> Result<(), String> {
-    let mut cubes: HashMap<[i64; 3], u32> = HashMap::new();
-    for atom in atoms {
-        let cube = atom.position.floor().to_array().map(|x| x as i64);
-        let count = cubes.entry(cube).or_default();
-        *count += 1;
-        if *count > MOST_IN_A_CUBE {
-            let [x, y, z] = cube;
-            return Err(format!(
-                "more than {MOST_IN_A_CUBE} atoms lie in the cube of one angstrom at {x} {y} {z}; its coordinates are damaged or not in angstrom"
-            ));
-        }
+    let damaged = "its coordinates are damaged or not in angstrom";
+    let fullest = cubes(atoms, 1.0).into_iter().filter(|(_, count)| *count > MOST_IN_A_CUBE).min();
+    if let Some(([x, y, z], _)) = fullest {
+        return Err(format!(
+            "more than {MOST_IN_A_CUBE} atoms lie in the cube of one angstrom at {x} {y} {z}; {damaged}"
+        ));
+    }
+    let squares: u64 = cubes(atoms, AROUND).values().map(|count| count * count).sum();
+    let around = squares / (atoms.len() as u64).max(1);
+    if around > MOST_AROUND {
+        return Err(format!(
+            "an atom has {around} atoms in its cube of four angstrom on the average, at most {MOST_AROUND} are read; {damaged}, or models lie over one another"
+        ));
     }
     Ok(())
 }

@@ -234,6 +234,10 @@ fn atoms_that_all_lie_at_one_place_are_refused_soon() {
     std::fs::write(&path, text(0.001)).expect("written");
     let error = load(&path).unwrap_err().to_string();
     assert!(error.contains("atoms lie in the cube of one angstrom at 0 0 0"), "{error}");
+    // 39 atoms in every cube of an angstrom.
+    std::fs::write(&path, text(0.295)).expect("written");
+    let error = load(&path).unwrap_err().to_string();
+    assert!(error.contains("in its cube of four angstrom on the average, at most 300 are read"), "{error}");
     std::fs::write(&path, text(1.5)).expect("written");
     assert_eq!(load(&path).expect("a crystal").value.molecule.atoms().len(), 30_000);
 }
