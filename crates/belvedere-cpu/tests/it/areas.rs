@@ -29,22 +29,23 @@ fn unlike(a: &Frame, b: &Frame) -> usize {
 fn areas_over_water_look_as_without_the_water() {
     let hf = hills(33, 20.0, 8.0, 3);
     let view = View::straight(pinhole(DVec3::new(0.0, -300.0, 130.0), DVec3::ZERO, 50.0, [120, 80]));
-    let draw = |water: [f64; 2], surface: AreaSurface| {
+    let draw = |water: [f64; 2], over: [f64; 2], surface: AreaSurface| {
         let layers = vec![
             layer("ground", LayerKind::Terrain(terrain(hf.clone()))),
             layer("water", square(water, 60.0, AreaSurface::Water)),
-            layer("over", square([0.0, 0.0], 140.0, surface)),
+            layer("over", square(over, 140.0, surface)),
         ];
         render(&scene(layers), &view, &options(1))
     };
+    let (here, away) = ([0.0, 0.0], [5000.0, 0.0]);
     for surface in [AreaSurface::Plain, AreaSurface::Park, AreaSurface::Forest, AreaSurface::Glacier] {
-        let (with, without) = (draw([0.0, 0.0], surface), draw([5000.0, 0.0], surface));
+        let (with, without) = (draw(here, here, surface), draw(away, here, surface));
         let over = without.id.iter().filter(|id| **id == 3).count();
         assert!(over > 800, "{surface:?}: {over} pixels");
         assert_eq!(unlike(&with, &without), 0, "{surface:?}");
     }
     // The water is there.
-    let [alone, none] = [[0.0, 0.0], [5000.0, 0.0]].map(|at| draw(at, AreaSurface::Outline));
+    let [alone, none] = [here, away].map(|water| draw(water, away, AreaSurface::Plain));
     let changed = unlike(&alone, &none);
     assert!(changed > 200, "{changed} pixels");
 }

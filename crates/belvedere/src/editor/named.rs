@@ -71,11 +71,13 @@ mod tests {
         representations::of(&SourceDocument::new(document.clone()), roots).expect("known")
     }
 
+    type Change = fn(&mut Document);
+
     /// What is kept is replaced by a mark, which only a document that changes nothing of it brings back.
     #[test]
     fn representations_are_kept_until_the_document_changes_them() {
         let mark = vec![Representation { id: "mark".into(), layers: Vec::new() }];
-        let changes: [(&str, bool, fn(&mut Document)); 5] = [
+        let changes: [(&str, bool, Change); 5] = [
             ("nothing", true, |_| ()),
             ("the camera", true, |d| d.camera.fov_y_deg = 20.0),
             ("a representation", false, |d| drop(d.representations.insert("far".into(), vec!["a".into()]))),
