@@ -255,4 +255,33 @@ mod tests {
             assert!(cube.openness_at(triangle, [0.3, 0.3, 0.4]) > 0.98, "{triangle}");
         }
     }
+
+    /// Points of fat triangles are a step apart at most, and no closer than that needs; points of slivers are limited by their area.
+    #[test]
+    fn steps_fit_the_edges_and_the_area_wherever_a_triangle_stands() {
+        for middle in [DVec3::ZERO, DVec3::new(5e5, 4.7e6, 900.0)] {
+            for (side, steps) in [(0.3, 1), (1.0, 1), (2.5, 3), (7.0, 7), (7.25, 8), (41.5, 42)] {
+                let corners = [[0.0, 0.0], [side, 0.0], [0.5 * side, 0.8 * side]];
+                let corners = corners.map(|[x, y]| middle + 4.0 * DVec3::new(x, 0.6 * y, 0.8 * y));
+                assert_eq!(steps_of(corners, 4.0), steps, "{side} at {middle}");
+            }
+            // An area of 0.5 and an edge of 250 steps need about 254 points; 4 times as many are the most.
+            let sliver = [DVec3::ZERO, DVec3::new(250.0, 0.0, 0.0), DVec3::new(125.0, 0.004, 0.0)].map(|p| middle + p);
+            let steps = u32::from(steps_of(sliver, 1.0));
+            assert!((40..=45).contains(&steps) && steps * steps / 2 <= 4 * 255, "{steps} at {middle}");
+        }
+    }
+
+    /// Level ground with a pit from x = `pit` on: a ray that would meet the level ground passes over the pit.
+    #[test]
+    fn rays_meet_the_ground_where_they_come_down() {
+        let mesh = corner(1.0);
+        let tree = MeshTree::new(&mesh);
+        let (from, by) = (DVec3::new(0.0, 0.0, 1.0), DVec3::new(4.0, 0.0, -2.0));
+        for (pit, meets) in [(1.0, false), (1.9, false), (2.1, true), (9.0, true)] {
+            let ground = move |xy: DVec2| Some(if xy.x < pit { 0.0 } else { -10.0 });
+            let around = Around { tree: &tree, ground: Some(&ground), rays: &[], lift: 0.0 };
+            assert_eq!(around.is_under(from, by), meets, "pit from {pit}");
+        }
+    }
 }

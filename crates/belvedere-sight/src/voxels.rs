@@ -240,6 +240,7 @@ mod tests {
         assert!((behind - 0.9f64.powf(6.0)).abs() < 0.03, "{behind}");
         assert_eq!(light(&thin, DVec3::new(40.0, 10.0, 40.0), &[]), 1.0);
         assert_eq!(light(&thin, DVec3::new(15.0, 50.0, 15.0), &[]), 1.0, "through the window");
+        assert_eq!(light(&thin, DVec3::new(62.0, 50.0, 40.0), &[]), 1.0, "along its side, outside it");
         assert_eq!(light(&thin, DVec3::new(40.0, 50.0, 40.0), &[0]), 1.0, "what is looked for does not hide itself");
         let solid = scene(1.0);
         assert_eq!(light(&solid, DVec3::new(40.0, 50.0, 40.0), &[]), 0.0);

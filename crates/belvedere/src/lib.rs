@@ -39,6 +39,7 @@ pub mod export;
 pub mod fallback;
 mod film;
 mod guard;
+mod kept;
 mod names;
 mod open;
 mod options;

@@ -1,6 +1,7 @@
 //! A session: a scene with a view and a light, ready to be drawn.
 
 use crate::guard::guarded;
+use crate::kept::Kept;
 use crate::names::PublicNames;
 use crate::record::{AreaRecord, InputFile};
 use crate::resolve::StripReport;
@@ -19,7 +20,7 @@ use belvedere_disocclusion::{TerrainReport, TerrainSettings};
 use belvedere_io::{budget, split_table};
 use belvedere_scene::{Light, Progress, Renderer, Scene, Stylisation};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 /// Scene, view and light, from memory ([`Session::from_parts`]) or from a scene file ([`Session::open`]).
 ///
@@ -29,8 +30,8 @@ pub struct Session {
     pub(crate) loaded: Loaded,
     pub(crate) resolved: Resolved,
     pub(crate) renderer: Arc<dyn Renderer + Send + Sync>,
-    /// Bytes that the process held before the first picture.
-    pub(crate) held_before: Arc<OnceLock<u64>>,
+    /// Memory that its pictures keep.
+    pub(crate) kept: Arc<Kept>,
 }
 
 /// Data read from files; they stay while the view changes.
@@ -71,7 +72,7 @@ pub(crate) struct Description {
 
 impl std::fmt::Debug for Session {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { loaded, resolved, renderer, held_before: _ } = self;
+        let Self { loaded, resolved, renderer, kept: _ } = self;
         f.debug_struct("Session")
             .field("loaded", loaded)
             .field("resolved", resolved)
@@ -153,13 +154,12 @@ impl Session {
     }
 
     fn together(loaded: Loaded, resolved: Resolved) -> Self {
-        Self { loaded, resolved, renderer: Arc::new(CpuRenderer::default()), held_before: Arc::default() }
+        Self { loaded, resolved, renderer: Arc::new(CpuRenderer::default()), kept: Arc::default() }
     }
 
     /// Bytes of a budget that a picture may take. What the renderer keeps of the last picture is in its estimate and counts once.
     pub(crate) fn bytes_for_picture(&self, budget: u64) -> u64 {
-        let held = budget::held();
-        budget::left_beside(budget, held.min(*self.held_before.get_or_init(|| held)))
+        budget::left_beside(budget, self.kept.others(budget::held()))
     }
 
     /// The same with another renderer.

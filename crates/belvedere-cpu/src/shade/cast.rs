@@ -226,6 +226,14 @@ mod tests {
     }
 
     #[test]
+    fn ground_at_the_height_of_the_highest_caster_is_lit() {
+        let scene = Scene { layers: vec![layer(tower())], ..Scene::default() };
+        let casters = Casters::new(&scene, &SUN).unwrap();
+        let lit = |z: f64| casters.on_ground(DVec3::new(3.0, 2.0, z), AXES, &|_| true);
+        assert_eq!([49.0, 50.0, 51.0].map(lit), [0.0, 1.0, 1.0]);
+    }
+
+    #[test]
     fn nothing_is_asked_where_there_is_nothing_to_ask() {
         let scene = Scene { layers: vec![layer(tower())], ..Scene::default() };
         assert!(Casters::new(&scene, &Light { shadows: false, ..SUN }).is_none());

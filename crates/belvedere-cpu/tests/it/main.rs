@@ -1,5 +1,6 @@
 //! Tests of the processor renderer against slow, independent references.
 
+mod areas;
 mod branches;
 mod cache;
 mod exact;

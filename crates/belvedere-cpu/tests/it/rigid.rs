@@ -1,6 +1,6 @@
 //! Rigid bodies in both renderers: they move as a whole, look the same in both, and are reported at their true places.
 
-use crate::exact::difference;
+use crate::exact::{difference, trace};
 use crate::support::{hills, layer, options, pinhole, render, scene, terrain};
 use crate::support_views::{spline, turns};
 use belvedere_core::map::curved_rays::Model;
@@ -98,6 +98,19 @@ fn the_rasteriser_draws_rigid_bodies_as_the_tracer_meets_them() {
         let moved = rigid.depth.iter().zip(&bent.depth).filter(|(a, b)| (*a - *b).abs() > 0.01 * a.min(**b)).count();
         assert!(moved > 180, "{name}: {moved}");
     }
+}
+
+/// The exact renderer follows a row of rays together, the tracer one after another.
+#[test]
+fn rows_of_rays_meet_the_bodies_that_single_rays_meet() {
+    let view = spline(pinhole(DVec3::new(-40.0, -250.0, 180.0), DVec3::ZERO, 50.0, [24, 18]), "hybrid-flat-steep-flat");
+    let boxes = shapes().into_iter().step_by(9).collect();
+    let scene = scene(vec![layer("towers", LayerKind::Boxes(BoxLayer { boxes, rigid: true }))]);
+    let (rows, tracer) = (trace(&scene, &view, &options(1)), Tracer::new(&scene, &view));
+    let single = |i: usize| tracer.first_hit(DVec2::new((i % 24) as f64 + 0.5, (i / 24) as f64 + 0.5));
+    let met: Vec<u32> = (0..24 * 18).map(|i| u32::from(single(i).is_some())).collect();
+    assert_eq!(rows.id, met);
+    assert!((40..400).contains(&met.iter().filter(|id| **id == 1).count()), "{met:?}");
 }
 
 #[test]

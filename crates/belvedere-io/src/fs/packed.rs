@@ -251,8 +251,17 @@ fn unpacked(archive: &Path, entry: &str) -> io::Result<Arc<[u8]>> {
     Ok(bytes)
 }
 
+/// The bytes of an archive, for which the budget is asked before they are read.
+fn packed_bytes(archive: &Path) -> io::Result<Vec<u8>> {
+    let refused = |text: String| io::Error::new(io::ErrorKind::OutOfMemory, text);
+    if within(archive).is_none() {
+        budget::ask("the packed file", plain::metadata(archive)?.len()).map_err(refused)?;
+    }
+    read(archive)
+}
+
 fn unpack(archive: &Path, entry: &str) -> io::Result<Vec<u8>> {
-    let packed = read(archive)?;
+    let packed = packed_bytes(archive)?;
     // It is held twice for a moment, and read by a loader.
     let most = MOST_BYTES.min(budget::left() / 2);
     let failed = |e: io::Error| if e.kind() == io::ErrorKind::OutOfMemory { e } else { damaged(archive, e) };
@@ -288,7 +297,7 @@ const EMPTY_ZIP: &[u8] = b"PK\x05\x06";
 /// Unpacked size of an entry, bytes; for gzip counted up to `most` + 1 and not kept, for ZIP the stated size, which bounds later
 /// unpacking.
 pub(crate) fn unpacked_size(archive: &Path, entry: &str, most: u64) -> io::Result<u64> {
-    let packed = read(archive)?;
+    let packed = packed_bytes(archive)?;
     if packed.starts_with(GZIP) {
         let reader = MultiGzDecoder::new(packed.as_slice()).take(most.saturating_add(1));
         return io::copy(&mut { reader }, &mut io::sink()).map_err(|e| damaged(archive, e));
@@ -302,12 +311,12 @@ pub(crate) fn names_in(path: &Path) -> io::Result<Option<Vec<String>>> {
     let mut head = Vec::new();
     File::open(path)?.take(4).read_to_end(&mut head)?;
     if head.starts_with(GZIP) {
-        return Ok(Some(vec![name_in_gzip(path, &read(path)?)]));
+        return Ok(Some(vec![name_in_gzip(path, &packed_bytes(path)?)]));
     }
     if !head.starts_with(ZIP) && !head.starts_with(EMPTY_ZIP) {
         return Ok(None);
     }
-    let zip = zip::ZipArchive::new(Cursor::new(read(path)?)).map_err(|e| damaged(path, e))?;
+    let zip = zip::ZipArchive::new(Cursor::new(packed_bytes(path)?)).map_err(|e| damaged(path, e))?;
     let names = zip.file_names().flatten().map(|n| n.into_owned()).filter(|n| is_content(n));
     Ok(Some(names.collect()))
 }

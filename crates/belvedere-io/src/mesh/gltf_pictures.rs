@@ -12,13 +12,29 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
+/// Where a picture lies: many pictures of a file may name one file beside it, which is decoded once.
+#[derive(PartialEq, Eq, Hash)]
+enum Place {
+    Beside(String),
+    Within(usize),
+}
+
+impl Place {
+    fn of(image: &gltf::Image<'_>) -> Self {
+        match image.source() {
+            Source::Uri { uri, .. } if !uri.starts_with("data:") => Self::Beside(uri.to_owned()),
+            _ => Self::Within(image.index()),
+        }
+    }
+}
+
 /// The pictures read so far.
 #[derive(Default)]
 pub(super) struct Pictures<'p> {
     path: Option<&'p Path>,
     limits: Limits,
-    /// Number by the index of the texture; `None` = it cannot be read.
-    known: HashMap<usize, Option<u32>>,
+    /// Number by the picture and how it goes on beyond its edge; `None` = it cannot be read.
+    known: HashMap<(Place, [u32; 2]), Option<u32>>,
     pub(super) textures: Vec<Arc<Texture>>,
     pub(super) files: Vec<InputFile>,
     /// Why a picture was refused for want of memory.
@@ -34,7 +50,9 @@ impl<'p> Pictures<'p> {
 
     /// Number of the picture of a texture; `None` if it cannot be read, which is warned of once.
     pub(super) fn number(&mut self, texture: &gltf::Texture<'_>, buffers: &[Vec<u8>]) -> Option<u32> {
-        if let Some(known) = self.known.get(&texture.index()) {
+        let sampler = texture.sampler();
+        let key = (Place::of(&texture.source()), [sampler.wrap_s(), sampler.wrap_t()].map(|mode| mode.as_gl_enum()));
+        if let Some(known) = self.known.get(&key) {
             return *known;
         }
         let number = match self.read(texture, buffers) {
@@ -52,7 +70,7 @@ impl<'p> Pictures<'p> {
                 None
             }
         };
-        self.known.insert(texture.index(), number);
+        self.known.insert(key, number);
         number
     }
 

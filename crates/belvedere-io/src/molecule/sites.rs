@@ -49,10 +49,11 @@ impl Sites {
             let text = format!("it holds {models} models; the first is taken");
             warnings.push(Warning::new(WarningKind::Ignored, text).with("models", models as f64));
         }
-        let keep = likeliest(&sites);
+        let mut keep = likeliest(&sites);
         let alternates = keep.iter().filter(|k| !**k).count();
         let left_out = "atoms at alternate locations are left out; the likeliest stay";
         warnings.extend(Warning::counted(WarningKind::Ignored, alternates, left_out));
+        warnings.extend(leave_out_unplaced(&sites, &mut keep)?);
         let (mut atoms, mut residues): (Vec<Atom>, Vec<Residue>) = (Vec::new(), Vec::new());
         for (site, _) in sites.into_iter().zip(keep).filter(|(_, keep)| *keep) {
             if residues.last() != Some(&site.residue) {
@@ -86,22 +87,68 @@ impl Sites {
     }
 }
 
+/// Most atoms at exactly one place. Alternate locations without a letter are two or three; programs that know no place of an atom write 0 0 0.
+const MOST_AT_A_PLACE: u32 = 10;
+
+/// Leaves out atoms of which more stand at exactly one place than [`MOST_AT_A_PLACE`]: their places are not known. An error if no other is left.
+fn leave_out_unplaced(sites: &[Site], keep: &mut [bool]) -> Result<Option<Warning>, String> {
+    // 0 and -0 are one place.
+    let place = |site: &Site| site.position.to_array().map(|x| (x + 0.0).to_bits());
+    let mut counts: HashMap<[u64; 3], u32> = HashMap::new();
+    for (site, _) in sites.iter().zip(&*keep).filter(|(_, keep)| **keep) {
+        *counts.entry(place(site)).or_default() += 1;
+    }
+    let (mut count, mut first) = (0, None);
+    for (site, keep) in sites.iter().zip(&mut *keep).filter(|(_, keep)| **keep) {
+        if counts[&place(site)] > MOST_AT_A_PLACE {
+            *keep = false;
+            count += 1;
+            first.get_or_insert(site.position + DVec3::ZERO);
+        }
+    }
+    let [x, y, z] = first.unwrap_or_default().to_array();
+    let all_at = format!("stand at exactly one place with more than {} others ({x} {y} {z})", MOST_AT_A_PLACE - 1);
+    if count > 0 && !keep.contains(&true) {
+        return Err(format!("all {count} atoms {all_at}; a file with coordinates is needed"));
+    }
+    Ok(Warning::counted(
+        WarningKind::Ignored,
+        count,
+        &format!("atoms {all_at}: their places are not known, and they are left out"),
+    ))
+}
+
 /// Most atoms in a cube of one angstrom. A diamond has 0.2; the search for bonds takes the square of them.
-const MOST_IN_A_CUBE: u32 = 100;
+const MOST_IN_A_CUBE: u64 = 100;
+
+/// Most atoms in a cube of four angstrom, on the average over the atoms. A diamond has 11, twenty models laid over one another have some 200.
+const MOST_AROUND: u64 = 300;
+const AROUND: f64 = 4.0;
+
+/// Number of atoms in each cube of a side, angstrom.
+fn cubes(atoms: &[Atom], side: f64) -> HashMap<[i64; 3], u64> {
+    let mut cubes = HashMap::new();
+    for atom in atoms {
+        *cubes.entry((atom.position / side).floor().to_array().map(|x| x as i64)).or_default() += 1;
+    }
+    cubes
+}
 
 /// An error if more atoms lie at one place than any matter has.
 fn check_density(atoms: &[Atom]) -> Result<(), String> {
-    let mut cubes: HashMap<[i64; 3], u32> = HashMap::new();
-    for atom in atoms {
-        let cube = atom.position.floor().to_array().map(|x| x as i64);
-        let count = cubes.entry(cube).or_default();
-        *count += 1;
-        if *count > MOST_IN_A_CUBE {
-            let [x, y, z] = cube;
-            return Err(format!(
-                "more than {MOST_IN_A_CUBE} atoms lie in the cube of one angstrom at {x} {y} {z}; its coordinates are damaged or not in angstrom"
-            ));
-        }
+    let damaged = "its coordinates are damaged or not in angstrom";
+    let fullest = cubes(atoms, 1.0).into_iter().filter(|(_, count)| *count > MOST_IN_A_CUBE).min();
+    if let Some(([x, y, z], _)) = fullest {
+        return Err(format!(
+            "more than {MOST_IN_A_CUBE} atoms lie in the cube of one angstrom at {x} {y} {z}; {damaged}"
+        ));
+    }
+    let squares: u64 = cubes(atoms, AROUND).values().map(|count| count * count).sum();
+    let around = squares / (atoms.len() as u64).max(1);
+    if around > MOST_AROUND {
+        return Err(format!(
+            "an atom has {around} atoms in its cube of four angstrom on the average, at most {MOST_AROUND} are read; {damaged}, or models lie over one another"
+        ));
     }
     Ok(())
 }

@@ -117,3 +117,16 @@ fn packed_files_are_decoded_no_further_than_memory_allows() {
     let limits = Limits { max_bytes: 9 << 20 };
     assert!(load_volume(&path, &VolumeRequest { limits, ..Default::default() }).is_ok());
 }
+
+/// A packed file of 2^40 bytes, of which the disk holds one block.
+#[test]
+fn packed_files_ask_before_they_are_read() {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = folder.path().join("huge.pdb.gz");
+    let mut file = std::fs::File::create(&path).expect("created");
+    file.write_all(b"\x1f\x8b\x08\0").expect("written");
+    // There is no such file on a disk without sparse files.
+    let Ok(()) = file.set_len(1 << 40) else { return };
+    let error = load_molecule(&path, &Limits::default()).expect_err("too large").to_string();
+    assert!(error.contains("the packed file needs 1048576 MiB") && error.contains("allow more memory"), "{error}");
+}

@@ -230,7 +230,38 @@ fn atoms_that_all_lie_at_one_place_are_refused_soon() {
     let text = |apart: f64| (0..30_000).map(|i| line(i, apart)).collect::<String>();
     std::fs::write(&path, text(0.0)).expect("written");
     let error = load(&path).unwrap_err().to_string();
+    assert!(error.contains("all 30000 atoms stand at exactly one place with more than 9 others (0 0 0)"), "{error}");
+    std::fs::write(&path, text(0.001)).expect("written");
+    let error = load(&path).unwrap_err().to_string();
     assert!(error.contains("atoms lie in the cube of one angstrom at 0 0 0"), "{error}");
+    // 39 atoms in every cube of an angstrom.
+    std::fs::write(&path, text(0.295)).expect("written");
+    let error = load(&path).unwrap_err().to_string();
+    assert!(error.contains("in its cube of four angstrom on the average, at most 300 are read"), "{error}");
     std::fs::write(&path, text(1.5)).expect("written");
     assert_eq!(load(&path).expect("a crystal").value.molecule.atoms().len(), 30_000);
+}
+
+/// Models whose unknown places are all written as 0 0 0: the other atoms are read, and bonds named to what is left out are none.
+#[test]
+fn atoms_of_unknown_places_are_left_out() {
+    let line = |i: usize, [x, y, z]: [f64; 3]| {
+        format!("ATOM  {i:5}  CA  ALA A{i:4}    {x:8.3}{y:8.3}{z:8.3}  1.00  0.00           C  \n")
+    };
+    let chain: String = (1..=40).map(|i| line(i, [3.8 * i as f64, 1.0, 2.0])).collect();
+    let with = |count: usize| {
+        let unknown: String =
+            (41..41 + count).map(|i| line(i, [0.0, 0.0, if i % 2 == 0 { 0.0 } else { -0.0 }])).collect();
+        made("a.pdb", format!("{chain}{unknown}CONECT   40   41\n").as_bytes()).expect("readable")
+    };
+    let (many, few) = (with(500), with(10));
+    assert_eq!((many.value.molecule.atoms().len(), many.value.named_bonds), (40, 0));
+    let said = many.warnings.iter().map(|w| w.text()).collect::<Vec<_>>().join("\n");
+    assert!(said.contains("500 atoms stand at exactly one place with more than 9 others (0 0 0)"), "{said}");
+    assert_eq!(
+        (few.value.molecule.atoms().len(), few.value.named_bonds),
+        (50, 1),
+        "places that few atoms share are theirs"
+    );
+    assert!(few.warnings.is_empty(), "{:?}", few.warnings);
 }

@@ -202,3 +202,39 @@ fn what_is_all_air_is_left_out_and_what_is_glass_is_said() {
         assert_eq!(loaded.value.parts, (0..triangles as u32).collect::<Vec<_>>());
     }
 }
+
+/// Three textures over one file beside it, two of which repeat it: it is decoded once for each way to go on beyond its edge.
+#[test]
+fn a_picture_that_many_textures_name_is_decoded_once() {
+    let folder = tempfile::tempdir().expect("folder");
+    picture(folder.path(), "p.png");
+    let corners: Vec<u8> = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0]
+        .iter()
+        .flat_map(|v| v.to_le_bytes())
+        .collect();
+    std::fs::write(folder.path().join("b.bin"), corners).expect("written");
+    let primitive =
+        |material: usize| serde_json::json!({"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "material": material});
+    let material =
+        |texture: usize| serde_json::json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": texture}}});
+    let gltf = serde_json::json!({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [primitive(0), primitive(1), primitive(2)]}],
+        "materials": [material(0), material(1), material(2)],
+        "textures": [{"source": 0}, {"source": 1}, {"source": 1, "sampler": 0}],
+        "samplers": [{"wrapS": 33071}],
+        "images": [{"uri": "p.png"}, {"uri": "p.png"}],
+        "buffers": [{"byteLength": 60, "uri": "b.bin"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 24}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
+            {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"},
+        ],
+    });
+    let path = folder.path().join("m.gltf");
+    std::fs::write(&path, gltf.to_string()).expect("written");
+    let loaded = load(&path);
+    let texturing = loaded.value.texturing.expect("pictures");
+    assert_eq!((texturing.textures.len(), texturing.of_triangle), (2, vec![0, 0, 1]));
+    assert_ne!(texturing.textures[0], texturing.textures[1]);
+}

@@ -1,7 +1,7 @@
 //! Ground: heights between nodes.
 
 use belvedere_core::{DVec2, DVec3};
-use belvedere_scene::{CellTriangle, Color, Heightfield, LineFeature, LineLayer};
+use belvedere_scene::{CellTriangle, Color, Heightfield, LineFeature, LineLayer, NodeState, Sea};
 
 fn height(col: usize, row: usize) -> f32 {
     (7 * col * col + 13 * row + 5 * (col * row) % 11) as f32
@@ -64,5 +64,39 @@ fn pieces_of_a_route_join_at_their_near_ends() {
             }
             assert_eq!(chain, whole, "{order:?} {turned}");
         }
+    }
+}
+
+/// 60 columns of sea west of land that is level; the westernmost `voids` columns hold no data. Nodes are 30 m apart, the first stands at 0.
+fn shore(land: f32, voids: usize) -> Sea {
+    let side = 101;
+    let heights = (0..side * side).map(|i| if i % side < 60 { 0.0 } else { land }).collect();
+    let state = |i: usize| if i % side < voids { NodeState::Void } else { NodeState::Measured };
+    let states = (0..side * side).map(state).collect();
+    let hf = Heightfield::new(DVec2::ZERO, DVec2::splat(30.0), side, side, heights, states).expect("ground");
+    Sea::of(&hf).expect("sea")
+}
+
+/// The western and the eastern end of a sea where a coast crosses the middle row.
+fn ends(sea: &Sea) -> [f64; 2] {
+    let places = sea.coasts.iter().flatten().filter(|p| (p.y + 1500.0).abs() < 300.0);
+    places.fold([f64::INFINITY, f64::NEG_INFINITY], |[west, east], p| [west.min(p.x), east.max(p.x)])
+}
+
+/// A coast lies where the ground between two nodes rises half a metre over the sea: an eighth of the way to land 4 m high.
+#[test]
+fn coasts_lie_half_a_metre_over_the_sea() {
+    for (land, share) in [(1.0, 0.5), (2.0, 0.25), (3.125, 0.16), (4.0, 0.125), (20.0, 0.12)] {
+        let [_, east] = ends(&shore(land, 0));
+        assert!((east - 30.0 * (59.0 + share)).abs() < 1e-6, "land at {land} m: {east}");
+    }
+}
+
+/// Outside the ground, and in voids, the sea goes on for two nodes and a half.
+#[test]
+fn the_sea_goes_on_two_nodes_and_a_half_beyond_the_data() {
+    for voids in [0, 9] {
+        let [west, _] = ends(&shore(4.0, voids));
+        assert!((west - 30.0 * (voids as f64 - 2.5)).abs() < 1e-6, "{voids} columns of voids: {west}");
     }
 }

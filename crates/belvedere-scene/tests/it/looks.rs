@@ -34,24 +34,25 @@ fn pixel(column: i64, row: i64) -> [u8; 4] {
 fn pictures_mix_the_four_pixels_around_a_place() {
     let (width, height) = (3i64, 2i64);
     let pixels: Vec<[u8; 4]> = (0..6).map(|i| pixel(i % width, i / width)).collect();
-    for wrap in [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror] {
-        let texture = Texture::new(3, 2, pixels.clone(), [wrap; 2]).expect("a picture");
-        let inside = |i: i64, n: i64| match wrap {
+    let ways = [Wrap::Repeat, Wrap::Clamp, Wrap::Mirror];
+    for wrap in ways.into_iter().flat_map(|across| ways.map(|down| [across, down])) {
+        let texture = Texture::new(3, 2, pixels.clone(), wrap).expect("a picture");
+        let inside = |i: i64, n: i64, wrap: Wrap| match wrap {
             Wrap::Repeat => (i + 10 * n) % n,
             Wrap::Clamp => i.max(0).min(n - 1),
             Wrap::Mirror => {
                 [(i + 20 * n) % (2 * n), 2 * n - 1 - (i + 20 * n) % (2 * n)].into_iter().min().expect("two")
             }
         };
-        for k in 0..400 {
-            let place = Vec2::new(-1.3 + 0.0071 * k as f32, -0.9 + 0.00833 * k as f32);
+        for k in 0..200 {
+            let place = Vec2::new(-1.3 + 0.0142 * k as f32, -0.9 + 0.01666 * k as f32);
             let (x, y) = (place.x * 3.0 - 0.5, place.y * 2.0 - 0.5);
             let weight = |from: i64, at: f32| (1.0 - (at - from as f32).abs()).max(0.0);
             let mut want = [0.0f32; 4];
             for row in -6..6 {
                 for column in -9..9 {
                     let w = weight(column, x) * weight(row, y);
-                    let part = pixel(inside(column, width), inside(row, height));
+                    let part = pixel(inside(column, width, wrap[0]), inside(row, height, wrap[1]));
                     want.iter_mut().zip(part).for_each(|(sum, v)| *sum += w * f32::from(v));
                 }
             }

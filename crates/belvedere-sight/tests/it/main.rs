@@ -1,4 +1,6 @@
 //! Tests of belvedere-sight.
 
+mod bodies;
+mod displaced;
 mod near;
 mod obstacles;

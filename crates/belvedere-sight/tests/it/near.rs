@@ -1,7 +1,7 @@
 //! What comes near a segment, against searches that look at everything.
 
 use belvedere_core::{Aabb, DVec2, DVec3};
-use belvedere_scene::{BoxShape, Color};
+use belvedere_scene::{BoxShape, Color, Heightfield};
 use belvedere_sight::{BoxTree, Ground};
 use belvedere_testkit::Random;
 use belvedere_testkit::synthetic::mountains;
@@ -115,6 +115,20 @@ fn clear_segments_keep_their_distance_from_the_ground() {
         high += usize::from(far);
     }
     assert!(clear > 150 && high > 60, "{clear} {high}");
+}
+
+/// Over level ground with one high peak, a line 20 m over the ground is clear within 5 m wherever the peak is 64 cells away.
+#[test]
+fn a_peak_far_away_does_not_make_a_low_line_unclear() {
+    let (side, spacing) = (129, 30.0);
+    let heights = (0..side * side).map(|i| if i == 0 { 3000.0 } else { 0.0 }).collect();
+    let hf = Heightfield::measured(DVec2::ZERO, DVec2::splat(spacing), side, side, heights).expect("ground");
+    let ground = Ground::lifted(&hf, None);
+    for (row, east) in [(70.5, 125.0), (100.0, 80.0), (120.2, 20.0)] {
+        let at = |col: f64| DVec3::new(spacing * col, -spacing * row, 20.0);
+        assert!(ground.is_clear(at(3.0), at(east), 5.0), "row {row}");
+        assert!(!ground.is_clear(at(3.0), at(east), 25.0), "row {row}");
+    }
 }
 
 /// A box is off the ground only if no point of it meets it: at a grid of places in plan, the surface is below or above it, or beside.

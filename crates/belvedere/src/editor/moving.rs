@@ -2,7 +2,7 @@
 
 use super::rate::Quality;
 use crate::overlays::{grid, widths};
-use crate::{BelvedereError, Session, fallback};
+use crate::{BelvedereError, Session, fallback, kept};
 use belvedere_core::View;
 use belvedere_io::budget;
 use belvedere_scene::{
@@ -66,7 +66,10 @@ pub(super) fn quick(
     options.overlay.under.extend(grid.into_iter().map(|line| widths::line(line, quality.width() * density)));
     let draw = |scene: &Scene, view: &View| {
         let job = RenderJob { scene, view, light: &light, options: &options, progress };
-        Ok::<_, BelvedereError>(session.renderer.render(&job)?)
+        let before = budget::held();
+        let frame = session.renderer.render(&job)?;
+        session.kept.drawn([before, budget::held()], kept::bytes_of(&frame));
+        Ok::<_, BelvedereError>(frame)
     };
     match &plan {
         Some(plan) => plan.draw(view, &draw),

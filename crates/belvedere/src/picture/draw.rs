@@ -12,9 +12,10 @@ use crate::overlays::{badge, camera, curve_inset, ghost, grid, heat, highlight, 
 use crate::record::{self, InputFile, ViewRecord};
 use crate::scene_file::{Document, HighlightMark};
 use crate::vectors::{Furnish, VectorContent, VectorPicture};
-use crate::{BelvedereError, CameraPicture, Session};
+use crate::{BelvedereError, CameraPicture, Session, kept};
 use belvedere_composite::canvas::Canvas;
 use belvedere_core::View;
+use belvedere_io::budget;
 use belvedere_scene::Instant;
 use belvedere_scene::{Aux, Frame, Progress, RenderJob, RenderOptions, Scene, Unit};
 
@@ -105,12 +106,20 @@ pub(crate) struct Drawn {
     vectors: Option<VectorPicture>,
 }
 
-/// Draws the view with all marks.
+/// Draws the view with all marks, and takes note of the memory that the renderer keeps.
 pub(crate) fn draw_view(
     session: &Session,
     request: &PictureOptions,
     progress: &Progress,
 ) -> Result<Drawn, BelvedereError> {
+    let before = budget::held();
+    let drawn = draw_marked(session, request, progress)?;
+    let frames = kept::bytes_of(&drawn.frame) + drawn.straight.as_ref().map_or(0, kept::bytes_of);
+    session.kept.drawn([before, budget::held()], frames);
+    Ok(drawn)
+}
+
+fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress) -> Result<Drawn, BelvedereError> {
     let view = if request.straight { session.view().straightened() } else { session.view().clone() };
     let plan = if request.straight { None } else { fallback::of_session(session, &view)? };
     let scene = plan.as_ref().map_or(session.scene(), FallbackPlan::scene);

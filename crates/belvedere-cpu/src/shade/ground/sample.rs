@@ -71,3 +71,34 @@ impl GroundSample {
         [right, down].map(|[w, wu, wv]| DVec2::new(wu - at[0] * w, wv - at[1] * w) * (f64::from(SUB) / whole))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Columns and rows as the sample moves, by differences of the interpolation in perspective.
+    #[test]
+    fn axes_are_how_columns_and_rows_change_as_the_sample_moves() {
+        let (x, y) = ([-310.0, 520.0, 40.0], [-180.0, -90.0, 610.0]);
+        let (u, v) = ([3.0, 4.0, 3.0], [1.0, 1.0, 2.0]);
+        for q in [[1.0; 3], [0.9, 0.5, 0.2], [1e-3, 4e-3, 2e-3]] {
+            let at = |moved: [f64; 2]| {
+                let (x, y) = (x.map(|x| x - moved[0]), y.map(|y| y - moved[1]));
+                let weight = |k: usize| {
+                    let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+                    q[k] * (x[a] * y[b] - x[b] * y[a])
+                };
+                let weights = [0, 1, 2].map(weight);
+                let mean = |of: [f64; 3]| (0..3).map(|k| weights[k] * of[k]).sum::<f64>() / weights.iter().sum::<f64>();
+                DVec2::new(mean(u), mean(v))
+            };
+            let sample = GroundSample { x, y, q, u, v, at: at([0.0; 2]).to_array() };
+            let step = 0.25;
+            let want =
+                [[step, 0.0], [0.0, step]].map(|[a, b]| (at([a, b]) - at([-a, -b])) * f64::from(SUB) / (2.0 * step));
+            for (found, want) in sample.axes().into_iter().zip(want) {
+                assert!((found - want).length() < 1e-5 * want.length(), "{q:?}: {found}, {want}");
+            }
+        }
+    }
+}

@@ -30,6 +30,9 @@ pub enum Film {
 const ENCODERS: [&[&str]; 2] =
     [&["-c:v", "libx264", "-crf", "18", "-preset", "medium"], &["-c:v", "mpeg4", "-q:v", "2"]];
 
+/// Encoders need even widths and heights.
+const EVEN: &str = "pad=ceil(iw/2)*2:ceil(ih/2)*2";
+
 /// Encodes the frames of `folder` as `out`.
 pub(super) fn make(
     out: &Path,
@@ -39,7 +42,7 @@ pub(super) fn make(
     progress: &Progress,
 ) -> Result<Film, BelvedereError> {
     let pattern = frame_name(0).replace("00000", "%05d");
-    let command = by_hand(out, folder, &pattern, fps);
+    let command = by_hand(out, folder, &pattern, (frames, fps));
     let temporary = Temporary::beside(out).map_err(|e| belvedere_io::IoError::os(out, e))?;
     let film = std::path::absolute(temporary.path()).map_err(|e| belvedere_io::IoError::os(out, e))?;
     let mut complaint = String::new();
@@ -49,8 +52,7 @@ pub(super) fn make(
         // In the folder of the frames: in a pattern, % and digits would stand for numbers, and a colon ends the name of a protocol.
         ffmpeg.current_dir(folder).args(["-f", "image2", "-start_number", "0", "-i", &pattern]);
         ffmpeg.args(["-frames:v", &frames.to_string()]);
-        // Encoders need even widths and heights.
-        ffmpeg.args(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2"]).args(encoder);
+        ffmpeg.args(["-vf", EVEN]).args(encoder);
         ffmpeg.args(["-pix_fmt", "yuv420p", "-movflags", "+faststart", "-map_metadata", "-1"]);
         ffmpeg.args(["-fflags", "+bitexact", "-flags:v", "+bitexact", "-f", "mp4"]).arg(as_file(&film));
         let ran = run(&mut ffmpeg, progress);
@@ -84,7 +86,7 @@ fn as_file(path: &Path) -> OsString {
 }
 
 /// The command that encodes the frames, for the shell of the user.
-fn by_hand(out: &Path, folder: &Path, pattern: &str, fps: f64) -> String {
+fn by_hand(out: &Path, folder: &Path, pattern: &str, (count, fps): (usize, f64)) -> String {
     let frames = PathBuf::from(folder.display().to_string().replace('%', "%%")).join(pattern);
     let quoted = |path: &Path| {
         let name = as_file(path).to_string_lossy().into_owned();
@@ -93,7 +95,9 @@ fn by_hand(out: &Path, folder: &Path, pattern: &str, fps: f64) -> String {
         let short = name.strip_prefix("file:").filter(|name| !name.contains(':')).unwrap_or(&name);
         if plain { short.to_owned() } else { format!("'{}'", short.replace('\'', "'\\''")) }
     };
-    format!("ffmpeg -framerate {fps} -i {} -pix_fmt yuv420p {}", quoted(&frames), quoted(out))
+    let (frames, out) = (quoted(&frames), quoted(out));
+    // An earlier, longer film may have left further frames in the folder.
+    format!("ffmpeg -framerate {fps} -i {frames} -frames:v {count} -vf '{EVEN}' -pix_fmt yuv420p {out}")
 }
 
 enum Failure {
@@ -128,4 +132,16 @@ fn run(command: &mut Command, progress: &Progress) -> Result<(bool, String), Fai
         }
     };
     Ok((status.success(), reader.join().unwrap_or_default()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_by_hand_takes_the_frames_of_this_film_alone() {
+        let command = by_hand(Path::new("a b.mp4"), Path::new("f"), "frame_%05d.png", (12, 25.0));
+        let wanted = "ffmpeg -framerate 25 -i f/frame_%05d.png -frames:v 12 -vf 'pad=ceil(iw/2)*2:ceil(ih/2)*2' -pix_fmt yuv420p 'a b.mp4'";
+        assert_eq!(command, wanted);
+    }
 }
