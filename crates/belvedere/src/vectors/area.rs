@@ -131,7 +131,7 @@ fn pixels_inside(plans: &[Plan], frame: &Frame, shows_ground: &[bool]) -> Vec<Ve
     let hits = |i: usize| -> Vec<(u32, usize)> {
         let at = DVec2::new(world[i][0], world[i][1]);
         let is_ground = shows_ground.get(frame.id[i] as usize).copied().unwrap_or(false);
-        if !is_ground || !(at.cmpge(lo).all() && at.cmple(hi).all()) {
+        if !(is_ground && at.cmpge(lo).all() && at.cmple(hi).all()) {
             return Vec::new();
         }
         let c = cell(at);
