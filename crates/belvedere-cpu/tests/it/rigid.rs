@@ -105,7 +105,7 @@ fn the_rasteriser_draws_rigid_bodies_as_the_tracer_meets_them() {
 fn rows_of_rays_meet_the_bodies_that_single_rays_meet() {
     let view = spline(pinhole(DVec3::new(-40.0, -250.0, 180.0), DVec3::ZERO, 50.0, [24, 18]), "hybrid-flat-steep-flat");
     let boxes = shapes().into_iter().step_by(9).collect();
-    let scene = scene(vec![layer("towers", LayerKind::Boxes(BoxLayer { boxes, rigid: true }))]);
+    let scene = scene(vec![layer("towers", LayerKind::Boxes(BoxLayer { rigid: true, ..BoxLayer::new(boxes) }))]);
     let (rows, tracer) = (trace(&scene, &view, &options(1)), Tracer::new(&scene, &view));
     let single = |i: usize| tracer.first_hit(DVec2::new((i % 24) as f64 + 0.5, (i / 24) as f64 + 0.5));
     let met: Vec<u32> = (0..24 * 18).map(|i| u32::from(single(i).is_some())).collect();
