@@ -76,7 +76,7 @@ pub(crate) enum Verb {
     /// Draw the built-in scenes, straight and bent side by side, with an index.html; needs no files
     Demo(DemoArgs),
     /// Draw terrain and routes so that the routes are visible; or, with --see, a part of a model
-    Reveal(RevealArgs),
+    Reveal(Box<RevealArgs>),
     /// Write an elevation model on which the features are visible from an eye
     Disocclude(DisoccludeArgs),
     /// Merge buildings into blocks between streets: two levels of abstraction, a map, plan drawings

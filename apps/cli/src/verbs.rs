@@ -38,7 +38,7 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
         Verb::Project(args) => project(&args, context),
         Verb::Rays(args) => rays(&args, context),
         Verb::Displace(args) => displace(&args, context),
-        Verb::Reveal(args) => crate::reveal::reveal(args, context),
+        Verb::Reveal(args) => crate::reveal::reveal(*args, context),
         Verb::Pick(args) => pick_pixels(&args, context),
         Verb::Measure(args) => measure_scene(&args, context),
         Verb::Demo(args) => demonstrate(&args, context),

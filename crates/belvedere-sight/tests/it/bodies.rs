@@ -5,7 +5,7 @@ use belvedere_scene::{
     BoxLayer, BoxShape, Color, Heightfield, Layer, LayerKind, Mesh, MeshColors, MeshLayer, RigidParts, Scene,
     TerrainLayer,
 };
-use belvedere_sight::{Carried, Obstacles, SightOptions};
+use belvedere_sight::{Carried, Obstacles, SightOptions, Solids};
 
 const COLOR: Color = Color::rgb(9, 9, 9);
 
@@ -46,7 +46,10 @@ fn what_is_no_body_stays_with_the_ground_and_bodies_stand_apart() {
     let scene = screens(RigidParts::Only(vec![1]));
     let view = on_a_planet(camera(DVec3::new(-100.0, 0.0, 8.0), DVec3::new(0.0, 0.0, 8.0)));
     let carried = Carried::new(&scene, &view).expect("one body");
-    let (beside, bodies) = (Obstacles::beside_bodies(&scene, None, &carried), Obstacles::of_bodies(&scene, &carried));
+    let (beside, bodies) = (
+        Obstacles::beside_bodies(&scene, None, &carried, Solids::Opaque),
+        Obstacles::of_bodies(&scene, &carried, Solids::Opaque),
+    );
     let is_met = |obstacles: &Obstacles<'_>, x: f64| {
         let at = |x: f64| DVec3::new(x, 0.5, 8.0);
         obstacles.min_gap(at(x - 3.0), at(x + 3.0), 5.0, f64::NEG_INFINITY) < 0.0
@@ -60,7 +63,7 @@ fn what_is_no_body_stays_with_the_ground_and_bodies_stand_apart() {
 fn carried_towers_hide_what_is_behind_them() {
     let tower = BoxShape { base: DVec3::ZERO, size: DVec3::new(10.0, 20.0, 30.0), yaw: 0.3, color: COLOR };
     for rigid in [true, false] {
-        let scene = scene(LayerKind::Boxes(BoxLayer { boxes: vec![tower], rigid }));
+        let scene = scene(LayerKind::Boxes(BoxLayer { rigid, ..BoxLayer::new(vec![tower]) }));
         let view = on_a_planet(camera(DVec3::new(-100.0, 0.0, 10.0), DVec3::new(0.0, 0.0, 10.0)));
         let obstacles = Obstacles::seen_by(&scene, &view);
         for cap_m in [0.0, 20.0] {

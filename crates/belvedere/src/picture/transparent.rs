@@ -36,7 +36,7 @@ pub(super) fn draw(
     for (color, dark) in white.frame.color.iter_mut().zip(&black.frame.color) {
         let through = [0, 1, 2].map(|k| u32::from(color[k].saturating_sub(dark[k])));
         let cover = 255 - through.iter().sum::<u32>().div_euclid(3).min(255);
-        *color = dark.map(|v| if cover == 0 { 0 } else { ((u32::from(v) * 255 + cover / 2) / cover).min(255) as u8 });
+        *color = dark.map(|v| (u32::from(v) * 255 + cover / 2).checked_div(cover).unwrap_or(0).min(255) as u8);
         alpha.push(cover as u8);
     }
     Ok((white, alpha))

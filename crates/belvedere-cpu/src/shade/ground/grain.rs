@@ -28,8 +28,8 @@ pub(crate) fn grain<const N: usize>(
 ) -> [f32; N] {
     let mut out = [0.0; N];
     let mut least = f32::MAX;
-    for i in 0..N {
-        let here = if px[i] > 0.0 { px[i] } else { f32::MAX };
+    for px in px {
+        let here = if *px > 0.0 { *px } else { f32::MAX };
         least = if here < least { here } else { least };
     }
     let (mut size, mut strength) = (1.0f32, 1.0f32);
