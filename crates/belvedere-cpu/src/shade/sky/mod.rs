@@ -294,8 +294,11 @@ impl Sky {
         }
     }
 
-    /// Sky at an elevation, given its sine.
+    /// Sky at an elevation, given its sine, as water mirrors it: a plain one is paper behind the picture, and a clear day is mirrored.
     pub(crate) fn towards(&self, sine: f32) -> Rgb {
+        if self.dither == 0.0 {
+            return towards(sine);
+        }
         let root = self.root(sine);
         root * root
     }
@@ -480,6 +483,8 @@ mod tests {
                 assert!(row.iter().all(|pixel| *pixel == [color.r, color.g, color.b]), "{color:?}: {:?}", row[0]);
             }
         }
+        let paper = seen(Light { sky: Choice::Plain(Color::rgb(0, 0, 0)), ..Light::default() });
+        assert!((paper.towards(0.4) - towards(0.4)).abs().max_element() < 1e-6, "water mirrors no paper");
         let light = |degrees: f64| Light { altitude: degrees.to_radians(), ..Light::default() };
         let up = |sky: &Sky| sky.towards(0.9).element_sum();
         let [day, dusk, night] = [30.0, 2.0, -20.0].map(|height| up(&seen(light(height))));
