@@ -25,6 +25,7 @@ class _Server(ThreadingHTTPServer):
 
     def __init__(self, folder: Path) -> None:
         self.headers = _headers_of(folder)
+        self.thread: threading.Thread | None = None
         # The page cannot be found by programs that do not know its address.
         self.secret = secrets.token_urlsafe(16)
         self.files = {f"/{self.secret}/{p.relative_to(folder).as_posix()}": p for p in folder.rglob("*") if p.is_file()}
@@ -77,7 +78,8 @@ class Serving:
         self.port: int = server.server_address[1]
         self.path = f"/{server.secret}/index.html"
         self.url = f"http://127.0.0.1:{self.port}{self.path}"
-        threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.1}, name="belvedere page", daemon=True).start()
+        server.thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.1}, name="belvedere page", daemon=True)
+        server.thread.start()
         self.close = weakref.finalize(self, _close, server, os.getpid())
 
 
@@ -90,6 +92,10 @@ def _headers_of(folder: Path) -> list[tuple[str, str]]:
 
 def _close(server: _Server, owner: int) -> None:
     # A forked process has no thread that serves, so that waiting for it would not end.
+    if os.getpid() == owner and server.thread is threading.current_thread():
+        # The collector of garbage may run in the thread that serves, which cannot wait for itself.
+        threading.Thread(target=_close, args=(server, owner), daemon=True).start()
+        return
     if os.getpid() == owner:
         server.shutdown()
     server.server_close()

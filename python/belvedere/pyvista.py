@@ -1,11 +1,12 @@
 """PyVista and VTK: scenes of plotters and datasets, datasets that are bent or know what is visible, and cameras both ways.
 
-Needs the package pyvista: ``pip install belvedere[pyvista]``. Points have the order of ``dataset.points``; that of a StructuredGrid runs down the first
+Needs the package pyvista: ``pip install pyvista``. Points have the order of ``dataset.points``; that of a StructuredGrid runs down the first
 axis fastest, unlike ``X.ravel()``. Rows of our pictures begin at the top, display coordinates of VTK at the bottom.
 """
 
 from __future__ import annotations
 
+import itertools
 import re
 import warnings
 from typing import Any, Mapping, Sequence
@@ -174,7 +175,7 @@ def _meshes_of(what: Any, line_width: float | None) -> tuple[dict[str, Any], Cam
     if isinstance(what, pv.BasePlotter):
         return _meshes_of_plotter(what, line_width), camera_of(what)
     if isinstance(what, pv.MultiBlock):
-        what = {name or f"mesh{i + 1}": block for i, (name, block) in enumerate(zip(what.keys(), what))}
+        what = _blocks(what)
     named = dict(what) if isinstance(what, Mapping) else {"mesh1": what}
     meshes = {}
     for name, dataset in named.items():
@@ -205,10 +206,28 @@ def _meshes_of_plotter(plotter: Any, line_width: float | None) -> dict[str, Any]
         found = triangles_of(dataset, width=width, actor=actor)
         if found is not None:
             named = not re.search(r"\(Addr=", name) and name not in meshes
-            meshes[name if named else f"mesh{len(meshes) + 1}"] = found
+            meshes[name if named else _free_name(plotter, meshes)] = found
     if left_out:
         warnings.warn(f"left out, since they are no meshes: {', '.join(sorted(set(left_out)))}", stacklevel=4)
     return meshes
+
+
+def _free_name(plotter: Any, meshes: Mapping[str, Any]) -> str:
+    """A name that no mesh of the plotter has."""
+    taken = {*meshes, *plotter.renderer.actors}
+    return next(name for name in (f"mesh{i}" for i in itertools.count(len(meshes) + 1)) if name not in taken)
+
+
+def _blocks(blocks: Any, prefix: str = "") -> dict[str, Any]:
+    """The datasets of nested blocks by name; empty blocks are left out."""
+    found: dict[str, Any] = {}
+    for i, (name, block) in enumerate(zip(blocks.keys(), blocks)):
+        label = f"{prefix}{name or f'mesh{i + 1}'}"
+        if isinstance(block, pv.MultiBlock):
+            found.update(_blocks(block, f"{label}/"))
+        elif block is not None:
+            found[label] = block
+    return found
 
 
 def _pixel_at(plotter: Any, point: NDArray[Any]) -> float:

@@ -260,9 +260,10 @@ def test_a_cancelled_run_of_dask_goes_on(tmp_path: Path, whole: dict[str, bytes]
     scene, out = scene_file(tmp_path), tmp_path / "film"
     with pytest.raises(KeyboardInterrupt):
         batch.film(scene, out, on=batch.Dask(dask), frames_per_task=1, progress=interrupt, **FILM)
-    are_whole(out, whole)
+    # Workers may have ended what they held.
+    are_whole(out, whole, all_may_be_there=True)
     _, report = batch.film(scene, out, on=batch.Dask(dask), frames_per_task=1, **FILM)
-    assert 2 <= report.kept <= report.tasks
+    assert report.kept >= 2
     assert files(out) == whole
 
 
@@ -290,8 +291,8 @@ def test_a_full_disk_ends_the_batch_and_room_lets_it_go_on(
         subprocess.run(["umount", "-l", os.fspath(disk)], check=True)
 
 
-def are_whole(folder: Path, whole: dict[str, bytes]) -> None:
+def are_whole(folder: Path, whole: dict[str, bytes], all_may_be_there: bool = False) -> None:
     """Every frame that is there is that of the whole film; some are missing."""
     found = {path.name: path.read_bytes() for path in folder.glob("frame_*.png")}
-    assert 0 < len(found) < 10
+    assert 0 < len(found) < 10 + all_may_be_there
     assert found == {name: whole[name] for name in found}

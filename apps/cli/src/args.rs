@@ -235,7 +235,7 @@ pub(crate) struct RevealArgs {
     /// Colours and opacities of volumes with --see: auto, solid, engine, ct-bone, ct-soft, vessels, grey, or a file
     #[arg(long, value_name = "NAME|FILE", requires = "see")]
     pub(crate) transfer: Option<String>,
-    /// Picture to write: PNG, TIFF, JPEG, WebP, SVG or PDF, as its name ends; its record goes to OUT.png.json, and if it is bent, the straight beside the bent picture to OUT.pair.png; - =
+    /// Picture to write: PNG, TIFF, JPEG, WebP, SVG or PDF, as its name ends; its record goes to OUT.png.json, and if it is bent, the straight beside the bent picture to OUT.pair.png (not of SVG and PDF, nor with a transparent sky); - =
     /// standard output, and the picture alone
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
@@ -260,9 +260,9 @@ pub(crate) struct RevealArgs {
     /// Leave holes of the terrain open instead of filling them
     #[arg(long)]
     pub(crate) keep_voids: bool,
-    /// Look of the terrain: auto (the default: meadows, forest, rock and snow as the climate of the place has them), swiss, winter, autumn,
+    /// Tint of the terrain: auto (the default: meadows, forest, rock and snow as the climate of the place has them), swiss, winter, autumn,
     /// alpine, desert, glacial, atlas, clear, plain, night, or a file of colours by height (GDAL colour-relief text, GMT .cpt)
-    #[arg(long, visible_alias = "look", value_name = "NAME|FILE")]
+    #[arg(long, value_name = "NAME|FILE")]
     pub(crate) palette: Option<String>,
     /// Georeferenced picture laid over the ground, such as a map or an aerial photograph; may be given several times, later ones on top
     #[arg(long, value_name = "FILE", conflicts_with = "see")]
@@ -440,9 +440,9 @@ pub(crate) struct RenderArgs {
     /// Draw the camera itself from another eye: eye and point to look at, in scene coordinates or lon,lat, or auto
     #[arg(long, value_name = "X,Y,Z,X,Y,Z", allow_hyphen_values = true, conflicts_with_all = CAMERA_CONFLICTS, conflicts_with = "overhead", value_parser = parse_outside)]
     pub(crate) outside: Option<Outside>,
-    /// Look of the terrain instead of the scene's: auto, swiss, winter, autumn, alpine, desert, glacial, atlas, clear, plain, night, or a
+    /// Tint of the terrain instead of the scene's: auto, swiss, winter, autumn, alpine, desert, glacial, atlas, clear, plain, night, or a
     /// file of colours by height (GDAL colour-relief text, GMT .cpt)
-    #[arg(long, visible_alias = "look", value_name = "NAME|FILE")]
+    #[arg(long, value_name = "NAME|FILE")]
     pub(crate) palette: Option<String>,
     #[command(flatten)]
     pub(crate) air: AirArgs,

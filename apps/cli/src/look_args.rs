@@ -12,7 +12,7 @@ pub(crate) struct AirArgs {
     /// Sky: auto (by the height of the sun), day, dusk, night, white, a colour #rrggbb, or transparent (PNG and SVG)
     #[arg(long, value_name = "NAME|COLOUR")]
     pub(crate) sky: Option<String>,
-    /// Haze: on (the farther part of the view, the default), off, or the visibility in kilometres
+    /// Haze: on (the default: dims the farther part of the view), off, or the visibility in kilometres
     #[arg(long, value_name = "on|off|KM", allow_negative_numbers = true, value_parser = parse_haze)]
     pub(crate) haze: Option<SwitchOrVisibility>,
 }

@@ -12,14 +12,14 @@ use std::path::Path;
 /// Paper of a picture.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct PrintArgs {
-    /// Paper: A0 to A6, which lie where the picture is wider than high, A3-portrait, A3-landscape, or a size such as 420x297mm; pixels,
+    /// Paper: A0 to A6 (landscape where the picture is wider than high), A3-portrait, A3-landscape, or a size such as 420x297mm; pixels,
     /// widths of lines and heights of letters follow from it
     #[arg(long, value_name = "PAPER", value_parser = paper)]
     pub(crate) paper: Option<String>,
     /// Pixels per inch, 300 with --paper unless --size is given; lengths that the scene states in pixels are 1/96 inch each
     #[arg(long, value_name = "DPI", allow_negative_numbers = true, value_parser = parse_number)]
     pub(crate) dpi: Option<f64>,
-    /// White margin of the paper on every side, millimetres; files of pixels leave it out
+    /// White margin of the paper on every side, millimetres; PNG, TIFF, JPEG and WebP leave it out
     #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = parse_number)]
     pub(crate) margin_mm: Option<f64>,
     /// Leave the raster of the surfaces out of an SVG or PDF
@@ -44,6 +44,10 @@ impl PrintArgs {
         let scene = scene.cloned().unwrap_or_default();
         if Sheet::of(&scene, None, shape).is_err() {
             // Opening the scene tells the line of the mistake.
+            return Ok(None);
+        }
+        if size.is_some() && self.paper.is_none() && self.dpi.is_none() && self.margin_mm.is_none() {
+            // A size in pixels sets the paper of the scene aside.
             return Ok(None);
         }
         let paper = self.paper.clone().or(scene.paper);

@@ -9,7 +9,7 @@ use crate::report::{Context, is_stdout};
 use belvedere::picture::{self, Picture, PictureOptions};
 use belvedere::places::Place;
 use belvedere::print::Sheet;
-use belvedere::scene_file::PaletteDoc;
+use belvedere::scene_file::{LightDoc, PaletteDoc};
 use belvedere::verbs::hold_a_city;
 use belvedere::verbs::reveal::{self, IMAGE, RevealFiles, RevealRequest};
 use belvedere::verbs::reveal_target::{TargetRequest, reveal_target};
@@ -59,7 +59,14 @@ fn ready(args: &RevealArgs, out: &RevealFiles, context: &Context) -> anyhow::Res
     let inputs = inputs.chain(args.rivers.iter().chain(&args.drape).cloned()).chain(named);
     let inputs: Vec<PathBuf> = inputs.collect();
     match args.drafts {
-        Some(_) => png_named(&args.out)?,
+        Some(_) => {
+            png_named(&args.out)?;
+            let print = &args.print;
+            anyhow::ensure!(
+                print.paper.is_none() && print.dpi.is_none() && print.margin_mm.is_none() && !print.vectors_only,
+                "--drafts draws small pictures; leave out --paper, --dpi, --margin-mm and --vectors-only"
+            );
+        }
         None => args.print.check_name(&args.out)?,
     }
     out.before.as_deref().map_or(Ok(()), png_named)?;
@@ -79,7 +86,19 @@ fn ready(args: &RevealArgs, out: &RevealFiles, context: &Context) -> anyhow::Res
 
 /// Paper of the picture.
 fn sheet(args: &RevealArgs) -> anyhow::Result<Option<Sheet>> {
-    args.print.sheet(None, args.size, args.size.unwrap_or(IMAGE))
+    let shape = args.size.or_else(|| size_of_scene(Path::new(&args.dem))).unwrap_or(IMAGE);
+    let sheet = args.print.sheet(None, args.size, shape)?;
+    let size = sheet.map(|sheet| sheet.pixels()).unwrap_or(shape);
+    let transparent = args.look_args.air.sky.as_deref() == Some(LightDoc::TRANSPARENT);
+    picture::check_format(&args.out, size.map(|side| side as usize), transparent)?;
+    Ok(sheet)
+}
+
+/// Size of the picture of a scene file; `None` for other data.
+fn size_of_scene(data: &Path) -> Option<[u32; 2]> {
+    let is_scene = data.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+    let text = is_scene.then(|| std::fs::read_to_string(data).ok())??;
+    belvedere::scene_file::parse(data, &text).ok().map(|source| source.document.camera.image)
 }
 
 fn places(args: &RevealArgs) -> anyhow::Result<Option<[Place; 2]>> {

@@ -16,7 +16,7 @@ use anyhow::Context as _;
 use belvedere::answers::{self, Content, Warned, Written};
 use belvedere::pick;
 use belvedere::picture::{self, AuxBuffer, AuxFormat, PictureOptions};
-use belvedere::scene::Compositing;
+use belvedere::scene::{Compositing, Sky};
 use belvedere::scene_file::{AnimationDoc, PaletteDoc, StylisationDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{self, AnimateRequest, Film};
 use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest, WrittenGrid};
@@ -161,6 +161,8 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         }
         request.camera = Some(CameraPicture::Outside(Some(found)));
     }
+    let transparent = session.light().sky == Sky::Transparent;
+    picture::check_format(&args.out, session.view().pinhole().image.map(|side| side as usize), transparent)?;
     let picture = session.render(&request)?;
     context.timings.note_picture(&picture.sidecar);
     let written = match is_stdout(&args.out) {

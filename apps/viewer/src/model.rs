@@ -11,7 +11,7 @@ use belvedere::editor::{
 };
 use belvedere::scene::Frame;
 use belvedere::scene::Instant as Clock;
-use belvedere::scene_file::{CameraDoc, Document, LayerDoc, StageDoc};
+use belvedere::scene_file::{CameraDoc, Document, LayerDoc, StageDoc, SwitchOrVisibility};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -52,6 +52,8 @@ pub(crate) struct Look {
     pub(crate) compare: Compare,
     /// Where the bar of a split picture stands, share of the width.
     pub(crate) split: f32,
+    /// Visibility that haze had before it was switched off.
+    pub(crate) visibility: Option<SwitchOrVisibility>,
     /// The straight picture in a corner.
     pub(crate) inset: bool,
     /// The camera from above.
@@ -66,7 +68,17 @@ pub(crate) struct Look {
 impl Default for Look {
     fn default() -> Self {
         let (compare, tool) = (Compare::default(), Tool::default());
-        Self { bent: true, compare, split: 0.5, inset: false, overhead: false, statistics: false, tool, panel: true }
+        Self {
+            bent: true,
+            compare,
+            split: 0.5,
+            visibility: None,
+            inset: false,
+            overhead: false,
+            statistics: false,
+            tool,
+            panel: true,
+        }
     }
 }
 

@@ -7,7 +7,9 @@ use crate::resolve::solving::Memory;
 use crate::resolve::solving::Solving;
 use crate::resolve::{self, LayerRequest, hidden, representations, validate};
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{self, Document, EarthDoc, LayerDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc};
+use crate::scene_file::{
+    self, Document, EarthDoc, LayerDoc, LightDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc,
+};
 use crate::session::Loaded;
 use crate::{BelvedereError, Needs, OpenOptions, Session};
 use belvedere_io::crs::utm_epsg;
@@ -46,6 +48,7 @@ impl Session {
         let mut allowed = options.allow_roots.clone();
         document.camera.image = options.image.unwrap_or(document.camera.image);
         if options.sky.is_some() || options.haze.is_some() {
+            resolve::check_air(&LightDoc { sky: options.sky.clone(), haze: options.haze, ..LightDoc::default() })?;
             let light = document.light.get_or_insert_default();
             light.sky = options.sky.clone().or(light.sky.take());
             light.haze = options.haze.or(light.haze);

@@ -94,7 +94,15 @@ impl Sheet {
                 }
                 let dpi = size.map_or(sheet.dpi, |[px, _]| across(px, w));
                 checked_dpi(dpi).map_err(|reason| wrong("dpi", reason))?;
-                Self { dpi, ..sheet }
+                let sheet = Self { dpi, ..sheet };
+                if let Some([px, py]) = size
+                    && sheet.pixels()[1].abs_diff(py) > 1
+                {
+                    let fits = sheet.pixels()[1];
+                    let reason = format!("{px} x {py} pixels do not have the shape of the paper; give {px}x{fits}");
+                    return Err(wrong("paper", reason));
+                }
+                sheet
             }
         };
         let longest = sheet.picture_mm().into_iter().fold(0.0, f64::max) / MM_PER_INCH * sheet.dpi;

@@ -104,6 +104,18 @@ fn sky_and_haze_are_keys_and_options() {
     assert!(place.fails(&["render", "s.toml", "-o", "clear.jpg", "--sky", "transparent"]).contains("PNG"));
     let clear = picture(&place, &scene("[light]\nhaze = false", "", ""), &[]);
     assert!(clear != plain && clear == picture(&place, &scene("", "", ""), &["--haze", "off"]));
+    let line = place.fails(&["render", "s.toml", "-o", "x.png", "--sky", "pink"]);
+    assert!(line.contains("--sky") && !line.contains("s.toml:"), "{line}");
+    let massif = [
+        "reveal",
+        "builtin:massif?size=65",
+        "builtin:massif?size=65",
+        "--eye",
+        "7972,-7337,3780",
+        "--look=-952,1587,221",
+    ];
+    place.ok(&[&massif[..], &["--size", "96x64", "--sky", "transparent", "-o", "bent.png"]].concat());
+    assert_eq!(super::read(&place.path("bent.png"))[25], 6, "a bent picture with alpha, without a pair");
     for (light, named) in [("sky = 'pink'", "pink"), ("haze = -1.0", "-1"), ("haze = 'thick'", "kilometres")] {
         place.write("s.toml", &scene(&format!("[light]\n{light}"), "", ""));
         let line = place.fails(&["check", "s.toml"]);

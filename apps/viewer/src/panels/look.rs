@@ -142,7 +142,10 @@ fn light(ui: &mut Ui, model: &mut Model) {
     }
     let mut haze = light.haze != Some(SwitchOrVisibility::Switch(false));
     if ui.checkbox(&mut haze, tr("Haze")).changed() {
-        let haze = (!haze).then_some(SwitchOrVisibility::Switch(false));
+        let visibility = model.look.visibility;
+        let before = light.haze.filter(|haze| matches!(haze, SwitchOrVisibility::Kilometres(_)));
+        model.look.visibility = before.or(visibility);
+        let haze = if haze { visibility } else { Some(SwitchOrVisibility::Switch(false)) };
         model.edit(|document| document.light = Some(LightDoc { haze, ..light }));
     }
 }

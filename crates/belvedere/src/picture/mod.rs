@@ -18,4 +18,4 @@ pub use options::{AuxBuffer, AuxFormat, PictureOptions, RendererChoice, THRESHOL
 pub use sidecar::{MoleculeRecord, OverlayRecord, Picture, SeeThroughRecord, Sidecar, TerrainRecord};
 pub use target_place::{TargetPlace, VoxelPlace};
 pub use volume_record::VolumeRecord;
-pub use write::{delta_path, outputs, side_by_side};
+pub use write::{check_format, delta_path, outputs, side_by_side};

@@ -23,6 +23,31 @@ pub fn delta_path(out: &Path) -> PathBuf {
     out.with_extension("delta.tif")
 }
 
+/// Refuses a picture that its format cannot hold, before it is drawn.
+///
+/// * `size`: width and height, pixels; `transparent`: whether its sky is.
+///
+/// # Errors
+/// [`BelvedereError::Output`].
+pub fn check_format(out: &Path, size: [usize; 2], transparent: bool) -> Result<(), BelvedereError> {
+    let wrong = |reason: String| BelvedereError::Output { path: out.to_owned(), reason };
+    let ending = out.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    let is = |name: &str| ending.as_deref() == Some(name);
+    let format = PictureFormat::of(out).unwrap_or(PictureFormat::Png);
+    if transparent && (is("pdf") || format != PictureFormat::Png) {
+        let name = if is("pdf") { "PDF" } else { format.name() };
+        return Err(wrong(format!("a {name} of this program holds no transparent sky; write a PNG or an SVG")));
+    }
+    let ([width, height], most) = (size, format.most_side());
+    if width.max(height) > most && !is("svg") && !is("pdf") {
+        let name = format.name();
+        return Err(wrong(format!(
+            "a {name} has at most {most} pixels along a side, the picture has {width} x {height}; write a PNG or a TIFF"
+        )));
+    }
+    Ok(())
+}
+
 /// Files that [`Picture::write`] makes for `out`.
 ///
 /// * `solves`: whether the scene asks for terrain disocclusion by an intent, see [`Document::solves_terrain`](crate::scene_file::Document::solves_terrain).
@@ -101,32 +126,17 @@ impl Picture {
     /// # Errors
     /// [`BelvedereError::Io`]; [`BelvedereError::Output`] for more pixels than the format holds.
     pub fn write_picture(&self, out: &Path, overwrite: bool) -> Result<(), BelvedereError> {
+        check_format(out, [self.frame.width, self.frame.height], self.alpha.is_some())?;
         let is_pdf = out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pdf"));
-        if is_pdf && self.alpha.is_some() {
-            let reason = "a PDF of this program holds no transparent sky; write a PNG or an SVG".to_owned();
-            return Err(BelvedereError::Output { path: out.to_owned(), reason });
-        }
         if let Some(bytes) = if is_pdf { self.to_pdf()? } else { self.to_svg()?.map(String::into_bytes) } {
             return Ok(atomic::write_atomic(out, overwrite, |out| out.write_all(&bytes))?);
         }
         let format = PictureFormat::of(out).unwrap_or(PictureFormat::Png);
         if self.alpha.is_some() {
-            if format != PictureFormat::Png {
-                let reason =
-                    format!("a {} of this program holds no transparent sky; write a PNG or an SVG", format.name());
-                return Err(BelvedereError::Output { path: out.to_owned(), reason });
-            }
             return self.write_png(out, overwrite);
         }
         let (width, height, pixels) = self.pixels();
-        let most = format.most_side();
-        if width.max(height) > most {
-            let name = format.name();
-            let reason = format!(
-                "a {name} has at most {most} pixels along a side, the picture has {width} x {height}; write a PNG or a TIFF"
-            );
-            return Err(BelvedereError::Output { path: out.to_owned(), reason });
-        }
+        check_format(out, [width, height], false)?;
         let text = self.text()?;
         let text: Vec<(&str, &str)> = text.iter().map(|(k, v)| (*k, v.as_str())).collect();
         let file = PictureFile { width, height, pixels: pixels.as_flattened(), dpi: self.dpi(), text: &text };
@@ -182,7 +192,8 @@ impl Picture {
     }
 
     fn dpi(&self) -> Option<f64> {
-        self.sidecar.print.map(|sheet| sheet.dpi)
+        // A pair is wider than its paper.
+        self.sidecar.print.filter(|_| self.straight.is_none()).map(|sheet| sheet.dpi)
     }
 
     /// Writes the picture alone. Its bytes depend on scene, options and inputs only, not on threads or time.

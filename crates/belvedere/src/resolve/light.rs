@@ -1,6 +1,6 @@
 //! The light of a document: a direction, or the sun at a time.
 
-use super::color::color;
+use super::color::{Complaint, color};
 use super::ground::Ground;
 use crate::BelvedereError;
 use crate::scene_file::{LightDoc, SourceDocument, SwitchOrVisibility};
@@ -37,8 +37,18 @@ pub(crate) fn resolve(
             format!("light altitude_deg is {altitude_deg}, it must lie above 0 and up to 90"),
         ));
     }
-    let air = |(key, reason): (&'static str, String)| source.error(&["light", key], reason);
+    let air = |(key, reason): Complaint| source.error(&["light", key], reason);
     Ok(Light { sky: sky(doc).map_err(air)?, haze: haze(doc).map_err(air)?, ..light })
+}
+
+/// Refuses a sky or haze that does not exist.
+///
+/// # Errors
+/// [`BelvedereError::Appearance`].
+pub(crate) fn check_air(doc: &LightDoc) -> Result<(), BelvedereError> {
+    let unfit = |(option, reason): Complaint| BelvedereError::Appearance { option, reason };
+    sky(doc).map_err(unfit)?;
+    haze(doc).map(|_| ()).map_err(unfit)
 }
 
 /// Limits of the visibility, kilometres.
@@ -48,7 +58,7 @@ const VISIBILITY_KM: [f64; 2] = [1e-6, 1e6];
 ///
 /// # Errors
 /// The key, and a sentence with the names.
-pub(crate) fn sky(doc: &LightDoc) -> Result<Sky, (&'static str, String)> {
+fn sky(doc: &LightDoc) -> Result<Sky, Complaint> {
     let Some(text) = doc.sky.as_deref() else { return Ok(Sky::Auto) };
     match text {
         "auto" => return Ok(Sky::Auto),
@@ -76,7 +86,7 @@ pub(crate) fn sky(doc: &LightDoc) -> Result<Sky, (&'static str, String)> {
 ///
 /// # Errors
 /// The key, and a sentence with the limits.
-pub(crate) fn haze(doc: &LightDoc) -> Result<Haze, (&'static str, String)> {
+fn haze(doc: &LightDoc) -> Result<Haze, Complaint> {
     match doc.haze {
         None | Some(SwitchOrVisibility::Switch(true)) => Ok(Haze::Auto),
         Some(SwitchOrVisibility::Switch(false)) => Ok(Haze::None),

@@ -17,7 +17,7 @@ pub(crate) mod ground;
 pub(crate) mod hidden;
 mod layers;
 mod light;
-pub(crate) use light::{haze, sky};
+pub(crate) use light::check_air;
 mod loader;
 mod mesh;
 mod molecule;

@@ -317,6 +317,20 @@ pub struct LightDoc {
 impl LightDoc {
     /// Names of skies.
     pub const SKIES: [&'static str; 5] = ["auto", "day", "dusk", "night", "white"];
+    /// This light where it states something, `below` elsewhere: a direction takes the place of a time, and the other way round.
+    pub(crate) fn over(self, below: Self) -> Self {
+        let states_sun = self.azimuth_deg.is_some() || self.altitude_deg.is_some() || self.time.is_some();
+        let sun = if states_sun { &self } else { &below };
+        Self {
+            azimuth_deg: sun.azimuth_deg,
+            altitude_deg: sun.altitude_deg,
+            time: sun.time.clone(),
+            shadows: self.shadows || below.shadows,
+            sky: self.sky.clone().or(below.sky.clone()),
+            haze: self.haze.or(below.haze),
+        }
+    }
+
     /// Name of the sky that lets through what is laid behind the picture.
     pub const TRANSPARENT: &'static str = "transparent";
 }

@@ -42,17 +42,31 @@ impl Appearance {
             return Err(BelvedereError::Appearance { option: "light-time", reason: reason.into() });
         }
         if let Some(light) = &self.light {
-            let unfit = |(option, reason): (&'static str, String)| BelvedereError::Appearance { option, reason };
-            resolve::sky(light).map_err(unfit)?;
-            resolve::haze(light).map_err(unfit)?;
+            resolve::check_air(light)?;
         }
         let strengths = self.stylisation.unwrap_or_default().strengths();
         strengths.map(|_| ()).map_err(|(_, reason)| BelvedereError::Appearance { option: "stylise", reason })
     }
 
+    /// Refuses a transparent sky, over which the outlines of targets would be lost.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Appearance`].
+    pub(super) fn check_background(&self) -> Result<(), BelvedereError> {
+        let sky = self.light.as_ref().and_then(|light| light.sky.as_deref());
+        if sky != Some(LightDoc::TRANSPARENT) {
+            return Ok(());
+        }
+        let reason =
+            "pictures of targets have a background; give white, or render their scene with the sky transparent".into();
+        Err(BelvedereError::Appearance { option: "sky", reason })
+    }
+
     /// Puts light, marks and stylisation into a document.
     pub(super) fn describe(&self, document: &mut Document) {
-        document.light = self.light.clone().or(document.light.take());
+        if let Some(light) = &self.light {
+            document.light = Some(light.clone().over(document.light.take().unwrap_or_default()));
+        }
         document.stylisation = self.stylisation.or(document.stylisation);
         if self.no_mark {
             let overlay = document.overlay.take().unwrap_or_default();

@@ -22,7 +22,7 @@ use belvedere_core::Warning;
 use belvedere_core::{DVec3, Pinhole, Projection, View};
 use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::Instant;
-use belvedere_scene::{Progress, Scene};
+use belvedere_scene::{Progress, Scene, Sky};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -302,7 +302,7 @@ fn revealed(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAnsw
     session.loaded.warnings.extend(warnings);
     let report = judged_report(found.report, &shares, (&search, request.technique));
     let pair = PictureOptions {
-        compare: session.view().is_bent(),
+        compare: session.view().is_bent() && session.light().sky != Sky::Transparent,
         straight: false,
         progress: options.progress.clone(),
         ..request.picture.clone()

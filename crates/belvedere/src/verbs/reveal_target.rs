@@ -75,6 +75,7 @@ impl Opened {
         }
         let (mut session, mut meant) = target_scene::open(request, options)?;
         request.appearance.check(session.scene().crs)?;
+        request.appearance.check_background()?;
         let (see, said) = written_point(&session, &request.see)?;
         session.loaded.warnings.extend(said);
         if targets::point(&see).is_some() {
