@@ -8,14 +8,20 @@ use crate::report;
 use belvedere::BelvedereError;
 use belvedere::io::atomic;
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::process::{Child, Command, ExitStatus};
 use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 /// Exit code of an interrupted program: 128 and the number of the signal, as of shells. Of Ctrl-C 130, of SIGTERM 143.
 static CODE: AtomicU8 = AtomicU8::new(130);
 /// Time in which the work may end by itself.
 const GRACE: Duration = Duration::from_millis(500);
+
+/// Time between two looks at a program that runs.
+const WATCH: Duration = Duration::from_millis(100);
+/// The program that is ended with this one.
+static CHILD: Mutex<Option<Child>> = Mutex::new(None);
 
 /// Whether a thread ends the process.
 static ENDING: AtomicBool = AtomicBool::new(false);
@@ -72,6 +78,22 @@ fn interrupted(flag: &AtomicBool, verb: &'static str) {
     }
 }
 
+/// Runs a program until it ends; it is ended with this one.
+pub(crate) fn run(command: &mut Command) -> std::io::Result<ExitStatus> {
+    *child() = Some(command.spawn()?);
+    loop {
+        let ended = child().as_mut().map_or(Ok(None), Child::try_wait)?;
+        if let Some(status) = ended {
+            return Ok(status);
+        }
+        std::thread::sleep(WATCH);
+    }
+}
+
+fn child() -> MutexGuard<'static, Option<Child>> {
+    CHILD.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// Lets the calling thread alone end the process: another one that wants to waits for that end.
 pub(crate) fn claim_end() {
     while ENDING.swap(true, Ordering::SeqCst) {
@@ -86,6 +108,10 @@ pub(crate) fn note_stdout() {
 
 fn end(verb: &str) {
     claim_end();
+    if let Some(child) = child().as_mut() {
+        // It may have ended already.
+        let _ = child.kill();
+    }
     report::fail(&said(&atomic::abandon(), verb));
     std::process::exit(i32::from(code()));
 }

@@ -23,7 +23,7 @@ pub(crate) fn view(args: &ViewArgs, context: &Context) -> anyhow::Result<Goal> {
     if context.common.no_remember {
         command.arg("--no-remember");
     }
-    let status = command.arg("--").args(&args.files).status().map_err(|e| {
+    let status = interrupt::run(command.arg("--").args(&args.files)).map_err(|e| {
         anyhow::anyhow!(
             "the application, {PROGRAM}, cannot be started: {e}; it is found beside this program or on the PATH: \
              cargo install --path apps/viewer, or cargo build --release -p belvedere-viewer"
