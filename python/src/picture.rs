@@ -35,7 +35,14 @@ impl NativePicture {
 
     /// Opaque sRGB with alpha, row-major.
     fn rgba<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyByteArray>> {
-        rgba(py, &self.picture.frame)
+        let frame = &self.picture.frame;
+        match &self.picture.alpha {
+            Some(alpha) => {
+                let pixels = frame.color.iter().zip(alpha).map(|([r, g, b], a)| [*r, *g, *b, *a]);
+                filled(py, pixels, frame.color.len())
+            }
+            None => rgba(py, frame),
+        }
     }
 
     /// The straight picture of a pair.

@@ -9,6 +9,7 @@ use crate::geometry::pass::Pass;
 use crate::marks;
 use crate::raster::band::{BAND, sample_offsets};
 use crate::screen::{SUB, Screen};
+use crate::see_through::SeeThrough;
 use crate::shade::{LightCache, Shader};
 use crate::trace::beam::RowRays;
 use crate::trace::same_surface::same_surface;
@@ -63,7 +64,9 @@ impl Renderer for ExactRenderer {
     }
 
     fn render(&self, job: &RenderJob<'_>) -> Result<Frame, RenderError> {
-        checked(job, |job| branches::draw(job, |job| layers::draw(job, render, marks::place_alone)))
+        // First hits on every layer that is seen through.
+        let hits = (SeeThrough::of(job.scene).len() * size_of::<Option<RayHit>>()) as u64;
+        checked(job, hits, |job| branches::draw(job, |job| layers::draw(job, render, marks::place_alone)))
     }
 }
 

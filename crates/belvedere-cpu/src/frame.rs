@@ -8,15 +8,17 @@ use belvedere_composite::veil::Veil;
 use belvedere_scene::{Frame, LayerKind, RenderError, RenderJob};
 
 /// Checks the options and runs `render` on the given number of threads.
+/// * `more_per_pixel`: bytes of a pixel that the renderer takes beside those of [`check_memory`].
 pub(crate) fn checked(
     job: &RenderJob<'_>,
+    more_per_pixel: u64,
     render: impl Fn(&RenderJob<'_>) -> Result<Frame, RenderError> + Sync,
 ) -> Result<Frame, RenderError> {
     let options = job.options;
     if ![1, 4, 16].contains(&options.samples) {
         return Err(RenderError::Samples { samples: options.samples });
     }
-    check_memory(job)?;
+    check_memory(job, more_per_pixel)?;
     if options.threads == 0 {
         return render(job);
     }
@@ -31,11 +33,12 @@ pub(crate) fn checked(
 const NODE_BYTES: u64 = 4 * 12;
 
 /// Bytes that a picture takes: the frame, the bands in work, the projected vertices and the lit ground.
-fn check_memory(job: &RenderJob<'_>) -> Result<(), RenderError> {
+fn check_memory(job: &RenderJob<'_>, more_per_pixel: u64) -> Result<(), RenderError> {
     let [width, height] = job.view.pinhole().image;
     let samples = job.options.samples;
     let pixels = u64::from(width) * u64::from(height);
-    let per_pixel = 3
+    let per_pixel = more_per_pixel
+        + 3
         + 4
         + 4
         + 6

@@ -71,7 +71,7 @@ impl Renderer for CpuRenderer {
 
     fn render_into(&self, job: &RenderJob<'_>, frame: &mut Frame) -> Result<(), RenderError> {
         let old = Mutex::new(std::mem::take(frame));
-        *frame = checked(job, |job| {
+        *frame = checked(job, 0, |job| {
             branches::draw(job, |job| {
                 layers::draw(job, |job| self.draw(job, std::mem::take(&mut *lock(&old))), marks::place_alone)
             })

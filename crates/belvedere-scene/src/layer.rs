@@ -39,7 +39,7 @@ pub enum Shading {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum PaletteName {
-    /// Chosen by the place and the season, or by the range of heights where the place is not known.
+    /// Summer by the climate of the place, or by the range of heights where the place is not known.
     #[default]
     Auto,
     /// Meadows, forest, rock and snow by the climate of the place, in summer.

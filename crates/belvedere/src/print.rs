@@ -81,6 +81,14 @@ impl Sheet {
             }
             (None, Some(dpi)) => {
                 let paper_mm = size.unwrap_or(shape).map(|px| f64::from(px) / dpi * MM_PER_INCH + 2.0 * margin_mm);
+                let [least, most] = SIDE_MM;
+                if !paper_mm.iter().all(|side| (least..=most).contains(side)) {
+                    let [w, h] = paper_mm;
+                    let reason = format!(
+                        "{dpi} pixels per inch make a sheet of {w:.1} x {h:.1} mm, each side must be in {least}..={most} mm; give fewer or more"
+                    );
+                    return Err(wrong("dpi", reason));
+                }
                 Self { paper_mm, margin_mm, dpi }
             }
             (Some(paper), dpi) => {

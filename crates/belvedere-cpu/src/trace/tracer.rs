@@ -85,6 +85,12 @@ impl<'a> Tracer<'a> {
         Self::exposed((scene, Solids::Drawn), view, sections, Exposure::new(1, 1))
     }
 
+    /// The same without solids that are seen through: rays go on to what is behind them.
+    pub fn of_opaque(scene: &'a Scene, view: &'a View) -> Self {
+        let sections = Sections::of(scene, view, None, true);
+        Self::exposed((scene, Solids::Opaque), view, sections, Exposure::new(1, 1))
+    }
+
     /// * `solids`: those of the scene that rays meet; `exposure`: thresholds of the samples.
     pub(crate) fn exposed(
         (scene, solids): (&'a Scene, Solids),

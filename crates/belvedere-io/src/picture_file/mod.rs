@@ -11,7 +11,7 @@ use std::path::Path;
 /// Quality of JPEG pictures, 1..=100.
 const JPEG_QUALITY: u8 = 92;
 /// Most bytes in a segment of a JPEG file.
-const MOST_IN_SEGMENT: usize = 65_000;
+const MOST_IN_SEGMENT: usize = 60_000;
 
 /// Format of a picture file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -117,8 +117,9 @@ impl PictureFile<'_> {
             encoder.set_density(PixelDensity::dpi(dpi.round().clamp(1.0, 65_535.0) as u16));
         }
         // A comment is a segment of its own kind; readers show the description of EXIF instead.
-        let mut exif = tiff::description_only(&self.words());
-        exif.truncate(MOST_IN_SEGMENT);
+        let mut words = self.words();
+        words.truncate(words.floor_char_boundary(MOST_IN_SEGMENT));
+        let exif = tiff::description_only(&words);
         encoder.add_exif_metadata(&exif).map_err(failed)?;
         encoder.encode(self.pixels, self.width as u16, self.height as u16, jpeg_encoder::ColorType::Rgb).map_err(failed)
     }

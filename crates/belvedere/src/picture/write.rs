@@ -124,9 +124,14 @@ impl Picture {
     /// for one with vectors.
     ///
     /// # Errors
-    /// [`BelvedereError::Io`]; [`BelvedereError::Output`] for more pixels than the format holds.
+    /// [`BelvedereError::Io`]; [`BelvedereError::Output`] for more pixels than the format holds, and for SVG and PDF of a picture without vectors.
     pub fn write_picture(&self, out: &Path, overwrite: bool) -> Result<(), BelvedereError> {
         check_format(out, [self.frame.width, self.frame.height], self.alpha.is_some())?;
+        let ending = out.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        if self.vectors.is_none() && ["svg", "svgz", "pdf"].contains(&ending.as_str()) {
+            let reason = "this picture was drawn without vectors; name it .png, or draw it with vectors".to_owned();
+            return Err(BelvedereError::Output { path: out.to_owned(), reason });
+        }
         let is_pdf = out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("pdf"));
         if let Some(bytes) = if is_pdf { self.to_pdf()? } else { self.to_svg()?.map(String::into_bytes) } {
             return Ok(atomic::write_atomic(out, overwrite, |out| out.write_all(&bytes))?);
@@ -156,6 +161,7 @@ impl Picture {
     /// # Errors
     /// As [`Picture::to_svg`].
     pub fn to_pdf(&self) -> Result<Option<Vec<u8>>, BelvedereError> {
+        check_format(Path::new("picture.pdf"), [1, 1], self.alpha.is_some())?;
         self.as_vectors(pdf)
     }
 

@@ -7,11 +7,14 @@ use belvedere_cpu::Tracer;
 use belvedere_scene::{AreaLayer, Color, Frame, LayerKind, Scene};
 use rayon::prelude::*;
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Halvings that find a border between two pixel centres: to 1/64 pixel.
 const HALVINGS: u32 = 6;
 /// Smallest ring that is kept, square pixels.
 const LEAST_PX2: f64 = 0.5;
+/// Most pixels of areas that are held at once: an area over the whole of a large sheet is held alone.
+const PIXELS_AT_ONCE: u64 = 8 << 20;
 /// Bands of edges by their y, and cells of areas along a side.
 const BANDS: usize = 64;
 
@@ -44,23 +47,22 @@ pub(crate) fn areas((scene, view): (&Scene, &View), frame: &Frame, tolerance: f6
     for (index, layer) in scene.layers.iter().enumerate() {
         let LayerKind::Area(layer) = &layer.kind else { continue };
         let plans: Vec<Plan> = layer.features.par_iter().map(|f| Plan::new(&f.rings)).collect();
-        let inside = pixels_inside(&plans, frame, &shows_ground);
-        let tracer = tracer.get_or_insert_with(|| Tracer::new(scene, view));
+        let pixels = GroundPixels { frame, shows_ground: &shows_ground };
+        let tracer = tracer.get_or_insert_with(|| Tracer::of_opaque(scene, view));
         let seen = |number: usize, pixel: DVec2| {
             let hit = tracer.first_hit(pixel).filter(|hit| hit.layer == ground);
             hit.is_some_and(|hit| plans[number].contains(hit.point.truncate()))
         };
-        let traced: Vec<Option<AreaShape>> = inside
-            .into_par_iter()
-            .enumerate()
-            .map(|(number, pixels)| {
+        for numbers in groups(&pixels.counts(&plans)) {
+            let inside = pixels.inside(&plans, &numbers);
+            let traced = inside.into_par_iter().zip(&numbers).map(|(pixels, &number)| {
                 let rings = rings(&pixels, [frame.width, frame.height], |pixel| seen(number, pixel));
                 let rings = rings.iter().filter(|ring| area(ring).abs() >= LEAST_PX2);
                 let rings: Vec<Vec<DVec2>> = rings.map(|ring| simplified(ring, tolerance)).collect();
                 (!rings.is_empty()).then(|| shape(index, layer, number, rings))
-            })
-            .collect();
-        shapes.extend(traced.into_iter().flatten());
+            });
+            shapes.extend(traced.collect::<Vec<_>>().into_iter().flatten());
+        }
     }
     shapes
 }
@@ -110,40 +112,112 @@ impl Plan {
     }
 }
 
-/// Numbers of the pixels whose centres show ground inside each polygon, ascending.
-///
-/// * `shows_ground`: by the ids of the frame.
-fn pixels_inside(plans: &[Plan], frame: &Frame, shows_ground: &[bool]) -> Vec<Vec<usize>> {
-    let lo = plans.iter().fold(DVec2::INFINITY, |lo, plan| lo.min(plan.lo));
-    let hi = plans.iter().fold(DVec2::NEG_INFINITY, |hi, plan| hi.max(plan.hi));
-    let size = (hi - lo).max(DVec2::splat(1e-9));
-    let cell = |p: DVec2| ((p - lo) / size * BANDS as f64).clamp(DVec2::ZERO, DVec2::splat(BANDS as f64 - 1.0));
-    let mut cells: Vec<Vec<u32>> = vec![Vec::new(); BANDS * BANDS];
-    for (number, plan) in plans.iter().enumerate().filter(|(_, plan)| plan.lo.is_finite()) {
-        let [from, to] = [plan.lo, plan.hi].map(cell);
-        for y in from.y as usize..=to.y as usize {
-            for x in from.x as usize..=to.x as usize {
-                cells[y * BANDS + x].push(number as u32);
+/// Finds the polygons that ground points lie in.
+struct Finder<'p> {
+    plans: &'p [Plan],
+    lo: DVec2,
+    hi: DVec2,
+    /// Numbers of the polygons whose bounds meet each cell.
+    cells: Vec<Vec<u32>>,
+}
+
+impl<'p> Finder<'p> {
+    /// * `numbers`: of the polygons that are looked for.
+    fn new(plans: &'p [Plan], numbers: &[usize]) -> Self {
+        let bounds = numbers.iter().map(|n| &plans[*n]).filter(|plan| plan.lo.is_finite());
+        let lo = bounds.clone().fold(DVec2::INFINITY, |lo, plan| lo.min(plan.lo));
+        let hi = bounds.fold(DVec2::NEG_INFINITY, |hi, plan| hi.max(plan.hi));
+        let mut finder = Self { plans, lo, hi, cells: vec![Vec::new(); BANDS * BANDS] };
+        for number in numbers.iter().copied().filter(|n| plans[*n].lo.is_finite()) {
+            let [from, to] = [plans[number].lo, plans[number].hi].map(|p| finder.cell(p));
+            for y in from[1]..=to[1] {
+                for x in from[0]..=to[0] {
+                    finder.cells[y * BANDS + x].push(number as u32);
+                }
+            }
+        }
+        finder
+    }
+
+    fn cell(&self, p: DVec2) -> [usize; 2] {
+        let size = (self.hi - self.lo).max(DVec2::splat(1e-9));
+        let at = ((p - self.lo) / size * BANDS as f64).clamp(DVec2::ZERO, DVec2::splat(BANDS as f64 - 1.0));
+        [at.x as usize, at.y as usize]
+    }
+
+    fn around(&self, p: DVec2) -> impl Iterator<Item = u32> + '_ {
+        let is_near = p.cmpge(self.lo).all() && p.cmple(self.hi).all();
+        let [x, y] = if is_near { self.cell(p) } else { [0; 2] };
+        let near = if is_near { &self.cells[y * BANDS + x][..] } else { &[] };
+        near.iter().copied().filter(move |n| self.plans[*n as usize].contains(p))
+    }
+}
+
+/// The pixels of a frame whose centres show ground.
+struct GroundPixels<'f> {
+    frame: &'f Frame,
+    /// By the ids of the frame.
+    shows_ground: &'f [bool],
+}
+
+impl GroundPixels<'_> {
+    /// The polygons at every pixel of a row: number, and number of the pixel.
+    fn row(&self, row: usize, finder: &Finder<'_>, mut found: impl FnMut(u32, u32)) {
+        let (width, world) = (self.frame.width, self.frame.world.as_deref().unwrap_or_default());
+        for i in (row * width..(row + 1) * width).take_while(|i| *i < world.len()) {
+            if self.shows_ground.get(self.frame.id[i] as usize).copied().unwrap_or(false) {
+                finder.around(DVec2::new(world[i][0], world[i][1])).for_each(|number| found(number, i as u32));
             }
         }
     }
-    let world = frame.world.as_deref().unwrap_or_default();
-    let hits = |i: usize| -> Vec<(u32, usize)> {
-        let at = DVec2::new(world[i][0], world[i][1]);
-        let is_ground = shows_ground.get(frame.id[i] as usize).copied().unwrap_or(false);
-        if !(is_ground && at.cmpge(lo).all() && at.cmple(hi).all()) {
-            return Vec::new();
-        }
-        let c = cell(at);
-        let near = &cells[c.y as usize * BANDS + c.x as usize];
-        near.iter().filter(|n| plans[**n as usize].contains(at)).map(|n| (*n, i)).collect()
-    };
-    let found: Vec<Vec<(u32, usize)>> = (0..world.len()).into_par_iter().map(hits).collect();
-    let mut inside = vec![Vec::new(); plans.len()];
-    for (number, pixel) in found.into_iter().flatten() {
-        inside[number as usize].push(pixel);
+
+    /// Number of pixels inside each polygon.
+    fn counts(&self, plans: &[Plan]) -> Vec<u64> {
+        let all: Vec<usize> = (0..plans.len()).collect();
+        let (finder, counts) = (Finder::new(plans, &all), all.iter().map(|_| AtomicU64::new(0)).collect::<Vec<_>>());
+        (0..self.frame.height).into_par_iter().for_each(|row| {
+            self.row(row, &finder, |number, _| {
+                counts[number as usize].fetch_add(1, Ordering::Relaxed);
+            });
+        });
+        counts.into_iter().map(AtomicU64::into_inner).collect()
     }
-    inside
+
+    /// Pixels inside each of some polygons, ascending.
+    fn inside(&self, plans: &[Plan], numbers: &[usize]) -> Vec<Vec<u32>> {
+        let finder = Finder::new(plans, numbers);
+        let rows = (0..self.frame.height).into_par_iter().map(|row| {
+            let mut found = Vec::new();
+            self.row(row, &finder, |number, pixel| found.push((number, pixel)));
+            found
+        });
+        let rows: Vec<Vec<(u32, u32)>> = rows.collect();
+        let place: HashMap<usize, usize> = numbers.iter().enumerate().map(|(at, number)| (*number, at)).collect();
+        let mut inside = vec![Vec::new(); numbers.len()];
+        for (number, pixel) in rows.into_iter().flatten() {
+            if let Some(at) = place.get(&(number as usize)) {
+                inside[*at].push(pixel);
+            }
+        }
+        inside
+    }
+}
+
+/// Numbers of polygons, in order, in groups with at most [`PIXELS_AT_ONCE`] pixels, or of one.
+fn groups(counts: &[u64]) -> Vec<Vec<usize>> {
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    let mut sum = 0;
+    for (number, count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+        sum += count;
+        match groups.last_mut() {
+            Some(group) if sum <= PIXELS_AT_ONCE => group.push(number),
+            _ => {
+                groups.push(vec![number]);
+                sum = *count;
+            }
+        }
+    }
+    groups
 }
 
 /// A crossing of the border: between the centres (x, y) and (x + 1, y), or (x, y + 1) if it is `down`.
@@ -152,15 +226,19 @@ type Crossing = (i64, i64, bool);
 /// Borders of a set of pixels, closed.
 ///
 /// * `pixels`: numbers, ascending; `seen`: whether the area is seen at a position.
-fn rings(pixels: &[usize], [width, height]: [usize; 2], seen: impl Fn(DVec2) -> bool + Sync) -> Vec<Vec<DVec2>> {
+fn rings(pixels: &[u32], [width, height]: [usize; 2], seen: impl Fn(DVec2) -> bool + Sync) -> Vec<Vec<DVec2>> {
     let inside = |x: i64, y: i64| {
         let known = x >= 0 && y >= 0 && x < width as i64 && y < height as i64;
-        known && pixels.binary_search(&(y as usize * width + x as usize)).is_ok()
+        known && pixels.binary_search(&((y as usize * width + x as usize) as u32)).is_ok()
     };
     let mut next: HashMap<Crossing, Crossing> = HashMap::new();
     let mut cells: Vec<(i64, i64)> = Vec::new();
     for &pixel in pixels {
-        let (x, y) = ((pixel % width) as i64, (pixel / width) as i64);
+        let (x, y) = ((pixel as usize % width) as i64, (pixel as usize / width) as i64);
+        let beside = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
+        if beside.iter().all(|(dx, dy)| inside(x + dx, y + dy)) {
+            continue;
+        }
         cells.extend([(x - 1, y - 1), (x, y - 1), (x - 1, y), (x, y)]);
     }
     cells.sort_unstable();
@@ -239,7 +317,7 @@ mod tests {
         let (middle, width, height) = (DVec2::new(31.3, 22.8), 60, 50);
         let seen = |p: DVec2| (6.2..18.4).contains(&p.distance(middle));
         let centre = |i: usize| DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
-        let pixels: Vec<usize> = (0..width * height).filter(|i| seen(centre(*i))).collect();
+        let pixels: Vec<u32> = (0..width * height).filter(|i| seen(centre(*i))).map(|i| i as u32).collect();
         let found = rings(&pixels, [width, height], seen);
         assert_eq!(found.len(), 2);
         for ring in &found {
@@ -253,10 +331,18 @@ mod tests {
         let wanted = std::f64::consts::PI * (18.4f64.powi(2) - 6.2f64.powi(2));
         assert!((sum.abs() / wanted - 1.0).abs() < 0.01, "the hole turns the other way: {sum} of {wanted}");
         // What reaches the rim of the picture ends there.
-        let all: Vec<usize> = (0..12).collect();
+        let all: Vec<u32> = (0..12).collect();
         let whole = rings(&all, [4, 3], |_| true);
         assert_eq!(whole.len(), 1);
         assert!(whole[0].iter().all(|p| (0.0..=4.0).contains(&p.x) && (0.0..=3.0).contains(&p.y)));
+    }
+
+    #[test]
+    fn many_large_areas_are_taken_in_groups() {
+        let most = PIXELS_AT_ONCE;
+        assert_eq!(groups(&[1, 0, most, most / 2, most / 2, 3]), [vec![0], vec![2], vec![3, 4], vec![5]]);
+        assert_eq!(groups(&[5 * most, 1]), [vec![0], vec![1]]);
+        assert!(groups(&[]).is_empty() && groups(&[0, 0]).is_empty());
     }
 
     #[test]

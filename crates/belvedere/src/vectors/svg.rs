@@ -319,7 +319,9 @@ fn opacity(attribute: &str, c: Color) -> String {
 
 /// Text without control characters and with the signs of XML replaced.
 fn xml(text: &str) -> String {
-    let plain = escaped(text);
+    // XML has no such signs, and those that turn the direction of text are not drawn.
+    let lost = |c: char| matches!(c, '\u{fffe}' | '\u{ffff}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let plain: String = escaped(text).chars().filter(|c| !lost(*c)).collect();
     plain.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
@@ -339,6 +341,11 @@ fn base64(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn texts_are_those_that_xml_has() {
+        assert_eq!(xml("a<b>&\"c\" \u{ffff}\u{fffe}\u{202e}d"), "a&lt;b&gt;&amp;&quot;c&quot; d");
+    }
 
     #[test]
     fn base64_is_that_of_the_standard() {

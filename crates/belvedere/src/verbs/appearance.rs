@@ -4,7 +4,7 @@ use crate::scene_file::{
     Document, LayerDoc, LightDoc, OneOrTwo, OverlayDoc, PlaneDoc, ReliefStageDoc, StageDoc, StylisationDoc,
 };
 use crate::{BelvedereError, Session, resolve};
-use belvedere_scene::{Crs, Heightfield, LayerKind, Relief, Scene};
+use belvedere_scene::{Crs, Heightfield, LayerKind, Relief, Scene, Sky};
 use std::sync::Arc;
 
 /// Limits of [`Appearance::exaggeration`].
@@ -46,20 +46,6 @@ impl Appearance {
         }
         let strengths = self.stylisation.unwrap_or_default().strengths();
         strengths.map(|_| ()).map_err(|(_, reason)| BelvedereError::Appearance { option: "stylise", reason })
-    }
-
-    /// Refuses a transparent sky, over which the outlines of targets would be lost.
-    ///
-    /// # Errors
-    /// [`BelvedereError::Appearance`].
-    pub(super) fn check_background(&self) -> Result<(), BelvedereError> {
-        let sky = self.light.as_ref().and_then(|light| light.sky.as_deref());
-        if sky != Some(LightDoc::TRANSPARENT) {
-            return Ok(());
-        }
-        let reason =
-            "pictures of targets have a background; give white, or render their scene with the sky transparent".into();
-        Err(BelvedereError::Appearance { option: "sky", reason })
     }
 
     /// Puts light, marks and stylisation into a document.
@@ -111,6 +97,21 @@ fn shaded(mut session: Session, relief: Relief) -> Session {
         }
     }
     session
+}
+
+/// Refuses a transparent sky, over which the outlines of targets would be lost.
+///
+/// # Errors
+/// [`BelvedereError::Appearance`].
+pub(super) fn check_background(session: &Session, appearance: &Appearance) -> Result<(), BelvedereError> {
+    let asked = appearance.light.as_ref().and_then(|light| light.sky.as_deref());
+    let stated = session.light().sky == Sky::Transparent && asked.is_none();
+    if !stated && asked != Some(LightDoc::TRANSPARENT) {
+        return Ok(());
+    }
+    let reason =
+        "pictures of targets have a background; give white, and render their scene with a transparent sky".into();
+    Err(BelvedereError::Appearance { option: "sky", reason })
 }
 
 /// Whether a stage is an exaggeration, which stays where other bends are left out.

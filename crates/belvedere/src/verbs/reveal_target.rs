@@ -1,7 +1,7 @@
 //! `reveal --see`: draws a picture in which one target in models or in a city is visible, by rays that bend around its occluders, or by a
 //! spline where it lies on the ground.
 
-use super::appearance::Appearance;
+use super::appearance::{Appearance, check_background};
 pub use super::target_request::TargetRequest;
 use super::target_scene::{self, Meant, Targets};
 use super::{city_views, target_views};
@@ -75,7 +75,7 @@ impl Opened {
         }
         let (mut session, mut meant) = target_scene::open(request, options)?;
         request.appearance.check(session.scene().crs)?;
-        request.appearance.check_background()?;
+        check_background(&session, &request.appearance)?;
         let (see, said) = written_point(&session, &request.see)?;
         session.loaded.warnings.extend(said);
         if targets::point(&see).is_some() {

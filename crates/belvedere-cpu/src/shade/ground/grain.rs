@@ -1,4 +1,4 @@
-//! Texture of ground that is nearer than its cells are fine: noise that lies on the map, in steps of half a cell and finer down to the pixel,
+//! Texture of ground that is nearer than its cells are fine: noise that lies on the map, in steps of a cell and finer down to the pixel,
 //! so that meadows, forest, scree and rock in the foreground do not look like a smooth sheet. It shows no data: it only tells kinds of
 //! ground apart.
 

@@ -18,7 +18,7 @@ use crate::shade::{Shader, lod};
 use belvedere_composite::color::{Rgb, linear, smoothstep};
 use belvedere_composite::sections::Sections;
 use belvedere_core::{DVec2, DVec3};
-use belvedere_scene::{AreaSurface, Heightfield, Light, RenderJob, Shading, TerrainLayer};
+use belvedere_scene::{AreaSurface, Haze, Heightfield, Light, RenderJob, Shading, Sky, TerrainLayer};
 use std::sync::Arc;
 
 /// A terrain layer ready for shading.
@@ -75,7 +75,8 @@ impl<'a> TerrainShade<'a> {
     pub(crate) fn new((index, layer): (usize, &'a TerrainLayer), job: &RenderJob<'a>, cache: &LightCache) -> Self {
         let hf = &layer.heightfield;
         let surface = lit_surface(layer, job);
-        let light = *job.light;
+        // Caches are of the sun alone.
+        let light = Light { sky: Sky::Auto, haze: Haze::Auto, ..*job.light };
         let (relief, palette) = (layer.relief, layer.palette.clone());
         let key = LitKey { relief, light, palette, exaggeration: layer.exaggeration };
         let unlit = |means: &MipPyramid| Arc::new(LitGround::new(hf.cols(), hf.rows(), means.top()));

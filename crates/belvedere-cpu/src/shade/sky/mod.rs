@@ -139,7 +139,10 @@ impl Sky {
             Haze::Auto => sky,
             Haze::None => Self { thickest: 0.0, ..sky },
             // Koschmieder 1924: the contrast of a black thing falls to 2 % at the visibility.
-            Haze::Visibility(length) => Self { thickest: 1.0, per_depth: (3.912 / length) as f32, ..sky },
+            Haze::Visibility(length) if !pinhole.is_orthographic() => {
+                Self { thickest: 1.0, per_depth: (3.912 / length) as f32, ..sky }
+            }
+            Haze::Visibility(_) => Self { thickest: 0.0, ..sky },
         }
     }
 
@@ -154,22 +157,21 @@ impl Sky {
             },
             shown => shown,
         };
+        // A studio dims what is far by its own measure.
+        let thickest = if pinhole.is_orthographic() { 0.0 } else { THICKEST_IN_STUDIO };
+        let air = if is_landscape { sky } else { Self { haze: linear(STUDIO[1]), thickest, ..sky } };
         match shown {
-            Choice::Auto => {}
-            Choice::Day => return sky,
-            Choice::Dusk => return Self { steps: steps(|sine| of_air(&DUSK, sine)), haze: linear(DUSK_HAZE), ..sky },
-            Choice::Night => {
-                return Self { steps: steps(|sine| of_air(&NIGHT, sine)), haze: linear(NIGHT_HAZE), ..sky };
-            }
+            // The gradient of a studio is fixed to the picture, for every direction of the camera.
+            Choice::Auto => Self { steps: steps(studio), up: [0.0, 0.0, -1.0], ..air },
+            Choice::Day => air,
+            Choice::Dusk => Self { steps: steps(|sine| of_air(&DUSK, sine)), haze: linear(DUSK_HAZE), ..air },
+            Choice::Night => Self { steps: steps(|sine| of_air(&NIGHT, sine)), haze: linear(NIGHT_HAZE), ..air },
             Choice::Plain(_) | Choice::Transparent => {
                 let color = if let Choice::Plain(color) = shown { color } else { Color::rgb(255, 255, 255) };
                 let plain = linear([color.r, color.g, color.b]);
-                return Self { steps: steps(|_| plain), dither: 0.0, ..sky };
+                Self { steps: steps(|_| plain), dither: 0.0, ..air }
             }
         }
-        // The gradient of a studio is fixed to the picture, for every direction of the camera.
-        let thickest = if pinhole.is_orthographic() { 0.0 } else { THICKEST_IN_STUDIO };
-        Self { steps: steps(studio), haze: linear(STUDIO[1]), up: [0.0, 0.0, -1.0], thickest, ..sky }
     }
 
     /// Sine of the elevation of the straight ray of a pixel.
@@ -474,6 +476,11 @@ mod tests {
             let want = 1.0 - (-3.912 * depth / 4000.0).exp();
             assert!((air.haze_at(depth) - want).abs() < 4e-3, "{depth}: {} for {want}", air.haze_at(depth));
         }
+        // A parallel projection has no eye to be far from.
+        let parallel = Projection::Orthographic { height: 50.0 };
+        let p = Pinhole::look_at(DVec3::ZERO, DVec3::X, DVec3::Z, parallel, [64, 48], 1.0, None).unwrap();
+        let above = Sky::of(&scene, &Light { haze: Haze::Visibility(4000.0), ..Light::default() }, &p);
+        assert_eq!(above.haze_at(3000.0), 0.0);
         // A plain sky is one colour in every pixel, to the byte.
         for color in [Color::rgb(255, 255, 255), Color::rgb(0, 0, 0), Color::rgb(17, 130, 201)] {
             let sky = seen(Light { sky: Choice::Plain(color), ..Light::default() });

@@ -24,7 +24,7 @@ use crate::resolve::solving::{Memory, Solving};
 use crate::scene_file::{AnimationDoc, Document};
 use crate::{BelvedereError, Session};
 use belvedere_core::{Warning, WarningKind};
-use belvedere_scene::{Instant, Progress};
+use belvedere_scene::{Instant, Progress, Sky};
 use overlay::FilmOverlay;
 use std::path::{Path, PathBuf};
 
@@ -99,6 +99,9 @@ fn animated(session: &Session, request: &AnimateRequest, progress: &Progress) ->
     let (folder, film) = outputs(&request.out)?;
     if let (Some(film), None) = (&film, &request.part) {
         output::check(film, &session.input_paths(), request.overwrite || request.resume)?;
+    }
+    if session.light().sky == Sky::Transparent {
+        return Err(BelvedereError::Animation("films have a background; give the sky white, or a colour".into()));
     }
     let mut path = CameraPath::new(session, &request.animation)?;
     let mut manifest = Manifest::new(session, &path, &request.picture)?;
