@@ -56,7 +56,7 @@ impl Climate {
         let away = lat_deg.abs();
         let dryness = DRY.iter().map(|area| inside(area, lon_deg, lat_deg)).fold(0.0, f64::max);
         // South of 40 degrees the ocean makes for humid summers, and lower snow lines.
-        let oceanic = if lat_deg < 0.0 { 0.22 * ((away - 35.0) / 10.0).clamp(0.0, 1.0) } else { 0.0 };
+        let oceanic = if lat_deg < 0.0 { 0.35 * ((away - 35.0) / 10.0).clamp(0.0, 1.0) } else { 0.0 };
         let snow_line_m = at_latitude(away) * (1.0 - oceanic) + 350.0 * dryness;
         let tree_line_m = (snow_line_m - 1050.0).min(4000.0);
         Self { snow_line_m, tree_line_m, dryness, latitude_deg: lat_deg }

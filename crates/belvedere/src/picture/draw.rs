@@ -46,12 +46,14 @@ pub(crate) fn draw(
     let mut alpha = None;
     let drawn = match request.camera {
         Some(picture) => draw_camera(session, request, picture, progress)?,
-        None if transparent::is_asked(session) => {
-            let (drawn, cover) = transparent::draw(session, request, progress)?;
-            alpha = Some(cover);
-            drawn
-        }
-        None => draw_view(session, request, progress)?,
+        None => match transparent::backgrounds(session, request)? {
+            None => draw_view(session, request, progress)?,
+            Some([white, black]) => {
+                let mut drawn = draw_view(&white, request, progress)?;
+                alpha = Some(transparent::uncover(&mut drawn.frame, &draw_view(&black, request, progress)?.frame));
+                drawn
+            }
+        },
     };
     let Drawn { view, frame, straight, overlay, displacement, fallback, vectors } = drawn;
     let rigid = RigidLayers::of(session.scene(), &view);

@@ -1,43 +1,60 @@
 //! Pictures without a background: drawn before white and before black, whose difference is what shows through.
 
-use super::draw::{Drawn, draw_view};
 use super::options::PictureOptions;
 use crate::scene_file::LightDoc;
 use crate::{BelvedereError, Session};
-use belvedere_scene::{Color, Light, Progress, Sky};
+use belvedere_scene::{Color, Frame, Light, Sky};
 
-/// Whether the sky of a session shows what is laid behind the picture.
-pub(super) fn is_asked(session: &Session) -> bool {
-    session.light().sky == Sky::Transparent
+/// The session before white and before black, where its sky is transparent.
+///
+/// # Errors
+/// [`BelvedereError::Appearance`] for a pair of pictures.
+pub(super) fn backgrounds(session: &Session, request: &PictureOptions) -> Result<Option<[Session; 2]>, BelvedereError> {
+    if session.light().sky != Sky::Transparent {
+        return Ok(None);
+    }
+    if request.compare {
+        let name = LightDoc::TRANSPARENT;
+        let reason = format!("a pair of pictures has a background; leave out --compare or the sky \"{name}\"");
+        return Err(BelvedereError::Appearance { option: "sky", reason });
+    }
+    Ok(Some([255, 0].map(|shade| {
+        let light = Light { sky: Sky::Plain(Color::rgb(shade, shade, shade)), ..*session.light() };
+        session.clone().with_light(light)
+    })))
 }
 
-/// The picture before white, its colours those of what covers it, and the alpha of every pixel.
-pub(super) fn draw(
-    session: &Session,
-    request: &PictureOptions,
-    progress: &Progress,
-) -> Result<(Drawn, Vec<u8>), BelvedereError> {
-    if request.compare {
-        let (option, reason) = (
-            "sky",
-            format!(
-                "a pair of pictures has a background; leave out --compare or the sky \"{}\"",
-                LightDoc::TRANSPARENT
-            ),
-        );
-        return Err(BelvedereError::Appearance { option, reason });
-    }
-    let before = |shade: u8| {
-        let light = Light { sky: Sky::Plain(Color::rgb(shade, shade, shade)), ..*session.light() };
-        draw_view(&session.clone().with_light(light), request, progress)
-    };
-    let (mut white, black) = (before(255)?, before(0)?);
-    let mut alpha = Vec::with_capacity(white.frame.color.len());
-    for (color, dark) in white.frame.color.iter_mut().zip(&black.frame.color) {
+/// Makes a picture before white that of what covers it, and gives the alpha of every pixel.
+pub(super) fn uncover(white: &mut Frame, black: &Frame) -> Vec<u8> {
+    let mut alpha = Vec::with_capacity(white.color.len());
+    for (color, dark) in white.color.iter_mut().zip(&black.color) {
         let through = [0, 1, 2].map(|k| u32::from(color[k].saturating_sub(dark[k])));
         let cover = 255 - through.iter().sum::<u32>().div_euclid(3).min(255);
         *color = dark.map(|v| (u32::from(v) * 255 + cover / 2).checked_div(cover).unwrap_or(0).min(255) as u8);
         alpha.push(cover as u8);
     }
-    Ok((white, alpha))
+    alpha
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_over_any_background_are_those_that_were_drawn() {
+        // Wholly covered, half, and not at all.
+        let over = |color: [u8; 3], alpha: f64, back: f64| {
+            color.map(|v| (f64::from(v) * alpha + back * (1.0 - alpha)).round() as u8)
+        };
+        let kinds = [([10, 200, 90], 1.0), ([10, 200, 90], 0.5), ([0, 0, 0], 0.0)];
+        let before = |back: f64| Frame { color: kinds.map(|(c, a)| over(c, a, back)).to_vec(), ..Frame::default() };
+        let mut white = before(255.0);
+        let alpha = uncover(&mut white, &before(0.0));
+        assert_eq!([alpha[0], alpha[2]], [255, 0]);
+        for (i, (color, share)) in kinds.into_iter().enumerate() {
+            let wanted = over(color, share, 60.0);
+            let found = over(white.color[i], f64::from(alpha[i]) / 255.0, 60.0);
+            assert!((0..3).all(|k| found[k].abs_diff(wanted[k]) <= 1), "{found:?} for {wanted:?}");
+        }
+    }
 }
