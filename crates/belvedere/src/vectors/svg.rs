@@ -321,8 +321,8 @@ fn opacity(attribute: &str, c: Color) -> String {
 fn xml(text: &str) -> String {
     // XML has no such signs, and those that turn the direction of text are not drawn.
     let lost = |c: char| matches!(c, '\u{fffe}' | '\u{ffff}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    let plain: String = escaped(text).chars().filter(|c| !lost(*c)).collect();
-    plain.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+    let known: String = text.chars().filter(|c| !lost(*c)).collect();
+    escaped(&known).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 fn base64(bytes: &[u8]) -> String {

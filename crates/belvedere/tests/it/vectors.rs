@@ -287,7 +287,7 @@ fn layers_names_and_page_are_found_by_other_readers() {
     let source = parse(&folder.path().join("s.toml"), &text).expect("scene");
     let session = Session::from_document(source, &OpenOptions::default()).expect("session");
     let doc = PrintDoc { paper: Some("A6".into()), dpi: None, margin_mm: Some(5.0) };
-    let sheet = Sheet::of(&doc, Some([640, 429]), [640, 429]).expect("fits").expect("a sheet");
+    let sheet = Sheet::of(&doc, Some([640, 441]), [640, 441]).expect("fits").expect("a sheet");
     let session = session.resized(sheet.pixels(), &belvedere::scene::Progress::silent()).expect("resized");
     let options = PictureOptions { vectors: VectorContent::OverRaster, ..PictureOptions::default() }.on(sheet);
     let picture = session.render(&options).expect("a picture");
