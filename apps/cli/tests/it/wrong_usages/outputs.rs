@@ -6,8 +6,8 @@ use super::usage::{Usage, usage};
 const LINES: &[(&str, &str, &str)] = &[
     ("render scene.toml -o folder", "folder", "render scene.toml -o x.png"),
     ("render scene.toml -o nowhere/x.png", "nowhere", "render scene.toml -o folder/x.png"),
-    ("render scene.toml -o x.jpg", "x.jpg", "render scene.toml -o x.png"),
-    ("render scene.toml -o x.svg", "x.svg", "render scene.toml -o x.png"),
+    ("render scene.toml -o x.gif", "x.gif", "render scene.toml -o x.png"),
+    ("render scene.toml -o x.npy", "x.npy", "render scene.toml -o x.png"),
     ("render scene.toml -o scene.toml", "scene.toml", "render scene.toml -o x.png"),
     ("render scene.toml -o picture.png", "picture.png", "render scene.toml -o picture.png --overwrite"),
     ("render scene.toml -o ''", "--out", "render scene.toml -o x.png"),
