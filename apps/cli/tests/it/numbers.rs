@@ -174,7 +174,10 @@ fn mistakes_in_arguments_are_one_sentence() {
     let line = place.fails(&["render", "s.toml", "-o", "x.png", "--threads", "100000"]);
     assert!(line.contains("give a whole number in 0..=1024"), "{line}");
     let line = place.fails(&["render", "s.toml", "-o", "x.gif"]);
-    assert!(line.ends_with("pictures are written as PNG, TIFF, JPEG, WebP, SVG or PDF, not .gif; name the output .png"), "{line}");
+    assert!(
+        line.ends_with("pictures are written as PNG, TIFF, JPEG, WebP, SVG or PDF, not .gif; name the output .png"),
+        "{line}"
+    );
     place.write("q.json", "[]");
     let line = place.fails(&["rays", "s.toml", "--pixels", "q.json", "--samples", "2", "--far", "-5"]);
     assert!(line.contains("rays end at depth -5"), "{line}");
