@@ -13,6 +13,7 @@ mod flying;
 mod handles;
 mod keys;
 mod language;
+mod look;
 mod measure;
 mod menu;
 #[cfg(any(target_family = "wasm", test))]

@@ -4,6 +4,7 @@ use crate::{app, find, opened, press, scene, settle};
 use belvedere_viewer::{Opening, Viewer};
 use eframe::egui::{Key, Modifiers, ViewportId};
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
 use std::time::{Duration, Instant};
 
 /// Frames within which a window comes to rest, and those in which it then stays there.
@@ -54,8 +55,10 @@ fn a_window_with_a_scene_rests_whatever_panel_is_open() {
     harness.key_press(Key::B);
     harness.step();
     harness.key_press_modifiers(Modifiers::COMMAND, Key::B);
+    crate::wait_for(&mut harness, "the picture of the bookmark", |harness| {
+        harness.query_by_label("Picture of View 1").is_some()
+    });
     rests(&mut harness, "the list of bookmarks");
-    find(&harness, "Picture of View 1");
     harness.key_press_modifiers(Modifiers::COMMAND, Key::B);
     press(&mut harness, "Flicker");
     harness.step();
