@@ -108,7 +108,11 @@ def _performed(task: Task, folder: Path, threads: int) -> Done:
     except belvedere.Error:
         mark.unlink(missing_ok=True)
         raise
-    begun = mark.stat().st_size
+    try:
+        begun = mark.stat().st_size
+    except FileNotFoundError:
+        # The same task of a batch that was given up may have ended meanwhile.
+        begun = 1
     files = {path: sha256_of(path) for path in drawn[1]}
     size = sum(os.stat(path).st_size for path in files)
     done = Done(task.key, drawn[0], time.monotonic() - started, files, size, drawn[2], begun)
