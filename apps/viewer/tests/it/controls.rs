@@ -48,7 +48,7 @@ fn the_ground_makes_way_at_a_press() {
     press(&mut harness, "Terrain");
     press(&mut harness, "The ground makes way");
     settle(&mut harness);
-    let began = std::time::Instant::now();
+    let began = Instant::now();
     loop {
         let said =
             harness.query_by_label_contains("visible straight").and_then(|node| node.value()).unwrap_or_default();
@@ -63,7 +63,7 @@ fn the_ground_makes_way_at_a_press() {
         }
         assert!(began.elapsed() < crate::PATIENCE, "the ground did not make way: {said:?}");
         harness.step();
-        std::thread::sleep(std::time::Duration::from_millis(10));
+        std::thread::sleep(Duration::from_millis(10));
     }
 }
 
@@ -92,7 +92,7 @@ line = { point = [16700.0, 12000.0, 2280.0], dir = [0.0, 0.0, 1.0] }
     std::fs::write(&path, text + stage).expect("scene");
     let mut harness = app(&opened(&[path]));
     settle(&mut harness);
-    harness.key_press(eframe::egui::Key::O);
+    harness.key_press(Key::O);
     settle(&mut harness);
     let line = |harness: &egui_kittest::Harness<'_, belvedere_viewer::Viewer>| {
         let Some(StageDoc::CurvedRays(stage)) = harness.state().document().stage.first().cloned() else {
