@@ -32,7 +32,7 @@ def test_the_stored_outputs_are_of_these_cells(path: Path) -> None:
     assert "error" not in kinds and "stream" in kinds
     pictures = [output for cell in cells for output in cell["outputs"] if "image/png" in output.get("data", {})]
     assert len(pictures) >= 2
-    assert path.stat().st_size < 700_000
+    assert path.stat().st_size < 512 << 10
     text = path.read_text(encoding="utf-8")
     assert "127.0.0.1" not in text and "data:image/png" in text
     assert "/tmp/" not in text and "/home/" not in text
