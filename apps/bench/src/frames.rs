@@ -103,7 +103,7 @@ pub(crate) fn grow_triangles(request: &BenchRequest, view: &View, lod_px: f64, p
     let case = |scene| Case { name: "curved rays", scene, view, samples: 1, lod_px };
     let costs = measure(&scenes.iter().map(case).collect::<Vec<_>>(), request.rounds.min(5), progress)?;
     let of = if lod_px > 0.0 { "triangles of the ground, level of detail" } else { "triangles of the ground" };
-    Ok(Growth::new(of, sizes.iter().map(|n| (2 * (n - 1) * (n - 1)) as f64).collect(), &costs))
+    Ok(Growth::new(of, sizes.iter().map(|n| (2 * (n - 1) * (n - 1)) as f64).collect(), ms(&costs)))
 }
 
 pub(crate) fn grow_pixels(request: &BenchRequest, scene: &Scene, progress: &Progress) -> Result<Growth> {
@@ -113,7 +113,7 @@ pub(crate) fn grow_pixels(request: &BenchRequest, scene: &Scene, progress: &Prog
     let curved = views.iter().map(|[_, (name, view), _]| Case { name, scene, view, samples: 1, lod_px: 0.5 });
     let cases: Vec<Case<'_>> = curved.collect();
     let costs = measure(&cases, request.rounds.min(5), progress)?;
-    Ok(Growth::new("pixels", sizes.map(|[w, h]| f64::from(w) * f64::from(h)).to_vec(), &costs))
+    Ok(Growth::new("pixels", sizes.map(|[w, h]| f64::from(w) * f64::from(h)).to_vec(), ms(&costs)))
 }
 
 /// Numbers of turns of the measured chains.
@@ -124,12 +124,16 @@ pub(crate) fn grow_turns(request: &BenchRequest, scene: &Scene, lod_px: f64, pro
     let case = |view| Case { name: "curved rays", scene, view, samples: 1, lod_px };
     let costs = measure(&views.iter().map(case).collect::<Vec<_>>(), request.rounds.min(5), progress)?;
     let of = if lod_px > 0.0 { "turns, level of detail" } else { "turns" };
-    Ok(Growth::new(of, TURNS.map(|n| n as f64).to_vec(), &costs))
+    Ok(Growth::new(of, TURNS.map(|n| n as f64).to_vec(), ms(&costs)))
+}
+
+/// Processor times of frames, milliseconds.
+fn ms(costs: &[FrameCost]) -> Vec<f64> {
+    costs.iter().map(|cost| cost.cpu_ms).collect()
 }
 
 impl Growth {
-    fn new(of: &'static str, sizes: Vec<f64>, costs: &[FrameCost]) -> Self {
-        let cpu_ms: Vec<f64> = costs.iter().map(|c| c.cpu_ms).collect();
+    pub(crate) fn new(of: &'static str, sizes: Vec<f64>, cpu_ms: Vec<f64>) -> Self {
         let n = sizes.len() as f64;
         let (x, y): (Vec<f64>, Vec<f64>) = sizes.iter().zip(&cpu_ms).map(|(s, t)| (s.ln(), t.ln())).unzip();
         let (mx, my) = (x.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
@@ -169,17 +173,8 @@ mod tests {
 
     #[test]
     fn the_exponent_of_a_power_law_is_found() {
-        let cost = |n: f64| FrameCost {
-            view: "",
-            samples: 1,
-            lod_px: 0.0,
-            triangles: 0,
-            cpu_ms: 3.0 * n.powf(0.7),
-            wall_ms: 0.0,
-            ratio: 1.0,
-        };
         let sizes = vec![10.0, 40.0, 160.0];
-        let growth = Growth::new("n", sizes.clone(), &sizes.iter().map(|&n| cost(n)).collect::<Vec<_>>());
+        let growth = Growth::new("n", sizes.clone(), sizes.iter().map(|n: &f64| 3.0 * n.powf(0.7)).collect());
         assert!((growth.exponent - 0.7).abs() < 1e-12);
     }
 }

@@ -3,17 +3,22 @@
 //! Cases are drawn in turn, forth and back, so that a busy machine disturbs all of them alike; ratios are medians of ratios of
 //! frames of one round. Processor time of all threads counts where the system tells it (Linux), wall time elsewhere.
 
+mod against;
 pub mod clock;
+pub mod collection;
 pub mod dragging;
 mod flight;
 mod frames;
+mod over_collection;
 pub mod scene;
 pub mod sizes;
 mod smooth;
 pub mod volume;
+mod vtk;
 
 pub use flight::FlightCost;
 pub use frames::{FrameCost, Growth, ProjectionCost};
+pub use over_collection::{CollectionReport, CollectionRequest, SceneCost, bench_collection};
 pub use smooth::{SmoothCost, SparseCost};
 
 use anyhow::{Result, ensure};

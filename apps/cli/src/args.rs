@@ -1,5 +1,6 @@
 //! Arguments.
 
+use crate::bench_args::BenchArgs;
 use crate::city::GeneraliseArgs;
 use crate::common_args::Common;
 use crate::draw_args::DrawArgs;
@@ -176,23 +177,6 @@ fn parse_figures(text: &str) -> Result<FigureKinds, String> {
         })
     };
     Ok(FigureKinds(text.split(',').map(kind).collect::<Result<_, _>>()?))
-}
-
-/// A measurement.
-#[derive(Debug, Args)]
-pub(crate) struct BenchArgs {
-    /// Times that every case is drawn
-    #[arg(long, default_value_t = 7, value_name = "N", allow_negative_numbers = true)]
-    pub(crate) rounds: usize,
-    /// Nodes along a side of the ground
-    #[arg(long, default_value_t = 1025, value_name = "N", allow_negative_numbers = true)]
-    pub(crate) nodes: usize,
-    /// Size of the picture
-    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
-    pub(crate) size: [u32; 2],
-    /// Output of the report as JSON
-    #[arg(short, long, value_name = "OUT.json")]
-    pub(crate) out: Option<PathBuf>,
 }
 
 /// A scene.

@@ -3,6 +3,8 @@
 #![allow(rustdoc::broken_intra_doc_links)]
 
 mod args;
+mod bench;
+mod bench_args;
 mod city;
 mod common_args;
 mod drafts;

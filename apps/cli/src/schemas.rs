@@ -3,7 +3,7 @@
 use belvedere::answers::{Answer, Warned};
 use belvedere::output;
 use belvedere::verbs::schemas;
-use belvedere_bench::BenchReport;
+use belvedere_bench::{BenchReport, CollectionReport};
 use clap::builder::PossibleValuesParser;
 
 /// The schema of scene files.
@@ -21,7 +21,10 @@ pub(crate) fn names() -> PossibleValuesParser {
 /// The schema of scene files, or of the answers of a verb.
 pub(crate) fn text(of: &str) -> anyhow::Result<String> {
     if of == BENCH {
-        return Ok(schemas::schema_of(BENCH, &[schemas::shape::<Answer<Warned<BenchReport>>>()])?);
+        return Ok(schemas::schema_of(
+            BENCH,
+            &[schemas::shape::<Answer<Warned<BenchReport>>>(), schemas::shape::<Answer<Warned<CollectionReport>>>()],
+        )?);
     }
     if of == KEYS {
         return crate::scene_keys::page(&output::schema_json()?);

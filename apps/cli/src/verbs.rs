@@ -1,8 +1,8 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, DisoccludeArgs, FigureKind, FiguresArgs, MeasureArgs,
-    PickArgs, ProjectArgs, RaysArgs, RenderArgs, SceneArgs, SchemaArgs, ShowArgs, Verb,
+    AnimateArgs, AuxFormatKind, AuxKind, DemoArgs, DisoccludeArgs, FigureKind, FiguresArgs, MeasureArgs, PickArgs,
+    ProjectArgs, RaysArgs, RenderArgs, SceneArgs, SchemaArgs, ShowArgs, Verb,
 };
 use crate::draw_args::{CompositingKind, DrawArgs};
 use crate::goal::Goal;
@@ -23,7 +23,6 @@ use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest, Wri
 use belvedere::verbs::schemas::{Animated, FailedFile, FileAnswer, Informed, Rendered};
 use belvedere::verbs::{check, info, measure, points};
 use belvedere::{CameraPicture, DataFiles, Needs, OpenOptions, Session, output};
-use belvedere_bench::BenchRequest;
 use std::path::{Path, PathBuf};
 
 /// Runs a verb.
@@ -46,7 +45,7 @@ pub(crate) fn run(verb: Verb, context: &Context) -> anyhow::Result<Goal> {
         Verb::Check(args) => check_scene(&args, context),
         Verb::Show(args) => show(&args, context),
         Verb::Schema(args) => schema(&args, context),
-        Verb::Bench(args) => measure_machine(&args, context),
+        Verb::Bench(args) => crate::bench::bench(&args, context),
         Verb::Figures(args) => draw_figures(&args, context),
         Verb::View(args) => crate::view::view(&args, context),
         Verb::Pack(args) => crate::pack::pack_scene(args, context),
@@ -460,22 +459,5 @@ fn show(args: &ShowArgs, context: &Context) -> anyhow::Result<Goal> {
 fn schema(args: &SchemaArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[], context)?;
     context.deliver("schema", args.out.as_deref(), &crate::schemas::text(&args.of)?, &[])?;
-    Ok(Goal::Reached)
-}
-
-fn measure_machine(args: &BenchArgs, context: &Context) -> anyhow::Result<Goal> {
-    ready(args.out.as_ref(), &[], context)?;
-    let threads = context.common.threads;
-    let request = BenchRequest { rounds: args.rounds, nodes: args.nodes, image: args.size, threads };
-    let report = belvedere_bench::bench(&request, &context.progress)?;
-    context.finish();
-    let report = Warned { content: report, warnings: Vec::new() };
-    let to_stdout = args.out.as_deref().is_some_and(is_stdout);
-    if args.out.is_some() || context.common.json {
-        context.deliver_answer("bench", args.out.as_deref(), &report, &[])?;
-    }
-    if !to_stdout && !context.common.json && !context.common.quiet {
-        print(&report.content.to_string())?;
-    }
     Ok(Goal::Reached)
 }

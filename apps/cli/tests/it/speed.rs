@@ -36,3 +36,24 @@ fn bench_reports_as_a_table_and_as_json() {
     assert_eq!(report["smooth"].as_array().map(Vec::len), Some(2));
     assert!(place.fails(&["bench", "--nodes", "1"]).contains("33..=8193"));
 }
+
+#[test]
+fn the_collection_is_measured_and_compared_with_an_earlier_report() {
+    let Some(molecules) = belvedere_testkit::data("molecules") else { return };
+    let place = Place::new();
+    let data = molecules.parent().expect("a folder").display().to_string();
+    let args = ["bench", "--collection", &data, "--only", "559 atoms", "--rounds", "1", "--size", "64x36"];
+    let table = place.ok(&[&args[..], &["-o", "now.json"]].concat());
+    assert!(table.contains("| molecule, 559 atoms |") && !table.contains("slower"), "{table}");
+    let mut report: serde_json::Value = serde_json::from_slice(&super::read(&place.path("now.json"))).expect("JSON");
+    let cost = &mut report["scenes"][0];
+    assert!(["straight_ms", "bent_ms", "moving_ms"].iter().all(|key| cost[key].as_f64().is_some_and(|ms| ms > 0.0)));
+    cost["bent_to_straight"] = 1e-3.into();
+    std::fs::write(place.path("then.json"), report.to_string()).expect("file");
+    let compared = [&args[..], &["--against", "then.json", "--strict"]].concat();
+    let out = place.run(&compared);
+    assert_eq!(out.status.code(), Some(1), "{}", String::from_utf8_lossy(&out.stderr));
+    let table = String::from_utf8(out.stdout).expect("UTF-8");
+    assert!(table.contains("slower: molecule, 559 atoms: bent to straight"), "{table}");
+    assert!(place.fails(&["bench", "--collection", &data, "--only", "moon"]).contains("andorra, GR 11, bent"));
+}

@@ -2,8 +2,9 @@
 
 use crate::geometry::block::{Block, Counts, Job, SoupTriangle, SoupVertex};
 use crate::geometry::pass::Pass;
+use crate::geometry::project::Batch;
 use crate::geometry::refine::{Refiner, is_short};
-use crate::screen::{ScreenVertex, Snap};
+use crate::screen::{SUB, ScreenVertex, Snap};
 use belvedere_composite::sections::{Sections, Shown};
 use belvedere_core::{Aabb, DVec3, EdgePoint};
 use belvedere_scene::Mesh;
@@ -98,7 +99,7 @@ impl Job<'_> {
         // Positions of the corners along the deformation curve.
         let along: Vec<f64> = thin.iter().flat_map(|s| places.iter().map(|p| s.parameter(p[0]))).collect();
         let judge = !pass.is_straight_in(&carried, self.tolerance_px);
-        let vertices: Vec<Vertex> = places.iter().map(|p| self.mesh_vertex(pass, p[1], judge)).collect();
+        let vertices = self.mesh_vertices(pass, &places, judge);
         let missed = vertices.iter().filter(|v| v.missed).count() as u64;
         let mut refiner = Refiner::new(pass, self.screen, self.tolerance_px, self.spare.soup());
         for (t, corners) in triangles.iter().zip(&corners) {
@@ -112,7 +113,11 @@ impl Job<'_> {
                     let vertex = |screen, corner: usize| SoupVertex { screen, weights: WEIGHTS[corner] };
                     refiner.out.push(SoupTriangle { v: [vertex(a, 0), vertex(b, 1), vertex(c, 2)], parent });
                 }
-                None => refiner.triangle(corners.map(|v| refiner.corner(v.p)), WEIGHTS, [judge; 3], parent),
+                None => {
+                    // Images of corners are shared with triangles that are drawn whole.
+                    let corners = corners.map(|v| refiner.node(v.p, v.image.map(|(image, _)| image)));
+                    refiner.triangle(corners, WEIGHTS, [judge; 3], parent);
+                }
             }
         }
         let counts = Counts { drawn: refiner.out.len() as u64, split: refiner.splits, missed };
@@ -120,6 +125,33 @@ impl Job<'_> {
         let block = Block { bodies: matches!(drawn, Drawn::Bodies(..)), ..block };
         let Some(sections) = thin else { return Some(block) };
         Some(block.thinned(|k| mesh.corners(first + k as usize).map(|p| sections.parameter(p))))
+    }
+
+    /// The vertices at the given places, most of them in single precision.
+    fn mesh_vertices(&self, pass: &Pass<'_>, places: &[[DVec3; 2]], judge: bool) -> Vec<Vertex> {
+        let mut batch = Batch::default();
+        if !pass.batch(places.iter().map(|p| p[1]), &mut batch) {
+            return places.iter().map(|p| self.mesh_vertex(pass, p[1], judge)).collect();
+        }
+        let [xs, ys] = &batch.images;
+        let vertex = |(i, p): (usize, &[DVec3; 2])| {
+            let p = p[1];
+            if batch.missed[i] != 0 || !pass.margins(p).iter().all(|m| *m >= 0.0) {
+                return self.mesh_vertex(pass, p, judge);
+            }
+            let image = ScreenVertex { x: xs[i], y: ys[i], q: batch.nearness[i] };
+            let edge = if judge { pass.edge_point(p) } else { None };
+            Vertex { p, image: Some((image, self.beyond(image))), edge, missed: false }
+        };
+        places.iter().enumerate().map(vertex).collect()
+    }
+
+    /// Bit set of the image borders beyond which an image lies by more than the tolerance.
+    fn beyond(&self, image: ScreenVertex) -> u8 {
+        let margin = (self.tolerance_px * f64::from(SUB)) as i32;
+        let [width, height] = [self.screen.width * SUB, self.screen.height * SUB];
+        let tests = [image.x > width + margin, image.x < -margin, image.y > height + margin, image.y < -margin];
+        tests.iter().enumerate().fold(0, |code, (i, &out)| code | (u8::from(out) << (i + 2)))
     }
 
     fn mesh_vertex(&self, pass: &Pass<'_>, p: DVec3, judge: bool) -> Vertex {

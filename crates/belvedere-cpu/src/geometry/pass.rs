@@ -3,7 +3,7 @@
 
 use crate::geometry::displace::Displacer;
 use crate::geometry::lod::DecimatedHeights;
-use crate::geometry::project::Projector;
+use crate::geometry::project::{Batch, Projector};
 use crate::geometry::way::Way;
 use crate::points::Points;
 use crate::raster::cells::NODES;
@@ -154,6 +154,11 @@ impl<'a> Pass<'a> {
         }
         let mut points = Points { x: &mut x[..n], y: &mut y[..n], z: &mut z[..n] };
         self.displacer.row(&mut points) && screen.snap_row(&points, out)
+    }
+
+    /// Images of positions in single precision; `false` if the pass has none.
+    pub(crate) fn batch(&self, places: impl ExactSizeIterator<Item = DVec3>, batch: &mut Batch) -> bool {
+        self.projector.as_ref().is_some_and(|projector| projector.batch(places, batch))
     }
 
     /// Image of one node, the same as in any row; `None` if it has none, or must be clipped.

@@ -5,8 +5,10 @@
 //! rounds exactly, so that every machine and every vector width gives the same bits.
 
 mod cameras;
+mod runs;
 
 use crate::fast::Fast;
+use crate::geometry::spline_table::SplineTable;
 use crate::geometry::way::Way;
 use crate::screen::{Row, SUB};
 use crate::simd;
@@ -14,15 +16,17 @@ use belvedere_core::map::curved_rays::{LinearForm, StraightMap, Turn};
 use belvedere_core::map::terrain::TerrainDisocclusion;
 use belvedere_core::{DVec2, DVec3, Pinhole, View};
 use belvedere_scene::Heightfield;
-use cameras::{Bend, Form, Run};
+use cameras::{Bend, Form, Spline};
 use rayon::prelude::*;
+pub(crate) use runs::Batch;
+use runs::{BatchRun, LANES, Run};
 
 /// Nodes lifted at a time.
 const CHUNK: usize = 64;
 
 /// The chain of a view in single precision, for one record of its curved rays.
 ///
-/// Agrees with [`View`] to 0.01 px: curved earth around the eye, terrain disocclusion, one turn of conic arcs, pinhole.
+/// Agrees with [`View`] to 0.01 px: curved earth around the eye, terrain disocclusion, one turn of conic arcs or a spline bend, pinhole.
 #[derive(Debug)]
 pub(crate) struct Projector<'a> {
     eye: DVec3,
@@ -33,6 +37,8 @@ pub(crate) struct Projector<'a> {
     lift: Option<&'a TerrainDisocclusion>,
     /// Parts of one record, or of all records that displace as one map.
     parts: Vec<Part>,
+    /// A spline bend, which comes after earth and disocclusion.
+    spline: Option<Spline>,
     /// Affine forms between each part and the next: positive beyond.
     separators: Vec<Form>,
     scale: f32,
@@ -61,6 +67,7 @@ impl<'a> Projector<'a> {
             earth: 0.0,
             lift: None,
             parts: vec![Part { view: [p.right, p.down, p.forward].map(|axis| Form::new(axis, 0.0)), bend: None }],
+            spline: None,
             separators: Vec::new(),
             scale: p.scale_px() as f32,
             center: (p.center_px() * f64::from(SUB)).to_array().map(|c| c.round() as i32),
@@ -74,6 +81,12 @@ impl<'a> Projector<'a> {
                     out.earth = ((1.0 - e.refraction) / (2.0 * e.radius)) as f32;
                 }
                 Fast::Ground(t) => out.lift = Some(t),
+                Fast::Spline(bend) => {
+                    let table = SplineTable::new(bend).seen_from(p.eye)?;
+                    out.spline = Some(Spline::new(table, [p.right, p.down, p.forward]));
+                }
+                // Turns take what a spline has bent.
+                Fast::Rays(_) if out.spline.is_some() => return None,
                 Fast::Rays(rays) if rays.turns().is_empty() => {}
                 Fast::Rays(rays) => {
                     let of_record = |record| Part::of(p, rays.turns().get(record)?);
@@ -122,6 +135,24 @@ impl<'a> Projector<'a> {
         whole
     }
 
+    /// Images of positions: sets images, nearness and misses of a batch. `false` if the chain has no such form here: moved ground, or
+    /// several records that displace as one map.
+    /// * `places`: in scene coordinates.
+    pub(crate) fn batch(&self, places: impl ExactSizeIterator<Item = DVec3>, batch: &mut Batch) -> bool {
+        let ([part], None) = (&self.parts[..], self.lift) else { return false };
+        let n = places.len().next_multiple_of(LANES);
+        let Batch { x, y, z, images, nearness, missed } = batch;
+        [&mut *x, &mut *y, &mut *z].into_iter().for_each(|list| list.clear());
+        for p in places {
+            let p = p - self.eye;
+            (x.push(p.x as f32), y.push(p.y as f32), z.push(p.z as f32));
+        }
+        [x, y, z, nearness].into_iter().for_each(|list| list.resize(n, 0.0));
+        images.iter_mut().for_each(|list| list.resize(n, 0));
+        missed.resize(n, 0);
+        simd::run(BatchRun { projector: self, part, batch })
+    }
+
     fn run(&self, x: &[f32], y: f32, heights: &[f32], out: &mut Row<'_>) -> bool {
         if let [part] = &self.parts[..] {
             return simd::run(Run { projector: self, part, x, y, heights, out });
@@ -146,7 +177,7 @@ impl<'a> Projector<'a> {
 
     /// Number of the part that a node belongs to.
     fn part_of(&self, x: f32, y: f32, z: f32) -> usize {
-        self.separators.partition_point(|s| s.at(s.row(y), x, z) > 0.0)
+        self.separators.partition_point(|s| s.at([x, y, z]) > 0.0)
     }
 
     /// The part that all nodes of a row belong to, if there is one, judged by the corners of a rectangle around them.
@@ -234,7 +265,9 @@ mod tests {
     use crate::simd::Kernel;
     use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
     use belvedere_core::map::earth::EarthCurvature;
-    use belvedere_core::{CurvedRays, Projection, Stage};
+    use belvedere_core::map::spline::{ReferencePlane, default_pivot};
+    use belvedere_core::presets::PresetDocument;
+    use belvedere_core::{CurvedRays, Projection, SplineBend, Stage};
 
     fn camera(screen: Projection) -> Pinhole {
         let (eye, target) = (DVec3::new(512_345.678, 4_712_345.432, 3021.37), DVec3::new(513_000.0, 4.725e6, 0.0));
@@ -256,6 +289,12 @@ mod tests {
         Stage::CurvedRays(CurvedRays::new(camera, Model::Modified, &specs).unwrap())
     }
 
+    fn spline(camera: &Pinhole, name: &str) -> Stage {
+        let plane = ReferencePlane::level(600.0);
+        let document = PresetDocument::builtin(name).unwrap();
+        Stage::SplineBend(SplineBend::new(camera, &document, &plane, default_pivot(camera, &plane)).unwrap())
+    }
+
     fn views() -> Vec<View> {
         let camera = camera(Projection::Perspective { fov_y: 0.9 });
         let flat = self::camera(Projection::Orthographic { height: 9000.0 });
@@ -269,9 +308,21 @@ mod tests {
         );
         let lift = Stage::TerrainDisocclusion(TerrainDisocclusion::new(grid.unwrap()));
         let bent = turns(&camera, &[(4000.0, 700.0), (9000.0, 1300.0)]);
-        let stages = [vec![], vec![earth.clone()], vec![lift.clone()], vec![bent.clone()], vec![earth, lift, bent]];
+        let [near, far] = ["progressive", "degressive"].map(|name| spline(&camera, name));
+        let low = spline(&flat, "progressive");
+        let stages = [
+            vec![],
+            vec![earth.clone()],
+            vec![lift.clone()],
+            vec![bent.clone()],
+            vec![earth.clone(), lift.clone(), bent],
+            vec![near.clone()],
+            vec![far],
+            vec![earth, lift, near],
+        ];
         let with = |stages| View::new(camera.clone(), stages).unwrap();
-        stages.into_iter().map(with).chain([View::straight(flat)]).collect()
+        let parallel = [View::straight(flat.clone()), View::new(flat, vec![low]).unwrap()];
+        stages.into_iter().map(with).chain(parallel).collect()
     }
 
     /// Columns, rows and heights around the eye, in scene coordinates.

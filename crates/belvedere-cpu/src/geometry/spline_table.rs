@@ -4,8 +4,8 @@ use crate::points::{Points, each};
 use belvedere_core::map::spline::SplineBend;
 use belvedere_core::{DVec2, DVec3, SpaceMap};
 
-/// Pieces of the curve between its ends.
-const PIECES: usize = 512;
+/// Pieces of the curve between its ends; with its two extensions a power of two.
+const PIECES: usize = 510;
 /// Largest accepted error of a point on the curve, curve units, and of a unit normal. The eye is about one curve unit away
 /// from the curve, so both stay far below 0.01 pixel.
 const PLACE_ERROR: f64 = 1e-7;
@@ -98,6 +98,48 @@ impl<'a> SplineTable<'a> {
             && (DVec2::new(nu, nv) - DVec2::new(pnu, pnv)).length() <= NORMAL_ERROR
     }
 
+    /// The table as seen from the eye; `None` if one of its pieces is not close enough to the curve.
+    pub(crate) fn seen_from(&self, eye: DVec3) -> Option<SplineFromEye> {
+        if self.pieces.len() != PIECES + 2 || self.pieces.iter().any(|piece| !piece.good) {
+            return None;
+        }
+        let offset = eye - self.origin;
+        let [right, heading, normal] = self.axes.map(|axis| axis.dot(offset));
+        let at_eye = heading * self.pieces_per_unit + self.piece_of_origin;
+        let in_plane = self.curve_axes.map(|axis| axis.dot(right * self.axes[0] - offset));
+        let piece = |k: usize| {
+            // Extensions are straight: near the eye they begin at the eye, for small numbers there.
+            let from = match k {
+                0 => at_eye.min(0.0),
+                k if k == PIECES + 1 => at_eye.max(PIECES as f64),
+                k => (k - 1) as f64,
+            };
+            let begins = if k == 0 { 0.0 } else { (k - 1) as f64 };
+            let c = self.pieces[k].c;
+            let moved = |i: usize| {
+                let [c0, c1, c2, c3] = c[i];
+                [c0 + (from - begins) * c1, c1, c2, c3]
+            };
+            let [u, v, nu, nv] = std::array::from_fn(moved);
+            let lifted = |place: [f64; 4], turned: [f64; 4], at: f64| {
+                let [a, b, c, d]: [f64; 4] = std::array::from_fn(|power| place[power] + normal * turned[power]);
+                [a + at, b, c, d]
+            };
+            let rows = [lifted(u, nu, in_plane[0]), lifted(v, nv, in_plane[1]), nu, nv];
+            let c = std::array::from_fn(|power| rows.map(|row| row[power] as f32));
+            PieceFromEye { c, from: (from - at_eye) as f32 }
+        };
+        let pieces: Vec<PieceFromEye> = (0..PIECES + 2).map(piece).collect();
+        Some(SplineFromEye {
+            right: self.axes[0],
+            heading_pieces: self.axes[1] * self.pieces_per_unit,
+            normal: self.axes[2],
+            curve_axes: self.curve_axes,
+            at_eye: at_eye as f32,
+            pieces: Box::new(pieces.try_into().ok()?),
+        })
+    }
+
     /// See [`crate::geometry::displace::Displacer::row`].
     pub(crate) fn row(&self, points: &mut Points<'_>) -> bool {
         each(points, |p| self.point(p))
@@ -123,6 +165,43 @@ impl<'a> SplineTable<'a> {
             }
             _ => self.bend.apply(p).ok(),
         }
+    }
+}
+
+/// A spline bend in single precision, for positions relative to the eye: numbers are small where points are near.
+#[derive(Debug)]
+pub(crate) struct SplineFromEye {
+    /// Unit vector that the bend leaves alone.
+    pub(crate) right: DVec3,
+    /// Pieces along the curve per scene unit.
+    pub(crate) heading_pieces: DVec3,
+    /// Unit normal of the reference plane.
+    pub(crate) normal: DVec3,
+    /// Axes of the plane that the curve lies in.
+    pub(crate) curve_axes: [DVec3; 2],
+    /// Pieces from the near end of the curve to the eye.
+    at_eye: f32,
+    pieces: Box<[PieceFromEye; PIECES + 2]>,
+}
+
+/// Powers of the position in pieces from `from` on: point of the curve, lifted by the height of the eye and relative to it, and normal.
+#[derive(Debug, Clone, Copy)]
+struct PieceFromEye {
+    c: [[f32; 4]; 4],
+    /// Where the piece begins, pieces from the eye.
+    from: f32,
+}
+
+impl SplineFromEye {
+    /// Point (u, v) relative to the eye, and normal (u, v).
+    /// * `s`: pieces from the eye.
+    #[inline(always)]
+    pub(crate) fn at(&self, s: f32) -> [f32; 4] {
+        let k = (s + self.at_eye + 1.0).max(0.0).min((PIECES + 1) as f32) as usize;
+        // The number of pieces is a power of two, and this no check of bounds.
+        let piece = &self.pieces[k & (PIECES + 1)];
+        let (t, [c0, c1, c2, c3]) = (s - piece.from, piece.c);
+        std::array::from_fn(|i| c0[i] + t * (c1[i] + t * (c2[i] + t * c3[i])))
     }
 }
 

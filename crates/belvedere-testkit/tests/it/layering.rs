@@ -98,7 +98,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
             "tracing",
         ],
     ),
-    ("belvedere-bench", &["belvedere"], &["anyhow", "rayon", "schemars", "serde"]),
+    ("belvedere-bench", &["belvedere"], &["anyhow", "rayon", "schemars", "serde", "serde_json", "tempfile"]),
     ("belvedere-gallery", &["belvedere"], &["anyhow", "plotters", "plotters-backend", "serde"]),
     (
         "belvedere-viewer",

@@ -1,16 +1,14 @@
-//! Cameras in single precision, for many nodes of a row at a time.
+//! Cameras in single precision.
 
 use crate::geometry::project::{Part, Projector};
-use crate::screen::{Row, SUB};
-use crate::simd::{Kernel, nearest};
+use crate::geometry::spline_table::SplineFromEye;
+use crate::screen::SUB;
+use crate::simd::nearest;
 use belvedere_core::DVec3;
 
 /// Images farther than this from the image centre, pixels, are left to double precision: the fixed-point numbers of
 /// nearer ones fit the mantissa.
 const REACH_PX: f32 = 16_000.0;
-/// Nodes projected at a time.
-const LANES: usize = 16;
-
 /// An affine function of a position relative to the eye.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Form {
@@ -23,15 +21,10 @@ impl Form {
         Self { gradient: gradient.to_array().map(|g| g as f32), at_eye: at_eye as f32 }
     }
 
-    /// Part of the form that is constant along a row of nodes.
+    /// The value at a position; what does not depend on x and z comes first, for it is the same along a row of nodes.
     #[inline(always)]
-    pub(super) fn row(self, y: f32) -> f32 {
-        self.at_eye + self.gradient[1] * y
-    }
-
-    #[inline(always)]
-    pub(super) fn at(self, row: f32, x: f32, z: f32) -> f32 {
-        (row + self.gradient[0] * x) + self.gradient[2] * z
+    pub(super) fn at(self, [x, y, z]: [f32; 3]) -> f32 {
+        ((self.at_eye + self.gradient[1] * y) + self.gradient[0] * x) + self.gradient[2] * z
     }
 }
 
@@ -47,24 +40,28 @@ pub(super) struct Bend {
 /// Fixed-point pixel, nearness, and a flag that is not 0 where these cannot be used.
 type Image = (i32, i32, f32, u32);
 
-/// A camera for the nodes of a row.
-trait Camera {
-    /// * `x`, `z`: relative to the eye.
-    fn image(&self, x: f32, z: f32) -> Image;
+/// A camera for many positions.
+pub(super) trait Camera {
+    /// * `p`: relative to the eye. `curve`: of [`Camera::curve`].
+    fn image(&self, p: [f32; 3], curve: [f32; 4]) -> Image;
+
+    /// What is read from a table, before all positions of a group are computed at once.
+    #[inline(always)]
+    fn curve(&self, _: [f32; 3]) -> [f32; 4] {
+        [0.0; 4]
+    }
 }
 
-struct Perspective<'p, 'a> {
+pub(super) struct Perspective<'p, 'a> {
     projector: &'p Projector<'a>,
     part: &'p Part,
-    rows: [f32; 3],
 }
 
 impl Perspective<'_, '_> {
     /// View space before any turn.
     #[inline(always)]
-    fn view(&self, x: f32, z: f32) -> [f32; 3] {
-        let [right, down, forward] = &self.part.view;
-        [right.at(self.rows[0], x, z), down.at(self.rows[1], x, z), forward.at(self.rows[2], x, z)]
+    fn view(&self, p: [f32; 3]) -> [f32; 3] {
+        self.part.view.map(|form| form.at(p))
     }
 
     #[inline(always)]
@@ -79,8 +76,8 @@ impl Perspective<'_, '_> {
 
 impl Camera for Perspective<'_, '_> {
     #[inline(always)]
-    fn image(&self, x: f32, z: f32) -> Image {
-        let v = self.view(x, z);
+    fn image(&self, p: [f32; 3], _: [f32; 4]) -> Image {
+        let v = self.view(p);
         let q = 1.0 / v[2];
         self.photograph(v, self.projector.scale * q, q)
     }
@@ -90,8 +87,8 @@ struct Parallel<'p, 'a>(Perspective<'p, 'a>);
 
 impl Camera for Parallel<'_, '_> {
     #[inline(always)]
-    fn image(&self, x: f32, z: f32) -> Image {
-        let v = self.0.view(x, z);
+    fn image(&self, p: [f32; 3], _: [f32; 4]) -> Image {
+        let v = self.0.view(p);
         self.0.photograph(v, self.0.projector.scale, -v[2])
     }
 }
@@ -99,87 +96,115 @@ impl Camera for Parallel<'_, '_> {
 struct Bent<'p, 'a> {
     straight: Perspective<'p, 'a>,
     bend: &'p Bend,
-    rows: [f32; 2],
 }
 
 impl Camera for Bent<'_, '_> {
     #[inline(always)]
-    fn image(&self, x: f32, z: f32) -> Image {
-        let (a, b) = (self.bend.a.at(self.rows[0], x, z), self.bend.b.at(self.rows[1], x, z));
+    fn image(&self, p: [f32; 3], _: [f32; 4]) -> Image {
+        let (a, b) = (self.bend.a.at(p), self.bend.b.at(p));
         let (phi, shift) = (phi(self.bend.m, a, b), self.bend.shift);
-        let [vx, vy, vz] = self.straight.view(x, z);
+        let [vx, vy, vz] = self.straight.view(p);
         let v = [vx + phi * shift[0], vy + phi * shift[1], vz + phi * shift[2]];
         let q = 1.0 / v[2];
         self.straight.photograph(v, self.straight.projector.scale * q, q)
     }
 }
 
-/// Images of nodes of a row, see [`Projector::row`].
-pub(super) struct Run<'r, 'a, 'o> {
-    pub(super) projector: &'r Projector<'a>,
-    pub(super) part: &'r Part,
-    pub(super) x: &'r [f32],
-    pub(super) y: f32,
-    pub(super) heights: &'r [f32],
-    pub(super) out: &'r mut Row<'o>,
+/// A spline bend in the coordinates of the view.
+#[derive(Debug)]
+pub(super) struct Spline {
+    table: SplineFromEye,
+    /// Across the bend, along the curve in pieces, over the reference plane.
+    right: Form,
+    heading: Form,
+    normal: Form,
+    /// View space per unit across the bend and along the axes of the curve's plane.
+    axes: [[f32; 3]; 3],
 }
 
-impl Kernel for Run<'_, '_, '_> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn run(mut self) -> bool {
-        let (projector, part) = (self.projector, self.part);
-        let straight = Perspective { projector, part, rows: part.view.map(|f| f.row(self.y)) };
-        match (projector.ortho, &part.bend) {
-            (false, None) => self.all(&straight),
-            (false, Some(bend)) => {
-                let rows = [bend.a.row(self.y), bend.b.row(self.y)];
-                self.all(&Bent { straight, bend, rows })
-            }
-            (true, None) => self.all(&Parallel(straight)),
-            // Turns need viewpoints; a parallel projection has none.
-            (true, Some(_)) => false,
+impl Spline {
+    pub(super) fn new(table: SplineFromEye, view: [DVec3; 3]) -> Self {
+        let in_view = |axis: DVec3| view.map(|v| v.dot(axis) as f32);
+        let [u, v] = table.curve_axes;
+        Self {
+            right: Form::new(table.right, 0.0),
+            heading: Form::new(table.heading_pieces, 0.0),
+            normal: Form::new(table.normal, 0.0),
+            axes: [table.right, u, v].map(in_view),
+            table,
         }
     }
 }
 
-impl Run<'_, '_, '_> {
-    /// Computes all nodes in groups of `LANES`; the last group overlaps the one before.
+struct AlongCurve<'p, 'a> {
+    straight: Perspective<'p, 'a>,
+    spline: &'p Spline,
+}
+
+impl AlongCurve<'_, '_> {
     #[inline(always)]
-    fn all(&mut self, camera: &impl Camera) -> bool {
-        let n = self.x.len();
-        let mut missed = [0; LANES];
-        let mut i = 0;
-        while i < n {
-            match n - i {
-                LANES.. => self.some::<LANES>(i, camera, &mut missed),
-                left if n >= LANES && left > LANES / 4 => self.some::<LANES>(n - LANES, camera, &mut missed),
-                _ if n >= LANES => self.some::<{ LANES / 4 }>(n - LANES / 4, camera, &mut missed),
-                _ => (i..n).for_each(|i| self.some::<1>(i, camera, &mut missed)),
-            }
-            i += LANES;
-        }
-        missed.iter().fold(0, |a, b| a | b) == 0
+    fn view(&self, p: [f32; 3], [u, v, nu, nv]: [f32; 4]) -> [f32; 3] {
+        let Spline { right, normal, axes, .. } = self.spline;
+        let (right, normal) = (right.at(p), normal.at(p));
+        let (u, v) = (u + normal * nu, v + normal * nv);
+        [0, 1, 2].map(|k| (axes[0][k] * right + axes[1][k] * u) + axes[2][k] * v)
     }
 
-    /// `N` nodes from number `from` on.
     #[inline(always)]
-    fn some<const N: usize>(&mut self, from: usize, camera: &impl Camera, missed: &mut [u32; LANES]) {
-        let Row { x, y, q } = &mut *self.out;
-        let (Some(xs), Some(hs)) = (self.x[from..].first_chunk::<N>(), self.heights[from..].first_chunk::<N>()) else {
-            return;
-        };
-        let ends = (x[from..].first_chunk_mut::<N>(), y[from..].first_chunk_mut::<N>());
-        let ((Some(px), Some(py)), Some(pq)) = (ends, q[from..].first_chunk_mut::<N>()) else { return };
-        // Local arrays, so that the compiler knows that they do not overlap.
-        let (mut ix, mut iy, mut iq, mut misses) = ([0; N], [0; N], [0.0; N], [0; N]);
-        for i in 0..N {
-            let z = self.projector.z(xs[i], self.y, hs[i]);
-            (ix[i], iy[i], iq[i], misses[i]) = camera.image(xs[i], z);
-        }
-        (*px, *py, *pq) = (ix, iy, iq);
-        missed.iter_mut().zip(misses).for_each(|(all, miss)| *all |= miss);
+    fn table(&self, p: [f32; 3]) -> [f32; 4] {
+        self.spline.table.at(self.spline.heading.at(p))
+    }
+}
+
+impl Camera for AlongCurve<'_, '_> {
+    #[inline(always)]
+    fn image(&self, p: [f32; 3], curve: [f32; 4]) -> Image {
+        let v = self.view(p, curve);
+        let q = 1.0 / v[2];
+        self.straight.photograph(v, self.straight.projector.scale * q, q)
+    }
+
+    #[inline(always)]
+    fn curve(&self, p: [f32; 3]) -> [f32; 4] {
+        self.table(p)
+    }
+}
+
+struct ParallelAlongCurve<'p, 'a>(AlongCurve<'p, 'a>);
+
+impl Camera for ParallelAlongCurve<'_, '_> {
+    #[inline(always)]
+    fn image(&self, p: [f32; 3], curve: [f32; 4]) -> Image {
+        let v = self.0.view(p, curve);
+        self.0.straight.photograph(v, self.0.straight.projector.scale, -v[2])
+    }
+
+    #[inline(always)]
+    fn curve(&self, p: [f32; 3]) -> [f32; 4] {
+        self.0.table(p)
+    }
+}
+
+/// What to do with a camera, whichever it is.
+pub(super) trait WithCamera {
+    type Output;
+    fn with(self, camera: &impl Camera) -> Self::Output;
+}
+
+/// Chooses the camera of a part of a projector; `None` if there is none.
+#[inline(always)]
+pub(super) fn choose<W: WithCamera>(projector: &Projector<'_>, part: &Part, work: W) -> Option<W::Output> {
+    let straight = Perspective { projector, part };
+    if let Some(spline) = &projector.spline {
+        let camera = AlongCurve { straight, spline };
+        return Some(if projector.ortho { work.with(&ParallelAlongCurve(camera)) } else { work.with(&camera) });
+    }
+    match (projector.ortho, &part.bend) {
+        (false, None) => Some(work.with(&straight)),
+        (false, Some(bend)) => Some(work.with(&Bent { straight, bend })),
+        (true, None) => Some(work.with(&Parallel(straight))),
+        // Turns need viewpoints; a parallel projection has none.
+        (true, Some(_)) => None,
     }
 }
 
