@@ -308,7 +308,8 @@ mod tests {
         );
         let lift = Stage::TerrainDisocclusion(TerrainDisocclusion::new(grid.unwrap()));
         let bent = turns(&camera, &[(4000.0, 700.0), (9000.0, 1300.0)]);
-        let [near, far] = ["progressive", "degressive"].map(|name| spline(&camera, name));
+        let [near, far, steep] =
+            ["progressive", "degressive", "hybrid-flat-steep-flat"].map(|name| spline(&camera, name));
         let low = spline(&flat, "progressive");
         let stages = [
             vec![],
@@ -318,6 +319,7 @@ mod tests {
             vec![earth.clone(), lift.clone(), bent],
             vec![near.clone()],
             vec![far],
+            vec![steep],
             vec![earth, lift, near],
         ];
         let with = |stages| View::new(camera.clone(), stages).unwrap();
