@@ -267,14 +267,15 @@ fn write(
     let (view, options) = (drawn_view(session, request), options(session, request));
     let renderer = request.renderer.of(session);
     let scaled = widths::scaled(session.scene(), request.density);
-    let job = |scene| RenderJob { scene, view: &view, light: session.light(), options: &options, progress: &request.progress };
+    let (light, progress, whole) = (session.light(), &request.progress, &*scaled);
+    let job = |scene| RenderJob { scene, view: &view, light, options: &options, progress };
     let covered = session.terrain_report().map(|r| &r.covered[..]).filter(|c| !c.is_empty() && !request.straight);
     let cut: Option<Scene> = match covered {
         Some(covered) => thin::cut(session.scene(), &view, covered)?,
         None => None,
     };
     let mut result = None;
-    renderer.in_rows(&job(&scaled), &mut |front| {
+    renderer.in_rows(&job(whole), &mut |front| {
         let Some((cut, covered)) = cut.as_ref().zip(covered) else {
             let bands = Bands { session, request, view: &view, rows, thin: None };
             result = Some(bands.write(front, out, (started, inputs.clone())));
