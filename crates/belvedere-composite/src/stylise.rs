@@ -345,13 +345,7 @@ mod tests {
 
     fn seen(depth: Vec<f32>, ortho: bool) -> Seen {
         let n = depth.len();
-        Seen {
-            width: W,
-            height: H,
-            places: 1,
-            nearness: nearness(&depth, ortho),
-            face: vec![Face::default(); n],
-        }
+        Seen { width: W, height: H, places: 1, nearness: nearness(&depth, ortho), face: vec![Face::default(); n] }
     }
 
     fn picture(depth: impl Fn(usize, usize) -> f32) -> Vec<f32> {

@@ -95,7 +95,8 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     job.progress.tick("lines", 0.0)?;
     let passes = Pass::all(job.view);
     let front = veil.as_ref().filter(|_| Marks::are_in(job));
-    let front = front.map(|veil| marks::place(job, &passes, &screen, (Depths::Whole(&veil.nearest(&buffers.depth)), Solids::Drawn)));
+    let front = front
+        .map(|veil| marks::place(job, &passes, &screen, (Depths::Whole(&veil.nearest(&buffers.depth)), Solids::Drawn)));
     let front = front.unwrap_or_default();
     let veiled = veil.as_ref().map(|veil| Veiled { veil, first: 0, front: &front });
     finish_veiled(job, (&marks, veiled), &screen, None, &mut buffers);

@@ -51,7 +51,10 @@ pub fn mark_shapes(job: &RenderJob<'_>, depth: &[f32]) -> Shapes {
     let screen = Screen::new(job.view.pinhole());
     let sight = TracedSight { job, solids: Solids::Opaque, tracer: OnceLock::new() };
     let tolerance_px = job.options.tolerance_px.clamp(0.01, SHAPE_TOLERANCE_PX);
-    Marks::shapes(job, &Drawn { passes: &passes, screen: &screen, tolerance_px, depth: Depths::Whole(depth), sight: &sight })
+    Marks::shapes(
+        job,
+        &Drawn { passes: &passes, screen: &screen, tolerance_px, depth: Depths::Whole(depth), sight: &sight },
+    )
 }
 
 /// The same as [`place`] for surfaces that were not drawn by passes.

@@ -158,10 +158,9 @@ impl CpuRenderer {
         let samples = volume::compose(job, Way::Fast, &mut buffers)?;
         if buffers.open {
             let marks = marks::place(job, &passes, &screen, (Depths::Whole(&buffers.depth), Solids::Opaque));
-            let front = veil
-                .as_ref()
-                .filter(|_| Marks::are_in(job))
-                .map(|veil| marks::place(job, &passes, &screen, (Depths::Whole(&veil.nearest(&buffers.depth)), Solids::Drawn)));
+            let front = veil.as_ref().filter(|_| Marks::are_in(job)).map(|veil| {
+                marks::place(job, &passes, &screen, (Depths::Whole(&veil.nearest(&buffers.depth)), Solids::Drawn))
+            });
             let front = front.unwrap_or_default();
             job.progress.tick("lines", 0.0)?;
             let veiled = veil.as_ref().map(|veil| Veiled { veil, first: 0, front: &front });
@@ -302,12 +301,7 @@ impl Surfaces<'_> {
     }
 
     /// The samples of the layers that something shines through in the rows of a band.
-    pub(crate) fn see_through(
-        &self,
-        behind: &Band,
-        y: [i32; 2],
-        (offsets, exposed): (&[[i32; 2]], bool),
-    ) -> Vec<Band> {
+    pub(crate) fn see_through(&self, behind: &Band, y: [i32; 2], (offsets, exposed): (&[[i32; 2]], bool)) -> Vec<Band> {
         let mut bands: Vec<Band> = self.layers.iter().map(|_| self.cleared(y, offsets)).collect();
         let exposure = self.exposure(offsets);
         let thin = self.sections.filter(|_| exposed).map(|sections| (sections, &exposure, &behind.offsets[..]));

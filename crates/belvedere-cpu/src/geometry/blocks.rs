@@ -242,9 +242,8 @@ impl Blocks {
         let only = band.only;
         let blocks = self.order.iter().map(|&i| (i, &self.list[i as usize]));
         let blocks = blocks.filter(move |(_, block)| block.cover.y[0] >> 8 < bottom && block.cover.y[1] >> 8 >= top);
-        let meets = |block: &Block, [left, right]: [i32; 2]| {
-            block.cover.x[0] >> 8 < right && block.cover.x[1] >> 8 >= left
-        };
+        let meets =
+            |block: &Block, [left, right]: [i32; 2]| block.cover.x[0] >> 8 < right && block.cover.x[1] >> 8 >= left;
         blocks.filter(move |(_, block)| only.is_none_or(|only| meets(block, only)))
     }
 

@@ -183,11 +183,7 @@ fn has_fallback(session: &Session) -> bool {
 }
 
 /// Rows that a picture is drawn at a time; `None` in one piece.
-pub(crate) fn rows(
-    session: &Session,
-    request: &PictureOptions,
-    out: &Path,
-) -> Result<Option<usize>, BelvedereError> {
+pub(crate) fn rows(session: &Session, request: &PictureOptions, out: &Path) -> Result<Option<usize>, BelvedereError> {
     if request.band_rows == Some(0) {
         return Ok(None);
     }
@@ -305,7 +301,8 @@ impl Bands<'_> {
         let rigid = RigidLayers::of(scene, view);
         let displacement = view.is_bent().then(|| displacement::measure(view, &rigid, &front)).transpose()?;
         let mark = mark_words(session, request, [width, height], displacement);
-        let figure = session.resolved.overlay.inset.and_then(|inset| Some((inset, curve_inset::CurveFigure::of(view)?)));
+        let figure =
+            session.resolved.overlay.inset.and_then(|inset| Some((inset, curve_inset::CurveFigure::of(view)?)));
         // Whether the picture has room for the inset.
         let inset: Option<Inset> = figure
             .as_ref()

@@ -18,8 +18,8 @@ use belvedere_construct::rays::{AroundOptions, Target, bend_around};
 use belvedere_construct::{
     Goal, RevealMemory, RevealOptions, RevealReport, Revealed, default_spacing, sample_features,
 };
-use belvedere_core::{Warning, WarningKind};
 use belvedere_core::{DVec3, Pinhole, Projection, View};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::Instant;
 use belvedere_scene::{Progress, Scene, Sky};

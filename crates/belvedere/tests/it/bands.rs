@@ -90,7 +90,10 @@ fn what_needs_one_piece_says_so_and_how_much_memory() {
         let error = session.render_to(&options, &folder.path().join(name), true).expect_err("refused");
         assert!(matches!(error, BelvedereError::OnePiece { .. }), "{error}");
         let text = error.to_string();
-        assert!(text.contains("333 x 217") && text.contains("MiB") && text.len() < 500 && !text.contains('\n'), "{text}");
+        assert!(
+            text.contains("333 x 217") && text.contains("MiB") && text.len() < 500 && !text.contains('\n'),
+            "{text}"
+        );
         text
     };
     let usual = PictureOptions::default;
@@ -119,6 +122,6 @@ fn a_picture_that_is_cancelled_between_bands_leaves_no_file() {
     stop.set(progress.cancel_flag()).expect("once");
     let options = PictureOptions { band_rows: Some(16), progress, ..PictureOptions::default() };
     let error = session.render_to(&options, &folder.path().join("a.png"), true).expect_err("cancelled");
-    assert!(matches!(error, BelvedereError::Cancelled | BelvedereError::Render(_)), "{error}");
+    assert!(matches!(error, BelvedereError::Cancelled(_) | BelvedereError::Render(_)), "{error}");
     assert!(std::fs::read_dir(folder.path()).expect("a folder").next().is_none(), "nothing is left behind");
 }
