@@ -395,6 +395,10 @@ pub(crate) struct RenderArgs {
     pub(crate) draw: DrawArgs,
     #[command(flatten)]
     pub(crate) print: PrintArgs,
+    /// Draw and write a PNG or TIFF N rows at a time, rounded up to a multiple of 16, in less memory; 0 draws it in one piece. By default
+    /// pictures of more than 33 million pixels are drawn so, and those for which there is too little memory. The bytes are the same
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(0..=65_535))]
+    pub(crate) band_rows: Option<u32>,
     /// Buffers to write beside the picture
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LIST")]
     pub(crate) aux: Vec<AuxKind>,

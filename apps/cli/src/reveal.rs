@@ -197,6 +197,7 @@ fn reveal_features(
         curved_earth: args.curved_earth,
         technique: technique.into(),
         no_limits: args.no_limits,
+        to_file: (!is_stdout(&args.out)).then(|| args.out.clone()),
         ..RevealRequest::default()
     };
     request.picture = print.apply(request.picture, &picture, sheet);
@@ -225,7 +226,7 @@ fn delivered(
     files: &RevealFiles,
     context: &Context,
 ) -> anyhow::Result<()> {
-    context.timings.note_picture(&picture.sidecar);
+    context.timings.note_picture(picture.record());
     if let Some(scene) = &files.scene {
         context.remember(scene, session);
     }

@@ -162,12 +162,16 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     }
     let transparent = session.light().sky == Sky::Transparent;
     picture::check_format(&args.out, session.view().pinhole().image.map(|side| side as usize), transparent)?;
-    let picture = session.render(&request)?;
-    context.timings.note_picture(&picture.sidecar);
-    let written = match is_stdout(&args.out) {
-        true => outputs::write_stdout(&picture.to_png()?).map(|()| Vec::new())?,
-        false => picture.write(&args.out, context.common.overwrite)?,
+    request.band_rows = args.band_rows.map(|rows| rows as usize);
+    let (picture, written) = match is_stdout(&args.out) {
+        true => {
+            let picture = session.render(&request)?;
+            outputs::write_stdout(&picture.to_png()?)?;
+            (picture, Vec::new())
+        }
+        false => session.render_to(&request, &args.out, context.common.overwrite)?,
     };
+    context.timings.note_picture(&picture.sidecar);
     if context.common.json {
         let record = &picture.sidecar;
         let (displacement, render_ms) = (record.displacement, record.render_ms);

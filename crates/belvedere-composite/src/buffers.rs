@@ -22,8 +22,13 @@ pub struct Buffers {
 
 impl Buffers {
     /// Buffers of the size of the picture in the memory of older ones; all pixels must be written.
-    pub fn reuse(job: &RenderJob<'_>, open: bool, mut color: Vec<Packed>, old: Frame) -> Self {
+    pub fn reuse(job: &RenderJob<'_>, open: bool, color: Vec<Packed>, old: Frame) -> Self {
         let n = job.view.pinhole().image.map(|s| s as usize).iter().product();
+        Self::of_pixels(job, (n, open), color, old)
+    }
+
+    /// [`Buffers::reuse`] of so many pixels.
+    pub fn of_pixels(job: &RenderJob<'_>, (n, open): (usize, bool), mut color: Vec<Packed>, old: Frame) -> Self {
         let Frame { color: mut out, mut depth, mut id, .. } = old;
         if open {
             color.resize(n, Packed::default());

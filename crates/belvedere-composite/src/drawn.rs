@@ -1,5 +1,6 @@
 //! What a renderer tells of the surfaces it has drawn.
 
+use crate::depths::Depths;
 use crate::screen::Screen;
 use belvedere_core::{Aabb, DVec2, DVec3};
 
@@ -35,8 +36,8 @@ pub struct Drawn<'a> {
     pub screen: &'a Screen,
     /// Largest error of a bent line by straight pieces, pixels.
     pub tolerance_px: f64,
-    /// Depths of the surfaces at the pixel centres, row by row; infinite in the sky.
-    pub depth: &'a [f32],
+    /// Depths of the surfaces at the pixel centres.
+    pub depth: Depths<'a>,
     /// Rays of the picture.
     pub sight: &'a dyn Sight,
 }

@@ -1,6 +1,7 @@
 //! From the colours of surfaces to the finished picture: stylisation, then marks, then what is in front of them, band by band.
 
 use crate::buffers::Buffers;
+use crate::canvas::Canvas;
 use crate::color::{self, Packed};
 use crate::marks::Marks;
 use crate::screen::{BAND, Screen};
@@ -21,8 +22,12 @@ pub fn buffers(job: &RenderJob<'_>) -> Buffers {
 
 /// Buffers in the memory of older ones; all pixels must be written.
 pub fn buffers_in(job: &RenderJob<'_>, color: Vec<Packed>, old: Frame) -> Buffers {
-    let is_open = Marks::are_in(job) || stylise::is_on(job) || job.scene.has_see_through();
-    Buffers::reuse(job, is_open, color, old)
+    Buffers::reuse(job, is_open(job), color, old)
+}
+
+/// Whether anything may be drawn over the surfaces of a job.
+pub fn is_open(job: &RenderJob<'_>) -> bool {
+    Marks::are_in(job) || stylise::is_on(job) || job.scene.has_see_through()
 }
 
 /// Draws stylisation, lines and points over the surfaces, and encodes the colours.
@@ -47,19 +52,30 @@ pub fn finish_veiled(
 
 /// Draws lines and points over the surfaces and what is veiled, and encodes the colours.
 pub fn draw_marks(marks: &Marks, veiled: Option<Veiled<'_>>, screen: &Screen, buffers: &mut Buffers) {
+    draw_marks_on_rows(marks, veiled, (screen, 0), buffers);
+}
+
+/// [`draw_marks`] on the rows of a picture from `first` on, a multiple of [`BAND`].
+pub fn draw_marks_on_rows(
+    marks: &Marks,
+    veiled: Option<Veiled<'_>>,
+    (screen, first): (&Screen, usize),
+    buffers: &mut Buffers,
+) {
     let chunk = BAND * screen.width as usize;
     let Buffers { depth, color, id, out, .. } = buffers;
     let encoding = color::encoding();
     out.par_chunks_mut(chunk).zip(color.par_chunks_mut(chunk)).zip(id.par_chunks_mut(chunk)).enumerate().for_each(
         |(i, ((out, color), id))| {
-            marks.draw((i * BAND) as i32, screen, depth, color, id);
+            let y0 = (first + i * BAND) as i32;
+            marks.draw(y0, screen, depth, color, id);
             if let Some(veiled) = veiled {
-                veiled.lay((i * BAND) as i32, screen, color);
+                veiled.lay(y0, screen, color);
             }
             for (o, c) in out.iter_mut().zip(color.iter()) {
                 *o = c.encode(encoding);
             }
         },
     );
-    marks.write_names(out, screen.width as usize);
+    marks.write_names(&mut Canvas::rows(out, [screen.width, screen.height].map(|side| side as usize), first));
 }

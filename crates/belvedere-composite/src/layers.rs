@@ -19,6 +19,22 @@ use rayon::prelude::*;
 /// Sums of weights below this count as 0.
 const LEAST: f64 = 1e-9;
 
+/// Whether the representations of a job are drawn one by one.
+pub fn are_needed(job: &RenderJob<'_>) -> bool {
+    sections_by_layers(job).is_some()
+}
+
+fn sections_by_layers<'a>(job: &RenderJob<'a>) -> Option<Sections<'a>> {
+    let options = job.options;
+    let published = options.compositing == Compositing::Layers;
+    let by_layers = |s: &Sections<'_>| {
+        let apart = options.compositing == Compositing::Single && !s.has_one_surface();
+        s.representations() > 1 && (published || apart || stylise::is_on(job))
+    };
+    let sections = if options.representation.is_none() { Sections::new(job) } else { None };
+    sections.filter(by_layers)
+}
+
 /// Draws a job by `draw`, representation by representation if that is asked for, if no two representations show the same surface, or if
 /// edges are drawn: edges then end where a representation ends, not where samples of others begin.
 ///
@@ -31,12 +47,7 @@ pub fn draw(
 ) -> Result<Frame, RenderError> {
     let options = job.options;
     let published = options.compositing == Compositing::Layers;
-    let by_layers = |s: &Sections<'_>| {
-        let apart = options.compositing == Compositing::Single && !s.has_one_surface();
-        s.representations() > 1 && (published || apart || stylise::is_on(job))
-    };
-    let sections = if options.representation.is_none() { Sections::new(job) } else { None };
-    let Some(sections) = sections.filter(by_layers) else {
+    let Some(sections) = sections_by_layers(job) else {
         return draw(job);
     };
     let alone = |number: usize| {

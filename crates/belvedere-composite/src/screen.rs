@@ -6,7 +6,7 @@ use belvedere_core::{DVec2, DVec3, Pinhole};
 const GUARD_PX: f64 = 131_072.0;
 
 /// Image rows that are drawn together, a band.
-pub const BAND: usize = 16;
+pub const BAND: usize = belvedere_scene::ROWS;
 
 /// Tolerance of bent edges drawn straight from which on a picture is a coarse one, pixels: one that moves. What only shows at rest is then
 /// left out of it.

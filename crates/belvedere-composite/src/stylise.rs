@@ -4,9 +4,11 @@
 
 use crate::buffers::Buffers;
 use crate::color::{Packed, smoothstep};
+use crate::unsharp::Surroundings;
 use belvedere_scene::{LayerKind, RenderJob, Stylisation};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Relative second difference of the reciprocal depth at which an edge begins to show, and at which it is full.
 const DEPTH_EDGE: [f32; 2] = [0.02, 0.06];
@@ -14,8 +16,6 @@ const DEPTH_EDGE: [f32; 2] = [0.02, 0.06];
 const NORMAL_EDGE: [f32; 2] = [0.15, 0.4];
 /// Share of light that an edge removes.
 const INK: f32 = 0.7;
-/// Standard deviation of the average of depths, as a share of the picture's diagonal.
-const SIGMA: f32 = 0.01;
 /// Largest share of light that unsharp masking removes.
 const DARKEST: f32 = 0.35;
 
@@ -80,7 +80,7 @@ impl Relief {
     pub fn room(job: &RenderJob<'_>, places: usize) -> Option<Self> {
         let n = job.view.pinhole().image.map(|s| s as usize).iter().product::<usize>() * places;
         let wanted = job.options.stylisation.edges > 0.0;
-        wanted.then(|| Self { places, near: vec![SKY_NEAR; n], face: vec![Face::default(); n] })
+        wanted.then(|| Self::of_rows(places, n / places.max(1)))
     }
 
     /// Bytes per pixel.
@@ -90,9 +90,27 @@ impl Relief {
 
     /// Bands of `pixels` pixels each.
     pub fn bands(&mut self, pixels: usize) -> Vec<Option<ReliefRows<'_>>> {
+        self.bands_of(0..usize::MAX, pixels)
+    }
+
+    /// Bands of `pixels` pixels each, of some of the pixels.
+    pub fn bands_of(&mut self, of: Range<usize>, pixels: usize) -> Vec<Option<ReliefRows<'_>>> {
         let (places, n) = (self.places, pixels * self.places);
-        let rows = self.near.chunks_mut(n).zip(self.face.chunks_mut(n));
+        let of = of.start * places..of.end.saturating_mul(places).min(self.near.len());
+        let rows = self.near[of.clone()].chunks_mut(n).zip(self.face[of].chunks_mut(n));
         rows.map(|(near, face)| Some(ReliefRows { places, near, face })).collect()
+    }
+
+    /// Room for some rows, all of it sky.
+    pub fn of_rows(places: usize, pixels: usize) -> Self {
+        let n = places * pixels;
+        Self { places, near: vec![SKY_NEAR; n], face: vec![Face::default(); n] }
+    }
+
+    /// Least and largest depth of all samples in a parallel projection; `None` if all is sky.
+    pub fn depths(&self) -> Option<[f32; 2]> {
+        let depth: Vec<f32> = self.near.par_iter().map(|q| depth_of(*q)).collect();
+        depth_range(&depth)
     }
 
     /// From the samples at the pixel centres; normals of faces from the world points of neighbours.
@@ -133,27 +151,72 @@ impl Relief {
     }
 }
 
+/// What the stylisation of every row needs to know of the whole picture.
+#[derive(Debug, Default)]
+pub struct Survey {
+    /// Least and largest depth of all samples, for edges in a parallel projection.
+    pub depths: Option<[f32; 2]>,
+    /// Surroundings of the pixels, for unsharp masking.
+    pub around: Option<Surroundings>,
+}
+
+/// Rows of a picture to stylise.
+#[derive(Debug)]
+pub struct StyledRows {
+    /// Width of the picture, pixels.
+    pub width: usize,
+    /// Number of the first row.
+    pub first: usize,
+    /// Whether the relief begins with the row above the first.
+    pub above: bool,
+}
+
 /// Draws edges and unsharp masking into the linear colours of surfaces.
 /// * `relief`: depths and faces of all samples, if they are known.
 pub fn apply(job: &RenderJob<'_>, width: usize, relief: Option<Relief>, buffers: &mut Buffers) {
     let Stylisation { edges, unsharp } = job.options.stylisation;
     let ortho = job.view.pinhole().is_orthographic();
-    let n = buffers.color.len();
-    let mut light = vec![1.0f32; n];
-    if edges > 0.0 {
-        let kinds: Vec<Kind> = job.scene.layers.iter().map(|l| Kind::of(&l.kind)).collect();
-        let relief = relief.unwrap_or_else(|| Relief::of_centres(buffers, width, ortho, &kinds));
-        let cloud = buffers.id.iter().map(|id| kind_of(&kinds, *id) == Some(Kind::Cloud)).collect();
-        let seen = Seen::new(relief, width, ortho, cloud);
-        light.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+    let relief = (edges > 0.0)
+        .then(|| relief.unwrap_or_else(|| Relief::of_centres(buffers, width, ortho, &Kind::of_layers(job))));
+    let survey = Survey {
+        depths: relief.as_ref().filter(|_| ortho).and_then(|relief| relief.depths()),
+        around: (unsharp > 0.0).then(|| Surroundings::of_picture(&buffers.depth, width, ortho)),
+    };
+    apply_to_rows(job, &StyledRows { width, first: 0, above: false }, &survey, relief, buffers);
+}
+
+/// [`apply`] to some rows of a picture.
+/// * `relief`: of these rows and their neighbours above and below, where there are any; `None` without edges.
+pub fn apply_to_rows(
+    job: &RenderJob<'_>,
+    rows: &StyledRows,
+    survey: &Survey,
+    relief: Option<Relief>,
+    buffers: &mut Buffers,
+) {
+    let Stylisation { edges, unsharp } = job.options.stylisation;
+    let ortho = job.view.pinhole().is_orthographic();
+    let width = rows.width;
+    let mut light = vec![1.0f32; buffers.color.len()];
+    if let Some(relief) = relief {
+        let kinds = Kind::of_layers(job);
+        let seen = Seen::new(relief, width, ortho, survey.depths);
+        let from = usize::from(rows.above);
+        light.par_chunks_mut(width).zip(buffers.id.par_chunks(width)).enumerate().for_each(|(y, (row, id))| {
             for (x, light) in row.iter_mut().enumerate() {
-                *light = 1.0 - edges * INK * seen.edge(x, y);
+                if kind_of(&kinds, id[x]) != Some(Kind::Cloud) {
+                    *light = 1.0 - edges * INK * seen.edge(x, y + from);
+                }
             }
         });
     }
-    if unsharp > 0.0 {
-        let behind = behind(&buffers.depth, width, ortho);
-        light.par_iter_mut().zip(&behind).for_each(|(light, off)| *light *= 1.0 + (unsharp * off).clamp(-DARKEST, 0.0));
+    if let Some(around) = &survey.around {
+        light.par_chunks_mut(width).zip(buffers.depth.par_chunks(width)).enumerate().for_each(|(y, (row, depth))| {
+            for (x, light) in row.iter_mut().enumerate() {
+                let off = around.behind([x, rows.first + y], depth[x]);
+                *light *= 1.0 + (unsharp * off).clamp(-DARKEST, 0.0);
+            }
+        });
     }
     buffers.color.par_iter_mut().zip(&light).for_each(|(color, light)| {
         if *light < 1.0 {
@@ -184,6 +247,10 @@ impl Kind {
             _ => Self::Depth,
         }
     }
+
+    fn of_layers(job: &RenderJob<'_>) -> Vec<Self> {
+        job.scene.layers.iter().map(|l| Self::of(&l.kind)).collect()
+    }
 }
 
 fn kind_of(kinds: &[Kind], id: u32) -> Option<Kind> {
@@ -198,28 +265,23 @@ struct Seen {
     /// Reciprocal depth, in parallel projection the reversed depth: affine on planes; 0 in the sky. As in [`Relief`].
     nearness: Vec<f32>,
     face: Vec<Face>,
-    cloud: Vec<bool>,
 }
 
 impl Seen {
-    fn new(relief: Relief, width: usize, ortho: bool, cloud: Vec<bool>) -> Self {
+    /// * `range`: of the depths of a parallel projection.
+    fn new(relief: Relief, width: usize, ortho: bool, range: Option<[f32; 2]>) -> Self {
         let Relief { places, near: mut nearness, face } = relief;
-        let height = cloud.len() / width;
+        let height = nearness.len() / (width * places).max(1);
         if ortho {
-            let of_depth: Vec<f32> = nearness.par_iter().map(|q| if q.is_nan() { f32::INFINITY } else { -q }).collect();
-            let range = depth_range(&of_depth);
-            nearness.par_iter_mut().zip(&of_depth).for_each(|(near, depth)| *near = near_of(*depth, true, range));
+            nearness.par_iter_mut().for_each(|near| *near = near_of(depth_of(*near), true, range));
         } else {
             nearness.par_iter_mut().filter(|near| near.is_nan()).for_each(|near| *near = 0.0);
         }
-        Self { width, height, places, nearness, face, cloud }
+        Self { width, height, places, nearness, face }
     }
 
     /// Strength of the edge on a pixel, 0..=1: the mean over its samples.
     fn edge(&self, x: usize, y: usize) -> f32 {
-        if self.cloud[y * self.width + x] {
-            return 0.0;
-        }
         (0..self.places).map(|place| self.edge_at(x, y, place)).sum::<f32>() / self.places as f32
     }
 
@@ -243,6 +305,11 @@ impl Seen {
         let [depth, normal] = [(DEPTH_EDGE, bends / at), (NORMAL_EDGE, turns)].map(|([a, b], v)| smoothstep(a, b, v));
         depth.max(normal)
     }
+}
+
+/// Depth of a nearness in parallel projection.
+fn depth_of(q: f32) -> f32 {
+    if q.is_nan() { f32::INFINITY } else { -q }
 }
 
 /// Least and largest depth without the sky; `None` if all is sky.
@@ -269,76 +336,6 @@ fn near_of(d: f32, ortho: bool, range: Option<[f32; 2]>) -> f32 {
     }
 }
 
-/// Mean depth of the surroundings minus the depth of each pixel, as a share of the range of depths; 0 in the sky.
-///
-/// The logarithm of the depth is used, so that a doubling counts the same everywhere; in parallel projection the depth itself.
-fn behind(depth: &[f32], width: usize, ortho: bool) -> Vec<f32> {
-    let Some([lo, hi]) = depth_range(depth) else { return vec![0.0; depth.len()] };
-    let scale = |d: f32| if ortho { d } else { d.max(f32::MIN_POSITIVE).ln() };
-    let (from, size) = (scale(lo), (scale(hi) - scale(lo)).max(1e-6));
-    let height = depth.len() / width;
-    // The sky counts as far as the farthest surface, so that there are no halos against it.
-    let share = |d: f32| if d.is_finite() { (scale(d) - from) / size } else { 1.0 };
-    let shares: Vec<f32> = depth.par_iter().map(|d| share(*d)).collect();
-    let [half_width, half_height] = [width.div_ceil(2), height.div_ceil(2)];
-    let halves: Vec<f32> = (0..half_width * half_height)
-        .into_par_iter()
-        .map(|i| {
-            let (x, y) = (2 * (i % half_width), 2 * (i / half_width));
-            let (right, below) = ((x + 1).min(width - 1), (y + 1).min(height - 1));
-            0.25 * [(x, y), (right, y), (x, below), (right, below)]
-                .map(|(x, y)| shares[y * width + x])
-                .iter()
-                .sum::<f32>()
-        })
-        .collect();
-    let sigma = 0.5 * SIGMA * ((width * width + height * height) as f32).sqrt();
-    let weights = gaussian(sigma);
-    let mean = blurred(&blurred(&halves, half_width, &weights), half_height, &weights);
-    let at = |x: usize, y: usize| {
-        // Position of the pixel's centre in the picture of half the size.
-        let place = |p: usize, n: usize| {
-            let g = (0.5 * (p as f32 + 0.5) - 0.5).clamp(0.0, (n - 1) as f32);
-            let i = (g as usize).min(n.saturating_sub(2));
-            (i, (i + 1).min(n - 1), g - i as f32)
-        };
-        let ((x0, x1, u), (y0, y1, v)) = (place(x, half_width), place(y, half_height));
-        let line = |y: usize| mean[y * half_width + x0] * (1.0 - u) + mean[y * half_width + x1] * u;
-        line(y0) * (1.0 - v) + line(y1) * v
-    };
-    let off = |i: usize| if depth[i].is_finite() { at(i % width, i / width) - shares[i] } else { 0.0 };
-    (0..depth.len()).into_par_iter().map(off).collect()
-}
-
-/// One half of a Gaussian; the sum over both halves is 1.
-fn gaussian(sigma: f32) -> Vec<f32> {
-    let reach = (3.0 * sigma).ceil().max(1.0) as usize;
-    let weights: Vec<f32> = (0..=reach).map(|i| (-0.5 * (i as f32 / sigma.max(1e-3)).powi(2)).exp()).collect();
-    let sum = 2.0 * weights.iter().sum::<f32>() - weights[0];
-    weights.into_iter().map(|w| w / sum).collect()
-}
-
-/// Weighted sums along rows of `width`, with the rim repeated; the result is transposed.
-fn blurred(of: &[f32], width: usize, weights: &[f32]) -> Vec<f32> {
-    let (height, reach) = (of.len() / width, weights.len() - 1);
-    let mut lines = vec![0.0; of.len()];
-    lines.par_chunks_mut(width).zip(of.par_chunks(width)).for_each(|(out, row)| {
-        let at = |i: isize| row[i.clamp(0, width as isize - 1) as usize];
-        for (x, out) in out.iter_mut().enumerate() {
-            let x = x as isize;
-            let sides = (1..=reach as isize).map(|k| weights[k as usize] * (at(x - k) + at(x + k)));
-            *out = weights[0] * at(x) + sides.sum::<f32>();
-        }
-    });
-    let mut turned = vec![0.0; of.len()];
-    turned.par_chunks_mut(height).enumerate().for_each(|(x, out)| {
-        for (y, out) in out.iter_mut().enumerate() {
-            *out = lines[y * width + x];
-        }
-    });
-    turned
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -348,14 +345,7 @@ mod tests {
 
     fn seen(depth: Vec<f32>, ortho: bool) -> Seen {
         let n = depth.len();
-        Seen {
-            width: W,
-            height: H,
-            places: 1,
-            nearness: nearness(&depth, ortho),
-            face: vec![Face::default(); n],
-            cloud: vec![false; n],
-        }
+        Seen { width: W, height: H, places: 1, nearness: nearness(&depth, ortho), face: vec![Face::default(); n] }
     }
 
     fn picture(depth: impl Fn(usize, usize) -> f32) -> Vec<f32> {
@@ -380,34 +370,5 @@ mod tests {
         let against_sky = picture(|_, y| if y < 40 { f32::INFINITY } else { 500.0 });
         let edges = all(&seen(against_sky, false));
         assert!(edges[40 * W + 7] == 1.0 && edges[39 * W + 7] == 0.0 && edges[41 * W + 7] == 0.0);
-    }
-
-    #[test]
-    fn what_lies_behind_is_shaded_and_the_sky_is_not() {
-        let step = picture(|x, y| {
-            if y < 10 {
-                f32::INFINITY
-            } else if x < 60 {
-                10.0
-            } else {
-                80.0
-            }
-        });
-        let off = behind(&step, W, false);
-        assert!(off[40 * W + 60] < -0.2 && off[40 * W + 59] > 0.2, "{} {}", off[40 * W + 59], off[40 * W + 60]);
-        assert!(off[40 * W + 100].abs() < 1e-4 && off[3 * W + 20] == 0.0);
-        assert!(behind(&vec![f32::INFINITY; W * H], W, false).iter().all(|v| *v == 0.0));
-        assert!(behind(&vec![5.0; W * H], W, true).iter().all(|v| v.abs() < 1e-5));
-    }
-
-    #[test]
-    fn averages_keep_what_is_even_and_have_their_width() {
-        let weights = gaussian(2.0);
-        let mut dot = vec![0.0; W * H];
-        dot[40 * W + 60] = 1.0;
-        let out = blurred(&blurred(&dot, W, &weights), H, &weights);
-        assert!((out.iter().sum::<f32>() - 1.0).abs() < 1e-5);
-        let variance: f32 = (0..W * H).map(|i| out[i] * ((i % W) as f32 - 60.0).powi(2)).sum();
-        assert!((variance - 4.0).abs() < 0.2, "{variance}");
     }
 }

@@ -59,6 +59,8 @@ impl Veil {
 pub struct Veiled<'a> {
     /// The veil.
     pub veil: &'a Veil,
+    /// Number of its first row.
+    pub first: usize,
     /// Marks of which those parts count that no surface hides, see-through ones included.
     pub front: &'a Marks,
 }
@@ -66,7 +68,7 @@ pub struct Veiled<'a> {
 impl Veiled<'_> {
     /// Lays the veil over the rows of a band, `y0` the first of them; visible marks in front of it stay.
     pub(crate) fn lay(&self, y0: i32, screen: &Screen, color: &mut [Packed]) {
-        let first = y0 as usize * screen.width as usize;
+        let first = (y0 as usize - self.first) * screen.width as usize;
         let rows = first..first + color.len();
         let Veil { light, through, .. } = self.veil;
         let (light, through) = (&light[rows.clone()], &through[rows]);

@@ -19,6 +19,7 @@ use crate::volume::{self, Way};
 use belvedere_composite::branches;
 use belvedere_composite::buffers::Buffers;
 use belvedere_composite::color::{Packed, Rgb};
+use belvedere_composite::depths::Depths;
 use belvedere_composite::finish::{buffers, finish_veiled};
 use belvedere_composite::layers;
 use belvedere_composite::marks::Marks;
@@ -94,9 +95,10 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     job.progress.tick("lines", 0.0)?;
     let passes = Pass::all(job.view);
     let front = veil.as_ref().filter(|_| Marks::are_in(job));
-    let front = front.map(|veil| marks::place(job, &passes, &screen, (&veil.nearest(&buffers.depth), Solids::Drawn)));
+    let front = front
+        .map(|veil| marks::place(job, &passes, &screen, (Depths::Whole(&veil.nearest(&buffers.depth)), Solids::Drawn)));
     let front = front.unwrap_or_default();
-    let veiled = veil.as_ref().map(|veil| Veiled { veil, front: &front });
+    let veiled = veil.as_ref().map(|veil| Veiled { veil, first: 0, front: &front });
     finish_veiled(job, (&marks, veiled), &screen, None, &mut buffers);
     job.progress.tick("lines", 1.0)?;
     let triangles_in = job.scene.layers.iter().map(|l| match &l.kind {

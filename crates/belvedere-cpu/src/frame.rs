@@ -3,7 +3,10 @@
 use crate::raster::band::BAND;
 use crate::see_through::SeeThrough;
 use crate::shade::ground_bytes;
+use belvedere_composite::depths::DepthTiles;
+use belvedere_composite::marks::Marks;
 use belvedere_composite::stylise::{self, Relief};
+use belvedere_composite::unsharp::DepthGrid;
 use belvedere_composite::veil::Veil;
 use belvedere_scene::{Frame, LayerKind, RenderError, RenderJob};
 
@@ -18,22 +21,37 @@ pub(crate) fn checked(
     if ![1, 4, 16].contains(&options.samples) {
         return Err(RenderError::Samples { samples: options.samples });
     }
-    check_memory(job, more_per_pixel)?;
-    if options.threads == 0 {
-        return render(job);
+    check_memory(job, (more_per_pixel, None))?;
+    match threads_of(job) {
+        Some(pool) => pool.install(|| render(job)),
+        None => render(job),
     }
-    match rayon::ThreadPoolBuilder::new().num_threads(options.threads).build() {
-        Ok(pool) => pool.install(|| render(job)),
-        // No thread can be started: the caller's threads are used.
-        Err(_) => render(job),
-    }
+}
+
+/// Threads of the job's own, if it wants a number of them; where none can be started the caller's are used.
+pub(crate) fn threads_of(job: &RenderJob<'_>) -> Option<rayon::ThreadPool> {
+    let threads = job.options.threads;
+    (threads > 0).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()).flatten()
 }
 
 /// Bytes of the image of a node of the ground; four times that of a vertex, for subdivided cells.
 const NODE_BYTES: u64 = 4 * 12;
 
+/// Fails where a picture takes more memory than it may.
+/// * `more_per_pixel`, `rows`: see [`needed`].
+pub(crate) fn check_memory(job: &RenderJob<'_>, of: (u64, Option<usize>)) -> Result<(), RenderError> {
+    let [width, height] = job.view.pinhole().image;
+    let (needed, limit) = (needed(job, of), job.options.max_bytes);
+    if needed <= limit {
+        return Ok(());
+    }
+    let needed_mib = needed.div_ceil(1 << 20);
+    Err(RenderError::TooLarge { width, height, samples: job.options.samples, needed_mib, limit_mib: limit >> 20 })
+}
+
 /// Bytes that a picture takes: the frame, the bands in work, the projected vertices and the lit ground.
-fn check_memory(job: &RenderJob<'_>, more_per_pixel: u64) -> Result<(), RenderError> {
+/// * `more_per_pixel`: bytes of a pixel beside those; `rows`: rows that are drawn at a time, all if there is no number.
+pub(crate) fn needed(job: &RenderJob<'_>, (more_per_pixel, rows): (u64, Option<usize>)) -> u64 {
     let [width, height] = job.view.pinhole().image;
     let samples = job.options.samples;
     let pixels = u64::from(width) * u64::from(height);
@@ -69,16 +87,8 @@ fn check_memory(job: &RenderJob<'_>, more_per_pixel: u64) -> Result<(), RenderEr
             kind => kind.triangles().map_or(0, |m| m.mesh.triangles().len() as u64 * 160),
         })
         .sum();
-    let needed = pixels * per_pixel + bands + nodes;
-    if needed > job.options.max_bytes {
-        let mib = |b: u64| b.div_ceil(1 << 20);
-        return Err(RenderError::TooLarge {
-            width,
-            height,
-            samples,
-            needed_mib: mib(needed),
-            limit_mib: job.options.max_bytes >> 20,
-        });
-    }
-    Ok(())
+    let Some(rows) = rows else { return pixels * per_pixel + bands + nodes };
+    let grid = if job.options.stylisation.unsharp > 0.0 { DepthGrid::bytes(pixels) } else { 0 };
+    let tiles = if Marks::are_in(job) { pixels / 64 * DepthTiles::BYTES_PER_TILE } else { 0 };
+    u64::from(width) * rows as u64 * per_pixel + bands + nodes + grid + tiles
 }

@@ -27,6 +27,7 @@ mod points;
 mod raster;
 mod rasteriser;
 mod resolve;
+mod rows;
 mod screen;
 mod see_through;
 mod shade;

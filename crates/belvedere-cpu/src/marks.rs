@@ -2,6 +2,7 @@
 
 use crate::geometry::pass::{InView, Pass};
 use crate::trace::Tracer;
+use belvedere_composite::depths::{DepthTiles, Depths};
 use belvedere_composite::drawn::{self, Drawn, Sight};
 use belvedere_composite::marks::{Marks, Shapes};
 use belvedere_composite::screen::{COARSE_PX, Screen};
@@ -20,12 +21,21 @@ pub(crate) fn place(
     job: &RenderJob<'_>,
     passes: &[Pass<'_>],
     screen: &Screen,
-    (depth, solids): (&[f32], Solids),
+    (depth, solids): (Depths<'_>, Solids),
 ) -> Marks {
     let passes: Vec<&dyn drawn::Pass> = passes.iter().map(|pass| pass as &dyn drawn::Pass).collect();
     let sight = TracedSight { job, solids, tracer: OnceLock::new() };
     let tolerance_px = job.options.tolerance_px.max(0.01);
     Marks::new(job, &Drawn { passes: &passes, screen, tolerance_px, depth, sight: &sight })
+}
+
+/// Where [`place`] reads depths.
+pub(crate) fn wanted_depths(job: &RenderJob<'_>, passes: &[Pass<'_>], screen: &Screen) -> DepthTiles {
+    let passes: Vec<&dyn drawn::Pass> = passes.iter().map(|pass| pass as &dyn drawn::Pass).collect();
+    let sight = TracedSight { job, solids: Solids::Opaque, tracer: OnceLock::new() };
+    let tolerance_px = job.options.tolerance_px.max(0.01);
+    let drawn = Drawn { passes: &passes, screen, tolerance_px, depth: Depths::Whole(&[]), sight: &sight };
+    Marks::wanted_depths(job, &drawn)
 }
 
 /// Largest error of bent lines as shapes, pixels.
@@ -41,12 +51,15 @@ pub fn mark_shapes(job: &RenderJob<'_>, depth: &[f32]) -> Shapes {
     let screen = Screen::new(job.view.pinhole());
     let sight = TracedSight { job, solids: Solids::Opaque, tracer: OnceLock::new() };
     let tolerance_px = job.options.tolerance_px.clamp(0.01, SHAPE_TOLERANCE_PX);
-    Marks::shapes(job, &Drawn { passes: &passes, screen: &screen, tolerance_px, depth, sight: &sight })
+    Marks::shapes(
+        job,
+        &Drawn { passes: &passes, screen: &screen, tolerance_px, depth: Depths::Whole(depth), sight: &sight },
+    )
 }
 
 /// The same as [`place`] for surfaces that were not drawn by passes.
 pub(crate) fn place_alone(job: &RenderJob<'_>, screen: &Screen, depth: &[f32]) -> Marks {
-    place(job, &Pass::all(job.view), screen, (depth, Solids::Opaque))
+    place(job, &Pass::all(job.view), screen, (Depths::Whole(depth), Solids::Opaque))
 }
 
 /// Lines of sight through the exact tracer, which is prepared on first use.

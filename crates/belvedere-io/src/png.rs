@@ -8,6 +8,8 @@ use std::path::Path;
 
 /// Longest keyword that the format allows, bytes.
 const MAX_KEYWORD: usize = 79;
+/// Bytes of compressed pixels in a chunk.
+const PIECE: usize = 1 << 20;
 
 /// Channels of a picture of 8 bits per channel, sRGB.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,14 +65,30 @@ pub fn encode_at(
     text: &[(&str, &str)],
     dpi: Option<f64>,
 ) -> io::Result<()> {
-    let bad = |message: String| io::Error::new(io::ErrorKind::InvalidInput, message);
     let expected = width.checked_mul(height).and_then(|n| n.checked_mul(channels.count()));
-    let side = |n: usize| u32::try_from(n).ok().filter(|n| (1..=i32::MAX as u32).contains(n));
-    let (Some(w), Some(h), true) = (side(width), side(height), expected == Some(pixels.len())) else {
+    if expected != Some(pixels.len()) {
         let bytes = pixels.len();
-        return Err(bad(format!(
-            "a PNG of {width} x {height} pixels with {channels:?} cannot be made of {bytes} bytes"
-        )));
+        let reason = format!("a PNG of {width} x {height} pixels with {channels:?} cannot be made of {bytes} bytes");
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
+    }
+    encode_rows(out, (width, height), channels, (text, dpi), &|rows| rows.write_all(pixels))
+}
+
+/// [`encode_at`] without the pixels in memory: `rows` writes them, row after row, in pieces of any size. The same pixels give the same bytes.
+///
+/// # Errors
+/// As [`encode`]; what `rows` says.
+pub fn encode_rows(
+    out: &mut dyn Write,
+    (width, height): (usize, usize),
+    channels: Channels,
+    (text, dpi): (&[(&str, &str)], Option<f64>),
+    rows: &dyn Fn(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let bad = |message: String| io::Error::new(io::ErrorKind::InvalidInput, message);
+    let side = |n: usize| u32::try_from(n).ok().filter(|n| (1..=i32::MAX as u32).contains(n));
+    let (Some(w), Some(h)) = (side(width), side(height)) else {
+        return Err(bad(format!("a PNG of {width} x {height} pixels with {channels:?} cannot be made")));
     };
     let mut encoder = Encoder::new(out, w, h);
     encoder.set_color(match channels {
@@ -101,7 +119,9 @@ pub fn encode_at(
         added.map_err(io_error)?;
     }
     let mut writer = encoder.write_header().map_err(io_error)?;
-    writer.write_image_data(pixels).map_err(io_error)?;
+    let mut image = writer.stream_writer_with_size(PIECE).map_err(io_error)?;
+    rows(&mut image)?;
+    image.finish().map_err(io_error)?;
     writer.finish().map_err(io_error)
 }
 

@@ -2,6 +2,7 @@
 
 use crate::{Cancelled, Light, Overlay, Progress, Scene};
 use belvedere_core::View;
+use std::ops::Range;
 
 /// Buffers wanted beside colour, depth and id.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -182,6 +183,12 @@ pub enum RenderError {
         /// Memory allowed, MiB.
         limit_mib: u64,
     },
+    /// A picture that is drawn in one piece alone.
+    #[error("the picture must be drawn in one piece because of {what}; leave that out to draw it in bands")]
+    WholeOnly {
+        /// What needs one piece.
+        what: &'static str,
+    },
     /// A number of coverage samples that no renderer offers.
     #[error("{samples} coverage samples per pixel were asked for; use 1, 4 or 16")]
     Samples {
@@ -189,6 +196,55 @@ pub enum RenderError {
         samples: u32,
     },
 }
+
+/// Pixels of a picture at equal distances.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PixelGrid {
+    /// Column and row of the first.
+    pub first: [usize; 2],
+    /// Distance of neighbours, pixels, at least 1.
+    pub step: usize,
+    /// Number across and down.
+    pub count: [usize; 2],
+}
+
+impl PixelGrid {
+    /// Every `step`th column and row of a picture, from column and row `from` on.
+    pub fn over(size: [usize; 2], from: usize, step: usize) -> Self {
+        Self { first: [from; 2], step, count: size.map(|n| n.saturating_sub(from).div_ceil(step)) }
+    }
+
+    /// Column and row of a pixel by its number.
+    pub fn pixel(&self, i: usize) -> [usize; 2] {
+        let across = self.count[0].max(1);
+        [self.first[0] + self.step * (i % across), self.first[1] + self.step * (i / across)]
+    }
+}
+
+/// A picture whose surfaces are prepared, drawn some rows at a time. Every pixel is that of the picture drawn in one piece.
+pub trait PictureRows {
+    /// Width and height of the picture, pixels.
+    fn size(&self) -> [usize; 2];
+    /// Counts of the picture, as in one piece.
+    fn stats(&self) -> FrameStats;
+    /// Depths of some pixels, before they are drawn.
+    ///
+    /// * `points`: whether layers and world points are wanted as well; the job must ask for [`Aux::world`].
+    ///
+    /// # Errors
+    /// [`RenderError::Cancelled`].
+    fn look(&self, grid: &PixelGrid, points: bool) -> Result<Frame, RenderError>;
+    /// Draws rows into the memory of earlier ones.
+    ///
+    /// * `rows`: the first one a multiple of [`ROWS`].
+    ///
+    /// # Errors
+    /// [`RenderError::Cancelled`].
+    fn draw(&self, rows: Range<usize>, frame: &mut Frame) -> Result<(), RenderError>;
+}
+
+/// Rows are drawn in multiples of so many.
+pub const ROWS: usize = 16;
 
 /// Makes pictures. The result depends on the job alone, not on threads or time.
 pub trait Renderer {
@@ -200,5 +256,26 @@ pub trait Renderer {
     fn render_into(&self, job: &RenderJob<'_>, frame: &mut Frame) -> Result<(), RenderError> {
         *frame = self.render(job)?;
         Ok(())
+    }
+    /// What keeps the renderer from drawing a job some rows at a time; `None` where nothing does.
+    fn whole_only(&self, _: &RenderJob<'_>) -> Option<&'static str> {
+        Some("this renderer")
+    }
+    /// Memory that a picture takes, bytes.
+    ///
+    /// * `rows`: rows that are drawn at a time; `None`: all of them.
+    fn bytes_for(&self, _: &RenderJob<'_>, _: Option<usize>) -> u64 {
+        0
+    }
+    /// Prepares a picture, and lets `work` draw it some rows at a time.
+    ///
+    /// # Errors
+    /// [`RenderError::WholeOnly`] where [`Renderer::whole_only`] says so; those of [`Renderer::render`]; those of `work`.
+    fn in_rows(
+        &self,
+        job: &RenderJob<'_>,
+        _: &mut dyn FnMut(&dyn PictureRows) -> Result<(), RenderError>,
+    ) -> Result<(), RenderError> {
+        Err(RenderError::WholeOnly { what: self.whole_only(job).unwrap_or("this renderer") })
     }
 }

@@ -36,7 +36,10 @@ pub use city::{
 pub use climate::Climate;
 pub use color::Color;
 pub use drape::{Draped, drape_polyline};
-pub use frame::{Aux, Compositing, Frame, FrameStats, RenderError, RenderJob, RenderOptions, Renderer, Stylisation};
+pub use frame::{
+    Aux, Compositing, Frame, FrameStats, PictureRows, PixelGrid, ROWS, RenderError, RenderJob, RenderOptions, Renderer,
+    Stylisation,
+};
 pub use heightfield::{Heightfield, HeightfieldError, NodeState, States};
 pub use layer::{
     AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Drape, Layer, LayerKind, LineFeature, LineLayer, Palette,

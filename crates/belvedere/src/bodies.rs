@@ -25,20 +25,30 @@ impl RigidLayers {
         scene.layers.iter().zip(&self.0).filter(|(_, rigid)| **rigid).map(|(layer, _)| layer.id.clone()).collect()
     }
 
-    /// Whether a pixel shows a rigid layer, by the pixel's number.
-    pub(crate) fn shown_at(&self, frame: &Frame, i: usize) -> bool {
-        frame.id[i].checked_sub(1).and_then(|layer| self.0.get(layer as usize)) == Some(&true)
+    /// Whether a pixel with this id shows a rigid layer.
+    pub(crate) fn shown(&self, id: u32) -> bool {
+        id.checked_sub(1).and_then(|layer| self.0.get(layer as usize)) == Some(&true)
     }
 
-    /// Displaced position of the point `p_world` that a pixel shows: for a rigid layer from the picture itself; `None` if it has no
-    /// image.
+    /// Displaced position of the point `p_world` that a pixel shows, by the pixel's number: for a rigid layer from the picture itself; `None`
+    /// if it has no image.
     pub(crate) fn displaced(&self, view: &View, frame: &Frame, i: usize, p_world: DVec3) -> Option<DVec3> {
+        let pixel = DVec2::new((i % frame.width) as f64 + 0.5, (i / frame.width) as f64 + 0.5);
+        self.displaced_at(view, (frame.id[i], pixel, frame.depth[i]), p_world)
+    }
+
+    /// [`RigidLayers::displaced`] of a pixel with its id and depth.
+    pub(crate) fn displaced_at(
+        &self,
+        view: &View,
+        (id, pixel, depth): (u32, DVec2, f32),
+        p_world: DVec3,
+    ) -> Option<DVec3> {
         if !p_world.is_finite() {
             return None;
         }
-        if self.shown_at(frame, i) {
-            let pixel = DVec2::new((i % frame.width) as f64 + 0.5, (i / frame.width) as f64 + 0.5);
-            return Some(view.pinhole().unproject(pixel, f64::from(frame.depth[i]))).filter(|p| p.is_finite());
+        if self.shown(id) {
+            return Some(view.pinhole().unproject(pixel, f64::from(depth))).filter(|p| p.is_finite());
         }
         view.displace(p_world).ok().map(|d| d.point)
     }

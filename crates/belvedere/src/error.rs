@@ -45,6 +45,21 @@ pub enum BelvedereError {
         /// Why it is refused, and what to do.
         reason: String,
     },
+    /// A picture that is too large for one piece, with parts that are drawn in one piece alone.
+    #[error(
+        "a picture of {} x {} pixels with {what} is drawn in one piece alone, which needs about {needed_mib} MiB, and {limit_mib} MiB are allowed; leave that out to draw it in bands, or use a smaller picture or more memory",
+        size[0], size[1]
+    )]
+    OnePiece {
+        /// What needs one piece.
+        what: &'static str,
+        /// Width and height, pixels.
+        size: [u64; 2],
+        /// Memory needed, MiB.
+        needed_mib: u64,
+        /// Memory allowed, MiB.
+        limit_mib: u64,
+    },
     /// A field of view outside (0, 180) degrees.
     #[error("the field of view is {deg} degrees, it must lie strictly between 0 and 180")]
     FieldOfView {

@@ -99,8 +99,8 @@ impl Line {
         FONT.as_ref().map_or(0.0, |font| f64::from(self.width * size_px / font.em))
     }
 
-    /// The letters as pixels, the line beginning at `origin`; `None` without ink.
-    pub(super) fn ink(&self, size_px: f32, origin: [f32; 2]) -> Option<Ink> {
+    /// The letters as pixels, the line beginning at `origin`; `None` without ink between two rows.
+    pub(super) fn ink(&self, size_px: f32, origin: [f32; 2], rows: [f64; 2]) -> Option<Ink> {
         let font = FONT.as_ref()?;
         let scale = size_px / font.em;
         let mut pen = Pen::default();
@@ -113,7 +113,7 @@ impl Line {
                 let _ = outline.draw(settings, &mut pen);
             }
         }
-        pen.ink()
+        pen.ink(rows)
     }
 }
 
@@ -138,7 +138,7 @@ impl Pen {
         point(self.origin[0] + x, self.origin[1] - y)
     }
 
-    fn ink(&self) -> Option<Ink> {
+    fn ink(&self, [top, bottom]: [f64; 2]) -> Option<Ink> {
         let corners = self.pieces.iter().flat_map(|piece| match piece {
             Piece::Line(p) => p.as_slice(),
             Piece::Quadratic(p) => p.as_slice(),
@@ -150,7 +150,8 @@ impl Pen {
         }
         let at = lo.map(|v| v.floor());
         let size = [0, 1].map(|i| (hi[i].ceil() - at[i]) as usize);
-        if !at.iter().all(|v| v.is_finite()) || size.contains(&0) {
+        let is_apart = f64::from(hi[1]) < top - 1.0 || f64::from(lo[1]) > bottom + 1.0;
+        if !at.iter().all(|v| v.is_finite()) || size.contains(&0) || is_apart {
             return None;
         }
         let moved = |p: &Point| point(p.x - at[0], p.y - at[1]);

@@ -28,7 +28,9 @@ use belvedere_scene::Color;
 pub struct Canvas<'a> {
     pixels: &'a mut [[u8; 3]],
     width: usize,
+    /// Height of the picture; its rows from `first` on are drawn on.
     height: usize,
+    first: usize,
     /// Pixels per unit of all lengths and positions.
     scale: f64,
     /// What is recorded instead of drawn.
@@ -39,12 +41,23 @@ impl<'a> Canvas<'a> {
     /// A picture of `width` columns, row-major, row 0 on top.
     pub fn new(pixels: &'a mut [[u8; 3]], width: usize) -> Self {
         let height = pixels.len().checked_div(width).unwrap_or(0);
-        Self { pixels, width, height, scale: 1.0, record: None }
+        Self { pixels, width, height, first: 0, scale: 1.0, record: None }
+    }
+
+    /// Some rows of a picture of this size, pixels, from row `first` on: drawing in the other rows is left out.
+    pub fn rows(pixels: &'a mut [[u8; 3]], [width, height]: [usize; 2], first: usize) -> Self {
+        Self { pixels, width, height, first, scale: 1.0, record: None }
+    }
+
+    /// First and last but one of the rows that are drawn on, pixels.
+    fn drawn_rows(&self) -> [f64; 2] {
+        let rows = self.pixels.len().checked_div(self.width).unwrap_or(0);
+        [self.first, (self.first + rows).min(self.height)].map(|row| row as f64)
     }
 
     /// A picture of this size, pixels, that records shapes and draws nothing; [`Canvas::blend`] is left out.
     pub fn recording(shapes: &'a mut Vec<CanvasShape>, [width, height]: [usize; 2]) -> Self {
-        Self { pixels: &mut [], width, height, scale: 1.0, record: Some(shapes) }
+        Self { pixels: &mut [], width, height, first: 0, scale: 1.0, record: Some(shapes) }
     }
 
     /// Records a shape; whether that is all there is to do.
@@ -72,14 +85,15 @@ impl<'a> Canvas<'a> {
 
     /// Blends `color` over a pixel; `coverage` in 0..=1 scales its opacity.
     pub fn blend(&mut self, x: i64, y: i64, color: Color, coverage: f32) {
-        if self.record.is_some() || x < 0 || y < 0 || x >= self.width as i64 || y >= self.height as i64 {
+        let row = y - self.first as i64;
+        if self.record.is_some() || x < 0 || row < 0 || x >= self.width as i64 || y >= self.height as i64 {
             return;
         }
         let alpha = coverage.clamp(0.0, 1.0) * f32::from(color.a) / 255.0;
         if !(alpha > 0.0) {
             return;
         }
-        let pixel = &mut self.pixels[y as usize * self.width + x as usize];
+        let Some(pixel) = self.pixels.get_mut(row as usize * self.width + x as usize) else { return };
         *pixel = encode(linear(*pixel).lerp(linear([color.r, color.g, color.b]), alpha));
     }
 
@@ -87,7 +101,8 @@ impl<'a> Canvas<'a> {
     fn shape(&mut self, lo: DVec2, hi: DVec2, color: Color, distance: impl Fn(DVec2) -> f64) {
         let size = self.extent();
         let (lo, hi) = ((lo - 1.0).floor().clamp(DVec2::ZERO, size), (hi + 1.0).ceil().clamp(DVec2::ZERO, size));
-        for y in lo.y as i64..hi.y as i64 {
+        let [top, bottom] = self.drawn_rows();
+        for y in lo.y.max(top) as i64..hi.y.min(bottom) as i64 {
             for x in lo.x as i64..hi.x as i64 {
                 let d = distance(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
                 self.blend(x, y, color, (0.5 - d) as f32);

@@ -7,6 +7,9 @@ use belvedere_scene::Color;
 /// Longest text that is set, characters; longer ones end in an ellipsis.
 const MAX_CHARS: usize = 80;
 
+/// Largest letters, pixels per em: those of 400 pixels of a scene at 2400 pixels per inch.
+const MOST_PX: f64 = 10_000.0;
+
 /// Size of a line of text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TextSize {
@@ -32,7 +35,7 @@ pub fn text_size(size_px: f64, text: &str) -> TextSize {
 
 /// Sizes of letters that are drawn, pixels per em.
 pub(super) fn drawn_size(size_px: f64) -> f64 {
-    size_px.clamp(1.0, 400.0)
+    size_px.clamp(1.0, MOST_PX)
 }
 
 /// The text as it is set: without control characters, and not too long.
@@ -64,7 +67,9 @@ pub(super) fn draw(
     // The letters keep their subpixel position.
     let whole = at.floor();
     let origin = (at - whole).as_vec2();
-    let Some(ink) = line(text).ink(drawn_size(size_px) as f32, origin.to_array()) else { return };
+    let [top, bottom] = canvas.drawn_rows();
+    let rows = [top - whole.y - pad as f64, bottom - whole.y + pad as f64];
+    let Some(ink) = line(text).ink(drawn_size(size_px) as f32, origin.to_array(), rows) else { return };
     let (w, h) = (ink.size[0] + 2 * pad as usize, ink.size[1] + 2 * pad as usize);
     let mut mask = vec![0.0f32; w * h];
     for (y, row) in ink.coverage.chunks_exact(ink.size[0]).enumerate() {

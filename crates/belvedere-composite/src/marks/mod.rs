@@ -20,7 +20,8 @@ mod visibility;
 
 use crate::canvas::Canvas;
 use crate::color::{Packed, linear};
-use crate::drawn::{Drawn, Pass};
+use crate::depths::{DepthTiles, Depths};
+use crate::drawn::{Drawn, Pass, Sight};
 use crate::screen::{BAND, COARSE_PX, Screen};
 use crate::sections::Sections;
 use alike::alike;
@@ -62,6 +63,15 @@ impl Marks {
         let mut names = Vec::new();
         marks.labels.draw(&mut Canvas::recording(&mut names, job.view.pinhole().image.map(|side| side as usize)));
         Shapes { under: of(&marks.under), layers: of(&marks.sheets), names }
+    }
+
+    /// Where the marks of a job read the depths of the surfaces, which are not drawn yet.
+    ///
+    /// * `drawn`: its depths and rays are not used.
+    pub fn wanted_depths(job: &RenderJob<'_>, drawn: &Drawn<'_>) -> DepthTiles {
+        let tiles = DepthTiles::new([drawn.screen.width, drawn.screen.height].map(|side| side.max(0) as usize));
+        Self::place(job, &Drawn { depth: Depths::Wanted(&tiles), sight: &NoSight, ..*drawn }, false);
+        tiles
     }
 
     /// * `keep`: whether lines are kept as shapes.
@@ -108,6 +118,9 @@ impl Marks {
         sheets.extend(overlay.over.iter().map(|l| builder.overlay_line(l, &mut requests)));
         sheets.extend(overlay.points.iter().map(|p| builder.overlay_point(p, &mut requests)));
         let under = overlay.under.iter().map(|l| builder.overlay_line(l, &mut requests)).collect();
+        if map.only_asks() {
+            return Self::default();
+        }
         let faces = overlay
             .faces
             .iter()
@@ -149,9 +162,18 @@ impl Marks {
         cover
     }
 
-    /// Writes the names over the finished picture.
-    pub fn write_names(&self, pixels: &mut [[u8; 3]], width: usize) {
-        self.labels.draw(&mut Canvas::new(pixels, width));
+    /// Writes the names over the finished picture, or over some of its rows.
+    pub fn write_names(&self, canvas: &mut Canvas<'_>) {
+        self.labels.draw(canvas);
+    }
+}
+
+/// Rays of a picture that is not drawn yet.
+struct NoSight;
+
+impl Sight for NoSight {
+    fn first_depth(&self, _: DVec2) -> Option<f64> {
+        None
     }
 }
 
@@ -212,7 +234,7 @@ impl MarkBuilder<'_> {
 
     fn line_sheets(&self, layer: &LineLayer, id: u32) -> Vec<StrokeLayer> {
         let sheet = |group: alike::Alike<'_, LineFeature>| {
-            let half_px = 0.5 * width_or_none(group.scale * layer.width_px);
+            let half_px = 0.5 * width_or_none(group.scale * layer.width_px, self.density);
             let casing_px = layer.casing.map(|_| self.casing_of(half_px));
             let style = Style { half_px, casing_px, hidden: layer.hidden, lift_m: layer.lift_m };
             let paths = group
@@ -232,14 +254,14 @@ impl MarkBuilder<'_> {
             let closed = ring.iter().chain(ring.first()).map(|xy| xy.extend(0.0));
             paths.extend(path::lay(self.scene, &closed.collect::<Vec<_>>(), layer.lift_m, self.coarse()));
         }
-        let half_px = 0.5 * width_or_none(layer.width_px);
+        let half_px = 0.5 * width_or_none(layer.width_px, self.density);
         let style = Style { half_px, casing_px: None, hidden: layer.hidden, lift_m: layer.lift_m };
         let paths = self.shown_paths(id as usize - 1, paths);
         Some(self.sheet(paths, style, inks(color, None, layer.hidden), id))
     }
 
     fn overlay_line(&self, line: &OverlayLine, requests: &mut Vec<LabelRequest>) -> StrokeLayer {
-        let half_px = 0.5 * width_or_none(line.width_px);
+        let half_px = 0.5 * width_or_none(line.width_px, self.density);
         let casing_px = line.casing.map(|_| self.casing_of(half_px));
         let style = Style { half_px, casing_px, hidden: line.hidden, lift_m: 0.0 };
         let paths = match line.on_ground {
@@ -283,7 +305,11 @@ impl MarkBuilder<'_> {
             .enumerate()
             .map(|(number, line)| {
                 let (mut strokes, mut lines) = (Vec::new(), Vec::new());
-                for (_, run) in self.runs(line, style) {
+                let runs = self.runs(line, style);
+                if self.map.only_asks() {
+                    return (strokes, lines);
+                }
+                for (_, run) in runs {
                     for (visible, part) in run.parts() {
                         self.strokes(visible, &part, style, &mut strokes);
                         lines.extend(self.keep.then(|| self.line_shape(number, visible, &part, style)));
@@ -361,7 +387,7 @@ impl MarkBuilder<'_> {
             layer.features.iter().map(|f| path::drape(self.scene, &f.points, layer.lift_m, self.coarse())).collect();
         let lengths = lines.iter().filter_map(|l| l.last().map(|p| p.along));
         let every = distance::spacing(markers, lengths)?;
-        let half_px = (0.5 * width_or_none(layer.width_px)).max(self.density) + 1.2 * self.density;
+        let half_px = (0.5 * width_or_none(layer.width_px, self.density)).max(self.density) + 1.2 * self.density;
         // A hidden mark cannot be told from the dashes.
         let hidden = if layer.hidden == Hidden::Show { Hidden::Show } else { Hidden::Cut };
         let marker = Marker { symbol: Symbol::Dot, half_px, casing: true, hidden };
@@ -393,9 +419,13 @@ fn darker(c: Color) -> Color {
     Color::rgb(r, g, b)
 }
 
+/// Largest width of a line and size of a symbol, pixels of a scene.
+const MOST_WIDTH: f64 = 1000.0;
+
 /// The width, or 0 if it cannot be drawn.
-fn width_or_none(width_px: f64) -> f64 {
-    if width_px.is_finite() { width_px.clamp(0.0, 1000.0) } else { 0.0 }
+/// * `density`: pixels per pixel of the scene; the largest width grows with it.
+fn width_or_none(width_px: f64, density: f64) -> f64 {
+    if width_px.is_finite() { width_px.clamp(0.0, MOST_WIDTH * density.max(1.0)) } else { 0.0 }
 }
 
 /// Half width of a casing.

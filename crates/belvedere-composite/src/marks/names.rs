@@ -24,7 +24,7 @@ impl MarkBuilder<'_> {
     /// Each name of a layer once, at the longest stretch of the lines that bear it.
     pub(super) fn line_names(&self, layer: &LineLayer) -> Vec<LabelRequest> {
         let Some(size_px) = layer.label_px else { return Vec::new() };
-        let half_px = 0.5 * width_or_none(layer.width_px);
+        let half_px = 0.5 * width_or_none(layer.width_px, self.density);
         let style = Style { half_px, casing_px: None, hidden: layer.hidden, lift_m: layer.lift_m };
         let stretches: Vec<(&str, Color, Option<Stretch>)> = layer
             .features

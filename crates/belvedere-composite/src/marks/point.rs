@@ -23,7 +23,7 @@ impl MarkBuilder<'_> {
         id: u32,
         requests: &mut Vec<LabelRequest>,
     ) -> StrokeLayer {
-        let half_px = 0.5 * width_or_none(group.scale * layer.size_px);
+        let half_px = 0.5 * width_or_none(group.scale * layer.size_px, self.density);
         let PointStyle { symbol, casing, label_px } = layer.style;
         let marker = Marker { symbol, half_px, casing: casing.is_some(), hidden: layer.hidden };
         let found: Vec<(Vec<Stroke>, Vec<DVec2>)> = group
@@ -51,7 +51,7 @@ impl MarkBuilder<'_> {
     }
 
     pub(super) fn overlay_point(&self, point: &OverlayPoint, requests: &mut Vec<LabelRequest>) -> StrokeLayer {
-        let half_px = 0.5 * width_or_none(point.size_px);
+        let half_px = 0.5 * width_or_none(point.size_px, self.density);
         let marker = Marker { symbol: point.symbol, half_px, casing: true, hidden: point.hidden };
         let on_line = LinePoint { p: point.position, along: 0.0, on_ground: false };
         let mut strokes = Vec::new();

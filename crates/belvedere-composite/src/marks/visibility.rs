@@ -1,5 +1,6 @@
 //! Visible and hidden parts of a line, stable from frame to frame.
 
+use crate::depths::Depths;
 use crate::drawn::Pass;
 use crate::marks::line_of_sight::LineOfSight;
 use crate::marks::path::{LinePoint, PathPoint};
@@ -18,7 +19,7 @@ const HYSTERESIS: f64 = 2.5;
 /// Depths of the surfaces at the pixel centres.
 #[derive(Clone, Copy)]
 pub(crate) struct DepthMap<'a> {
-    pub(crate) depth: &'a [f32],
+    pub(crate) depth: Depths<'a>,
     pub(crate) width: i32,
     pub(crate) height: i32,
 }
@@ -26,7 +27,20 @@ pub(crate) struct DepthMap<'a> {
 impl DepthMap<'_> {
     fn at(&self, x: i32, y: i32) -> Option<f64> {
         let inside = x >= 0 && y >= 0 && x < self.width && y < self.height;
-        inside.then(|| f64::from(self.depth[(y * self.width + x) as usize]))
+        inside.then(|| match self.depth {
+            Depths::Whole(depth) => f64::from(depth[y as usize * self.width as usize + x as usize]),
+            Depths::Tiles(tiles) => f64::from(tiles.at(x as usize, y as usize)),
+            Depths::Wanted(tiles) => {
+                tiles.want(x as usize, y as usize);
+                // Seen everywhere: no line of sight is needed to know which depths are read.
+                f64::INFINITY
+            }
+        })
+    }
+
+    /// Whether the depths are only asked for.
+    pub(crate) fn only_asks(&self) -> bool {
+        matches!(self.depth, Depths::Wanted(_))
     }
 
     /// Distance of `depth` behind the surface seen at `pixel`, in units of the tolerance, which is the change of the surface's depth
@@ -34,6 +48,11 @@ impl DepthMap<'_> {
     pub(crate) fn behind(&self, screen: &Screen, pixel: DVec2, depth: f64) -> Option<f64> {
         let (x, y) = (pixel.x.floor() as i32, pixel.y.floor() as i32);
         let surface = self.at(x, y)?;
+        if let Depths::Wanted(_) = self.depth {
+            for (x, y) in [(x - 1, y), (x + 1, y), (x, y - 1), (x, y + 1)] {
+                let _ = self.at(x, y);
+            }
+        }
         if !surface.is_finite() {
             return Some(f64::NEG_INFINITY);
         }
@@ -336,7 +355,7 @@ mod tests {
         let pinhole = Pinhole::look_at(DVec3::ZERO, DVec3::Y, DVec3::Z, lens, [320, 240], 1.0, None).unwrap();
         let (scene, screen, depth) = (Scene::default(), Screen::new(&pinhole), vec![f32::INFINITY; 320 * 240]);
         let sight = LineOfSight { scene: &scene, sight: &Empty };
-        let map = DepthMap { depth: &depth, width: 320, height: 240 };
+        let map = DepthMap { depth: Depths::Whole(&depth), width: 320, height: 240 };
         let visibility = LineVisibility { pass: &Empty, screen: &screen, map, sight: &sight, lift_m: 0.0 };
         // From near to forty times as far.
         let line = path::as_given(&[DVec3::new(-20.0, 50.0, -5.0), DVec3::new(600.0, 2000.0, -40.0)]);

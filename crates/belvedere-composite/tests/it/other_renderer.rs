@@ -1,6 +1,7 @@
 //! A renderer that only this test knows: it draws one ball by its equation, and has lines, names and edges from the crate.
 
 use belvedere_composite::color::{Packed, Rgb};
+use belvedere_composite::depths::Depths;
 use belvedere_composite::drawn::{Drawn, Pass, Sight};
 use belvedere_composite::finish::{buffers, finish};
 use belvedere_composite::marks::Marks;
@@ -62,7 +63,7 @@ impl Sight for Rays<'_> {
 fn marks(job: &RenderJob<'_>, screen: &Screen, depth: &[f32]) -> Marks {
     let passes: [&dyn Pass; 1] = [&Unbent];
     let sight = Rays(job.view.pinhole());
-    Marks::new(job, &Drawn { passes: &passes, screen, tolerance_px: 0.5, depth, sight: &sight })
+    Marks::new(job, &Drawn { passes: &passes, screen, tolerance_px: 0.5, depth: Depths::Whole(depth), sight: &sight })
 }
 
 fn draw(job: &RenderJob<'_>) -> Result<Frame, RenderError> {

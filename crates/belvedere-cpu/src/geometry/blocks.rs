@@ -239,8 +239,12 @@ impl Blocks {
     /// Blocks that may touch a band, with their numbers, nearest first.
     fn in_band(&self, band: &Band) -> impl Iterator<Item = (u32, &Block)> + use<'_> {
         let [top, bottom] = [band.y0, band.y1];
+        let only = band.only;
         let blocks = self.order.iter().map(|&i| (i, &self.list[i as usize]));
-        blocks.filter(move |(_, block)| block.cover.y[0] >> 8 < bottom && block.cover.y[1] >> 8 >= top)
+        let blocks = blocks.filter(move |(_, block)| block.cover.y[0] >> 8 < bottom && block.cover.y[1] >> 8 >= top);
+        let meets =
+            |block: &Block, [left, right]: [i32; 2]| block.cover.x[0] >> 8 < right && block.cover.x[1] >> 8 >= left;
+        blocks.filter(move |(_, block)| only.is_none_or(|only| meets(block, only)))
     }
 
     /// Layer of a primitive number (not sky).

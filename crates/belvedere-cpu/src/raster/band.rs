@@ -50,6 +50,8 @@ pub(crate) struct Band {
     pub(crate) y1: i32,
     pub(crate) width: i32,
     pub(crate) offsets: Vec<[i32; 2]>,
+    /// Columns of which the samples are wanted, where not all are.
+    pub(crate) only: Option<[i32; 2]>,
     /// Smallest and largest offset of samples along x and y, fixed-point steps.
     reach: [[i32; 2]; 2],
     /// Nearness (larger = nearer), one plane per sample.
@@ -74,7 +76,7 @@ impl Band {
     /// Resets the band to sky for other rows; its memory is reused.
     pub(crate) fn clear(&mut self, y0: i32, y1: i32, width: i32, offsets: &[[i32; 2]]) {
         let alike = (self.y1 - self.y0, self.width, self.offsets.as_slice()) == (y1 - y0, width, offsets);
-        (self.y0, self.y1, self.width) = (y0, y1, width);
+        (self.y0, self.y1, self.width, self.only) = (y0, y1, width, None);
         if alike {
             return self.clear_drawn();
         }

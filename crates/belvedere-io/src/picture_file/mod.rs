@@ -99,11 +99,38 @@ impl PictureFile<'_> {
         }
         match format {
             PictureFormat::Png => png::encode_at(out, (width, height), Channels::Rgb, self.pixels, self.text, self.dpi),
-            PictureFormat::Tiff => tiff::encode(self, out),
+            PictureFormat::Tiff => tiff::encode(self, out, &|rows| rows.write_all(self.pixels)),
             PictureFormat::Jpeg => self.jpeg(out),
             PictureFormat::WebP => WebPEncoder::new(out)
                 .encode(self.pixels, width as u32, height as u32, ColorType::Rgb8)
                 .map_err(|e| io::Error::other(e.to_string())),
+        }
+    }
+
+    /// Whether a format is written row by row, see [`PictureFile::encode_rows`].
+    pub fn has_rows(format: PictureFormat) -> bool {
+        matches!(format, PictureFormat::Png | PictureFormat::Tiff)
+    }
+
+    /// [`PictureFile::encode`] without the pixels in memory: `rows` writes them, row after row, in pieces of any size. The same pixels give the
+    /// same bytes.
+    ///
+    /// # Errors
+    /// As [`PictureFile::encode`]; [`io::ErrorKind::Unsupported`] for formats without rows; what `rows` says.
+    pub fn encode_rows(
+        &self,
+        format: PictureFormat,
+        out: &mut dyn Write,
+        rows: &dyn Fn(&mut dyn Write) -> io::Result<()>,
+    ) -> io::Result<()> {
+        let size = (self.width, self.height);
+        match format {
+            PictureFormat::Png => png::encode_rows(out, size, Channels::Rgb, (self.text, self.dpi), rows),
+            PictureFormat::Tiff => tiff::encode(self, out, rows),
+            other => {
+                let reason = format!("a {} is not written row by row; write a PNG or a TIFF", other.name());
+                Err(io::Error::new(io::ErrorKind::Unsupported, reason))
+            }
         }
     }
 

@@ -3,10 +3,15 @@
 use super::PictureFile;
 use flate2::{Compression, write::ZlibEncoder};
 use rayon::prelude::*;
-use std::io::{self, Write};
+use std::io::{self, Seek, SeekFrom, Write};
+use tempfile::SpooledTempFile;
 
 /// Bytes of a strip before it is compressed, about.
 const STRIP: usize = 1 << 20;
+/// Strips that are compressed together.
+const AT_ONCE: usize = 32;
+/// Compressed strips from which on they go to a file without a name in the folder of temporary files, bytes; there is none in a browser.
+const SPOOLED: usize = if cfg!(target_family = "wasm") { usize::MAX } else { 128 << 20 };
 
 /// A field of the directory: tag, type, count, bytes.
 struct Field(u16, u16, u32, Vec<u8>);
@@ -59,12 +64,71 @@ pub(super) fn description_only(words: &str) -> Vec<u8> {
     directory(&[text(270, words)])
 }
 
-pub(super) fn encode(picture: &PictureFile<'_>, out: &mut dyn Write) -> io::Result<()> {
+/// Collects rows into strips, which are compressed several at a time and kept until their directory is written.
+struct Strips {
+    row: usize,
+    /// Bytes of a strip before it is compressed.
+    size: usize,
+    waiting: Vec<u8>,
+    file: SpooledTempFile,
+    /// Compressed sizes.
+    counts: Vec<u32>,
+}
+
+impl Strips {
+    /// Compresses what waits: whole strips, and with `all` the rest.
+    fn compress(&mut self, all: bool) -> io::Result<()> {
+        let whole = if all { self.waiting.len() } else { self.waiting.len() / self.size * self.size };
+        let strips: Vec<Vec<u8>> = self.waiting[..whole]
+            .par_chunks(self.size)
+            .map(|strip| compress(strip, self.row))
+            .collect::<io::Result<_>>()?;
+        self.waiting.drain(..whole);
+        for strip in strips {
+            self.counts.push(u32::try_from(strip.len()).map_err(|_| too_large())?);
+            self.file.write_all(&strip)?;
+        }
+        Ok(())
+    }
+}
+
+impl Write for Strips {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let most = AT_ONCE * self.size;
+        let taken = bytes.len().min(most - self.waiting.len());
+        self.waiting.extend_from_slice(&bytes[..taken]);
+        if self.waiting.len() >= most {
+            self.compress(false)?;
+        }
+        Ok(taken)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+fn too_large() -> io::Error {
+    io::Error::new(io::ErrorKind::InvalidInput, "the TIFF would need 4 GiB or more; write a PNG, or fewer pixels")
+}
+
+/// * `rows`: writes the rows of the picture.
+pub(super) fn encode(
+    picture: &PictureFile<'_>,
+    out: &mut dyn Write,
+    pixels: &dyn Fn(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
     let row = 3 * picture.width;
     let rows = (STRIP / row).clamp(1, picture.height);
-    let strips: Vec<Vec<u8>> =
-        picture.pixels.par_chunks(rows * row).map(|strip| compress(strip, row)).collect::<io::Result<_>>()?;
-    let counts: Vec<u32> = strips.iter().map(|strip| strip.len() as u32).collect();
+    let (size, file) = (rows * row, tempfile::spooled_tempfile(SPOOLED));
+    let mut strips = Strips { row, size, waiting: Vec::with_capacity(AT_ONCE * size), file, counts: Vec::new() };
+    pixels(&mut strips)?;
+    strips.compress(true)?;
+    let Strips { mut file, counts, .. } = strips;
+    if counts.len() != picture.height.div_ceil(rows) {
+        let (found, wanted) = (counts.len(), picture.height.div_ceil(rows));
+        return Err(io::Error::new(io::ErrorKind::InvalidInput, format!("{found} of {wanted} strips were written")));
+    }
     let fields = |offsets: &[u32]| {
         let mut fields = vec![
             long(256, &[picture.width as u32]),
@@ -87,18 +151,16 @@ pub(super) fn encode(picture: &PictureFile<'_>, out: &mut dyn Write) -> io::Resu
         fields.sort_by_key(|field| field.0);
         fields
     };
-    let too_large = || {
-        io::Error::new(io::ErrorKind::InvalidInput, "the TIFF would need 4 GiB or more; write a PNG, or fewer pixels")
-    };
-    let mut at = directory(&fields(&vec![0; strips.len()])).len() as u64;
-    let mut offsets = Vec::with_capacity(strips.len());
-    for strip in &strips {
+    let mut at = directory(&fields(&vec![0; counts.len()])).len() as u64;
+    let mut offsets = Vec::with_capacity(counts.len());
+    for count in &counts {
         offsets.push(u32::try_from(at).map_err(|_| too_large())?);
-        at += strip.len() as u64;
+        at += u64::from(*count);
     }
     u32::try_from(at).map_err(|_| too_large())?;
     out.write_all(&directory(&fields(&offsets)))?;
-    strips.iter().try_for_each(|strip| out.write_all(strip))
+    file.seek(SeekFrom::Start(0))?;
+    io::copy(&mut file, out).map(|_| ())
 }
 
 fn compress(strip: &[u8], row: usize) -> io::Result<Vec<u8>> {

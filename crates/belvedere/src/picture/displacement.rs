@@ -3,7 +3,8 @@
 use crate::bodies::RigidLayers;
 use crate::overlays::badge;
 use belvedere_core::{DVec2, DVec3, View};
-use belvedere_scene::{Frame, Unit};
+use belvedere_scene::{Frame, PictureRows, PixelGrid, RenderError, Unit};
+use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -56,25 +57,76 @@ fn distance_px(straight: &View, point: DVec3, pixel: DVec2) -> Option<f64> {
     (in_range && pinhole.contains(image.pixel)).then(|| image.pixel.distance(pixel))
 }
 
-/// Distance between neighbouring samples, pixels: 1 where few pixels show a surface, as thin or distant things do.
-fn step(frame: &Frame) -> usize {
-    let shown = frame.depth.iter().filter(|depth| depth.is_finite()).count();
-    ((shown as f64 / SAMPLES as f64).sqrt().floor() as usize).max(1)
+/// Pixels of a picture, drawn or still to be drawn.
+pub(super) trait Pixels {
+    /// Width and height, pixels.
+    fn size(&self) -> [usize; 2];
+    /// Depths of a grid of pixels; with `points` their layers and world points as well.
+    fn look(&self, grid: &PixelGrid, points: bool) -> Result<Frame, RenderError>;
 }
 
+impl Pixels for Frame {
+    fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
+    }
+
+    fn look(&self, grid: &PixelGrid, points: bool) -> Result<Frame, RenderError> {
+        let [width, height] = grid.count;
+        let all = || {
+            (0..width * height).map(|i| {
+                let [col, row] = grid.pixel(i);
+                row * self.width + col
+            })
+        };
+        let world = self.world.as_ref().filter(|_| points);
+        Ok(Self {
+            width,
+            height,
+            depth: all().map(|i| self.depth[i]).collect(),
+            id: all().filter(|_| points).map(|i| self.id[i]).collect(),
+            world: world.map(|world| all().map(|i| world[i]).collect()),
+            ..Self::default()
+        })
+    }
+}
+
+impl Pixels for &dyn PictureRows {
+    fn size(&self) -> [usize; 2] {
+        PictureRows::size(*self)
+    }
+
+    fn look(&self, grid: &PixelGrid, points: bool) -> Result<Frame, RenderError> {
+        PictureRows::look(*self, grid, points)
+    }
+}
+
+/// Pixels among which those that show a surface are counted, about, in pictures that have more.
+const COUNTED: usize = 1 << 20;
+
+/// Distance between neighbouring samples, pixels: 1 where few pixels show a surface, as thin or distant things do.
+fn step(pixels: &impl Pixels) -> Result<usize, RenderError> {
+    let size = pixels.size();
+    let every = ((size[0] * size[1]) as f64 / COUNTED as f64).sqrt().floor().max(1.0) as usize;
+    let counted = pixels.look(&PixelGrid::over(size, every / 2, every), false)?;
+    let shown = counted.depth.iter().filter(|depth| depth.is_finite()).count() * every * every;
+    Ok(((shown as f64 / SAMPLES as f64).sqrt().floor() as usize).max(1))
+}
+
+/// Displacement at the pixel with number `i` of those that were looked at.
 fn at_pixel(
     (view, straight): (&View, &View),
     rigid: &RigidLayers,
-    frame: &Frame,
-    [col, row]: [usize; 2],
+    (seen, grid): (&Frame, &PixelGrid),
+    i: usize,
 ) -> Option<Moved> {
-    let depth = f64::from(frame.depth[row * frame.width + col]);
+    let [col, row] = grid.pixel(i);
+    let depth = f64::from(seen.depth[i]);
     let pixel = DVec2::new(col as f64 + 0.5, row as f64 + 0.5);
-    let i = row * frame.width + col;
-    if rigid.shown_at(frame, i) {
+    if let Some(id) = seen.id.get(i).filter(|id| rigid.shown(**id)) {
         // Rays of other points do not apply to a carried body; the picture's own world point does.
-        let point = DVec3::from_array(*frame.world.as_ref()?.get(i)?);
-        let (bent, plain) = (rigid.displaced(view, frame, i, point)?, straight.displace(point).ok()?.point);
+        let point = DVec3::from_array(*seen.world.as_ref()?.get(i)?);
+        let bent = rigid.displaced_at(view, (*id, pixel, seen.depth[i]), point)?;
+        let plain = straight.displace(point).ok()?.point;
         let by_px = distance_px(straight, point, pixel);
         return Some(Moved { pixel: [col, row], by_m: bent.distance(plain), by_px, folded: false });
     }
@@ -85,13 +137,24 @@ fn at_pixel(
 }
 
 /// Samples the displacement of points in the picture, in space and on the image.
-/// * `frame`: needs world points if it shows rigid layers.
-pub(super) fn measure(view: &View, rigid: &RigidLayers, frame: &Frame) -> DisplacementReport {
+/// * `pixels`: need world points if they show rigid layers.
+///
+/// # Errors
+/// [`RenderError::Cancelled`], of pixels that are still to be drawn.
+pub(super) fn measure(
+    view: &View,
+    rigid: &RigidLayers,
+    pixels: &impl Pixels,
+) -> Result<DisplacementReport, RenderError> {
     let straight = view.straightened();
-    let step = step(frame);
-    let rows = (step / 2..frame.height).step_by(step);
-    let pixels = rows.flat_map(|row| (step / 2..frame.width).step_by(step).map(move |col| [col, row]));
-    let mut all: Vec<Moved> = pixels.filter_map(|at| at_pixel((view, &straight), rigid, frame, at)).collect();
+    let (step, size, points) = (step(pixels)?, pixels.size(), rigid.any());
+    let moved = |grid: &PixelGrid| {
+        let seen = pixels.look(grid, points)?;
+        let all = (0..seen.depth.len()).into_par_iter();
+        let all = all.filter_map(|i| at_pixel((view, &straight), rigid, (&seen, grid), i));
+        Ok::<_, RenderError>(all.collect::<Vec<Moved>>())
+    };
+    let mut all = moved(&PixelGrid::over(size, step / 2, step))?;
     let mean = |sum: f64, count: usize| if count == 0 { 0.0 } else { sum / count as f64 };
     let on_image: Vec<f64> = all.iter().filter_map(|m| m.by_px).collect();
     let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
@@ -104,14 +167,13 @@ pub(super) fn measure(view: &View, rigid: &RigidLayers, frame: &Frame) -> Displa
         samples: all.len(),
     };
     all.sort_by(|a, b| b.by_m.total_cmp(&a.by_m));
-    for [col, row] in all.iter().take(LARGEST).map(|m| m.pixel) {
-        let around = |at: usize, end: usize| at.saturating_sub(step)..(at + step + 1).min(end);
-        for row in around(row, frame.height) {
-            let near = around(col, frame.width).filter_map(|col| at_pixel((view, &straight), rigid, frame, [col, row]));
-            report.max_m = largest(&mut near.map(|m| m.by_m).chain([report.max_m]));
-        }
+    for at in all.iter().take(LARGEST).map(|m| m.pixel) {
+        let first = at.map(|at| at.saturating_sub(step));
+        let count = [0, 1].map(|k| (at[k] + step + 1).min(size[k]) - first[k]);
+        let near = moved(&PixelGrid { first, step: 1, count })?;
+        report.max_m = largest(&mut near.iter().map(|m| m.by_m).chain([report.max_m]));
     }
-    report
+    Ok(report)
 }
 
 #[cfg(test)]
@@ -139,6 +201,10 @@ mod tests {
             (depth[row * width + col], id[row * width + col]) = (*at, 1);
         }
         Frame { width, height, color: vec![[0; 3]; width * height], depth, id, ..Frame::default() }
+    }
+
+    fn measure(view: &View, rigid: &RigidLayers, frame: &Frame) -> DisplacementReport {
+        super::measure(view, rigid, frame).expect("drawn")
     }
 
     #[test]

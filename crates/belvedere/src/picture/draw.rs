@@ -17,7 +17,7 @@ use belvedere_composite::canvas::Canvas;
 use belvedere_core::View;
 use belvedere_io::budget;
 use belvedere_scene::Instant;
-use belvedere_scene::{Aux, Frame, Progress, RenderJob, RenderOptions, Scene, Unit};
+use belvedere_scene::{Aux, Frame, FrameStats, Progress, RenderJob, RenderOptions, Scene, Unit};
 
 impl Session {
     /// Draws the session's view, or its camera.
@@ -58,14 +58,39 @@ pub(crate) fn draw(
     let Drawn { view, frame, straight, overlay, displacement, fallback, vectors } = drawn;
     let rigid = RigidLayers::of(session.scene(), &view);
     let render_ms = started.elapsed().as_secs_f64() * 1e3;
+    let made = Made { view: &view, overlay, displacement, fallback, stats: frame.stats.clone(), render_ms };
+    let sidecar = sidecar(session, request, (made, &rigid), inputs);
+    let (aux, aux_format, crs) = (request.aux.clone(), request.aux_format, session.scene().crs);
+    let unit = session.scene().unit;
+    Ok(Picture { frame, alpha, straight, sidecar, vectors, aux, aux_format, view, rigid, crs, unit, later: None })
+}
+
+/// What a record says of a picture that was made.
+pub(super) struct Made<'a> {
+    pub(super) view: &'a View,
+    pub(super) overlay: OverlayRecord,
+    pub(super) displacement: Option<DisplacementReport>,
+    pub(super) fallback: Option<FallbackRecord>,
+    pub(super) stats: FrameStats,
+    pub(super) render_ms: f64,
+}
+
+/// The record of a picture.
+pub(super) fn sidecar(
+    session: &Session,
+    request: &PictureOptions,
+    (made, rigid): (Made<'_>, &RigidLayers),
+    inputs: Vec<InputFile>,
+) -> Sidecar {
+    let Made { view, overlay, displacement, fallback, stats, render_ms } = made;
     let names = session.public_names();
     let mut volumes = VolumeRecord::all(session.scene());
     volumes.iter_mut().for_each(|volume| volume.transfer = names.text(&volume.transfer));
-    let sidecar = Sidecar {
+    Sidecar {
         program: format!("belvedere {}", crate::VERSION),
         renderer: request.renderer.of(session).name(),
         picture_sha256: None,
-        note: displacement.map(|d| note(&view, &d, session.scene().unit)),
+        note: displacement.map(|d| note(view, &d, session.scene().unit)),
         print: request.print,
         stages: view.stages().iter().map(|s| s.name()).collect(),
         overlay,
@@ -81,7 +106,7 @@ pub(crate) fn draw(
         constructor: session.constructor_report().filter(|_| !request.straight).cloned(),
         target: None,
         fallback,
-        view: ViewRecord::of(&view),
+        view: ViewRecord::of(view),
         scene: session.public_document(&names).map(|document| Document {
             print: request.print.map_or(document.print.clone(), |sheet| Some(sheet.document())),
             ..document
@@ -89,12 +114,9 @@ pub(crate) fn draw(
         title: session.scene().title.clone(),
         inputs,
         warnings: names.warnings(&session.warnings()),
-        stats: frame.stats.clone(),
+        stats,
         render_ms,
-    };
-    let (aux, aux_format, crs) = (request.aux.clone(), request.aux_format, session.scene().crs);
-    let unit = session.scene().unit;
-    Ok(Picture { frame, alpha, straight, sidecar, vectors, aux, aux_format, view, rigid, crs, unit })
+    }
 }
 
 /// Pictures with all marks.
@@ -160,7 +182,7 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
     {
         let job = RenderJob { scene: &cut, view: &view, light: session.light(), options: &surfaces, progress };
         let behind = request.renderer.of(session).render(&job)?;
-        thin::draw(&mut frame, &behind, scene, &view, covered);
+        thin::Thin::new(scene, &view, covered, [frame.width, frame.height]).draw(&mut frame, &behind, 0);
     }
     let mut vectors = as_vectors.then(|| {
         let scene = &*widths::scaled(scene, request.density);
@@ -204,13 +226,8 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
     if let Some(straight) = straight.as_ref().filter(|_| ghost) {
         ghost::draw(&mut frame, straight, scene);
     }
-    let displacement = view.is_bent().then(|| displacement::measure(&view, &rigid, &frame));
-    let room = |pixels: usize| (pixels as f64 / request.density) as usize;
-    let mark = match displacement {
-        _ if !wanted.mark || request.no_mark || !badge::fits(room(frame.width), room(frame.height)) => None,
-        _ if request.steady_mark => Some(badge::WORDS.to_owned()),
-        moved => moved.map(|moved| badge::words(room(frame.width), moved.max_m, scene.unit)),
-    };
+    let displacement = view.is_bent().then(|| displacement::measure(&view, &rigid, &frame)).transpose()?;
+    let mark = mark_words(session, request, [frame.width, frame.height], displacement);
     let size = [frame.width, frame.height];
     let mut shapes = Vec::new();
     let mut furniture = Furnish { pixels: &mut frame.color, size, record: as_vectors.then_some(&mut shapes) };
@@ -227,9 +244,7 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
     let figure = wanted.inset.and_then(|inset| Some((inset, curve_inset::CurveFigure::of(&view)?)));
     let mut inset = None;
     furniture.draw("inset", |canvas| {
-        // Its letters are of one size in windows of every density; on paper they are lengths.
-        let mut canvas = canvas.scaled(if request.print.is_some() { request.density } else { 1.0 });
-        inset = figure.filter(|(_, figure)| curve_inset::draw(&mut canvas, figure)).map(|(inset, _)| inset);
+        inset = figure.filter(|(_, figure)| draw_inset(canvas, figure, request)).map(|(inset, _)| inset);
     });
     furniture.draw("mark", |mut canvas| {
         if let Some(words) = &mark {
@@ -255,6 +270,28 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
     Ok(Drawn { view, frame, straight, overlay, displacement, fallback, vectors })
 }
 
+/// Words of the mark of a bent picture, if it has one.
+/// * `size`: of the picture, pixels.
+pub(super) fn mark_words(
+    session: &Session,
+    request: &PictureOptions,
+    size: [usize; 2],
+    displacement: Option<DisplacementReport>,
+) -> Option<String> {
+    let [width, height] = size.map(|pixels| (pixels as f64 / request.density) as usize);
+    match displacement {
+        _ if !session.resolved.overlay.mark || request.no_mark || !badge::fits(width, height) => None,
+        _ if request.steady_mark => Some(badge::WORDS.to_owned()),
+        moved => moved.map(|moved| badge::words(width, moved.max_m, session.scene().unit)),
+    }
+}
+
+/// Draws the curve of a spline; whether the picture is large enough.
+pub(super) fn draw_inset(canvas: Canvas<'_>, figure: &curve_inset::CurveFigure, request: &PictureOptions) -> bool {
+    // Its letters are of one size in windows of every density; on paper they are lengths.
+    curve_inset::draw(&mut canvas.scaled(if request.print.is_some() { request.density } else { 1.0 }), figure)
+}
+
 /// Draws the picture of the camera.
 pub(crate) fn draw_camera(
     session: &Session,
@@ -274,7 +311,8 @@ pub(crate) fn draw_camera(
     let displacement = figure
         .view
         .is_bent()
-        .then(|| displacement::measure(&figure.view, &RigidLayers::of(scene, &figure.view), &frame));
+        .then(|| displacement::measure(&figure.view, &RigidLayers::of(scene, &figure.view), &frame))
+        .transpose()?;
     Ok(Drawn { view: figure.view, frame, straight: None, overlay, displacement, fallback: None, vectors: None })
 }
 

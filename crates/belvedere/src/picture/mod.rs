@@ -1,5 +1,6 @@
 //! Pictures with a record of their origin.
 
+mod bands;
 mod buffers;
 mod displacement;
 mod draw;
@@ -12,6 +13,7 @@ mod vectors;
 mod volume_record;
 mod write;
 
+pub(crate) use bands::{later, write_later, write_straight};
 pub use displacement::DisplacementReport;
 pub(crate) use draw::{draw, draw_camera, draw_view};
 pub use options::{AuxBuffer, AuxFormat, PictureOptions, RendererChoice, THRESHOLDS};

@@ -48,6 +48,9 @@ pub struct PictureOptions {
     pub print: Option<Sheet>,
     /// Lines, areas, points, names and legends that become shapes instead of pixels, see [`Picture::vectors`](super::Picture::vectors).
     pub vectors: VectorContent,
+    /// Rows that [`Session::render_to`] draws at a time, rounded up to a multiple of 16; 0 = all in one piece. `None` = it depends on size
+    /// and memory.
+    pub band_rows: Option<usize>,
     /// Progress and cancellation.
     pub progress: Progress,
 }
@@ -80,6 +83,7 @@ impl Default for PictureOptions {
             density: 1.0,
             print: None,
             vectors: VectorContent::Nothing,
+            band_rows: None,
             progress: Progress::default(),
         }
     }

@@ -1,7 +1,7 @@
 //! A finished picture and the record beside it.
 
 use super::displacement::DisplacementReport;
-use super::options::{AuxBuffer, AuxFormat};
+use super::options::{AuxBuffer, AuxFormat, PictureOptions};
 use super::target_place::TargetPlace;
 use super::volume_record::VolumeRecord;
 use crate::bodies::RigidLayers;
@@ -19,6 +19,7 @@ use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::{Crs, Frame, FrameStats, Heightfield, Layer, LayerKind, NodeState, Scene, Unit};
 use serde::ser::Error as _;
 use serde::{Serialize, Serializer};
+use std::sync::{Arc, OnceLock};
 
 /// Measured and made-up parts of the ground.
 #[derive(Debug, Clone, Copy, PartialEq, schemars::JsonSchema, Serialize)]
@@ -230,9 +231,24 @@ pub struct Picture {
     pub(crate) rigid: RigidLayers,
     pub(crate) crs: Crs,
     pub(crate) unit: Unit,
+    /// How the picture is drawn when it is written, where that waits.
+    pub(crate) later: Option<Later>,
+}
+
+/// A picture that is drawn while it is written.
+#[derive(Debug, Clone)]
+pub(crate) struct Later {
+    pub(crate) options: Box<PictureOptions>,
+    /// Its record, once it is written.
+    pub(crate) record: Arc<OnceLock<Sidecar>>,
 }
 
 impl Picture {
+    /// The record; of a picture that is drawn while it is written what is known before that, until then.
+    pub fn record(&self) -> &Sidecar {
+        self.later.as_ref().and_then(|later| later.record.get()).unwrap_or(&self.sidecar)
+    }
+
     /// The same picture, which writes these buffers beside itself; those that it was not drawn with are empty.
     pub fn with_buffers(self, aux: Vec<AuxBuffer>, aux_format: AuxFormat) -> Self {
         Self { aux, aux_format, ..self }

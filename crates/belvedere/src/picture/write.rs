@@ -13,6 +13,7 @@ use belvedere_io::picture_file::{PictureFile, PictureFormat};
 use belvedere_io::png::{self, Channels};
 use belvedere_scene::Frame;
 use std::borrow::Cow;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Width of the white gap between two pictures side by side, pixels.
@@ -68,14 +69,37 @@ impl Picture {
     /// # Errors
     /// [`BelvedereError::Io`].
     pub fn write(&self, out: &Path, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
-        atomic::together(|| self.write_each(out, overwrite))
+        atomic::together(|| self.write_each((out, overwrite), &|this| this.write_picture(out, overwrite)))
     }
 
-    fn write_each(&self, out: &Path, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
+    /// [`Picture::write`], the pixels coming from `rows`, which writes them row by row.
+    pub(super) fn write_rows(
+        &self,
+        out: &Path,
+        overwrite: bool,
+        rows: &dyn Fn(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<Vec<PathBuf>, BelvedereError> {
+        let pixels = |this: &Self| {
+            let format = PictureFormat::of(out).unwrap_or(PictureFormat::Png);
+            let (width, height) = (this.frame.width, this.frame.height);
+            let text = this.text()?;
+            let text: Vec<(&str, &str)> = text.iter().map(|(k, v)| (*k, v.as_str())).collect();
+            let file = PictureFile { width, height, pixels: &[], dpi: this.dpi(), text: &text };
+            Ok(atomic::write_atomic(out, overwrite, |out| file.encode_rows(format, out, rows))?)
+        };
+        atomic::together(|| self.write_each((out, overwrite), &pixels))
+    }
+
+    /// * `pixels`: writes the picture alone.
+    fn write_each(
+        &self,
+        (out, overwrite): (&Path, bool),
+        pixels: &dyn Fn(&Self) -> Result<(), BelvedereError>,
+    ) -> Result<Vec<PathBuf>, BelvedereError> {
         let mut written = vec![out.to_owned(), sibling(out, ".json")];
         let solved = self.with_delta(out, overwrite, &mut written)?;
         let this = solved.as_ref().unwrap_or(self);
-        this.write_picture(out, overwrite)?;
+        pixels(this)?;
         let mut sidecar = this.sidecar.clone();
         // A device keeps nothing that could be read again.
         let place = atomic::contents_of(out);

@@ -5,7 +5,7 @@ use super::in_time;
 pub use super::reveal_files::RevealFiles;
 use crate::data::{Data, DataFiles};
 use crate::guard::guarded;
-use crate::picture::{DisplacementReport, Picture, PictureOptions, TerrainRecord};
+use crate::picture::{self, DisplacementReport, Picture, PictureOptions, TerrainRecord};
 use crate::places::{Place, PlaceFinder};
 use crate::resolve::ground::earth_radius;
 use crate::resolve::rays::sidestep_stage;
@@ -18,8 +18,8 @@ use belvedere_construct::rays::{AroundOptions, Target, bend_around};
 use belvedere_construct::{
     Goal, RevealMemory, RevealOptions, RevealReport, Revealed, default_spacing, sample_features,
 };
-use belvedere_core::Warning;
 use belvedere_core::{DVec3, Pinhole, Projection, View};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::Instant;
 use belvedere_scene::{Progress, Scene, Sky};
@@ -54,6 +54,9 @@ pub struct RevealRequest {
     pub no_limits: bool,
     /// Quality of the pictures.
     pub picture: PictureOptions,
+    /// The file that the picture is for, if it goes into one and nowhere else: a picture that is too large for one piece is then drawn in bands
+    /// while it is written, see [`Session::render_to`], and has no pair beside it.
+    pub to_file: Option<PathBuf>,
     /// Light, stylisation, mark and exaggeration.
     pub appearance: Appearance,
 }
@@ -307,7 +310,16 @@ fn revealed(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAnsw
         progress: options.progress.clone(),
         ..request.picture.clone()
     };
-    let picture = session.render(&pair)?;
+    let alone = PictureOptions { compare: false, ..pair.clone() };
+    let picture = match picture::later(&session, &alone, request.to_file.as_deref())? {
+        Some(later) if pair.compare => {
+            let text = "the picture is drawn in bands, and no pair of pictures is written beside it";
+            session.loaded.warnings.push(Warning::new(WarningKind::Fallback, text));
+            later
+        }
+        Some(later) => later,
+        None => session.render(&pair)?,
+    };
     Ok(RevealAnswer { session, picture, report, shares, tried, hidden, measured_every: every })
 }
 
@@ -450,7 +462,7 @@ impl RevealAnswer {
 
     /// Content of the report file and of `--json`.
     pub fn document(&self) -> RevealDocument<'_> {
-        let sidecar = &self.picture.sidecar;
+        let sidecar = self.picture.record();
         RevealDocument {
             program: sidecar.program.clone(),
             shares: self.shares,
@@ -473,7 +485,7 @@ impl RevealAnswer {
     /// # Errors
     /// [`BelvedereError::Io`].
     pub fn write(&self, files: &RevealFiles, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
-        files.write(&self.picture, &self.session, &self.document(), overwrite)
+        files.write(&self.picture, &self.session, &|| self.document(), overwrite)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::answers;
 use crate::output::{self, document_toml};
-use crate::picture::Picture;
+use crate::picture::{self, Picture};
 use crate::scene_file::Document;
 use crate::{BelvedereError, Session};
 use belvedere_io::atomic;
@@ -43,11 +43,11 @@ impl RevealFiles {
     }
 
     /// Writes the files of a picture, which get their names together; returns them.
-    pub(super) fn write(
+    pub(super) fn write<R: Serialize>(
         &self,
         picture: &Picture,
         session: &Session,
-        report: &impl Serialize,
+        report: &dyn Fn() -> R,
         overwrite: bool,
     ) -> Result<Vec<PathBuf>, BelvedereError> {
         let written = atomic::together(|| self.write_each(picture, session, report, overwrite))?;
@@ -57,16 +57,22 @@ impl RevealFiles {
         Ok(written)
     }
 
-    fn write_each(
+    fn write_each<R: Serialize>(
         &self,
         picture: &Picture,
         session: &Session,
-        report: &impl Serialize,
+        report: &dyn Fn() -> R,
         overwrite: bool,
     ) -> Result<Vec<PathBuf>, BelvedereError> {
         let mut written = Vec::new();
-        if self.writes_pictures() {
+        if let (Some(later), true) = (&picture.later, self.writes_pictures()) {
+            written = picture::write_later(session, later, &self.out, overwrite)?;
+        } else if self.writes_pictures() {
             written = Picture { straight: None, ..picture.clone() }.write(&self.out, overwrite)?;
+        }
+        if let (Some(path), Some(later)) = (&self.before, &picture.later) {
+            picture::write_straight(session, later, path, overwrite)?;
+            written.push(path.clone());
         }
         let title = [("Software", picture.sidecar.program.as_str()), ("Comment", "straight | bent")];
         let mut draw = |path: &Path, [width, height]: [usize; 2], pixels: &[[u8; 3]], title: &[(&str, &str)]| {
@@ -80,7 +86,7 @@ impl RevealFiles {
             let (width, height, pixels) = picture.pixels();
             draw(&self.pair(), [width, height], &pixels, &title)?;
         }
-        if let Some(path) = &self.before {
+        if let Some(path) = self.before.as_ref().filter(|_| picture.later.is_none()) {
             let frame = picture.straight.as_ref().unwrap_or(&picture.frame);
             draw(path, [frame.width, frame.height], &frame.color, &title[..1])?;
         }
@@ -91,7 +97,7 @@ impl RevealFiles {
         }
         if let Some(path) = &self.report {
             written.push(path.clone());
-            output::write_text(path, &answers::in_file("reveal", &written, report)?, overwrite)?;
+            output::write_text(path, &answers::in_file("reveal", &written, &report())?, overwrite)?;
         }
         Ok(written)
     }

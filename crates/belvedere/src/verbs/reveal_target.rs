@@ -405,7 +405,7 @@ impl TargetAnswer {
     /// # Errors
     /// [`BelvedereError::Io`].
     pub fn write(&self, files: &RevealFiles, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
-        files.write(&self.picture, &self.session, &self.document(), overwrite)
+        files.write(&self.picture, &self.session, &|| self.document(), overwrite)
     }
 }
 

@@ -1,0 +1,127 @@
+//! Pictures in bands: the same bytes as in one piece.
+
+use belvedere::scene::{Progress, Stylisation};
+use belvedere::{BelvedereError, Needs, OpenOptions, PictureOptions, Session};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+use std::sync::{Arc, OnceLock};
+
+fn scene(name: &str, image: [u32; 2]) -> Session {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
+    let options = OpenOptions { image: Some(image), needs: Needs::Everything, ..OpenOptions::default() };
+    Session::open(&path, &options).unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+/// Files of a picture that is drawn so many rows at a time.
+fn files(session: &Session, options: &PictureOptions, out: &Path, rows: usize) -> Vec<(PathBuf, Vec<u8>)> {
+    let options = PictureOptions { band_rows: Some(rows), ..options.clone() };
+    let (picture, written) = session.render_to(&options, out, true).expect("drawn");
+    assert_eq!(picture.frame.color.is_empty(), rows > 0, "bands leave no pixels in memory");
+    written.into_iter().map(|path| (path.clone(), std::fs::read(&path).expect("written"))).collect()
+}
+
+/// Whether pictures in bands of several heights, and their records, are those in one piece, byte for byte.
+fn are_alike(name: &str, session: &Session, options: &PictureOptions) {
+    let folder = tempfile::tempdir().expect("a folder");
+    for ending in ["png", "tif"] {
+        let out = folder.path().join(format!("picture.{ending}"));
+        let whole = files(session, options, &out, 0);
+        for rows in [16, 48, 1000] {
+            let bands = files(session, options, &out, rows);
+            assert_eq!(whole.len(), bands.len(), "{name}");
+            for (a, b) in whole.iter().zip(&bands) {
+                assert_eq!(a.0, b.0);
+                assert!(a.1 == b.1, "{name}: {} in bands of {rows} rows differs", a.0.display());
+            }
+        }
+    }
+}
+
+fn all(name: &str, image: [u32; 2]) {
+    let session = scene(name, image);
+    let usual = PictureOptions::default();
+    let drawn = Stylisation { edges: 0.8, unsharp: 4.0 };
+    let options = [
+        ("as it is", usual.clone()),
+        ("with edges and shade", PictureOptions { stylisation: Some(drawn), ..usual.clone() }),
+        ("straight, with a grid", PictureOptions { straight: true, grid: Some(None), ..usual.clone() }),
+        ("denser", PictureOptions { density: 2.7, ..usual }),
+    ];
+    for (what, options) in options {
+        are_alike(&format!("{name} {what}"), &session, &options);
+    }
+}
+
+#[test]
+fn ground_with_a_route_and_names_is_the_same_in_bands() {
+    all("massif.toml", [333, 217]);
+    all("massif_panorama.toml", [401, 150]);
+    all("massif_strip.toml", [301, 170]);
+}
+
+#[test]
+fn ground_behind_curved_rays_or_made_way_for_is_the_same_in_bands() {
+    all("massif_curved_rays.toml", [333, 217]);
+    all("massif_terrain.toml", [260, 181]);
+    all("massif_lake_terrain.toml", [260, 181]);
+    all("massif_all_stages.toml", [240, 150]);
+}
+
+#[test]
+fn towns_and_maps_in_parallel_projection_are_the_same_in_bands() {
+    all("town.toml", [333, 217]);
+    all("town_rigid.toml", [333, 217]);
+    all("street.toml", [333, 217]);
+    all("massif_plan_oblique.toml", [305, 197]);
+}
+
+#[test]
+fn molecules_and_what_shines_through_are_the_same_in_bands() {
+    all("dna.toml", [233, 117]);
+    all("church.toml", [233, 117]);
+}
+
+#[test]
+fn what_needs_one_piece_says_so_and_how_much_memory() {
+    let session = scene("massif.toml", [333, 217]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let refused = |options: PictureOptions, name: &str| {
+        let options = PictureOptions { band_rows: Some(16), ..options };
+        let error = session.render_to(&options, &folder.path().join(name), true).expect_err("refused");
+        assert!(matches!(error, BelvedereError::OnePiece { .. }), "{error}");
+        let text = error.to_string();
+        assert!(
+            text.contains("333 x 217") && text.contains("MiB") && text.len() < 500 && !text.contains('\n'),
+            "{text}"
+        );
+        text
+    };
+    let usual = PictureOptions::default;
+    assert!(refused(PictureOptions { compare: true, ..usual() }, "a.png").contains("the pair of pictures"));
+    assert!(refused(PictureOptions { heatmap: true, ..usual() }, "a.png").contains("heat map"));
+    assert!(refused(usual(), "a.jpg").contains("its format"));
+    let mut tight = usual();
+    tight.quality.max_bytes = 12 << 20;
+    tight.compare = true;
+    let error = session.render_to(&tight, &folder.path().join("a.png"), true).expect_err("too little memory");
+    assert!(matches!(error, BelvedereError::OnePiece { limit_mib: ..=12, .. }), "{error}");
+    assert!(std::fs::read_dir(folder.path()).expect("a folder").next().is_none(), "nothing is left behind");
+}
+
+#[test]
+fn a_picture_that_is_cancelled_between_bands_leaves_no_file() {
+    let session = scene("massif.toml", [333, 217]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let (bands, stop) = (AtomicUsize::new(0), Arc::new(OnceLock::<Arc<AtomicBool>>::new()));
+    let within = stop.clone();
+    let progress = Progress::new(move |what, _| {
+        if what == "draw" && bands.fetch_add(1, Relaxed) == 5 {
+            within.get().expect("set").store(true, Relaxed);
+        }
+    });
+    stop.set(progress.cancel_flag()).expect("once");
+    let options = PictureOptions { band_rows: Some(16), progress, ..PictureOptions::default() };
+    let error = session.render_to(&options, &folder.path().join("a.png"), true).expect_err("cancelled");
+    assert!(matches!(error, BelvedereError::Cancelled(_) | BelvedereError::Render(_)), "{error}");
+    assert!(std::fs::read_dir(folder.path()).expect("a folder").next().is_none(), "nothing is left behind");
+}
