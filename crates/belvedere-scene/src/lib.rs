@@ -8,6 +8,7 @@ pub mod city;
 pub mod climate;
 pub mod color;
 pub mod drape;
+mod font_file;
 pub mod frame;
 pub mod heightfield;
 pub mod layer;
@@ -36,6 +37,7 @@ pub use city::{
 pub use climate::Climate;
 pub use color::Color;
 pub use drape::{Draped, drape_polyline};
+pub use font_file::FontFile;
 pub use frame::{Aux, Compositing, Frame, FrameStats, RenderError, RenderJob, RenderOptions, Renderer, Stylisation};
 pub use heightfield::{Heightfield, HeightfieldError, NodeState, States};
 pub use layer::{

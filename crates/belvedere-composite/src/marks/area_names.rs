@@ -1,6 +1,6 @@
 //! Names of areas, each in the middle of the room that its area has.
 
-use crate::marks::label::LabelRequest;
+use crate::marks::request::LabelRequest;
 use crate::marks::path::LinePoint;
 use crate::marks::pole::{Pole, pole};
 use crate::marks::{MarkBuilder, Marker, darker};
@@ -45,15 +45,9 @@ impl MarkBuilder<'_> {
             let marker = Marker { symbol: Symbol::Dot, half_px: 0.0, casing: false, hidden: layer.hidden };
             let on_line = LinePoint { p, along: 0.0, on_ground: true };
             let seen = self.mark(&on_line, layer.lift_m, marker, &mut Vec::new());
-            requests.extend(seen.into_iter().map(|at| LabelRequest {
-                text: name.to_owned(),
-                at,
-                marker: [0.0; 2],
-                size_px,
-                color: darker(color.with_alpha(255)),
-                leader: false,
-                over: true,
-            }));
+            let color = darker(color.with_alpha(255));
+            let request = |at| LabelRequest { over: true, ..LabelRequest::new(name, at, size_px, color) };
+            requests.extend(seen.into_iter().map(request));
         }
         requests
     }

@@ -2,15 +2,19 @@
 
 mod alike;
 mod area_names;
+mod baseline;
+mod candidates;
 mod dash;
 mod distance;
 mod face;
 mod label;
 mod line_of_sight;
 mod names;
+mod occupied;
 mod path;
 mod point;
 mod pole;
+mod request;
 mod ribbon;
 mod segment;
 mod shapes;
@@ -18,7 +22,7 @@ mod shown;
 mod symbol;
 mod visibility;
 
-use crate::canvas::Canvas;
+use crate::canvas::{Canvas, Fonts};
 use crate::color::{Packed, linear};
 use crate::drawn::{Drawn, Pass};
 use crate::screen::{BAND, COARSE_PX, Screen};
@@ -29,10 +33,11 @@ use belvedere_scene::{
     AreaLayer, Color, Hidden, LayerKind, LineFeature, LineLayer, Overlay, OverlayLine, RenderJob, Scene, Symbol,
 };
 use face::Face;
-use label::{LabelRequest, Labels};
+use label::Labels;
 use line_of_sight::LineOfSight;
 use path::LinePoint;
 use rayon::prelude::*;
+use request::{LabelRequest, Page};
 use ribbon::{Ink, Lane, Stroke, StrokeLayer};
 pub use shapes::{LayerShapes, LineShape, Paint, Role, Shapes, SymbolShape, outline, simplified};
 use visibility::{DepthMap, LineVisibility, Run, Station};
@@ -60,7 +65,7 @@ impl Marks {
         let marks = Self::place(job, drawn, true);
         let of = |sheets: &[StrokeLayer]| sheets.iter().map(StrokeLayer::shapes).collect();
         let mut names = Vec::new();
-        marks.labels.draw(&mut Canvas::recording(&mut names, job.view.pinhole().image.map(|side| side as usize)));
+        marks.labels.draw(Canvas::recording(&mut names, job.view.pinhole().image.map(|side| side as usize)));
         Shapes { under: of(&marks.under), layers: of(&marks.sheets), names }
     }
 
@@ -72,6 +77,7 @@ impl Marks {
         let Drawn { passes, screen, tolerance_px, depth, sight } = *drawn;
         let map = DepthMap { depth, width: screen.width, height: screen.height };
         let sections = Sections::new(job);
+        let fonts = Fonts::with(&job.scene.fonts);
         let sight = LineOfSight { scene: job.scene, sight };
         let builder = MarkBuilder {
             sections: sections.as_ref(),
@@ -83,6 +89,7 @@ impl Marks {
             map,
             sight: &sight,
             density: job.options.density,
+            fonts: &fonts,
             keep,
         };
         let overlay = &job.options.overlay;
@@ -112,7 +119,8 @@ impl Marks {
             .faces
             .iter()
             .flat_map(|f| passes.iter().take(job.view.records()).filter_map(|p| Face::new(f, *p, screen)));
-        let labels = Labels::place(requests, 2.0 * screen.center, job.options.density);
+        let (size, density, keep_clear) = (2.0 * screen.center, job.options.density, &job.options.keep_clear[..]);
+        let labels = Labels::place(requests, &Page { size, density, fonts: &fonts, keep_clear });
         Self { under, faces: faces.collect(), sheets, labels }
     }
 
@@ -151,7 +159,7 @@ impl Marks {
 
     /// Writes the names over the finished picture.
     pub fn write_names(&self, pixels: &mut [[u8; 3]], width: usize) {
-        self.labels.draw(&mut Canvas::new(pixels, width));
+        self.labels.draw(Canvas::new(pixels, width));
     }
 }
 
@@ -167,6 +175,8 @@ struct MarkBuilder<'a> {
     sight: &'a LineOfSight<'a>,
     /// Pixels per unit of lengths that styles do not state.
     density: f64,
+    /// Fonts of names.
+    fonts: &'a Fonts,
     /// Whether lines are kept as shapes.
     keep: bool,
 }
@@ -265,16 +275,9 @@ impl MarkBuilder<'_> {
             Some([first, seen.next_back().unwrap_or(first)])
         });
         let at = ends.flatten().max_by(|a, b| a.y.total_cmp(&b.y))?;
-        let (text, color) = (line.label.clone(), line.color.with_alpha(255));
-        Some(LabelRequest {
-            text,
-            at,
-            marker: [2.0 * self.density; 2],
-            size_px: line.label_px,
-            color,
-            leader: false,
-            over: false,
-        })
+        let color = line.color.with_alpha(255);
+        let marker = [2.0 * self.density; 2];
+        Some(LabelRequest { marker, ..LabelRequest::new(line.label.clone(), at, line.label_px, color) })
     }
 
     fn sheet(&self, paths: Vec<Vec<LinePoint>>, style: Style, inks: [Ink; 3], id: u32) -> StrokeLayer {
@@ -370,15 +373,8 @@ impl MarkBuilder<'_> {
             for at in self.mark(&on_line, layer.lift_m, marker, &mut strokes) {
                 let color = darker(layer.color);
                 let side = half_px + 2.0 * self.density;
-                requests.push(LabelRequest {
-                    text: text.clone(),
-                    at,
-                    marker: [side, side],
-                    size_px: layer.marker_px,
-                    color,
-                    leader: false,
-                    over: false,
-                });
+                let marker = [side, side];
+                requests.push(LabelRequest { marker, ..LabelRequest::new(text.clone(), at, layer.marker_px, color) });
             }
         }
         let white = Color::rgb(255, 255, 255);

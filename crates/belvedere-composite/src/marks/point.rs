@@ -1,7 +1,7 @@
 //! Points and their names.
 
 use crate::marks::alike::{self, alike};
-use crate::marks::label::LabelRequest;
+use crate::marks::request::LabelRequest;
 use crate::marks::path::LinePoint;
 use crate::marks::ribbon::{Lane, Stroke, StrokeLayer};
 use crate::marks::{HIDDEN_WIDTH, MarkBuilder, Marker, casing_of, darker, inks, symbol, width_or_none};
@@ -108,13 +108,5 @@ fn stamp(at: DVec2, marker: Marker, (visible, density): (bool, f64), out: &mut V
 fn label_request(text: &str, at: DVec2, marker: Marker, (size_px, color): (f64, Color), density: f64) -> LabelRequest {
     let side = marker.half_px + 2.0 * density;
     let above = symbol::top(marker.symbol) * marker.half_px + 2.5 * density;
-    LabelRequest {
-        text: text.to_owned(),
-        at,
-        marker: [side, above],
-        size_px,
-        color: darker(color),
-        leader: true,
-        over: false,
-    }
+    LabelRequest { marker: [side, above], leader: true, ..LabelRequest::new(text, at, size_px, darker(color)) }
 }

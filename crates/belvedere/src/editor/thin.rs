@@ -56,8 +56,8 @@ impl Thin {
             Layer { id: layer.id.clone(), must_see: layer.must_see, kind }
         };
         let layers = scene.layers.iter().enumerate().map(layer).collect();
-        let (title, representations) = (scene.title.clone(), scene.representations.clone());
-        Scene { title, crs: scene.crs, unit: scene.unit, layers, representations }
+        let (title, representations, fonts) = (scene.title.clone(), scene.representations.clone(), scene.fonts.clone());
+        Scene { title, crs: scene.crs, unit: scene.unit, layers, representations, fonts }
     }
 
     /// A layer of triangles with fewer of them; `None` if it has none, or few.

@@ -2,11 +2,12 @@
 
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
-use super::{areas, boxes, builtin, by_property, city, dem, mesh, molecule, sea, vectors, volume};
+use super::{areas, boxes, builtin, by_property, city, dem, fonts, mesh, molecule, sea, vectors, volume};
 use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
     AutoOrLength, LayerDoc, LineDoc, Origin, PaletteDoc, Paths, PointLayerDoc, PositionDoc, RouteDoc, TerrainDoc,
+    TextDoc,
 };
 use crate::{BelvedereError, Needs, OpenOptions};
 use belvedere_builtin::{RouteCost, least_cost_route, valley_route};
@@ -18,7 +19,7 @@ use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
 use belvedere_io::{InputFile, Loaded};
 use belvedere_scene::{
-    Climate, Crs, DistanceMarkers, Drape, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Palette, PaletteName,
+    Climate, Crs, DistanceMarkers, Drape, FontFile, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Palette, PaletteName,
     PointLayer, PointStyle, TerrainLayer, drape_polyline,
 };
 use std::collections::BTreeMap;
@@ -40,19 +41,26 @@ pub(crate) struct LayerRequest<'a> {
     pub(crate) vectors: BTreeMap<PathBuf, Loaded<Vectors>>,
     /// Whether to keep the unchanged samples of the terrain's file.
     pub(crate) keep_original: bool,
+    /// Fonts of the scene.
+    pub(crate) text: Option<&'a TextDoc>,
+    /// Further texts that fonts are needed for, such as the title.
+    pub(crate) words: &'a str,
 }
 
 impl<'a> LayerRequest<'a> {
     /// A request for every layer.
     pub(crate) fn new(origin: &'a Origin, layers: &'a [LayerDoc], crs: &'a str, roots: &'a Roots) -> Self {
         let (fallback_crs, needs, vectors) = (None, Needs::Everything, BTreeMap::new());
-        Self { origin, layers, crs, fallback_crs, needs, roots, vectors, keep_original: false }
+        let (keep_original, text, words) = (false, None, "");
+        Self { origin, layers, crs, fallback_crs, needs, roots, vectors, keep_original, text, words }
     }
 }
 
 /// Layers, with records and warnings of reading them.
 pub(crate) struct LoadedLayers {
     pub(crate) layers: Vec<Layer>,
+    /// Fonts that their names need.
+    pub(crate) fonts: Vec<FontFile>,
     pub(crate) crs: Crs,
     pub(crate) inputs: Vec<InputFile>,
     pub(crate) warnings: Vec<Warning>,
@@ -64,6 +72,7 @@ pub(crate) struct LoadedLayers {
 /// The layers that are needed, in file order.
 pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<LoadedLayers, BelvedereError> {
     let LayerRequest { origin, layers: docs, fallback_crs, needs, roots, vectors, keep_original, .. } = request;
+    let (text, words) = (request.text, request.words);
     let mut crs = stated_crs(origin, request.crs)?;
     let mut loader = Loader {
         origin,
@@ -117,10 +126,14 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
             }
         }
     }
+    let fonts = match needs {
+        Needs::Everything => fonts::choose(&mut loader, &layers[..docs.len()], text, words)?,
+        Needs::View | Needs::Ground => Vec::new(),
+    };
     let Loader { inputs, warnings, areas, original, .. } = loader;
     let mut layers: Vec<Layer> = layers.into_iter().flatten().collect();
     share_surfaces(&mut layers);
-    Ok(LoadedLayers { layers, crs, inputs, warnings, areas, original })
+    Ok(LoadedLayers { layers, fonts, crs, inputs, warnings, areas, original })
 }
 
 /// Marks layers that were read from the same source as one surface.
@@ -266,10 +279,6 @@ fn line(
         return Err(loader.fail(index, "source", "no line lies on the terrain; check that the source covers it"));
     }
     let style = &doc.style;
-    if style.labels {
-        let said = vectors::unset_names(features.iter().map(|f| f.name.as_str()));
-        loader.note(index, said);
-    }
     let color = loader.color(index, &style.color)?;
     features.iter_mut().for_each(|f| f.style = by_property::as_opaque_as(color, f.style));
     Ok(LayerKind::Line(LineLayer {
@@ -333,10 +342,6 @@ fn point(
         return Err(loader.fail(index, "source", "no point lies on the terrain; check that the source covers it"));
     }
     let style = &doc.style;
-    if style.labels {
-        let said = vectors::unset_names(features.iter().map(|f| f.name.as_str()));
-        loader.note(index, said);
-    }
     let color = loader.color(index, &style.color)?;
     features.iter_mut().for_each(|f| f.style = by_property::as_opaque_as(color, f.style));
     Ok(LayerKind::Point(PointLayer {

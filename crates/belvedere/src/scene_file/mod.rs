@@ -25,6 +25,7 @@ mod relief;
 mod stages;
 mod strip;
 mod stylisation;
+mod text;
 mod toml_tree;
 mod volume;
 
@@ -53,6 +54,7 @@ pub use stages::{
 };
 pub use strip::StripStageDoc;
 pub use stylisation::{StylisationDoc, SwitchOrStrength};
+pub use text::TextDoc;
 pub use volume::VolumeDoc;
 
 use crate::BelvedereError;
@@ -270,6 +272,7 @@ fn document(root: &Node) -> Result<Document, DocError> {
         overlay: head.overlay,
         stylisation: head.stylisation,
         print: head.print,
+        text: head.text,
         representations: head.representations,
         hidden: head.hidden,
         layer: each(root, "layer", layers::LAYER_KINDS, layer)?,

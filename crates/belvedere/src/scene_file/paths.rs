@@ -50,6 +50,7 @@ impl Document {
                 StageDoc::Strip(_) | StageDoc::Relief(_) | StageDoc::CurvedRays(_) => {}
             }
         }
+        self.text.iter_mut().filter_map(|text| text.fonts.as_mut()).for_each(|fonts| fonts.each(&mut one));
         self.animation.iter_mut().filter_map(|a| a.camera.as_mut()).for_each(&mut one);
         let ids: Vec<&str> = self.layer.iter().map(LayerDoc::id).collect();
         let paths = self.constructor.iter_mut().filter_map(|c| c.path.as_mut());
