@@ -45,7 +45,7 @@ pub use layer::{
     PaletteName, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
 };
 pub use light::{Haze, Light, Sky};
-pub use mark::{DistanceMarkers, FeatureStyle, Hidden, PointStyle, Symbol};
+pub use mark::{DistanceMarkers, Drawing, FeatureStyle, Hidden, PlaceKind, PointStyle, Symbol, WrittenHeight};
 pub use mesh::{Mesh, MeshColors, MeshError, MeshLayer, triangle_lattice};
 pub use molecule::{Molecule, MoleculeLayer, MoleculeStyle};
 pub use motion::{Motion, MotionError};

@@ -1,7 +1,7 @@
 //! The scene: a flat list of layers in one coordinate system.
 
 use crate::{
-    Color, FontFile, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Representation, TerrainLayer, drape_polyline,
+    Color, Drawing, FontFile, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Representation, TerrainLayer, drape_polyline,
 };
 use belvedere_core::{Aabb, DVec2};
 use serde::{Deserialize, Serialize};
@@ -55,6 +55,8 @@ pub struct Scene {
     pub representations: Vec<Representation>,
     /// Fonts of names whose letters the embedded font lacks, in the order in which letters are looked for.
     pub fonts: Vec<FontFile>,
+    /// Symbols of its own, by the number of [`crate::Symbol::Own`].
+    pub drawings: Vec<Arc<Drawing>>,
 }
 
 impl Scene {

@@ -86,8 +86,8 @@ impl Session {
         let loaded = resolve::load(request, options)?;
         let (title, crs, unit) = (document.title.clone(), loaded.crs, document.unit);
         let representations = representations::of(&source, &roots)?;
-        let (layers, fonts) = (loaded.layers, loaded.fonts);
-        let mut scene = Scene { title, crs, unit, layers, representations, fonts };
+        let (layers, fonts, drawings) = (loaded.layers, loaded.fonts, loaded.drawings);
+        let mut scene = Scene { title, crs, unit, layers, representations, fonts, drawings };
         hidden::apply(&mut scene, document);
         resolve::fill_surfaces(&mut source.document.layer, &scene);
         let (mut scene, mut inputs) = (Arc::new(scene), loaded.inputs);

@@ -16,25 +16,31 @@ impl MarkBuilder<'_> {
     pub(super) fn area_names(&self, index: usize, layer: &AreaLayer) -> Vec<LabelRequest> {
         let Some(size_px) = layer.label_px else { return Vec::new() };
         let named = layer.features.par_iter().filter(|f| !f.name.trim().is_empty());
-        let poles: Vec<(&str, Color, Pole)> = named
+        let poles: Vec<(&str, (Color, Option<f64>), Pole)> = named
             .filter_map(|f| {
-                let color = f.style.and_then(|own| own.color).unwrap_or(layer.fill);
-                Some((f.name.trim(), layer.outline.unwrap_or(color), pole(&f.rings)?))
+                let own = f.style.unwrap_or_default();
+                let color = layer.outline.unwrap_or(own.color.unwrap_or(layer.fill));
+                Some((f.name.trim(), (color, own.rank), pole(&f.rings)?))
             })
             .collect();
-        let mut largest: HashMap<&str, (Color, Pole)> = HashMap::new();
-        for (name, color, pole) in poles {
-            let best = largest.entry(name).or_insert((color, pole));
+        let mut largest: HashMap<&str, ((Color, Option<f64>), Pole)> = HashMap::new();
+        for (name, look, pole) in poles {
+            let best = largest.entry(name).or_insert((look, pole));
             if pole.distance > best.1.distance {
-                *best = (color, pole);
+                *best = (look, pole);
             }
         }
-        let mut names: Vec<(&str, Color, Pole)> =
-            largest.into_iter().map(|(n, (color, pole))| (n, color, pole)).collect();
-        names.sort_by(|a, b| b.2.distance.total_cmp(&a.2.distance).then(a.0.cmp(b.0)));
+        let mut names: Vec<(&str, (Color, Option<f64>), Pole)> =
+            largest.into_iter().map(|(n, (look, pole))| (n, look, pole)).collect();
+        // Those with a rank first, else those with the most room.
+        let rank = |rank: Option<f64>| rank.filter(|rank| !rank.is_nan()).unwrap_or(f64::NEG_INFINITY);
+        names.sort_by(|a, b| {
+            let by_rank = rank(b.1.1).total_cmp(&rank(a.1.1));
+            by_rank.then(b.2.distance.total_cmp(&a.2.distance)).then(a.0.cmp(b.0))
+        });
         let (shown, is_shown) = self.shows(index);
         let mut requests = Vec::new();
-        for (name, color, pole) in names {
+        for (name, (color, _), pole) in names {
             // On no ground nothing is painted.
             let Some(height) = self.scene.terrain().and_then(|ground| ground.surface_at(pole.at)) else { continue };
             let p: DVec3 = pole.at.extend(height + layer.lift_m);

@@ -6,6 +6,8 @@ mod baseline;
 mod candidates;
 mod dash;
 mod distance;
+mod drawing;
+mod drawn;
 mod face;
 mod label;
 mod line_of_sight;
@@ -19,6 +21,7 @@ mod ribbon;
 mod segment;
 mod shapes;
 mod shown;
+mod skyline;
 mod symbol;
 mod visibility;
 
@@ -32,14 +35,17 @@ use belvedere_core::{Aabb, DVec2};
 use belvedere_scene::{
     AreaLayer, Color, Hidden, LayerKind, LineFeature, LineLayer, Overlay, OverlayLine, RenderJob, Scene, Symbol,
 };
+use drawing::PlacedDrawing;
 use face::Face;
 use label::Labels;
 use line_of_sight::LineOfSight;
 use path::LinePoint;
+use point::PointMarks;
 use rayon::prelude::*;
 use request::{LabelRequest, Page};
 use ribbon::{Ink, Lane, Stroke, StrokeLayer};
 pub use shapes::{LayerShapes, LineShape, Paint, Role, Shapes, SymbolShape, outline, simplified};
+use skyline::Skyline;
 use visibility::{DepthMap, LineVisibility, Run, Station};
 
 /// Width of a hidden line in widths of the visible one.
@@ -51,6 +57,8 @@ pub struct Marks {
     under: Vec<StrokeLayer>,
     faces: Vec<Face>,
     sheets: Vec<StrokeLayer>,
+    /// Symbols of the scene's own.
+    drawings: Vec<PlacedDrawing>,
     labels: Labels,
 }
 
@@ -65,7 +73,7 @@ impl Marks {
         let marks = Self::place(job, drawn, true);
         let of = |sheets: &[StrokeLayer]| sheets.iter().map(StrokeLayer::shapes).collect();
         let mut names = Vec::new();
-        marks.labels.draw(Canvas::recording(&mut names, job.view.pinhole().image.map(|side| side as usize)));
+        marks.draw_over(Canvas::recording(&mut names, job.view.pinhole().image.map(|side| side as usize)));
         Shapes { under: of(&marks.under), layers: of(&marks.sheets), names }
     }
 
@@ -77,6 +85,11 @@ impl Marks {
         let Drawn { passes, screen, tolerance_px, depth, sight } = *drawn;
         let map = DepthMap { depth, width: screen.width, height: screen.height };
         let sections = Sections::new(job);
+        let named = |kind: &LayerKind| matches!(kind, LayerKind::Point(p) if p.style.label_px.is_some());
+        let skyline = match job.scene.layers.iter().any(|layer| named(&layer.kind)) {
+            true => Skyline::of(depth, screen.width.max(0) as usize),
+            false => Skyline::default(),
+        };
         let fonts = Fonts::with(&job.scene.fonts);
         let sight = LineOfSight { scene: job.scene, sight };
         let builder = MarkBuilder {
@@ -90,10 +103,12 @@ impl Marks {
             sight: &sight,
             density: job.options.density,
             fonts: &fonts,
+            skyline: &skyline,
             keep,
         };
         let overlay = &job.options.overlay;
         let mut requests: Vec<LabelRequest> = Vec::new();
+        let mut points = PointMarks::default();
         let mut sheets: Vec<StrokeLayer> = Vec::new();
         for (i, layer) in job.scene.layers.iter().enumerate() {
             let id = i as u32 + 1;
@@ -108,7 +123,10 @@ impl Marks {
                     sheets.extend(builder.outlines(a, id));
                     requests.extend(builder.area_names(i, a));
                 }
-                LayerKind::Point(p) => sheets.extend(builder.points(&builder.shown_points(i, p), id, &mut requests)),
+                LayerKind::Point(p) => {
+                    sheets.extend(builder.points(&builder.shown_points(i, p), id, &mut points));
+                    requests.append(&mut points.requests);
+                }
                 _ => {}
             }
         }
@@ -121,7 +139,7 @@ impl Marks {
             .flat_map(|f| passes.iter().take(job.view.records()).filter_map(|p| Face::new(f, *p, screen)));
         let (size, density, keep_clear) = (2.0 * screen.center, job.options.density, &job.options.keep_clear[..]);
         let labels = Labels::place(requests, &Page { size, density, fonts: &fonts, keep_clear });
-        Self { under, faces: faces.collect(), sheets, labels }
+        Self { under, faces: faces.collect(), sheets, drawings: points.drawings, labels }
     }
 
     /// Whether the job may have any marks.
@@ -157,9 +175,14 @@ impl Marks {
         cover
     }
 
-    /// Writes the names over the finished picture.
+    /// Draws symbols of the scene's own and writes the names over the finished picture.
     pub fn write_names(&self, pixels: &mut [[u8; 3]], width: usize) {
-        self.labels.draw(Canvas::new(pixels, width));
+        self.draw_over(Canvas::new(pixels, width));
+    }
+
+    fn draw_over(&self, mut canvas: Canvas<'_>) {
+        self.drawings.iter().for_each(|drawing| drawing.draw(&mut canvas));
+        self.labels.draw(canvas);
     }
 }
 
@@ -177,6 +200,7 @@ struct MarkBuilder<'a> {
     density: f64,
     /// Fonts of names.
     fonts: &'a Fonts,
+    skyline: &'a Skyline,
     /// Whether lines are kept as shapes.
     keep: bool,
 }

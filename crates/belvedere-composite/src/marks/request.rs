@@ -82,7 +82,7 @@ impl Lines {
 
     /// Texts, heights of letters and left ends of baselines of a block whose first baseline begins at `at`.
     pub(crate) fn placed(&self, at: DVec2) -> impl Iterator<Item = (&str, f64, DVec2)> {
-        let line = move |(i, (text, size, width)): (usize, &'_ (String, f64, f64))| {
+        let line = move |(i, (_, size, width)): (usize, &'_ (String, f64, f64))| {
             DVec2::new(at.x + 0.5 * (self.width - width), at.y + i as f64 * LEADING * size)
         };
         self.lines.iter().enumerate().map(move |(i, set)| (set.0.as_str(), set.1, line((i, set))))

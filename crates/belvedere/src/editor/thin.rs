@@ -56,8 +56,9 @@ impl Thin {
             Layer { id: layer.id.clone(), must_see: layer.must_see, kind }
         };
         let layers = scene.layers.iter().enumerate().map(layer).collect();
-        let (title, representations, fonts) = (scene.title.clone(), scene.representations.clone(), scene.fonts.clone());
-        Scene { title, crs: scene.crs, unit: scene.unit, layers, representations, fonts }
+        let (title, representations) = (scene.title.clone(), scene.representations.clone());
+        let (fonts, drawings) = (scene.fonts.clone(), scene.drawings.clone());
+        Scene { title, crs: scene.crs, unit: scene.unit, layers, representations, fonts, drawings }
     }
 
     /// A layer of triangles with fewer of them; `None` if it has none, or few.

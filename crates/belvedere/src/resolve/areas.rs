@@ -54,7 +54,7 @@ pub(super) fn layer(
         surface,
         hidden: style.hidden,
         lift_m: style.lift_m,
-        label_px: style.labels.then_some(style.label_px),
+        label_px: (style.labels || style.label.is_some()).then_some(style.label_px),
     }))
 }
 

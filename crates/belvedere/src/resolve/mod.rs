@@ -22,6 +22,7 @@ pub(crate) use light::check_air;
 mod loader;
 mod mesh;
 mod molecule;
+mod named;
 pub(crate) mod motion;
 mod path;
 pub(crate) mod rays;

@@ -1,6 +1,6 @@
 //! Lines, areas and points from files, draped on the terrain.
 
-use super::by_property;
+use super::{by_property, named};
 use super::ground::Ground;
 use super::loader::Loader;
 use crate::BelvedereError;
@@ -159,6 +159,7 @@ fn all<T>(
         stand(loader, index, &mut vectors);
         read.push(vectors);
     }
+    named::tell(loader, index, &mut read)?;
     // Classes are those of all files together.
     by_property::style(loader, index, &mut read)?;
     let mut features = Vec::new();

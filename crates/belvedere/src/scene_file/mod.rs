@@ -20,11 +20,13 @@ pub(crate) mod other_kind;
 mod overlay;
 mod palette;
 pub mod paths;
+mod points;
 mod print;
 mod relief;
 mod stages;
 mod strip;
 mod stylisation;
+mod symbol;
 mod text;
 mod toml_tree;
 mod volume;
@@ -38,14 +40,14 @@ pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDo
 pub use fallback::{Fallback, FallbackKind};
 pub use intent::{AnimationDoc, CentrelineDoc, ConstructorDoc, ConstructorKind, SweepDoc, TurntableDoc};
 pub use layers::{
-    AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc, PointLayerDoc,
-    PointStyleDoc, PositionDoc, RouteDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, VerticalUnit,
+    AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc, PositionDoc, RouteDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, VerticalUnit,
 };
 pub use mesh::{MeshDoc, MeshStyleDoc};
 pub use molecule::{MoleculeDoc, MoleculeStyleDoc, PaintDoc};
 pub(crate) use node::{Node, Value};
 pub use overlay::{AutoOrLength, AutoWord, HighlightMark, Inset, OverlayDoc, SwitchOrLength};
 pub use palette::{PaletteDoc, PaletteName};
+pub use points::{PointLayerDoc, PointStyleDoc};
 pub use print::PrintDoc;
 pub use relief::{OneOrTwo, ReliefStageDoc};
 pub use stages::{
@@ -54,7 +56,8 @@ pub use stages::{
 };
 pub use strip::StripStageDoc;
 pub use stylisation::{StylisationDoc, SwitchOrStrength};
-pub use text::TextDoc;
+pub use symbol::SymbolDoc;
+pub use text::{HeightUnit, TextDoc};
 pub use volume::VolumeDoc;
 
 use crate::BelvedereError;

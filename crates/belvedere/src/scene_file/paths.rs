@@ -1,6 +1,6 @@
 //! Which files a scene may name: those in its own folder or below, unless the user allows more.
 
-use super::{Document, LayerDoc, PaletteDoc, PresetsDoc, StageDoc, names_a_preset_file};
+use super::{Document, LayerDoc, PaletteDoc, PresetsDoc, StageDoc, SymbolDoc, names_a_preset_file};
 use crate::BelvedereError;
 use belvedere_io::{fs, join_table, split_table};
 use std::path::{Component, Path, PathBuf};
@@ -24,7 +24,12 @@ impl Document {
                 }
                 LayerDoc::Line(l) => l.source.iter_mut().for_each(|source| source.each(&mut one)),
                 LayerDoc::Area(l) => l.source.each(&mut one),
-                LayerDoc::Point(l) => l.source.each(&mut one),
+                LayerDoc::Point(l) => {
+                    l.source.each(&mut one);
+                    if let SymbolDoc::File(name) = &mut l.style.symbol {
+                        one(name);
+                    }
+                }
                 LayerDoc::Boxes(l) => l.source.iter_mut().chain(&mut l.motion).for_each(&mut one),
                 LayerDoc::Mesh(l) => {
                     l.source.each(&mut one);

@@ -14,10 +14,24 @@ pub struct TextDoc {
     pub fonts: Option<Paths>,
     /// Whether fonts of the system are used for letters that no other font has. The record of the picture names them with their hashes.
     pub system_fonts: bool,
+    /// Unit of heights below names: `m` or `ft`.
+    pub heights: HeightUnit,
+}
+
+/// Unit of heights below names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+pub enum HeightUnit {
+    /// Metres.
+    #[default]
+    #[serde(rename = "m")]
+    Metre,
+    /// Feet of 0.3048 m.
+    #[serde(rename = "ft")]
+    Foot,
 }
 
 impl Default for TextDoc {
     fn default() -> Self {
-        Self { fonts: None, system_fonts: true }
+        Self { fonts: None, system_fonts: true, heights: HeightUnit::Metre }
     }
 }

@@ -227,8 +227,9 @@ impl Drawing {
         match symbol.symbol {
             belvedere_scene::Symbol::Dot => self.circle(symbol.at, symbol.half),
             other => {
-                let corners: Vec<DVec2> = outline(other, symbol.half).into_iter().map(|p| symbol.at + p).collect();
-                self.path(&corners, true);
+                for ring in outline(other, symbol.half) {
+                    self.path(&ring.into_iter().map(|p| symbol.at + p).collect::<Vec<_>>(), true);
+                }
             }
         }
         if symbol.grow > 0.0 {

@@ -199,8 +199,9 @@ impl Svg {
                 number(symbol.half)
             ),
             other => {
-                let corners: Vec<DVec2> = outline(other, symbol.half).into_iter().map(|p| symbol.at + p).collect();
-                format!("<path d=\"{}\"", path(&corners, true))
+                let moved = |ring: Vec<DVec2>| ring.into_iter().map(|p| symbol.at + p).collect::<Vec<_>>();
+                let rings = outline(other, symbol.half).into_iter().map(|ring| path(&moved(ring), true));
+                format!("<path d=\"{}\"", rings.collect::<String>())
             }
         };
         self.line(&format!("{shape} fill=\"{color}\"{pen}/>"));
