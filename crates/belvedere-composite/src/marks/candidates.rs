@@ -31,6 +31,9 @@ pub(crate) fn candidates(request: &LabelRequest, lines: &Lines, page: &Page<'_>)
         out.push(block(None, DVec2::new(request.at.x - 0.5 * lines.width, level)));
         return out;
     }
+    if !request.line.0.is_empty() {
+        out.extend(aside(request, lines, density).map(|baseline| block(None, baseline)));
+    }
     let foot = request.at - DVec2::Y * above;
     let over = |length: f64, shift: f64| {
         let top = foot - DVec2::Y * (length + 2.0 * density);
@@ -53,6 +56,20 @@ pub(crate) fn candidates(request: &LabelRequest, lines: &Lines, page: &Page<'_>)
         }
     }
     out
+}
+
+/// Baselines on both sides of the line at the point, so far off that a straight line is not touched; the upper one first.
+fn aside(request: &LabelRequest, lines: &Lines, density: f64) -> impl Iterator<Item = DVec2> {
+    let (line, half) = &request.line;
+    let far = |pair: &[DVec2]| (0.5 * (pair[0] + pair[1])).distance(request.at);
+    let nearest = line.windows(2).min_by(|a, b| far(a).total_cmp(&far(b)));
+    let direction = nearest.map_or(DVec2::X, |pair| (pair[1] - pair[0]).normalize_or(DVec2::X));
+    let up = if direction.x < 0.0 { direction.perp() } else { -direction.perp() };
+    let size = DVec2::new(lines.width, lines.ascent + lines.descent) + 2.0 * ROOM * density;
+    let off = density + 0.5 * up.abs().dot(size + 2.0 * half);
+    let at = request.at;
+    let corner = DVec2::new(-0.5 * lines.width, 0.5 * (lines.ascent - lines.descent));
+    [1.0, -1.0].into_iter().map(move |side| at + side * off * up + corner)
 }
 
 /// Lengths of leaders to rows over the skyline; the rows of all names of one size are the same.

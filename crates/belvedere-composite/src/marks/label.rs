@@ -220,4 +220,64 @@ mod tests {
         assert!(!crosses(DVec2::new(0.0, 10.0), DVec2::new(60.0, 19.0), &rect));
         assert!(!crosses(DVec2::new(51.0, 31.0), DVec2::new(90.0, 90.0), &rect));
     }
+
+    #[test]
+    fn two_thousand_names_on_a_poster_stand_apart_and_are_placed_in_time() {
+        // A0 at 300 dots per inch, letters and gaps of 300 / 96 pixels per unit.
+        let (size, density) = (DVec2::new(14_043.0, 9933.0), 3.125);
+        let mut seed = 11u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 40) as f64 / f64::from(1u32 << 24)
+        };
+        let point = |i: usize, at: DVec2| {
+            let request = LabelRequest::new(format!("Piz {i}"), at, 13.0 * density, BLACK);
+            LabelRequest { second: "2814 m".into(), marker: [15.0, 20.0], leader: true, ..request }
+        };
+        let mut requests: Vec<LabelRequest> =
+            (0..1500).map(|i| point(i, size * DVec2::new(random(), random()))).collect();
+        let lines: Vec<(Vec<DVec2>, f64)> = (0..500)
+            .map(|_| {
+                let (at, turn) = (size * DVec2::new(random(), random()), 2.0 * random() - 1.0);
+                let along = |i: i32| DVec2::new(f64::from(i), 60.0 * (f64::from(i) * 0.004).sin());
+                ((0..900).map(|i| at + DVec2::from_angle(turn).rotate(along(i))).collect(), 6.0 + 6.0 * random())
+            })
+            .collect();
+        let letters = |width, gap| crate::marks::baseline::Letters { width, size_px: 13.0 * density, gap };
+        let started = std::time::Instant::now();
+        requests.extend(lines.iter().enumerate().map(|(i, (line, half))| {
+            let text = format!("Via Alpina {i}");
+            let width = Fonts::default().text_size(13.0 * density, &text).width;
+            let along = crate::marks::baseline::baselines(line, letters(width, half + density));
+            let request = LabelRequest::new(text, line[450], 13.0 * density, BLACK);
+            LabelRequest { along, line: (line.clone(), *half), marker: [*half; 2], ..request }
+        }));
+        let labels = Labels::place(requests, &Page { size, density, fonts: &Fonts::default(), keep_clear: &[] });
+        let taken = started.elapsed();
+        assert!(taken.as_secs_f64() < 5.0, "{taken:?}");
+        assert!(labels.placed.len() > 1500, "{} names", labels.placed.len());
+        let curved: Vec<&Placed> = labels.placed.iter().filter(|p| !p.candidate.along.is_empty()).collect();
+        assert!(curved.len() > 150, "{} names along lines", curved.len());
+        let boxes: Vec<(usize, &Rect)> =
+            labels.placed.iter().enumerate().flat_map(|(i, p)| p.candidate.boxes.iter().map(move |r| (i, r))).collect();
+        for (k, (i, a)) in boxes.iter().enumerate() {
+            assert!(a[0].min_element() >= 0.0 && a[1].cmple(size).all());
+            assert!(boxes[..k].iter().all(|(j, b)| i == j || !overlap(a, b)), "names {i} lies over another");
+        }
+        // No name crosses the casing of its line: the ends of the strokes of its letters stay off it.
+        for placed in &curved {
+            let name = &placed.lines.lines[0].0;
+            let number: usize = name.rsplit(' ').next().and_then(|n| n.parse().ok()).expect("a number");
+            let (line, half) = &lines[number];
+            for pair in placed.candidate.along.windows(2).take_while(|pair| pair[0].distance(placed.candidate.baseline) < placed.lines.width) {
+                let direction = (pair[1] - pair[0]).normalize_or_zero();
+                let up = DVec2::new(direction.y, -direction.x);
+                for share in [-0.24, 0.0, 0.4, 0.76] {
+                    let p = pair[0] + share * placed.size_px * up;
+                    let nearest = line.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
+                    assert!(nearest > *half, "{name}: {nearest} px from the middle of a line of {half}");
+                }
+            }
+        }
+    }
 }

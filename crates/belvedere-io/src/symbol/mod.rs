@@ -80,7 +80,7 @@ fn drawing(text: &str) -> Result<Drawing, String> {
             Event::Eof => break,
             _ => continue,
         };
-        let name = String::from_utf8_lossy(start.local_name().as_ref()).into_owned();
+        let name = start.local_name().as_ref().to_owned();
         let attributes = attributes(start)?;
         let mut look = open.last().copied().unwrap_or(outer);
         if view.is_none() {
@@ -176,8 +176,8 @@ fn attributes(start: &BytesStart<'_>) -> Result<Attributes, String> {
     let mut out = Attributes::new();
     for attribute in start.attributes() {
         let attribute = attribute.map_err(|e| format!("an attribute is damaged ({e}); write it anew"))?;
-        let key = String::from_utf8_lossy(attribute.key.as_ref()).into_owned();
-        let value = String::from_utf8_lossy(&attribute.value).into_owned();
+        let key = attribute.key.as_ref().to_owned();
+        let value = attribute.value.to_string();
         if key == "style" {
             let pairs = value.split(';').filter_map(|pair| pair.split_once(':'));
             out.extend(pairs.map(|(key, value)| (key.trim().to_owned(), value.trim().to_owned())));

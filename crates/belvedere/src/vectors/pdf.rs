@@ -276,7 +276,7 @@ impl Drawing {
                 let letters = fonts.letters(text);
                 let plain = along.is_empty() && self.knows_all(&letters);
                 let turned = match along.is_empty() {
-                    true => letters.iter().map(|l| (*at + size * DVec2::new(l.at[0], -l.at[1]), DVec2::X)).collect(),
+                    true => letters.iter().map(|l| (*at + *size * DVec2::new(l.at[0], -l.at[1]), DVec2::X)).collect(),
                     false => {
                         fonts.turned(*size, text, along).into_iter().map(|turn| (turn.at, turn.direction)).collect()
                     }

@@ -65,7 +65,7 @@ impl DrawnLetters {
                 }
                 pdf.stream(*drawing, &deflated(&content.finish())).filter(Filter::FlateDecode);
             }
-            let last = letters.len() as u8 - u8::from(!letters.is_empty());
+            let last = letters.len().saturating_sub(1) as u8;
             let mut font = pdf.type3_font(*id);
             font.bbox(Rect::new(around[0], around[1], around[2], around[3]));
             font.matrix([0.001, 0.0, 0.0, 0.001, 0.0, 0.0]).first_char(0).last_char(last);
