@@ -25,8 +25,28 @@ const GOOD: [&str; 14] = [
 ];
 /// Words in names of files whose letters are of a special cut, or whose signs are no letters.
 const SPECIAL: [&str; 22] = [
-    "bold", "italic", "oblique", "serif", "mono", "thin", "light", "black", "condensed", "display", "symbol", "emoji",
-    "looped", "nastaliq", "kufi", "medium", "rashi", "math", "music", "supplement", "last", "braille",
+    "bold",
+    "italic",
+    "oblique",
+    "serif",
+    "mono",
+    "thin",
+    "light",
+    "black",
+    "condensed",
+    "display",
+    "symbol",
+    "emoji",
+    "looped",
+    "nastaliq",
+    "kufi",
+    "medium",
+    "rashi",
+    "math",
+    "music",
+    "supplement",
+    "last",
+    "braille",
 ];
 
 /// Files of fonts in the folders of the system and of the user, plain ones of large families first, then by name: the same order wherever

@@ -38,7 +38,9 @@ fn class(c: char) -> Class {
         '\u{200f}' => Class::Right,
         '\u{61c}' => Class::Arabic,
         // Marks over letters take the direction of their letter; those of scripts from left to right do so in any class.
-        '\u{300}'..='\u{36f}' | '\u{483}'..='\u{489}' | '\u{1ab0}'..='\u{1aff}' | '\u{1dc0}'..='\u{1dff}' => Class::Mark,
+        '\u{300}'..='\u{36f}' | '\u{483}'..='\u{489}' | '\u{1ab0}'..='\u{1aff}' | '\u{1dc0}'..='\u{1dff}' => {
+            Class::Mark
+        }
         '\u{20d0}'..='\u{20ff}' | '\u{fe00}'..='\u{fe0f}' | '\u{fe20}'..='\u{fe2f}' | '\u{200c}' | '\u{200d}' => {
             Class::Mark
         }
@@ -50,7 +52,9 @@ fn class(c: char) -> Class {
             Class::Mark
         }
         '\u{8ca}'..='\u{8e1}' | '\u{8e3}'..='\u{8ff}' | '\u{fb1e}' => Class::Mark,
-        '\u{600}'..='\u{7bf}' | '\u{860}'..='\u{8ff}' | '\u{fb50}'..='\u{fdff}' | '\u{fe70}'..='\u{fefe}' => Class::Arabic,
+        '\u{600}'..='\u{7bf}' | '\u{860}'..='\u{8ff}' | '\u{fb50}'..='\u{fdff}' | '\u{fe70}'..='\u{fefe}' => {
+            Class::Arabic
+        }
         '\u{590}'..='\u{5ff}' | '\u{7c0}'..='\u{85f}' | '\u{fb1d}'..='\u{fb4f}' => Class::Right,
         '\u{10d00}'..='\u{10d3f}' | '\u{10ec0}'..='\u{10eff}' | '\u{10f30}'..='\u{10f6f}' => Class::Arabic,
         '\u{1ec70}'..='\u{1ecbf}' | '\u{1ed00}'..='\u{1ed4f}' | '\u{1ee00}'..='\u{1eeff}' => Class::Arabic,

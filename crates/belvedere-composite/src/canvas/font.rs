@@ -147,9 +147,7 @@ impl Fonts {
     pub fn with(files: &[FontFile]) -> Self {
         match files.is_empty() {
             true => Self::default(),
-            false => Self(
-                EMBEDDED.0.iter().cloned().chain(files.iter().filter_map(Face::new).map(Arc::new)).collect(),
-            ),
+            false => Self(EMBEDDED.0.iter().cloned().chain(files.iter().filter_map(Face::new).map(Arc::new)).collect()),
         }
     }
 

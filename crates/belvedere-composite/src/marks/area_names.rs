@@ -1,8 +1,8 @@
 //! Names of areas, each in the middle of the room that its area has.
 
-use crate::marks::request::LabelRequest;
 use crate::marks::path::LinePoint;
 use crate::marks::pole::{Pole, pole};
+use crate::marks::request::LabelRequest;
 use crate::marks::{MarkBuilder, Marker, darker};
 use belvedere_core::DVec3;
 use belvedere_scene::{AreaLayer, Color, Symbol};

@@ -74,7 +74,8 @@ fn beside(line: &[DVec2], stretch: std::ops::Range<usize>, off: f64) -> Option<(
     let smooth = |i: usize| {
         let weights = (-REACH..=REACH).map(|k| (i as i64 + k, (REACH + 1 - k.abs()) as f64));
         let weights = weights.filter(|(i, _)| (0..=last).contains(i));
-        let (sum, total) = weights.fold((DVec2::ZERO, 0.0), |(sum, total), (i, w)| (sum + w * line[i as usize], total + w));
+        let (sum, total) =
+            weights.fold((DVec2::ZERO, 0.0), |(sum, total), (i, w)| (sum + w * line[i as usize], total + w));
         sum / total
     };
     let mut points: Vec<DVec2> = stretch.map(smooth).collect();
@@ -136,7 +137,8 @@ mod tests {
             assert!(baseline.windows(2).all(|pair| pair[1].x > pair[0].x));
             for share in [-DESCENT, ASCENT] {
                 let lifted = baseline.iter().map(|p| *p - DVec2::Y * share * 12.0);
-                let nearest = lifted.flat_map(|p| bow.iter().map(move |q| p.distance(*q))).fold(f64::INFINITY, f64::min);
+                let nearest =
+                    lifted.flat_map(|p| bow.iter().map(move |q| p.distance(*q))).fold(f64::INFINITY, f64::min);
                 assert!(nearest > 2.5, "{nearest} px from the line");
             }
         }
@@ -149,7 +151,10 @@ mod tests {
         let line = |f: fn(f64) -> [f64; 2]| (0..400).map(|i| DVec2::from_array(f(f64::from(i)))).collect::<Vec<_>>();
         assert!(baselines(&line(|i| [0.1 * i, 0.0]), letters(120.0)).is_empty());
         assert!(baselines(&line(|i| [50.0, i]), letters(120.0)).is_empty());
-        assert!(baselines(&line(|i| [200.0 + 30.0 * (i * 0.03).cos(), 200.0 + 30.0 * (i * 0.03).sin()]), letters(120.0)).is_empty());
+        assert!(
+            baselines(&line(|i| [200.0 + 30.0 * (i * 0.03).cos(), 200.0 + 30.0 * (i * 0.03).sin()]), letters(120.0))
+                .is_empty()
+        );
         assert!(baselines(&[], letters(5.0)).is_empty() && baselines(&[DVec2::ONE], letters(5.0)).is_empty());
         assert!(baselines(&line(|i| [i, 0.0]), letters(f64::NAN)).is_empty());
     }

@@ -5,15 +5,8 @@ use belvedere_scene::Symbol;
 use std::f64::consts::TAU;
 
 /// Symbols that are polygons, in the order of [`all`].
-const SYMBOLS: [Symbol; 7] = [
-    Symbol::Hut,
-    Symbol::Pass,
-    Symbol::Lift,
-    Symbol::Viewpoint,
-    Symbol::Parking,
-    Symbol::Ring,
-    Symbol::Target,
-];
+const SYMBOLS: [Symbol; 7] =
+    [Symbol::Hut, Symbol::Pass, Symbol::Lift, Symbol::Viewpoint, Symbol::Parking, Symbol::Ring, Symbol::Target];
 
 /// Number of a symbol in [`all`]; `None` for others.
 pub(super) fn number(symbol: Symbol) -> Option<usize> {
@@ -64,8 +57,20 @@ fn of(symbol: Symbol) -> Vec<Vec<DVec2>> {
             vec![side(-1.0), side(1.0)]
         }
         Symbol::Lift => vec![
-            ring(&[[-1.2, -0.72], [1.2, -1.2], [1.2, -0.92], [0.14, -0.71], [0.14, -0.3], [0.85, -0.3], [0.85, 0.95],
-                [-0.85, 0.95], [-0.85, -0.3], [-0.14, -0.3], [-0.14, -0.65], [-1.2, -0.44]]),
+            ring(&[
+                [-1.2, -0.72],
+                [1.2, -1.2],
+                [1.2, -0.92],
+                [0.14, -0.71],
+                [0.14, -0.3],
+                [0.85, -0.3],
+                [0.85, 0.95],
+                [-0.85, 0.95],
+                [-0.85, -0.3],
+                [-0.14, -0.3],
+                [-0.14, -0.65],
+                [-1.2, -0.44],
+            ]),
             hole(ring(&[[-0.55, 0.0], [-0.12, 0.0], [-0.12, 0.42], [-0.55, 0.42]])),
             hole(ring(&[[0.12, 0.0], [0.55, 0.0], [0.55, 0.42], [0.12, 0.42]])),
         ],

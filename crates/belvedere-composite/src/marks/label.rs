@@ -2,8 +2,8 @@
 
 use crate::canvas::{Canvas, Fonts};
 use crate::marks::candidates::candidates;
-use crate::marks::request::{Candidate, LabelRequest, Lines, Page};
 use crate::marks::occupied::{Occupied, Rect, overlap};
+use crate::marks::request::{Candidate, LabelRequest, Lines, Page};
 use belvedere_core::{DVec2, polygon::to_segment};
 use belvedere_scene::Color;
 
@@ -169,7 +169,8 @@ mod tests {
     fn names_keep_clear_of_what_is_kept_clear() {
         let size = DVec2::new(400.0, 300.0);
         let legend = [DVec2::new(150.0, 120.0), DVec2::new(400.0, 300.0)];
-        let labels = place((0..20).map(|i| summit(i, DVec2::new(180.0, 20.0 + 14.0 * i as f64))).collect(), size, &[legend]);
+        let labels =
+            place((0..20).map(|i| summit(i, DVec2::new(180.0, 20.0 + 14.0 * i as f64))).collect(), size, &[legend]);
         assert!(labels.placed.len() > 5);
         assert_apart(&labels, size);
         assert!(boxes(&labels).iter().all(|rect| !overlap(rect, &legend)));
@@ -200,20 +201,35 @@ mod tests {
         let request = LabelRequest { line: (line.clone(), 4.0), marker: [4.0; 2], ..request };
         let labels = place(vec![request], DVec2::splat(400.0), &[]);
         let on = |rect: &Rect| line.iter().any(|p| p.cmpgt(rect[0] - 3.0).all() && p.cmplt(rect[1] + 3.0).all());
-        assert!(labels.placed.iter().all(|_| true) && boxes(&labels).iter().all(|rect| !on(rect)), "{:?}", labels.placed);
+        assert!(
+            labels.placed.iter().all(|_| true) && boxes(&labels).iter().all(|rect| !on(rect)),
+            "{:?}",
+            labels.placed
+        );
         assert_eq!(labels.placed.len(), 1);
         // A line that fills its surroundings leaves no room.
-        let zigzag: Vec<DVec2> = (0..400).map(|i| DVec2::new(100.0 + 0.5 * f64::from(i), if i % 2 == 0 { 60.0 } else { 140.0 })).collect();
-        let request = LabelRequest { line: (zigzag.clone(), 4.0), ..LabelRequest::new("Gasse", zigzag[200], 13.0, BLACK) };
+        let zigzag: Vec<DVec2> =
+            (0..400).map(|i| DVec2::new(100.0 + 0.5 * f64::from(i), if i % 2 == 0 { 60.0 } else { 140.0 })).collect();
+        let request =
+            LabelRequest { line: (zigzag.clone(), 4.0), ..LabelRequest::new("Gasse", zigzag[200], 13.0, BLACK) };
         assert!(place(vec![request], DVec2::splat(400.0), &[]).placed.is_empty());
     }
 
     #[test]
     fn segments_and_rectangles_meet_as_a_search_says() {
         let rect = [DVec2::new(10.0, 20.0), DVec2::new(50.0, 30.0)];
-        for (a, b) in [([0.0, 0.0], [60.0, 50.0]), ([0.0, 10.0], [60.0, 19.0]), ([30.0, 0.0], [30.0, 60.0]), ([12.0, 22.0], [13.0, 23.0]), ([0.0, 40.0], [9.0, 25.0]), ([51.0, 31.0], [90.0, 90.0])] {
+        for (a, b) in [
+            ([0.0, 0.0], [60.0, 50.0]),
+            ([0.0, 10.0], [60.0, 19.0]),
+            ([30.0, 0.0], [30.0, 60.0]),
+            ([12.0, 22.0], [13.0, 23.0]),
+            ([0.0, 40.0], [9.0, 25.0]),
+            ([51.0, 31.0], [90.0, 90.0]),
+        ] {
             let (a, b) = (DVec2::from_array(a), DVec2::from_array(b));
-            let searched = (0..=1000).map(|i| a.lerp(b, f64::from(i) / 1000.0)).any(|p| p.cmpgt(rect[0]).all() && p.cmplt(rect[1]).all());
+            let searched = (0..=1000)
+                .map(|i| a.lerp(b, f64::from(i) / 1000.0))
+                .any(|p| p.cmpgt(rect[0]).all() && p.cmplt(rect[1]).all());
             // What is found may be too much near corners, never too little.
             assert!(!searched || crosses(a, b, &rect), "{a} {b}");
         }
@@ -269,7 +285,12 @@ mod tests {
             let name = &placed.lines.lines[0].0;
             let number: usize = name.rsplit(' ').next().and_then(|n| n.parse().ok()).expect("a number");
             let (line, half) = &lines[number];
-            for pair in placed.candidate.along.windows(2).take_while(|pair| pair[0].distance(placed.candidate.baseline) < placed.lines.width) {
+            for pair in placed
+                .candidate
+                .along
+                .windows(2)
+                .take_while(|pair| pair[0].distance(placed.candidate.baseline) < placed.lines.width)
+            {
                 let direction = (pair[1] - pair[0]).normalize_or_zero();
                 let up = DVec2::new(direction.y, -direction.x);
                 for share in [-0.24, 0.0, 0.4, 0.76] {

@@ -1,9 +1,9 @@
 //! Points and their names.
 
 use crate::marks::alike::{self, alike};
-use crate::marks::request::LabelRequest;
 use crate::marks::drawing::PlacedDrawing;
 use crate::marks::path::LinePoint;
+use crate::marks::request::LabelRequest;
 use crate::marks::ribbon::{Lane, Stroke, StrokeLayer};
 use crate::marks::{HIDDEN_WIDTH, MarkBuilder, Marker, casing_of, darker, inks, symbol, width_or_none};
 use crate::screen::BAND;

@@ -62,9 +62,8 @@ mod tests {
         // A ridge that falls from row 20 to row 60; sky alone in the last columns.
         let (width, height) = (300, 100);
         let ground = |x: usize| if x < 280 { 20 + x / 7 } else { height };
-        let depth: Vec<f32> = (0..width * height)
-            .map(|i| if i / width >= ground(i % width) { 5.0 } else { f32::INFINITY })
-            .collect();
+        let depth: Vec<f32> =
+            (0..width * height).map(|i| if i / width >= ground(i % width) { 5.0 } else { f32::INFINITY }).collect();
         let skyline = Skyline::of(&depth, width);
         assert_eq!(skyline.over(DVec2::new(140.0, 41.0), 1.0), Some((20 + 80 / 7) as f64));
         assert_eq!(skyline.over(DVec2::new(140.0, 60.0), 1.0), None);

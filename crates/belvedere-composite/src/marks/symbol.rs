@@ -4,8 +4,8 @@ use crate::marks::drawn;
 use belvedere_core::DVec2;
 use belvedere_scene::Symbol;
 use glam::Vec2;
-use std::sync::LazyLock;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
+use std::sync::LazyLock;
 
 /// Centre of a pin's head over its tip, and radius of the head, in half sizes.
 const PIN: [f32; 2] = [1.9, 0.95];

@@ -64,8 +64,7 @@ type Shape = (Vec<Vec<DVec2>>, Option<Color>, bool);
 
 fn drawing(text: &str) -> Result<Drawing, String> {
     let mut reader = Reader::from_str(text);
-    let outer =
-        Look { place: DAffine2::IDENTITY, fill: Fill::Layer, opacity: 1.0, even_odd: false, silent: false };
+    let outer = Look { place: DAffine2::IDENTITY, fill: Fill::Layer, opacity: 1.0, even_odd: false, silent: false };
     let mut open = vec![outer];
     let (mut view, mut shapes): (Option<[f64; 4]>, Vec<Shape>) = (None, Vec::new());
     loop {
@@ -363,7 +362,23 @@ mod tests {
 
     #[test]
     fn no_text_is_ever_a_panic() {
-        let pieces = ["M", "1,2", "a5 5 0 01 3 3", "z", "<path d='", "'/>", "<svg viewBox='0 0 9 9'>", "é", "-.5.5", "1e9", "Q", "<g>", "c", "&", "\""];
+        let pieces = [
+            "M",
+            "1,2",
+            "a5 5 0 01 3 3",
+            "z",
+            "<path d='",
+            "'/>",
+            "<svg viewBox='0 0 9 9'>",
+            "é",
+            "-.5.5",
+            "1e9",
+            "Q",
+            "<g>",
+            "c",
+            "&",
+            "\"",
+        ];
         let mut seed = 5u64;
         for _ in 0..4000 {
             let mut text = String::from("<svg viewBox='0 0 9 9'><path d='M1 1");

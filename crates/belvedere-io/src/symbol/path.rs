@@ -196,7 +196,8 @@ pub(super) fn rectangle([x, y]: [f64; 2], [w, h]: [f64; 2], radii: [f64; 2]) -> 
     let corner = |at: [f64; 2], from: f64| {
         let steps = if r.min_element() > 0.0 { 9 } else { 0 };
         let middle = DVec2::new(at[0], at[1]);
-        (0..=steps).map(move |i| middle + r * DVec2::from_angle((from + f64::from(i) / f64::from(steps.max(1)) / 4.0) * TAU))
+        (0..=steps)
+            .map(move |i| middle + r * DVec2::from_angle((from + f64::from(i) / f64::from(steps.max(1)) / 4.0) * TAU))
     };
     if r.min_element() <= 0.0 {
         return vec![[[x, y], [x + w, y], [x + w, y + h], [x, y + h]].map(DVec2::from_array).to_vec()];
@@ -208,13 +209,13 @@ pub(super) fn rectangle([x, y]: [f64; 2], [w, h]: [f64; 2], radii: [f64; 2]) -> 
 
 /// Rings of which those inside an odd number of others run against them, so that they are holes.
 pub(super) fn oriented(rings: Vec<Vec<DVec2>>) -> Vec<Vec<DVec2>> {
-    let area = |ring: &[DVec2]| -> f64 {
-        ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| a.perp_dot(*b)).sum()
-    };
+    let area =
+        |ring: &[DVec2]| -> f64 { ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| a.perp_dot(*b)).sum() };
     let holds = |ring: &[DVec2], p: DVec2| {
-        let crossed = ring.iter().zip(ring.iter().cycle().skip(1)).filter(|(a, b)| {
-            (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y)
-        });
+        let crossed = ring
+            .iter()
+            .zip(ring.iter().cycle().skip(1))
+            .filter(|(a, b)| (a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y));
         crossed.count() % 2 == 1
     };
     let depth = |i: usize| {

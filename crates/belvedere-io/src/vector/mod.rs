@@ -15,8 +15,8 @@ mod shapefile;
 pub use area_kind::{AreaKind, area_kind};
 pub use gpx::track_times;
 pub use names::name_field;
-pub use place_kind::{number, place_kind, stated_height, stated_people};
 pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
+pub use place_kind::{number, place_kind, stated_height, stated_people};
 
 use crate::crs::CoordinateSystem;
 use crate::formats::Reader;

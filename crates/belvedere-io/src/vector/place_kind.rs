@@ -67,7 +67,8 @@ pub fn place_kind(properties: &BTreeMap<String, String>) -> Option<PlaceKind> {
         properties.iter().filter(of_kind).find_map(|(_, value)| {
             let value = value.trim().to_lowercase();
             // Whole words alone: a carpet is no car park, and Passau no pass.
-            let has = |word: &str| value == word || value.split(|c: char| !c.is_alphanumeric()).any(|part| part == word);
+            let has =
+                |word: &str| value == word || value.split(|c: char| !c.is_alphanumeric()).any(|part| part == word);
             WORDS.iter().find(|(word, _)| has(word)).map(|(_, kind)| *kind)
         })
     })

@@ -77,7 +77,9 @@ fn given(loader: &mut Loader<'_>, text: Option<&TextDoc>) -> Result<Vec<FontFile
         let faces = (0..count as u32).map(|index| FontFile { name: name_of(&path), bytes: bytes.clone(), index });
         let faces: Vec<FontFile> = faces.collect();
         if faces.is_empty() || Fonts::with(&faces).families().is_empty() {
-            return Err(IoError::format(&path, "is no font; give a TrueType or OpenType file (.ttf, .otf, .ttc)").into());
+            return Err(
+                IoError::format(&path, "is no font; give a TrueType or OpenType file (.ttf, .otf, .ttc)").into()
+            );
         }
         loader.inputs.push(record);
         fonts.extend(faces);

@@ -19,8 +19,8 @@ use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
 use belvedere_io::{InputFile, Loaded};
 use belvedere_scene::{
-    Climate, Crs, DistanceMarkers, Drape, Drawing, FontFile, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Palette, PaletteName,
-    PointLayer, PointStyle, Symbol, TerrainLayer, drape_polyline,
+    Climate, Crs, DistanceMarkers, Drape, Drawing, FontFile, Heightfield, Layer, LayerKind, LineFeature, LineLayer,
+    Palette, PaletteName, PointLayer, PointStyle, Symbol, TerrainLayer, drape_polyline,
 };
 use std::collections::BTreeMap;
 use std::path::PathBuf;

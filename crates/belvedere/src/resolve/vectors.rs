@@ -1,8 +1,8 @@
 //! Lines, areas and points from files, draped on the terrain.
 
-use super::{by_property, named};
 use super::ground::Ground;
 use super::loader::Loader;
+use super::{by_property, named};
 use crate::BelvedereError;
 use crate::scene_file::{LayerDoc, Paths};
 use belvedere_core::{Warning, WarningKind};

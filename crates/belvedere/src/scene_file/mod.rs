@@ -40,7 +40,8 @@ pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDo
 pub use fallback::{Fallback, FallbackKind};
 pub use intent::{AnimationDoc, CentrelineDoc, ConstructorDoc, ConstructorKind, SweepDoc, TurntableDoc};
 pub use layers::{
-    AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc, PositionDoc, RouteDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, VerticalUnit,
+    AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc, PositionDoc,
+    RouteDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, VerticalUnit,
 };
 pub use mesh::{MeshDoc, MeshStyleDoc};
 pub use molecule::{MoleculeDoc, MoleculeStyleDoc, PaintDoc};

@@ -116,12 +116,18 @@ fn a_scene_names_its_fonts_and_what_no_font_sets_is_said() {
     std::fs::write(folder.path().join("tiny.ttf"), tiny_font("Tiny", &FUJI.chars().collect::<Vec<_>>())).expect("font");
     let places = points(&[(FUJI, [0.0, 0.0], ""), ("湖", [900.0, 900.0], ""), ("Fuji", [-900.0, -900.0], "")]);
     let alone = "[text]\nsystem_fonts = false";
-    let unset = |session: &Session| session.warnings().iter().find(|w| w.text().contains("no font")).map(|w| w.text().to_owned());
+    let unset = |session: &Session| {
+        session.warnings().iter().find(|w| w.text().contains("no font")).map(|w| w.text().to_owned())
+    };
     let session = scene(folder.path(), &places, "labels = true", alone).expect("opens");
     assert!(unset(&session).is_some_and(|said| said.contains("2 names")), "{:?}", session.warnings());
     let with = "[text]\nsystem_fonts = false\nfonts = 'tiny.ttf'";
     let session = scene(folder.path(), &places, "labels = true", with).expect("opens");
-    assert!(unset(&session).is_some_and(|said| said.contains("1 name") && said.contains('湖')), "{:?}", session.warnings());
+    assert!(
+        unset(&session).is_some_and(|said| said.contains("1 name") && said.contains('湖')),
+        "{:?}",
+        session.warnings()
+    );
     assert!(session.inputs().iter().any(|file| file.path.ends_with("tiny.ttf") && file.sha256.len() == 64));
     // Copied text is that of the names, in PDF and in SVG.
     let picture = session.render(&PictureOptions { vectors: VectorContent::Alone, ..PictureOptions::default() });
@@ -131,7 +137,9 @@ fn a_scene_names_its_fonts_and_what_no_font_sets_is_said() {
     assert!(has(b"/Type3") && has(b"/CharProcs") && has(b"/ToUnicode"));
     assert!(picture.to_svg().expect("written").expect("vectors").contains(FUJI));
     // Refusals.
-    for (fonts, wanted) in [("points.geojson", "no font"), ("../tiny.ttf", "leaves the folder"), ("absent.ttf", "not there")] {
+    for (fonts, wanted) in
+        [("points.geojson", "no font"), ("../tiny.ttf", "leaves the folder"), ("absent.ttf", "not there")]
+    {
         let said = scene(folder.path(), &places, "labels = true", &format!("[text]\nfonts = '{fonts}'"));
         let said = said.err().expect("refused").to_string();
         assert!(said.contains(wanted) && said.chars().count() <= 500, "{said}");
@@ -156,7 +164,10 @@ fn points_have_the_symbols_ranks_and_heights_that_they_say() {
     let own = features("label = 'name:de'");
     let style = |i: usize| own[i].style.unwrap_or_default();
     assert_eq!([0, 1, 2, 3].map(|i| own[i].name.as_str()), ["Hut", "Gipfel", "Town", "Odd"]);
-    assert_eq!([0, 1, 2, 3].map(|i| style(i).symbol), [Some(Symbol::Hut), Some(Symbol::Triangle), Some(Symbol::Target), None]);
+    assert_eq!(
+        [0, 1, 2, 3].map(|i| style(i).symbol),
+        [Some(Symbol::Hut), Some(Symbol::Triangle), Some(Symbol::Target), None]
+    );
     assert_eq!(style(1).kind, Some(PlaceKind::Peak));
     assert_eq!([0, 1, 2, 3].map(|i| style(i).height.map(|h| h.to_string())), [None, Some("2815 m".into()), None, None]);
     assert!(style(2).rank > style(0).rank && style(1).rank.is_some() && style(3).rank.is_none());
@@ -177,7 +188,8 @@ fn symbols_of_ones_own_are_drawn_in_their_colours() {
     let svg = "<svg viewBox='0 0 10 10'><rect width='10' height='10' fill='#ff00fe'/></svg>";
     std::fs::write(folder.path().join("own.svg"), svg).expect("written");
     let places = points(&[("A", [0.0, 0.0], "")]);
-    let session = scene(folder.path(), &places, "symbol = 'own.svg', size_px = 20, hidden = 'show'", "").expect("opens");
+    let session =
+        scene(folder.path(), &places, "symbol = 'own.svg', size_px = 20, hidden = 'show'", "").expect("opens");
     let picture = session.render(&PictureOptions::default()).expect("drawn");
     let frame = &picture.frame;
     let pink = frame.color.iter().filter(|p| **p == [255, 0, 254]).count();
