@@ -32,16 +32,16 @@ pub(super) fn choose(
         .filter(|(_, names)| !names.is_empty())
         .collect();
     let mut fonts = given(loader, text)?;
+    // Names are many, their letters are few.
     let all = named.iter().flat_map(|(_, names)| names.iter().copied()).chain([words]);
-    let mut lacking = BTreeSet::new();
-    let set = Fonts::with(&fonts);
-    all.for_each(|name| lacking.extend(set.lacks(name)));
+    let letters: String = all.flat_map(str::chars).collect::<BTreeSet<char>>().into_iter().collect();
+    let mut lacking = Fonts::with(&fonts).lacks(&letters);
     if !lacking.is_empty() && text.is_none_or(|text| text.system_fonts) {
         fonts.extend(of_system(loader, lacking));
+        lacking = Fonts::with(&fonts).lacks(&letters);
     }
-    let set = Fonts::with(&fonts);
     for (index, names) in named {
-        loader.note(index, unset(&set, &names));
+        loader.note(index, unset(&lacking, &names));
     }
     Ok(fonts)
 }
@@ -126,12 +126,11 @@ fn name_of(path: &Path) -> String {
 }
 
 /// Warning with the number of names with letters that no font has, and the first of them.
-fn unset(fonts: &Fonts, names: &[&str]) -> Option<Warning> {
-    let unset: Vec<(&&str, BTreeSet<char>)> =
-        names.iter().map(|name| (name, fonts.lacks(name))).filter(|(_, lacking)| !lacking.is_empty()).collect();
-    let (first, lacking) = unset.first()?;
+fn unset(lacking: &BTreeSet<char>, names: &[&str]) -> Option<Warning> {
+    let unset: Vec<&&str> = names.iter().filter(|name| name.chars().any(|c| lacking.contains(&c))).collect();
+    let first = unset.first()?;
+    let letters: String = first.chars().filter(|c| lacking.contains(c)).take(8).collect();
     let first: String = first.chars().take(40).collect();
-    let letters: String = lacking.iter().take(8).collect();
     let what = format!(
         "names have letters that no font here sets, the first is \"{first}\" ({letters}); they stand as empty boxes; give a font with these letters: --font FILE, or fonts under [text]"
     );
@@ -144,9 +143,9 @@ mod tests {
 
     #[test]
     fn names_in_scripts_that_are_not_set_are_counted() {
-        let fonts = Fonts::default();
-        assert_eq!(unset(&fonts, &["Tälchen", "Эльбрус", "Όλυμπος", "", "a b"]), None);
-        let said = unset(&fonts, &["Fuji", "富士山", "עין גדי"]).expect("said");
+        let of = |names: &[&str]| unset(&Fonts::default().lacks(&names.concat()), names);
+        assert_eq!(of(&["Tälchen", "Эльбрус", "Όλυμπος", "", "a b"]), None);
+        let said = of(&["Fuji", "富士山", "עין גדי"]).expect("said");
         assert!(said.text().starts_with("2 names") && said.text().contains("富士山"), "{said}");
         assert!(said.text().chars().count() < 400);
     }
