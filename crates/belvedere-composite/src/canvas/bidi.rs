@@ -1,5 +1,5 @@
 //! Order of letters of a line with scripts of both directions: the implicit rules of the Unicode bidirectional algorithm (UAX #9: P2, W1 to
-//! W7, N1, N2, I1, I2, L1, L2). Signs that state a direction are no part of names and are left out; pairs of brackets (N0) are neutral.
+//! W7, N0 to N2, I1, I2, L1, L2). Signs that state a direction are no part of names and are left out.
 
 /// Class of a character.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,6 +74,7 @@ pub(super) fn levels(text: &[char]) -> Vec<u8> {
     let own = if base == 1 { Class::Right } else { Class::Left };
     let mut kinds = first;
     weak(&mut kinds, own);
+    brackets(&mut kinds, text, own);
     neutral(&mut kinds, own);
     let mut levels: Vec<u8> = kinds
         .iter()
@@ -133,6 +134,37 @@ fn weak(kinds: &mut [Class], own: Class) {
             Class::Number if strong == Class::Left => *kind = Class::Left,
             _ => {}
         }
+    }
+}
+
+/// Brackets of a pair take one direction: that of the line if anything inside has it, else that of what is inside where it also stands before.
+fn brackets(kinds: &mut [Class], text: &[char], own: Class) {
+    const PAIRS: [(char, char); 6] = [('(', ')'), ('[', ']'), ('{', '}'), ('（', '）'), ('「', '」'), ('【', '】')];
+    let mut open: Vec<(char, usize)> = Vec::new();
+    let mut pairs: Vec<[usize; 2]> = Vec::new();
+    for (i, c) in text.iter().enumerate().filter(|(i, _)| kinds[*i] == Class::Neutral) {
+        if let Some((_, close)) = PAIRS.iter().find(|(first, _)| first == c) {
+            open.push((*close, i));
+        } else if let Some(at) = open.iter().rposition(|(close, _)| close == c) {
+            pairs.push([open[at].1, i]);
+            open.truncate(at);
+        }
+    }
+    pairs.sort_unstable();
+    let side = |kind: Class| match kind {
+        Class::Left => Some(Class::Left),
+        Class::Right | Class::Number | Class::ArabicNumber => Some(Class::Right),
+        _ => None,
+    };
+    for [from, to] in pairs {
+        let inside = |wanted: bool| kinds[from + 1..to].iter().filter_map(|k| side(*k)).any(|k| (k == own) == wanted);
+        let before = kinds[..from].iter().rev().find_map(|kind| side(*kind)).unwrap_or(own);
+        let direction = match (inside(true), inside(false)) {
+            (true, _) => own,
+            (false, true) => before,
+            (false, false) => continue,
+        };
+        (kinds[from], kinds[to]) = (direction, direction);
     }
 }
 
@@ -202,6 +234,11 @@ mod tests {
         assert_eq!(shown(""), "");
         assert_eq!(shown("mont (HAR)"), "mont (RAH)");
         assert_eq!(shown("HAR  "), "  RAH");
+        // Brackets are mirrored when they are drawn.
+        assert_eq!(shown("mt HAR (12)"), "mt )12( RAH");
+        assert_eq!(shown("mt HAR (b) x"), "mt RAH (b) x");
+        assert_eq!(shown("HAR (ab)"), ")ab( RAH");
+        assert_eq!(shown("HAR (ab) ["), "[ )ab( RAH");
     }
 
     #[test]
