@@ -36,6 +36,10 @@ pub(crate) struct Common {
     /// Folder, beside the scene's own, from which files may be read; may be given several times
     #[arg(long, global = true, help_heading = "Every command", value_name = "DIR")]
     pub(crate) allow_root: Vec<PathBuf>,
+    /// Font for names whose letters the program's own font lacks (it has Latin, Greek and Cyrillic ones), TrueType or OpenType, before those
+    /// of the scene and of the system; may be given several times
+    #[arg(long, global = true, help_heading = "Every command", value_name = "FILE")]
+    pub(crate) font: Vec<PathBuf>,
     /// Do not remember which files outside their folders scenes may read, and do not use what is remembered; as with
     /// BELVEDERE_NO_TRUST=1. See trust --help
     #[arg(long, global = true, help_heading = "Every command")]

@@ -209,6 +209,7 @@ impl Context {
             needs,
             image,
             seed: self.common.seed,
+            fonts: self.common.font.clone(),
             max_bytes: self.common.budget(),
             progress: self.progress.clone(),
             ..OpenOptions::default()

@@ -8,6 +8,7 @@ pub mod city;
 pub mod climate;
 pub mod color;
 pub mod drape;
+mod font_file;
 pub mod frame;
 pub mod heightfield;
 pub mod layer;
@@ -36,6 +37,7 @@ pub use city::{
 pub use climate::Climate;
 pub use color::Color;
 pub use drape::{Draped, drape_polyline};
+pub use font_file::FontFile;
 pub use frame::{
     Aux, Compositing, Frame, FrameStats, PictureRows, PixelGrid, ROWS, RenderError, RenderJob, RenderOptions, Renderer,
     Stylisation,
@@ -46,7 +48,7 @@ pub use layer::{
     PaletteName, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
 };
 pub use light::{Haze, Light, Sky};
-pub use mark::{DistanceMarkers, FeatureStyle, Hidden, PointStyle, Symbol};
+pub use mark::{DistanceMarkers, Drawing, FeatureStyle, Hidden, PlaceKind, PointStyle, Symbol, WrittenHeight};
 pub use mesh::{Mesh, MeshColors, MeshError, MeshLayer, triangle_lattice};
 pub use molecule::{Molecule, MoleculeLayer, MoleculeStyle};
 pub use motion::{Motion, MotionError};

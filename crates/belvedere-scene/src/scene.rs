@@ -1,7 +1,8 @@
 //! The scene: a flat list of layers in one coordinate system.
 
 use crate::{
-    Color, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Representation, TerrainLayer, drape_polyline,
+    Color, Drawing, FontFile, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Representation, TerrainLayer,
+    drape_polyline,
 };
 use belvedere_core::{Aabb, DVec2};
 use serde::{Deserialize, Serialize};
@@ -53,6 +54,10 @@ pub struct Scene {
     pub layers: Vec<Layer>,
     /// Alternative sets of layers, of which styling sections choose; empty = every layer is shown everywhere.
     pub representations: Vec<Representation>,
+    /// Fonts of names whose letters the embedded font lacks, in the order in which letters are looked for.
+    pub fonts: Vec<FontFile>,
+    /// Symbols of its own, by the number of [`crate::Symbol::Own`].
+    pub drawings: Vec<Arc<Drawing>>,
 }
 
 impl Scene {

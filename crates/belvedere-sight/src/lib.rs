@@ -13,6 +13,7 @@ mod obstacles;
 mod openness;
 mod pyramid;
 mod solids;
+mod summits;
 mod voxels;
 
 pub use boxes::{BoxTree, UprightBox};
@@ -28,4 +29,5 @@ pub use obstacles::{Obstacles, SightOptions};
 pub use openness::{GroundHeight, OpennessSettings, with_ambient_occlusion};
 pub use pyramid::Pyramid;
 pub use solids::{LayerPart, Solids};
+pub use summits::{Standing, standings};
 pub use voxels::Voxels;

@@ -1,5 +1,6 @@
 //! Law suites, data helpers and synthetic scenes for the tests of the workspace.
 
+pub mod font;
 pub mod laws;
 pub mod rays;
 pub mod synthetic;

@@ -148,7 +148,14 @@ impl DataFiles {
         let options = OpenOptions { area_style: self.area_style.or(options.area_style), ..options.clone() };
         let loaded = resolve::load(request, &options)?;
         let (inputs, warnings, areas, original) = (loaded.inputs, loaded.warnings, loaded.areas, loaded.original);
-        let scene = Scene { title: "Revealed".into(), crs: loaded.crs, layers: loaded.layers, ..Scene::default() };
+        let scene = Scene {
+            title: "Revealed".into(),
+            crs: loaded.crs,
+            layers: loaded.layers,
+            fonts: loaded.fonts,
+            drawings: loaded.drawings,
+            ..Scene::default()
+        };
         resolve::fill_surfaces(&mut layers, &scene);
         Ok(Data { scene: Arc::new(scene), warnings, original, rivers, areas, inputs, layers, roots })
     }
@@ -167,6 +174,7 @@ impl Data {
             overlay: None,
             stylisation: None,
             print: None,
+            text: None,
             light: None,
             representations: Default::default(),
             hidden: Vec::new(),

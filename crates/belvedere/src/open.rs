@@ -79,12 +79,15 @@ impl Session {
         let request = LayerRequest {
             needs: needs(&source, options),
             fallback_crs: crs_of_eye(document),
+            text: document.text.as_ref(),
+            words: &document.title,
             ..LayerRequest::new(&source.origin, &document.layer, &document.crs, &roots)
         };
         let loaded = resolve::load(request, options)?;
         let (title, crs, unit) = (document.title.clone(), loaded.crs, document.unit);
         let representations = representations::of(&source, &roots)?;
-        let mut scene = Scene { title, crs, unit, layers: loaded.layers, representations };
+        let (layers, fonts, drawings) = (loaded.layers, loaded.fonts, loaded.drawings);
+        let mut scene = Scene { title, crs, unit, layers, representations, fonts, drawings };
         hidden::apply(&mut scene, document);
         resolve::fill_surfaces(&mut source.document.layer, &scene);
         let (mut scene, mut inputs) = (Arc::new(scene), loaded.inputs);

@@ -49,6 +49,8 @@ pub struct OpenOptions {
     pub unchecked: bool,
     /// Memory limit for the samples of one file, bytes; `None`: that of [`Limits::default`].
     pub max_bytes: Option<u64>,
+    /// Font files for letters that the embedded font lacks, before those of the scene.
+    pub fonts: Vec<PathBuf>,
     /// Progress and cancellation.
     pub progress: Progress,
 }

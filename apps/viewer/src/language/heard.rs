@@ -12,6 +12,7 @@ const HEARD: &[&str] = &[
     later("changed the title"),
     later("changed the light"),
     later("changed the marks"),
+    later("changed the fonts"),
     later("changed the stylisation"),
     later("changed the representations"),
     later("changed the animation"),

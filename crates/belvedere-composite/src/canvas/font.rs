@@ -1,200 +1,186 @@
-//! The embedded font: which letters it has, and where the outlines of a text lie.
+//! Fonts: the embedded one, and further ones for the letters that it lacks.
 
-use ab_glyph_rasterizer::{Point, Rasterizer, point};
-use harfrust::{FontRef, GlyphId, ShapeOptions, Shaper, ShaperData, UnicodeBuffer};
+use belvedere_scene::FontFile;
+use harfrust::{FontRef, GlyphId, ShaperData, ShaperInstance};
 use skrifa::MetadataProvider;
-use skrifa::instance::{LocationRef, Size};
+use skrifa::instance::{Location, LocationRef, Size};
 use skrifa::outline::{DrawSettings, OutlinePen};
-use std::sync::LazyLock;
+use skrifa::string::StringId;
+use std::collections::BTreeSet;
+use std::sync::{Arc, LazyLock};
 
 /// DejaVu Sans Condensed: Latin, Greek, Cyrillic; licence beside it.
 const BYTES: &[u8] = include_bytes!("../../assets/DejaVuSansCondensed-subset.ttf");
+/// Most fonts of a collection that are looked at.
+const MOST_FACES: u32 = 64;
+/// Weight of variable fonts: regular.
+const WEIGHT: (&str, f32) = ("wght", 400.0);
 
-struct Font {
-    letters: FontRef<'static>,
+/// The embedded font's file, for documents that embed it.
+pub const FONT_FILE: &[u8] = BYTES;
+
+static EMBEDDED: LazyLock<Fonts> = LazyLock::new(|| {
+    let file = FontFile { name: "embedded".into(), bytes: Arc::new(BYTES.to_vec()), index: 0 };
+    Fonts(Face::new(&file).map(Arc::new).into_iter().collect())
+});
+
+/// A font, ready to set letters.
+pub(super) struct Face {
+    bytes: Arc<Vec<u8>>,
+    index: u32,
+    family: String,
     shaping: ShaperData,
+    instance: ShaperInstance,
+    location: Location,
     /// Units of the font per em.
     em: f32,
 }
 
-static FONT: LazyLock<Option<Font>> = LazyLock::new(|| {
-    let letters = FontRef::new(BYTES).ok()?;
-    let em = f32::from(letters.metrics(Size::unscaled(), LocationRef::default()).units_per_em);
-    (em > 0.0).then(|| Font { shaping: ShaperData::new(&letters), letters, em })
-});
-
-/// Whether the font has a letter.
-pub(super) fn has(letter: char) -> bool {
-    let glyph = FONT.as_ref().and_then(|font| font.letters.charmap().map(letter));
-    glyph.is_some_and(|glyph| glyph != GlyphId::NOTDEF)
-}
-
-/// The font file, for documents that embed it.
-pub const FONT_FILE: &[u8] = BYTES;
-
-/// A letter of a text that is set in one line.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Letter {
-    /// Number of the glyph in [`FONT_FILE`].
-    pub glyph: u16,
-    /// Place from the beginning of the text, right and up, em.
-    pub at: [f64; 2],
-    /// The glyph's own width, em.
-    pub width: f64,
-    /// Number of the first character that the glyph stands for, bytes from the beginning of the text.
-    pub cluster: usize,
-}
-
-/// The letters of a text as they are set, see [`FONT_FILE`].
-pub fn letters(text: &str) -> Vec<Letter> {
-    let Some(font) = FONT.as_ref() else { return Vec::new() };
-    let metrics = font.letters.glyph_metrics(Size::unscaled(), LocationRef::default());
-    let line = set(text);
-    let em = |v: f32| f64::from(v / font.em);
-    let letter = |(glyph, [x, y], cluster): &(GlyphId, [f32; 2], u32)| Letter {
-        glyph: glyph.to_u32() as u16,
-        at: [em(*x), em(*y)],
-        width: metrics.advance_width(*glyph).map_or(0.0, em),
-        cluster: *cluster as usize,
-    };
-    line.glyphs.iter().map(letter).collect()
-}
-
-/// A text set in one line: its letters and where each begins, in units of the font.
-pub(super) struct Line {
-    glyphs: Vec<(GlyphId, [f32; 2], u32)>,
-    width: f32,
-}
-
-/// Sets `text` from the origin on.
-pub(super) fn set(text: &str) -> Line {
-    let mut line = Line { glyphs: Vec::new(), width: 0.0 };
-    let Some(font) = FONT.as_ref() else { return line };
-    let shaper: Shaper<'_> = font.shaping.shaper(&font.letters).build();
-    let mut buffer = UnicodeBuffer::new();
-    buffer.push_str(text);
-    buffer.guess_segment_properties();
-    let set = shaper.shape(buffer, ShapeOptions::new());
-    for (glyph, place) in set.glyph_infos().iter().zip(set.glyph_positions()) {
-        let at = [line.width + place.x_offset as f32, place.y_offset as f32];
-        line.glyphs.push((GlyphId::new(glyph.glyph_id), at, glyph.cluster));
-        line.width += place.x_advance as f32;
-    }
-    line
-}
-
-/// Coverage of pixels by letters.
-pub(super) struct Ink {
-    /// Column and row of the first pixel.
-    pub(super) at: [i64; 2],
-    /// Width and height, pixels.
-    pub(super) size: [usize; 2],
-    /// 0..=1, row-major.
-    pub(super) coverage: Vec<f32>,
-}
-
-impl Line {
-    /// Width with letters of `size_px` per em, pixels.
-    pub(super) fn width(&self, size_px: f32) -> f64 {
-        FONT.as_ref().map_or(0.0, |font| f64::from(self.width * size_px / font.em))
+impl Face {
+    /// `None` if it is no font, or one without units.
+    fn new(file: &FontFile) -> Option<Self> {
+        let letters = FontRef::from_index(&file.bytes, file.index).ok()?;
+        let location = letters.axes().location([WEIGHT]);
+        let em = f32::from(letters.metrics(Size::unscaled(), &location).units_per_em);
+        let names = letters.localized_strings(StringId::FAMILY_NAME);
+        let family: String = names.english_or_first().map(|name| name.chars().collect()).unwrap_or_default();
+        (em > 0.0).then(|| Self {
+            shaping: ShaperData::new(&letters),
+            instance: ShaperInstance::from_coords(&letters, location.coords().iter().copied()),
+            location,
+            em,
+            family: family.chars().filter(|c| !c.is_control()).take(60).collect(),
+            bytes: file.bytes.clone(),
+            index: file.index,
+        })
     }
 
-    /// The letters as pixels, the line beginning at `origin`; `None` without ink between two rows.
-    pub(super) fn ink(&self, size_px: f32, origin: [f32; 2], rows: [f64; 2]) -> Option<Ink> {
-        let font = FONT.as_ref()?;
-        let scale = size_px / font.em;
-        let mut pen = Pen::default();
-        let outlines = font.letters.outline_glyphs();
-        for (glyph, [x, y], _) in &self.glyphs {
-            pen.origin = [origin[0] + x * scale, origin[1] - y * scale];
-            let settings = DrawSettings::unhinted(Size::new(size_px), LocationRef::default());
-            // A letter without an outline, or with a damaged one, is left out.
-            if let Some(outline) = outlines.get(*glyph) {
-                let _ = outline.draw(settings, &mut pen);
-            }
+    fn letters(&self) -> Option<FontRef<'_>> {
+        FontRef::from_index(&self.bytes, self.index).ok()
+    }
+
+    /// Whether the font draws a letter.
+    pub(super) fn has(&self, letter: char) -> bool {
+        self.letters().is_some_and(|letters| draws(&letters, letter))
+    }
+
+    /// Glyphs of a text of one direction and script, each with its place and width in em, and its character in bytes.
+    pub(super) fn shape(&self, run: Run<'_>) -> Vec<Glyph> {
+        let Some(letters) = self.letters() else { return Vec::new() };
+        let shaper = self.shaping.shaper(&letters).instance(Some(&self.instance)).build();
+        let mut buffer = harfrust::UnicodeBuffer::new();
+        for (at, letter) in run.letters {
+            buffer.add(*letter, *at as u32);
         }
-        pen.ink(rows)
-    }
-}
-
-/// A piece of an outline.
-enum Piece {
-    Line([Point; 2]),
-    Quadratic([Point; 3]),
-    Cubic([Point; 4]),
-}
-
-/// Collects outlines in pixels, y down.
-#[derive(Default)]
-struct Pen {
-    origin: [f32; 2],
-    start: Point,
-    last: Point,
-    pieces: Vec<Piece>,
-}
-
-impl Pen {
-    fn place(&self, x: f32, y: f32) -> Point {
-        point(self.origin[0] + x, self.origin[1] - y)
+        let direction =
+            if run.to_the_left { harfrust::Direction::RightToLeft } else { harfrust::Direction::LeftToRight };
+        buffer.set_direction(direction);
+        buffer.guess_segment_properties();
+        let set = shaper.shape(buffer, harfrust::ShapeOptions::new());
+        let metrics = letters.glyph_metrics(Size::unscaled(), &self.location);
+        let glyph = |(info, place): (&harfrust::GlyphInfo, &harfrust::GlyphPosition)| Glyph {
+            id: GlyphId::new(info.glyph_id),
+            offset: [place.x_offset as f32 / self.em, place.y_offset as f32 / self.em],
+            advance: place.x_advance as f32 / self.em,
+            width: metrics.advance_width(GlyphId::new(info.glyph_id)).map_or(0.0, |width| width / self.em),
+            cluster: info.cluster as usize,
+        };
+        set.glyph_infos().iter().zip(set.glyph_positions()).map(glyph).collect()
     }
 
-    fn ink(&self, [top, bottom]: [f64; 2]) -> Option<Ink> {
-        let corners = self.pieces.iter().flat_map(|piece| match piece {
-            Piece::Line(p) => p.as_slice(),
-            Piece::Quadratic(p) => p.as_slice(),
-            Piece::Cubic(p) => p.as_slice(),
-        });
-        let (mut lo, mut hi) = ([f32::INFINITY; 2], [f32::NEG_INFINITY; 2]);
-        for p in corners {
-            (lo, hi) = ([lo[0].min(p.x), lo[1].min(p.y)], [hi[0].max(p.x), hi[1].max(p.y)]);
+    /// Draws the outline of a glyph with letters of `size_px`; one without an outline, or with a damaged one, is left out.
+    pub(super) fn draw(&self, glyph: GlyphId, size_px: f32, pen: &mut impl OutlinePen) {
+        let Some(letters) = self.letters() else { return };
+        if let Some(outline) = letters.outline_glyphs().get(glyph) {
+            let settings = DrawSettings::unhinted(Size::new(size_px), LocationRef::from(&self.location));
+            let _ = outline.draw(settings, pen);
         }
-        let at = lo.map(|v| v.floor());
-        let size = [0, 1].map(|i| (hi[i].ceil() - at[i]) as usize);
-        let is_apart = f64::from(hi[1]) < top - 1.0 || f64::from(lo[1]) > bottom + 1.0;
-        if !at.iter().all(|v| v.is_finite()) || size.contains(&0) || is_apart {
-            return None;
-        }
-        let moved = |p: &Point| point(p.x - at[0], p.y - at[1]);
-        let mut raster = Rasterizer::new(size[0], size[1]);
-        for piece in &self.pieces {
-            match piece {
-                Piece::Line([a, b]) => raster.draw_line(moved(a), moved(b)),
-                Piece::Quadratic([a, b, c]) => raster.draw_quad(moved(a), moved(b), moved(c)),
-                Piece::Cubic([a, b, c, d]) => raster.draw_cubic(moved(a), moved(b), moved(c), moved(d)),
-            }
-        }
-        let mut coverage = vec![0.0f32; size[0] * size[1]];
-        raster.for_each_pixel(|i, c| coverage[i] = c.clamp(0.0, 1.0));
-        Some(Ink { at: at.map(|v| v as i64), size, coverage })
     }
 }
 
-impl OutlinePen for Pen {
-    fn move_to(&mut self, x: f32, y: f32) {
-        self.start = self.place(x, y);
-        self.last = self.start;
+/// Letters of one font, script and direction, with their places in a text, bytes.
+pub(super) struct Run<'a> {
+    pub(super) letters: &'a [(usize, char)],
+    pub(super) to_the_left: bool,
+}
+
+/// A glyph of a run, lengths in em.
+pub(super) struct Glyph {
+    pub(super) id: GlyphId,
+    pub(super) offset: [f32; 2],
+    pub(super) advance: f32,
+    pub(super) width: f32,
+    pub(super) cluster: usize,
+}
+
+fn draws(letters: &FontRef<'_>, letter: char) -> bool {
+    let glyph = letters.charmap().map(letter).filter(|glyph| *glyph != GlyphId::NOTDEF);
+    // Fonts of pictures have no outlines.
+    glyph.is_some_and(|glyph| letters.outline_glyphs().get(glyph).is_some())
+}
+
+/// Fonts in the order in which letters are looked for; the embedded one is the first.
+#[derive(Clone)]
+pub struct Fonts(pub(super) Arc<[Arc<Face>]>);
+
+impl Default for Fonts {
+    fn default() -> Self {
+        EMBEDDED.clone()
+    }
+}
+
+impl PartialEq for Fonts {
+    fn eq(&self, other: &Self) -> bool {
+        let same = |a: &Arc<Face>, b: &Arc<Face>| Arc::ptr_eq(a, b) || (a.index == b.index && a.bytes == b.bytes);
+        self.0.len() == other.0.len() && self.0.iter().zip(other.0.iter()).all(|(a, b)| same(a, b))
+    }
+}
+
+impl std::fmt::Debug for Fonts {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_list().entries(self.0.iter().map(|face| &face.family)).finish()
+    }
+}
+
+impl Fonts {
+    /// The embedded font and these; files that are no fonts are left out, see [`fonts_in`].
+    pub fn with(files: &[FontFile]) -> Self {
+        match files.is_empty() {
+            true => Self::default(),
+            false => Self(EMBEDDED.0.iter().cloned().chain(files.iter().filter_map(Face::new).map(Arc::new)).collect()),
+        }
     }
 
-    fn line_to(&mut self, x: f32, y: f32) {
-        let to = self.place(x, y);
-        self.pieces.push(Piece::Line([self.last, to]));
-        self.last = to;
+    /// Whether they have all letters of a text.
+    pub fn can_set(&self, text: &str) -> bool {
+        self.lacks(text).is_empty()
     }
 
-    fn quad_to(&mut self, cx: f32, cy: f32, x: f32, y: f32) {
-        let (by, to) = (self.place(cx, cy), self.place(x, y));
-        self.pieces.push(Piece::Quadratic([self.last, by, to]));
-        self.last = to;
+    /// Letters of a text that none of them has.
+    pub fn lacks(&self, text: &str) -> BTreeSet<char> {
+        // Signs that only join or part letters are not drawn.
+        text.chars().filter(|c| !is_plain(*c) && !self.0.iter().any(|face| face.has(*c))).collect()
     }
 
-    fn curve_to(&mut self, ax: f32, ay: f32, bx: f32, by: f32, x: f32, y: f32) {
-        let (a, b, to) = (self.place(ax, ay), self.place(bx, by), self.place(x, y));
-        self.pieces.push(Piece::Cubic([self.last, a, b, to]));
-        self.last = to;
+    /// Families of further fonts, for documents whose letters are set by others.
+    pub fn families(&self) -> Vec<&str> {
+        self.0.iter().skip(1).map(|face| face.family.as_str()).filter(|family| !family.is_empty()).collect()
     }
+}
 
-    fn close(&mut self) {
-        self.pieces.push(Piece::Line([self.last, self.start]));
-        self.last = self.start;
-    }
+/// Whether a character needs no ink.
+pub(super) fn is_plain(c: char) -> bool {
+    c.is_control()
+        || c.is_whitespace()
+        || super::bidi::states_direction(c)
+        || matches!(c, '\u{200b}'..='\u{200f}' | '\u{61c}' | '\u{2060}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}')
+}
+
+/// Fonts of a file and how many of `letters` each draws; empty for files that are no fonts.
+pub fn fonts_in(bytes: &[u8], letters: &BTreeSet<char>) -> Vec<BTreeSet<char>> {
+    let faces = (0..MOST_FACES).map_while(|index| FontRef::from_index(bytes, index).ok());
+    let drawn = |face: FontRef<'_>| letters.iter().copied().filter(|c| draws(&face, *c)).collect();
+    // A file of one font gives it for every number.
+    let one = !bytes.starts_with(b"ttcf");
+    faces.take(if one { 1 } else { MOST_FACES as usize }).map(drawn).collect()
 }

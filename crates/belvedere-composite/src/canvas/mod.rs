@@ -1,11 +1,17 @@
 //! Drawing over a finished picture: rectangles, lines and letters, anti-aliased in linear light.
 
+mod bidi;
 mod font;
+mod ink;
+mod line;
 mod polygon;
 mod shape;
 mod text;
 
-pub use font::{FONT_FILE, Letter, letters};
+pub use font::{FONT_FILE, Fonts, fonts_in};
+pub use ink::Turn;
+pub(crate) use ink::along;
+pub use line::{Letter, OutlinePiece};
 pub use shape::CanvasShape;
 pub use text::{TextSize, can_set, text_size};
 
@@ -35,18 +41,20 @@ pub struct Canvas<'a> {
     scale: f64,
     /// What is recorded instead of drawn.
     record: Option<&'a mut Vec<CanvasShape>>,
+    /// Fonts of its texts.
+    fonts: Fonts,
 }
 
 impl<'a> Canvas<'a> {
     /// A picture of `width` columns, row-major, row 0 on top.
     pub fn new(pixels: &'a mut [[u8; 3]], width: usize) -> Self {
         let height = pixels.len().checked_div(width).unwrap_or(0);
-        Self { pixels, width, height, first: 0, scale: 1.0, record: None }
+        Self { pixels, width, height, first: 0, scale: 1.0, record: None, fonts: Fonts::default() }
     }
 
     /// Some rows of a picture of this size, pixels, from row `first` on: drawing in the other rows is left out.
     pub fn rows(pixels: &'a mut [[u8; 3]], [width, height]: [usize; 2], first: usize) -> Self {
-        Self { pixels, width, height, first, scale: 1.0, record: None }
+        Self { pixels, width, height, first, scale: 1.0, record: None, fonts: Fonts::default() }
     }
 
     /// First and last but one of the rows that are drawn on, pixels.
@@ -57,7 +65,7 @@ impl<'a> Canvas<'a> {
 
     /// A picture of this size, pixels, that records shapes and draws nothing; [`Canvas::blend`] is left out.
     pub fn recording(shapes: &'a mut Vec<CanvasShape>, [width, height]: [usize; 2]) -> Self {
-        Self { pixels: &mut [], width, height, first: 0, scale: 1.0, record: Some(shapes) }
+        Self { pixels: &mut [], width, height, first: 0, scale: 1.0, record: Some(shapes), fonts: Fonts::default() }
     }
 
     /// Records a shape; whether that is all there is to do.
@@ -71,6 +79,11 @@ impl<'a> Canvas<'a> {
     /// The same picture with lengths and positions in units of `scale` pixels, more than 0; but [`Canvas::blend`] counts pixels.
     pub fn scaled(self, scale: f64) -> Self {
         Self { scale, ..self }
+    }
+
+    /// The same picture with texts in these fonts instead of the embedded one alone.
+    pub fn with_fonts(self, fonts: &Fonts) -> Self {
+        Self { fonts: fonts.clone(), ..self }
     }
 
     /// Width and height, pixels, or units if it is scaled.
@@ -150,18 +163,38 @@ impl<'a> Canvas<'a> {
 
     /// Writes a line of text: `at` is the left end of its baseline, `size_px` the height of the letters' em square; `halo` a rim and its width.
     pub fn text(&mut self, at: DVec2, size_px: f64, text: &str, color: Color, halo: Option<(Color, f64)>) {
+        self.write(at, &[], (size_px, text), (color, halo));
+    }
+
+    /// Writes a line of text along a curved baseline from its first point on, the letters turned with it; as [`Canvas::text`].
+    pub fn text_along(&mut self, line: &[DVec2], size_px: f64, text: &str, color: Color, halo: Option<(Color, f64)>) {
+        let Some(first) = line.first() else { return };
+        self.write(*first, line, (size_px, text), (color, halo));
+    }
+
+    fn write(
+        &mut self,
+        at: DVec2,
+        along: &[DVec2],
+        (size_px, text): (f64, &str),
+        (color, halo): (Color, Option<(Color, f64)>),
+    ) {
         let (at, size_px) = (at * self.scale, size_px * self.scale);
+        let along: Vec<DVec2> = along.iter().map(|p| *p * self.scale).collect();
         let halo = halo.map(|(color, width)| (color, width * self.scale));
+        let fonts = self.fonts.clone();
         let recorded = || CanvasShape::Text {
             at,
             size: text::drawn_size(size_px),
             text: text::shown(text),
-            width: text_size(size_px, text).width,
+            width: fonts.text_size(size_px, text).width,
+            along: along.clone(),
+            fonts,
             color,
             halo,
         };
         if !self.records(recorded) {
-            text::draw(self, at, size_px, text, color, halo);
+            text::draw(self, &text::Writing { text, at, along: &along, size_px, color, halo });
         }
     }
 }
@@ -184,7 +217,8 @@ mod tests {
         assert_eq!((shapes.len(), &shapes[0]), (3, &rect));
         let width = text_size(14.0, "bent").width;
         let (at, text, halo) = (DVec2::new(8.0, 18.0), "bent".to_owned(), Some((black, 3.0)));
-        assert_eq!(shapes[1], CanvasShape::Text { at, size: 14.0, text, width, color: black, halo });
+        let (fonts, along) = (Fonts::default(), Vec::new());
+        assert_eq!(shapes[1], CanvasShape::Text { at, size: 14.0, text, width, fonts, along, color: black, halo });
         let rings = vec![vec![DVec2::ZERO, 2.0 * DVec2::X, 2.0 * DVec2::Y]];
         assert_eq!(shapes[2], CanvasShape::Polygon { rings, color: black });
     }

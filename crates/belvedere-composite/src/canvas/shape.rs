@@ -1,5 +1,6 @@
 //! Shapes that a canvas records instead of drawing them.
 
+use super::font::Fonts;
 use belvedere_core::DVec2;
 use belvedere_scene::Color;
 
@@ -48,8 +49,12 @@ pub enum CanvasShape {
         size: f64,
         /// The text as it is set: without control characters, and not too long.
         text: String,
-        /// Width of the text in the embedded font.
+        /// Width of the text in its fonts.
         width: f64,
+        /// Fonts of its letters.
+        fonts: Fonts,
+        /// The baseline of a text that is set along a curve, from its left end on; empty: straight.
+        along: Vec<DVec2>,
         /// Colour with opacity.
         color: Color,
         /// Colour and width of the rim around the letters.

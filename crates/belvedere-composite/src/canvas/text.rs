@@ -1,6 +1,8 @@
 //! Texts of one line over a picture.
 
-use crate::canvas::{Canvas, font};
+use super::font::Fonts;
+use super::ink::Ink;
+use crate::canvas::Canvas;
 use belvedere_core::DVec2;
 use belvedere_scene::Color;
 
@@ -23,14 +25,25 @@ pub struct TextSize {
 
 /// Whether the embedded font has all letters of a text.
 pub fn can_set(text: &str) -> bool {
-    let plain = |c: char| c.is_control() || c.is_whitespace();
-    text.chars().filter(|c| !plain(*c)).all(font::has)
+    Fonts::default().can_set(text)
 }
 
-/// Size of `text` with letters of `size_px`, pixels.
+/// Size of `text` with letters of `size_px` of the embedded font, pixels.
 pub fn text_size(size_px: f64, text: &str) -> TextSize {
-    let width = line(text).width(drawn_size(size_px) as f32);
-    TextSize { width, ascent: 0.76 * size_px, descent: 0.24 * size_px }
+    Fonts::default().text_size(size_px, text)
+}
+
+impl Fonts {
+    /// Size of `text` with letters of `size_px`, pixels.
+    pub fn text_size(&self, size_px: f64, text: &str) -> TextSize {
+        let width = self.set(&shown(text)).width_px(drawn_size(size_px) as f32);
+        TextSize { width, ascent: 0.76 * size_px, descent: 0.24 * size_px }
+    }
+
+    /// Where the letters of a text lie on a curved baseline, in the order of [`Fonts::letters`].
+    pub fn turned(&self, size_px: f64, text: &str, baseline: &[DVec2]) -> Vec<super::Turn> {
+        self.set(text).turned(size_px, baseline)
+    }
 }
 
 /// Sizes of letters that are drawn, pixels per em.
@@ -45,47 +58,65 @@ pub(super) fn shown(text: &str) -> String {
     shown.filter(|c| !c.is_control()).collect()
 }
 
-fn line(text: &str) -> font::Line {
-    font::set(&shown(text))
+/// A text, where it begins, and how it is painted.
+pub(super) struct Writing<'a> {
+    pub(super) text: &'a str,
+    pub(super) at: DVec2,
+    /// The baseline of a curved text, else empty.
+    pub(super) along: &'a [DVec2],
+    pub(super) size_px: f64,
+    pub(super) color: Color,
+    pub(super) halo: Option<(Color, f64)>,
 }
 
-pub(super) fn draw(
-    canvas: &mut Canvas<'_>,
-    at: DVec2,
-    size_px: f64,
-    text: &str,
-    color: Color,
-    halo: Option<(Color, f64)>,
-) {
+pub(super) fn draw(canvas: &mut Canvas<'_>, writing: &Writing<'_>) {
     let [w, h] = canvas.extent().to_array();
     let far = 1e6 + w.max(h);
-    if !(at.abs().max_element() < far) {
+    let near = |p: &DVec2| p.abs().max_element() < far;
+    if !near(&writing.at) || !writing.along.iter().all(near) {
         return;
     }
-    let rim = halo.map_or(0.0, |(_, w)| w);
-    let pad = rim.ceil() as i64 + 1;
     // The letters keep their subpixel position.
-    let whole = at.floor();
-    let origin = (at - whole).as_vec2();
+    let whole = writing.at.floor();
+    let size = drawn_size(writing.size_px) as f32;
+    let fonts = canvas.fonts.clone();
+    let line = fonts.set(&shown(writing.text));
+    let pad = rim(writing).ceil() + 1.0;
     let [top, bottom] = canvas.drawn_rows();
-    let rows = [top - whole.y - pad as f64, bottom - whole.y + pad as f64];
-    let Some(ink) = line(text).ink(drawn_size(size_px) as f32, origin.to_array(), rows) else { return };
+    let rows = [top - whole.y - pad, bottom - whole.y + pad];
+    let ink = match writing.along {
+        [] => line.ink(size, (writing.at - whole).as_vec2().to_array(), rows),
+        baseline => line.ink_along(size, &baseline.iter().map(|p| *p - whole).collect::<Vec<_>>(), rows),
+    };
+    if let Some(ink) = ink {
+        paint(canvas, &ink, [whole.x as i64, whole.y as i64], writing);
+    }
+}
+
+/// Width of the rim around letters, pixels.
+fn rim(writing: &Writing<'_>) -> f64 {
+    writing.halo.map_or(0.0, |(_, width)| width)
+}
+
+fn paint(canvas: &mut Canvas<'_>, ink: &Ink, whole: [i64; 2], writing: &Writing<'_>) {
+    let rim = rim(writing);
+    let pad = rim.ceil() as i64 + 1;
     let (w, h) = (ink.size[0] + 2 * pad as usize, ink.size[1] + 2 * pad as usize);
     let mut mask = vec![0.0f32; w * h];
     for (y, row) in ink.coverage.chunks_exact(ink.size[0]).enumerate() {
         let start = (y + pad as usize) * w + pad as usize;
         mask[start..start + row.len()].copy_from_slice(row);
     }
-    let (x0, y0) = (whole.x as i64 + ink.at[0] - pad, whole.y as i64 + ink.at[1] - pad);
+    let (x0, y0) = (whole[0] + ink.at[0] - pad, whole[1] + ink.at[1] - pad);
     let mut paint = |mask: &[f32], color: Color| {
         for (i, &c) in mask.iter().enumerate().filter(|(_, c)| **c > 0.0) {
             canvas.blend(x0 + (i % w) as i64, y0 + (i / w) as i64, color, c);
         }
     };
-    if let Some((rim_color, _)) = halo.filter(|_| rim > 0.0) {
+    if let Some((rim_color, _)) = writing.halo.filter(|_| rim > 0.0) {
         paint(&grown(&mask, w, h, rim), rim_color);
     }
-    paint(&mask, color);
+    paint(&mask, writing.color);
 }
 
 /// The mask widened by a soft disc of radius `rim`.

@@ -34,7 +34,7 @@ mod tests {
     #[test]
     fn features_are_grouped_by_style_and_wide_ones_come_last() {
         let (layer, red) = (Color::rgb(1, 2, 3), Color::rgb(200, 0, 0));
-        let style = |color, scale| Some(FeatureStyle { color, scale });
+        let style = |color, scale| Some(FeatureStyle { color, scale, ..FeatureStyle::default() });
         let features = [style(Some(red), 2.0), None, style(None, 1.0), style(Some(red), 2.0), style(Some(red), 1.0)];
         let groups = alike(&features, layer, |f| *f);
         let told: Vec<_> = groups.iter().map(|g| (g.color, g.scale, g.features.len())).collect();

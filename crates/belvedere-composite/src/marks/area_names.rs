@@ -1,8 +1,8 @@
 //! Names of areas, each in the middle of the room that its area has.
 
-use crate::marks::label::LabelRequest;
 use crate::marks::path::LinePoint;
 use crate::marks::pole::{Pole, pole};
+use crate::marks::request::LabelRequest;
 use crate::marks::{MarkBuilder, Marker, darker};
 use belvedere_core::DVec3;
 use belvedere_scene::{AreaLayer, Color, Symbol};
@@ -16,25 +16,31 @@ impl MarkBuilder<'_> {
     pub(super) fn area_names(&self, index: usize, layer: &AreaLayer) -> Vec<LabelRequest> {
         let Some(size_px) = layer.label_px else { return Vec::new() };
         let named = layer.features.par_iter().filter(|f| !f.name.trim().is_empty());
-        let poles: Vec<(&str, Color, Pole)> = named
+        let poles: Vec<(&str, (Color, Option<f64>), Pole)> = named
             .filter_map(|f| {
-                let color = f.style.and_then(|own| own.color).unwrap_or(layer.fill);
-                Some((f.name.trim(), layer.outline.unwrap_or(color), pole(&f.rings)?))
+                let own = f.style.unwrap_or_default();
+                let color = layer.outline.unwrap_or(own.color.unwrap_or(layer.fill));
+                Some((f.name.trim(), (color, own.rank), pole(&f.rings)?))
             })
             .collect();
-        let mut largest: HashMap<&str, (Color, Pole)> = HashMap::new();
-        for (name, color, pole) in poles {
-            let best = largest.entry(name).or_insert((color, pole));
+        let mut largest: HashMap<&str, ((Color, Option<f64>), Pole)> = HashMap::new();
+        for (name, look, pole) in poles {
+            let best = largest.entry(name).or_insert((look, pole));
             if pole.distance > best.1.distance {
-                *best = (color, pole);
+                *best = (look, pole);
             }
         }
-        let mut names: Vec<(&str, Color, Pole)> =
-            largest.into_iter().map(|(n, (color, pole))| (n, color, pole)).collect();
-        names.sort_by(|a, b| b.2.distance.total_cmp(&a.2.distance).then(a.0.cmp(b.0)));
+        let mut names: Vec<(&str, (Color, Option<f64>), Pole)> =
+            largest.into_iter().map(|(n, (look, pole))| (n, look, pole)).collect();
+        // Those with a rank first, else those with the most room.
+        let rank = |rank: Option<f64>| rank.filter(|rank| !rank.is_nan()).unwrap_or(f64::NEG_INFINITY);
+        names.sort_by(|a, b| {
+            let by_rank = rank(b.1.1).total_cmp(&rank(a.1.1));
+            by_rank.then(b.2.distance.total_cmp(&a.2.distance)).then(a.0.cmp(b.0))
+        });
         let (shown, is_shown) = self.shows(index);
         let mut requests = Vec::new();
-        for (name, color, pole) in names {
+        for (name, (color, _), pole) in names {
             // On no ground nothing is painted.
             let Some(height) = self.scene.terrain().and_then(|ground| ground.surface_at(pole.at)) else { continue };
             let p: DVec3 = pole.at.extend(height + layer.lift_m);
@@ -45,15 +51,9 @@ impl MarkBuilder<'_> {
             let marker = Marker { symbol: Symbol::Dot, half_px: 0.0, casing: false, hidden: layer.hidden };
             let on_line = LinePoint { p, along: 0.0, on_ground: true };
             let seen = self.mark(&on_line, layer.lift_m, marker, &mut Vec::new());
-            requests.extend(seen.into_iter().map(|at| LabelRequest {
-                text: name.to_owned(),
-                at,
-                marker: [0.0; 2],
-                size_px,
-                color: darker(color.with_alpha(255)),
-                leader: false,
-                over: true,
-            }));
+            let color = darker(color.with_alpha(255));
+            let request = |at| LabelRequest { over: true, ..LabelRequest::new(name, at, size_px, color) };
+            requests.extend(seen.into_iter().map(request));
         }
         requests
     }

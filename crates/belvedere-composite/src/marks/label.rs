@@ -1,39 +1,26 @@
 //! Labels: placed greedily where no other label is, with a leader up from the point if need be, as in panoramas.
 
-use crate::canvas::{Canvas, text_size};
-use belvedere_core::DVec2;
+use crate::canvas::{Canvas, Fonts};
+use crate::marks::candidates::candidates;
+use crate::marks::occupied::{Occupied, Rect, overlap};
+use crate::marks::request::{Candidate, LabelRequest, Lines, Page};
+use belvedere_core::{DVec2, polygon::to_segment};
 use belvedere_scene::Color;
 
-/// Lengths of leaders tried, pixels.
-const LEADERS: [f64; 14] = [0.0, 10.0, 18.0, 26.0, 36.0, 48.0, 60.0, 74.0, 90.0, 108.0, 128.0, 150.0, 175.0, 200.0];
-/// Gap between texts, pixels.
-const ROOM: f64 = 2.0;
 /// Most texts of a picture.
-const MOST: usize = 400;
-
-/// A text to be placed.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct LabelRequest {
-    pub(crate) text: String,
-    /// The point it belongs to, pixels.
-    pub(crate) at: DVec2,
-    /// Reach of the marker: to the sides and below, and above, pixels.
-    pub(crate) marker: [f64; 2],
-    /// Height of the letters, pixels.
-    pub(crate) size_px: f64,
-    pub(crate) color: Color,
-    /// Whether the text may be placed away from its point.
-    pub(crate) leader: bool,
-    /// Whether the text stands over its point, not beside it.
-    pub(crate) over: bool,
-}
+const MOST: usize = 5000;
+/// Side of the squares of what is taken, units.
+const SQUARE: f64 = 48.0;
+/// Owner of what belongs to no request.
+const NOBODY: usize = usize::MAX;
 
 /// A placed text.
 #[derive(Debug, Clone, PartialEq)]
 struct Placed {
-    label_request: LabelRequest,
-    baseline: DVec2,
-    leader: Option<[DVec2; 2]>,
+    color: Color,
+    size_px: f64,
+    lines: Lines,
+    candidate: Candidate,
 }
 
 /// The texts of a picture.
@@ -42,57 +29,61 @@ pub(crate) struct Labels {
     placed: Vec<Placed>,
     /// Pixels per unit of gaps, leaders and rims.
     density: f64,
-}
-
-type Rect = [DVec2; 2];
-
-fn overlap(a: &Rect, b: &Rect) -> bool {
-    a[0].x < b[1].x && b[0].x < a[1].x && a[0].y < b[1].y && b[0].y < a[1].y
+    fonts: Fonts,
 }
 
 impl Labels {
-    /// Places the texts that fit into a picture of `size` pixels, in the order of the requests.
-    ///
-    /// * `density`: pixels per unit of gaps, leaders and rims.
-    pub(crate) fn place(requests: Vec<LabelRequest>, size: DVec2, density: f64) -> Self {
-        let markers: Vec<Rect> = requests.iter().map(marker).collect();
-        let mut taken: Vec<Rect> = Vec::new();
+    /// Places the texts that fit into a picture, in the order of the requests.
+    pub(crate) fn place(requests: Vec<LabelRequest>, page: &Page<'_>) -> Self {
+        let density = page.density;
+        let mut markers = Occupied::new(SQUARE * density);
+        requests.iter().enumerate().for_each(|(i, request)| markers.take(marker(request), i));
+        let mut taken = Occupied::new(SQUARE * density);
+        page.keep_clear.iter().for_each(|rect| taken.take(*rect, NOBODY));
         let mut placed: Vec<Placed> = Vec::new();
-        for (i, label_request) in requests.into_iter().enumerate() {
+        for (i, request) in requests.into_iter().enumerate() {
             if placed.len() >= MOST {
                 break;
             }
-            let free = |r: &Rect| {
-                let inside = r[0].x >= 0.0 && r[0].y >= 0.0 && r[1].x <= size.x && r[1].y <= size.y;
-                inside
-                    && !taken.iter().any(|t| overlap(t, r))
-                    && !markers.iter().enumerate().any(|(k, m)| k != i && overlap(m, r))
+            let lines = Lines::of(&request, page.fonts);
+            let inside = |r: &Rect| r[0].cmpge(DVec2::ZERO).all() && r[1].cmple(page.size).all();
+            let free = |r: &Rect| inside(r) && taken.is_free(r, i) && markers.is_free(r, i);
+            let can_stand = |candidate: &Candidate| {
+                // What runs along a line stays off it by its baseline.
+                let off = !candidate.along.is_empty() || candidate.boxes.iter().all(|r| is_off(&request.line, r));
+                let leader = candidate.leader.as_ref().map(|leader| line_box(leader, density));
+                off && candidate.boxes.iter().all(free) && leader.is_none_or(|rect| taken.is_free(&rect, i))
             };
-            let found = candidates(&label_request, density).into_iter().find(|(text, leader, _)| {
-                free(text) && leader.as_ref().is_none_or(|l| !taken.iter().any(|t| overlap(t, &line_box(l, density))))
-            });
-            if let Some((text, leader, baseline)) = found {
-                taken.push(text);
-                taken.extend(leader.as_ref().map(|leader| line_box(leader, density)));
-                placed.push(Placed { label_request, baseline, leader });
+            if let Some(candidate) = candidates(&request, &lines, page).into_iter().find(can_stand) {
+                candidate.boxes.iter().for_each(|rect| taken.take(*rect, i));
+                candidate.leader.iter().for_each(|leader| taken.take(line_box(leader, density), i));
+                placed.push(Placed { color: request.color, size_px: request.size_px, lines, candidate });
             }
         }
-        Self { placed, density }
+        Self { placed, density, fonts: page.fonts.clone() }
     }
 
     /// Draws the texts.
-    pub(crate) fn draw(&self, canvas: &mut Canvas<'_>) {
-        for p in &self.placed {
-            let ink = p.label_request.color;
-            if let Some(leader) = &p.leader {
-                canvas.line(leader, 2.6 * self.density, rim(ink).with_alpha(150));
-                canvas.line(leader, self.density, ink);
+    pub(crate) fn draw(&self, canvas: Canvas<'_>) {
+        let mut canvas = canvas.with_fonts(&self.fonts);
+        for Placed { color, candidate, .. } in &self.placed {
+            if let Some(leader) = &candidate.leader {
+                canvas.line(leader, 2.6 * self.density, rim(*color).with_alpha(150));
+                canvas.line(leader, self.density, *color);
             }
         }
-        for Placed { label_request, baseline, .. } in &self.placed {
-            let width = (label_request.size_px / 7.0).clamp(1.2 * self.density, 3.0 * self.density);
-            let halo = (rim(label_request.color).with_alpha(225), width);
-            canvas.text(*baseline, label_request.size_px, &label_request.text, label_request.color, Some(halo));
+        for Placed { color, size_px, lines, candidate } in &self.placed {
+            let width = (size_px / 7.0).clamp(1.2 * self.density, 3.0 * self.density);
+            let halo = Some((rim(*color).with_alpha(225), width));
+            match candidate.along.is_empty() {
+                true => lines
+                    .placed(candidate.baseline)
+                    .for_each(|(text, size, at)| canvas.text(at, size, text, *color, halo)),
+                false => {
+                    let text = lines.lines.first().map_or("", |line| &line.0);
+                    canvas.text_along(&candidate.along, *size_px, text, *color, halo);
+                }
+            }
         }
     }
 }
@@ -103,89 +94,211 @@ fn rim(ink: Color) -> Color {
     if light { Color::rgb(30, 34, 40) } else { Color::rgb(255, 255, 255) }
 }
 
-fn marker(label_request: &LabelRequest) -> Rect {
-    let [side, above] = label_request.marker;
-    [label_request.at - DVec2::new(side, above), label_request.at + side]
+fn marker(request: &LabelRequest) -> Rect {
+    let [side, above] = request.marker;
+    [request.at - DVec2::new(side, above), request.at + side]
 }
 
 fn line_box(line: &[DVec2; 2], density: f64) -> Rect {
     [line[0].min(line[1]) - 1.5 * density, line[0].max(line[1]) + 1.5 * density]
 }
 
-/// Boxes of text to try, best first, with leader and baseline.
-fn candidates(label_request: &LabelRequest, density: f64) -> Vec<(Rect, Option<[DVec2; 2]>, DVec2)> {
-    let size = text_size(label_request.size_px, &label_request.text);
-    let [side, above] = label_request.marker;
-    let rect = |baseline: DVec2| {
-        let (lo, hi) = (DVec2::new(0.0, -size.ascent), DVec2::new(size.width, size.descent));
-        [baseline + lo - ROOM * density, baseline + hi + ROOM * density]
-    };
-    let level = label_request.at.y + 0.36 * label_request.size_px;
-    let beside = [
-        DVec2::new(label_request.at.x + side + 4.0 * density, level),
-        DVec2::new(label_request.at.x - side - 4.0 * density - size.width, level),
-        DVec2::new(label_request.at.x - 0.5 * size.width, label_request.at.y + side + 3.0 * density + size.ascent),
-    ];
-    if label_request.over {
-        let baseline = DVec2::new(label_request.at.x - 0.5 * size.width, level);
-        return vec![(rect(baseline), None, baseline)];
-    }
-    let mut out = Vec::new();
-    for length in LEADERS.into_iter().take(if label_request.leader { LEADERS.len() } else { 1 }) {
-        let length = length * density;
-        let foot = label_request.at - DVec2::Y * above;
-        let top = foot - DVec2::Y * (length + 2.0 * density);
-        for shift in [0.5, 0.15, 0.85] {
-            let baseline = DVec2::new(top.x - shift * size.width, top.y - size.descent - density);
-            out.push((rect(baseline), (length > 0.0).then_some([foot, top]), baseline));
-        }
-        if length == 0.0 {
-            out.extend(beside.into_iter().map(|b| (rect(b), None, b)));
-        }
-    }
-    out
+/// Whether a rectangle lies off a line of half a width.
+fn is_off((line, half): &(Vec<DVec2>, f64), rect: &Rect) -> bool {
+    let grown = [rect[0] - *half, rect[1] + *half];
+    line.windows(2).all(|pair| {
+        let [lo, hi] = [pair[0].min(pair[1]), pair[0].max(pair[1])];
+        !overlap(&[lo, hi + 1e-9], &grown) || !crosses(pair[0], pair[1], &grown)
+    })
+}
+
+/// Whether a segment meets a rectangle.
+fn crosses(a: DVec2, b: DVec2, [lo, hi]: &Rect) -> bool {
+    let inside = |p: DVec2| p.cmpgt(*lo).all() && p.cmplt(*hi).all();
+    let middle = 0.5 * (*lo + *hi);
+    // The corners lie on both sides of the segment's line, and the segment reaches the rectangle.
+    let side = |corner: DVec2| (b - a).perp_dot(corner - a);
+    let corners = [*lo, DVec2::new(hi.x, lo.y), *hi, DVec2::new(lo.x, hi.y)].map(side);
+    let parted = corners.iter().any(|s| *s > 0.0) && corners.iter().any(|s| *s < 0.0);
+    inside(a) || inside(b) || (parted && to_segment(middle, a, b).length() <= middle.distance(*lo))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn label_request(i: usize, at: DVec2) -> LabelRequest {
-        let color = Color::rgb(0, 0, 0);
-        LabelRequest {
-            text: format!("Summit {i}"),
-            at,
-            marker: [5.0, 6.0],
-            size_px: 13.0,
-            color,
-            leader: true,
-            over: false,
+    const BLACK: Color = Color::rgb(0, 0, 0);
+
+    fn place(requests: Vec<LabelRequest>, size: DVec2, keep_clear: &[Rect]) -> Labels {
+        Labels::place(requests, &Page { size, density: 1.0, fonts: &Fonts::default(), keep_clear })
+    }
+
+    fn summit(i: usize, at: DVec2) -> LabelRequest {
+        let request = LabelRequest::new(format!("Summit {i}"), at, 13.0, BLACK);
+        LabelRequest { marker: [5.0, 6.0], leader: true, ..request }
+    }
+
+    fn boxes(labels: &Labels) -> Vec<Rect> {
+        let block = |p: &Placed| {
+            let at = p.candidate.baseline;
+            [at - DVec2::Y * p.lines.ascent, at + DVec2::new(p.lines.width, p.lines.descent)]
+        };
+        labels.placed.iter().map(block).collect()
+    }
+
+    fn assert_apart(labels: &Labels, size: DVec2) {
+        let rects = boxes(labels);
+        for (i, a) in rects.iter().enumerate() {
+            assert!(a[0].min_element() >= 0.0 && a[1].cmple(size).all(), "a name leaves the picture: {a:?}");
+            assert!(rects[..i].iter().all(|b| !overlap(a, b)), "name {i} lies over another");
         }
     }
 
     #[test]
     fn names_do_not_overlap_and_the_first_come_first() {
         // Fifty summits in a tight row: not all names fit.
-        let requests: Vec<LabelRequest> =
-            (0..50).map(|i| label_request(i, DVec2::new(100.0 + 4.0 * i as f64, 230.0))).collect();
-        let labels = Labels::place(requests.clone(), DVec2::new(400.0, 300.0), 1.0);
+        let size = DVec2::new(400.0, 300.0);
+        let labels = place((0..50).map(|i| summit(i, DVec2::new(100.0 + 4.0 * i as f64, 230.0))).collect(), size, &[]);
         let n = labels.placed.len();
         assert!((8..50).contains(&n), "{n} names of 50");
-        assert_eq!(labels.placed[0].label_request, requests[0]);
-        let rects: Vec<Rect> = labels
-            .placed
-            .iter()
-            .map(|p| {
-                let size = text_size(13.0, &p.label_request.text);
-                [p.baseline - DVec2::Y * size.ascent, p.baseline + DVec2::new(size.width, size.descent)]
+        assert_eq!(labels.placed[0].lines.lines[0].0, "Summit 0");
+        assert_apart(&labels, size);
+    }
+
+    #[test]
+    fn names_keep_clear_of_what_is_kept_clear() {
+        let size = DVec2::new(400.0, 300.0);
+        let legend = [DVec2::new(150.0, 120.0), DVec2::new(400.0, 300.0)];
+        let labels =
+            place((0..20).map(|i| summit(i, DVec2::new(180.0, 20.0 + 14.0 * i as f64))).collect(), size, &[legend]);
+        assert!(labels.placed.len() > 5);
+        assert_apart(&labels, size);
+        assert!(boxes(&labels).iter().all(|rect| !overlap(rect, &legend)));
+    }
+
+    #[test]
+    fn two_lines_stand_as_one_block_and_rows_stand_over_the_skyline() {
+        let size = DVec2::new(600.0, 400.0);
+        let ground = 250.0;
+        let peaks = (0..9).map(|i| {
+            let request = summit(i, DVec2::new(40.0 + 60.0 * i as f64, ground + f64::from(i as u8 % 3)));
+            LabelRequest { second: format!("{} m", 2000 + i), skyline: Some(ground), ..request }
+        });
+        let labels = place(peaks.collect(), size, &[]);
+        assert_eq!(labels.placed.len(), 9);
+        assert_apart(&labels, size);
+        assert!(labels.placed.iter().all(|p| p.candidate.leader.is_some() && p.lines.lines.len() == 2));
+        let mut rows: Vec<i64> = labels.placed.iter().map(|p| p.candidate.baseline.y.round() as i64).collect();
+        rows.sort_unstable();
+        rows.dedup();
+        assert!(rows.len() <= 3 && rows.iter().all(|y| (*y as f64) < ground - 10.0), "rows at {rows:?}");
+    }
+
+    #[test]
+    fn a_name_beside_its_line_does_not_stand_on_it() {
+        let line: Vec<DVec2> = (0..200).map(|i| DVec2::new(100.0 + f64::from(i), 100.0 + 0.8 * f64::from(i))).collect();
+        let request = LabelRequest::new("Gasse", line[100], 13.0, BLACK);
+        let request = LabelRequest { line: (line.clone(), 4.0), marker: [4.0; 2], ..request };
+        let labels = place(vec![request], DVec2::splat(400.0), &[]);
+        let on = |rect: &Rect| line.iter().any(|p| p.cmpgt(rect[0] - 3.0).all() && p.cmplt(rect[1] + 3.0).all());
+        assert!(
+            labels.placed.iter().all(|_| true) && boxes(&labels).iter().all(|rect| !on(rect)),
+            "{:?}",
+            labels.placed
+        );
+        assert_eq!(labels.placed.len(), 1);
+        // A line that fills its surroundings leaves no room.
+        let zigzag: Vec<DVec2> =
+            (0..400).map(|i| DVec2::new(100.0 + 0.5 * f64::from(i), if i % 2 == 0 { 60.0 } else { 140.0 })).collect();
+        let request =
+            LabelRequest { line: (zigzag.clone(), 4.0), ..LabelRequest::new("Gasse", zigzag[200], 13.0, BLACK) };
+        assert!(place(vec![request], DVec2::splat(400.0), &[]).placed.is_empty());
+    }
+
+    #[test]
+    fn segments_and_rectangles_meet_as_a_search_says() {
+        let rect = [DVec2::new(10.0, 20.0), DVec2::new(50.0, 30.0)];
+        for (a, b) in [
+            ([0.0, 0.0], [60.0, 50.0]),
+            ([0.0, 10.0], [60.0, 19.0]),
+            ([30.0, 0.0], [30.0, 60.0]),
+            ([12.0, 22.0], [13.0, 23.0]),
+            ([0.0, 40.0], [9.0, 25.0]),
+            ([51.0, 31.0], [90.0, 90.0]),
+        ] {
+            let (a, b) = (DVec2::from_array(a), DVec2::from_array(b));
+            let searched = (0..=1000)
+                .map(|i| a.lerp(b, f64::from(i) / 1000.0))
+                .any(|p| p.cmpgt(rect[0]).all() && p.cmplt(rect[1]).all());
+            // What is found may be too much near corners, never too little.
+            assert!(!searched || crosses(a, b, &rect), "{a} {b}");
+        }
+        assert!(!crosses(DVec2::new(0.0, 10.0), DVec2::new(60.0, 19.0), &rect));
+        assert!(!crosses(DVec2::new(51.0, 31.0), DVec2::new(90.0, 90.0), &rect));
+    }
+
+    #[test]
+    fn two_thousand_names_on_a_poster_stand_apart_and_are_placed_in_time() {
+        // A0 at 300 dots per inch, letters and gaps of 300 / 96 pixels per unit.
+        let (size, density) = (DVec2::new(14_043.0, 9933.0), 3.125);
+        let mut seed = 11u64;
+        let mut random = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 40) as f64 / f64::from(1u32 << 24)
+        };
+        let point = |i: usize, at: DVec2| {
+            let request = LabelRequest::new(format!("Piz {i}"), at, 13.0 * density, BLACK);
+            LabelRequest { second: "2814 m".into(), marker: [15.0, 20.0], leader: true, ..request }
+        };
+        let mut requests: Vec<LabelRequest> =
+            (0..1500).map(|i| point(i, size * DVec2::new(random(), random()))).collect();
+        let lines: Vec<(Vec<DVec2>, f64)> = (0..500)
+            .map(|_| {
+                let (at, turn) = (size * DVec2::new(random(), random()), 2.0 * random() - 1.0);
+                let along = |i: i32| DVec2::new(f64::from(i), 60.0 * (f64::from(i) * 0.004).sin());
+                ((0..900).map(|i| at + DVec2::from_angle(turn).rotate(along(i))).collect(), 6.0 + 6.0 * random())
             })
             .collect();
-        for (i, a) in rects.iter().enumerate() {
-            assert!(
-                a[0].min_element() >= 0.0 && a[1].x <= 400.0 && a[1].y <= 300.0,
-                "a name leaves the picture: {a:?}"
-            );
-            assert!(rects[..i].iter().all(|b| !overlap(a, b)), "name {i} lies over another");
+        let letters = |width, gap| crate::marks::baseline::Letters { width, size_px: 13.0 * density, gap };
+        let started = std::time::Instant::now();
+        requests.extend(lines.iter().enumerate().map(|(i, (line, half))| {
+            let text = format!("Via Alpina {i}");
+            let width = Fonts::default().text_size(13.0 * density, &text).width;
+            let along = crate::marks::baseline::baselines(line, letters(width, half + density));
+            let request = LabelRequest::new(text, line[450], 13.0 * density, BLACK);
+            LabelRequest { along, line: (line.clone(), *half), marker: [*half; 2], ..request }
+        }));
+        let labels = Labels::place(requests, &Page { size, density, fonts: &Fonts::default(), keep_clear: &[] });
+        let taken = started.elapsed();
+        assert!(taken.as_secs_f64() < 5.0, "{taken:?}");
+        assert!(labels.placed.len() > 1500, "{} names", labels.placed.len());
+        let curved: Vec<&Placed> = labels.placed.iter().filter(|p| !p.candidate.along.is_empty()).collect();
+        assert!(curved.len() > 150, "{} names along lines", curved.len());
+        let boxes: Vec<(usize, &Rect)> =
+            labels.placed.iter().enumerate().flat_map(|(i, p)| p.candidate.boxes.iter().map(move |r| (i, r))).collect();
+        for (k, (i, a)) in boxes.iter().enumerate() {
+            assert!(a[0].min_element() >= 0.0 && a[1].cmple(size).all());
+            assert!(boxes[..k].iter().all(|(j, b)| i == j || !overlap(a, b)), "names {i} lies over another");
+        }
+        // No name crosses the casing of its line: the ends of the strokes of its letters stay off it.
+        for placed in &curved {
+            let name = &placed.lines.lines[0].0;
+            let number: usize = name.rsplit(' ').next().and_then(|n| n.parse().ok()).expect("a number");
+            let (line, half) = &lines[number];
+            for pair in placed
+                .candidate
+                .along
+                .windows(2)
+                .take_while(|pair| pair[0].distance(placed.candidate.baseline) < placed.lines.width)
+            {
+                let direction = (pair[1] - pair[0]).normalize_or_zero();
+                let up = DVec2::new(direction.y, -direction.x);
+                for share in [-0.24, 0.0, 0.4, 0.76] {
+                    let p = pair[0] + share * placed.size_px * up;
+                    let nearest = line.iter().map(|q| q.distance(p)).fold(f64::INFINITY, f64::min);
+                    assert!(nearest > *half, "{name}: {nearest} px from the middle of a line of {half}");
+                }
+            }
         }
     }
 }

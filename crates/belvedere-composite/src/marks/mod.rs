@@ -2,23 +2,30 @@
 
 mod alike;
 mod area_names;
+mod baseline;
+mod candidates;
 mod dash;
 mod distance;
+mod drawing;
+mod drawn;
 mod face;
 mod label;
 mod line_of_sight;
 mod names;
+mod occupied;
 mod path;
 mod point;
 mod pole;
+mod request;
 mod ribbon;
 mod segment;
 mod shapes;
 mod shown;
+mod skyline;
 mod symbol;
 mod visibility;
 
-use crate::canvas::Canvas;
+use crate::canvas::{Canvas, Fonts};
 use crate::color::{Packed, linear};
 use crate::depths::{DepthTiles, Depths};
 use crate::drawn::{Drawn, Pass, Sight};
@@ -29,13 +36,17 @@ use belvedere_core::{Aabb, DVec2};
 use belvedere_scene::{
     AreaLayer, Color, Hidden, LayerKind, LineFeature, LineLayer, Overlay, OverlayLine, RenderJob, Scene, Symbol,
 };
+use drawing::PlacedDrawing;
 use face::Face;
-use label::{LabelRequest, Labels};
+use label::Labels;
 use line_of_sight::LineOfSight;
 use path::LinePoint;
+use point::PointMarks;
 use rayon::prelude::*;
+use request::{LabelRequest, Page};
 use ribbon::{Ink, Lane, Stroke, StrokeLayer};
 pub use shapes::{LayerShapes, LineShape, Paint, Role, Shapes, SymbolShape, outline, simplified};
+use skyline::Skyline;
 use visibility::{DepthMap, LineVisibility, Run, Station};
 
 /// Width of a hidden line in widths of the visible one.
@@ -47,6 +58,8 @@ pub struct Marks {
     under: Vec<StrokeLayer>,
     faces: Vec<Face>,
     sheets: Vec<StrokeLayer>,
+    /// Symbols of the scene's own.
+    drawings: Vec<PlacedDrawing>,
     labels: Labels,
 }
 
@@ -61,7 +74,7 @@ impl Marks {
         let marks = Self::place(job, drawn, true);
         let of = |sheets: &[StrokeLayer]| sheets.iter().map(StrokeLayer::shapes).collect();
         let mut names = Vec::new();
-        marks.labels.draw(&mut Canvas::recording(&mut names, job.view.pinhole().image.map(|side| side as usize)));
+        marks.write_names(&mut Canvas::recording(&mut names, job.view.pinhole().image.map(|side| side as usize)));
         Shapes { under: of(&marks.under), layers: of(&marks.sheets), names }
     }
 
@@ -82,6 +95,12 @@ impl Marks {
         let Drawn { passes, screen, tolerance_px, depth, sight } = *drawn;
         let map = DepthMap { depth, width: screen.width, height: screen.height };
         let sections = Sections::new(job);
+        let named = |kind: &LayerKind| matches!(kind, LayerKind::Point(p) if p.style.label_px.is_some());
+        let skyline = match job.scene.layers.iter().any(|layer| named(&layer.kind)) {
+            true => Skyline::of(depth, screen.width.max(0) as usize),
+            false => Skyline::default(),
+        };
+        let fonts = Fonts::with(&job.scene.fonts);
         let sight = LineOfSight { scene: job.scene, sight };
         let builder = MarkBuilder {
             sections: sections.as_ref(),
@@ -93,10 +112,13 @@ impl Marks {
             map,
             sight: &sight,
             density: job.options.density,
+            fonts: &fonts,
+            skyline: &skyline,
             keep,
         };
         let overlay = &job.options.overlay;
         let mut requests: Vec<LabelRequest> = Vec::new();
+        let mut points = PointMarks::default();
         let mut sheets: Vec<StrokeLayer> = Vec::new();
         for (i, layer) in job.scene.layers.iter().enumerate() {
             let id = i as u32 + 1;
@@ -111,7 +133,10 @@ impl Marks {
                     sheets.extend(builder.outlines(a, id));
                     requests.extend(builder.area_names(i, a));
                 }
-                LayerKind::Point(p) => sheets.extend(builder.points(&builder.shown_points(i, p), id, &mut requests)),
+                LayerKind::Point(p) => {
+                    sheets.extend(builder.points(&builder.shown_points(i, p), id, &mut points));
+                    requests.append(&mut points.requests);
+                }
                 _ => {}
             }
         }
@@ -125,8 +150,9 @@ impl Marks {
             .faces
             .iter()
             .flat_map(|f| passes.iter().take(job.view.records()).filter_map(|p| Face::new(f, *p, screen)));
-        let labels = Labels::place(requests, 2.0 * screen.center, job.options.density);
-        Self { under, faces: faces.collect(), sheets, labels }
+        let (size, density, keep_clear) = (2.0 * screen.center, job.options.density, &job.options.keep_clear[..]);
+        let labels = Labels::place(requests, &Page { size, density, fonts: &fonts, keep_clear });
+        Self { under, faces: faces.collect(), sheets, drawings: points.drawings, labels }
     }
 
     /// Whether the job may have any marks.
@@ -162,8 +188,9 @@ impl Marks {
         cover
     }
 
-    /// Writes the names over the finished picture, or over some of its rows.
+    /// Draws symbols of the scene's own and writes the names over the finished picture, or over some of its rows.
     pub fn write_names(&self, canvas: &mut Canvas<'_>) {
+        self.drawings.iter().for_each(|drawing| drawing.draw(canvas));
         self.labels.draw(canvas);
     }
 }
@@ -189,6 +216,9 @@ struct MarkBuilder<'a> {
     sight: &'a LineOfSight<'a>,
     /// Pixels per unit of lengths that styles do not state.
     density: f64,
+    /// Fonts of names.
+    fonts: &'a Fonts,
+    skyline: &'a Skyline,
     /// Whether lines are kept as shapes.
     keep: bool,
 }
@@ -287,16 +317,9 @@ impl MarkBuilder<'_> {
             Some([first, seen.next_back().unwrap_or(first)])
         });
         let at = ends.flatten().max_by(|a, b| a.y.total_cmp(&b.y))?;
-        let (text, color) = (line.label.clone(), line.color.with_alpha(255));
-        Some(LabelRequest {
-            text,
-            at,
-            marker: [2.0 * self.density; 2],
-            size_px: line.label_px,
-            color,
-            leader: false,
-            over: false,
-        })
+        let color = line.color.with_alpha(255);
+        let marker = [2.0 * self.density; 2];
+        Some(LabelRequest { marker, ..LabelRequest::new(line.label.clone(), at, line.label_px, color) })
     }
 
     fn sheet(&self, paths: Vec<Vec<LinePoint>>, style: Style, inks: [Ink; 3], id: u32) -> StrokeLayer {
@@ -396,15 +419,8 @@ impl MarkBuilder<'_> {
             for at in self.mark(&on_line, layer.lift_m, marker, &mut strokes) {
                 let color = darker(layer.color);
                 let side = half_px + 2.0 * self.density;
-                requests.push(LabelRequest {
-                    text: text.clone(),
-                    at,
-                    marker: [side, side],
-                    size_px: layer.marker_px,
-                    color,
-                    leader: false,
-                    over: false,
-                });
+                let marker = [side, side];
+                requests.push(LabelRequest { marker, ..LabelRequest::new(text.clone(), at, layer.marker_px, color) });
             }
         }
         let white = Color::rgb(255, 255, 255);

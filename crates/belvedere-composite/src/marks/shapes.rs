@@ -91,9 +91,10 @@ pub struct Shapes {
     pub names: Vec<CanvasShape>,
 }
 
-/// Corners of a symbol of half size `half` around its point, pixels, y down; curves in steps of less than 4 degrees.
-pub fn outline(symbol: Symbol, half: f64) -> Vec<DVec2> {
-    symbol::corners(symbol).into_iter().map(|corner| half * corner).collect()
+/// Rings of a symbol of half size `half` around its point, pixels, y down, holes oriented against their outer ring; curves in steps of at most
+/// 5 degrees.
+pub fn outline(symbol: Symbol, half: f64) -> Vec<Vec<DVec2>> {
+    symbol::rings(symbol).iter().map(|ring| ring.iter().map(|corner| half * *corner).collect()).collect()
 }
 
 /// A polyline with as few vertices as lie within `tolerance` of it (Douglas and Peucker); its ends stay.
@@ -141,10 +142,10 @@ mod tests {
 
     #[test]
     fn the_outline_of_a_symbol_is_where_its_distance_is_0() {
-        for symbol in [Symbol::Dot, Symbol::Triangle, Symbol::Square, Symbol::Pin, Symbol::Cross] {
-            let corners = outline(symbol, 10.0);
-            assert!(corners.len() >= 3);
-            for (a, b) in corners.iter().zip(corners.iter().cycle().skip(1)) {
+        for (_, symbol) in Symbol::NAMED {
+            let rings = outline(symbol, 10.0);
+            assert!(!rings.is_empty() && rings.iter().all(|ring| ring.len() >= 3));
+            for (a, b) in rings.iter().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1))) {
                 for t in [0.0, 0.5] {
                     let d = symbol::distance(symbol, a.lerp(*b, t).as_vec2(), 10.0);
                     assert!(d.abs() < 0.02, "{symbol:?}: {d} at {}", a.lerp(*b, t));

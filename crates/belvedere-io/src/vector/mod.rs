@@ -8,6 +8,7 @@ mod gpx;
 mod names;
 mod on_terrain;
 mod phantom;
+mod place_kind;
 mod rings;
 mod shapefile;
 
@@ -15,6 +16,7 @@ pub use area_kind::{AreaKind, area_kind};
 pub use gpx::track_times;
 pub use names::name_field;
 pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
+pub use place_kind::{number, place_kind, stated_height, stated_people};
 
 use crate::crs::CoordinateSystem;
 use crate::formats::Reader;
@@ -129,6 +131,21 @@ impl Vectors {
         };
         for feature in &mut self.features {
             feature.name = feature.properties.get(&found).cloned().unwrap_or_default();
+        }
+        Ok(())
+    }
+
+    /// Takes the names of those features that have a property from it; others keep theirs.
+    ///
+    /// # Errors
+    /// As [`Vectors::name_by`].
+    pub fn name_where(&mut self, field: &str) -> Result<(), String> {
+        let before: Vec<String> = self.features.iter().map(|f| f.name.clone()).collect();
+        self.name_by(field)?;
+        for (feature, before) in self.features.iter_mut().zip(before) {
+            if feature.name.trim().is_empty() {
+                feature.name = before;
+            }
         }
         Ok(())
     }

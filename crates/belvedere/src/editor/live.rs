@@ -377,6 +377,7 @@ impl LiveSession {
         let opacities: Vec<f32> = opacities.collect();
         let same = opened.crs == document.crs
             && opened.unit == document.unit
+            && opened.text == document.text
             && opened.representations == document.representations
             && opened.hidden == document.hidden
             && (document.hidden.is_empty()

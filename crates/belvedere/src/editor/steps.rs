@@ -41,6 +41,7 @@ pub fn step_name(before: &Document, after: &Document) -> String {
         (before.title != after.title, "changed the title"),
         (before.light != after.light, "changed the light"),
         (before.overlay != after.overlay, "changed the marks"),
+        (before.text != after.text, "changed the fonts"),
         (before.stylisation != after.stylisation, "changed the stylisation"),
         (before.representations != after.representations, "changed the representations"),
         (before.animation != after.animation, "changed the animation"),

@@ -57,7 +57,8 @@ impl Thin {
         };
         let layers = scene.layers.iter().enumerate().map(layer).collect();
         let (title, representations) = (scene.title.clone(), scene.representations.clone());
-        Scene { title, crs: scene.crs, unit: scene.unit, layers, representations }
+        let (fonts, drawings) = (scene.fonts.clone(), scene.drawings.clone());
+        Scene { title, crs: scene.crs, unit: scene.unit, layers, representations, fonts, drawings }
     }
 
     /// A layer of triangles with fewer of them; `None` if it has none, or few.

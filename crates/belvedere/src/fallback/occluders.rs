@@ -161,6 +161,8 @@ fn filtered(scene: &Scene, kind: &dyn Fn(usize) -> Option<LayerKind>) -> Scene {
         unit: scene.unit,
         layers: scene.layers.iter().enumerate().map(layer).collect(),
         representations: scene.representations.clone(),
+        fonts: scene.fonts.clone(),
+        drawings: scene.drawings.clone(),
     }
 }
 

@@ -2,7 +2,6 @@
 
 use super::ground::Ground;
 use super::loader::Loader;
-use super::vectors::unset_names;
 use super::{builtin, by_property, vectors};
 use crate::BelvedereError;
 use crate::record::AreaRecord;
@@ -39,9 +38,6 @@ pub(super) fn layer(
     }
     let AreaKind { surface, why } = stated.unwrap_or(found);
     loader.areas.push(AreaRecord { layer: doc.id.clone(), kind: surface.name(), areas: features.len(), why });
-    if style.labels {
-        loader.note(index, unset_names(features.iter().map(|f| f.name.as_str())));
-    }
     let fill = match &style.color {
         Some(color) => loader.color(index, color)?,
         None => surface.color(),
@@ -58,7 +54,7 @@ pub(super) fn layer(
         surface,
         hidden: style.hidden,
         lift_m: style.lift_m,
-        label_px: style.labels.then_some(style.label_px),
+        label_px: (style.labels || style.label.is_some()).then_some(style.label_px),
     }))
 }
 

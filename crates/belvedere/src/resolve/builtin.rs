@@ -105,7 +105,7 @@ fn town(request: &Request) -> Result<(Scene, builtin::SuggestedCamera), String> 
         look_at: DVec3::ZERO,
         fov_y: 40f64.to_radians(),
     };
-    Ok((Scene { title, crs: Crs::Local, unit: Unit::Metre, layers, representations: Vec::new() }, camera))
+    Ok((Scene { title, crs: Crs::Local, unit: Unit::Metre, layers, ..Scene::default() }, camera))
 }
 
 fn parse(source: &str) -> Result<(Request, Option<String>), String> {

@@ -2,11 +2,12 @@
 
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
-use super::{areas, boxes, builtin, by_property, city, dem, mesh, molecule, sea, vectors, volume};
+use super::{areas, boxes, builtin, by_property, city, dem, fonts, mesh, molecule, named, sea, vectors, volume};
 use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
-    AutoOrLength, LayerDoc, LineDoc, Origin, PaletteDoc, Paths, PointLayerDoc, PositionDoc, RouteDoc, TerrainDoc,
+    AutoOrLength, HeightUnit, LayerDoc, LineDoc, Origin, PaletteDoc, Paths, PointLayerDoc, PositionDoc, RouteDoc,
+    SymbolDoc, TerrainDoc, TextDoc,
 };
 use crate::{BelvedereError, Needs, OpenOptions};
 use belvedere_builtin::{RouteCost, least_cost_route, valley_route};
@@ -18,8 +19,8 @@ use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
 use belvedere_io::{InputFile, Loaded};
 use belvedere_scene::{
-    Climate, Crs, DistanceMarkers, Drape, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Palette, PaletteName,
-    PointLayer, PointStyle, TerrainLayer, drape_polyline,
+    Climate, Crs, DistanceMarkers, Drape, Drawing, FontFile, Heightfield, Layer, LayerKind, LineFeature, LineLayer,
+    Palette, PaletteName, PointLayer, PointStyle, Symbol, TerrainLayer, drape_polyline,
 };
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -40,19 +41,28 @@ pub(crate) struct LayerRequest<'a> {
     pub(crate) vectors: BTreeMap<PathBuf, Loaded<Vectors>>,
     /// Whether to keep the unchanged samples of the terrain's file.
     pub(crate) keep_original: bool,
+    /// Fonts of the scene.
+    pub(crate) text: Option<&'a TextDoc>,
+    /// Further texts that fonts are needed for, such as the title.
+    pub(crate) words: &'a str,
 }
 
 impl<'a> LayerRequest<'a> {
     /// A request for every layer.
     pub(crate) fn new(origin: &'a Origin, layers: &'a [LayerDoc], crs: &'a str, roots: &'a Roots) -> Self {
         let (fallback_crs, needs, vectors) = (None, Needs::Everything, BTreeMap::new());
-        Self { origin, layers, crs, fallback_crs, needs, roots, vectors, keep_original: false }
+        let (keep_original, text, words) = (false, None, "");
+        Self { origin, layers, crs, fallback_crs, needs, roots, vectors, keep_original, text, words }
     }
 }
 
 /// Layers, with records and warnings of reading them.
 pub(crate) struct LoadedLayers {
     pub(crate) layers: Vec<Layer>,
+    /// Fonts that their names need.
+    pub(crate) fonts: Vec<FontFile>,
+    /// Symbols of the scene's own.
+    pub(crate) drawings: Vec<Arc<Drawing>>,
     pub(crate) crs: Crs,
     pub(crate) inputs: Vec<InputFile>,
     pub(crate) warnings: Vec<Warning>,
@@ -64,6 +74,7 @@ pub(crate) struct LoadedLayers {
 /// The layers that are needed, in file order.
 pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<LoadedLayers, BelvedereError> {
     let LayerRequest { origin, layers: docs, fallback_crs, needs, roots, vectors, keep_original, .. } = request;
+    let (text, words) = (request.text, request.words);
     let mut crs = stated_crs(origin, request.crs)?;
     let mut loader = Loader {
         origin,
@@ -79,6 +90,8 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
         floor: None,
         keep_original,
         original: None,
+        drawings: Vec::new(),
+        in_feet: text.is_some_and(|text| text.heights == HeightUnit::Foot),
     };
     let mut layers: Vec<Option<Layer>> = docs.iter().map(|_| None).collect();
     for (i, doc) in docs.iter().enumerate().filter(|_| needs != Needs::View) {
@@ -117,10 +130,14 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
             }
         }
     }
-    let Loader { inputs, warnings, areas, original, .. } = loader;
+    let fonts = match needs {
+        Needs::Everything => fonts::choose(&mut loader, &layers[..docs.len()], text, words)?,
+        Needs::View | Needs::Ground => Vec::new(),
+    };
+    let Loader { inputs, warnings, areas, original, drawings, .. } = loader;
     let mut layers: Vec<Layer> = layers.into_iter().flatten().collect();
     share_surfaces(&mut layers);
-    Ok(LoadedLayers { layers, crs, inputs, warnings, areas, original })
+    Ok(LoadedLayers { layers, fonts, drawings, crs, inputs, warnings, areas, original })
 }
 
 /// Marks layers that were read from the same source as one surface.
@@ -266,10 +283,6 @@ fn line(
         return Err(loader.fail(index, "source", "no line lies on the terrain; check that the source covers it"));
     }
     let style = &doc.style;
-    if style.labels {
-        let said = vectors::unset_names(features.iter().map(|f| f.name.as_str()));
-        loader.note(index, said);
-    }
     let color = loader.color(index, &style.color)?;
     features.iter_mut().for_each(|f| f.style = by_property::as_opaque_as(color, f.style));
     Ok(LayerKind::Line(LineLayer {
@@ -283,7 +296,7 @@ fn line(
             AutoOrLength::Auto(_) => DistanceMarkers::Auto,
             AutoOrLength::Length(every) => DistanceMarkers::Every(every),
         }),
-        label_px: style.labels.then_some(style.label_px),
+        label_px: (style.labels || style.label.is_some()).then_some(style.label_px),
         marker_px: belvedere_scene::SMALL_LETTERS_PX,
     }))
 }
@@ -333,24 +346,45 @@ fn point(
         return Err(loader.fail(index, "source", "no point lies on the terrain; check that the source covers it"));
     }
     let style = &doc.style;
-    if style.labels {
-        let said = vectors::unset_names(features.iter().map(|f| f.name.as_str()));
-        loader.note(index, said);
-    }
+    named::stand_out(style, &mut features, ground.terrain, loader.in_feet);
     let color = loader.color(index, &style.color)?;
     features.iter_mut().for_each(|f| f.style = by_property::as_opaque_as(color, f.style));
+    let symbol = symbol(loader, index, &style.symbol)?;
     Ok(LayerKind::Point(PointLayer {
         features,
         color,
         size_px: style.size_px,
         style: PointStyle {
-            symbol: style.symbol,
+            symbol,
             casing: loader.optional_color(index, &style.casing)?,
-            label_px: style.labels.then_some(style.label_px),
+            label_px: (style.labels || style.label.is_some()).then_some(style.label_px),
         },
         hidden: style.hidden,
         lift_m: style.lift_m,
     }))
+}
+
+/// A symbol by name or from its file.
+fn symbol(loader: &mut Loader<'_>, index: usize, doc: &SymbolDoc) -> Result<Symbol, BelvedereError> {
+    let name = match doc {
+        SymbolDoc::Auto => return Ok(Symbol::Dot),
+        SymbolDoc::Named(symbol) => return Ok(*symbol),
+        SymbolDoc::File(name) => name,
+    };
+    let fail = |loader: &Loader<'_>, e: String| {
+        let reason = format!("layer \"{}\": {e}", loader.id(index));
+        loader.origin.error(&["layer", &index.to_string(), "style", "symbol"], reason)
+    };
+    let has_ending = std::path::Path::new(name).extension().is_some();
+    let file = loader.roots.resolve(name).map_err(|e| {
+        let reason = if has_ending { format!("symbol: {e}") } else { SymbolDoc::unknown(name) };
+        fail(loader, reason)
+    })?;
+    let loaded = belvedere_io::load_symbol(&file);
+    let loaded = loaded.map_err(|e| fail(loader, format!("symbol: {}", loader.shown(&e))))?;
+    let drawing = loader.take(index, loaded);
+    loader.drawings.push(Arc::new(drawing));
+    Ok(Symbol::Own((loader.drawings.len() - 1) as u16))
 }
 
 /// Any layer but terrain.

@@ -10,9 +10,10 @@ use belvedere_core::Warning;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
 use belvedere_io::{CityFile, InputFile, IoError, Loaded};
-use belvedere_scene::{Color, LayerKind};
+use belvedere_scene::{Color, Drawing, LayerKind};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Inputs of reading layers, and its records.
 pub(super) struct Loader<'a> {
@@ -34,6 +35,10 @@ pub(super) struct Loader<'a> {
     /// Whether to keep the unchanged samples of the terrain's file, and these samples.
     pub(super) keep_original: bool,
     pub(super) original: Option<OriginalTerrain>,
+    /// Symbols of the scene's own, by their numbers.
+    pub(super) drawings: Vec<Arc<Drawing>>,
+    /// Whether heights below names are written in feet.
+    pub(super) in_feet: bool,
 }
 
 impl Loader<'_> {

@@ -1,8 +1,8 @@
 //! Lines, areas and points from files, draped on the terrain.
 
-use super::by_property;
 use super::ground::Ground;
 use super::loader::Loader;
+use super::{by_property, named};
 use crate::BelvedereError;
 use crate::scene_file::{LayerDoc, Paths};
 use belvedere_core::{Warning, WarningKind};
@@ -159,6 +159,7 @@ fn all<T>(
         stand(loader, index, &mut vectors);
         read.push(vectors);
     }
+    named::tell(loader, index, &mut read)?;
     // Classes are those of all files together.
     by_property::style(loader, index, &mut read)?;
     let mut features = Vec::new();
@@ -184,17 +185,6 @@ fn stand(loader: &mut Loader<'_>, index: usize, vectors: &mut Vectors) {
         let warning = Warning::new(WarningKind::Assumed, note).with("count", f64::from(count));
         loader.note(index, [warning.with("height_m", floor)]);
     }
-}
-
-/// Warning with the number of names with letters that the font lacks, and the first of them.
-pub(super) fn unset_names<'n>(names: impl Iterator<Item = &'n str>) -> Option<Warning> {
-    let unset: Vec<&str> = names.filter(|name| !belvedere_composite::canvas::can_set(name)).collect();
-    let first = unset.first()?;
-    let count = unset.len();
-    let what = format!(
-        "names have letters that are not set (Latin, Greek and Cyrillic are), the first is \"{first}\"; they are left out or incomplete"
-    );
-    Warning::counted(WarningKind::Ignored, count, &what)
 }
 
 /// Lines of files, draped.
@@ -230,16 +220,4 @@ pub(super) fn points(
     ground: &Ground<'_>,
 ) -> Result<Vec<PointFeature>, BelvedereError> {
     all(loader, index, paths, ground, points_on_terrain, |_| ())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_in_scripts_that_are_not_set_are_counted() {
-        assert_eq!(unset_names(["Tälchen", "Эльбрус", "Όλυμπος", "", "a b"].into_iter()), None);
-        let said = unset_names(["Fuji", "富士山", "עין גדי"].into_iter()).expect("said");
-        assert!(said.text().starts_with("2 names") && said.text().contains("富士山"), "{said}");
-    }
 }

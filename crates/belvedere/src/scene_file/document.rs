@@ -43,6 +43,9 @@ pub struct Document {
     /// Paper of the pictures that `render` writes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub print: Option<super::print::PrintDoc>,
+    /// Letters of names.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub text: Option<super::text::TextDoc>,
     /// Layers, a flat list; terrain first in drawing order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layer: Vec<LayerDoc>,
@@ -78,6 +81,7 @@ impl Document {
             overlay: None,
             stylisation: None,
             print: None,
+            text: None,
             layer: Vec::new(),
             representations: BTreeMap::new(),
             hidden: Vec::new(),
@@ -112,6 +116,7 @@ pub(super) struct Head {
     pub(super) overlay: Option<super::overlay::OverlayDoc>,
     pub(super) stylisation: Option<super::stylisation::StylisationDoc>,
     pub(super) print: Option<super::print::PrintDoc>,
+    pub(super) text: Option<super::text::TextDoc>,
     #[serde(default)]
     pub(super) representations: BTreeMap<String, Vec<String>>,
     #[serde(default)]

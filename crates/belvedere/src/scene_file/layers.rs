@@ -7,8 +7,9 @@ use super::mesh::MeshDoc;
 use super::molecule::MoleculeDoc;
 use super::overlay::AutoOrLength;
 use super::palette::PaletteDoc;
+use super::points::PointLayerDoc;
 use super::volume::VolumeDoc;
-use belvedere_scene::{Hidden, Relief, Shading, Symbol};
+use belvedere_scene::{Hidden, Relief, Shading};
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
@@ -341,6 +342,10 @@ pub struct LineStyleDoc {
     pub distance_markers_m: Option<AutoOrLength>,
     /// Whether names are written, each once, as far as they do not overlap.
     pub labels: bool,
+    /// Property whose values are written, such as `name:de`; features without it are written by their name. Names are then written
+    /// without `labels`, too.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub label: Option<String>,
     /// Height of the letters, pixels, in (0, 200].
     pub label_px: f64,
 }
@@ -357,6 +362,7 @@ impl Default for LineStyleDoc {
             lift_m: 1.0,
             distance_markers_m: None,
             labels: false,
+            label: None,
             label_px: 13.0,
         }
     }
@@ -429,6 +435,13 @@ pub struct AreaStyleDoc {
     pub lift_m: f64,
     /// Whether names are written: each once, in the largest of the areas that bear it.
     pub labels: bool,
+    /// Property whose values are written, such as `name:de`; features without it are written by their name. Names are then written
+    /// without `labels`, too.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub label: Option<String>,
+    /// Which names are placed first: `area` (the default: where the room is largest), or a property that holds numbers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rank: Option<String>,
     /// Height of the letters, pixels, in (0, 200].
     pub label_px: f64,
 }
@@ -445,71 +458,9 @@ impl Default for AreaStyleDoc {
             hidden: Hidden::Cut,
             lift_m: 1.0,
             labels: false,
+            label: None,
+            rank: None,
             label_px: 13.0,
-        }
-    }
-}
-
-/// Points on the ground.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct PointLayerDoc {
-    /// Unique id within the scene.
-    pub id: String,
-    /// A file, or several.
-    pub source: Paths,
-    /// Property that holds the names of features; by default the one that looks most like a name, which `info` tells.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub name_field: Option<String>,
-    /// Whether constructors and measures work for it.
-    #[serde(default)]
-    pub must_see: bool,
-    /// How it is drawn.
-    #[serde(default)]
-    pub style: PointStyleDoc,
-}
-
-/// How points are drawn.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct PointStyleDoc {
-    /// `#rrggbb` or `#rrggbbaa`.
-    pub color: String,
-    /// Colour by a property of the file, in place of `color`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub color_by: Option<ColorByDoc>,
-    /// Shape.
-    pub symbol: Symbol,
-    /// Colour of the rim, or `none`.
-    pub casing: String,
-    /// Whether names are written, as far as they do not overlap; earlier points first.
-    pub labels: bool,
-    /// Height of the letters, pixels, in (0, 200].
-    pub label_px: f64,
-    /// Diameter on screen, pixels, in (0, 200].
-    pub size_px: f64,
-    /// Diameter by a property of the file, in place of `size_px`.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub size_by: Option<SizeByDoc>,
-    /// What happens to hidden points.
-    pub hidden: Hidden,
-    /// Height above ground, metres, in [0, 1000].
-    pub lift_m: f64,
-}
-
-impl Default for PointStyleDoc {
-    fn default() -> Self {
-        Self {
-            color: "#6a3d9a".into(),
-            color_by: None,
-            symbol: Symbol::Dot,
-            casing: "#ffffff".into(),
-            labels: false,
-            label_px: 13.0,
-            size_px: 8.0,
-            size_by: None,
-            hidden: Hidden::Fade,
-            lift_m: 1.0,
         }
     }
 }

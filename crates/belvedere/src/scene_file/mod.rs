@@ -20,11 +20,14 @@ pub(crate) mod other_kind;
 mod overlay;
 mod palette;
 pub mod paths;
+mod points;
 mod print;
 mod relief;
 mod stages;
 mod strip;
 mod stylisation;
+mod symbol;
+mod text;
 mod toml_tree;
 mod volume;
 
@@ -37,14 +40,15 @@ pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDo
 pub use fallback::{Fallback, FallbackKind};
 pub use intent::{AnimationDoc, CentrelineDoc, ConstructorDoc, ConstructorKind, SweepDoc, TurntableDoc};
 pub use layers::{
-    AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc, PointLayerDoc,
-    PointStyleDoc, PositionDoc, RouteDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, VerticalUnit,
+    AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc, PositionDoc,
+    RouteDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, VerticalUnit,
 };
 pub use mesh::{MeshDoc, MeshStyleDoc};
 pub use molecule::{MoleculeDoc, MoleculeStyleDoc, PaintDoc};
 pub(crate) use node::{Node, Value};
 pub use overlay::{AutoOrLength, AutoWord, HighlightMark, Inset, OverlayDoc, SwitchOrLength};
 pub use palette::{PaletteDoc, PaletteName};
+pub use points::{PointLayerDoc, PointStyleDoc};
 pub use print::PrintDoc;
 pub use relief::{OneOrTwo, ReliefStageDoc};
 pub use stages::{
@@ -53,6 +57,8 @@ pub use stages::{
 };
 pub use strip::StripStageDoc;
 pub use stylisation::{StylisationDoc, SwitchOrStrength};
+pub use symbol::SymbolDoc;
+pub use text::{HeightUnit, TextDoc};
 pub use volume::VolumeDoc;
 
 use crate::BelvedereError;
@@ -270,6 +276,7 @@ fn document(root: &Node) -> Result<Document, DocError> {
         overlay: head.overlay,
         stylisation: head.stylisation,
         print: head.print,
+        text: head.text,
         representations: head.representations,
         hidden: head.hidden,
         layer: each(root, "layer", layers::LAYER_KINDS, layer)?,

@@ -1,6 +1,6 @@
 //! Which files a scene may name: those in its own folder or below, unless the user allows more.
 
-use super::{Document, LayerDoc, PaletteDoc, PresetsDoc, StageDoc, names_a_preset_file};
+use super::{Document, LayerDoc, PaletteDoc, PresetsDoc, StageDoc, SymbolDoc, names_a_preset_file};
 use crate::BelvedereError;
 use belvedere_io::{fs, join_table, split_table};
 use std::path::{Component, Path, PathBuf};
@@ -24,7 +24,12 @@ impl Document {
                 }
                 LayerDoc::Line(l) => l.source.iter_mut().for_each(|source| source.each(&mut one)),
                 LayerDoc::Area(l) => l.source.each(&mut one),
-                LayerDoc::Point(l) => l.source.each(&mut one),
+                LayerDoc::Point(l) => {
+                    l.source.each(&mut one);
+                    if let SymbolDoc::File(name) = &mut l.style.symbol {
+                        one(name);
+                    }
+                }
                 LayerDoc::Boxes(l) => l.source.iter_mut().chain(&mut l.motion).for_each(&mut one),
                 LayerDoc::Mesh(l) => {
                     l.source.each(&mut one);
@@ -50,6 +55,7 @@ impl Document {
                 StageDoc::Strip(_) | StageDoc::Relief(_) | StageDoc::CurvedRays(_) => {}
             }
         }
+        self.text.iter_mut().filter_map(|text| text.fonts.as_mut()).for_each(|fonts| fonts.each(&mut one));
         self.animation.iter_mut().filter_map(|a| a.camera.as_mut()).for_each(&mut one);
         let ids: Vec<&str> = self.layer.iter().map(LayerDoc::id).collect();
         let paths = self.constructor.iter_mut().filter_map(|c| c.path.as_mut());

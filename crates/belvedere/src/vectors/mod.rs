@@ -2,6 +2,7 @@
 
 mod area;
 mod pdf;
+mod pdf_letters;
 mod svg;
 
 use crate::print::Sheet;

@@ -1,8 +1,9 @@
 //! PDF with optional content by layer, live text in the embedded font, and the same shapes as the SVG.
 
+use super::pdf_letters::{self, DrawnLetters};
 use super::{AreaShape, Page, VectorPicture, tolerance_px};
 use crate::print::REFERENCE_DPI;
-use belvedere_composite::canvas::{CanvasShape, FONT_FILE, letters};
+use belvedere_composite::canvas::{CanvasShape, FONT_FILE, Fonts, Letter};
 use belvedere_composite::marks::{LayerShapes, LineShape, Paint, Role, SymbolShape, outline, simplified};
 use belvedere_core::DVec2;
 use belvedere_scene::Color;
@@ -26,6 +27,19 @@ const CAPITALS: f32 = 729.0;
 /// Handle of a circle's quarter, radii.
 const QUARTER: f64 = 0.552_284_75;
 
+/// A text whose letters are set.
+struct SetText<'a> {
+    at: DVec2,
+    size: f64,
+    text: &'a str,
+    fonts: &'a Fonts,
+    letters: Vec<Letter>,
+    /// Place and direction of each letter, pixels.
+    turned: Vec<(DVec2, DVec2)>,
+    /// Whether it is a straight line in the embedded font, copied by the map of the font.
+    plain: bool,
+}
+
 /// The document.
 pub(crate) fn write(picture: &VectorPicture, page: &Page<'_>) -> Vec<u8> {
     let [w, h] = page.size.map(|side| side as f64);
@@ -40,6 +54,7 @@ pub(crate) fn write(picture: &VectorPicture, page: &Page<'_>) -> Vec<u8> {
         layers: Vec::new(),
         alphas: Vec::new(),
         glyphs: BTreeMap::new(),
+        drawn: DrawnLetters::default(),
     };
     // From pixels, y down, to points, y up.
     let scale = (72.0 / dpi) as f32;
@@ -67,6 +82,8 @@ struct Drawing {
     alphas: Vec<u16>,
     /// Glyphs in use: their widths in thousandths of an em, and their characters.
     glyphs: BTreeMap<u16, (f32, String)>,
+    /// Letters of further fonts.
+    drawn: DrawnLetters,
 }
 
 impl Drawing {
@@ -210,8 +227,9 @@ impl Drawing {
         match symbol.symbol {
             belvedere_scene::Symbol::Dot => self.circle(symbol.at, symbol.half),
             other => {
-                let corners: Vec<DVec2> = outline(other, symbol.half).into_iter().map(|p| symbol.at + p).collect();
-                self.path(&corners, true);
+                for ring in outline(other, symbol.half) {
+                    self.path(&ring.into_iter().map(|p| symbol.at + p).collect::<Vec<_>>(), true);
+                }
             }
         }
         if symbol.grow > 0.0 {
@@ -254,31 +272,103 @@ impl Drawing {
                 self.content.fill_even_odd();
             }
             CanvasShape::Polygon { rings, color } => self.polygon(rings, *color),
-            CanvasShape::Text { at, size, text, color, halo, .. } => {
+            CanvasShape::Text { at, size, text, fonts, along, color, halo, .. } => {
+                let letters = fonts.letters(text);
+                let plain = along.is_empty() && self.knows_all(&letters);
+                let turned = match along.is_empty() {
+                    true => letters.iter().map(|l| (*at + *size * DVec2::new(l.at[0], -l.at[1]), DVec2::X)).collect(),
+                    false => {
+                        fonts.turned(*size, text, along).into_iter().map(|turn| (turn.at, turn.direction)).collect()
+                    }
+                };
+                let set = SetText { at: *at, size: *size, text, fonts, letters, turned, plain };
                 if let Some((color, width)) = halo {
                     // The rim is not text: it is not found or copied.
                     self.color(*color);
                     self.content.set_line_width(2.0 * *width as f32);
-                    let mut span = self.content.begin_marked_content_with_properties(Name(b"Span"));
-                    span.properties().actual_text(TextStr(""));
-                    span.finish();
-                    self.text(*at, *size, text, TextRenderingMode::Stroke);
-                    self.content.end_marked_content();
+                    self.rim(&set);
                 }
                 self.color(*color);
-                self.text(*at, *size, text, TextRenderingMode::Fill);
+                self.text(&set);
             }
         }
     }
 
-    fn text(&mut self, at: DVec2, size: f64, text: &str, mode: TextRenderingMode) {
-        let set = letters(text);
-        self.content.begin_text().set_font(Name(b"F"), size as f32).set_text_rendering_mode(mode);
-        self.content.set_text_matrix([1.0, 0.0, 0.0, -1.0, at.x as f32, at.y as f32]);
+    /// Whether the embedded font has all letters and each glyph stands for the same characters as elsewhere, so that the map of the font
+    /// tells what is copied.
+    fn knows_all(&self, letters: &[Letter]) -> bool {
+        let mut own: BTreeMap<u16, &str> = BTreeMap::new();
+        letters.iter().all(|letter| {
+            let before = self.glyphs.get(&letter.glyph).map(|(_, characters)| characters.as_str());
+            let before = before.unwrap_or_else(|| own.entry(letter.glyph).or_insert(&letter.characters));
+            letter.font == 0 && letter.glyph != 0 && before == letter.characters
+        })
+    }
+
+    fn actual_text(&mut self, text: &str) {
+        let mut span = self.content.begin_marked_content_with_properties(Name(b"Span"));
+        span.properties().actual_text(TextStr(text));
+        span.finish();
+    }
+
+    fn rim(&mut self, set: &SetText<'_>) {
+        if set.plain {
+            self.actual_text("");
+            self.line(set, TextRenderingMode::Stroke);
+            self.content.end_marked_content();
+            return;
+        }
+        for (letter, (at, right)) in set.letters.iter().zip(&set.turned) {
+            let outline = set.fonts.outline(letter.font, letter.glyph);
+            if outline.is_empty() {
+                continue;
+            }
+            let up = DVec2::new(right.y, -right.x);
+            pdf_letters::path(&mut self.content, &outline, |[x, y]| {
+                (*at + set.size * (f64::from(x) * *right + f64::from(y) * up)).as_vec2().to_array()
+            });
+            self.content.stroke();
+        }
+    }
+
+    fn text(&mut self, set: &SetText<'_>) {
+        if set.plain {
+            return self.line(set, TextRenderingMode::Fill);
+        }
+        // The order of the letters, or what they stand for, is not that of the text.
+        self.actual_text(set.text);
+        self.content.begin_text().set_text_rendering_mode(TextRenderingMode::Fill);
+        for (letter, (at, right)) in set.letters.iter().zip(&set.turned) {
+            let [x, y] = right.as_vec2().to_array();
+            self.content.set_text_matrix([x, y, y, -x, at.x as f32, at.y as f32]);
+            if letter.font == 0 {
+                self.content.set_font(Name(b"F"), set.size as f32).show(Str(&letter.glyph.to_be_bytes()));
+                self.uses(letter);
+            } else {
+                let (font, code) = self.drawn.code(set.fonts, letter);
+                let name = DrawnLetters::name(font);
+                self.content.set_font(Name(name.as_bytes()), set.size as f32).show(Str(&[code]));
+            }
+        }
+        self.content.end_text();
+        self.content.end_marked_content();
+    }
+
+    /// Notes a glyph of the embedded font.
+    fn uses(&mut self, letter: &Letter) {
+        let width = (1000.0 * letter.width) as f32;
+        // A glyph for letters that no font has stands for no character of its own.
+        let characters = if letter.glyph == 0 { String::new() } else { letter.characters.clone() };
+        self.glyphs.entry(letter.glyph).or_insert_with(|| (width, characters));
+    }
+
+    fn line(&mut self, set: &SetText<'_>, mode: TextRenderingMode) {
+        self.content.begin_text().set_font(Name(b"F"), set.size as f32).set_text_rendering_mode(mode);
+        self.content.set_text_matrix([1.0, 0.0, 0.0, -1.0, set.at.x as f32, set.at.y as f32]);
         let mut line = self.content.show_positioned();
         let mut items = line.items();
         let mut pen = 0.0;
-        for (i, letter) in set.iter().enumerate() {
+        for letter in &set.letters {
             // Thousandths of an em to the left.
             let back = 1000.0 * (pen - letter.at[0]);
             if back.abs() > 0.5 {
@@ -286,14 +376,11 @@ impl Drawing {
             }
             items.show(Str(&letter.glyph.to_be_bytes()));
             pen = letter.at[0] + letter.width;
-            let end = set.get(i + 1).map_or(text.len(), |next| next.cluster);
-            let characters = text.get(letter.cluster..end).unwrap_or_default();
-            let width = (1000.0 * letter.width) as f32;
-            self.glyphs.entry(letter.glyph).or_insert_with(|| (width, characters.to_owned()));
         }
         items.finish();
         line.finish();
         self.content.end_text();
+        set.letters.iter().for_each(|letter| self.uses(letter));
     }
 
     fn document(mut self, page: &Page<'_>, paper: [f64; 2]) -> Vec<u8> {
@@ -306,6 +393,7 @@ impl Drawing {
         let [font, cid, descriptor, file, unicode, image] = std::array::from_fn(|_| id());
         let groups: Vec<Ref> = self.layers.iter().map(|_| id()).collect();
         let states: Vec<Ref> = self.alphas.iter().map(|_| id()).collect();
+        let drawn: Vec<Ref> = (0..self.drawn.fonts()).map(|_| id()).collect();
         let mut pdf = Pdf::new();
         let mut root = pdf.catalog(catalog);
         root.pages(pages);
@@ -339,8 +427,15 @@ impl Drawing {
         if page.raster.is_some() {
             resources.x_objects().pair(Name(b"Surfaces"), image);
         }
-        if !self.glyphs.is_empty() {
-            resources.fonts().pair(Name(b"F"), font);
+        if !self.glyphs.is_empty() || !drawn.is_empty() {
+            let mut fonts = resources.fonts();
+            if !self.glyphs.is_empty() {
+                fonts.pair(Name(b"F"), font);
+            }
+            for (number, font) in drawn.iter().enumerate() {
+                fonts.pair(Name(DrawnLetters::name(number).as_bytes()), *font);
+            }
+            fonts.finish();
         }
         resources.finish();
         leaf.finish();
@@ -348,8 +443,8 @@ impl Drawing {
             let alpha = f32::from(*alpha) / 1000.0;
             pdf.ext_graphics(*state).stroking_alpha(alpha).non_stroking_alpha(alpha);
         }
-        let drawn = deflated(&std::mem::replace(&mut self.content, Content::new()).finish());
-        pdf.stream(content, &drawn).filter(Filter::FlateDecode);
+        let painted = deflated(&std::mem::replace(&mut self.content, Content::new()).finish());
+        pdf.stream(content, &painted).filter(Filter::FlateDecode);
         if let Some(png) = page.raster {
             let data = image_data(png);
             let mut surfaces = pdf.image_xobject(image, &data);
@@ -365,6 +460,7 @@ impl Drawing {
         if !self.glyphs.is_empty() {
             self.font(&mut pdf, [font, cid, descriptor, file, unicode]);
         }
+        self.drawn.write(&mut pdf, &drawn, id);
         let mut document = pdf.document_info(info);
         document.producer(TextStr(page.description));
         if !page.title.is_empty() {

@@ -20,7 +20,7 @@ pub(crate) fn write(picture: &VectorPicture, page: &Page<'_>) -> String {
     let dpi = page.sheet.map_or(REFERENCE_DPI, |sheet| sheet.dpi);
     let margin = page.sheet.map_or(0.0, |sheet| sheet.margin_mm / 25.4 * dpi);
     let paper = page.sheet.map_or([w, h].map(|px| px / dpi * 25.4), |sheet| sheet.paper_mm);
-    let mut out = Svg { text: String::new(), tolerance: tolerance_px(dpi), alone: !picture.over_raster };
+    let mut out = Svg { text: String::new(), tolerance: tolerance_px(dpi), alone: !picture.over_raster, baselines: 0 };
     out.line("<?xml version=\"1.0\" encoding=\"UTF-8\"?>");
     out.line(&format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
@@ -73,6 +73,8 @@ struct Svg {
     tolerance: f64,
     /// Whether there is no raster below.
     alone: bool,
+    /// Baselines of curved texts.
+    baselines: usize,
 }
 
 impl Svg {
@@ -197,8 +199,9 @@ impl Svg {
                 number(symbol.half)
             ),
             other => {
-                let corners: Vec<DVec2> = outline(other, symbol.half).into_iter().map(|p| symbol.at + p).collect();
-                format!("<path d=\"{}\"", path(&corners, true))
+                let moved = |ring: Vec<DVec2>| ring.into_iter().map(|p| symbol.at + p).collect::<Vec<_>>();
+                let rings = outline(other, symbol.half).into_iter().map(|ring| path(&moved(ring), true));
+                format!("<path d=\"{}\"", rings.collect::<String>())
             }
         };
         self.line(&format!("{shape} fill=\"{color}\"{pen}/>"));
@@ -249,7 +252,7 @@ impl Svg {
                 let (fill, alpha) = (hex(*color), opacity("fill-opacity", *color));
                 format!("<path d=\"{data}\" fill=\"{fill}\"{alpha} fill-rule=\"evenodd\"/>")
             }
-            CanvasShape::Text { at, size, text, color, halo, .. } => {
+            CanvasShape::Text { at, size, text, fonts, along, color, halo, .. } => {
                 let halo = halo.map_or(String::new(), |(color, width)| {
                     let alpha = opacity("stroke-opacity", color);
                     format!(
@@ -258,16 +261,27 @@ impl Svg {
                         number(2.0 * width)
                     )
                 });
-                format!(
-                    "<text x=\"{}\" y=\"{}\" font-family=\"{FAMILIES}\" font-stretch=\"condensed\" font-size=\"{}\" \
-                     fill=\"{}\"{}{halo}>{}</text>",
-                    number(at.x),
-                    number(at.y),
+                let families = fonts.families().into_iter().map(|family| format!("'{}', ", family.replace('\'', "")));
+                let families = FAMILIES.replace("sans-serif", &format!("{}sans-serif", families.collect::<String>()));
+                let look = format!(
+                    "font-family=\"{}\" font-stretch=\"condensed\" font-size=\"{}\" fill=\"{}\"{}{halo}",
+                    xml(&families),
                     number(*size),
                     hex(*color),
                     opacity("fill-opacity", *color),
-                    xml(text)
-                )
+                );
+                match along.is_empty() {
+                    true => format!("<text x=\"{}\" y=\"{}\" {look}>{}</text>", number(at.x), number(at.y), xml(text)),
+                    false => {
+                        self.baselines += 1;
+                        let (id, data) = (self.baselines, path(&simplified(along, self.tolerance), false));
+                        format!(
+                            "<defs><path id=\"baseline{id}\" d=\"{data}\"/></defs>\n\
+                             <text {look}><textPath xlink:href=\"#baseline{id}\">{}</textPath></text>",
+                            xml(text)
+                        )
+                    }
+                }
             }
         };
         self.line(&text);

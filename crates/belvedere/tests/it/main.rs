@@ -7,6 +7,7 @@ mod exact;
 mod examples;
 mod export;
 mod films;
+mod letters;
 mod memory;
 mod moving_pictures;
 mod names;

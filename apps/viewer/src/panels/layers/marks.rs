@@ -3,6 +3,7 @@
 use super::paint::{color, opacity};
 use crate::language::{fill, tr};
 use belvedere::scene::Symbol;
+use belvedere::scene_file::SymbolDoc;
 use belvedere::scene_file::{AutoOrLength, AutoWord};
 use eframe::egui::{ComboBox, DragValue, Ui};
 
@@ -47,17 +48,30 @@ pub(super) fn distances(ui: &mut Ui, id: &str, marks: &mut Option<AutoOrLength>)
 }
 
 /// The shape of points.
-pub(super) fn symbol(ui: &mut Ui, id: &str, symbol: &mut Symbol) {
-    let words = |symbol: Symbol| match symbol {
-        Symbol::Dot => tr("dot"),
-        Symbol::Triangle => tr("triangle"),
-        Symbol::Square => tr("square"),
-        Symbol::Pin => tr("pin"),
-        Symbol::Cross => tr("cross"),
+pub(super) fn symbol(ui: &mut Ui, id: &str, symbol: &mut SymbolDoc) {
+    let words = |symbol: &SymbolDoc| match symbol {
+        SymbolDoc::Auto => tr("as its points say"),
+        SymbolDoc::File(_) => tr("a drawing of its own"),
+        SymbolDoc::Named(symbol) => match symbol {
+            Symbol::Dot | Symbol::Own(_) => tr("dot"),
+            Symbol::Triangle => tr("triangle"),
+            Symbol::Square => tr("square"),
+            Symbol::Pin => tr("pin"),
+            Symbol::Cross => tr("cross"),
+            Symbol::Hut => tr("hut"),
+            Symbol::Pass => tr("pass"),
+            Symbol::Lift => tr("lift"),
+            Symbol::Viewpoint => tr("viewpoint"),
+            Symbol::Parking => tr("car park"),
+            Symbol::Ring => tr("ring"),
+            Symbol::Target => tr("ring and dot"),
+        },
     };
-    ComboBox::from_label(fill(tr("symbol of {0}"), &[&id])).selected_text(words(*symbol)).show_ui(ui, |ui| {
-        for one in [Symbol::Dot, Symbol::Triangle, Symbol::Square, Symbol::Pin, Symbol::Cross] {
-            ui.selectable_value(symbol, one, words(one));
+    ComboBox::from_label(fill(tr("symbol of {0}"), &[&id])).selected_text(words(symbol)).show_ui(ui, |ui| {
+        let named = Symbol::NAMED.map(|(_, symbol)| SymbolDoc::Named(symbol));
+        for one in std::iter::once(SymbolDoc::Auto).chain(named) {
+            let word = words(&one);
+            ui.selectable_value(symbol, one, word);
         }
     });
 }

@@ -1,0 +1,161 @@
+//! Baselines of names along lines: beside the line, smoother than it, and so that no letter stands on it or upside down.
+
+use belvedere_core::{DVec2, polygon::to_segment};
+
+/// Middles of the stretches that are tried, shares of the line.
+const MIDDLES: [f64; 9] = [0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8, 0.1, 0.9];
+/// Most turn of the baseline within the height of a letter, radians.
+const MOST_TURN: f64 = 0.45;
+/// Least share of a letter's direction that points to the right.
+const LEAST_RIGHT: f64 = 0.25;
+/// Samples to each side that a baseline is smoothed over: the height of a letter.
+const REACH: i64 = 4;
+/// Most baselines of a line.
+const MOST: usize = 6;
+/// Room along the line in widths of the text.
+const ROOM: f64 = 1.06;
+/// Above and below the baseline in heights of the letters.
+const ASCENT: f64 = 0.76;
+const DESCENT: f64 = 0.24;
+
+/// A text that is to run along a line, pixels.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Letters {
+    pub(crate) width: f64,
+    pub(crate) size_px: f64,
+    /// From the middle of the line to the letters.
+    pub(crate) gap: f64,
+}
+
+/// Baselines along a line, the flattest first, above the line before below it.
+pub(crate) fn baselines(line: &[DVec2], letters: Letters) -> Vec<Vec<DVec2>> {
+    let step = (0.25 * letters.size_px).max(1.0);
+    let line = samples(line, step);
+    let count = ((ROOM * letters.width + 2.0) / step).ceil();
+    if !(count >= 1.0 && count < line.len() as f64) {
+        return Vec::new();
+    }
+    let count = count as usize;
+    let mut found: Vec<(f64, Vec<DVec2>)> = Vec::new();
+    for middle in MIDDLES {
+        let room = line.len() - 1 - count;
+        let start = ((middle * (line.len() - 1) as f64 - 0.5 * count as f64).max(0.0) as usize).min(room);
+        for (side, off) in
+            [(0.0, letters.gap + DESCENT * letters.size_px), (0.4, -letters.gap - ASCENT * letters.size_px)]
+        {
+            if let Some((turn, baseline)) = beside(&line, start..start + count + 1, off) {
+                found.push((turn + side + (middle - 0.5).abs(), baseline));
+            }
+        }
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.into_iter().map(|(_, baseline)| baseline).filter(|b| stays_off(b, &line, letters)).take(MOST).collect()
+}
+
+/// Points at equal steps along a line, pixels.
+fn samples(line: &[DVec2], step: f64) -> Vec<DVec2> {
+    let mut out: Vec<DVec2> = line.first().copied().into_iter().collect();
+    let mut left = step;
+    for pair in line.windows(2) {
+        let long = pair[0].distance(pair[1]);
+        let mut at = left;
+        while at <= long {
+            out.push(pair[0].lerp(pair[1], at / long));
+            at += step;
+        }
+        left = at - long;
+    }
+    out
+}
+
+/// A smooth curve `off` pixels above a stretch of samples, and its whole turn; `None` where it turns too much.
+fn beside(line: &[DVec2], stretch: std::ops::Range<usize>, off: f64) -> Option<(f64, Vec<DVec2>)> {
+    let last = line.len() as i64 - 1;
+    let smooth = |i: usize| {
+        let weights = (-REACH..=REACH).map(|k| (i as i64 + k, (REACH + 1 - k.abs()) as f64));
+        let weights = weights.filter(|(i, _)| (0..=last).contains(i));
+        let (sum, total) =
+            weights.fold((DVec2::ZERO, 0.0), |(sum, total), (i, w)| (sum + w * line[i as usize], total + w));
+        sum / total
+    };
+    let mut points: Vec<DVec2> = stretch.map(smooth).collect();
+    if points.last()?.x < points.first()?.x {
+        points.reverse();
+    }
+    let directions: Vec<DVec2> = points.windows(2).map(|pair| (pair[1] - pair[0]).normalize_or_zero()).collect();
+    if directions.iter().any(|d| !(d.x >= LEAST_RIGHT)) {
+        return None;
+    }
+    let turns: Vec<f64> = directions.windows(2).map(|pair| pair[0].angle_to(pair[1])).collect();
+    if turns.windows(4).any(|four| four.iter().sum::<f64>().abs() > MOST_TURN) {
+        return None;
+    }
+    let up = |i: usize| {
+        let d = directions[i.saturating_sub(1)] + directions[i.min(directions.len() - 1)];
+        DVec2::new(d.y, -d.x).normalize_or_zero()
+    };
+    let lifted = points.iter().enumerate().map(|(i, p)| *p + off * up(i)).collect();
+    Some((turns.iter().map(|turn| turn.abs()).sum(), lifted))
+}
+
+/// Whether no part of the letters comes nearer to the line than its half width.
+fn stays_off(baseline: &[DVec2], line: &[DVec2], letters: Letters) -> bool {
+    let least = letters.gap - 0.5;
+    let (lo, hi) = baseline.iter().fold((baseline[0], baseline[0]), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
+    let reach = letters.gap + letters.size_px;
+    let near: Vec<[DVec2; 2]> = line
+        .windows(2)
+        .filter(|pair| pair[0].cmpge(lo - reach).all() && pair[0].cmple(hi + reach).all())
+        .map(|pair| [pair[0], pair[1]])
+        .collect();
+    baseline.windows(2).all(|pair| {
+        let direction = (pair[1] - pair[0]).normalize_or_zero();
+        let up = DVec2::new(direction.y, -direction.x);
+        [-DESCENT, 0.2, 0.5, ASCENT].iter().all(|share| {
+            let p = pair[0] + *share * letters.size_px * up;
+            near.iter().all(|[a, b]| to_segment(p, *a, *b).length() >= least)
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn letters(width: f64) -> Letters {
+        Letters { width, size_px: 12.0, gap: 4.0 }
+    }
+
+    #[test]
+    fn baselines_stay_beside_their_line_and_read_from_left_to_right() {
+        // From right to left, in a gentle bow.
+        let bow: Vec<DVec2> =
+            (0..600).map(|i| DVec2::new(600.0 - f64::from(i), 300.0 + 80.0 * (f64::from(i) * 0.006).sin())).collect();
+        let found = baselines(&bow, letters(120.0));
+        assert!(found.len() >= 4, "{} baselines", found.len());
+        for baseline in &found {
+            assert!(baseline.windows(2).all(|pair| pair[1].x > pair[0].x));
+            for share in [-DESCENT, ASCENT] {
+                let lifted = baseline.iter().map(|p| *p - DVec2::Y * share * 12.0);
+                let nearest =
+                    lifted.flat_map(|p| bow.iter().map(move |q| p.distance(*q))).fold(f64::INFINITY, f64::min);
+                assert!(nearest > 2.5, "{nearest} px from the line");
+            }
+        }
+        // The first is above the line.
+        assert!(found[0].iter().all(|p| bow.iter().any(|q| q.y > p.y && (q.x - p.x).abs() < 8.0)));
+    }
+
+    #[test]
+    fn short_steep_and_winding_lines_have_none() {
+        let line = |f: fn(f64) -> [f64; 2]| (0..400).map(|i| DVec2::from_array(f(f64::from(i)))).collect::<Vec<_>>();
+        assert!(baselines(&line(|i| [0.1 * i, 0.0]), letters(120.0)).is_empty());
+        assert!(baselines(&line(|i| [50.0, i]), letters(120.0)).is_empty());
+        assert!(
+            baselines(&line(|i| [200.0 + 30.0 * (i * 0.03).cos(), 200.0 + 30.0 * (i * 0.03).sin()]), letters(120.0))
+                .is_empty()
+        );
+        assert!(baselines(&[], letters(5.0)).is_empty() && baselines(&[DVec2::ONE], letters(5.0)).is_empty());
+        assert!(baselines(&line(|i| [i, 0.0]), letters(f64::NAN)).is_empty());
+    }
+}
