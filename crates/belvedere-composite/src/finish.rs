@@ -15,14 +15,18 @@ pub fn buffers(job: &RenderJob<'_>) -> Buffers {
     let buffers = Buffers::reuse(job, true, Vec::new(), Frame::default());
     // Where only centres are known, edges between faces are found from world points.
     let n = buffers.out.len();
-    let world = (job.options.aux.world || stylised).then(|| vec![[f64::NAN; 3]; n]);
+    let world = (job.options.aux.world || stylised || job.scene.paints_over_ground()).then(|| vec![[f64::NAN; 3]; n]);
     Buffers { world, ..buffers }
 }
 
 /// Buffers in the memory of older ones; all pixels must be written.
 pub fn buffers_in(job: &RenderJob<'_>, color: Vec<Packed>, old: Frame) -> Buffers {
-    let is_open = Marks::are_in(job) || stylise::is_on(job) || job.scene.has_see_through();
-    Buffers::reuse(job, is_open, color, old)
+    let painted = job.scene.paints_over_ground();
+    let is_open = Marks::are_in(job) || stylise::is_on(job) || job.scene.has_see_through() || painted;
+    let buffers = Buffers::reuse(job, is_open, color, old);
+    let n = buffers.out.len();
+    let world = buffers.world.or_else(|| painted.then(|| vec![[f64::NAN; 3]; n]));
+    Buffers { world, ..buffers }
 }
 
 /// Draws stylisation, lines and points over the surfaces, and encodes the colours.

@@ -7,6 +7,7 @@ use crate::geometry::drawn_solids::DrawnSolids;
 use crate::geometry::lod::Tree;
 use crate::geometry::pass::{BodyPasses, Pass};
 use crate::marks;
+use crate::over_ground;
 use crate::raster::band::{BAND, Band, sample_offsets};
 use crate::resolve::relief::resolve_relief;
 use crate::resolve::{Colors, Rows, resolve};
@@ -122,6 +123,7 @@ impl CpuRenderer {
         let mut veil = (!see_through.is_empty()).then(|| Veil::clear(buffers.out.len()));
         let spare = Spare { bands, layers: &see_through };
         surfaces.draw(sections.as_ref(), spare, &mut buffers, (relief.as_mut(), veil.as_mut()))?;
+        over_ground::paint(job, (&shader, &screen), &mut buffers);
         let samples = volume::compose(job, Way::Fast, &mut buffers)?;
         if buffers.open {
             let marks = marks::place(job, &passes, &screen, (&buffers.depth, Solids::Opaque));

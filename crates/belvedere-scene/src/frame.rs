@@ -1,7 +1,7 @@
 //! Pictures: options, jobs, results and the trait of renderers.
 
 use crate::{Cancelled, Light, Overlay, Progress, Scene};
-use belvedere_core::View;
+use belvedere_core::{DVec2, View};
 
 /// Buffers wanted beside colour, depth and id.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -42,6 +42,8 @@ pub struct RenderOptions {
     /// Pixels per unit of the lengths of marks that styles do not state: rims, gaps, leaders, > 0. Widths and heights that styles state are
     /// pixels.
     pub density: f64,
+    /// Rectangles that names stay out of, pixels: upper left and lower right corners.
+    pub keep_clear: Vec<[DVec2; 2]>,
     /// Memory the renderer may use for one picture, bytes; more is [`RenderError::TooLarge`].
     pub max_bytes: u64,
 }
@@ -61,6 +63,7 @@ impl Default for RenderOptions {
             representation: None,
             marks: true,
             density: 1.0,
+            keep_clear: Vec::new(),
             max_bytes: 4 << 30,
         }
     }

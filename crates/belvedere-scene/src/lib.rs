@@ -39,8 +39,8 @@ pub use drape::{Draped, drape_polyline};
 pub use frame::{Aux, Compositing, Frame, FrameStats, RenderError, RenderJob, RenderOptions, Renderer, Stylisation};
 pub use heightfield::{Heightfield, HeightfieldError, NodeState, States};
 pub use layer::{
-    AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Drape, Layer, LayerKind, LineFeature, LineLayer, Palette,
-    PaletteName, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
+    AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Contours, Drape, Edge, Layer, LayerKind, LineFeature,
+    LineLayer, Palette, PaletteName, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
 };
 pub use light::{Haze, Light, Sky};
 pub use mark::{DistanceMarkers, FeatureStyle, Hidden, PointStyle, Symbol};

@@ -53,10 +53,10 @@ fn overlap(a: &Rect, b: &Rect) -> bool {
 impl Labels {
     /// Places the texts that fit into a picture of `size` pixels, in the order of the requests.
     ///
-    /// * `density`: pixels per unit of gaps, leaders and rims.
-    pub(crate) fn place(requests: Vec<LabelRequest>, size: DVec2, density: f64) -> Self {
+    /// * `density`: pixels per unit of gaps, leaders and rims; `keep_clear`: rectangles that stay free of them, pixels.
+    pub(crate) fn place(requests: Vec<LabelRequest>, size: DVec2, (density, keep_clear): (f64, &[Rect])) -> Self {
         let markers: Vec<Rect> = requests.iter().map(marker).collect();
-        let mut taken: Vec<Rect> = Vec::new();
+        let mut taken: Vec<Rect> = keep_clear.to_vec();
         let mut placed: Vec<Placed> = Vec::new();
         for (i, label_request) in requests.into_iter().enumerate() {
             if placed.len() >= MOST {
@@ -168,7 +168,7 @@ mod tests {
         // Fifty summits in a tight row: not all names fit.
         let requests: Vec<LabelRequest> =
             (0..50).map(|i| label_request(i, DVec2::new(100.0 + 4.0 * i as f64, 230.0))).collect();
-        let labels = Labels::place(requests.clone(), DVec2::new(400.0, 300.0), 1.0);
+        let labels = Labels::place(requests.clone(), DVec2::new(400.0, 300.0), (1.0, &[]));
         let n = labels.placed.len();
         assert!((8..50).contains(&n), "{n} names of 50");
         assert_eq!(labels.placed[0].label_request, requests[0]);
@@ -186,6 +186,24 @@ mod tests {
                 "a name leaves the picture: {a:?}"
             );
             assert!(rects[..i].iter().all(|b| !overlap(a, b)), "name {i} lies over another");
+        }
+    }
+
+    #[test]
+    fn names_stay_out_of_what_is_kept_clear() {
+        let requests: Vec<LabelRequest> =
+            (0..20).map(|i| label_request(i, DVec2::new(20.0 + 18.0 * i as f64, 150.0))).collect();
+        let kept = [DVec2::new(100.0, 0.0), DVec2::new(300.0, 300.0)];
+        let labels = Labels::place(requests.clone(), DVec2::new(400.0, 300.0), (1.0, &[kept]));
+        let all = Labels::place(requests, DVec2::new(400.0, 300.0), (1.0, &[]));
+        assert!(!labels.placed.is_empty() && labels.placed.len() < all.placed.len());
+        for placed in &labels.placed {
+            let size = text_size(13.0, &placed.label_request.text);
+            let rect = [
+                placed.baseline - DVec2::Y * size.ascent,
+                placed.baseline + DVec2::new(size.width, size.descent),
+            ];
+            assert!(!overlap(&rect, &kept), "{placed:?}");
         }
     }
 }

@@ -112,7 +112,7 @@ impl Marks {
             .faces
             .iter()
             .flat_map(|f| passes.iter().take(job.view.records()).filter_map(|p| Face::new(f, *p, screen)));
-        let labels = Labels::place(requests, 2.0 * screen.center, job.options.density);
+        let labels = Labels::place(requests, 2.0 * screen.center, (job.options.density, &job.options.keep_clear));
         Self { under, faces: faces.collect(), sheets, labels }
     }
 

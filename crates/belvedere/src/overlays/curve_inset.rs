@@ -77,10 +77,15 @@ fn farthest(bend: &SplineBend, view: &View) -> f64 {
     (end.length() * bend.scale()).max(pinhole.near)
 }
 
+/// Height of the figure in a picture whose smaller side is given.
+pub(crate) fn height(smaller: f64) -> f64 {
+    (SHARE * smaller).clamp(HEIGHT_PX[0], HEIGHT_PX[1]).round()
+}
+
 /// Draws the figure into the upper left corner; returns whether the picture is large enough.
 pub(crate) fn draw(canvas: &mut Canvas<'_>, figure: &CurveFigure) -> bool {
     let size = canvas.size();
-    let height = (SHARE * size.min_element()).clamp(HEIGHT_PX[0], HEIGHT_PX[1]).round();
+    let height = height(size.min_element());
     let room = DVec2::new((ASPECT * height).round(), height);
     if size.x < room.x + 2.0 * MARGIN || size.y < room.y + 2.0 * MARGIN {
         return false;

@@ -3,6 +3,7 @@
 mod buffers;
 mod displacement;
 mod draw;
+mod furniture;
 mod mark_target;
 mod options;
 mod sidecar;
