@@ -11,6 +11,7 @@ mod constructors;
 mod curve_inset;
 mod figures;
 mod generalise;
+mod furniture;
 mod geopackage;
 mod layers;
 mod light_and_tints;

@@ -9,9 +9,10 @@ use crate::scene_file::Corner;
 use belvedere_core::{DVec2, View};
 use belvedere_scene::{Scene, Unit};
 
-/// Height that the mark of bent pictures takes, and that the legend of highlights may take.
-const MARK_HEIGHT: f64 = 24.0;
-const HIGHLIGHT_HEIGHT: f64 = 150.0;
+/// Sizes that the mark of bent pictures, the legend of the heat map and that of highlights may take.
+const MARK: DVec2 = DVec2::new(270.0, 24.0);
+const HEAT: DVec2 = DVec2::new(210.0, heat::LEGEND_HEIGHT);
+const HIGHLIGHT: DVec2 = DVec2::new(250.0, 150.0);
 /// Part of a degree of latitude over which the direction to the north is taken.
 const STEP_DEG: f64 = 1e-3;
 
@@ -34,10 +35,10 @@ pub(super) fn plan(
     let inset = overlay.inset.is_some() && view.spline_bend().is_some();
     let smaller = view.pinhole().image.map(f64::from).into_iter().fold(f64::INFINITY, f64::min) / request.density;
     let reserved = [
-        (bent && overlay.mark && !request.no_mark, Corner::BottomRight, MARK_HEIGHT),
-        (heatmap, Corner::BottomLeft, heat::LEGEND_HEIGHT),
-        (bent && highlight, Corner::BottomLeft, HIGHLIGHT_HEIGHT),
-        (inset, Corner::TopLeft, curve_inset::height(smaller)),
+        (bent && overlay.mark && !request.no_mark, Corner::BottomRight, MARK),
+        (heatmap, Corner::BottomLeft, HEAT),
+        (bent && highlight, Corner::BottomLeft, HIGHLIGHT),
+        (inset, Corner::TopLeft, curve_inset::room(smaller)),
     ];
     let ground = Ground::of(scene);
     let names = session.public_names();
@@ -56,7 +57,7 @@ pub(super) fn plan(
         notes: &session.loaded.notes,
         files,
         density: request.density,
-        reserved: reserved.into_iter().filter(|r| r.0).map(|(_, corner, height)| (corner, height)).collect(),
+        reserved: reserved.into_iter().filter(|r| r.0).map(|(_, corner, size)| (corner, size)).collect(),
         north: &|xy| if scene.unit == Unit::Metre { north(&ground, xy) } else { DVec2::Y },
         today: today(),
     })

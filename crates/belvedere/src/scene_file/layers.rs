@@ -136,19 +136,6 @@ impl LayerDoc {
         }
     }
 
-    /// Files and built-in names that the layer's data come from.
-    pub(crate) fn files(&self) -> Vec<&str> {
-        let of = |paths: &'_ Paths| paths.as_slice().iter().map(String::as_str).collect::<Vec<_>>();
-        match self {
-            Self::Terrain(l) => [of(&l.source), l.drape.as_ref().map(of).unwrap_or_default()].concat(),
-            Self::Line(l) => l.source.as_ref().map(of).unwrap_or_default(),
-            Self::Area(l) => of(&l.source),
-            Self::Point(l) => of(&l.source),
-            Self::City(l) => of(&l.source),
-            _ => Vec::new(),
-        }
-    }
-
     /// Name of the kind, as files write it.
     pub fn kind(&self) -> &'static str {
         match self {

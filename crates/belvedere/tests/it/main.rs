@@ -9,6 +9,7 @@ mod films;
 mod memory;
 mod moving_pictures;
 mod names;
+mod over_ground;
 mod parts;
 mod see_through;
 mod sessions;

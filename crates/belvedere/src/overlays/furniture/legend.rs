@@ -6,7 +6,7 @@ use belvedere_composite::color::{Rgb, encode};
 use belvedere_core::DVec2;
 use belvedere_core::plain::number;
 use belvedere_cpu::GroundTint;
-use belvedere_scene::{Color, Layer, LayerKind, Palette, PaletteName, TerrainLayer, VolumeLayer};
+use belvedere_scene::{Color, Edge, Layer, LayerKind, Palette, PaletteName, TerrainLayer, VolumeLayer};
 
 /// Steps of a bar of colours.
 const STEPS: usize = 64;
@@ -20,7 +20,9 @@ pub(super) fn rows(subject: &Subject<'_>) -> Vec<Row> {
 
 fn of_layer(subject: &Subject<'_>, layer: &Layer) -> Vec<Row> {
     let words = subject.doc.names.get(&layer.id).unwrap_or(&layer.id).trim();
-    if words.is_empty() {
+    // Sides and mats of the ground are no layer of the scene.
+    let is_edge = layer.id == Edge::LAYER || layer.id.starts_with("edge of ");
+    if words.is_empty() || is_edge && matches!(layer.kind, LayerKind::Mesh(_)) {
         return Vec::new();
     }
     let row = |sign: Sign| Row { sign, words: words.to_owned(), inset: false };
@@ -38,7 +40,14 @@ fn of_layer(subject: &Subject<'_>, layer: &Layer) -> Vec<Row> {
             let (symbol, casing, size) = (point.style.symbol, point.style.casing, point.size_px);
             Box::new(move |color| Sign::Point { symbol, color, casing, size })
         }
-        LayerKind::Terrain(terrain) => return heights(terrain).map(row).into_iter().collect(),
+        LayerKind::Terrain(terrain) => {
+            let lines = terrain.contours.map(|lines| {
+                let every = lines.interval_in(&terrain.heightfield, subject.view.pinhole(), subject.density);
+                let sign = Sign::Line { color: lines.color, casing: None, width: 1.2 };
+                Row { sign, words: format!("equal height, every {} m", number(every)), inset: false }
+            });
+            return heights(terrain).map(row).into_iter().chain(lines).collect();
+        }
         LayerKind::Volume(volume) => return vec![row(values(volume))],
         LayerKind::Boxes(boxes) => {
             let fill = boxes.boxes.first().map(|b| b.color);

@@ -35,8 +35,8 @@ pub(crate) struct Subject<'a> {
     pub(crate) files: Vec<String>,
     /// Pixels per unit.
     pub(crate) density: f64,
-    /// Heights that other marks take in corners.
-    pub(crate) reserved: Vec<(Corner, f64)>,
+    /// Sizes of other marks that stand in corners.
+    pub(crate) reserved: Vec<(Corner, DVec2)>,
     /// Direction of true north at a place, a unit vector.
     pub(crate) north: &'a (dyn Fn(DVec2) -> DVec2 + Sync),
     /// The day of drawing.
@@ -128,12 +128,15 @@ impl Plan {
         if !wants_any(doc) {
             return plan;
         }
-        let mut stacks = Stacks { used: subject.reserved.clone(), size: subject.size() };
+        let mut stacks = Stacks { placed: Vec::new(), size: subject.size() };
+        for (corner, size) in &subject.reserved {
+            stacks.place(*corner, *size);
+        }
         plan.title(subject, &mut stacks);
         plan.notes(subject, &mut stacks);
         if doc.legend {
             let rows = legend::rows(subject);
-            match stacks.legend(doc.legend_at, &rows, subject.size()) {
+            match stacks.legend(doc.legend_at, &rows) {
                 Some((block, at, cut)) => {
                     plan.record.legend = Some(rows.len() - cut);
                     plan.put("map-legend", subject.density, |canvas| block.draw(canvas, at), Some((&block, at)));
@@ -145,7 +148,7 @@ impl Plan {
         if ground {
             let sighted = Sighted::new(subject.scene, subject.view);
             plan.compass(subject, &sighted, &mut stacks);
-            plan.scale(subject, &sighted);
+            plan.scale(subject, &sighted, &stacks);
         }
         plan
     }
@@ -201,7 +204,7 @@ impl Plan {
         let Some(place) = compass_place(subject.doc) else { return };
         let density = subject.density;
         let on_ground = (place == CompassPlace::Ground)
-            .then(|| compass::on_ground(subject, sighted, &self.keep_clear))
+            .then(|| compass::on_ground(subject, sighted, &self.taken(density, stacks)))
             .flatten();
         if let Some(rose) = on_ground {
             self.keep_clear.push(rose.bounds());
@@ -221,10 +224,18 @@ impl Plan {
         }
     }
 
-    fn scale(&mut self, subject: &Subject<'_>, sighted: &Sighted<'_>) {
+    /// Rectangles of everything that is placed already, pixels.
+    fn taken(&self, density: f64, stacks: &Stacks) -> Vec<Rect> {
+        let stacked = stacks.placed.iter().map(|rect| rect.map(|p| p * density));
+        self.keep_clear.iter().copied().chain(stacked).collect()
+    }
+
+    fn scale(&mut self, subject: &Subject<'_>, sighted: &Sighted<'_>, stacks: &Stacks) {
         let bars = match &subject.doc.scale {
             None | Some(ScaleDoc::Switch(false)) => return,
-            Some(ScaleDoc::Switch(true)) => scale::at_three_depths(subject, sighted, &self.keep_clear),
+            Some(ScaleDoc::Switch(true)) => {
+                scale::at_three_depths(subject, sighted, &self.taken(subject.density, stacks))
+            }
             Some(ScaleDoc::At(places)) => {
                 places.iter().filter_map(|xy| scale::at_place(subject, sighted, DVec2::from_array(*xy))).collect()
             }
@@ -241,47 +252,48 @@ impl Plan {
 
 /// What is stacked at the rim of a picture.
 struct Stacks {
-    /// Heights that are taken, several for a place.
-    used: Vec<(Corner, f64)>,
+    placed: Vec<Rect>,
     size: DVec2,
 }
 
 impl Stacks {
-    /// Height that is taken at a place.
-    fn taken(&self, corner: Corner) -> f64 {
-        self.used.iter().filter(|(at, _)| *at == corner).map(|(_, height)| height + GAP).sum()
-    }
-
-    /// Height that is left at a place.
-    fn room(&self, corner: Corner) -> f64 {
-        self.size.y - self.taken(corner) - 2.0 * MARGIN
+    /// Left side of a box of some width at a place, and the upper and lower end of the room there.
+    fn room(&self, corner: Corner, width: f64) -> [f64; 3] {
+        let left = match corner {
+            Corner::TopLeft | Corner::BottomLeft => MARGIN,
+            Corner::Top | Corner::Bottom => 0.5 * (self.size.x - width),
+            Corner::TopRight | Corner::BottomRight => self.size.x - MARGIN - width,
+        };
+        let (mut top, mut bottom) = (MARGIN, self.size.y - MARGIN);
+        let beside = |r: &&Rect| r[1].x + GAP > left && r[0].x - GAP < left + width;
+        for rect in self.placed.iter().filter(beside) {
+            match 0.5 * (rect[0].y + rect[1].y) < 0.5 * self.size.y {
+                true => top = top.max(rect[1].y + GAP),
+                false => bottom = bottom.min(rect[0].y - GAP),
+            }
+        }
+        [left, top, bottom]
     }
 
     /// Upper left corner of a box; `None` where it does not fit.
     fn place(&mut self, corner: Corner, size: DVec2) -> Option<DVec2> {
-        if size.x > self.size.x - 2.0 * MARGIN || size.y > self.room(corner) {
+        let [left, top, bottom] = self.room(corner, size.x);
+        if size.x > self.size.x - 2.0 * MARGIN || size.y > bottom - top {
             return None;
         }
-        let taken = self.taken(corner);
-        let x = match corner {
-            Corner::TopLeft | Corner::BottomLeft => MARGIN,
-            Corner::Top | Corner::Bottom => 0.5 * (self.size.x - size.x),
-            Corner::TopRight | Corner::BottomRight => self.size.x - MARGIN - size.x,
+        let at = match corner {
+            Corner::TopLeft | Corner::Top | Corner::TopRight => DVec2::new(left, top),
+            _ => DVec2::new(left, bottom - size.y),
         };
-        let y = match corner {
-            Corner::TopLeft | Corner::Top | Corner::TopRight => MARGIN + taken,
-            _ => self.size.y - MARGIN - taken - size.y,
-        };
-        self.used.push((corner, size.y));
-        Some(DVec2::new(x, y))
+        self.placed.push([at, at + size]);
+        Some(at)
     }
 
     /// A legend of as many rows as fit, its place, and the number of rows that are cut.
-    fn legend(&mut self, corner: Corner, rows: &[block::Row], size: DVec2) -> Option<(Block, DVec2, usize)> {
-        // A title above in the middle does not reach into the corners, but a legend may be as wide as a picture is narrow.
-        let width = (0.32 * size.x).clamp(96.0, 230.0);
-        let room = self.room(corner).min(0.9 * size.y);
-        let (block, cut) = Block::legend(rows, width, room)?;
+    fn legend(&mut self, corner: Corner, rows: &[block::Row]) -> Option<(Block, DVec2, usize)> {
+        let width = (0.32 * self.size.x).clamp(96.0, 230.0);
+        let [_, top, bottom] = self.room(corner, width);
+        let (block, cut) = Block::legend(rows, width, bottom - top)?;
         let at = self.place(corner, block.size())?;
         Some((block, at, cut))
     }

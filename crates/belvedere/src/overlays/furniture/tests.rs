@@ -30,7 +30,7 @@ fn plan(scene: &Scene, doc: &FurnitureDoc, (image, density): ([u32; 2], f64)) ->
         notes: &notes,
         files: vec!["dem.tif".into()],
         density,
-        reserved: vec![(Corner::BottomRight, 24.0)],
+        reserved: vec![(Corner::BottomRight, DVec2::new(200.0, 24.0))],
         north: &|_| DVec2::new(0.05, 1.0).normalize(),
         today: Some("2026-05-01".into()),
     })
