@@ -1,9 +1,11 @@
 //! Arguments of `reveal` that say how its picture looks.
 
-use crate::parse::{parse_spacing, parse_exaggeration, parse_haze, parse_light, parse_stylise, parse_time};
+use crate::parse::{parse_exaggeration, parse_haze, parse_light, parse_spacing, parse_stylise, parse_time};
 use belvedere::OpenOptions;
 use belvedere::scene::{Edge, Hidden, Relief};
-use belvedere::scene_file::{FurnitureItem, FurnitureWish, LightDoc, StylisationDoc, SwitchOrLength, SwitchOrVisibility};
+use belvedere::scene_file::{
+    FurnitureItem, FurnitureWish, LightDoc, StylisationDoc, SwitchOrLength, SwitchOrVisibility,
+};
 use belvedere::verbs::appearance::Appearance;
 use clap::{Args, ValueEnum};
 

@@ -148,8 +148,16 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     let (area_style, sea) = (args.area_style, args.no_sea.then_some(false));
     let AirArgs { sky, haze, furniture, .. } = args.air.clone();
     let furniture = Some(furniture.wish());
-    let options =
-        OpenOptions { palette, sky, haze, furniture, area_style, sea, unsolved, ..context.options(Needs::Everything, size) };
+    let options = OpenOptions {
+        palette,
+        sky,
+        haze,
+        furniture,
+        area_style,
+        sea,
+        unsolved,
+        ..context.options(Needs::Everything, size)
+    };
     let session = Session::from_document(source, &args.air.apply(options))?;
     outputs::check(&files, &session.input_paths(), context)?;
     let mut warnings = session.warnings();

@@ -12,7 +12,7 @@ const MASSIF: &str = include_str!("../../../scenes/massif_terrain.toml");
 const TOWN: &str = include_str!("../../../scenes/town.toml");
 
 /// A massif with furniture, bent.
-const MAP: &str = r#"
+const MAP: &str = r##"
 format = 1
 title = "A massif, its road and lake"
 crs = "local"
@@ -47,7 +47,7 @@ style = { color = "#4a85a8", outline = "#2a5878", water = true }
 [[stage]]
 kind = "spline_bend"
 presets = "progressive"
-"#;
+"##;
 
 const SET: FigureSet<'_> = FigureSet {
     name: "guide",

@@ -82,7 +82,9 @@ fn vectors_hold_the_words_of_the_furniture() {
     let place = place(table);
     place.ok(&["render", "s.toml", "-o", "p.svg"]);
     let svg = String::from_utf8(super::read(&place.path("p.svg"))).expect("text");
-    for text in ["Round the massif", "Ways: kind", ">track<", ">path<", "© OpenStreetMap contributors", "May 2026", ">N<"] {
+    for text in
+        ["Round the massif", "Ways: kind", ">track<", ">path<", "© OpenStreetMap contributors", "May 2026", ">N<"]
+    {
         assert!(svg.contains(text), "{text}");
     }
     for group in ["title", "map-legend", "attribution", "compass", "scale"] {

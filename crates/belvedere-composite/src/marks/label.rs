@@ -199,10 +199,8 @@ mod tests {
         assert!(!labels.placed.is_empty() && labels.placed.len() < all.placed.len());
         for placed in &labels.placed {
             let size = text_size(13.0, &placed.label_request.text);
-            let rect = [
-                placed.baseline - DVec2::Y * size.ascent,
-                placed.baseline + DVec2::new(size.width, size.descent),
-            ];
+            let rect =
+                [placed.baseline - DVec2::Y * size.ascent, placed.baseline + DVec2::new(size.width, size.descent)];
             assert!(!overlap(&rect, &kept), "{placed:?}");
         }
     }

@@ -99,7 +99,8 @@ mod tests {
     fn lines_are_as_wide_as_stated_on_every_slope() {
         for change in [0.01f32, 0.03, 0.1] {
             // Along a way across the slope: the sum of the coverage around a line is its width.
-            let around = |first: f32| (0..).map(move |i| first + i as f32 * change).take_while(move |l| *l < first + 1.0);
+            let around =
+                |first: f32| (0..).map(move |i| first + i as f32 * change).take_while(move |l| *l < first + 1.0);
             let width = |k: f32| around(k - 0.5).map(|level| cover(level, change, 1.0)).sum::<f32>();
             assert!((width(1.0) - 2.0 * HALF_WIDTHS[0]).abs() < 0.25, "{change}: {}", width(1.0));
             assert!((width(5.0) - 2.0 * HALF_WIDTHS[1]).abs() < 0.25, "{change}: {}", width(5.0));

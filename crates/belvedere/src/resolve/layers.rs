@@ -13,14 +13,14 @@ use crate::{BelvedereError, Needs, OpenOptions};
 use belvedere_builtin::{RouteCost, least_cost_route, valley_route};
 use belvedere_core::DVec2;
 use belvedere_core::Warning;
-use belvedere_io::{DrapeRequest, split_table};
 use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
+use belvedere_io::{DrapeRequest, split_table};
 use belvedere_io::{InputFile, Loaded};
 use belvedere_scene::{
-    Climate, Contours, Crs, DistanceMarkers, Drape, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Palette, PaletteName,
-    PointLayer, PointStyle, TerrainLayer, drape_polyline,
+    Climate, Contours, Crs, DistanceMarkers, Drape, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Palette,
+    PaletteName, PointLayer, PointStyle, TerrainLayer, drape_polyline,
 };
 use std::collections::BTreeMap;
 use std::path::PathBuf;

@@ -6,8 +6,8 @@ use crate::overlays::highlight;
 use crate::print::Sheet;
 use crate::scene_file::Fallback;
 use crate::scene_file::{
-    AnimationDoc, AutoOrLength, ConstructorDoc, ConstructorKind, FurnitureDoc, LayerDoc, Paths, ScaleDoc, SourceDocument,
-    StageDoc, SwitchOrLength, suggestion,
+    AnimationDoc, AutoOrLength, ConstructorDoc, ConstructorKind, FurnitureDoc, LayerDoc, Paths, ScaleDoc,
+    SourceDocument, StageDoc, SwitchOrLength, suggestion,
 };
 use belvedere_core::plain::number;
 use belvedere_scene::Unit;

@@ -1,7 +1,8 @@
 //! How the pictures of `reveal` are drawn: light, stylisation, mark, exaggeration. It is written into their scene files.
 
 use crate::scene_file::{
-    Document, FurnitureWish, LayerDoc, LightDoc, OneOrTwo, OverlayDoc, PlaneDoc, ReliefStageDoc, StageDoc, StylisationDoc,
+    Document, FurnitureWish, LayerDoc, LightDoc, OneOrTwo, OverlayDoc, PlaneDoc, ReliefStageDoc, StageDoc,
+    StylisationDoc,
 };
 use crate::{BelvedereError, Session, resolve};
 use belvedere_scene::{Crs, Heightfield, LayerKind, Relief, Scene, Sky};

@@ -46,7 +46,8 @@ fn lines_lie_at_their_heights_straight_and_bent_by_both_renderers() {
             let (lines, bare) = (drawn(&with, renderer), drawn(&session("", "", stages), renderer));
             let ground = with.scene().terrain().expect("ground");
             let world = lines.world.as_ref().expect("places");
-            let height = |i: usize| (lines.id[i] == 1).then(|| ground.height_at([world[i][0], world[i][1]].into())).flatten();
+            let height =
+                |i: usize| (lines.id[i] == 1).then(|| ground.height_at([world[i][0], world[i][1]].into())).flatten();
             let (mut dark, mut on, mut missed) = (0, 0, 0);
             for y in 1..219 {
                 for x in 1..319 {
@@ -55,7 +56,9 @@ fn lines_lie_at_their_heights_straight_and_bent_by_both_renderers() {
                     let around = [i, i - 1, i + 1, i - 320, i + 320].map(height);
                     let [Some(h), Some(w), Some(e), Some(n), Some(s)] = around else { continue };
                     let ([least, most], [across, down]) = (
-                        [h, w, e, n, s].iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]),
+                        [h, w, e, n, s]
+                            .iter()
+                            .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]),
                         [0.5 * (e - w), 0.5 * (s - n)],
                     );
                     let change = across.hypot(down);

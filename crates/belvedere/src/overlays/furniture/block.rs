@@ -83,7 +83,8 @@ pub(super) fn wrapped(text: &str, letters: f64, width: f64) -> Vec<String> {
             words.push(word);
         } else {
             let chars: Vec<char> = word.chars().collect();
-            let most = (1..chars.len()).take_while(|n| fits(&chars[..*n].iter().collect::<String>())).last().unwrap_or(1);
+            let most =
+                (1..chars.len()).take_while(|n| fits(&chars[..*n].iter().collect::<String>())).last().unwrap_or(1);
             lines.push(chars[..most].iter().collect());
             if most < chars.len() {
                 words.push(chars[most..].iter().collect());
@@ -214,9 +215,8 @@ impl Set {
             Sign::Heading => {}
             Sign::Line { color, casing, width } => {
                 let width = width.clamp(0.8, 8.0);
-                let ends = [middle - half * DVec2::X, middle + half * DVec2::X].map(|end| {
-                    end + 0.5 * width * DVec2::X * if end.x < middle.x { 1.0 } else { -1.0 }
-                });
+                let ends = [middle - half * DVec2::X, middle + half * DVec2::X]
+                    .map(|end| end + 0.5 * width * DVec2::X * if end.x < middle.x { 1.0 } else { -1.0 });
                 if let Some(casing) = casing {
                     canvas.line(&ends, width + 2.4, *casing);
                 }

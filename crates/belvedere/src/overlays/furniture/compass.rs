@@ -19,12 +19,8 @@ pub(super) const CORNER_SIDE: f64 = 52.0;
 const WHITE: Color = Color::rgb(255, 255, 255);
 /// Colour of the part of a rose that points to the north.
 const NORTH: Color = Color::rgb(213, 94, 0);
-const LETTERS: [(&str, [f64; 2], f64); 4] = [
-    ("N", [0.0, 1.0], 14.0),
-    ("E", [1.0, 0.0], 10.0),
-    ("S", [0.0, -1.0], 10.0),
-    ("W", [-1.0, 0.0], 10.0),
-];
+const LETTERS: [(&str, [f64; 2], f64); 4] =
+    [("N", [0.0, 1.0], 14.0), ("E", [1.0, 0.0], 10.0), ("S", [0.0, -1.0], 10.0), ("W", [-1.0, 0.0], 10.0)];
 /// Places that are tried, shares of the picture.
 const COLUMNS: [f64; 9] = [0.12, 0.88, 0.2, 0.8, 0.3, 0.7, 0.4, 0.6, 0.5];
 const ROWS: [f64; 5] = [0.88, 0.82, 0.76, 0.70, 0.62];

@@ -142,11 +142,7 @@ fn values(volume: &VolumeLayer) -> Sign {
         Color::rgb(r, g, b)
     };
     let labels = ticks(low, high).into_iter().map(|v| ((v - low) / (high - low), number(v))).collect();
-    Sign::Bar {
-        colors: (0..STEPS).map(color).collect(),
-        opacity: Some((0..STEPS).map(|i| at(i)[3]).collect()),
-        labels,
-    }
+    Sign::Bar { colors: (0..STEPS).map(color).collect(), opacity: Some((0..STEPS).map(|i| at(i)[3]).collect()), labels }
 }
 
 /// Round numbers within a range, at most five.

@@ -182,8 +182,7 @@ impl Plan {
     /// Attribution, source and date.
     fn notes(&mut self, subject: &Subject<'_>, stacks: &mut Stacks) {
         let doc = subject.doc;
-        let attribution =
-            text_of(doc.attribution.as_ref(), || credits(doc, subject.notes, subject.scene).join("; "));
+        let attribution = text_of(doc.attribution.as_ref(), || credits(doc, subject.notes, subject.scene).join("; "));
         let source = text_of(doc.source.as_ref(), || block::listed("Data: ", &subject.files));
         let date = text_of(doc.date.as_ref(), || subject.today.clone().unwrap_or_default());
         let texts: Vec<String> = [&attribution, &source, &date].into_iter().flatten().cloned().collect();

@@ -57,8 +57,7 @@ fn at(subject: &Subject<'_>, sighted: &Sighted<'_>, place: DVec3) -> Option<Bar>
         let p = place + (share - 0.5) * long * along;
         if sighted.has_ground() { sighted.laid(p.truncate(), place) } else { Some(p) }
     };
-    let places: Vec<DVec3> =
-        (0..POINTS).map(|i| laid(i as f64 / (POINTS - 1) as f64)).collect::<Option<_>>()?;
+    let places: Vec<DVec3> = (0..POINTS).map(|i| laid(i as f64 / (POINTS - 1) as f64)).collect::<Option<_>>()?;
     let images: Vec<(DVec2, f64)> = places.iter().map(|p| sighted.image(*p)).collect::<Option<_>>()?;
     let seen = [0, POINTS / 4, POINTS / 2, 3 * POINTS / 4, POINTS - 1].into_iter().all(|i| sighted.shows(images[i]));
     let drawn: f64 = images.windows(2).map(|w| w[0].0.distance(w[1].0)).sum();
