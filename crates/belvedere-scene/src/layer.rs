@@ -130,7 +130,7 @@ impl Contours {
     /// Every so many lines one is thick.
     pub const INDEX: u32 = 5;
     /// Wanted distance of lines on the picture, pixels, and the flattest view that counts, as the sine of its angle.
-    const WANTED_PX: f64 = 12.0;
+    const WANTED_PX: f64 = 5.0;
     const FLATTEST: f64 = 0.3;
 
     /// Lines of an interval, scene units, or of an automatic one, in brown; light on dark tints.
@@ -140,7 +140,7 @@ impl Contours {
         Self { interval, color: color.with_alpha(190) }
     }
 
-    /// The interval in a picture: the stated one, or the round one at which lines on ground of usual slope stand about 12 points of a screen
+    /// The interval in a picture: the stated one, or the round one at which lines on ground of usual slope stand about 5 points of a screen
     /// apart in the middle of the ground.
     ///
     /// * `density`: pixels of the picture per point of a screen.

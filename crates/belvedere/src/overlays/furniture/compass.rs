@@ -97,9 +97,18 @@ fn rose(subject: &Subject<'_>, sighted: &Sighted<'_>, at: DVec3) -> Option<(f64,
     if !(ratio >= FLATTEST && radius.is_finite() && radius > 0.0) {
         return None;
     }
+    // The plane that fits the ground under its rim, so that bumps do not dent it.
+    let xy = |u: f64, v: f64| at.truncate() + radius * (u * east + v * north);
+    let (mut middle, mut slope) = (0.0, DVec2::ZERO);
+    for i in 0..CHECKED {
+        let (sin, cos) = (i as f64 / CHECKED as f64 * std::f64::consts::TAU).sin_cos();
+        let height = sighted.laid(xy(cos, sin), at)?.z;
+        middle += height / CHECKED as f64;
+        slope += 2.0 * height / CHECKED as f64 * DVec2::new(cos, sin);
+    }
     let image = |u: f64, v: f64| {
-        let xy = at.truncate() + radius * (u * east + v * north);
-        Some(sighted.image(sighted.laid(xy, at)?)?.0)
+        let height = middle + slope.dot(DVec2::new(u, v));
+        Some(sighted.image(xy(u, v).extend(height))?.0)
     };
     let ring: Vec<DVec2> = (0..RING)
         .map(|i| {

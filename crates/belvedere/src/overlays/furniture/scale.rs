@@ -107,10 +107,13 @@ pub(super) fn at_three_depths(subject: &Subject<'_>, sighted: &Sighted<'_>, take
             let inside = bounds[0].cmpge(DVec2::ZERO).all() && bounds[1].cmple(size).all();
             (inside && !taken.iter().any(|other| overlap(other, &bounds))).then_some(bar)
         });
-        // One that covers no line or point, if there is one.
-        let (free, covering): (Vec<Bar>, Vec<Bar>) =
-            in_row.partition(|bar| !sighted.has_feature_in(bar.bounds(subject.density)));
-        found.extend(free.into_iter().chain(covering).next());
+        // One that covers no line or point, if there is one, and of these the most level one.
+        let tilt = |bar: &Bar| {
+            let way = bar.points[POINTS - 1] - bar.points[0];
+            let covers = if sighted.has_feature_in(bar.bounds(subject.density)) { 10.0 } else { 0.0 };
+            (way.y / way.x).abs() + covers
+        };
+        found.extend(in_row.min_by(|a, b| tilt(a).total_cmp(&tilt(b))));
     }
     let by_depth = |a: &&Bar, b: &&Bar| a.depth.total_cmp(&b.depth);
     let (Some(near), Some(far)) = (found.iter().min_by(by_depth), found.iter().max_by(by_depth)) else {
