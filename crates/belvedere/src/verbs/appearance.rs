@@ -4,8 +4,8 @@ use crate::scene_file::{
     Document, FurnitureWish, LayerDoc, LightDoc, OneOrTwo, OverlayDoc, PlaneDoc, ReliefStageDoc, StageDoc,
     StylisationDoc,
 };
-use crate::{BelvedereError, Session, resolve};
-use belvedere_scene::{Crs, Heightfield, LayerKind, Relief, Scene, Sky};
+use crate::{BelvedereError, OpenOptions, Session, resolve};
+use belvedere_scene::{Crs, Edge, Heightfield, LayerKind, Relief, Scene, Sky};
 use std::sync::Arc;
 
 /// Limits of [`Appearance::exaggeration`].
@@ -85,6 +85,11 @@ impl Appearance {
             None => session,
         })
     }
+}
+
+/// The options with a soft edge of the data where none is stated: pictures that are made from files alone end in no slab.
+pub(super) fn softly_ended(options: &OpenOptions) -> OpenOptions {
+    OpenOptions { edge: options.edge.or(Some(Edge::Soft)), ..options.clone() }
 }
 
 /// The session with another shading of its terrain, in the scene and in the documents.
