@@ -133,16 +133,3 @@ fn a_faded_edge_lets_a_transparent_background_through() {
     std::fs::remove_dir_all(&folder).expect("removed");
     assert!(soft > 3 * plain && soft > 300, "{soft} and {plain} pixels shine through in part");
 }
-
-#[test]
-fn sides_and_mats_are_layers_that_hide_no_ground() {
-    let plain = drawn(&session("", "", ""), RendererChoice::Cpu);
-    for edge in ["block", "mat"] {
-        let around = drawn(&session(&format!("edge = '{edge}'"), "", ""), RendererChoice::Cpu);
-        let pixels = |frame: &Frame, id: u32| frame.id.iter().filter(|v| **v == id).count();
-        assert!(pixels(&around, 2) > 500, "{edge}: {} pixels of sides", pixels(&around, 2));
-        // Along the rim single pixels may go to either.
-        let lost = plain.id.iter().zip(&around.id).filter(|(a, b)| **a == 1 && **b != 1).count();
-        assert!(lost < 60, "{edge}: {lost} pixels of ground are lost");
-    }
-}
