@@ -103,7 +103,7 @@ struct Look {
 impl Look {
     fn appearance(self) -> Appearance {
         let Self { light, relief, stylise: stylisation, no_mark, exaggeration } = self;
-        Appearance { light, relief, stylisation, no_mark, exaggeration }
+        Appearance { light, relief, stylisation, no_mark, exaggeration, ..Appearance::default() }
     }
 }
 

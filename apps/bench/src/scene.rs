@@ -35,6 +35,8 @@ pub fn scene_of(heightfield: Heightfield) -> Scene {
         shading: None,
         exaggeration: 1.0,
         palette: PaletteName::Alpine.into(),
+        contours: None,
+        edge: belvedere::scene::Edge::Plain,
     };
     let layer = Layer { id: "ground".into(), must_see: false, kind: LayerKind::Terrain(terrain) };
     Scene { layers: vec![layer], ..Scene::default() }

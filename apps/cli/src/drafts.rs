@@ -2,7 +2,7 @@
 
 use crate::goal::Goal;
 use crate::report::{Context, print};
-use belvedere::Needs;
+use belvedere::OpenOptions;
 use belvedere::verbs::drafts::{self, Draft, DraftsAnswer};
 use belvedere::verbs::reveal::RevealRequest;
 use belvedere::verbs::reveal_target::TargetRequest;
@@ -14,13 +14,23 @@ use std::path::{Path, PathBuf};
 const LEFT_OUT: [&str; 7] = ["--drafts", "--out", "-o", "--report", "--before", "--scene", "--fov"];
 
 /// Draws the drafts.
-pub(crate) fn drafts(request: &RevealRequest, count: usize, out: &Path, context: &Context) -> anyhow::Result<Goal> {
-    sheet(&drafts::drafts(request, count, &context.options(Needs::Everything, None))?, out, context)
+pub(crate) fn drafts(
+    (request, options): (&RevealRequest, &OpenOptions),
+    count: usize,
+    out: &Path,
+    context: &Context,
+) -> anyhow::Result<Goal> {
+    sheet(&drafts::drafts(request, count, options)?, out, context)
 }
 
 /// Draws the drafts of a target in models or in a city.
-pub(crate) fn of_target(request: &TargetRequest, count: usize, out: &Path, context: &Context) -> anyhow::Result<Goal> {
-    sheet(&target_drafts(request, count, &context.options(Needs::Everything, None))?, out, context)
+pub(crate) fn of_target(
+    (request, options): (&TargetRequest, &OpenOptions),
+    count: usize,
+    out: &Path,
+    context: &Context,
+) -> anyhow::Result<Goal> {
+    sheet(&target_drafts(request, count, options)?, out, context)
 }
 
 /// Writes the sheet and prints the commands.

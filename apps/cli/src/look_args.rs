@@ -1,20 +1,83 @@
 //! Arguments of `reveal` that say how its picture looks.
 
-use crate::parse::{parse_exaggeration, parse_haze, parse_light, parse_stylise, parse_time};
-use belvedere::scene::{Hidden, Relief};
-use belvedere::scene_file::{LightDoc, StylisationDoc, SwitchOrVisibility};
+use crate::parse::{parse_exaggeration, parse_haze, parse_light, parse_spacing, parse_stylise, parse_time};
+use belvedere::OpenOptions;
+use belvedere::scene::{Edge, Hidden, Relief};
+use belvedere::scene_file::{
+    FurnitureItem, FurnitureWish, LightDoc, StylisationDoc, SwitchOrLength, SwitchOrVisibility,
+};
 use belvedere::verbs::appearance::Appearance;
 use clap::{Args, ValueEnum};
 
-/// Sky and haze.
+/// Sky, haze and furniture.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct AirArgs {
     /// Sky: auto (by the height of the sun), day, dusk, night, white, a colour #rrggbb, or transparent (PNG and SVG)
-    #[arg(long, value_name = "NAME|COLOUR")]
+    #[arg(long, visible_alias = "background", value_name = "NAME|COLOUR")]
     pub(crate) sky: Option<String>,
     /// Haze: on (the default: dims the farther part of the view), off, or the visibility in kilometres
     #[arg(long, value_name = "on|off|KM", allow_negative_numbers = true, value_parser = parse_haze)]
     pub(crate) haze: Option<SwitchOrVisibility>,
+    /// Draw lines of equal height on the ground, every M metres of true height; by default at an interval that fits the scale
+    #[arg(long, value_name = "M", num_args = 0..=1, require_equals = true, value_parser = parse_spacing)]
+    pub(crate) contours: Option<Option<f64>>,
+    /// How the ground ends where its data end: soft (it fades), block (it is cut, with sides), mat (it stands on a plain surface), plain
+    #[arg(long, value_name = "KIND", value_parser = parse_edge)]
+    pub(crate) edge: Option<Edge>,
+    #[command(flatten)]
+    pub(crate) furniture: FurnitureArgs,
+}
+
+fn parse_edge(text: &str) -> Result<Edge, String> {
+    Edge::ALL.iter().find(|(name, _)| *name == text).map(|(_, edge)| *edge).ok_or_else(|| {
+        let shown: String = text.chars().take(40).collect();
+        format!("\"{shown}\" is no edge; possible: {}", Edge::ALL.map(|(name, _)| name).join(", "))
+    })
+}
+
+impl AirArgs {
+    /// The options of opening with what is said of the ground.
+    pub(crate) fn apply(&self, options: OpenOptions) -> OpenOptions {
+        let contours = self.contours.map(|every| every.map_or(SwitchOrLength::Switch(true), SwitchOrLength::Length));
+        OpenOptions { contours: contours.or(options.contours), edge: self.edge.or(options.edge), ..options }
+    }
+}
+
+/// Title, legend, attribution, compass and scale.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct FurnitureArgs {
+    /// Title in the picture
+    #[arg(long, value_name = "TEXT")]
+    pub(crate) title: Option<String>,
+    /// What stands over the picture so that it can be read as a map: any of title, legend, attribution, source, date, compass, scale,
+    /// distances; all, or none
+    #[arg(long, value_name = "LIST", value_parser = parse_furniture)]
+    pub(crate) furniture: Option<FurnitureItems>,
+}
+
+/// Pieces of furniture.
+#[derive(Debug, Clone)]
+pub(crate) struct FurnitureItems(Vec<FurnitureItem>);
+
+fn parse_furniture(text: &str) -> Result<FurnitureItems, String> {
+    let all = FurnitureItem::ALL;
+    let one = |name: &str| match name.trim() {
+        "all" => Ok(all.iter().map(|(_, item)| *item).collect()),
+        "none" => Ok(Vec::new()),
+        name => all.iter().find(|(known, _)| *known == name).map(|(_, item)| vec![*item]).ok_or_else(|| {
+            let names: Vec<&str> = all.iter().map(|(known, _)| *known).collect();
+            let shown: String = name.chars().take(40).collect();
+            format!("\"{shown}\" is no furniture; possible: {}, all, none", names.join(", "))
+        }),
+    };
+    let items = text.split(',').map(one).collect::<Result<Vec<Vec<FurnitureItem>>, String>>()?;
+    Ok(FurnitureItems(items.concat()))
+}
+
+impl FurnitureArgs {
+    pub(crate) fn wish(&self) -> FurnitureWish {
+        FurnitureWish { items: self.furniture.as_ref().map(|items| items.0.clone()), title: self.title.clone() }
+    }
 }
 
 /// Look of the picture; all of it is written into the scene file too.
@@ -103,13 +166,19 @@ impl LookArgs {
         let [azimuth_deg, altitude_deg] = [0, 1].map(|i| self.light.map(|light| light[i]));
         let time = self.light_time.clone();
         let shadows = self.shadows || time.is_some();
-        let AirArgs { sky, haze } = self.air.clone();
+        let AirArgs { sky, haze, .. } = self.air.clone();
+        let mut furniture = self.air.furniture.wish();
+        // Files have no title of their own.
+        if let (Some(items), None) = (&mut furniture.items, &furniture.title) {
+            items.retain(|item| *item != FurnitureItem::Title);
+        }
         let stated = shadows || self.light.is_some() || sky.is_some() || haze.is_some();
         Appearance {
             light: stated.then_some(LightDoc { azimuth_deg, altitude_deg, time, shadows, sky, haze }),
             relief: self.relief.map(Into::into),
             stylisation: self.stylise,
             no_mark: self.no_mark,
+            furniture,
             exaggeration: self.exaggeration,
         }
     }

@@ -129,6 +129,7 @@ fn reveal_target_in(
         );
     }
     let (print, sheet) = (args.print.clone(), sheet(&args)?);
+    let options = args.look_args.air.apply(context.options(Needs::Everything, None));
     let see = args.see.unwrap_or_default();
     let mut request = TargetRequest {
         files,
@@ -146,9 +147,9 @@ fn reveal_target_in(
     request.picture = print.apply(request.picture, &picture, sheet);
     quality(&mut request.picture, context);
     if let Some(count) = args.drafts {
-        return crate::drafts::of_target(&request, count, &out.out, context);
+        return crate::drafts::of_target((&request, &options), count, &out.out, context);
     }
-    let answer = reveal_target(&request, &context.options(Needs::Everything, None))?;
+    let answer = reveal_target(&request, &options)?;
     let written = answer.write(out, context.common.overwrite)?;
     delivered((&answer.picture, &answer.session), &picture, out, context)?;
     if context.common.json {
@@ -171,6 +172,7 @@ fn reveal_features(
 ) -> anyhow::Result<Goal> {
     let (picture, technique) = (args.out.clone(), technique(&args));
     let (print, sheet) = (args.print.clone(), sheet(&args)?);
+    let options = args.look_args.air.apply(context.options(Needs::Everything, None));
     let mut request = RevealRequest {
         data: DataFiles {
             dem: args.dem,
@@ -203,9 +205,9 @@ fn reveal_features(
     request.picture = print.apply(request.picture, &picture, sheet);
     quality(&mut request.picture, context);
     if let Some(count) = args.drafts {
-        return crate::drafts::drafts(&request, count, &out.out, context);
+        return crate::drafts::drafts((&request, &options), count, &out.out, context);
     }
-    let answer = reveal::reveal(&request, &context.options(Needs::Everything, None))?;
+    let answer = reveal::reveal(&request, &options)?;
     let written = answer.write(out, context.common.overwrite)?;
     delivered((&answer.picture, &answer.session), &picture, out, context)?;
     if context.common.json {

@@ -145,10 +145,19 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     // A straight picture does not need the ground solved.
     let unsolved = request.straight;
     let (area_style, sea) = (args.area_style, args.no_sea.then_some(false));
-    let AirArgs { sky, haze } = args.air.clone();
-    let options =
-        OpenOptions { palette, sky, haze, area_style, sea, unsolved, ..context.options(Needs::Everything, size) };
-    let session = Session::from_document(source, &options)?;
+    let AirArgs { sky, haze, furniture, .. } = args.air.clone();
+    let furniture = Some(furniture.wish());
+    let options = OpenOptions {
+        palette,
+        sky,
+        haze,
+        furniture,
+        area_style,
+        sea,
+        unsolved,
+        ..context.options(Needs::Everything, size)
+    };
+    let session = Session::from_document(source, &args.air.apply(options))?;
     outputs::check(&files, &session.input_paths(), context)?;
     let mut warnings = session.warnings();
     if let Some(Some(places)) = &args.outside {

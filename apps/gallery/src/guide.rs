@@ -11,6 +11,44 @@ const STREET: &str = include_str!("../../../scenes/street_split.toml");
 const MASSIF: &str = include_str!("../../../scenes/massif_terrain.toml");
 const TOWN: &str = include_str!("../../../scenes/town.toml");
 
+/// A massif with furniture, bent.
+const MAP: &str = r##"
+format = 1
+title = "A massif, its road and lake"
+crs = "local"
+[camera]
+eye = [0.0, -9500.0, 5200.0]
+look_at = [0.0, -800.0, 900.0]
+image = [640, 420]
+[overlay]
+mark = false
+[furniture]
+title = true
+legend = true
+compass = true
+scale = true
+date = "Generated ground"
+[[layer]]
+kind = "terrain"
+id = "heights"
+source = "builtin:massif?seed=7&size=513"
+style = { palette = "clear", contours = true, edge = "block" }
+[[layer]]
+kind = "line"
+id = "road"
+route = { seed = 7 }
+must_see = true
+style = { color = "#f2b134", width_px = 3.5, casing = "#7a5200" }
+[[layer]]
+kind = "area"
+id = "lake"
+source = "builtin:massif?seed=7&size=513"
+style = { color = "#4a85a8", outline = "#2a5878", water = true }
+[[stage]]
+kind = "spline_bend"
+presets = "progressive"
+"##;
+
 const SET: FigureSet<'_> = FigureSet {
     name: "guide",
     title: "Pictures of the guide",
@@ -34,6 +72,12 @@ const SET: FigureSet<'_> = FigureSet {
             title: "Terrain disocclusion",
             says: "The ground makes way for a trail.",
             draw: terrain,
+        },
+        Entry {
+            name: "furniture",
+            title: "What makes a picture a map",
+            says: "Title, legend, compass and local scale belong to their places, straight and bent.",
+            draw: furniture,
         },
         Entry { name: "spline", title: "Multi-perspective views", says: "A town bent along a spline.", draw: spline },
     ],
@@ -81,6 +125,15 @@ fn spline(easel: &Easel<'_>) -> Result<Figure> {
     let panels = vec![
         easel.panel(&straight(&session), "Straight", String::new())?,
         easel.panel(&session, "Progressive", "steep in the foreground, flat towards the horizon".into())?,
+    ];
+    Ok(Figure { panels, columns: 2, ..Figure::default() })
+}
+
+fn furniture(easel: &Easel<'_>) -> Result<Figure> {
+    let session = easel.open(MAP, [640, 420])?;
+    let panels = vec![
+        easel.panel(&straight(&session), "Straight", "one scale bar would nearly do".into())?,
+        easel.panel(&session, "Bent", "each bar and the rose are true where they lie".into())?,
     ];
     Ok(Figure { panels, columns: 2, ..Figure::default() })
 }

@@ -99,6 +99,8 @@ fn ground_layer(heightfield: Heightfield, palette: Palette) -> Layer {
             shading: None,
             exaggeration: 1.0,
             palette,
+            contours: None,
+            edge: belvedere_scene::Edge::Plain,
         }),
     }
 }

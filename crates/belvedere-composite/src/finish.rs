@@ -16,18 +16,21 @@ pub fn buffers(job: &RenderJob<'_>) -> Buffers {
     let buffers = Buffers::reuse(job, true, Vec::new(), Frame::default());
     // Where only centres are known, edges between faces are found from world points.
     let n = buffers.out.len();
-    let world = (job.options.aux.world || stylised).then(|| vec![[f64::NAN; 3]; n]);
+    let world = (job.options.aux.world || stylised || job.scene.paints_over_ground()).then(|| vec![[f64::NAN; 3]; n]);
     Buffers { world, ..buffers }
 }
 
 /// Buffers in the memory of older ones; all pixels must be written.
 pub fn buffers_in(job: &RenderJob<'_>, color: Vec<Packed>, old: Frame) -> Buffers {
-    Buffers::reuse(job, is_open(job), color, old)
+    let buffers = Buffers::reuse(job, is_open(job), color, old);
+    let n = buffers.out.len();
+    let world = buffers.world.or_else(|| job.scene.paints_over_ground().then(|| vec![[f64::NAN; 3]; n]));
+    Buffers { world, ..buffers }
 }
 
 /// Whether anything may be drawn over the surfaces of a job.
 pub fn is_open(job: &RenderJob<'_>) -> bool {
-    Marks::are_in(job) || stylise::is_on(job) || job.scene.has_see_through()
+    Marks::are_in(job) || stylise::is_on(job) || job.scene.has_see_through() || job.scene.paints_over_ground()
 }
 
 /// Draws stylisation, lines and points over the surfaces, and encodes the colours.

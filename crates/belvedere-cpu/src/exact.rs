@@ -7,6 +7,7 @@ use crate::frame::checked;
 use crate::geometry::blocks::Blocks;
 use crate::geometry::pass::Pass;
 use crate::marks;
+use crate::over_ground;
 use crate::raster::band::{BAND, sample_offsets};
 use crate::screen::{SUB, Screen};
 use crate::see_through::SeeThrough;
@@ -90,6 +91,7 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
         Some(layers) => Some(layers.trace(&seen)?),
         None => None,
     };
+    over_ground::paint(job, (&shader, &screen), &mut buffers);
     let samples = volume::compose(job, Way::Exact, &mut buffers)?;
     let marks = marks::place_alone(job, &screen, &buffers.depth);
     job.progress.tick("lines", 0.0)?;

@@ -60,7 +60,8 @@ pub(crate) fn needed(job: &RenderJob<'_>, (more_per_pixel, rows): (u64, Option<u
         + 4
         + 4
         + 6
-        + if job.options.aux.world { 24 } else { 0 }
+        + if job.options.aux.world || job.scene.paints_over_ground() { 24 } else { 0 }
+        + if job.scene.paints_over_ground() { 5 } else { 0 }
         + if job.scene.has_see_through() { Veil::BYTES } else { 0 }
         + if stylise::is_on(job) { 64 + Relief::bytes(u64::from(samples)) } else { 0 };
     let threads = if job.options.threads == 0 { rayon::current_num_threads() } else { job.options.threads } as u64;

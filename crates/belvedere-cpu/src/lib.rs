@@ -23,6 +23,7 @@ mod fast;
 mod frame;
 mod geometry;
 mod marks;
+mod over_ground;
 mod points;
 mod raster;
 mod rasteriser;

@@ -7,6 +7,7 @@ use crate::geometry::drawn_solids::DrawnSolids;
 use crate::geometry::lod::Tree;
 use crate::geometry::pass::{BodyPasses, Pass};
 use crate::marks;
+use crate::over_ground;
 use crate::raster::band::{BAND, Band, sample_offsets};
 use crate::resolve::relief::resolve_relief;
 use crate::resolve::{Colors, Rows, resolve};
@@ -155,6 +156,7 @@ impl CpuRenderer {
         let whole = screen.width as usize * screen.height as usize;
         let bands_of_relief = relief.as_mut().map(|relief| (relief, 0..whole));
         surfaces.draw(0, &mut buffers, (bands_of_relief, veil.as_mut()))?;
+        over_ground::paint(job, (&shader, &screen), 0, &mut buffers);
         let samples = volume::compose(job, Way::Fast, &mut buffers)?;
         if buffers.open {
             let marks = marks::place(job, &passes, &screen, (Depths::Whole(&buffers.depth), Solids::Opaque));

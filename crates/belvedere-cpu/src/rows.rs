@@ -7,6 +7,7 @@ use crate::cache::lock;
 use crate::frame::{check_memory, threads_of};
 use crate::geometry::pass::{BodyPasses, Pass};
 use crate::marks;
+use crate::over_ground;
 use crate::raster::band::{BAND, Band, SKY, sample_offsets};
 use crate::rasteriser::{CpuRenderer, Scratch, Surfaces, stats};
 use crate::resolve::relief::resolve_relief;
@@ -38,9 +39,11 @@ const AHEAD: usize = 16 * BAND;
 /// What keeps the rasteriser from drawing a job some rows at a time.
 pub(crate) fn whole_only(job: &RenderJob<'_>) -> Option<&'static str> {
     let has_volumes = job.scene.layers.iter().any(|layer| matches!(layer.kind, LayerKind::Volume(_)));
+    let has_contours = job.scene.layers.iter().any(|layer| matches!(&layer.kind, LayerKind::Terrain(t) if t.contours.is_some()));
     let reasons = [
         (has_volumes, "its volumes"),
         (job.view.split_rays().is_some(), "its rays, which part"),
+        (has_contours, "its contours"),
         (layers::are_needed(job), "styling sections whose representations are drawn one by one"),
         (!job.options.overlay.faces.is_empty(), "faces over the picture"),
         (job.options.aux.exact, "buffers of exact depths"),
@@ -274,6 +277,9 @@ impl Prepared<'_> {
         let color = std::mem::take(&mut *lock(&self.color));
         let old = std::mem::take(frame);
         let mut buffers = Buffers::of_pixels(job, (pixels, is_open(job)), color, old);
+        if job.scene.paints_over_ground() {
+            buffers.world.get_or_insert_with(|| vec![[f64::NAN; 3]; pixels]);
+        }
         buffers.color.truncate(if buffers.open { pixels } else { 0 });
         let [above, below] = [rows.start > 0, rows.end < height];
         let mut relief = (job.options.stylisation.edges > 0.0)
@@ -295,6 +301,7 @@ impl Prepared<'_> {
         let mut veil = (!self.surfaces.layers.is_empty()).then(|| Veil::clear(pixels));
         let part = relief.as_mut().map(|relief| (relief, own));
         self.surfaces.draw(rows.start, &mut buffers, (part, veil.as_mut()))?;
+        over_ground::paint(job, (self.surfaces.shader, screen), rows.start, &mut buffers);
         if buffers.open {
             if stylise::is_on(job) {
                 let styled = StyledRows { width, first: rows.start, above };

@@ -89,6 +89,8 @@ fn scene(heightfield: Heightfield, crs: belvedere_scene::Crs, features: Vec<(&st
         shading: None,
         exaggeration: 1.0,
         palette: belvedere_scene::PaletteName::Auto.into(),
+        contours: None,
+        edge: belvedere_scene::Edge::Plain,
     };
     let mut layers = vec![Layer { id: "ground".into(), must_see: false, kind: LayerKind::Terrain(ground) }];
     layers.extend(features.into_iter().map(|(id, kind)| Layer { id: id.into(), must_see: true, kind }));

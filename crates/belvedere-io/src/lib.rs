@@ -5,6 +5,7 @@ mod base64;
 pub mod budget;
 pub mod city;
 pub mod city_write;
+pub mod credit;
 pub mod crs;
 pub mod drape;
 mod error;

@@ -133,6 +133,9 @@ impl Index<usize> for States<'_> {
     }
 }
 
+/// Nodes along each side whose slopes stand for all.
+const SLOPES: usize = 128;
+
 impl Heightfield {
     /// * `north_west`: scene x, y of node (0, 0);
     /// * `spacing`: metres between columns (towards east) and between rows (towards south), both > 0;
@@ -229,6 +232,22 @@ impl Heightfield {
     /// States, row-major.
     pub fn states(&self) -> States<'_> {
         States { each: self.states.as_deref(), len: self.heights.len() }
+    }
+
+    /// Mean slope of the ground, rise by way, from an even selection of its nodes.
+    pub fn usual_slope(&self) -> f64 {
+        let [step_c, step_r] = [self.cols, self.rows].map(|n| (n / SLOPES).max(1));
+        let (mut sum, mut count) = (0.0, 0u32);
+        for row in (0..self.rows.saturating_sub(1)).step_by(step_r) {
+            for col in (0..self.cols.saturating_sub(1)).step_by(step_c) {
+                let around = [self.node(col, row), self.node(col + 1, row), self.node(col, row + 1)];
+                if let [Some(here), Some(east), Some(south)] = around {
+                    let rise = DVec2::new(east.z - here.z, south.z - here.z) / self.spacing;
+                    (sum, count) = (sum + rise.length(), count + 1);
+                }
+            }
+        }
+        if count > 0 { sum / f64::from(count) } else { 0.0 }
     }
 
     /// Median height of the nodes that have one, the mean of the middle two of an even number; 0 without any.

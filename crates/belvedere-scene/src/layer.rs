@@ -4,7 +4,7 @@ use crate::{
     Climate, Color, DistanceMarkers, FeatureStyle, Heightfield, Hidden, MeshLayer, MoleculeLayer, PointStyle, Ramp,
     VolumeLayer,
 };
-use belvedere_core::{Aabb, DVec2, DVec3};
+use belvedere_core::{Aabb, DVec2, DVec3, Pinhole};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -117,6 +117,71 @@ pub struct Drape {
     pub pixel_from_scene: [f64; 6],
 }
 
+/// Lines of equal height on the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contours {
+    /// Heights between two lines, scene units, > 0; `None` = by the scale of the picture, see [`Contours::interval_in`].
+    pub interval: Option<f64>,
+    /// Colour.
+    pub color: Color,
+}
+
+impl Contours {
+    /// Every so many lines one is thick.
+    pub const INDEX: u32 = 5;
+    /// Wanted distance of lines on the picture, pixels, and the flattest view that counts, as the sine of its angle.
+    const WANTED_PX: f64 = 5.0;
+    const FLATTEST: f64 = 0.3;
+
+    /// Lines of an interval, scene units, or of an automatic one, in brown; light on dark tints.
+    pub fn new(interval: Option<f64>, palette: &Palette) -> Self {
+        let dark = matches!(palette, Palette::Named(PaletteName::Night));
+        let color = if dark { Color::rgb(196, 208, 230) } else { Color::rgb(104, 66, 34) };
+        Self { interval, color: color.with_alpha(190) }
+    }
+
+    /// The interval in a picture: the stated one, or the round one at which lines on ground of usual slope stand about 5 points of a screen
+    /// apart in the middle of the ground.
+    ///
+    /// * `density`: pixels of the picture per point of a screen.
+    pub fn interval_in(&self, ground: &Heightfield, pinhole: &Pinhole, density: f64) -> f64 {
+        if let Some(stated) = self.interval {
+            return stated;
+        }
+        let middle = ground.bounds().center();
+        let away = pinhole.eye - middle;
+        let per_px = if pinhole.is_orthographic() { 1.0 } else { away.length() } / pinhole.scale_px();
+        let flat = (-pinhole.forward.z).max(Self::FLATTEST);
+        let wanted = Self::WANTED_PX * density * per_px * ground.usual_slope().max(0.02) / flat;
+        let power = 10f64.powf(wanted.max(1e-9).log10().floor());
+        [1.0, 2.0, 5.0].map(|k| k * power).into_iter().find(|v| *v >= wanted).unwrap_or(10.0 * power)
+    }
+}
+
+/// How the ground ends where its data end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Edge {
+    /// It ends.
+    #[default]
+    Plain,
+    /// It fades into what stands behind, over a few per cent of its width.
+    Soft,
+    /// It stands on a plain surface that goes on.
+    Mat,
+    /// It is cut as a block, with sides down to a flat base.
+    Block,
+}
+
+impl Edge {
+    /// All of them, as files write them.
+    pub const ALL: [(&'static str, Self); 4] =
+        [("plain", Self::Plain), ("soft", Self::Soft), ("mat", Self::Mat), ("block", Self::Block)];
+    /// Id of the layer of sides and mats, where no other layer has it.
+    pub const LAYER: &'static str = "edge";
+}
+
 /// A terrain layer.
 #[derive(Debug, Clone)]
 pub struct TerrainLayer {
@@ -132,6 +197,10 @@ pub struct TerrainLayer {
     pub exaggeration: f64,
     /// Hypsometric tint.
     pub palette: Palette,
+    /// Lines of equal height; `None` = none.
+    pub contours: Option<Contours>,
+    /// Whether the ground fades where its data end ([`Edge::Soft`]); sides and mats are layers of their own.
+    pub edge: Edge,
 }
 
 impl TerrainLayer {
@@ -144,6 +213,8 @@ impl TerrainLayer {
             shading: None,
             exaggeration: 1.0,
             palette: Palette::default(),
+            contours: None,
+            edge: Edge::Plain,
         }
     }
 }

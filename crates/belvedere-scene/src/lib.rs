@@ -44,8 +44,8 @@ pub use frame::{
 };
 pub use heightfield::{Heightfield, HeightfieldError, NodeState, States};
 pub use layer::{
-    AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Drape, Layer, LayerKind, LineFeature, LineLayer, Palette,
-    PaletteName, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
+    AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Contours, Drape, Edge, Layer, LayerKind, LineFeature,
+    LineLayer, Palette, PaletteName, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
 };
 pub use light::{Haze, Light, Sky};
 pub use mark::{DistanceMarkers, Drawing, FeatureStyle, Hidden, PlaceKind, PointStyle, Symbol, WrittenHeight};

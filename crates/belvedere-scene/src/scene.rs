@@ -1,7 +1,7 @@
 //! The scene: a flat list of layers in one coordinate system.
 
 use crate::{
-    Color, Drawing, FontFile, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Representation, TerrainLayer,
+    Color, Drawing, Edge, FontFile, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Representation, TerrainLayer,
     drape_polyline,
 };
 use belvedere_core::{Aabb, DVec2};
@@ -89,6 +89,14 @@ impl Scene {
     /// Whether something shines through any layer, see [`LayerKind::is_see_through`].
     pub fn has_see_through(&self) -> bool {
         self.layers.iter().any(|layer| layer.kind.is_see_through())
+    }
+
+    /// Whether something is painted on ground that was drawn: lines of equal height, or a soft edge.
+    pub fn paints_over_ground(&self) -> bool {
+        self.layers.iter().any(|layer| match &layer.kind {
+            LayerKind::Terrain(t) => t.contours.is_some() || t.edge == Edge::Soft,
+            _ => false,
+        })
     }
 
     /// The first terrain layer's heightfield.

@@ -37,6 +37,8 @@ pub fn terrain_layer(heightfield: Heightfield) -> Layer {
         shading: None,
         exaggeration: 1.0,
         palette: PaletteName::Auto.into(),
+        contours: None,
+        edge: belvedere_scene::Edge::Plain,
     });
     Layer { id: "ground".into(), must_see: false, kind }
 }

@@ -2,7 +2,7 @@
 
 mod tiles;
 
-use crate::record::{AreaRecord, InputFile};
+use crate::record::{AreaRecord, InputFile, LayerNotes};
 use crate::resolve::vectors::{FeatureKind, kind_of, kinds_of};
 use crate::resolve::{self, LayerRequest};
 use crate::scene_file::paths::{Roots, folder_of};
@@ -74,6 +74,7 @@ pub(crate) struct Data {
     /// Ids of the layers of rivers.
     pub(crate) rivers: Vec<String>,
     areas: Vec<AreaRecord>,
+    notes: LayerNotes,
     inputs: Vec<InputFile>,
     layers: Vec<LayerDoc>,
     roots: Roots,
@@ -96,7 +97,13 @@ impl DataFiles {
             nodata: self.nodata,
             vertical_unit: self.vertical_unit,
             drape: (!drape.is_empty()).then(|| tiles::paths(drape)),
-            style: TerrainStyleDoc { palette, sea: !self.no_sea, ..TerrainStyleDoc::default() },
+            style: TerrainStyleDoc {
+                palette,
+                sea: !self.no_sea,
+                contours: options.contours,
+                edge: options.edge.unwrap_or_default(),
+                ..TerrainStyleDoc::default()
+            },
         })];
         if tiles.features.is_empty() {
             return Err(tiles::without_features(&self.dem, &self.features));
@@ -148,6 +155,7 @@ impl DataFiles {
         let options = OpenOptions { area_style: self.area_style.or(options.area_style), ..options.clone() };
         let loaded = resolve::load(request, &options)?;
         let (inputs, warnings, areas, original) = (loaded.inputs, loaded.warnings, loaded.areas, loaded.original);
+        let notes = loaded.notes;
         let scene = Scene {
             title: "Revealed".into(),
             crs: loaded.crs,
@@ -157,7 +165,7 @@ impl DataFiles {
             ..Scene::default()
         };
         resolve::fill_surfaces(&mut layers, &scene);
-        Ok(Data { scene: Arc::new(scene), warnings, original, rivers, areas, inputs, layers, roots })
+        Ok(Data { scene: Arc::new(scene), warnings, original, rivers, areas, notes, inputs, layers, roots })
     }
 }
 
@@ -172,6 +180,7 @@ impl Data {
             earth,
             camera,
             overlay: None,
+            furniture: None,
             stylisation: None,
             print: None,
             text: None,
@@ -184,8 +193,8 @@ impl Data {
             animation: None,
         };
         let (source, resolved) = (SourceDocument::new(document.clone()), document);
-        let Self { scene, areas, inputs, warnings, roots, .. } = self;
-        let loaded = Loaded { scene, motions: None, areas, inputs, warnings };
+        let Self { scene, areas, notes, inputs, warnings, roots, .. } = self;
+        let loaded = Loaded { scene, motions: None, areas, notes, inputs, warnings };
         Session::of_view(loaded, view, Description { source, resolved, roots })
     }
 }

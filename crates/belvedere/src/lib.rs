@@ -74,6 +74,7 @@ pub use data::{DataFiles, LARGEST_HOLE};
 pub use error::BelvedereError;
 pub use options::{Needs, OpenOptions};
 pub use overlays::camera::CameraPicture;
+pub use overlays::furniture::{CompassRecord, FurnitureRecord, ScaleRecord};
 pub use overlays::highlight::{GhostRecord, HighlightRecord, PartRecord};
 pub use picture::{DisplacementReport, Picture, PictureOptions, RendererChoice, Sidecar};
 pub use resolve::by_property;

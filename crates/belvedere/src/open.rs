@@ -53,6 +53,9 @@ impl Session {
             light.sky = options.sky.clone().or(light.sky.take());
             light.haze = options.haze.or(light.haze);
         }
+        if let Some(wish) = &options.furniture {
+            wish.put_into(&mut document.furniture);
+        }
         if let Some(palette) = &options.palette {
             let palette = palette.located(&mut allowed)?;
             for layer in &mut document.layer {
@@ -66,7 +69,12 @@ impl Session {
                 (LayerDoc::Area(area), OpenOptions { area_style: Some(kind), .. }) => {
                     resolve::restyle(&mut area.style, *kind);
                 }
-                (LayerDoc::Terrain(terrain), OpenOptions { sea: Some(sea), .. }) => terrain.style.sea = *sea,
+                (LayerDoc::Terrain(terrain), OpenOptions { sea, contours, edge, .. }) => {
+                    let style = &mut terrain.style;
+                    style.sea = sea.unwrap_or(style.sea);
+                    style.contours = contours.or(style.contours);
+                    style.edge = edge.unwrap_or(style.edge);
+                }
                 _ => {}
             }
         }
@@ -101,6 +109,7 @@ impl Session {
             scene,
             motions,
             areas: loaded.areas,
+            notes: loaded.notes,
             inputs: source.input().cloned().into_iter().chain(inputs).collect(),
             warnings: loaded.warnings,
         };

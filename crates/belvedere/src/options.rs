@@ -1,9 +1,9 @@
 //! Options for opening a scene.
 
-use crate::scene_file::{PaletteDoc, SurfaceDoc, SwitchOrVisibility};
+use crate::scene_file::{FurnitureWish, PaletteDoc, SurfaceDoc, SwitchOrLength, SwitchOrVisibility};
 use crate::trust::Trust;
 use belvedere_io::Limits;
-use belvedere_scene::Progress;
+use belvedere_scene::{Edge, Progress};
 use std::path::PathBuf;
 
 /// Parts of a scene to load.
@@ -39,6 +39,12 @@ pub struct OpenOptions {
     pub sky: Option<String>,
     /// Haze instead of the scene's.
     pub haze: Option<SwitchOrVisibility>,
+    /// Furniture and title instead of the scene's.
+    pub furniture: Option<FurnitureWish>,
+    /// Lines of equal height instead of the scene's.
+    pub contours: Option<SwitchOrLength>,
+    /// How the ground ends where its data end, instead of the scene's setting.
+    pub edge: Option<Edge>,
     /// Whether the sea is drawn as such, instead of the scene's setting.
     pub sea: Option<bool>,
     /// Surface of the areas of all layers, instead of the scene's settings; `Some(Auto)`: as the files say.

@@ -3,7 +3,7 @@
 use crate::guard::guarded;
 use crate::kept::Kept;
 use crate::names::PublicNames;
-use crate::record::{AreaRecord, InputFile};
+use crate::record::{AreaRecord, InputFile, LayerNotes};
 use crate::resolve::StripReport;
 use crate::resolve::constructor::{self, ConstructorReport};
 use crate::resolve::motion::Motions;
@@ -11,7 +11,7 @@ use crate::resolve::solving::{Memory, Solving};
 use crate::resolve::terrain;
 use crate::resolve::{validate, view, wall};
 use crate::scene_file::paths::{Roots, folder_of, stays_below};
-use crate::scene_file::{Document, OverlayDoc, SourceDocument, StageDoc};
+use crate::scene_file::{Document, FurnitureDoc, OverlayDoc, SourceDocument, StageDoc};
 use crate::{BelvedereError, OpenOptions};
 use belvedere_core::Warning;
 use belvedere_core::{Pinhole, SpaceMap, View};
@@ -40,6 +40,8 @@ pub(crate) struct Loaded {
     pub(crate) scene: Arc<Scene>,
     pub(crate) motions: Option<Arc<Motions>>,
     pub(crate) areas: Vec<AreaRecord>,
+    /// What furniture tells of the layers.
+    pub(crate) notes: LayerNotes,
     pub(crate) inputs: Vec<InputFile>,
     pub(crate) warnings: Vec<Warning>,
 }
@@ -50,6 +52,7 @@ pub(crate) struct Resolved {
     pub(crate) view: View,
     pub(crate) light: Light,
     pub(crate) overlay: OverlayDoc,
+    pub(crate) furniture: FurnitureDoc,
     pub(crate) stylisation: Stylisation,
     pub(crate) terrain: Option<TerrainReport>,
     pub(crate) strip: Option<StripReport>,
@@ -96,6 +99,7 @@ impl Resolved {
             view,
             light: Light::default(),
             overlay: OverlayDoc::default(),
+            furniture: FurnitureDoc::default(),
             stylisation: Stylisation::default(),
             terrain: None,
             strip: None,
@@ -118,6 +122,7 @@ impl Resolved {
         Ok(Self {
             light: made.light,
             overlay: source.document.overlay.clone().unwrap_or_default(),
+            furniture: source.document.furniture.clone().unwrap_or_default(),
             stylisation: source.document.stylisation.unwrap_or_default().strengths().unwrap_or_default(),
             terrain: made.terrain,
             strip: made.strip,
@@ -177,6 +182,11 @@ impl Session {
         Self { resolved: Resolved { overlay, ..self.resolved }, ..self }
     }
 
+    /// The same with other furniture: title, legend, attribution, compass, scale.
+    pub fn with_furniture(self, furniture: FurnitureDoc) -> Self {
+        Self { resolved: Resolved { furniture, ..self.resolved }, ..self }
+    }
+
     /// The same with another stylisation of its surfaces.
     pub fn with_stylisation(self, stylisation: Stylisation) -> Self {
         Self { resolved: Resolved { stylisation, ..self.resolved }, ..self }
@@ -184,8 +194,8 @@ impl Session {
 
     /// The same scene in another view. A document that described the former view is dropped.
     pub fn with_view(self, view: View) -> Self {
-        let Resolved { light, overlay, stylisation, .. } = self.resolved;
-        Self { resolved: Resolved { light, overlay, stylisation, ..Resolved::of_view(view) }, ..self }
+        let Resolved { light, overlay, furniture, stylisation, .. } = self.resolved;
+        Self { resolved: Resolved { light, overlay, furniture, stylisation, ..Resolved::of_view(view) }, ..self }
     }
 
     /// The same scene by another document of the same layers: everything that depends on camera and stages is resolved again, marks and
@@ -200,8 +210,8 @@ impl Session {
             None => Default::default(),
         };
         let resolved = Resolved::of(SourceDocument { origin, document }, roots, &self.loaded.scene, solving, true)?;
-        let Resolved { overlay, stylisation, .. } = self.resolved.clone();
-        let resolved = Resolved { overlay, stylisation, ..resolved };
+        let Resolved { overlay, furniture, stylisation, .. } = self.resolved.clone();
+        let resolved = Resolved { overlay, furniture, stylisation, ..resolved };
         Ok(Self { loaded: self.loaded.clone().drawn_for(&resolved), resolved, ..self.clone() })
     }
 

@@ -10,6 +10,7 @@ mod city_targets;
 mod constructors;
 mod curve_inset;
 mod figures;
+mod furniture;
 mod generalise;
 mod geopackage;
 mod layers;

@@ -86,6 +86,12 @@ impl<'a> Canvas<'a> {
         Self { fonts: fonts.clone(), ..self }
     }
 
+    /// Texts are written in these fonts from now on.
+    pub fn in_fonts(&mut self, fonts: &Fonts) -> &mut Self {
+        self.fonts = fonts.clone();
+        self
+    }
+
     /// Width and height, pixels, or units if it is scaled.
     pub fn size(&self) -> DVec2 {
         self.extent() / self.scale

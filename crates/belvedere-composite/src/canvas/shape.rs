@@ -1,6 +1,7 @@
 //! Shapes that a canvas records instead of drawing them.
 
 use super::font::Fonts;
+use super::Canvas;
 use belvedere_core::DVec2;
 use belvedere_scene::Color;
 
@@ -60,4 +61,17 @@ pub enum CanvasShape {
         /// Colour and width of the rim around the letters.
         halo: Option<(Color, f64)>,
     },
+}
+
+impl Canvas<'_> {
+    /// Draws a shape that another canvas recorded; its lengths are pixels of a canvas without scale.
+    pub fn put(&mut self, shape: &CanvasShape) {
+        match shape {
+            CanvasShape::Rect { corners: [lo, hi], radius, color } => self.rect(*lo, *hi, *radius, *color),
+            CanvasShape::Line { points, width, color } => self.line(points, *width, *color),
+            CanvasShape::Disc { at, radius, color } => self.disc(*at, *radius, *color),
+            CanvasShape::Polygon { rings, color } => self.polygon(rings.iter().map(Vec::as_slice), *color),
+            CanvasShape::Text { at, size, text, color, halo, .. } => self.text(*at, *size, text, *color, *halo),
+        }
+    }
 }

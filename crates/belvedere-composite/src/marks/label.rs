@@ -64,8 +64,8 @@ impl Labels {
     }
 
     /// Draws the texts.
-    pub(crate) fn draw(&self, canvas: Canvas<'_>) {
-        let mut canvas = canvas.with_fonts(&self.fonts);
+    pub(crate) fn draw(&self, canvas: &mut Canvas<'_>) {
+        let canvas = canvas.in_fonts(&self.fonts);
         for Placed { color, candidate, .. } in &self.placed {
             if let Some(leader) = &candidate.leader {
                 canvas.line(leader, 2.6 * self.density, rim(*color).with_alpha(150));

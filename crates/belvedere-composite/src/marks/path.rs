@@ -261,6 +261,8 @@ mod tests {
             shading: None,
             exaggeration: 1.0,
             palette: PaletteName::Plain.into(),
+            contours: None,
+            edge: belvedere_scene::Edge::Plain,
         };
         let layer = Layer { id: "ground".into(), must_see: false, kind: LayerKind::Terrain(terrain) };
         Scene { layers: vec![layer], ..Scene::default() }

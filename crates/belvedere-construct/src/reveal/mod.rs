@@ -310,6 +310,9 @@ fn finish(
 /// Share of the features that a chosen view is to hold.
 const WHOLE: f64 = 0.9;
 
+/// Pixels of a grid cell at the lower border of the picture above which near ground looks smeared, however it is interpolated.
+const SMEARED_PX: f64 = 24.0;
+
 /// Oddities of a picture.
 /// * `free`: whether its camera was chosen.
 fn remarks(picture: &Evaluation, free: bool) -> Vec<Warning> {
@@ -321,6 +324,14 @@ fn remarks(picture: &Evaluation, free: bool) -> Vec<Warning> {
             100.0 * picture.in_frame
         );
         out.push(Warning::new(WarningKind::Hidden, text).with("share", picture.in_frame));
+    }
+    if free && picture.coarse_px > SMEARED_PX {
+        let text = format!(
+            "a cell of the ground is {:.0} pixels large at the lower border of the picture, and looks smeared above {SMEARED_PX}: no eye that \
+             was tried farther away shows the features as well; take finer data, a smaller picture, or give a view (eye and look_at)",
+            picture.coarse_px
+        );
+        out.push(Warning::new(WarningKind::Suspect, text).with("pixels", picture.coarse_px));
     }
     if picture.covered < 0.8 {
         let text =

@@ -205,6 +205,8 @@ mod tests {
             shading: None,
             exaggeration: 1.0,
             palette: PaletteName::Plain.into(),
+            contours: None,
+            edge: belvedere_scene::Edge::Plain,
         };
         let scene = |ground: bool| {
             let ground = ground.then(|| layer(LayerKind::Terrain(terrain.clone())));

@@ -17,6 +17,8 @@ pub(crate) fn terrain(heightfield: Heightfield) -> TerrainLayer {
         shading: None,
         exaggeration: 1.0,
         palette: PaletteName::Auto.into(),
+        contours: None,
+        edge: belvedere_scene::Edge::Plain,
     }
 }
 

@@ -18,6 +18,8 @@ pub(super) mod tag {
     pub(in super::super) const ROWS_PER_STRIP: u16 = 278;
     pub(in super::super) const STRIP_BYTES: u16 = 279;
     pub(in super::super) const PLANAR: u16 = 284;
+    pub(in super::super) const ARTIST: u16 = 315;
+    pub(in super::super) const COPYRIGHT: u16 = 33432;
     pub(in super::super) const PREDICTOR: u16 = 317;
     pub(in super::super) const COLOR_MAP: u16 = 320;
     pub(in super::super) const TILE_WIDTH: u16 = 322;

@@ -30,6 +30,8 @@ use std::path::{Path, PathBuf};
 pub struct GeoTiff {
     container: Container,
     info: RasterInfo,
+    /// What the tags Copyright and Artist say.
+    credit: Option<String>,
     limits: Limits,
     /// The image, then its overviews, largest first.
     levels: Vec<Level>,
@@ -73,13 +75,15 @@ impl GeoTiff {
         info.bands = layout.bands;
         warnings.extend(geokeys::georeference(&container, first, &mut info)?);
         warnings.extend(meta::meaning(&container, first, &layout, &mut info)?);
+        let said = |number: u16| container.text(first, number).ok().flatten().filter(|text| !text.trim().is_empty());
+        let credit = said(tag::COPYRIGHT).or_else(|| said(tag::ARTIST));
         let mut levels = vec![Level { layout, mask: None }];
         let (subs, lost) = sub_directories(&container, first)?;
         warnings.extend(lost);
         add_levels(&container, others.iter().chain(&subs), &mut levels, &mut warnings)?;
         info.overviews = levels.iter().skip(1).map(|l| [l.layout.width, l.layout.height]).collect();
         let warnings = warnings.into_iter().map(|w| w.in_file(path)).collect();
-        Ok(Loaded::new(Self { container, info, limits, levels }, warnings))
+        Ok(Loaded::new(Self { container, info, credit, limits, levels }, warnings))
     }
 
     /// Path, size and sha256 of the file. Hashing takes as long as a fast reading: ask once.
@@ -93,6 +97,11 @@ impl GeoTiff {
             return Ok(InputFile::of(path, &[]));
         }
         Ok(InputFile { path: path.clone(), bytes: source.len(), sha256 })
+    }
+
+    /// Whom the file asks to be named: its tag Copyright, else Artist.
+    pub fn credit(&self) -> Option<String> {
+        self.credit.clone()
     }
 
     /// The full image.

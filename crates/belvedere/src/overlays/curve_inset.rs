@@ -77,11 +77,16 @@ fn farthest(bend: &SplineBend, view: &View) -> f64 {
     (end.length() * bend.scale()).max(pinhole.near)
 }
 
+/// Size of the figure in a picture whose smaller side is given.
+pub(crate) fn room(smaller: f64) -> DVec2 {
+    let height = (SHARE * smaller).clamp(HEIGHT_PX[0], HEIGHT_PX[1]).round();
+    DVec2::new((ASPECT * height).round(), height)
+}
+
 /// Draws the figure into the upper left corner; returns whether the picture is large enough.
 pub(crate) fn draw(canvas: &mut Canvas<'_>, figure: &CurveFigure) -> bool {
     let size = canvas.size();
-    let height = (SHARE * size.min_element()).clamp(HEIGHT_PX[0], HEIGHT_PX[1]).round();
-    let room = DVec2::new((ASPECT * height).round(), height);
+    let room = room(size.min_element());
     if size.x < room.x + 2.0 * MARGIN || size.y < room.y + 2.0 * MARGIN {
         return false;
     }

@@ -4,6 +4,7 @@ pub(crate) mod badge;
 pub(crate) mod camera;
 pub(crate) mod contour;
 pub(crate) mod curve_inset;
+pub(crate) mod furniture;
 pub(crate) mod ghost;
 pub(crate) mod grid;
 pub(crate) mod heat;

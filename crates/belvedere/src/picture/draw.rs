@@ -4,10 +4,11 @@ use super::displacement::{self, DisplacementReport};
 use super::options::{AuxBuffer, PictureOptions};
 use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, SeeThroughRecord, Sidecar, TerrainRecord};
 use super::volume_record::VolumeRecord;
-use super::{transparent, vectors};
+use super::{furniture, transparent, vectors};
 use crate::bodies::RigidLayers;
 use crate::fallback::{self, FallbackPlan, FallbackRecord};
 use crate::guard::guarded;
+use crate::overlays::furniture::{FurnitureRecord, with_distances};
 use crate::overlays::{badge, camera, curve_inset, ghost, grid, heat, highlight, thin, widths};
 use crate::record::{self, InputFile, ViewRecord};
 use crate::scene_file::{Document, HighlightMark};
@@ -55,7 +56,7 @@ pub(crate) fn draw(
             }
         },
     };
-    let Drawn { view, frame, straight, overlay, displacement, fallback, vectors } = drawn;
+    let Drawn { view, frame, straight, overlay, furniture, displacement, fallback, vectors } = drawn;
     let rigid = RigidLayers::of(session.scene(), &view);
     let render_ms = started.elapsed().as_secs_f64() * 1e3;
     let made = Made { view: &view, overlay, displacement, fallback, stats: frame.stats.clone(), render_ms };
@@ -94,6 +95,8 @@ pub(super) fn sidecar(
         print: request.print,
         stages: view.stages().iter().map(|s| s.name()).collect(),
         overlay,
+        attribution: furniture::credits(session),
+        furniture,
         displacement,
         terrain: session.scene().terrain().map(TerrainRecord::of),
         molecules: MoleculeRecord::all_of(session.scene()),
@@ -125,6 +128,7 @@ pub(crate) struct Drawn {
     pub(crate) frame: Frame,
     pub(crate) straight: Option<Frame>,
     overlay: OverlayRecord,
+    furniture: FurnitureRecord,
     pub(crate) displacement: Option<DisplacementReport>,
     fallback: Option<FallbackRecord>,
     vectors: Option<VectorPicture>,
@@ -166,10 +170,14 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
     options.max_bytes = session.bytes_for_picture(options.max_bytes);
     options.overlay.under.extend(grid::wanted(scene, grid).into_iter().map(|line| widths::line(line, request.density)));
     options.density = request.density;
+    let furnished = furniture::plan(session, (scene, &view), request, (!marks.is_empty(), heatmap));
+    options.keep_clear.clone_from(&furnished.keep_clear);
+    let ticked = &session.resolved.furniture;
     // What becomes vectors is not drawn.
     let surfaces = RenderOptions { marks: !as_vectors, ..options.clone() };
     let draw = |scene: &Scene, view: &View| {
-        let scene = &*widths::scaled(scene, request.density);
+        let scene = with_distances(scene, ticked);
+        let scene = &*widths::scaled(&scene, request.density);
         let job = RenderJob { scene, view, light: session.light(), options: &surfaces, progress };
         Ok::<_, BelvedereError>(request.renderer.of(session).render(&job)?)
     };
@@ -185,7 +193,8 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
         thin::Thin::new(scene, &view, covered, [frame.width, frame.height]).draw(&mut frame, &behind, 0);
     }
     let mut vectors = as_vectors.then(|| {
-        let scene = &*widths::scaled(scene, request.density);
+        let scene = with_distances(scene, ticked);
+        let scene = &*widths::scaled(&scene, request.density);
         let job = RenderJob { scene, view: &view, light: session.light(), options: &options, progress };
         vectors::of_marks(&job, &frame, request)
     });
@@ -246,6 +255,9 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
     furniture.draw("inset", |canvas| {
         inset = figure.filter(|(_, figure)| draw_inset(canvas, figure, request)).map(|(inset, _)| inset);
     });
+    for (name, shapes) in &furnished.kinds {
+        furniture.draw(name, |mut canvas| shapes.iter().for_each(|shape| canvas.put(shape)));
+    }
     furniture.draw("mark", |mut canvas| {
         if let Some(words) = &mark {
             badge::draw(&mut canvas, words, request.density);
@@ -267,7 +279,8 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
         camera: None,
     };
     let straight = straight.filter(|_| request.compare);
-    Ok(Drawn { view, frame, straight, overlay, displacement, fallback, vectors })
+    let furniture = furnished.record;
+    Ok(Drawn { view, frame, straight, overlay, furniture, displacement, fallback, vectors })
 }
 
 /// Words of the mark of a bent picture, if it has one.
@@ -313,7 +326,9 @@ pub(crate) fn draw_camera(
         .is_bent()
         .then(|| displacement::measure(&figure.view, &RigidLayers::of(scene, &figure.view), &frame))
         .transpose()?;
-    Ok(Drawn { view: figure.view, frame, straight: None, overlay, displacement, fallback: None, vectors: None })
+    let furniture = FurnitureRecord::default();
+    let view = figure.view;
+    Ok(Drawn { view, frame, straight: None, overlay, furniture, displacement, fallback: None, vectors: None })
 }
 
 fn note(view: &View, d: &DisplacementReport, unit: Unit) -> String {

@@ -4,6 +4,7 @@ mod bands;
 mod buffers;
 mod displacement;
 mod draw;
+mod furniture;
 mod mark_target;
 mod options;
 mod sidecar;

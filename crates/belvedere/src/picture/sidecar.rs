@@ -6,6 +6,7 @@ use super::target_place::TargetPlace;
 use super::volume_record::VolumeRecord;
 use crate::bodies::RigidLayers;
 use crate::fallback::FallbackRecord;
+use crate::overlays::furniture::FurnitureRecord;
 use crate::overlays::highlight::HighlightRecord;
 use crate::print::Sheet;
 use crate::record::{AreaRecord, InputFile, ViewRecord};
@@ -140,6 +141,12 @@ pub struct Sidecar {
     pub stages: Vec<&'static str>,
     /// Marks over the layers.
     pub overlay: OverlayRecord,
+    /// Whom the data ask to be named, whether the picture does or not.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub attribution: Vec<String>,
+    /// Title, legend, attribution, compass and scale.
+    #[serde(skip_serializing_if = "FurnitureRecord::is_empty")]
+    pub furniture: FurnitureRecord,
     /// Displacement of the points in the picture; `None` for a straight picture.
     pub displacement: Option<DisplacementReport>,
     /// Measured and made-up parts of the ground; `None` without terrain.

@@ -2,25 +2,25 @@
 
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
-use super::{areas, boxes, builtin, by_property, city, dem, fonts, mesh, molecule, named, sea, vectors, volume};
-use crate::record::AreaRecord;
+use super::{areas, boxes, builtin, by_property, city, dem, edge, fonts, mesh, molecule, named, sea, vectors, volume};
+use crate::record::{AreaRecord, LayerNotes};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
     AutoOrLength, HeightUnit, LayerDoc, LineDoc, Origin, PaletteDoc, Paths, PointLayerDoc, PositionDoc, RouteDoc,
-    SymbolDoc, TerrainDoc, TextDoc,
+    SwitchOrLength, SymbolDoc, TerrainDoc, TextDoc,
 };
 use crate::{BelvedereError, Needs, OpenOptions};
 use belvedere_builtin::{RouteCost, least_cost_route, valley_route};
 use belvedere_core::DVec2;
 use belvedere_core::Warning;
-use belvedere_io::DrapeRequest;
 use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
+use belvedere_io::{DrapeRequest, split_table};
 use belvedere_io::{InputFile, Loaded};
 use belvedere_scene::{
-    Climate, Crs, DistanceMarkers, Drape, Drawing, FontFile, Heightfield, Layer, LayerKind, LineFeature, LineLayer,
-    Palette, PaletteName, PointLayer, PointStyle, Symbol, TerrainLayer, drape_polyline,
+    Climate, Contours, Crs, DistanceMarkers, Drape, Drawing, FontFile, Heightfield, Layer, LayerKind, LineFeature,
+    LineLayer, Palette, PaletteName, PointLayer, PointStyle, Symbol, TerrainLayer, drape_polyline,
 };
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -68,6 +68,8 @@ pub(crate) struct LoadedLayers {
     pub(crate) warnings: Vec<Warning>,
     /// Surfaces found for the areas.
     pub(crate) areas: Vec<AreaRecord>,
+    /// What furniture tells of the layers.
+    pub(crate) notes: LayerNotes,
     pub(crate) original: Option<OriginalTerrain>,
 }
 
@@ -85,6 +87,7 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
         inputs: Vec::new(),
         warnings: Vec::new(),
         areas: Vec::new(),
+        notes: LayerNotes::default(),
         vectors,
         cities: BTreeMap::new(),
         floor: None,
@@ -125,8 +128,8 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
     if needs == Needs::Everything {
         for (i, doc) in docs.iter().enumerate() {
             if let (LayerDoc::Terrain(doc), Some(Layer { kind: LayerKind::Terrain(t), .. })) = (doc, &layers[i]) {
-                let sea = sea::layer(&mut loader, doc, t);
-                layers.push(sea);
+                let (sea, edge) = (sea::layer(&mut loader, doc, t), edge::layer(&loader, doc, t));
+                layers.extend([sea, edge]);
             }
         }
     }
@@ -134,10 +137,24 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
         Needs::Everything => fonts::choose(&mut loader, &layers[..docs.len()], text, words)?,
         Needs::View | Needs::Ground => Vec::new(),
     };
-    let Loader { inputs, warnings, areas, original, drawings, .. } = loader;
+    loader.notes.credits = credits(&loader);
+    let Loader { inputs, warnings, areas, notes, original, drawings, .. } = loader;
     let mut layers: Vec<Layer> = layers.into_iter().flatten().collect();
     share_surfaces(&mut layers);
-    Ok(LoadedLayers { layers, fonts, drawings, crs, inputs, warnings, areas, original })
+    Ok(LoadedLayers { layers, fonts, drawings, crs, inputs, warnings, areas, notes, original })
+}
+
+/// Ids of layers and whom their files ask to be named, each once.
+fn credits(loader: &Loader<'_>) -> Vec<(String, String)> {
+    let mut credits = Vec::new();
+    for doc in loader.layers {
+        for name in doc.files().into_iter().filter(|name| !builtin::is_name(name)) {
+            let Ok(path) = loader.roots.resolve(name) else { continue };
+            let credit = belvedere_io::credit::of_file(split_table(&path).0).map(|text| (doc.id().to_owned(), text));
+            credits.extend(credit.filter(|credit| !credits.contains(credit)));
+        }
+    }
+    credits
 }
 
 /// Marks layers that were read from the same source as one surface.
@@ -207,9 +224,19 @@ fn terrain(
         relief: style.relief,
         shading: style.shading,
         exaggeration: style.exaggeration,
+        contours: contours(&style.contours).map(|interval| Contours::new(interval, &palette)),
         palette,
+        edge: style.edge,
     };
     Ok((layer, crs))
+}
+
+/// The interval of the lines of equal height that a style asks for, if it does.
+fn contours(stated: &Option<SwitchOrLength>) -> Option<Option<f64>> {
+    match stated.as_ref()? {
+        SwitchOrLength::Switch(on) => on.then_some(None),
+        SwitchOrLength::Length(interval) => Some(Some(*interval)),
+    }
 }
 
 /// A palette that depends on the place, with the climate in the middle of the ground.

@@ -2,7 +2,7 @@
 
 use super::builtin;
 use super::color::{color, optional_color};
-use crate::record::AreaRecord;
+use crate::record::{AreaRecord, LayerNotes};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{LayerDoc, Origin, Paths};
 use crate::{BelvedereError, OpenOptions};
@@ -26,6 +26,8 @@ pub(super) struct Loader<'a> {
     pub(super) warnings: Vec<Warning>,
     /// Surfaces found for areas.
     pub(super) areas: Vec<AreaRecord>,
+    /// What furniture tells of the layers.
+    pub(super) notes: LayerNotes,
     /// Vector files that were read already.
     pub(super) vectors: BTreeMap<PathBuf, Loaded<Vectors>>,
     /// Cities that were read already, by the number of their layer.

@@ -13,6 +13,7 @@ pub(crate) mod constructor;
 mod context;
 pub(crate) mod delta;
 mod dem;
+mod edge;
 mod fonts;
 pub(crate) mod ground;
 pub(crate) mod hidden;

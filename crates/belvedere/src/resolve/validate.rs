@@ -6,8 +6,8 @@ use crate::overlays::highlight;
 use crate::print::Sheet;
 use crate::scene_file::Fallback;
 use crate::scene_file::{
-    AnimationDoc, AutoOrLength, ConstructorDoc, ConstructorKind, LayerDoc, Paths, SourceDocument, StageDoc,
-    SwitchOrLength, suggestion,
+    AnimationDoc, AutoOrLength, ConstructorDoc, ConstructorKind, FurnitureDoc, LayerDoc, Paths, ScaleDoc,
+    SourceDocument, StageDoc, SwitchOrLength, suggestion,
 };
 use belvedere_core::plain::number;
 use belvedere_scene::Unit;
@@ -49,6 +49,9 @@ pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
             other => other,
         })?;
     }
+    if let Some(doc) = &source.document.furniture {
+        furniture(doc, &ids).map_err(|(key, reason)| source.error(&["furniture", key], reason))?;
+    }
     if let Some(doc) = &source.document.stylisation {
         doc.strengths().map_err(|(key, reason)| source.error(&["stylisation", key], reason))?;
     }
@@ -71,6 +74,31 @@ pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
         let moves = constructs || source.document.layer.iter().any(|l| l.motion().is_some());
         animation(doc, moves)
             .map_err(|(key, reason)| source.error(&["animation", key], format!("animation: {reason}")))?;
+    }
+    Ok(())
+}
+
+/// Most bars of the local scale.
+const MOST_BARS: usize = 20;
+
+/// Checks the furniture; `ids` are those of the layers.
+fn furniture(doc: &FurnitureDoc, ids: &HashSet<&str>) -> Result<(), Complaint> {
+    for (key, table) in [("names", &doc.names), ("credits", &doc.credits)] {
+        // The sea has no table of its own.
+        let unknown = table.keys().find(|id| !ids.contains(id.as_str()) && id.as_str() != "sea");
+        if let Some(id) = unknown {
+            let known: Vec<&str> = ids.iter().copied().collect();
+            return Err((key, format!("furniture {key}: no layer has the id \"{id}\"; {}", suggestion(id, &known))));
+        }
+    }
+    if let Some(ScaleDoc::At(places)) = &doc.scale {
+        if places.is_empty() || places.len() > MOST_BARS {
+            let reason = format!("furniture scale names {} places, 1 to {MOST_BARS} are possible", places.len());
+            return Err(("scale", reason));
+        }
+        if let Some(place) = places.iter().find(|place| !place.iter().all(|v| v.is_finite())) {
+            return Err(("scale", format!("furniture scale holds the place {place:?}; give finite numbers")));
+        }
     }
     Ok(())
 }
@@ -161,6 +189,9 @@ fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
     match layer {
         LayerDoc::Terrain(l) => {
             l.largest_hole.map_or(Ok(()), |share| within("largest_hole", share, 0.0, 1.0))?;
+            if let Some(SwitchOrLength::Length(interval)) = l.style.contours {
+                within("contours", interval, 0.0, 1e9)?;
+            }
             within("exaggeration", l.style.exaggeration, 0.0, 100.0)
         }
         LayerDoc::Line(l) => {

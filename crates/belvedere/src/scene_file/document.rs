@@ -37,6 +37,9 @@ pub struct Document {
     /// Marks over the picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub overlay: Option<super::overlay::OverlayDoc>,
+    /// Title, legend, attribution, compass and scale.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub furniture: Option<super::furniture::FurnitureDoc>,
     /// What is done to the surfaces of the picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stylisation: Option<super::stylisation::StylisationDoc>,
@@ -79,6 +82,7 @@ impl Document {
             camera,
             light: None,
             overlay: None,
+            furniture: None,
             stylisation: None,
             print: None,
             text: None,
@@ -114,6 +118,7 @@ pub(super) struct Head {
     pub(super) camera: CameraDoc,
     pub(super) light: Option<LightDoc>,
     pub(super) overlay: Option<super::overlay::OverlayDoc>,
+    pub(super) furniture: Option<super::furniture::FurnitureDoc>,
     pub(super) stylisation: Option<super::stylisation::StylisationDoc>,
     pub(super) print: Option<super::print::PrintDoc>,
     pub(super) text: Option<super::text::TextDoc>,

@@ -5,11 +5,11 @@ use super::city::CityDoc;
 use super::common::{Paths, TransformDoc, is_false, is_opaque};
 use super::mesh::MeshDoc;
 use super::molecule::MoleculeDoc;
-use super::overlay::AutoOrLength;
+use super::overlay::{AutoOrLength, SwitchOrLength};
 use super::palette::PaletteDoc;
 use super::points::PointLayerDoc;
 use super::volume::VolumeDoc;
-use belvedere_scene::{Hidden, Relief, Shading};
+use belvedere_scene::{Edge, Hidden, Relief, Shading};
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
@@ -226,11 +226,30 @@ pub struct TerrainStyleDoc {
     /// terrain, covers a square kilometre (or a twentieth of the terrain) and has a low shore; and voids at the edge whose
     /// shore is low, which become ground at 0.
     pub sea: bool,
+    /// Lines of equal height, of the true heights wherever bends move the ground: `true` at an interval that fits the scale of the picture, or
+    /// the interval, scene units, > 0. Every fifth line is thick, and lines that would come too close are left out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contours: Option<SwitchOrLength>,
+    /// How the ground ends where its data end.
+    #[serde(skip_serializing_if = "is_plain")]
+    pub edge: Edge,
+}
+
+fn is_plain(edge: &Edge) -> bool {
+    *edge == Edge::Plain
 }
 
 impl Default for TerrainStyleDoc {
     fn default() -> Self {
-        Self { relief: Relief::Swiss, exaggeration: 1.0, shading: None, palette: PaletteDoc::default(), sea: true }
+        Self {
+            relief: Relief::Swiss,
+            exaggeration: 1.0,
+            shading: None,
+            palette: PaletteDoc::default(),
+            sea: true,
+            contours: None,
+            edge: Edge::Plain,
+        }
     }
 }
 

@@ -8,6 +8,7 @@ mod de;
 mod doc_error;
 mod document;
 mod fallback;
+mod furniture;
 mod intent;
 mod json;
 pub(crate) mod layer_names;
@@ -38,6 +39,9 @@ pub use common::{Paths, PlaneDoc, TransformDoc};
 pub(crate) use doc_error::{DocError, suggestion};
 pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDoc, ProjectionDoc, SwitchOrVisibility};
 pub use fallback::{Fallback, FallbackKind};
+pub use furniture::{
+    CompassDoc, CompassPlace, Corner, FurnitureDoc, FurnitureItem, FurnitureWish, ScaleDoc, SwitchOrText,
+};
 pub use intent::{AnimationDoc, CentrelineDoc, ConstructorDoc, ConstructorKind, SweepDoc, TurntableDoc};
 pub use layers::{
     AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc, PositionDoc,
@@ -274,6 +278,7 @@ fn document(root: &Node) -> Result<Document, DocError> {
         camera: head.camera,
         light: head.light,
         overlay: head.overlay,
+        furniture: head.furniture,
         stylisation: head.stylisation,
         print: head.print,
         text: head.text,

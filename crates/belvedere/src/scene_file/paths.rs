@@ -1,9 +1,26 @@
 //! Which files a scene may name: those in its own folder or below, unless the user allows more.
 
-use super::{Document, LayerDoc, PaletteDoc, PresetsDoc, StageDoc, SymbolDoc, names_a_preset_file};
+use super::{Document, LayerDoc, PaletteDoc, Paths, PresetsDoc, StageDoc, SymbolDoc, names_a_preset_file};
 use crate::BelvedereError;
 use belvedere_io::{fs, join_table, split_table};
 use std::path::{Component, Path, PathBuf};
+
+impl LayerDoc {
+    /// Files and built-in names that the layer's data come from.
+    pub(crate) fn files(&self) -> Vec<&str> {
+        fn of(paths: &Paths) -> Vec<&str> {
+            paths.as_slice().iter().map(String::as_str).collect()
+        }
+        match self {
+            Self::Terrain(l) => [of(&l.source), l.drape.as_ref().map(of).unwrap_or_default()].concat(),
+            Self::Line(l) => l.source.as_ref().map(of).unwrap_or_default(),
+            Self::Area(l) => of(&l.source),
+            Self::Point(l) => of(&l.source),
+            Self::City(l) => of(&l.source),
+            _ => Vec::new(),
+        }
+    }
+}
 
 impl Document {
     /// Calls `change` with every name of a file in the document; built-in scenes are no files.

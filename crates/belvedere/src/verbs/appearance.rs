@@ -1,10 +1,11 @@
 //! How the pictures of `reveal` are drawn: light, stylisation, mark, exaggeration. It is written into their scene files.
 
 use crate::scene_file::{
-    Document, LayerDoc, LightDoc, OneOrTwo, OverlayDoc, PlaneDoc, ReliefStageDoc, StageDoc, StylisationDoc,
+    Document, FurnitureWish, LayerDoc, LightDoc, OneOrTwo, OverlayDoc, PlaneDoc, ReliefStageDoc, StageDoc,
+    StylisationDoc,
 };
-use crate::{BelvedereError, Session, resolve};
-use belvedere_scene::{Crs, Heightfield, LayerKind, Relief, Scene, Sky};
+use crate::{BelvedereError, OpenOptions, Session, resolve};
+use belvedere_scene::{Crs, Edge, Heightfield, LayerKind, Relief, Scene, Sky};
 use std::sync::Arc;
 
 /// Limits of [`Appearance::exaggeration`].
@@ -21,6 +22,8 @@ pub struct Appearance {
     pub stylisation: Option<StylisationDoc>,
     /// Leaves out the mark that says that the view is bent; the record still says so.
     pub no_mark: bool,
+    /// Title, legend, attribution, compass and scale.
+    pub furniture: FurnitureWish,
     /// Factor of heights over the median height of the terrain, in [`EXAGGERATION`]. The straight picture keeps the true heights.
     pub exaggeration: Option<f64>,
 }
@@ -53,6 +56,7 @@ impl Appearance {
         if let Some(light) = &self.light {
             document.light = Some(light.clone().over(document.light.take().unwrap_or_default()));
         }
+        self.furniture.put_into(&mut document.furniture);
         document.stylisation = self.stylisation.or(document.stylisation);
         if self.no_mark {
             let overlay = document.overlay.take().unwrap_or_default();
@@ -64,7 +68,9 @@ impl Appearance {
     pub(super) fn of_document(session: &Session, document: Document) -> Result<Session, BelvedereError> {
         let overlay = document.overlay.clone().unwrap_or_default();
         let stylisation = document.stylisation.unwrap_or_default().strengths().unwrap_or_default();
-        Ok(session.with_document(document, None)?.with_overlay(overlay).with_stylisation(stylisation))
+        let furniture = document.furniture.clone().unwrap_or_default();
+        let session = session.with_document(document, None)?.with_furniture(furniture);
+        Ok(session.with_overlay(overlay).with_stylisation(stylisation))
     }
 
     /// The session in this appearance, with exaggerated heights in front of its other stages.
@@ -79,6 +85,11 @@ impl Appearance {
             None => session,
         })
     }
+}
+
+/// The options with a soft edge of the data where none is stated: pictures that are made from files alone end in no slab.
+pub(super) fn softly_ended(options: &OpenOptions) -> OpenOptions {
+    OpenOptions { edge: options.edge.or(Some(Edge::Soft)), ..options.clone() }
 }
 
 /// The session with another shading of its terrain, in the scene and in the documents.

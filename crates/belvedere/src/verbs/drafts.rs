@@ -1,5 +1,6 @@
 //! `reveal --drafts`: several views of the same features on one sheet, to choose from.
 
+use super::appearance::softly_ended;
 use super::reveal::{FinalShares, RevealRequest, Viewpoint, reveal, search_options, taller};
 use crate::guard::guarded;
 use crate::overlays::badge;
@@ -60,7 +61,7 @@ fn drafted(request: &RevealRequest, count: usize, options: &OpenOptions) -> Resu
     if request.viewpoint.is_some() || request.places.is_some() {
         return Err(BelvedereError::Target("drafts choose their views themselves; leave eye and look out".into()));
     }
-    let mut data = request.data.load(false, options)?;
+    let mut data = request.data.load(false, &softly_ended(options))?;
     let search = search_options(request, &mut data)?;
     let taller = taller(request, &data)?;
     let scene = taller.as_ref().map_or(&data.scene, |taller| &taller.scene);

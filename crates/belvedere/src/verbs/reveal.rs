@@ -1,6 +1,6 @@
 //! `reveal`: draws a picture of terrain in which routes and other features are visible.
 
-use super::appearance::{Appearance, Taller, is_exaggeration};
+use super::appearance::{Appearance, Taller, is_exaggeration, softly_ended};
 use super::in_time;
 pub use super::reveal_files::RevealFiles;
 use crate::data::{Data, DataFiles};
@@ -231,7 +231,7 @@ fn revealed(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAnsw
         return Err(BelvedereError::Target(reason.into()));
     }
     check_fov(request)?;
-    let mut data = request.data.load(false, options)?;
+    let mut data = request.data.load(false, &softly_ended(options))?;
     let rivers = std::mem::take(&mut data.rivers);
     request.appearance.check(data.scene.crs)?;
     let taller = taller(request, &data)?;

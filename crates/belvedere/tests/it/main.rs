@@ -11,6 +11,7 @@ mod letters;
 mod memory;
 mod moving_pictures;
 mod names;
+mod over_ground;
 mod parts;
 mod see_through;
 mod sessions;

@@ -90,6 +90,11 @@ impl Coloring {
         !matches!(self.rule, Rule::Values(_))
     }
 
+    /// Whether colours run into each other between the classes.
+    pub fn is_smooth(&self) -> bool {
+        matches!(self.rule, Rule::Smooth { .. })
+    }
+
     /// Limits between the classes of numbers.
     pub fn breaks(&self) -> Option<&[f64]> {
         match &self.rule {

@@ -12,6 +12,7 @@ pub use scales::{CATEGORIES, SCALES};
 use super::color::{Complaint, color};
 use super::loader::Loader;
 use crate::BelvedereError;
+use crate::record::ClassNote;
 use crate::scene_file::{ColorByDoc, LayerDoc, SizeByDoc, suggestion};
 use belvedere_io::vector::{Geometry, VectorFeature, Vectors};
 use belvedere_scene::{Color, FeatureStyle};
@@ -73,22 +74,26 @@ pub(super) fn check_layer(layer: &LayerDoc) -> Result<(), (&'static str, Complai
 }
 
 /// Gives the features of a layer's files the styles that it states.
-pub(super) fn style(loader: &Loader<'_>, index: usize, files: &mut [Vectors]) -> Result<(), BelvedereError> {
-    let Some(stated) = loader.layers.get(index).and_then(stated) else { return Ok(()) };
-    let fail = |table: &str, (key, reason): Complaint| {
+pub(super) fn style(loader: &mut Loader<'_>, index: usize, files: &mut [Vectors]) -> Result<(), BelvedereError> {
+    let layers = loader.layers;
+    let Some(stated) = layers.get(index).and_then(stated) else { return Ok(()) };
+    let fail = |loader: &Loader<'_>, table: &str, (key, reason): Complaint| {
         let keys = ["layer", &index.to_string(), "style", table, key];
         loader.origin.error(&keys, format!("layer \"{}\": {table}: {reason}", loader.id(index)))
     };
     if let Some(doc) = stated.color {
-        color_features(doc, stated.draws, files).map_err(|complaint| fail("color_by", complaint))?;
+        let note = color_features(doc, stated.draws, files);
+        let mut note = note.map_err(|complaint| fail(loader, "color_by", complaint))?;
+        loader.id(index).clone_into(&mut note.layer);
+        loader.notes.classes.push(note);
     }
     if let Some((table, doc)) = stated.size {
-        size_features(doc, stated, files).map_err(|complaint| fail(table, complaint))?;
+        size_features(doc, stated, files).map_err(|complaint| fail(loader, table, complaint))?;
     }
     Ok(())
 }
 
-fn color_features(doc: &ColorByDoc, draws: Draws, files: &mut [Vectors]) -> Result<(), Complaint> {
+fn color_features(doc: &ColorByDoc, draws: Draws, files: &mut [Vectors]) -> Result<ClassNote, Complaint> {
     let property = property(&doc.property, draws, files)?;
     let coloring = Coloring::new(doc, &counted(&property, draws, files))?;
     let others = doc.others.as_deref().map(|text| color("others", text)).transpose()?;
@@ -96,7 +101,14 @@ fn color_features(doc: &ColorByDoc, draws: Draws, files: &mut [Vectors]) -> Resu
         let own = feature.properties.get(&property).and_then(|value| coloring.color_of(value)).or(others);
         feature.style.get_or_insert_default().color = own;
     });
-    Ok(())
+    let counted = coloring.classes.iter().filter(|class| class.count > 0);
+    Ok(ClassNote {
+        layer: String::new(),
+        property,
+        classes: counted.map(|class| (class.name.clone(), class.color)).collect(),
+        smooth: coloring.is_smooth(),
+        others: (coloring.others > 0).then_some(others),
+    })
 }
 
 fn size_features(doc: &SizeByDoc, stated: Stated<'_>, files: &mut [Vectors]) -> Result<(), Complaint> {

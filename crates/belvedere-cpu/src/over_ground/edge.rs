@@ -1,0 +1,153 @@
+//! The soft edge of the data: ground fades into what stands behind everything, by its distance from where the data end.
+
+use super::Seen;
+use belvedere_composite::color::{Packed, Rgb, smoothstep};
+use belvedere_core::DVec2;
+use belvedere_scene::{Heightfield, NodeState};
+use rayon::prelude::*;
+
+/// Width of the edge as a share of the shorter side of the data.
+const SHARE: f64 = 0.05;
+/// Most cells along a side of the map of distances.
+const CELLS: usize = 384;
+
+/// Distances from where the data end: from their rim, and from voids that reach it; holes within are holes.
+pub(super) struct Border {
+    cols: usize,
+    rows: usize,
+    /// Distances of the cells, widths of the edge, at most about 1.
+    distance: Vec<f32>,
+    /// Cells per scene unit, and the north-western corner.
+    per_unit: DVec2,
+    north_west: DVec2,
+}
+
+impl Border {
+    pub(super) fn new(ground: &Heightfield) -> Self {
+        let [cols, rows] = [ground.cols(), ground.rows()].map(|n| (n - 1).clamp(1, CELLS));
+        let bounds = ground.bounds();
+        let size = (bounds.max - bounds.min).truncate();
+        let cell = size / DVec2::new(cols as f64, rows as f64);
+        let outside = outside(ground, [cols, rows]);
+        let width = SHARE * size.min_element();
+        let distance = distances(&outside, [cols, rows], cell).into_iter().map(|d| (d / width) as f32).collect();
+        let north_west = DVec2::new(bounds.min.x, bounds.max.y);
+        Self { cols, rows, distance, per_unit: 1.0 / cell, north_west }
+    }
+
+    /// Opacity of the ground at a place, 0..=1.
+    pub(super) fn opacity(&self, xy: DVec2) -> f32 {
+        let at = DVec2::new(xy.x - self.north_west.x, self.north_west.y - xy.y) * self.per_unit;
+        let rim = at.min(DVec2::new(self.cols as f64, self.rows as f64) - at).min_element();
+        if !(rim > 0.0) {
+            return 0.0;
+        }
+        // Between the middles of the cells.
+        let at = (at - 0.5).clamp(DVec2::ZERO, DVec2::new(self.cols as f64 - 1.0, self.rows as f64 - 1.0));
+        let (c, r) = (at.x as usize, at.y as usize);
+        let (c1, r1) = ((c + 1).min(self.cols - 1), (r + 1).min(self.rows - 1));
+        let (u, v) = ((at.x - c as f64) as f32, (at.y - r as f64) as f32);
+        let of = |c: usize, r: usize| self.distance[r * self.cols + c];
+        let (north, south) = (of(c, r) + u * (of(c1, r) - of(c, r)), of(c, r1) + u * (of(c1, r1) - of(c, r1)));
+        // The outermost half cell lies beyond the middles: down to 0 at the very rim.
+        smoothstep(0.0, 1.0, (north + v * (south - north)) * (2.0 * rim as f32).min(1.0))
+    }
+}
+
+/// Cells without data that reach the rim.
+fn outside(ground: &Heightfield, [cols, rows]: [usize; 2]) -> Vec<bool> {
+    let states = ground.states();
+    let is_void = |c: usize, r: usize| {
+        let node = |i: usize, n: usize, all: usize| ((2 * i + 1) * (n - 1) / (2 * all)).min(n - 1);
+        let i = node(r, ground.rows(), rows) * ground.cols() + node(c, ground.cols(), cols);
+        states.get(i) == Some(&NodeState::Void)
+    };
+    let mut found = vec![false; cols * rows];
+    let mut open: Vec<[usize; 2]> = (0..cols).flat_map(|c| [[c, 0], [c, rows - 1]]).collect();
+    open.extend((0..rows).flat_map(|r| [[0, r], [cols - 1, r]]));
+    while let Some([c, r]) = open.pop() {
+        if found[r * cols + c] || !is_void(c, r) {
+            continue;
+        }
+        found[r * cols + c] = true;
+        open.extend([(c > 0).then(|| [c - 1, r]), (c + 1 < cols).then_some([c + 1, r])].into_iter().flatten());
+        open.extend([(r > 0).then(|| [c, r - 1]), (r + 1 < rows).then_some([c, r + 1])].into_iter().flatten());
+    }
+    found
+}
+
+/// Distances of the middles of cells from the nearest cell outside, or from the rim, scene units (a chamfer of two passes).
+fn distances(outside: &[bool], [cols, rows]: [usize; 2], cell: DVec2) -> Vec<f64> {
+    let [dx, dy, both] = [cell.x, cell.y, cell.length()];
+    let rim = |c: usize, r: usize| {
+        let x = (c.min(cols - 1 - c) as f64 + 0.5) * dx;
+        x.min((r.min(rows - 1 - r) as f64 + 0.5) * dy)
+    };
+    let mut distance: Vec<f64> =
+        (0..cols * rows).map(|i| if outside[i] { 0.0 } else { rim(i % cols, i / cols) }).collect();
+    for back in [false, true] {
+        for k in 0..cols * rows {
+            let i = if back { cols * rows - 1 - k } else { k };
+            let (c, r) = ((i % cols) as i64, (i / cols) as i64);
+            let sign = if back { 1 } else { -1 };
+            let nearest = [(sign, 0, dx), (0, sign, dy), (sign, sign, both), (-sign, sign, both)].map(|(x, y, way)| {
+                let (c, r) = (c + x, r + y);
+                let inside = c >= 0 && r >= 0 && c < cols as i64 && r < rows as i64;
+                if inside { distance[r as usize * cols + c as usize] + way } else { f64::INFINITY }
+            });
+            distance[i] = nearest.into_iter().fold(distance[i], f64::min);
+        }
+    }
+    distance
+}
+
+/// Fades the ground into what stands behind.
+///
+/// * `sky`: its colour at a pixel.
+pub(super) fn fade(ground: &Seen<'_>, border: &Border, sky: &(dyn Fn(usize) -> Rgb + Sync), out: &mut [Packed]) {
+    out.par_iter_mut().enumerate().for_each(|(i, pixel)| {
+        let Some(xy) = ground.place(i) else { return };
+        let opacity = border.opacity(xy);
+        if opacity < 1.0 {
+            *pixel = Packed::new(sky(i).lerp(pixel.rgb(), opacity));
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square(void: impl Fn(usize, usize) -> bool) -> Heightfield {
+        let side = 101;
+        let state = |i: usize| if void(i % side, i / side) { NodeState::Void } else { NodeState::Measured };
+        let states = (0..side * side).map(state).collect();
+        let corner = DVec2::new(0.0, 1000.0);
+        Heightfield::new(corner, DVec2::splat(10.0), side, side, vec![5.0; side * side], states).expect("ground")
+    }
+
+    #[test]
+    fn opacity_falls_to_nothing_at_the_rim_and_is_whole_a_twentieth_within() {
+        let border = Border::new(&square(|_, _| false));
+        for x in [0.0, -5.0, 1000.0] {
+            assert_eq!(border.opacity(DVec2::new(x, 500.0)), 0.0);
+        }
+        assert_eq!(border.opacity(DVec2::new(500.0, 500.0)), 1.0);
+        assert_eq!(border.opacity(DVec2::new(60.0, 400.0)), 1.0);
+        let half = border.opacity(DVec2::new(25.0, 400.0));
+        assert!((half - 0.5).abs() < 0.1, "{half}");
+        let way: Vec<f32> = (0..60).map(|x| border.opacity(DVec2::new(f64::from(x), 300.0))).collect();
+        assert!(way.windows(2).all(|w| w[0] <= w[1] && w[1] - w[0] < 0.08), "{way:?}");
+    }
+
+    #[test]
+    fn voids_that_reach_the_rim_end_the_data_and_holes_within_do_not() {
+        // A slanted western rim, as reprojected grids have it, and a hole in the middle.
+        let border = Border::new(&square(|c, r| c < r / 4 || (48..53).contains(&c) && (48..53).contains(&r)));
+        assert_eq!(border.opacity(DVec2::new(150.0, 200.0)), 0.0, "outside");
+        let near = border.opacity(DVec2::new(220.0, 200.0));
+        assert!(near > 0.05 && near < 0.6, "{near}");
+        assert_eq!(border.opacity(DVec2::new(300.0, 200.0)), 1.0);
+        assert_eq!(border.opacity(DVec2::new(470.0, 500.0)), 1.0, "beside the hole");
+    }
+}

@@ -1,0 +1,71 @@
+//! What is painted on ground that was drawn, by the places that the pixels see: lines of equal height, and the soft edge of the data.
+
+mod contours;
+mod edge;
+
+use crate::screen::Screen;
+use crate::shade::Shader;
+use belvedere_composite::buffers::Buffers;
+use belvedere_composite::stylise;
+use belvedere_core::DVec2;
+use belvedere_scene::{Edge, LayerKind, RenderJob};
+
+/// Paints over the ground of every terrain layer, on the rows of a picture from `first` on.
+pub(crate) fn paint(
+    job: &RenderJob<'_>,
+    (shader, screen): (&Shader<'_>, &Screen),
+    first: usize,
+    buffers: &mut Buffers,
+) {
+    if !job.scene.paints_over_ground() {
+        return;
+    }
+    let width = screen.width as usize;
+    if let Some(world) = buffers.world.take() {
+        let is_area = |id: u32| {
+            let layer = (id as usize).checked_sub(1).and_then(|i| job.scene.layers.get(i));
+            layer.is_some_and(|layer| matches!(layer.kind, LayerKind::Area(_)))
+        };
+        for (i, layer) in job.scene.layers.iter().enumerate() {
+            let LayerKind::Terrain(terrain) = &layer.kind else { continue };
+            // Areas are painted on the ground below them.
+            let shows = |id: u32| id == i as u32 + 1 || is_area(id);
+            let ground = Seen { world: &world, id: &buffers.id, shows: &shows, width };
+            if let Some(lines) = &terrain.contours {
+                let density = job.options.density;
+                let interval = lines.interval_in(&terrain.heightfield, job.view.pinhole(), density);
+                contours::paint(&ground, &terrain.heightfield, (interval, lines.color, density), &mut buffers.color);
+            }
+            if terrain.edge == Edge::Soft {
+                let border = edge::Border::new(&terrain.heightfield);
+                let sky = |pixel: usize| {
+                    let [x, y] = [pixel % width, first + pixel / width].map(|v| v as f32 + 0.5);
+                    shader.sky.at([x, y])
+                };
+                edge::fade(&ground, &border, &sky, &mut buffers.color);
+            }
+        }
+        buffers.world = Some(world);
+    }
+    if !job.options.aux.world && !stylise::is_on(job) {
+        buffers.world = None;
+    }
+}
+
+/// Places on one ground that the pixels of a picture see.
+struct Seen<'a> {
+    world: &'a [[f64; 3]],
+    id: &'a [u32],
+    /// Whether a layer is the ground, or lies on it.
+    shows: &'a (dyn Fn(u32) -> bool + Sync),
+    width: usize,
+}
+
+impl Seen<'_> {
+    /// Where on the map a pixel looks; `None` if it shows something else.
+    fn place(&self, pixel: usize) -> Option<DVec2> {
+        let [x, y, _] = self.world[pixel];
+        let place = DVec2::new(x, y);
+        (place.is_finite() && (self.shows)(self.id[pixel])).then_some(place)
+    }
+}
