@@ -2,12 +2,12 @@
 
 use crate::goal::Goal;
 use crate::report::{Context, print};
-use belvedere::Needs;
 use belvedere::verbs::drafts::{self, Draft, DraftsAnswer};
 use belvedere::verbs::reveal::RevealRequest;
 use belvedere::verbs::reveal_target::TargetRequest;
 use belvedere::verbs::schemas::{DraftWithCommand, Drafts};
 use belvedere::verbs::target_drafts::target_drafts;
+use belvedere::{Needs, OpenOptions};
 use std::path::{Path, PathBuf};
 
 /// Options of the sheet that its commands leave out, with a value of their own.
@@ -19,8 +19,14 @@ pub(crate) fn drafts(request: &RevealRequest, count: usize, out: &Path, context:
 }
 
 /// Draws the drafts of a target in models or in a city.
-pub(crate) fn of_target(request: &TargetRequest, count: usize, out: &Path, context: &Context) -> anyhow::Result<Goal> {
-    sheet(&target_drafts(request, count, &context.options(Needs::Everything, None))?, out, context)
+pub(crate) fn of_target(
+    request: &TargetRequest,
+    count: usize,
+    out: &Path,
+    context: &Context,
+    options: &OpenOptions,
+) -> anyhow::Result<Goal> {
+    sheet(&target_drafts(request, count, options)?, out, context)
 }
 
 /// Writes the sheet and prints the commands.

@@ -13,7 +13,7 @@ use belvedere::scene_file::{LightDoc, PaletteDoc};
 use belvedere::verbs::hold_a_city;
 use belvedere::verbs::reveal::{self, IMAGE, RevealFiles, RevealRequest};
 use belvedere::verbs::reveal_target::{TargetRequest, reveal_target};
-use belvedere::{DataFiles, Needs, Session};
+use belvedere::{DataFiles, Needs, OpenOptions, Session};
 use std::path::{Path, PathBuf};
 
 /// Draws a picture in which features, a target in models, or one in a city is visible.
@@ -123,6 +123,8 @@ fn reveal_target_in(
     context: &Context,
 ) -> anyhow::Result<Goal> {
     let picture = args.out.clone();
+    let molecule = args.look_args.molecules.options();
+    let options = OpenOptions { molecule, ..context.options(Needs::Everything, None) };
     if !matches!(args.technique, None | Some(TechniqueKind::Auto | TechniqueKind::CurvedRays | TechniqueKind::Spline)) {
         anyhow::bail!(
             "--see bends rays, or in a city the ground by a spline; give --technique curved_rays or spline, or leave it out"
@@ -146,9 +148,9 @@ fn reveal_target_in(
     request.picture = print.apply(request.picture, &picture, sheet);
     quality(&mut request.picture, context);
     if let Some(count) = args.drafts {
-        return crate::drafts::of_target(&request, count, &out.out, context);
+        return crate::drafts::of_target(&request, count, &out.out, context, &options);
     }
-    let answer = reveal_target(&request, &context.options(Needs::Everything, None))?;
+    let answer = reveal_target(&request, &options)?;
     let written = answer.write(out, context.common.overwrite)?;
     delivered((&answer.picture, &answer.session), &picture, out, context)?;
     if context.common.json {
@@ -204,7 +206,9 @@ fn reveal_features(
     if let Some(count) = args.drafts {
         return crate::drafts::drafts(&request, count, &out.out, context);
     }
-    let answer = reveal::reveal(&request, &context.options(Needs::Everything, None))?;
+    let molecule = args.look_args.molecules.options();
+    let options = OpenOptions { molecule, ..context.options(Needs::Everything, None) };
+    let answer = reveal::reveal(&request, &options)?;
     let written = answer.write(out, context.common.overwrite)?;
     delivered((&answer.picture, &answer.session), &picture, out, context)?;
     if context.common.json {

@@ -147,8 +147,16 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     let unsolved = request.straight;
     let (area_style, sea) = (args.area_style, args.no_sea.then_some(false));
     let AirArgs { sky, haze } = args.air.clone();
-    let options =
-        OpenOptions { palette, sky, haze, area_style, sea, unsolved, ..context.options(Needs::Everything, size) };
+    let options = OpenOptions {
+        palette,
+        sky,
+        haze,
+        area_style,
+        sea,
+        unsolved,
+        molecule: args.molecules.options(),
+        ..context.options(Needs::Everything, size)
+    };
     let session = Session::from_document(source, &options)?;
     outputs::check(&files, &session.input_paths(), context)?;
     let mut warnings = session.warnings();

@@ -77,6 +77,8 @@ impl Thin {
                 atoms: molecule.atoms,
                 bonds: molecule.bonds,
                 representation: molecule.representation,
+                shown: molecule.shown.clone(),
+                film: molecule.film.clone(),
                 wanted: molecule.wanted.clone(),
             }))),
             LayerKind::Mesh(_) => Some(LayerKind::Mesh(coarser)),
