@@ -28,6 +28,8 @@ pub struct MoleculeLayer {
     pub shown: Arc<Vec<Shown>>,
     /// Places of the atoms in the models of a film; `None` = they stay where they are.
     pub film: Option<Arc<MoleculeFilm>>,
+    /// Height of the names of residues; `None` = none are written.
+    pub label_px: Option<f64>,
     /// The atoms that `must_see` means; `None` = all that are drawn.
     pub wanted: Option<Selection>,
 }
@@ -83,7 +85,7 @@ impl MoleculeLayer {
         let made = surface::build(&molecule, (&drawn, &sticks), &colors, look, &placement)?;
         let surface = MeshLayer::new(made.mesh, Element::C.color());
         let (atoms, bonds, shown) = (made.atoms, made.bonds, Arc::new(made.shown));
-        Ok(Self { molecule, placement, surface, atoms, bonds, representation, shown, film: None, wanted: None })
+        Ok(Self { molecule, placement, surface, atoms, bonds, representation, shown, film: None, label_px: None, wanted: None })
     }
 
     /// The same whose atoms move, at the first model.
@@ -102,7 +104,7 @@ impl MoleculeLayer {
         let made = Self::new(molecule, &film.style, self.placement);
         let keep = |mut made: Self| {
             made.surface.opacity = self.surface.opacity;
-            Self { film: self.film.clone(), wanted: self.wanted.clone(), ..made }
+            Self { film: self.film.clone(), label_px: self.label_px, wanted: self.wanted.clone(), ..made }
         };
         Some(made.map(keep))
     }

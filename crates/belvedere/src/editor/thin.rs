@@ -79,6 +79,7 @@ impl Thin {
                 representation: molecule.representation,
                 shown: molecule.shown.clone(),
                 film: molecule.film.clone(),
+                label_px: molecule.label_px,
                 wanted: molecule.wanted.clone(),
             }))),
             LayerKind::Mesh(_) => Some(LayerKind::Mesh(coarser)),

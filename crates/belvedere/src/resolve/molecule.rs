@@ -46,6 +46,7 @@ pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &MoleculeDoc) ->
         None => ModelTransform::default(),
     };
     let layer = MoleculeLayer::new(molecule, &style, placement).map_err(|e| loader.fail(index, "source", e))?;
+    let layer = MoleculeLayer { label_px: doc.style.labels.then_some(doc.style.label_px), ..layer };
     let layer = match doc.models_per_s {
         Some(models_per_s) => layer.filmed(MoleculeFilm { models, models_per_s, style }),
         None => layer,
@@ -153,6 +154,9 @@ pub(super) fn style(doc: &MoleculeDoc, wanted: Option<&Selection>) -> Result<Mol
     }
     let highlight = optional_color("highlight", &doc.style.highlight)?;
     paint.extend(wanted.cloned().zip(highlight).map(|(selection, color)| Paint { selection, color }));
+    if !(doc.style.label_px > 0.0 && doc.style.label_px <= 200.0) {
+        return Err(("label_px", format!("label_px is {}, it must be in (0, 200]", doc.style.label_px)));
+    }
     if let Some(detail) = doc.style.detail.filter(|d| !(1..=16).contains(d)) {
         return Err(("detail", format!("detail is {detail}, it must be in 1..=16")));
     }

@@ -1,6 +1,6 @@
 //! Layers of atoms in the scene document.
 
-use super::common::{TransformDoc, is_opaque, is_true};
+use super::common::{TransformDoc, is_false, is_opaque, is_true};
 use belvedere_scene::molecule::Representation;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -77,6 +77,12 @@ pub struct MoleculeStyleDoc {
     /// Atoms that are balls and rods beside a ribbon or through a surface, such as `resi 45,60` or `hetero and not water`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sticks: Option<String>,
+    /// Whether the names of residues are written, where they are seen and find room: those of `select` first.
+    #[serde(skip_serializing_if = "is_false")]
+    pub labels: bool,
+    /// Height of the letters, pixels, in (0, 200].
+    #[serde(skip_serializing_if = "is_usual_size")]
+    pub label_px: f64,
     /// Whether double and triple bonds are drawn as two and three rods.
     #[serde(skip_serializing_if = "is_true")]
     pub bond_orders: bool,
@@ -93,9 +99,18 @@ impl Default for MoleculeStyleDoc {
             highlight: "#ffb000".into(),
             detail: None,
             sticks: None,
+            labels: false,
+            label_px: LABEL_PX,
             bond_orders: true,
         }
     }
+}
+
+/// Usual height of letters, pixels.
+const LABEL_PX: f64 = 13.0;
+
+fn is_usual_size(size: &f64) -> bool {
+    *size == LABEL_PX
 }
 
 /// A colour for some atoms.
