@@ -14,10 +14,10 @@ const REACH: f64 = 1.78;
 /// Density of empty space: the logarithm stays finite.
 const LEAST: f32 = 1e-6;
 /// Finest spacing, angstrom, most samples, and the square angstrom of surface per atom and triangles by which the spacing is chosen.
-const FINEST: f64 = 0.55;
+const FINEST: f64 = 0.7;
 const MOST_SAMPLES: f64 = 2.4e7;
-const TRIANGLES: f64 = 3.0e6;
-const PER_ATOM: f64 = 7.0;
+const TRIANGLES: f64 = 5.0e6;
+const PER_ATOM: f64 = 16.0;
 const PER_CELL: f64 = 4.5;
 /// Layers that are made together.
 const SLAB: usize = 8;

@@ -9,15 +9,17 @@ use belvedere_core::{Aabb, DVec3};
 use rayon::prelude::*;
 
 /// Cells along the longest side at most, and their least size, angstrom: of light from nearby, and of light from afar alone.
-const MOST: f64 = 96.0;
+const MOST: f64 = 72.0;
 const NEAR: f64 = 1.6;
 const FAR: f64 = 3.0;
 /// Distance at which rays begin, angstrom, where light from afar alone is meant: what is nearer is counted elsewhere.
 const NEARER: f64 = 6.0;
 /// Directions of rays, and their length as a share of the longest side, at most so many cells.
-const RAYS: usize = 48;
+const RAYS: usize = 32;
 const LENGTH: f64 = 0.5;
-const STEPS: usize = 40;
+const STEPS: usize = 28;
+/// Matter on the way of a ray, cells, behind which no light is counted: 2 % of it are left.
+const DARK: f64 = 5.0;
 /// Share of light that a cell full of matter takes from a ray along one side.
 const TAKEN: f64 = 0.55;
 /// Distance before a surface at which its light is taken, cells, and the share of light there over a plane: the cells that it passes are
@@ -108,11 +110,10 @@ struct Rays<'a> {
 
 impl Rays<'_> {
     fn at(&self, p: DVec3) -> Option<f32> {
-        let [x, y, z] = p.to_array().map(|v| v.floor());
         let inside = |v: f64, n: usize| v >= 0.0 && v < n as f64;
         let [nx, ny, nz] = self.size;
-        (inside(x, nx) && inside(y, ny) && inside(z, nz))
-            .then(|| self.matter[(z as usize * ny + y as usize) * nx + x as usize])
+        (inside(p.x, nx) && inside(p.y, ny) && inside(p.z, nz))
+            .then(|| self.matter[(p.z as usize * ny + p.y as usize) * nx + p.x as usize])
     }
 
     fn lobes(&self, i: usize) -> [f32; 6] {
@@ -130,8 +131,8 @@ impl Rays<'_> {
             let mut passed = 0.0;
             for k in 0..self.steps {
                 match self.at(center + (self.first + k as f64) * direction) {
-                    Some(matter) => passed += f64::from(matter),
-                    None => break,
+                    Some(matter) if passed < DARK => passed += f64::from(matter),
+                    _ => break,
                 }
             }
             let light = (1.0 - TAKEN).powf(passed);
