@@ -162,12 +162,15 @@ fn representations_assemblies_and_models_are_chosen_on_the_command_line_and_in_s
         let answer = place.json(&["pick", scene, "--pixels", "p.json"]);
         (0..3).map(|i| answer["pixels"][i]["feature"].as_str().map(str::to_owned)).collect::<Vec<_>>()
     };
-    assert_eq!(pick("r.toml"), [Some("chain A ALA 3".into()), Some("chain A-2 ALA 3".into()), None]);
+    assert_eq!(pick("r.toml"), [Some("chain A ALA 3".to_owned()), Some("chain A-2 ALA 3".to_owned()), None]);
     place.write("m.toml", &format!("{HEAD}{layer}model = 2\nstyle.representation = 'space_filling'\n"));
     assert_eq!(pick("m.toml"), [None, None, Some("atom CA of chain A ALA 3".to_owned())]);
     let info = place.json(&["info", "t.pdb", "--json"]);
     let file = &info["files"][0];
-    assert_eq!((&file["models"], &file["assemblies"][0]["copies"], &file["assemblies"][0]["atoms"]), (&2.into(), &3.into(), &15.into()));
+    assert_eq!(
+        (&file["models"], &file["assemblies"][0]["copies"], &file["assemblies"][0]["atoms"]),
+        (&2.into(), &3.into(), &15.into())
+    );
     // What is in the file and not drawn is told.
     let said = place.run(&["check", "s.toml"]);
     let said = String::from_utf8_lossy(&said.stderr).into_owned() + &String::from_utf8_lossy(&said.stdout);
@@ -198,8 +201,8 @@ fn wrong_assemblies_and_models_are_told_in_one_line() {
     let out = place.run(&["render", "d.toml", "--assembly", "1", "-o", "a.png"]);
     let text = String::from_utf8_lossy(&out.stderr).into_owned();
     assert!(!out.status.success() && text.contains("built-in molecules have none"), "{text}");
-    let plain = "format = 1\n[camera]\neye = [0, -80, 10]\nlook_at = [0, 0, 0]\nimage = [40, 40]\n";
-    place.write("p.toml", plain);
+    let camera = "format = 1\n[camera]\neye = [0, -80, 10]\nlook_at = [0, 0, 0]\nimage = [40, 40]\n";
+    place.write("p.toml", &format!("{camera}[[layer]]\nkind = 'volume'\nid = 'v'\nsource = 'builtin:tube'\n"));
     let out = place.run(&["render", "p.toml", "--representation", "ribbon", "-o", "a.png"]);
     let text = String::from_utf8_lossy(&out.stderr).into_owned();
     assert!(!out.status.success() && text.contains("--representation is for molecules, and there is none"), "{text}");

@@ -85,7 +85,18 @@ impl MoleculeLayer {
         let made = surface::build(&molecule, (&drawn, &sticks), &colors, look, &placement)?;
         let surface = MeshLayer::new(made.mesh, Element::C.color());
         let (atoms, bonds, shown) = (made.atoms, made.bonds, Arc::new(made.shown));
-        Ok(Self { molecule, placement, surface, atoms, bonds, representation, shown, film: None, label_px: None, wanted: None })
+        Ok(Self {
+            molecule,
+            placement,
+            surface,
+            atoms,
+            bonds,
+            representation,
+            shown,
+            film: None,
+            label_px: None,
+            wanted: None,
+        })
     }
 
     /// The same whose atoms move, at the first model.
