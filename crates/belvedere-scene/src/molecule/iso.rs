@@ -171,7 +171,7 @@ mod tests {
             "{area} {sphere} {volume} {ball}"
         );
         for (p, n) in shape.positions.iter().zip(&shape.normals) {
-            assert!((p.distance(center) - r).abs() < 0.02 && n.dot((*p - center) / r) > 0.99, "{p}");
+            assert!((p.distance(center) - r).abs() < 0.04 && n.dot((*p - center).normalize()) > 0.99, "{p}");
         }
         assert_eq!(euler(&shape), 2);
     }

@@ -14,10 +14,11 @@ const NEAR: f64 = 1.6;
 const FAR: f64 = 3.0;
 /// Distance at which rays begin, angstrom, where light from afar alone is meant: what is nearer is counted elsewhere.
 const NEARER: f64 = 6.0;
-/// Directions of rays, and their length as a share of the longest side, at most so many cells.
+/// Directions of rays. Each goes on for the longest side, in steps of a cell, farther away of this share of the way, at most of so many
+/// cells: thin walls are met at random there, and the mean over rays counts.
 const RAYS: usize = 32;
-const LENGTH: f64 = 0.5;
-const STEPS: usize = 28;
+const GROWTH: f64 = 0.12;
+const WIDEST: f64 = 2.5;
 /// Matter on the way of a ray, cells, behind which no light is counted: 2 % of it are left.
 const DARK: f64 = 5.0;
 /// Share of light that a cell full of matter takes from a ray along one side.
@@ -70,9 +71,9 @@ impl Sky {
             }
         }
         matter.iter_mut().for_each(|m| *m = m.min(1.0));
-        let steps = ((LENGTH * longest / cell).ceil() as usize).clamp(3, STEPS);
+        let length = longest / cell + 3.0;
         let first = (from / cell).max(1.5);
-        let rays = Rays { matter: &matter, size, steps, first };
+        let rays = Rays { matter: &matter, size, length, first };
         let lobes = (0..matter.len()).into_par_iter().map(|i| rays.lobes(i)).collect();
         Self { origin, cell, size, lobes }
     }
@@ -103,9 +104,9 @@ impl Sky {
 struct Rays<'a> {
     matter: &'a [f32],
     size: [usize; 3],
-    steps: usize,
-    /// Where rays begin, cells.
+    /// Where rays begin and end, cells.
     first: f64,
+    length: f64,
 }
 
 impl Rays<'_> {
@@ -129,11 +130,12 @@ impl Rays<'_> {
         let (mut sums, mut weights) = ([0f64; 6], [0f64; 6]);
         for direction in directions() {
             let mut passed = 0.0;
-            for k in 0..self.steps {
-                match self.at(center + (self.first + k as f64) * direction) {
-                    Some(matter) if passed < DARK => passed += f64::from(matter),
-                    _ => break,
-                }
+            let mut way = self.first;
+            while way < self.length && passed < DARK {
+                let step = (GROWTH * way).clamp(1.0, WIDEST);
+                let Some(matter) = self.at(center + way * direction) else { break };
+                passed += step * f64::from(matter);
+                way += step;
             }
             let light = (1.0 - TAKEN).powf(passed);
             for axis in 0..3 {
