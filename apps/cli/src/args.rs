@@ -387,8 +387,7 @@ impl From<RendererKind> for RendererChoice {
 pub(crate) struct RenderArgs {
     /// Scene file, TOML or JSON; - = standard input
     pub(crate) scene: PathBuf,
-    /// Output: PNG, TIFF, JPEG, WebP, SVG or PDF, as its name ends; the record is written beside it as OUT.png.json; - = standard output, a PNG,
-    /// and no record
+    /// Output: PNG, TIFF, JPEG, WebP, SVG or PDF, as its name ends, and OUT.png.json, its record; - = a PNG on standard output alone
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
@@ -428,12 +427,13 @@ pub(crate) struct RenderArgs {
     /// Draw the camera itself from another eye: eye and point to look at, in scene coordinates or lon,lat, or auto
     #[arg(long, value_name = "X,Y,Z,X,Y,Z", allow_hyphen_values = true, conflicts_with_all = CAMERA_CONFLICTS, conflicts_with = "overhead", value_parser = parse_outside)]
     pub(crate) outside: Option<Outside>,
-    /// Tint of the terrain instead of the scene's: auto, swiss, winter, autumn, alpine, desert, glacial, atlas, clear, plain, night, or a
-    /// file of colours by height (GDAL colour-relief text, GMT .cpt)
+    /// Tint of the terrain instead of the scene's: a name, as of `reveal`, or a file of colours by height (GDAL text, GMT .cpt)
     #[arg(long, value_name = "NAME|FILE")]
     pub(crate) palette: Option<String>,
     #[command(flatten)]
     pub(crate) air: AirArgs,
+    #[command(flatten)]
+    pub(crate) molecules: crate::molecule_args::MoleculeArgs,
     /// Draw the sea as ordinary ground
     #[arg(long)]
     pub(crate) no_sea: bool,

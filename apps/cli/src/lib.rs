@@ -18,6 +18,7 @@ mod interrupt;
 mod kinds;
 mod look_args;
 mod memory;
+mod molecule_args;
 mod outputs;
 mod pack;
 mod parse;

@@ -1,5 +1,6 @@
 //! Arguments of `reveal` that say how its picture looks.
 
+use crate::molecule_args::MoleculeArgs;
 use crate::parse::{parse_exaggeration, parse_haze, parse_light, parse_spacing, parse_stylise, parse_time};
 use belvedere::OpenOptions;
 use belvedere::scene::{Edge, Hidden, Relief};
@@ -113,6 +114,8 @@ pub(crate) struct LookArgs {
     /// Fill all holes of the terrain, also large ones; by default those of at most 3 % of it
     #[arg(long, conflicts_with = "keep_voids")]
     pub(crate) fill_voids: bool,
+    #[command(flatten)]
+    pub(crate) molecules: MoleculeArgs,
 }
 
 /// Shading of terrain.

@@ -13,7 +13,7 @@ use belvedere::scene_file::{LightDoc, PaletteDoc};
 use belvedere::verbs::hold_a_city;
 use belvedere::verbs::reveal::{self, IMAGE, RevealFiles, RevealRequest};
 use belvedere::verbs::reveal_target::{TargetRequest, reveal_target};
-use belvedere::{DataFiles, Needs, Session};
+use belvedere::{DataFiles, Needs, OpenOptions, Session};
 use std::path::{Path, PathBuf};
 
 /// Draws a picture in which features, a target in models, or one in a city is visible.
@@ -129,7 +129,9 @@ fn reveal_target_in(
         );
     }
     let (print, sheet) = (args.print.clone(), sheet(&args)?);
-    let options = args.look_args.air.apply(context.options(Needs::Everything, None));
+    let molecule = args.look_args.molecules.options();
+    let options = OpenOptions { molecule, ..context.options(Needs::Everything, None) };
+    let options = args.look_args.air.apply(options);
     let see = args.see.unwrap_or_default();
     let mut request = TargetRequest {
         files,
@@ -172,7 +174,9 @@ fn reveal_features(
 ) -> anyhow::Result<Goal> {
     let (picture, technique) = (args.out.clone(), technique(&args));
     let (print, sheet) = (args.print.clone(), sheet(&args)?);
-    let options = args.look_args.air.apply(context.options(Needs::Everything, None));
+    let molecule = args.look_args.molecules.options();
+    let options = OpenOptions { molecule, ..context.options(Needs::Everything, None) };
+    let options = args.look_args.air.apply(options);
     let mut request = RevealRequest {
         data: DataFiles {
             dem: args.dem,

@@ -155,6 +155,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         area_style,
         sea,
         unsolved,
+        molecule: args.molecules.options(),
         ..context.options(Needs::Everything, size)
     };
     let session = Session::from_document(source, &args.air.apply(options))?;

@@ -85,7 +85,7 @@ fn of_mesh(layer: &MeshLayer) -> Surface {
 
 fn of_molecule(layer: &MoleculeLayer) -> Surface {
     let mesh = &layer.surface.mesh;
-    let wanted = layer.wanted.as_ref().map(|w| w.mask(&layer.molecule));
+    let wanted = layer.wanted.as_ref().map(|w| layer.mask_of(w));
     let is_wanted = |t: &usize| wanted.as_ref().is_none_or(|w| mesh.part(*t).is_some_and(|atom| w[atom as usize]));
     let numbers: Vec<u32> = (0..mesh.triangles().len()).filter(is_wanted).map(|t| t as u32).collect();
     let triangles = numbers.iter().map(|t| mesh.corners(*t as usize)).collect();

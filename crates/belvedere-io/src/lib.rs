@@ -43,7 +43,7 @@ pub use geotiff::GeoTiff;
 pub use input::{InputFile, sha256, sha256_of_file};
 pub use loaded::Loaded;
 pub use mesh::{MeshFile, load_mesh};
-pub use molecule::{MoleculeFile, load_molecule};
+pub use molecule::{MoleculeFile, load_frames, load_model, load_molecule};
 pub use packed::inside;
 pub use ramp::load_ramp;
 pub use raster::{Affine, Alpha, CrsKind, Limits, Photometric, Raster, RasterInfo, SampleType, Samples, SourceCrs};

@@ -72,7 +72,7 @@ pub use belvedere_scene as scene;
 pub use belvedere_sight as sight;
 pub use data::{DataFiles, LARGEST_HOLE};
 pub use error::BelvedereError;
-pub use options::{Needs, OpenOptions};
+pub use options::{MoleculeOptions, Needs, OpenOptions};
 pub use overlays::camera::CameraPicture;
 pub use overlays::furniture::{CompassRecord, FurnitureRecord, ScaleRecord};
 pub use overlays::highlight::{GhostRecord, HighlightRecord, PartRecord};

@@ -64,6 +64,7 @@ impl Session {
                 }
             }
         }
+        options.molecule.apply(&mut document.layer)?;
         for layer in &mut document.layer {
             match (layer, options) {
                 (LayerDoc::Area(area), OpenOptions { area_style: Some(kind), .. }) => {

@@ -1,8 +1,10 @@
 //! Options for opening a scene.
 
-use crate::scene_file::{FurnitureWish, PaletteDoc, SurfaceDoc, SwitchOrLength, SwitchOrVisibility};
+use crate::BelvedereError;
+use crate::scene_file::{FurnitureWish, LayerDoc, PaletteDoc, SurfaceDoc, SwitchOrLength, SwitchOrVisibility};
 use crate::trust::Trust;
 use belvedere_io::Limits;
+use belvedere_scene::molecule::Representation;
 use belvedere_scene::{Edge, Progress};
 use std::path::PathBuf;
 
@@ -49,6 +51,8 @@ pub struct OpenOptions {
     pub sea: Option<bool>,
     /// Surface of the areas of all layers, instead of the scene's settings; `Some(Auto)`: as the files say.
     pub area_style: Option<SurfaceDoc>,
+    /// What molecules are shown as, instead of the scene's settings.
+    pub molecule: MoleculeOptions,
     /// Leaves stages that need a solver out of the view, for callers that need the document alone.
     pub unsolved: bool,
     /// Leaves out the check of presets at viewing angles that the picture does not show, for pictures that are drawn while something moves.
@@ -59,6 +63,49 @@ pub struct OpenOptions {
     pub fonts: Vec<PathBuf>,
     /// Progress and cancellation.
     pub progress: Progress,
+}
+
+/// What all molecules of a scene are shown as; what is left out stays as the scene has it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct MoleculeOptions {
+    /// Balls, rods, ribbons or surfaces.
+    pub representation: Option<Representation>,
+    /// Source of colours, see [`crate::scene_file::MoleculeStyleDoc::color`].
+    pub color: Option<String>,
+    /// Biological assembly, see [`crate::scene_file::MoleculeDoc::assembly`].
+    pub assembly: Option<String>,
+    /// Model of the file, from 1.
+    pub model: Option<usize>,
+}
+
+impl MoleculeOptions {
+    /// Puts them into the layers that are molecules.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Target`] if something is asked for and no layer is a molecule.
+    pub(crate) fn apply(&self, layers: &mut [LayerDoc]) -> Result<(), BelvedereError> {
+        let mut any = false;
+        for layer in layers {
+            let LayerDoc::Molecule(molecule) = layer else { continue };
+            any = true;
+            molecule.style.representation = self.representation.unwrap_or(molecule.style.representation);
+            molecule.style.color = self.color.clone().unwrap_or_else(|| std::mem::take(&mut molecule.style.color));
+            molecule.assembly = self.assembly.clone().or(molecule.assembly.take());
+            molecule.model = self.model.or(molecule.model);
+        }
+        if any || *self == Self::default() {
+            return Ok(());
+        }
+        let given = [
+            ("--representation", self.representation.is_some()),
+            ("--color-by", self.color.is_some()),
+            ("--assembly", self.assembly.is_some()),
+            ("--model", self.model.is_some()),
+        ];
+        let given: Vec<&str> = given.into_iter().filter_map(|(name, given)| given.then_some(name)).collect();
+        let reason = format!("{} is for molecules, and there is none; leave it out", given.join(", "));
+        Err(BelvedereError::Target(reason))
+    }
 }
 
 impl OpenOptions {

@@ -99,3 +99,130 @@ fn the_ready_scene_shows_what_the_front_helix_hides() {
     }
     assert!((share("bent", "sight") - share("bent", "buffer")).abs() < 0.02, "{answer}");
 }
+
+/// Two chains' worth of one: a file with an assembly of three copies and two models.
+const TRIMER: &str = "\
+REMARK 350 BIOMOLECULE: 1
+REMARK 350 APPLY THE FOLLOWING TO CHAINS: A
+REMARK 350   BIOMT1   1  1.000000  0.000000  0.000000        0.00000
+REMARK 350   BIOMT2   1  0.000000  1.000000  0.000000        0.00000
+REMARK 350   BIOMT3   1  0.000000  0.000000  1.000000        0.00000
+REMARK 350   BIOMT1   2  1.000000  0.000000  0.000000        0.00000
+REMARK 350   BIOMT2   2  0.000000  1.000000  0.000000        0.00000
+REMARK 350   BIOMT3   2  0.000000  0.000000  1.000000       12.00000
+REMARK 350   BIOMT1   3  1.000000  0.000000  0.000000        0.00000
+REMARK 350   BIOMT2   3  0.000000  1.000000  0.000000        0.00000
+REMARK 350   BIOMT3   3  0.000000  0.000000  1.000000      -12.00000
+MODEL        1
+ATOM      1  CA  ALA A   1      -5.700   0.000   0.000  1.00  0.00           C
+ATOM      2  CB  ALA A   1      -5.700   0.000   1.530  1.00  0.00           C
+ATOM      3  CA  ALA A   2      -1.900   0.000   0.000  1.00  0.00           C
+ATOM      4  CA  ALA A   3       1.900   0.000   0.000  1.00  0.00           C
+ATOM      5  CA  ALA A   4       5.700   0.000   0.000  1.00  0.00           C
+ENDMDL
+MODEL        2
+ATOM      1  CA  ALA A   1      -5.700   0.000   5.000  1.00  0.00           C
+ATOM      2  CB  ALA A   1      -5.700   0.000   6.530  1.00  0.00           C
+ATOM      3  CA  ALA A   2      -1.900   0.000   5.000  1.00  0.00           C
+ATOM      4  CA  ALA A   3       1.900   0.000   5.000  1.00  0.00           C
+ATOM      5  CA  ALA A   4       5.700   0.000   5.000  1.00  0.00           C
+ENDMDL
+";
+
+#[test]
+fn representations_assemblies_and_models_are_chosen_on_the_command_line_and_in_scenes() {
+    let place = Place::new();
+    place.write("t.pdb", TRIMER);
+    let layer = "[[layer]]\nkind = 'molecule'\nid = 't'\nsource = 't.pdb'\n";
+    place.write("s.toml", &format!("{HEAD}{layer}"));
+    let record = |name: &str| -> serde_json::Value {
+        let record: serde_json::Value =
+            serde_json::from_slice(&read(&place.path(&format!("{name}.json")))).expect("a record");
+        record["molecules"][0].clone()
+    };
+    let mut triangles = Vec::new();
+    for kind in ["ball-and-stick", "spheres", "sticks", "ribbon", "surface"] {
+        let name = format!("{kind}.png");
+        let said = place.run(&["render", "s.toml", "--representation", kind, "--assembly", "1", "-o", &name]);
+        assert!(said.status.success(), "{kind}: {}", String::from_utf8_lossy(&said.stderr));
+        let m = record(&name);
+        assert_eq!(m["drawn_atoms"], 15, "{kind}: {m}");
+        triangles.push(m["triangles"].as_u64().expect("a number"));
+    }
+    triangles.sort_unstable();
+    triangles.dedup();
+    assert_eq!(triangles.len(), 5, "each is drawn in another way: {triangles:?}");
+    // Pieces of ribbons are named by their residues; chains of copies by their number.
+    place.write("r.toml", &format!("{HEAD}{layer}assembly = '1'\nstyle.representation = 'cartoon'\n"));
+    place.write("at.json", "[[1.9, 0, 0], [1.9, 0, 12], [1.9, 0, 5]]");
+    let pick = |scene: &str| {
+        let images = place.json(&["project", scene, "--points", "at.json"]);
+        let pixels: Vec<_> = (0..3).map(|i| images["points"][i]["pixel"].clone()).collect();
+        place.write("p.json", &serde_json::json!(pixels).to_string());
+        let answer = place.json(&["pick", scene, "--pixels", "p.json"]);
+        (0..3).map(|i| answer["pixels"][i]["feature"].as_str().map(str::to_owned)).collect::<Vec<_>>()
+    };
+    assert_eq!(pick("r.toml"), [Some("chain A ALA 3".to_owned()), Some("chain A-2 ALA 3".to_owned()), None]);
+    place.write("m.toml", &format!("{HEAD}{layer}model = 2\nstyle.representation = 'space_filling'\n"));
+    assert_eq!(pick("m.toml"), [None, None, Some("atom CA of chain A ALA 3".to_owned())]);
+    let info = place.json(&["info", "t.pdb", "--json"]);
+    let file = &info["files"][0];
+    assert_eq!(
+        (&file["models"], &file["assemblies"][0]["copies"], &file["assemblies"][0]["atoms"]),
+        (&2.into(), &3.into(), &15.into())
+    );
+    // What is in the file and not drawn is told.
+    let said = place.run(&["check", "s.toml"]);
+    let said = String::from_utf8_lossy(&said.stderr).into_owned() + &String::from_utf8_lossy(&said.stdout);
+    assert!(said.contains("describes assembly 1 of 3 copies (15 atoms)"), "{said}");
+}
+
+#[test]
+fn wrong_assemblies_and_models_are_told_in_one_line() {
+    let place = Place::new();
+    place.write("t.pdb", TRIMER);
+    let layer = "[[layer]]\nkind = 'molecule'\nid = 't'\nsource = 't.pdb'\n";
+    for (keys, said) in [
+        ("assembly = '7'", "there is no assembly \"7\", the file describes 1"),
+        ("model = 0", "models are counted from 1"),
+        ("model = 3", "it holds 2 models, there is no model 3"),
+        ("models_per_s = 0.0", "models_per_s is 0, it must be greater than 0"),
+        ("models_per_s = 5.0\nmodel = 1", "leave one of them out"),
+        ("models_per_s = 5.0\nassembly = '1'", "leave assembly or models_per_s out"),
+        ("style.sticks = 'chian A'", "is no word of selections"),
+        ("style.representation = 'balls'", "balls"),
+    ] {
+        place.write("s.toml", &format!("{HEAD}{layer}{keys}\n"));
+        let out = place.run(&["check", "s.toml"]);
+        let text = String::from_utf8_lossy(&out.stderr).into_owned();
+        assert!(!out.status.success() && text.contains(said) && text.len() < 600, "{keys}: {text}");
+    }
+    place.write("d.toml", &format!("{HEAD}{DNA}"));
+    let out = place.run(&["render", "d.toml", "--assembly", "1", "-o", "a.png"]);
+    let text = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert!(!out.status.success() && text.contains("built-in molecules have none"), "{text}");
+    let camera = "format = 1\n[camera]\neye = [0, -80, 10]\nlook_at = [0, 0, 0]\nimage = [40, 40]\n";
+    place.write("p.toml", &format!("{camera}[[layer]]\nkind = 'volume'\nid = 'v'\nsource = 'builtin:tube'\n"));
+    let out = place.run(&["render", "p.toml", "--representation", "ribbon", "-o", "a.png"]);
+    let text = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert!(!out.status.success() && text.contains("--representation is for molecules, and there is none"), "{text}");
+}
+
+#[test]
+fn models_follow_each_other_in_films() {
+    let place = Place::new();
+    place.write("t.pdb", TRIMER);
+    let layer = "[[layer]]\nkind = 'molecule'\nid = 't'\nsource = 't.pdb'\nmodels_per_s = 10.0\nstyle.representation = 'space_filling'\n";
+    place.write("s.toml", &format!("{HEAD}{layer}[animation]\nfps = 10\n"));
+    place.ok(&["animate", "s.toml", "-o", "film", "--frames", "3"]);
+    let frames: Vec<Vec<u8>> = std::fs::read_dir(place.path("film"))
+        .map(|all| {
+            let mut all: Vec<_> = all.filter_map(|f| Some(f.ok()?.path())).collect();
+            all.retain(|path| path.extension().is_some_and(|e| e == "png"));
+            all.sort();
+            all.iter().map(|path| read(path)).collect()
+        })
+        .expect("frames");
+    assert_eq!(frames.len(), 3);
+    assert!(frames[0] != frames[1], "the second model");
+}

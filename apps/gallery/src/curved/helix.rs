@@ -23,7 +23,7 @@ fn wanted_corners(session: &Session) -> Result<Vec<DVec3>> {
     for layer in &session.scene().layers {
         let LayerKind::Molecule(layer) = &layer.kind else { continue };
         let Some(wanted) = &layer.wanted else { continue };
-        let (mask, mesh) = (wanted.mask(&layer.molecule), &layer.surface.mesh);
+        let (mask, mesh) = (layer.mask_of(wanted), &layer.surface.mesh);
         let shown = |t: usize| mesh.part(t).is_some_and(|atom| mask.get(atom as usize) == Some(&true));
         let corners = mesh.triangles().iter().enumerate().filter(|(t, _)| shown(*t)).flat_map(|(_, c)| *c);
         return Ok(corners.map(|v| mesh.vertex(v)).collect());

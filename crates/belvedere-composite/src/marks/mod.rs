@@ -17,6 +17,7 @@ mod path;
 mod point;
 mod pole;
 mod request;
+mod residue_names;
 mod ribbon;
 mod segment;
 mod shapes;
@@ -32,7 +33,7 @@ use crate::drawn::{Drawn, Pass, Sight};
 use crate::screen::{BAND, COARSE_PX, Screen};
 use crate::sections::Sections;
 use alike::alike;
-use belvedere_core::{Aabb, DVec2};
+use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{
     AreaLayer, Color, Hidden, LayerKind, LineFeature, LineLayer, Overlay, OverlayLine, RenderJob, Scene, Symbol,
 };
@@ -111,6 +112,7 @@ impl Marks {
             tolerance_px,
             map,
             sight: &sight,
+            eye: job.view.pinhole().eye,
             density: job.options.density,
             fonts: &fonts,
             skyline: &skyline,
@@ -137,6 +139,7 @@ impl Marks {
                     sheets.extend(builder.points(&builder.shown_points(i, p), id, &mut points));
                     requests.append(&mut points.requests);
                 }
+                LayerKind::Molecule(m) => requests.extend(builder.residue_names(m)),
                 _ => {}
             }
         }
@@ -157,8 +160,10 @@ impl Marks {
 
     /// Whether the job may have any marks.
     pub fn are_in(job: &RenderJob<'_>) -> bool {
-        let drawn = |kind: &LayerKind| {
-            matches!(kind, LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) | LayerKind::Volume(_))
+        let drawn = |kind: &LayerKind| match kind {
+            LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) | LayerKind::Volume(_) => true,
+            LayerKind::Molecule(molecule) => molecule.label_px.is_some(),
+            _ => false,
         };
         job.scene.layers.iter().any(|l| drawn(&l.kind)) || job.options.overlay != Overlay::default()
     }
@@ -214,6 +219,7 @@ struct MarkBuilder<'a> {
     tolerance_px: f64,
     map: DepthMap<'a>,
     sight: &'a LineOfSight<'a>,
+    eye: DVec3,
     /// Pixels per unit of lengths that styles do not state.
     density: f64,
     /// Fonts of names.

@@ -92,7 +92,20 @@ pub fn bend_around(
     options: &AroundOptions,
     progress: &Progress,
 ) -> Result<BendFound, ConstructError> {
-    let sight = TargetSight::new(scene, target);
+    bend_around_by(&TargetSight::new(scene, target), base, options, progress)
+}
+
+/// [`bend_around`] by lines of sight that are there already: for several bases, the tree over the scene is built once.
+///
+/// # Errors
+/// [`ConstructError::Cancelled`].
+pub fn bend_around_by(
+    sight: &TargetSight<'_>,
+    base: &View,
+    options: &AroundOptions,
+    progress: &Progress,
+) -> Result<BendFound, ConstructError> {
+    let (scene, target) = (sight.scene(), sight.target());
     let Shown { share: visible_straight, light: light_straight } = sight.shown(base, 0.0);
     let straight = sight.share(base, options.grow_px);
     let mut report = BendReport {
@@ -133,7 +146,7 @@ pub fn bend_around(
         let has_room = |s: &Sidestep| s.planes[2] <= last && s.planes[0] > 1.001 * pinhole.near;
         let possible: Vec<Sidestep> = sidesteps.filter(|s| has_room(s) && stands(s)).collect();
         report.tried += possible.len();
-        let found = possible.into_par_iter().filter_map(|s| candidate(base, s, center, options, &sight, &rest));
+        let found = possible.into_par_iter().filter_map(|s| candidate(base, s, center, options, sight, &rest));
         let found: Vec<Candidate> = found.collect();
         for next in found {
             report.light_best = report.light_best.max(next.light);

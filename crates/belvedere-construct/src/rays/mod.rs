@@ -18,7 +18,7 @@ mod turns;
 mod wall;
 mod way;
 
-pub use around::{AroundOptions, BendFound, BendReport, bend_around};
+pub use around::{AroundOptions, BendFound, BendReport, bend_around, bend_around_by};
 pub use film::FilmPlanner;
 pub use preview::{Lens, PathPreview, PreviewReport, Previewed};
 pub use probe::{ProbeMemory, ProbeOptions, ProbeReport, Probed, auto_probe};

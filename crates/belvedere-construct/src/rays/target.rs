@@ -85,7 +85,8 @@ impl Target {
         (!bounds.is_empty()).then(|| Self { own_parts: Some((index, parts)), points, ..Self::around(bounds) })
     }
 
-    /// Atoms of a molecule, by their numbers, as balls; those that are not drawn are left out. `None` if none is drawn.
+    /// Atoms of a molecule, by their numbers, as balls; of ribbons those at which their residues stand. Those that are not drawn, or
+    /// buried under a smooth surface, are left out. `None` if none is drawn.
     pub fn atoms(scene: &Scene, index: usize, atoms: &[usize]) -> Option<Self> {
         let LayerKind::Molecule(layer) = &scene.layers.get(index)?.kind else { return None };
         let mesh = &layer.surface.mesh;
@@ -93,7 +94,9 @@ impl Target {
         for part in (0..mesh.triangles().len()).filter_map(|t| mesh.part(t)) {
             drawn[part as usize] = true;
         }
-        let mut own: Vec<usize> = atoms.iter().copied().filter(|&i| drawn.get(i) == Some(&true)).collect();
+        // A ribbon shows its residue at one atom.
+        let stand_ins = atoms.iter().filter_map(|&i| layer.stand_in(i));
+        let mut own: Vec<usize> = stand_ins.filter(|&i| drawn.get(i) == Some(&true)).collect();
         own.sort_unstable();
         own.dedup();
         let balls = Self::balls(own.iter().map(|&i| (layer.center(i), layer.radius(i))));
@@ -176,6 +179,14 @@ impl<'a> TargetSight<'a> {
         // Molecules and volumes have no ground.
         let lowest = (scene.unit == Unit::Metre && !bounds.is_empty()).then_some(bounds.min.z);
         Self { scene, lowest, target, obstacles, voxels, sight }
+    }
+
+    pub(super) fn scene(&self) -> &'a Scene {
+        self.scene
+    }
+
+    pub(super) fn target(&self) -> &'a Target {
+        self.target
     }
 
     /// Height of a position above the terrain, or beside it above the lowest of the scene, metres; infinite in scenes without ground.

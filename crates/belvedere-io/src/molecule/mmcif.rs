@@ -1,7 +1,8 @@
-//! mmCIF: the loop of atom sites, and the bonds of `struct_conn` that share electrons.
+//! mmCIF: the loop of atom sites, the bonds of `struct_conn` that share electrons, and what [`super::categories`] reads.
 //!
 //! Format: CIF 1.1 (International Tables for Crystallography G, 2.2) with the names of the PDBx dictionary.
 
+use super::categories;
 use super::sites::{Site, Sites};
 use belvedere_scene::molecule::{Element, Residue};
 use glam::DVec3;
@@ -96,43 +97,89 @@ impl<'t> Words<'t> {
 
 /// Values of a category, row by row, each with the line it begins in.
 #[derive(Default)]
-struct Table<'t> {
+pub(super) struct Table<'t> {
     names: Vec<&'t str>,
-    rows: Vec<(usize, Vec<Option<&'t str>>)>,
+    pub(super) rows: Vec<(usize, Vec<Option<&'t str>>)>,
 }
 
 impl<'t> Table<'t> {
-    fn column(&self, names: &[&str]) -> Option<usize> {
+    pub(super) fn column(&self, names: &[&str]) -> Option<usize> {
         names.iter().find_map(|n| self.names.iter().position(|have| have.eq_ignore_ascii_case(n)))
     }
 }
 
 const SITES: &str = "_atom_site.";
 const BONDS: &str = "_struct_conn.";
+/// Categories that are read.
+const CATEGORIES: [&str; 8] = [
+    SITES,
+    BONDS,
+    categories::GENERATED,
+    categories::OPERATIONS,
+    categories::ASSEMBLIES,
+    categories::HELICES,
+    categories::STRANDS,
+    categories::COMPONENT_BONDS,
+];
 
-pub(super) fn read(text: &str) -> Result<Sites, String> {
-    let (sites, bonds) = tables(text)?;
+/// Tables of the categories that are read.
+#[derive(Default)]
+pub(super) struct Tables<'t>([Table<'t>; CATEGORIES.len()]);
+
+impl<'t> Tables<'t> {
+    /// That of a category, which is read.
+    pub(super) fn of(&self, category: &str) -> &Table<'t> {
+        &self.0[CATEGORIES.iter().position(|c| *c == category).unwrap_or(0)]
+    }
+
+    fn slot(&mut self, name: &str) -> Option<&mut Table<'t>> {
+        let at = CATEGORIES.iter().position(|category| is_in(name, category))?;
+        Some(&mut self.0[at])
+    }
+}
+
+/// * `number`: of the model whose atoms are read, from 1; `frames`: whether the places of all models are read, too.
+pub(super) fn read(text: &str, number: usize, frames: bool) -> Result<Sites, String> {
+    let tables = tables(text)?;
+    let sites = tables.of(SITES);
     let mut out = Sites::default();
-    let (mut model, mut models) = (None, Vec::new());
-    let column = Columns::of(&sites)?;
+    let mut models: Vec<Option<&str>> = Vec::new();
+    let column = Columns::of(sites)?;
     for (line, row) in &sites.rows {
-        let number = column.model.and_then(|k| row[k]);
-        if !models.contains(&number) {
-            models.push(number);
-        }
-        if *model.get_or_insert(number) == number {
+        let model = column.model.and_then(|k| row[k]);
+        // Rows of a model stand together in most files.
+        let at = match models.last() == Some(&model) {
+            true => models.len(),
+            false => models.iter().position(|m| *m == model).map_or_else(
+                || {
+                    models.push(model);
+                    models.len()
+                },
+                |at| at + 1,
+            ),
+        };
+        if at == number || frames {
             let running = out.sites.len() as i64 + 1;
-            out.sites.push(column.site(row, running).map_err(|e| format!("line {line}: {e}"))?);
+            let site = column.site(row, running).map_err(|e| format!("line {line}: {e}"))?;
+            if frames {
+                out.place(at, site.position);
+            }
+            if at == number {
+                out.sites.push(site);
+            }
         }
     }
     out.models = models.len().max(1);
-    out.bonds = named_bonds(&bonds, &out.sites);
+    out.bonds = named_bonds(tables.of(BONDS), &out.sites);
+    out.structure = categories::structure(&tables);
+    out.assemblies = categories::assemblies(&tables);
+    out.named_orders = categories::orders(&tables);
     Ok(out)
 }
 
 /// The categories that are read, given as loops or as single values.
-fn tables(text: &str) -> Result<(Table<'_>, Table<'_>), String> {
-    let (mut sites, mut bonds) = (Table::default(), Table::default());
+fn tables(text: &str) -> Result<Tables<'_>, String> {
+    let mut tables = Tables::default();
     let mut words = Words { text, at: 0, line: 1 };
     let mut blocks = 0;
     let mut pending = words.next()?;
@@ -140,10 +187,9 @@ fn tables(text: &str) -> Result<(Table<'_>, Table<'_>), String> {
         match token {
             Token::Keyword(word) if word.eq_ignore_ascii_case("loop_") => {
                 let (table, next) = looped(&mut words)?;
-                match table.names.first() {
-                    Some(n) if is_in(n, SITES) && sites.rows.is_empty() => sites = table,
-                    Some(n) if is_in(n, BONDS) && bonds.rows.is_empty() => bonds = table,
-                    _ => {}
+                let slot = table.names.first().and_then(|n| tables.slot(n)).filter(|slot| slot.rows.is_empty());
+                if let Some(slot) = slot {
+                    *slot = table;
                 }
                 pending = next;
                 continue;
@@ -151,7 +197,7 @@ fn tables(text: &str) -> Result<(Table<'_>, Table<'_>), String> {
             Token::Keyword(word) => {
                 blocks += usize::from(word.get(..5).is_some_and(|w| w.eq_ignore_ascii_case("data_")));
                 // Of several structures the first with atoms is read.
-                if blocks > 1 && !sites.rows.is_empty() {
+                if blocks > 1 && !tables.of(SITES).rows.is_empty() {
                     break;
                 }
             }
@@ -160,17 +206,15 @@ fn tables(text: &str) -> Result<(Table<'_>, Table<'_>), String> {
                 let Some((_, Token::Value(value))) = value else {
                     return Err(format!("line {line}: {name} has no value; it is truncated or damaged, get it again"));
                 };
-                for (table, category) in [(&mut sites, SITES), (&mut bonds, BONDS)] {
-                    if is_in(name, category) {
-                        single(table, name, value, line);
-                    }
+                if let Some(table) = tables.slot(name) {
+                    single(table, name, value, line);
                 }
             }
             Token::Value(_) => {}
         }
         pending = words.next()?;
     }
-    Ok((sites, bonds))
+    Ok(tables)
 }
 
 fn is_in(name: &str, category: &str) -> bool {
@@ -198,7 +242,7 @@ fn looped<'t>(words: &mut Words<'t>) -> Result<(Table<'t>, Next<'t>), String> {
         table.names.push(name);
         next = words.next()?;
     }
-    let wanted = table.names.first().is_some_and(|n| is_in(n, SITES) || is_in(n, BONDS));
+    let wanted = table.names.first().is_some_and(|n| CATEGORIES.iter().any(|category| is_in(n, category)));
     let (width, mut count) = (table.names.len(), 0usize);
     while let Some((line, Token::Value(value))) = next {
         if wanted {
@@ -230,6 +274,7 @@ struct Columns {
     alternate: Option<usize>,
     residue: usize,
     chain: Option<usize>,
+    asym: Option<usize>,
     number: Option<usize>,
     insertion: Option<usize>,
     position: [usize; 3],
@@ -262,6 +307,7 @@ impl Columns {
             alternate: find(&["label_alt_id"]),
             residue: must(&["auth_comp_id", "label_comp_id"])?,
             chain: find(&["auth_asym_id", "label_asym_id"]),
+            asym: find(&["label_asym_id", "auth_asym_id"]),
             number: find(&["auth_seq_id", "label_seq_id"]),
             insertion: find(&["pdbx_PDB_ins_code"]),
             occupancy: find(&["occupancy"]),
@@ -285,6 +331,7 @@ impl Columns {
             serial: text(self.serial).and_then(|t| t.parse().ok()).unwrap_or(running),
             element: stated.or(guess).unwrap_or(Element::UNKNOWN),
             name,
+            asym: text(self.asym).unwrap_or("").to_owned(),
             residue: Residue {
                 name: row[self.residue].unwrap_or("").to_owned(),
                 number: text(self.number).and_then(|t| t.parse().ok()).unwrap_or(0),

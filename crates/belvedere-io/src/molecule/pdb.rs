@@ -2,39 +2,143 @@
 //!
 //! Format: wwPDB, version 3.3, and its variants by simulation programs: no chains, no elements, numbers that overflow their columns.
 
+use super::assembly::Described;
 use super::sites::{Site, Sites};
+use super::structure::{Place, Stretch};
 use belvedere_core::{Warning, WarningKind};
-use belvedere_scene::molecule::{Element, Residue};
+use belvedere_scene::molecule::{Element, Residue, Secondary};
 use glam::DVec3;
+use std::collections::HashMap;
 
 /// Columns of a line of an atom up to its coordinates.
 const NEEDED: usize = 54;
 
-pub(super) fn read(text: &str) -> Result<Sites, String> {
+/// * `model`: that whose atoms are read, from 1; `frames`: whether the places of all models are read, too.
+pub(super) fn read(text: &str, model: usize, frames: bool) -> Result<Sites, String> {
     let mut out = Sites::default();
+    let mut remarks = Remarks::default();
     let (mut guessed, mut renumbered) = (0, 0);
     for (i, line) in text.lines().enumerate() {
         let record = columns(line, 0, 6).trim_end();
         match record {
             "MODEL" => out.models += 1,
-            "ATOM" | "HETATM" if out.models <= 1 => {
+            "ATOM" | "HETATM" if out.models.max(1) == model => {
                 let number = out.sites.len() as i64 + 1;
                 let (site, odd) = site(line, record == "HETATM", number).map_err(|e| format!("line {}: {e}", i + 1))?;
                 guessed += usize::from(odd.element);
                 renumbered += usize::from(odd.serial);
+                if frames {
+                    out.place(out.models.max(1), site.position);
+                }
                 out.sites.push(site);
             }
+            "ATOM" | "HETATM" if frames => {
+                let (site, _) = site(line, false, 0).map_err(|e| format!("line {}: {e}", i + 1))?;
+                out.place(out.models, site.position);
+            }
+            "HELIX" => out.structure.extend(stretch(line, Secondary::Helix)),
+            "SHEET" => out.structure.extend(stretch(line, Secondary::Strand)),
+            "REMARK" if columns(line, 7, 10) == "350" => remarks.read(line),
             "CONECT" => out.bonds.extend(bonds(line)),
             "END" => break,
             _ => {}
         }
     }
     out.models = out.models.max(1);
+    out.assemblies = remarks.described;
+    // A partner that is named twice shares four electrons, one that is named three times six.
+    out.orders = orders(&out.bonds);
     let from_names = "atoms name no element; it is taken from their names";
     out.warnings.extend(Warning::counted(WarningKind::Assumed, guessed, from_names));
     let counted = "atoms have no readable number; they are counted instead";
     out.warnings.extend(Warning::counted(WarningKind::Repaired, renumbered, counted));
     Ok(out)
+}
+
+/// Bonds that one of their atoms names more than once.
+fn orders(bonds: &[[i64; 2]]) -> Vec<([i64; 2], u8)> {
+    let mut counts: HashMap<[i64; 2], u8> = HashMap::new();
+    for bond in bonds {
+        let count = counts.entry(*bond).or_default();
+        *count = count.saturating_add(1);
+    }
+    let mut out: Vec<([i64; 2], u8)> = counts.into_iter().filter(|(_, count)| *count > 1).collect();
+    out.sort_unstable();
+    out
+}
+
+/// The helix or strand of a line.
+fn stretch(line: &str, kind: Secondary) -> Option<Stretch> {
+    let place = |chain: usize, number: usize| -> Option<Place> {
+        let letter = columns(line, number + 4, number + 5).chars().next().filter(|c| c.is_ascii_alphanumeric());
+        let number = whole(columns(line, number, number + 4).trim(), 4)?;
+        Some((columns(line, chain, chain + 1).trim().to_owned(), i32::try_from(number).ok()?, letter))
+    };
+    let (from, to) = match kind {
+        Secondary::Helix => (place(19, 21)?, place(31, 33)?),
+        _ => (place(21, 22)?, place(32, 33)?),
+    };
+    Some(Stretch { kind, from, to })
+}
+
+/// The lines of REMARK 350: assemblies, their chains, and the rows of their matrices.
+#[derive(Default)]
+struct Remarks {
+    described: Described,
+    id: String,
+    chains: Vec<String>,
+    /// Whether the list of chains ended, so that the next one belongs to other matrices.
+    has_matrices: bool,
+}
+
+impl Remarks {
+    fn read(&mut self, line: &str) {
+        let text = columns(line, 10, 80).trim();
+        let after = |label: &str| text.strip_prefix(label).map(|t| t.trim().to_owned());
+        if let Some(id) = after("BIOMOLECULE:") {
+            self.id = id.split(',').next().unwrap_or_default().trim().to_owned();
+            self.chains.clear();
+            self.has_matrices = false;
+        } else if let Some(said) = text.split_once("BIOLOGICAL UNIT:").map(|(_, said)| said.trim()) {
+            self.described.details.entry(self.id.clone()).or_insert_with(|| said.to_owned());
+        } else if let Some(list) = after("APPLY THE FOLLOWING TO CHAINS:").or_else(|| after("AND CHAINS:")) {
+            if self.has_matrices {
+                self.chains.clear();
+                self.has_matrices = false;
+            }
+            let names = list.split(',').map(str::trim).filter(|name| !name.is_empty());
+            // A chain without a name is called so.
+            self.chains.extend(names.map(|name| if name == "NULL" { String::new() } else { name.to_owned() }));
+        } else if let Some(row) = text.strip_prefix("BIOMT") {
+            self.row(row);
+        }
+    }
+
+    fn row(&mut self, text: &str) {
+        let mut words = text.split_whitespace();
+        let row = words.next().and_then(|k| k.parse::<usize>().ok()).filter(|k| (1..=3).contains(k));
+        let (Some(row), Some(number)) = (row, words.next()) else { return };
+        let mut values = [f64::NAN; 4];
+        values.iter_mut().zip(words).for_each(|(v, word)| *v = word.parse().unwrap_or(f64::NAN));
+        // Numbers may begin anew with other chains of an assembly.
+        let part = self.described.parts.iter().filter(|(id, ..)| *id == self.id).count();
+        if !self.has_matrices {
+            self.described.parts.push((self.id.clone(), String::new(), self.chains.clone()));
+            self.has_matrices = true;
+            return self.row_of(row, values, &format!("{}.{}.{number}", self.id, part + 1));
+        }
+        self.row_of(row, values, &format!("{}.{part}.{number}", self.id));
+    }
+
+    fn row_of(&mut self, row: usize, values: [f64; 4], name: &str) {
+        self.described.operations.entry(name.to_owned()).or_insert([[f64::NAN; 4]; 3])[row - 1] = values;
+        if let Some((_, expression, _)) = self.described.parts.last_mut().filter(|_| row == 1) {
+            if !expression.is_empty() {
+                expression.push(',');
+            }
+            expression.push_str(name);
+        }
+    }
 }
 
 /// Properties of an atom that had to be guessed.
@@ -79,6 +183,7 @@ fn site(line: &str, hetero: bool, running: i64) -> Result<(Site, Odd), String> {
     let odd = Odd { element: stated.is_none(), serial: serial.is_none() };
     let site = Site {
         serial: serial.unwrap_or(running),
+        asym: residue.chain.clone(),
         name: field(12, 16).to_owned(),
         element,
         residue,

@@ -1,5 +1,7 @@
 //! Assembles a molecule from the atom lines of a file: residues, alternate locations, models.
 
+use super::assembly::{Assemblies, Described};
+use super::structure::{self, Stretch};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Molecule;
 use belvedere_scene::molecule::{Atom, Element, Residue};
@@ -9,6 +11,8 @@ use std::collections::HashMap;
 /// One atom line of a file.
 pub(super) struct Site {
     pub(super) serial: i64,
+    /// Chain as the assemblies of the file name it.
+    pub(super) asym: String,
     pub(super) name: String,
     pub(super) element: Element,
     pub(super) residue: Residue,
@@ -18,13 +22,21 @@ pub(super) struct Site {
     pub(super) occupancy: f64,
 }
 
-/// All atom lines of the first model, named bonds, number of models and warnings.
+/// All atom lines of one model, named bonds, number of models and warnings.
 #[derive(Default)]
 pub(super) struct Sites {
     pub(super) sites: Vec<Site>,
     /// Bonds by numbers of atoms in the file.
     pub(super) bonds: Vec<[i64; 2]>,
+    /// Orders of some bonds, by numbers of atoms.
+    pub(super) orders: Vec<([i64; 2], u8)>,
+    /// Orders of bonds in residues of a name, by names of atoms.
+    pub(super) named_orders: Vec<(String, [String; 2], u8)>,
+    pub(super) structure: Vec<Stretch>,
+    pub(super) assemblies: Described,
     pub(super) models: usize,
+    /// Places of the atoms of each model, if they were asked for.
+    pub(super) frames: Vec<Vec<DVec3>>,
     /// One sentence each.
     pub(super) warnings: Vec<Warning>,
 }
@@ -35,17 +47,32 @@ pub(super) struct Found {
     pub(super) models: usize,
     pub(super) alternates: usize,
     pub(super) named_bonds: usize,
+    pub(super) assemblies: Assemblies,
+    pub(super) frames: Vec<Vec<DVec3>>,
     pub(super) warnings: Vec<Warning>,
 }
 
 impl Sites {
-    /// Assembles the molecule.
-    pub(super) fn finish(self) -> Result<(Molecule, Found), String> {
-        let Self { sites, bonds, models, mut warnings } = self;
+    /// Adds the place of an atom of a model, from 1.
+    pub(super) fn place(&mut self, model: usize, position: DVec3) {
+        if self.frames.len() < model {
+            self.frames.resize_with(model, Vec::new);
+        }
+        if let Some(frame) = self.frames.get_mut(model.saturating_sub(1)) {
+            frame.push(position);
+        }
+    }
+
+    /// Assembles the molecule of a model; `None` = the first one, with a warning if there are more.
+    pub(super) fn finish(self, model: Option<usize>) -> Result<(Molecule, Found), String> {
+        let Self { sites, bonds, orders, named_orders, structure, assemblies, models, frames, mut warnings } = self;
+        if let Some(model) = model.filter(|model| *model > models) {
+            return Err(format!("it holds {models} models, there is no model {model}; name one in 1..={models}"));
+        }
         if sites.is_empty() {
             return Err("it holds no atom; a file of coordinates is needed".into());
         }
-        if models > 1 {
+        if models > 1 && model.is_none() && frames.is_empty() {
             let text = format!("it holds {models} models; the first is taken");
             warnings.push(Warning::new(WarningKind::Ignored, text).with("models", models as f64));
         }
@@ -54,10 +81,13 @@ impl Sites {
         let left_out = "atoms at alternate locations are left out; the likeliest stay";
         warnings.extend(Warning::counted(WarningKind::Ignored, alternates, left_out));
         warnings.extend(leave_out_unplaced(&sites, &mut keep)?);
+        let frames = kept_places(frames, &keep)?;
         let (mut atoms, mut residues): (Vec<Atom>, Vec<Residue>) = (Vec::new(), Vec::new());
+        let mut chains: Vec<String> = Vec::new();
         for (site, _) in sites.into_iter().zip(keep).filter(|(_, keep)| *keep) {
             if residues.last() != Some(&site.residue) {
                 residues.push(site.residue);
+                chains.push(site.asym);
             }
             let residue = residues.len() as u32 - 1;
             let Site { serial, name, element, position, .. } = site;
@@ -82,9 +112,55 @@ impl Sites {
             warnings.push(Warning::new(WarningKind::Fallback, text));
         }
         check_density(&atoms)?;
+        let structure = structure::of(&structure, &residues);
         let molecule = Molecule::bonded(atoms, residues, &named).map_err(|e| e.to_string())?;
-        Ok((molecule, Found { models, alternates, named_bonds: named.len(), warnings }))
+        let mut told = by_names(&molecule, &named_orders);
+        told.extend(orders.iter().filter_map(|(bond, order)| Some((pair(bond)?, *order))));
+        let molecule = molecule.with_orders(&told).with_structure(structure);
+        let (assemblies, complaints) = assemblies.of(&molecule, &chains);
+        warnings.extend(complaints.into_iter().take(3).map(|text| Warning::new(WarningKind::Ignored, text)));
+        Ok((molecule, Found { models, alternates, named_bonds: named.len(), assemblies, frames, warnings }))
     }
+}
+
+/// Places of the atoms that are kept, of each model.
+fn kept_places(frames: Vec<Vec<DVec3>>, keep: &[bool]) -> Result<Vec<Vec<DVec3>>, String> {
+    let one = |(k, frame): (usize, Vec<DVec3>)| {
+        let count = frame.len();
+        if count != keep.len() {
+            return Err(format!(
+                "model {} has {count} atoms and the one that is read {}; models of a film have the same atoms",
+                k + 1,
+                keep.len()
+            ));
+        }
+        if let Some(p) = frame.iter().find(|p| p.abs().max_element() > Molecule::FARTHEST) {
+            return Err(format!("an atom of model {} lies at {p}, beyond {} angstrom", k + 1, Molecule::FARTHEST));
+        }
+        Ok(frame.into_iter().zip(keep).filter(|(_, keep)| **keep).map(|(p, _)| p).collect())
+    };
+    frames.into_iter().enumerate().map(one).collect()
+}
+
+/// Orders of the bonds within residues whose names a table of the file holds.
+fn by_names(molecule: &Molecule, table: &[(String, [String; 2], u8)]) -> Vec<([u32; 2], u8)> {
+    if table.is_empty() {
+        return Vec::new();
+    }
+    let known: HashMap<(&str, &str, &str), u8> = table
+        .iter()
+        .flat_map(|(residue, [a, b], order)| {
+            [((residue.as_str(), a.as_str(), b.as_str()), *order), ((residue.as_str(), b.as_str(), a.as_str()), *order)]
+        })
+        .collect();
+    let atoms = molecule.atoms();
+    let order = |&[a, b]: &[u32; 2]| {
+        let (first, second) = (&atoms[a as usize], &atoms[b as usize]);
+        let residue = molecule.residues()[first.residue as usize].name.as_str();
+        let order = *known.get(&(residue, first.name.as_str(), second.name.as_str()))?;
+        (first.residue == second.residue).then_some(([a, b], order))
+    };
+    molecule.bonds().iter().filter_map(order).collect()
 }
 
 /// Most atoms at exactly one place. Alternate locations without a letter are two or three; programs that know no place of an atom write 0 0 0.

@@ -1,5 +1,6 @@
 //! Tests of the loaders and writers.
 
+mod assemblies;
 mod atomic;
 mod bad_cities;
 mod budget;

@@ -1,27 +1,55 @@
 //! A molecule as a layer: which atoms are drawn, how, and which must be seen.
 
+use super::secondary::Secondary;
 use super::surface::{self, Look};
-use super::{Element, ModelTransform, Molecule, MoleculeColor, MoleculeStyle, Representation, Selection};
+use super::trace::{ByResidue, traces};
+use super::{Element, ModelTransform, Molecule, MoleculeColor, MoleculeStyle, Representation, Selection, Shown};
 use crate::{Color, MeshError, MeshLayer};
 use glam::DVec3;
+use std::collections::HashMap;
+use std::sync::Arc;
 
 /// A molecule and its surface. The surface is made once; it is bent, drawn and picked, and hides points, like any mesh.
 #[derive(Debug, Clone)]
 pub struct MoleculeLayer {
     /// All atoms of the file, drawn or not, angstrom.
-    pub molecule: Molecule,
+    pub molecule: Arc<Molecule>,
     /// Placement in the scene.
     pub placement: ModelTransform,
     /// Triangles of the drawn atoms and bonds, scene coordinates. A triangle's part ([`crate::Mesh::part`]) is the index of its atom.
     pub surface: MeshLayer,
     /// Atoms that are drawn.
     pub atoms: usize,
-    /// Bonds that are drawn: those whose atoms both are, none where atoms fill space.
+    /// Bonds that are drawn as rods: those whose atoms both are balls, none where atoms fill space.
     pub bonds: usize,
-    /// Balls and rods, or balls alone.
+    /// What atoms are shown as.
     pub representation: Representation,
+    /// What each atom is drawn as.
+    pub shown: Arc<Vec<Shown>>,
+    /// Places of the atoms in the models of a film; `None` = they stay where they are.
+    pub film: Option<Arc<MoleculeFilm>>,
+    /// Height of the names of residues; `None` = none are written.
+    pub label_px: Option<f64>,
     /// The atoms that `must_see` means; `None` = all that are drawn.
     pub wanted: Option<Selection>,
+}
+
+/// Models of a molecule that are shown one after the other; the last one stays.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MoleculeFilm {
+    /// Places of the atoms in each model, angstrom.
+    pub models: Vec<Vec<DVec3>>,
+    /// Models per second of the film, > 0.
+    pub models_per_s: f64,
+    /// How each is drawn.
+    pub style: MoleculeStyle,
+}
+
+impl MoleculeFilm {
+    /// Time at which the last model comes, seconds.
+    pub fn end(&self) -> f64 {
+        self.models.len().saturating_sub(1) as f64 / self.models_per_s
+    }
 }
 
 /// Colours of chains and of residues, distinct from each other and from the colours of marks.
@@ -43,14 +71,53 @@ impl MoleculeLayer {
     ///
     /// # Errors
     /// [`MeshError`] if the triangles do not make a mesh: if positions exceed single precision.
-    pub fn new(molecule: Molecule, style: &MoleculeStyle, placement: ModelTransform) -> Result<Self, MeshError> {
+    pub fn new(
+        molecule: impl Into<Arc<Molecule>>,
+        style: &MoleculeStyle,
+        placement: ModelTransform,
+    ) -> Result<Self, MeshError> {
+        let molecule: Arc<Molecule> = molecule.into();
         let drawn = style.selection.mask(&molecule);
-        let colors = colors(&molecule, style);
-        let look = Look { representation: style.representation, detail: style.detail };
-        let made = surface::build(&molecule, &drawn, &colors, look, &placement)?;
-        let surface = MeshLayer::new(made.mesh, Element::C.color());
+        let sticks = style.sticks.as_ref().map(|s| s.mask(&molecule)).unwrap_or_default();
+        let colors = colors(&molecule, style, &drawn);
         let representation = style.representation;
-        Ok(Self { molecule, placement, surface, atoms: made.atoms, bonds: made.bonds, representation, wanted: None })
+        let look = Look { representation, detail: style.detail, orders: style.orders };
+        let made = surface::build(&molecule, (&drawn, &sticks), &colors, look, &placement)?;
+        let surface = MeshLayer::new(made.mesh, Element::C.color());
+        let (atoms, bonds, shown) = (made.atoms, made.bonds, Arc::new(made.shown));
+        Ok(Self {
+            molecule,
+            placement,
+            surface,
+            atoms,
+            bonds,
+            representation,
+            shown,
+            film: None,
+            label_px: None,
+            wanted: None,
+        })
+    }
+
+    /// The same whose atoms move, at the first model.
+    pub fn filmed(self, film: MoleculeFilm) -> Self {
+        Self { film: Some(Arc::new(film)), ..self }
+    }
+
+    /// The layer at a time of its film, seconds; `None` if it has none.
+    ///
+    /// # Errors
+    /// As [`MoleculeLayer::new`].
+    pub fn at(&self, t: f64) -> Option<Result<Self, MeshError>> {
+        let film = self.film.as_ref()?;
+        let model = ((t * film.models_per_s + 1e-9).max(0.0) as usize).min(film.models.len().checked_sub(1)?);
+        let molecule = self.molecule.at(&film.models[model]);
+        let made = Self::new(molecule, &film.style, self.placement);
+        let keep = |mut made: Self| {
+            made.surface.opacity = self.surface.opacity;
+            Self { film: self.film.clone(), label_px: self.label_px, wanted: self.wanted.clone(), ..made }
+        };
+        Some(made.map(keep))
     }
 
     /// The same where `must_see` means some of the atoms only.
@@ -58,15 +125,41 @@ impl MoleculeLayer {
         Self { wanted: Some(wanted), ..self }
     }
 
-    /// Readable name of the atom that a triangle of the surface belongs to.
+    /// Readable name of the atom that a triangle of the surface belongs to; of ribbons that of the residue.
     pub fn name_of(&self, triangle: usize) -> Option<String> {
         let atom = self.surface.mesh.part(triangle)? as usize;
-        (atom < self.molecule.atoms().len()).then(|| self.molecule.name_of(atom))
+        let is_ribbon = matches!(self.shown.get(atom), Some(Shown::Ribbon(_)));
+        let name = |atom| match is_ribbon {
+            true => self.molecule.residue_of(atom).to_string(),
+            false => self.molecule.name_of(atom),
+        };
+        (atom < self.molecule.atoms().len()).then(|| name(atom))
     }
 
-    /// Radius of the ball that an atom is drawn as, scene units.
+    /// The atom whose triangles show an atom: itself, or the one at which the ribbon of its residue stands; `None` if it is not drawn.
+    pub fn stand_in(&self, atom: usize) -> Option<usize> {
+        match self.shown.get(atom)? {
+            Shown::Not => None,
+            Shown::Ball | Shown::Surface => Some(atom),
+            Shown::Ribbon(other) => Some(*other as usize),
+        }
+    }
+
+    /// Whether the triangles of each atom show one that a selection means.
+    pub fn mask_of(&self, selection: &Selection) -> Vec<bool> {
+        let mut out = vec![false; self.molecule.atoms().len()];
+        for i in (0..out.len()).filter(|&i| selection.holds(&self.molecule, i)) {
+            if let Some(stand_in) = self.stand_in(i) {
+                out[stand_in] = true;
+            }
+        }
+        out
+    }
+
+    /// Radius of the ball that an atom is drawn as, scene units; of ribbons half their thickness.
     pub fn radius(&self, atom: usize) -> f64 {
-        self.placement.scale * surface::ball_radius(self.molecule.atoms()[atom].element, self.representation)
+        let shown = self.shown.get(atom).copied().unwrap_or_default();
+        self.placement.scale * surface::radius(self.molecule.atoms()[atom].element, shown, self.representation)
     }
 
     /// Centre of an atom, scene coordinates.
@@ -75,34 +168,144 @@ impl MoleculeLayer {
     }
 }
 
+/// Colours of helices, strands and all else.
+const STRUCTURE: [Color; 3] = [Color::rgb(206, 206, 202), Color::rgb(214, 88, 108), Color::rgb(226, 184, 74)];
+
 /// A colour per atom.
-fn colors(molecule: &Molecule, style: &MoleculeStyle) -> Vec<Color> {
+fn colors(molecule: &Molecule, style: &MoleculeStyle, drawn: &[bool]) -> Vec<Color> {
     let series = |names: Vec<&str>| {
-        let mut known: Vec<&str> = Vec::new();
+        let mut known: HashMap<&str, usize> = HashMap::new();
         let number = names.into_iter().map(|name| {
-            known.iter().position(|k| *k == name).unwrap_or_else(|| {
-                known.push(name);
-                known.len() - 1
-            })
+            let next = known.len();
+            *known.entry(name).or_insert(next)
         });
         number.map(|i| SERIES[i % SERIES.len()]).collect::<Vec<_>>()
     };
     let residues = molecule.residues();
-    let of_residue = match style.color {
-        MoleculeColor::Chain => series(residues.iter().map(|r| r.chain.as_str()).collect()),
+    let auto = match style.representation {
+        Representation::Ribbon | Representation::Surface => MoleculeColor::Chain,
+        _ => MoleculeColor::Element,
+    };
+    let by = if style.color == MoleculeColor::Auto { auto } else { style.color };
+    let of_residue = match by {
+        MoleculeColor::Chain => series((0..residues.len()).map(|r| molecule.chain_in_file(r)).collect()),
         MoleculeColor::Residue => series(residues.iter().map(|r| r.name.as_str()).collect()),
-        MoleculeColor::Element | MoleculeColor::One(_) => Vec::new(),
+        MoleculeColor::Structure => {
+            let mut out = vec![STRUCTURE[0]; residues.len()];
+            for link in traces(molecule, drawn, &ByResidue::of(molecule)).iter().flat_map(|t| &t.links) {
+                out[link.residue as usize] = match link.structure {
+                    Secondary::Coil => STRUCTURE[0],
+                    Secondary::Helix => STRUCTURE[1],
+                    Secondary::Strand => STRUCTURE[2],
+                };
+            }
+            out
+        }
+        MoleculeColor::Auto | MoleculeColor::Element | MoleculeColor::One(_) => Vec::new(),
     };
     let color = |i: usize| {
         let atom = &molecule.atoms()[i];
         if let Some(paint) = style.paint.iter().rev().find(|p| p.selection.holds(molecule, i)) {
             return paint.color;
         }
-        match style.color {
-            MoleculeColor::Element => atom.element.color(),
+        // Balls and rods beside ribbons are told by their elements, all but carbon.
+        let beside = style.color == MoleculeColor::Auto
+            && by == MoleculeColor::Chain
+            && atom.element != Element::C
+            && (residues[atom.residue as usize].hetero || style.sticks.as_ref().is_some_and(|s| s.holds(molecule, i)))
+            && style.representation == Representation::Ribbon;
+        match by {
             MoleculeColor::One(color) => color,
-            MoleculeColor::Chain | MoleculeColor::Residue => of_residue[atom.residue as usize],
+            MoleculeColor::Auto | MoleculeColor::Element => atom.element.color(),
+            _ if beside => atom.element.color(),
+            MoleculeColor::Chain | MoleculeColor::Residue | MoleculeColor::Structure => {
+                of_residue[atom.residue as usize]
+            }
         }
     };
     (0..molecule.atoms().len()).map(color).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::molecule::{Atom, Residue};
+
+    /// Six residues of a chain with a side atom each, a ligand, a water.
+    fn chain() -> Molecule {
+        let mut atoms = Vec::new();
+        let mut residues = Vec::new();
+        let mut add = |name: &str, number: i32, hetero: bool, list: &[(&str, Element, DVec3)]| {
+            let residue = residues.len() as u32;
+            residues.push(Residue { name: name.into(), number, insertion: None, chain: "A".into(), hetero });
+            for (name, element, position) in list {
+                let serial = atoms.len() as i64 + 1;
+                atoms.push(Atom { serial, name: (*name).into(), element: *element, residue, position: *position });
+            }
+        };
+        for i in 0..6 {
+            let at = DVec3::new(3.8 * f64::from(i), 0.0, 0.0);
+            add("ALA", i + 1, false, &[("CA", Element::C, at), ("CB", Element::C, at + 1.53 * DVec3::Z)]);
+        }
+        add(
+            "LIG",
+            100,
+            true,
+            &[("O1", Element::O, DVec3::new(5.0, 9.0, 0.0)), ("C1", Element::C, DVec3::new(5.0, 10.4, 0.0))],
+        );
+        Molecule::bonded(atoms, residues, &[]).unwrap()
+    }
+
+    fn layer(representation: Representation, sticks: Option<&str>) -> MoleculeLayer {
+        let sticks = sticks.map(|text| Selection::parse(text).unwrap());
+        let style = MoleculeStyle { representation, sticks, ..MoleculeStyle::default() };
+        MoleculeLayer::new(chain(), &style, ModelTransform::default()).unwrap()
+    }
+
+    #[test]
+    fn ribbons_stand_for_residues_and_leave_ligands_as_balls() {
+        let made = layer(Representation::Ribbon, None);
+        assert_eq!((made.atoms, made.bonds), (14, 1));
+        let parts: std::collections::BTreeSet<u32> =
+            (0..made.surface.mesh.triangles().len()).filter_map(|t| made.surface.mesh.part(t)).collect();
+        assert_eq!(parts.into_iter().collect::<Vec<_>>(), [0, 2, 4, 6, 8, 10, 12, 13]);
+        assert_eq!((made.stand_in(5), made.stand_in(4), made.stand_in(12)), (Some(4), Some(4), Some(12)));
+        let side = Selection::parse("resi 3 and name CB").unwrap();
+        let mask = made.mask_of(&side);
+        assert_eq!(mask.iter().enumerate().filter(|(_, m)| **m).map(|(i, _)| i).collect::<Vec<_>>(), [4]);
+        assert!(made.radius(4) < made.radius(12));
+        let of = |part: u32| {
+            (0..made.surface.mesh.triangles().len()).find(|&t| made.surface.mesh.part(t) == Some(part)).unwrap()
+        };
+        assert_eq!(made.name_of(of(4)).as_deref(), Some("chain A ALA 3"));
+        assert_eq!(made.name_of(of(12)).as_deref(), Some("atom O1 of chain A LIG 100"));
+    }
+
+    #[test]
+    fn chosen_atoms_are_balls_and_rods_beside_ribbons_and_through_surfaces() {
+        let ribbon = layer(Representation::Ribbon, Some("resi 2"));
+        assert_eq!((ribbon.shown[2], ribbon.shown[3], ribbon.bonds), (Shown::Ball, Shown::Ball, 2));
+        let surface = layer(Representation::Surface, Some("hetero"));
+        assert_eq!((surface.shown[0], surface.shown[12], surface.bonds), (Shown::Surface, Shown::Ball, 1));
+        let carbon = Element::C.van_der_waals_radius();
+        assert!((surface.radius(0) - carbon).abs() < 1e-12 && surface.radius(13) < 0.3 * carbon);
+        let mesh = &surface.surface.mesh;
+        for t in 0..mesh.triangles().len() {
+            let atom = mesh.part(t).unwrap() as usize;
+            let most = if atom < 12 { 1.6 * carbon } else { 0.8 };
+            assert!(mesh.corners(t).iter().all(|p| p.distance(surface.center(atom)) < most), "{atom}");
+        }
+    }
+
+    #[test]
+    fn double_bonds_have_two_rods() {
+        let triangles = |orders: bool| {
+            let double = chain().with_orders(&[([12, 13], 2)]);
+            let style =
+                MoleculeStyle { orders, selection: Selection::parse("hetero").unwrap(), ..MoleculeStyle::default() };
+            MoleculeLayer::new(double, &style, ModelTransform::default()).unwrap().surface.mesh.triangles().len()
+        };
+        // Two halves of one more rod of 20 sides.
+        assert_eq!(triangles(true), triangles(false) + 2 * 40);
+    }
 }

@@ -1,20 +1,31 @@
 //! Molecules: atoms, residues and bonds as plain data, selections of atoms, and surfaces as triangles.
 
+mod assembly;
 mod bonds;
+mod density;
 mod element;
+mod iso;
 mod layer;
 mod near;
 mod openness;
+mod orders;
+mod ribbon;
+mod secondary;
 mod selection;
+mod shape;
+mod sky;
 mod sphere;
 mod style;
 mod surface;
+mod trace;
 
+pub use assembly::{Copies, Operation};
 pub use bonds::BOND_TOLERANCE;
 pub use element::Element;
-pub use layer::MoleculeLayer;
+pub use layer::{MoleculeFilm, MoleculeLayer};
+pub use secondary::Secondary;
 pub use selection::{Selection, SelectionError};
-pub use style::{ModelTransform, MoleculeColor, MoleculeStyle, Paint, Representation};
+pub use style::{ModelTransform, MoleculeColor, MoleculeStyle, Paint, Representation, Shown};
 
 use belvedere_core::{Aabb, DVec3};
 
@@ -116,6 +127,12 @@ pub struct Molecule {
     atoms: Vec<Atom>,
     residues: Vec<Residue>,
     bonds: Vec<[u32; 2]>,
+    /// Order of each bond, 1..=3.
+    orders: Vec<u8>,
+    /// Structure of the backbone at each residue; empty = not stated.
+    structure: Vec<Secondary>,
+    /// Number of the copy that each residue belongs to, from 1; empty = nothing is copied.
+    copies: Vec<u32>,
 }
 
 impl Molecule {
@@ -150,10 +167,12 @@ impl Molecule {
         let mut bonds: Vec<[u32; 2]> = bonds.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
         bonds.sort_unstable();
         bonds.dedup();
-        Ok(Self { atoms, residues, bonds })
+        let orders = vec![1; bonds.len()];
+        Ok(Self { atoms, residues, bonds, orders, structure: Vec::new(), copies: Vec::new() })
     }
 
-    /// A molecule with the bonds that the file names and those found by distance, see [`BOND_TOLERANCE`].
+    /// A molecule with the bonds that the file names and those found by distance, see [`BOND_TOLERANCE`]; of the orders that amino acids
+    /// and nucleotides have, else 1.
     ///
     /// # Errors
     /// [`MoleculeError`].
@@ -162,7 +181,33 @@ impl Molecule {
         molecule.bonds.extend(bonds::by_distance(&molecule.atoms));
         molecule.bonds.sort_unstable();
         molecule.bonds.dedup();
+        molecule.orders = orders::standard(&molecule);
         Ok(molecule)
+    }
+
+    /// The same with these orders of some bonds, 1..=3 (others are brought into that range). Pairs that are not bonded are passed over.
+    pub fn with_orders(mut self, orders: &[([u32; 2], u8)]) -> Self {
+        for ([a, b], order) in orders {
+            if let Ok(at) = self.bonds.binary_search(&[*a.min(b), *a.max(b)]) {
+                self.orders[at] = (*order).clamp(1, 3);
+            }
+        }
+        self
+    }
+
+    /// The same where the structure of the backbone is stated, one per residue; none or another number of them = not stated.
+    pub fn with_structure(mut self, structure: Vec<Secondary>) -> Self {
+        self.structure = if structure.len() == self.residues.len() { structure } else { Vec::new() };
+        self
+    }
+
+    /// The same with its atoms at other places, angstrom; an atom for which there is none, or none that is finite, stays.
+    pub fn at(&self, places: &[DVec3]) -> Self {
+        let mut out = self.clone();
+        for (atom, place) in out.atoms.iter_mut().zip(places).filter(|(_, place)| place.is_finite()) {
+            atom.position = *place;
+        }
+        out
     }
 
     /// Atoms, in the order of the file.
@@ -178,6 +223,39 @@ impl Molecule {
     /// Bonds as pairs of indices, the smaller first, in rising order.
     pub fn bonds(&self) -> &[[u32; 2]] {
         &self.bonds
+    }
+
+    /// Order of each of [`Molecule::bonds`], 1..=3.
+    pub fn orders(&self) -> &[u8] {
+        &self.orders
+    }
+
+    /// Structure of the backbone at each residue, as the file states it; empty if it does not.
+    pub fn structure(&self) -> &[Secondary] {
+        &self.structure
+    }
+
+    /// Whether it holds copies, see [`Molecule::assembled`].
+    pub fn has_copies(&self) -> bool {
+        self.copies.iter().any(|copy| *copy > 1)
+    }
+
+    /// Number of the copy that a residue belongs to, from 1.
+    pub fn copy(&self, residue: usize) -> u32 {
+        self.copies.get(residue).copied().unwrap_or(1)
+    }
+
+    fn has_copy_at(&self, atom: usize) -> bool {
+        self.copy(self.atoms[atom].residue as usize) > 1
+    }
+
+    /// Chain of a residue in the file: without the number of its copy.
+    pub fn chain_in_file(&self, residue: usize) -> &str {
+        let chain = self.residues[residue].chain.as_str();
+        match self.copy(residue) {
+            1 => chain,
+            copy => chain.strip_suffix(&format!("-{copy}")).unwrap_or(chain),
+        }
     }
 
     /// Residue of an atom.

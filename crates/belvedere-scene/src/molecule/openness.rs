@@ -27,9 +27,14 @@ impl Shades {
 
     /// The balls around number `i`, without itself.
     pub(super) fn around(&self, i: usize) -> Around {
+        self.around_but(i, |k| k == i)
+    }
+
+    /// The balls around number `i`, without some.
+    pub(super) fn around_but(&self, i: usize, but: impl Fn(usize) -> bool) -> Around {
         let mut out = Vec::new();
         self.cells.near(self.centers[i], |k, _| {
-            if k != i {
+            if !but(k) {
                 out.push((self.centers[k], self.radii[k]));
             }
         });

@@ -5,7 +5,8 @@ use super::{Element, Molecule};
 /// A choice of atoms.
 ///
 /// ```text
-/// chain B            residues of chain B; lists with commas: chain A,B
+/// chain B            residues of chain B, in all its copies; lists with commas: chain A,B
+/// copy 2-5           copies by number, of an assembly; copy 2 of chain B is chain B-2, too
 /// resi 12-18         residue numbers and ranges of them, 12,15-18; 52A with its insertion letter
 /// resn DA,DT         names of residues
 /// name P             names of atoms
@@ -39,6 +40,7 @@ enum Rule {
     Water,
     Hetero,
     Chain(Vec<String>),
+    Copy(Vec<Numbers>),
     ResidueNumber(Vec<Numbers>),
     ResidueName(Vec<String>),
     AtomName(Vec<String>),
@@ -64,7 +66,7 @@ impl Numbers {
 }
 
 const WORDS: &str =
-    "chain, resi, resn, name, element, atom, water, hetero, hydrogen, all, none, and, or, not, and parentheses";
+    "chain, copy, resi, resn, name, element, atom, water, hetero, hydrogen, all, none, and, or, not, and parentheses";
 
 /// Deepest nesting of parentheses and `not`.
 const DEEPEST: usize = 50;
@@ -124,7 +126,11 @@ impl Rule {
             Self::None => false,
             Self::Water => residue.is_water(),
             Self::Hetero => residue.hetero,
-            Self::Chain(names) => names.contains(&residue.chain),
+            Self::Chain(names) => {
+                names.contains(&residue.chain)
+                    || m.has_copy_at(i) && names.iter().any(|n| n == m.chain_in_file(atom.residue as usize))
+            }
+            Self::Copy(numbers) => numbers.iter().any(|n| n.holds(m.copy(atom.residue as usize).into())),
             Self::ResidueNumber(numbers) => numbers
                 .iter()
                 .any(|n| n.holds(residue.number.into()) && n.letter.is_none_or(|l| Some(l) == residue.insertion)),
@@ -214,6 +220,7 @@ impl<'t> Parser<'t> {
             "chain" => Rule::Chain(self.list("chain")?),
             "resn" => Rule::ResidueName(self.list("resn")?),
             "name" => Rule::AtomName(self.list("name")?),
+            "copy" => Rule::Copy(self.numbers("copy")?),
             "resi" => Rule::ResidueNumber(self.numbers("resi")?),
             "atom" => Rule::Serial(self.numbers("atom")?),
             "element" => {
@@ -339,7 +346,7 @@ mod tests {
     fn texts_that_choose_nothing_are_told() {
         for (text, said) in [
             ("", "it ends too early"),
-            ("chian B", "\"chian\" is no word of selections; words are chain"),
+            ("chian B", "\"chian\" is no word of selections; words are chain, copy"),
             ("chain", "chain stands at the end"),
             ("chain A chain B", "\"chain\" stands where \"and\" or \"or\" is needed"),
             ("resi 5-2", "\"5-2\" is no number or range; write resi 12"),

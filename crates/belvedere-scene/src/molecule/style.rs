@@ -14,16 +14,43 @@ pub enum Representation {
     #[default]
     BallAndStick,
     /// Balls of van der Waals radius, as close as atoms come without a bond.
+    #[serde(alias = "spheres")]
     SpaceFilling,
+    /// Rods alone.
+    Sticks,
+    /// Bands along the chains of proteins, with arrows along strands, and along nucleic acids, with slabs for bases; the rest as balls
+    /// and rods.
+    #[serde(alias = "cartoon")]
+    Ribbon,
+    /// The smooth surface around all atoms: where the sum of their Gaussian densities is 1.
+    Surface,
+}
+
+/// What an atom is drawn as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Shown {
+    /// Not at all.
+    #[default]
+    Not,
+    /// A ball of its own, and rods.
+    Ball,
+    /// A piece of a ribbon, whose triangles have the index of this atom.
+    Ribbon(u32),
+    /// A part of a smooth surface, if it lies at it.
+    Surface,
 }
 
 /// Source of the colours of atoms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum MoleculeColor {
-    /// The element, by the convention of Corey, Pauling and Koltun.
+    /// The element; of ribbons and surfaces the chain.
     #[default]
+    Auto,
+    /// The element, by the convention of Corey, Pauling and Koltun.
     Element,
-    /// The chain, in the order of the file.
+    /// Helices, strands, and all else, as the file states them or as the places of the alpha carbons tell.
+    Structure,
+    /// The chain, in the order of the file; copies have the colour of what they are copies of.
     Chain,
     /// The name of the residue, in the order of first appearance.
     Residue,
@@ -43,7 +70,7 @@ pub struct Paint {
 /// How a molecule is drawn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MoleculeStyle {
-    /// Balls and rods, or balls alone.
+    /// What atoms are shown as.
     pub representation: Representation,
     /// Colours.
     pub color: MoleculeColor,
@@ -51,8 +78,13 @@ pub struct MoleculeStyle {
     pub paint: Vec<Paint>,
     /// Atoms that are drawn.
     pub selection: Selection,
-    /// Cuts along the edge of the icosahedron that a ball is made from, 1..=16; `None` = by the number of atoms.
+    /// Fineness, 1..=16: cuts along the edge of the icosahedron that a ball is made from, steps of ribbons and surfaces; `None` = by the
+    /// number of atoms.
     pub detail: Option<u32>,
+    /// Atoms that are drawn as balls and rods beside a ribbon or through a surface.
+    pub sticks: Option<Selection>,
+    /// Double and triple bonds as two and three rods.
+    pub orders: bool,
 }
 
 impl Default for MoleculeStyle {
@@ -63,6 +95,8 @@ impl Default for MoleculeStyle {
             paint: Vec::new(),
             selection: Selection::all(),
             detail: None,
+            sticks: None,
+            orders: true,
         }
     }
 }

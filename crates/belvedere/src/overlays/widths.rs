@@ -8,7 +8,11 @@ const LEGIBLE_PX: f64 = 7.0;
 
 /// Whether a scene has anything whose width is stated in pixels.
 pub(crate) fn has_any(scene: &Scene) -> bool {
-    let has = |kind: &LayerKind| matches!(kind, LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_));
+    let has = |kind: &LayerKind| match kind {
+        LayerKind::Line(_) | LayerKind::Area(_) | LayerKind::Point(_) => true,
+        LayerKind::Molecule(molecule) => molecule.label_px.is_some(),
+        _ => false,
+    };
     scene.layers.iter().any(|layer| has(&layer.kind))
 }
 
@@ -32,6 +36,7 @@ pub(crate) fn scaled(scene: &Scene, scale: f64) -> Cow<'_, Scene> {
             LayerKind::Point(point) => {
                 (point.size_px, point.style.label_px) = (point.size_px * scale, letters(point.style.label_px));
             }
+            LayerKind::Molecule(molecule) => molecule.label_px = letters(molecule.label_px),
             _ => {}
         }
     }

@@ -5,7 +5,7 @@ use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, DocError, SourceDocument};
 use belvedere_core::DVec3;
 use belvedere_io::InputFile;
-use belvedere_scene::{Motion, Placement, Scene};
+use belvedere_scene::{Layer, LayerKind, Motion, Placement, Scene};
 use std::sync::Arc;
 
 /// The moving layers of a scene, and the scene with each of them at its own origin.
@@ -14,6 +14,8 @@ pub(crate) struct Motions {
     rest: Arc<Scene>,
     /// Index and motion of each layer.
     layers: Vec<(usize, Motion)>,
+    /// Layers whose atoms have models of a film, by index, and the end of each, seconds.
+    films: Vec<(usize, f64)>,
 }
 
 impl Motions {
@@ -37,7 +39,13 @@ impl Motions {
             layers.push((index, parse(&text).map_err(|e| e.in_file(&path))?));
             inputs.push(file);
         }
-        Ok((!layers.is_empty()).then(|| Self { rest: Arc::clone(scene), layers }))
+        let film = |(index, layer): (usize, &Layer)| match &layer.kind {
+            LayerKind::Molecule(molecule) => Some((index, molecule.film.as_ref()?.end())),
+            _ => None,
+        };
+        let films: Vec<(usize, f64)> = scene.layers.iter().enumerate().filter_map(film).collect();
+        let any = !layers.is_empty() || !films.is_empty();
+        Ok(any.then(|| Self { rest: Arc::clone(scene), layers, films }))
     }
 
     /// The scene at a time, seconds.
@@ -48,12 +56,21 @@ impl Motions {
                 scene.layers[*index].kind = kind;
             }
         }
+        for (index, _) in &self.films {
+            // A model that cannot be drawn leaves the first.
+            if let LayerKind::Molecule(molecule) = &self.rest.layers[*index].kind
+                && let Some(Ok(made)) = molecule.at(t)
+            {
+                scene.layers[*index].kind = LayerKind::Molecule(Box::new(made));
+            }
+        }
         scene
     }
 
     /// Time at which the last layer comes to rest, seconds.
     pub(crate) fn end(&self) -> f64 {
-        self.layers.iter().map(|(_, motion)| motion.end()).fold(0.0, f64::max)
+        let films = self.films.iter().map(|(_, end)| *end);
+        self.layers.iter().map(|(_, motion)| motion.end()).chain(films).fold(0.0, f64::max)
     }
 }
 

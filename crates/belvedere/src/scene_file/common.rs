@@ -11,6 +11,11 @@ pub(super) fn is_false(value: &bool) -> bool {
 }
 
 /// Whether an opacity is 1, as it is by default.
+pub(super) fn is_true(value: &bool) -> bool {
+    *value
+}
+
+/// Whether an opacity is the usual one.
 pub(super) fn is_opaque(opacity: &f64) -> bool {
     *opacity == 1.0
 }

@@ -1,13 +1,13 @@
 //! Layers of atoms in the scene document.
 
-use super::common::{TransformDoc, is_opaque};
+use super::common::{TransformDoc, is_false, is_opaque, is_true};
 use belvedere_scene::molecule::Representation;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Atoms from a file: PDB or mmCIF. The scene is measured in angstrom.
 ///
-/// Selections are written in short words: `chain A,B`, `resi 12-18`, `resn DA`, `name P`, `element FE`, `atom 1234`, `water`, `hetero`,
+/// Selections are written in short words: `chain A,B`, `copy 2-5`, `resi 12-18`, `resn DA`, `name P`, `element FE`, `atom 1234`, `water`, `hetero`,
 /// `hydrogen`, `all`, `none`, joined by `and`, `or`, `not` and parentheses.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -22,6 +22,16 @@ pub struct MoleculeDoc {
     /// Atoms that matter: drawn in the highlight colour, and meant by `must_see`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub select: Option<String>,
+    /// Biological assembly by its name in the file, such as `1`: the copies that the file describes are drawn, chain `A` of copy 2 as
+    /// `A-2`. By default, and as `asymmetric`, the atoms of the file alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub assembly: Option<String>,
+    /// Model of the file, from 1; by default the first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub model: Option<usize>,
+    /// Shows the models of the file one after the other in films, so many per second; the last one stays. Pictures show the first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub models_per_s: Option<f64>,
     /// How it is drawn.
     #[serde(default)]
     pub style: MoleculeStyleDoc,
@@ -34,7 +44,9 @@ impl MoleculeDoc {
     /// A file in the usual style.
     pub(crate) fn of(id: String, source: &str) -> Self {
         let source = source.to_owned();
-        Self { id, source, must_see: false, select: None, style: MoleculeStyleDoc::default(), transform: None }
+        let style = MoleculeStyleDoc::default();
+        let (must_see, models_per_s) = (false, None);
+        Self { id, source, must_see, select: None, assembly: None, model: None, models_per_s, style, transform: None }
     }
 }
 
@@ -42,9 +54,10 @@ impl MoleculeDoc {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct MoleculeStyleDoc {
-    /// Small balls joined by rods, or balls of van der Waals radius.
+    /// Small balls joined by rods, balls of van der Waals radius (`spheres`), rods, ribbons (`cartoon`) or a smooth surface.
     pub representation: Representation,
-    /// `element`, `chain`, `residue`, or one colour for all, `#rrggbb`.
+    /// `element`, `chain`, `residue`, `structure` (helices and strands), or one colour for all, `#rrggbb`; `auto`: by element, ribbons and
+    /// surfaces by chain.
     pub color: String,
     /// Opacity, 0..=1: below 1 what is behind is seen through, at 0 the layer is not drawn.
     #[serde(skip_serializing_if = "is_opaque")]
@@ -57,23 +70,47 @@ pub struct MoleculeStyleDoc {
     pub paint: Vec<PaintDoc>,
     /// Colour of the atoms of `select`, or `none`.
     pub highlight: String,
-    /// How finely balls are cut, 1..=16: each is 20 detail^2 triangles. By default by the number of atoms.
+    /// How finely balls, ribbons and surfaces are cut, 1..=16: a ball is 20 detail^2 triangles, a surface has the spacing 1.6 /
+    /// sqrt(detail) angstrom. By default by the number of atoms.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub detail: Option<u32>,
+    /// Atoms that are balls and rods beside a ribbon or through a surface, such as `resi 45,60` or `hetero and not water`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sticks: Option<String>,
+    /// Whether the names of residues are written, where they are seen and find room: those of `select` first.
+    #[serde(skip_serializing_if = "is_false")]
+    pub labels: bool,
+    /// Height of the letters, pixels, in (0, 200].
+    #[serde(skip_serializing_if = "is_usual_size")]
+    pub label_px: f64,
+    /// Whether double and triple bonds are drawn as two and three rods.
+    #[serde(skip_serializing_if = "is_true")]
+    pub bond_orders: bool,
 }
 
 impl Default for MoleculeStyleDoc {
     fn default() -> Self {
         Self {
             representation: Representation::default(),
-            color: "element".into(),
+            color: "auto".into(),
             opacity: 1.0,
             selection: None,
             paint: Vec::new(),
             highlight: "#ffb000".into(),
             detail: None,
+            sticks: None,
+            labels: false,
+            label_px: LABEL_PX,
+            bond_orders: true,
         }
     }
+}
+
+/// Usual height of letters, pixels.
+const LABEL_PX: f64 = 13.0;
+
+fn is_usual_size(size: &f64) -> bool {
+    *size == LABEL_PX
 }
 
 /// A colour for some atoms.

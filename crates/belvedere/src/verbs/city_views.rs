@@ -39,7 +39,7 @@ pub(super) fn region(target: &Target) -> Vec<DVec3> {
 /// # Errors
 /// [`BelvedereError::Target`] if no eye has room.
 pub(super) fn around(
-    scene: &Scene,
+    (scene, sight): (&Scene, &TargetSight<'_>),
     target: &Target,
     lens: ([u32; 2], f64),
     most: usize,
@@ -54,7 +54,6 @@ pub(super) fn around(
             views.push((price, View::straight(fitted(&points, target, (forward, DVec3::Z), lens)?)));
         }
     }
-    let sight = TargetSight::new(scene, target);
     let judged = views.into_par_iter().filter(|(_, view)| has_room(scene, view.pinhole().eye)).map(|(price, view)| {
         let share = sight.share(&view, 0.0);
         (share, share - price, view)

@@ -2,7 +2,9 @@
 
 use crate::BelvedereError;
 use belvedere_core::Warning;
+use belvedere_io::molecule::Assembly;
 use belvedere_io::{Limits, load_molecule};
+use belvedere_scene::molecule::Secondary;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -29,8 +31,12 @@ pub struct MoleculeInfo {
     pub bonds: usize,
     /// Bonds that the file names.
     pub named_bonds: usize,
-    /// Models in the file; the first is read.
+    /// Models in the file; the first is described.
     pub models: usize,
+    /// Biological assemblies that the file describes.
+    pub assemblies: Vec<AssemblyInfo>,
+    /// Residues in helices and in strands, as the file states them; `null` = it does not.
+    pub structure: Option<StructureInfo>,
     /// Alternate positions of lower occupancy, which are left out.
     pub alternates: usize,
     /// Smallest coordinates, angstrom.
@@ -39,6 +45,28 @@ pub struct MoleculeInfo {
     pub max: [f64; 3],
     /// Warnings.
     pub warnings: Vec<Warning>,
+}
+
+/// An assembly.
+#[derive(Debug, Clone, JsonSchema, Serialize)]
+pub struct AssemblyInfo {
+    /// Its name, for `assembly`.
+    pub id: String,
+    /// What the file says of it, possibly empty.
+    pub details: String,
+    /// Copies of the chain that is copied most often.
+    pub copies: u64,
+    /// Atoms of all copies.
+    pub atoms: u64,
+}
+
+/// Residues by structure.
+#[derive(Debug, Clone, JsonSchema, Serialize)]
+pub struct StructureInfo {
+    /// In helices.
+    pub helix: usize,
+    /// In strands of sheets.
+    pub strand: usize,
 }
 
 /// Reads and describes a molecule file.
@@ -60,9 +88,19 @@ pub(super) fn describe(path: &Path) -> Result<MoleculeInfo, BelvedereError> {
         bonds: m.bonds().len(),
         named_bonds: file.named_bonds,
         models: file.models,
+        assemblies: file.assemblies.list().iter().map(described).collect(),
+        structure: (!m.structure().is_empty()).then(|| StructureInfo {
+            helix: m.structure().iter().filter(|s| **s == Secondary::Helix).count(),
+            strand: m.structure().iter().filter(|s| **s == Secondary::Strand).count(),
+        }),
         alternates: file.alternates,
         min: b.min.to_array(),
         max: b.max.to_array(),
         warnings: loaded.warnings,
     })
+}
+
+fn described(assembly: &Assembly) -> AssemblyInfo {
+    let (id, details) = (assembly.id.clone(), assembly.details.clone());
+    AssemblyInfo { id, details, copies: assembly.copies, atoms: assembly.atoms }
 }

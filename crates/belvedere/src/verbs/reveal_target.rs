@@ -14,7 +14,7 @@ use crate::scene_file::{CameraDoc, ConstructorDoc, ConstructorKind, Document, Po
 use crate::targets;
 use crate::verbs::reveal::{IMAGE, RevealFiles, Technique, spline_stage};
 use crate::{BelvedereError, OpenOptions, Session};
-use belvedere_construct::rays::{AroundOptions, BendReport, Sidestep, Target, TargetSight, bend_around};
+use belvedere_construct::rays::{AroundOptions, BendReport, Sidestep, Target, TargetSight, bend_around_by};
 use belvedere_construct::{ConstructError, RevealMemory, RevealOptions, Revealed};
 use belvedere_core::{DVec3, Pinhole, Projection, View, Warning};
 use belvedere_scene::{LayerKind, Unit};
@@ -98,9 +98,15 @@ impl Opened {
         from_files && scene.unit == Unit::Metre && city()
     }
 
+    /// Lines of sight to the target that is searched for. Its tree over the scene takes seconds for millions of triangles: build it once.
+    pub(super) fn sight(&self) -> TargetSight<'_> {
+        TargetSight::new(self.session.scene(), &self.targets.search)
+    }
+
     /// The views that are worth a search for bends; at most `most`, or as many as are usual.
-    pub(super) fn views(&self, most: Option<usize>) -> Result<Vec<View>, BelvedereError> {
-        let (scene, target) = (self.session.scene(), &self.targets.search);
+    pub(super) fn views(&self, sight: &TargetSight<'_>, most: Option<usize>) -> Result<Vec<View>, BelvedereError> {
+        let target = &self.targets.search;
+        let scene = (self.session.scene(), sight);
         match self.is_city() {
             true => city_views::around(scene, target, self.lens, most.unwrap_or(city_views::KEPT)),
             false => target_views::around(scene, target, self.up, self.lens, most.unwrap_or(target_views::KEPT)),
@@ -108,10 +114,10 @@ impl Opened {
     }
 
     /// The camera of a bent picture, brought back to what it is to hold.
-    pub(super) fn reframed(&self, view: &View, sidestep: &Sidestep) -> Option<View> {
+    pub(super) fn reframed(&self, sight: &TargetSight<'_>, view: &View, sidestep: &Sidestep) -> Option<View> {
         let (scene, target) = (self.session.scene(), &self.targets.search);
         let points = if self.is_city() { city_views::region(target) } else { target_views::outline(scene) };
-        target_views::reframed(scene, view, sidestep, (target, &points))
+        target_views::reframed(sight, view, sidestep, &points)
     }
 
     /// The spline that shows more of the features in a view, if there is one.
@@ -143,15 +149,16 @@ fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnsw
     let scene = session.scene();
     let target = &targets.search;
     let place = targets::point(see).map(|p| TargetPlace::of(scene, p));
+    let searching = opened.sight();
     let (views, free) = match view {
         Some(view) => (vec![view], false),
-        None => (opened.views(None)?, true),
+        None => (opened.views(&searching, None)?, true),
     };
     let around = AroundOptions::default();
     let mut best: Option<(View, Option<Sidestep>, BendReport)> = None;
     let (mut tried, mut light_best) = (0, 0.0f64);
     for (k, view) in views.into_iter().enumerate() {
-        let found = bend_around(scene, &view, target, &around, &options.progress)?;
+        let found = bend_around_by(&searching, &view, &around, &options.progress)?;
         (tried, light_best) = (tried + found.report.tried, light_best.max(found.report.light_best));
         let score = |r: &BendReport| r.visible - 0.1 * r.motion;
         if best.as_ref().is_none_or(|(.., b)| score(&found.report) > score(b) + 0.02) {
@@ -169,22 +176,23 @@ fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnsw
     let only_spline = request.technique == Some(Technique::Spline);
     let mut bend = sidestep.filter(|_| !only_spline).map(Bend::Rays);
     if let Some(Bend::Rays(sidestep)) = bend.as_ref().filter(|_| free)
-        && let Some(moved) = opened.reframed(&view, sidestep)
+        && let Some(moved) = opened.reframed(&searching, &view, sidestep)
     {
         view = moved;
     }
-    let sight = TargetSight::new(scene, &targets.judge);
+    let other = (targets.judge != targets.search).then(|| TargetSight::new(scene, &targets.judge));
+    let sight = other.as_ref().unwrap_or(&searching);
     let bent = match &bend {
         Some(Bend::Rays(sidestep)) => sidestep.view(&view)?,
         _ => view.clone(),
     };
-    let mut report = BendReport { tried, light_best, ..judged(&sight, &view, &bent, report) };
+    let mut report = BendReport { tried, light_best, ..judged(sight, &view, &bent, report) };
     if meant.is_features()
         && request.technique != Some(Technique::CurvedRays)
         && (only_spline || report.visible < ENOUGH)
         && let Some(found) = opened.spline(&view, options)?
     {
-        let by_spline = judged(&sight, &view, &found.view, report);
+        let by_spline = judged(sight, &view, &found.view, report);
         let gain = if only_spline { 0.0 } else { SPLINE_GAIN };
         if by_spline.visible > report.visible + gain {
             (report, bend) = (by_spline, Some(Bend::Spline(Box::new(found))));

@@ -5,7 +5,7 @@ use super::reveal::{FinalShares, Viewpoint};
 use super::reveal_target::{Opened, TargetRequest, reveal_target};
 use crate::guard::guarded;
 use crate::{BelvedereError, OpenOptions};
-use belvedere_construct::rays::{AroundOptions, bend_around};
+use belvedere_construct::rays::{AroundOptions, bend_around_by};
 use belvedere_core::{DVec3, Projection, View};
 
 /// Angle between the directions of two drafts at least, radians.
@@ -38,7 +38,8 @@ fn drafted(request: &TargetRequest, count: usize, options: &OpenOptions) -> Resu
         return Err(BelvedereError::Target(reason.into()));
     }
     let mut views: Vec<View> = Vec::new();
-    for view in opened.views(Some(CANDIDATES))? {
+    let sight = opened.sight();
+    for view in opened.views(&sight, Some(CANDIDATES))? {
         let ahead = view.pinhole().forward;
         if views.len() < count && views.iter().all(|v| v.pinhole().forward.angle_between(ahead) > APART) {
             views.push(view);
@@ -46,9 +47,8 @@ fn drafted(request: &TargetRequest, count: usize, options: &OpenOptions) -> Resu
     }
     let mut out = DraftsAnswer { drafts: Vec::new(), warnings: Vec::new() };
     for (k, view) in views.iter().enumerate() {
-        let scene = opened.session.scene();
-        let found = bend_around(scene, view, &opened.targets.search, &AroundOptions::default(), &options.progress)?;
-        let moved = found.bent.and_then(|(_, sidestep)| opened.reframed(view, &sidestep));
+        let found = bend_around_by(&sight, view, &AroundOptions::default(), &options.progress)?;
+        let moved = found.bent.and_then(|(_, sidestep)| opened.reframed(&sight, view, &sidestep));
         let Some((viewpoint, fov_y_deg)) = rounded(moved.as_ref().unwrap_or(view), opened.targets.search.center())
         else {
             continue;

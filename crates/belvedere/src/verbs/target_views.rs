@@ -60,7 +60,7 @@ fn axes(up: DVec3) -> [DVec3; 3] {
 /// # Errors
 /// [`BelvedereError`] if no camera is possible.
 pub(super) fn around(
-    scene: &Scene,
+    (scene, sight): (&Scene, &TargetSight<'_>),
     target: &Target,
     up: DVec3,
     (image, fov_y): ([u32; 2], f64),
@@ -77,7 +77,6 @@ pub(super) fn around(
             views.push(View::straight(fitted(&points, target, (forward, up), (image, fov_y))?));
         }
     }
-    let sight = TargetSight::new(scene, target);
     let mut judged: Vec<(f64, f64, View)> = views
         .into_par_iter()
         .enumerate()
@@ -135,13 +134,7 @@ pub(super) fn fitted(
 /// bent one together; `None` if it stays as it is because the target would be seen less.
 ///
 /// * `points`: what the picture is to hold.
-pub(super) fn reframed(
-    scene: &Scene,
-    base: &View,
-    sidestep: &Sidestep,
-    (target, points): (&Target, &[DVec3]),
-) -> Option<View> {
-    let sight = TargetSight::new(scene, target);
+pub(super) fn reframed(sight: &TargetSight<'_>, base: &View, sidestep: &Sidestep, points: &[DVec3]) -> Option<View> {
     let share = |view: &View| sidestep.view(view).map_or(0.0, |bent| sight.share(&bent, 0.0));
     let (before, mut best) = (share(base), None);
     let mut view = base.clone();

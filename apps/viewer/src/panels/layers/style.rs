@@ -135,11 +135,21 @@ fn molecule(ui: &mut Ui, id: &str, style: &mut MoleculeStyleDoc) {
     let name = |one: Representation| match one {
         Representation::BallAndStick => tr("balls and sticks"),
         Representation::SpaceFilling => tr("space filling"),
+        Representation::Sticks => tr("sticks"),
+        Representation::Ribbon => tr("ribbons"),
+        Representation::Surface => tr("smooth surface"),
     };
     ComboBox::from_label(fill(tr("atoms of {0}"), &[&id])).selected_text(name(style.representation)).show_ui(
         ui,
         |ui| {
-            for one in [Representation::BallAndStick, Representation::SpaceFilling] {
+            let all = [
+                Representation::BallAndStick,
+                Representation::SpaceFilling,
+                Representation::Sticks,
+                Representation::Ribbon,
+                Representation::Surface,
+            ];
+            for one in all {
                 ui.selectable_value(&mut style.representation, one, name(one));
             }
         },
@@ -147,7 +157,7 @@ fn molecule(ui: &mut Ui, id: &str, style: &mut MoleculeStyleDoc) {
     let is_own = style.color.starts_with('#');
     let shown = if is_own { tr("one colour").to_owned() } else { heard(&style.color) };
     ComboBox::from_label(fill(tr("coloured by, {0}"), &[&id])).selected_text(shown).show_ui(ui, |ui| {
-        for one in [later("element"), later("chain"), later("residue")] {
+        for one in [later("auto"), later("element"), later("chain"), later("residue"), later("structure")] {
             ui.selectable_value(&mut style.color, one.to_owned(), tr(one));
         }
         if ui.selectable_label(is_own, tr("one colour")).clicked() && !is_own {

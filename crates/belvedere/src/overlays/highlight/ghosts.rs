@@ -112,7 +112,7 @@ fn bounds(layer: &Layer) -> Aabb {
             of_parts(m, &|part| m.wanted.as_ref().is_some_and(|wanted| wanted.contains(&part)))
         }
         LayerKind::Molecule(m) if m.wanted.is_some() => {
-            let mask = m.wanted.as_ref().map(|wanted| wanted.mask(&m.molecule)).unwrap_or_default();
+            let mask = m.wanted.as_ref().map(|wanted| m.mask_of(wanted)).unwrap_or_default();
             of_parts(&m.surface, &|atom| mask.get(atom as usize) == Some(&true))
         }
         _ => layer.bounds(),
