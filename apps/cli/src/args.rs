@@ -93,8 +93,8 @@ pub(crate) enum Verb {
     Project(ProjectArgs),
     /// Sample the curved rays of pixels: [[x,y],...]
     Rays(RaysArgs),
-    /// Give points as the stages displace them, before the pinhole
-    Displace(ProjectArgs),
+    /// Give points, or the lines, areas and points of the scene, as the stages displace them, before the pinhole
+    Displace(DisplaceArgs),
     /// Tell what pixels [[x,y],...] show: world point, depth, ray segment, layer, feature; null for sky
     #[command(after_help = PICK_HELP)]
     Pick(PickArgs),
@@ -217,7 +217,7 @@ pub(crate) struct DemoArgs {
 #[derive(Debug, Args)]
 pub(crate) struct RevealArgs {
     /// Terrain: GeoTIFF, .hgt, ESRI ASCII, a folder of tiles, or builtin:massif?seed=7; or a city: CityJSON, CityGML, OSM PBF or XML; with --see
-    /// also a model: OBJ, PLY, STL, glTF, PDB, mmCIF, VTI, NRRD, raw voxels, footprints, or a scene file
+    /// also a model: OBJ, PLY, STL, glTF, PDB, mmCIF, VTI, VTK, NRRD, MetaImage, NIfTI, raw voxels, footprints, or a scene file
     #[arg(value_name = "DATA")]
     pub(crate) dem: String,
     /// Routes, areas or points: GPX, GeoJSON, shapefiles, GeoPackages where they are built in, or builtin:massif?seed=7; elevation models
@@ -342,7 +342,7 @@ pub(crate) struct DisoccludeArgs {
     /// Any other key of a terrain_disocclusion stage, such as w=0.6; may be given several times
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Displaced elevation model: GeoTIFF, 32-bit floats in metres, on the grid and in the system of the input
+    /// Displaced elevation model: cloud-optimised GeoTIFF, 32-bit floats in metres, on the grid and in the system of the input
     #[arg(short, long, value_name = "OUT.tif")]
     pub(crate) out: PathBuf,
     /// Grid of the written heights: the input's, or the scene's in metres, on which the ground is solved and the guarantee holds exactly
@@ -354,7 +354,7 @@ pub(crate) struct DisoccludeArgs {
     /// Write the displacement, on the same grid, to this file
     #[arg(long, value_name = "D.tif")]
     pub(crate) displacement: Option<PathBuf>,
-    /// Write the features on the displaced ground, their true positions as properties, to this file
+    /// Write the features on the displaced ground, their true positions as properties, to this file: GeoJSON, or .gpkg
     #[arg(long, value_name = "OUT.geojson")]
     pub(crate) features_out: Option<PathBuf>,
     /// Draw the ground before and after from the eye, side by side, with its record
@@ -534,6 +534,19 @@ pub(crate) struct ProjectArgs {
     #[arg(long, value_name = "P.json")]
     pub(crate) points: PathBuf,
     /// Output; standard output if left out
+    #[arg(short, long, value_name = "OUT.json")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// A scene, and points in it or its features.
+#[derive(Debug, Args)]
+pub(crate) struct DisplaceArgs {
+    /// Scene file, TOML or JSON; - = standard input
+    pub(crate) scene: PathBuf,
+    /// JSON file of points [[x,y,z],...], as for project; if left out, the lines, areas and points of the scene are displaced
+    #[arg(long, value_name = "P.json")]
+    pub(crate) points: Option<PathBuf>,
+    /// Output, standard output if left out; of features GeoJSON, or GeoPackage where the name ends in .gpkg
     #[arg(short, long, value_name = "OUT.json")]
     pub(crate) out: Option<PathBuf>,
 }
