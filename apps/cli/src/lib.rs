@@ -19,6 +19,7 @@ mod memory;
 mod outputs;
 mod pack;
 mod parse;
+mod point_args;
 mod preset;
 mod print_args;
 mod report;

@@ -1,8 +1,8 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, DisoccludeArgs, DisplaceArgs, FigureKind, FiguresArgs,
-    MeasureArgs, PickArgs, ProjectArgs, RaysArgs, RenderArgs, SceneArgs, SchemaArgs, ShowArgs, Verb,
+    AnimateArgs, AuxFormatKind, AuxKind, BenchArgs, DemoArgs, DisoccludeArgs, FigureKind, FiguresArgs, MeasureArgs,
+    RenderArgs, SceneArgs, SchemaArgs, ShowArgs, Verb,
 };
 use crate::draw_args::{CompositingKind, DrawArgs};
 use crate::goal::Goal;
@@ -10,6 +10,7 @@ use crate::ground_args::InfoArgs;
 use crate::inputs::as_text;
 use crate::look_args::AirArgs;
 use crate::outputs::{self, named, png_named};
+use crate::point_args::{DisplaceArgs, PickArgs, ProjectArgs, RaysArgs};
 use crate::print_args::is_vectors;
 use crate::report::{Context, is_stdout, print};
 use anyhow::Context as _;

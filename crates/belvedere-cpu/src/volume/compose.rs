@@ -10,9 +10,9 @@ use super::{Gathered, reference};
 use crate::trace::deepest;
 use belvedere_composite::buffers::Buffers;
 use belvedere_composite::color::Packed;
-use glam::Vec3A;
 use belvedere_core::DVec2;
 use belvedere_scene::{LayerKind, RenderError, RenderJob, VolumeLayer};
+use glam::Vec3A;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
@@ -103,7 +103,8 @@ pub(crate) fn compose(job: &RenderJob<'_>, way: Way, buffers: &mut Buffers) -> R
 fn is_edge(seen: &[[u8; 4]], width: usize, [x, y]: [usize; 2]) -> bool {
     let i = y * width + x;
     let here = seen[i];
-    let differs = |other: Option<&[u8; 4]>| other.is_some_and(|o| o.iter().zip(here).any(|(a, b)| a.abs_diff(b) >= EDGE));
+    let differs =
+        |other: Option<&[u8; 4]>| other.is_some_and(|o| o.iter().zip(here).any(|(a, b)| a.abs_diff(b) >= EDGE));
     let beside = [(x > 0).then(|| i - 1), (x + 1 < width).then_some(i + 1), i.checked_sub(width), Some(i + width)];
     beside.into_iter().flatten().any(|k| differs(seen.get(k)))
 }

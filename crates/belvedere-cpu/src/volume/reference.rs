@@ -31,13 +31,7 @@ pub(super) fn gather(view: &View, layer: &VolumeLayer, pixel: DVec2, range: [f64
 }
 
 /// The same with steps of a length, scene units.
-pub(super) fn gather_by(
-    view: &View,
-    layer: &VolumeLayer,
-    pixel: DVec2,
-    [near, far]: [f64; 2],
-    step: f64,
-) -> Gathered {
+pub(super) fn gather_by(view: &View, layer: &VolumeLayer, pixel: DVec2, [near, far]: [f64; 2], step: f64) -> Gathered {
     let mut out = Gathered::default();
     if !(near < far) {
         return out;

@@ -280,7 +280,8 @@ fn surfaces_are_those_of_steps_a_hundred_times_as_short() {
             // One sample in the middle of each whole step.
             let (whole, (found, _)) = (by(1.0), fast(&view, &layer, pixel, 1e9));
             seen += u32::from(want.alpha > 0.3);
-            let off = |g: &Gathered| f64::from((g.color - want.color).length_squared() + (g.alpha - want.alpha).powi(2));
+            let off =
+                |g: &Gathered| f64::from((g.color - want.color).length_squared() + (g.alpha - want.alpha).powi(2));
             fast_off += off(&found);
             whole_off += off(&whole);
         }
@@ -404,7 +405,13 @@ fn volume_zz_temporary_pictures() {
     let Ok(folder) = std::env::var("ZZ_PICTURES") else { return };
     let cases = [
         ("engine", [256, 256, 128], [1.0, 1.0, 1.0], DVec3::new(-180.0, -260.0, 300.0), DVec3::new(127.0, 127.0, 64.0)),
-        ("lidc", [256, 256, 133], [1.40625, 1.40625, 2.5], DVec3::new(180.0, -500.0, 300.0), DVec3::new(180.0, 180.0, 165.0)),
+        (
+            "lidc",
+            [256, 256, 133],
+            [1.40625, 1.40625, 2.5],
+            DVec3::new(180.0, -500.0, 300.0),
+            DVec3::new(180.0, 180.0, 165.0),
+        ),
         ("aneurism", [256; 3], [1.0; 3], DVec3::new(-300.0, -260.0, 300.0), DVec3::splat(127.0)),
         ("tree", [128; 3], [1.0; 3], DVec3::new(-90.0, -150.0, 120.0), DVec3::splat(60.0)),
         ("balls", [128; 3], [1.0; 3], DVec3::new(-90.0, -150.0, 120.0), DVec3::splat(64.0)),
@@ -414,9 +421,18 @@ fn volume_zz_temporary_pictures() {
         let values = VoxelValues::U8(std::fs::read(format!("{folder}/{name}.raw")).unwrap());
         let axes = DMat3::from_diagonal(DVec3::from_array(spacing));
         let volume = Volume::new(dims, axes, DVec3::ZERO, values).unwrap();
-        for transfer in if name == "engine" { &["auto", "solid"][..] } else if name == "lidc" { &["auto", "ct-bone"] } else { &["auto"] } {
+        for transfer in if name == "engine" {
+            &["auto", "solid"][..]
+        } else if name == "lidc" {
+            &["auto", "ct-bone"]
+        } else {
+            &["auto"]
+        } {
             let function = TransferFunction::named(transfer, &volume).unwrap();
-            eprintln!("{name} {transfer} {:?}", function.points().iter().map(|p| (p.value, p.opacity)).collect::<Vec<_>>());
+            eprintln!(
+                "{name} {transfer} {:?}",
+                function.points().iter().map(|p| (p.value, p.opacity)).collect::<Vec<_>>()
+            );
             let kind = LayerKind::Volume(VolumeLayer::new(volume.clone(), function));
             let layers = vec![Layer { id: "v".into(), must_see: false, kind }];
             let scene = Scene { crs: Crs::Local, unit: Unit::Voxel, layers, ..Scene::default() };

@@ -62,7 +62,8 @@ fn encode(raster: &Raster) -> Result<Vec<u8>, String> {
     entries.push((tag::STRIP_OFFSETS, Value::Longs(vec![0; strips.len()])));
     entries.push((tag::STRIP_BYTES, Value::Longs(counts.clone())));
     entries.sort_by_key(|(number, _)| *number);
-    let mut at = u32::try_from(HEADER.len() + directory(&entries, HEADER.len(), false)?.len()).map_err(|_| TOO_LARGE)?;
+    let mut at =
+        u32::try_from(HEADER.len() + directory(&entries, HEADER.len(), false)?.len()).map_err(|_| TOO_LARGE)?;
     let mut offsets = Vec::with_capacity(counts.len());
     for count in counts {
         offsets.push(at);

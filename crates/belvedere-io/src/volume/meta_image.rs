@@ -104,12 +104,9 @@ impl Header {
     }
 
     fn volume(&self, source: &Source<'_>, data: &[u8]) -> Result<Loaded<VolumeFile>, String> {
-        let all: usize = self
-            .need("NDims")?
-            .parse()
-            .ok()
-            .filter(|n| (1..=10).contains(n))
-            .ok_or_else(|| format!("its NDims is {:.20?}, 1 to 10 are possible; it is damaged", self.get(&["NDims"])))?;
+        let all: usize = self.need("NDims")?.parse().ok().filter(|n| (1..=10).contains(n)).ok_or_else(|| {
+            format!("its NDims is {:.20?}, 1 to 10 are possible; it is damaged", self.get(&["NDims"]))
+        })?;
         let dims = self.dims(all)?;
         let kind = self.need("ElementType")?;
         let number = TYPES.iter().find(|(name, _)| *name == kind).map(|(_, number)| *number);
@@ -152,7 +149,8 @@ impl Header {
         let list: Option<Vec<usize>> = text.split_whitespace().map(|w| w.parse().ok()).collect();
         let shown: String = text.chars().take(60).collect();
         let list = list.filter(|list| list.len() == all);
-        let list = list.ok_or_else(|| format!("its DimSize {shown:?} is no list of {all} whole numbers; it is damaged"))?;
+        let list =
+            list.ok_or_else(|| format!("its DimSize {shown:?} is no list of {all} whole numbers; it is damaged"))?;
         match list.split_at_checked(3) {
             Some((&[x, y, z], others)) if others.iter().all(|n| *n == 1) => Ok([x, y, z]),
             _ => Err(format!(

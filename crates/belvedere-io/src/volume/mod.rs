@@ -134,7 +134,11 @@ fn gunzip(packed: &[u8], expected: usize) -> Result<Vec<u8>, String> {
 
 /// Exactly `expected` bytes out of a zlib or gzip stream.
 fn inflate(packed: &[u8], expected: usize) -> Result<Vec<u8>, String> {
-    if packed.starts_with(&GZIP) { gunzip(packed, expected) } else { exactly(ZlibDecoder::new(packed), "zlib", expected) }
+    if packed.starts_with(&GZIP) {
+        gunzip(packed, expected)
+    } else {
+        exactly(ZlibDecoder::new(packed), "zlib", expected)
+    }
 }
 
 fn exactly(stream: impl Read, kind: &str, expected: usize) -> Result<Vec<u8>, String> {

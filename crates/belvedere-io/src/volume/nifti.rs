@@ -99,12 +99,14 @@ impl<'b> Header<'b> {
             (_, ONE) => (&FIELDS_ONE, ByteOrder::Big),
             (TWO, _) => (&FIELDS_TWO, ByteOrder::Little),
             (_, TWO) => (&FIELDS_TWO, ByteOrder::Big),
-            _ => return Err("it does not begin with the size of a NIfTI header (348 or 540); it is no NIfTI file".into()),
+            _ => {
+                return Err("it does not begin with the size of a NIfTI header (348 or 540); it is no NIfTI file".into());
+            }
         };
         let size = if fields.wide { TWO } else { ONE } as usize;
-        let header = bytes.get(..size).ok_or_else(|| {
-            format!("it has {} bytes, its header alone has {size}; it is cut off", bytes.len())
-        })?;
+        let header = bytes
+            .get(..size)
+            .ok_or_else(|| format!("it has {} bytes, its header alone has {size}; it is cut off", bytes.len()))?;
         let magic = if fields.wide { &header[4..8] } else { &header[344..348] };
         match magic {
             b"n+1\0" | b"n+2\0" => Ok(Self { bytes: header, fields, order }),

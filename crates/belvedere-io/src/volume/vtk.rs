@@ -32,9 +32,9 @@ pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, String> {
     file.read(&mut text)?;
     let points = file.dims.ok_or("it has no DIMENSIONS; it is damaged, or cut off")?;
     let array = file.choose(source.request.array.as_deref())?;
-    let number = array
-        .number
-        .ok_or_else(|| format!("array \"{}\" is of a type that is not read; convert it to a number type", array.name))?;
+    let number = array.number.ok_or_else(|| {
+        format!("array \"{}\" is of a type that is not read; convert it to a number type", array.name)
+    })?;
     let dims = if array.of_cells { points.map(|n| n.saturating_sub(1)) } else { points };
     let expected = source.expected(dims, number, array.data.len(), !binary)?;
     let count = expected / number.bytes();
@@ -43,7 +43,10 @@ pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, String> {
         number.decode(array.data[..expected].to_vec(), ByteOrder::Big)
     } else {
         if count > array.data.len() {
-            return Err(format!("it declares {count} values and has {} bytes of text; it is cut off", array.data.len()));
+            return Err(format!(
+                "it declares {count} values and has {} bytes of text; it is cut off",
+                array.data.len()
+            ));
         }
         let text = std::str::from_utf8(array.data)
             .map_err(|e| format!("byte {} of its text is no text; it is damaged", e.valid_up_to()))?;
@@ -117,9 +120,8 @@ impl<'b> Parts<'b> {
     /// An attribute: `KIND name type`, and the values.
     fn attribute(&mut self, kind: &str, text: &mut Cursor<'b>) -> Result<(), String> {
         let tuples = self.group.map(|(_, tuples)| tuples);
-        let tuples = tuples.ok_or_else(|| {
-            format!("the word {kind:.30?} near byte {} is not known here; it is damaged", text.at)
-        });
+        let tuples = tuples
+            .ok_or_else(|| format!("the word {kind:.30?} near byte {} is not known here; it is damaged", text.at));
         match kind {
             "SCALARS" => {
                 let (name, type_name) = (text.word()?, text.word()?);
@@ -186,11 +188,14 @@ impl<'b> Parts<'b> {
             "unsigned_long" | "vtktypeuint64" => Some(Number::UInt64),
             other => Number::named(&other.replace('_', " ")),
         };
-        let cut = || format!("array {name:.40?} has {components} x {tuples} values, which end after the file; it is cut off");
+        let cut =
+            || format!("array {name:.40?} has {components} x {tuples} values, which end after the file; it is cut off");
         let count = components.checked_mul(tuples).ok_or_else(cut)?;
         let data = match (self.binary, number, type_name.as_str()) {
             (false, _, "string") | (true, None, _) if type_name != "bit" => {
-                return Err(format!("array {name:.40?} is of type {type_name:.30?}, which cannot be passed over; leave it out"));
+                return Err(format!(
+                    "array {name:.40?} is of type {type_name:.30?}, which cannot be passed over; leave it out"
+                ));
             }
             (false, ..) => text.words(count).ok_or_else(cut)?,
             (true, Some(number), _) => {
@@ -286,7 +291,8 @@ impl<'b> Cursor<'b> {
 
     fn count(&mut self, what: &str) -> Result<usize, String> {
         let word = self.word()?;
-        word.parse().map_err(|_| format!("{what:.40} is followed by {word:.20?}, a whole number is needed; it is damaged"))
+        word.parse()
+            .map_err(|_| format!("{what:.40} is followed by {word:.20?}, a whole number is needed; it is damaged"))
     }
 
     fn numbers(&mut self, what: &str) -> Result<[usize; 3], String> {

@@ -403,7 +403,13 @@ fn what_is_written_is_read_again() {
     let tables = [
         of("a \"path\"", vec![feature("one", Geometry::Lines(vec![line.clone(), line]))]),
         of("lake", vec![feature("two", Geometry::Polygons(vec![vec![ring, hole]]))]),
-        of("peaks", vec![feature("three", Geometry::Points(vec![v(7.0, 8.0, 9.0)])), feature("", Geometry::Points(vec![v(1.0, 1.0, 1.0)]))]),
+        of(
+            "peaks",
+            vec![
+                feature("three", Geometry::Points(vec![v(7.0, 8.0, 9.0)])),
+                feature("", Geometry::Points(vec![v(1.0, 1.0, 1.0)])),
+            ],
+        ),
     ];
     let dir = tempfile::tempdir().unwrap();
     let crs = CoordinateSystem::from_epsg(32633).unwrap();

@@ -148,7 +148,9 @@ fn another_decoder_reads_it() {
     assert!(matches!((theirs, &raster.samples), (DecodingResult::F32(a), Samples::F32(b)) if a == *b));
     decoder.next_image().unwrap();
     assert_eq!(decoder.dimensions().unwrap(), (651, 350));
-    assert!(matches!(decoder.read_image().unwrap(), DecodingResult::F32(v) if (v[0] + 0.5).abs() < 0.01 && v.len() == 651 * 350));
+    assert!(
+        matches!(decoder.read_image().unwrap(), DecodingResult::F32(v) if (v[0] + 0.5).abs() < 0.01 && v.len() == 651 * 350)
+    );
 }
 
 #[test]

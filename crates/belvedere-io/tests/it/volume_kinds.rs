@@ -126,7 +126,11 @@ impl Nifti {
         out.put(if wide { 12 } else { 70 }, &code.to_le_bytes());
         [3i64, 3, 4, 5, 1, 1, 1, 1].iter().enumerate().for_each(|(i, n)| out.dim(i, *n));
         [1.0, 1.0, 2.0, 0.5].iter().enumerate().for_each(|(i, v)| out.real(if wide { 104 } else { 76 }, i, *v));
-        if wide { out.put(168, &(size as i64).to_le_bytes()) } else { out.real(108, 0, size as f64) }
+        if wide {
+            out.put(168, &(size as i64).to_le_bytes())
+        } else {
+            out.real(108, 0, size as f64)
+        }
         out
     }
 
@@ -155,7 +159,11 @@ impl Nifti {
     }
 
     fn units(mut self, code: u32) -> Self {
-        if self.wide { self.put(500, &code.to_le_bytes()) } else { self.bytes[123] = code as u8 }
+        if self.wide {
+            self.put(500, &code.to_le_bytes())
+        } else {
+            self.bytes[123] = code as u8
+        }
         self
     }
 
@@ -181,7 +189,10 @@ impl Nifti {
         self.form(code);
         self.real(pixdim, 0, if mirrored { -1.0 } else { 1.0 });
         let turn = if turn.w < 0.0 { -turn } else { turn };
-        [turn.x, turn.y, turn.z, origin.x, origin.y, origin.z].iter().enumerate().for_each(|(i, v)| self.real(at, i, *v));
+        [turn.x, turn.y, turn.z, origin.x, origin.y, origin.z]
+            .iter()
+            .enumerate()
+            .for_each(|(i, v)| self.real(at, i, *v));
         self
     }
 
@@ -221,7 +232,8 @@ fn one_body_stands_at_one_place_in_every_format() {
     let spacing = DVec3::new(1.0, 2.0, 0.5);
     let origin = DVec3::new(60.0, -120.0, 90.5);
     for mirrored in [false, true] {
-        let axes = DMat3::from_quat(turn) * DMat3::from_diagonal(spacing * DVec3::new(1.0, 1.0, if mirrored { -1.0 } else { 1.0 }));
+        let axes = DMat3::from_quat(turn)
+            * DMat3::from_diagonal(spacing * DVec3::new(1.0, 1.0, if mirrored { -1.0 } else { 1.0 }));
         let is_there = |name: &str, content: &[u8]| {
             let file = load(&folder.file(name, content)).unwrap();
             let off = (file.axes - axes).to_cols_array().iter().fold(0.0f64, |a, b| a.max(b.abs()));
@@ -236,7 +248,8 @@ fn one_body_stands_at_one_place_in_every_format() {
             v(origin)
         );
         is_there("a.nrrd", &[nrrd.as_bytes(), &raw].concat());
-        let unit: Vec<String> = [0, 1, 2].iter().flat_map(|i| axes.col(*i).normalize().to_array()).map(|v| v.to_string()).collect();
+        let unit: Vec<String> =
+            [0, 1, 2].iter().flat_map(|i| axes.col(*i).normalize().to_array()).map(|v| v.to_string()).collect();
         let place = format!("TransformMatrix = {}\nOffset = {} {} {}\n", unit.join(" "), origin.x, origin.y, origin.z);
         is_there("a.mha", &[meta("MET_UCHAR", &place, "LOCAL").as_bytes(), &raw].concat());
         // NIfTI counts to the right and to the front.
@@ -257,7 +270,11 @@ fn one_body_stands_at_one_place_in_every_format() {
     }
     let nowhere = folder.file("b.nii", &Nifti::new(false, false, 2).with(&raw));
     let loaded = load_volume(&nowhere, &VolumeRequest::default()).unwrap();
-    assert!(loaded.warnings.len() == 1 && loaded.warnings[0].text().contains("no orientation"), "{:?}", loaded.warnings);
+    assert!(
+        loaded.warnings.len() == 1 && loaded.warnings[0].text().contains("no orientation"),
+        "{:?}",
+        loaded.warnings
+    );
     assert_eq!(loaded.value.axes, DMat3::from_diagonal(DVec3::new(-1.0, -2.0, 0.5)));
 }
 
@@ -357,7 +374,11 @@ fn what_is_not_read_is_said_with_what_to_do() {
         ("a.vtk", b"# vtk DataFile Version 3.0\n\nASCII\nDATASET POLYDATA\n".to_vec(), "POLYDATA"),
         ("a.vtk", vtk("ASCII", &[b"POINT_DATA 60\nSCALARS a float\nLOOKUP_TABLE default\n1 2 3"]), "cut off"),
         ("a.vtk", vtk("BINARY", &[b"POINT_DATA 60\nSCALARS a bit\nLOOKUP_TABLE default\n12345678"]), "not read"),
-        ("a.vtk", vtk("ASCII", &[b"POINT_DATA 7\nSCALARS a float\nLOOKUP_TABLE default\n1 2 3 4 5 6 7"]), "60 values and has 13 bytes"),
+        (
+            "a.vtk",
+            vtk("ASCII", &[b"POINT_DATA 7\nSCALARS a float\nLOOKUP_TABLE default\n1 2 3 4 5 6 7"]),
+            "60 values and has 13 bytes",
+        ),
         ("a.vtk", vtk("ASCII", &[b"POINT_DATA 60\nNONSENSE"]), "\"NONSENSE\""),
         ("a.vtk", vtk("ASCII", &[b"POINT_DATA 60\n"]), "no values"),
         ("a.vtk", vtk("EBCDIC", &[]), "ASCII or BINARY"),
@@ -415,13 +436,26 @@ fn damaged_files_end_in_an_error_and_soon() {
 #[test]
 fn volume_zz_temporary_files() {
     let Ok(folder) = std::env::var("ZZ_PICTURES") else { return };
-    for name in ["itk.mha", "itkz.mha", "itk.mhd", "itk.nrrd", "itk.nii", "itk.nii.gz", "itkf.vtk", "nib2.nii.gz", "nibscaled.nii"] {
+    for name in [
+        "itk.mha",
+        "itkz.mha",
+        "itk.mhd",
+        "itk.nrrd",
+        "itk.nii",
+        "itk.nii.gz",
+        "itkf.vtk",
+        "nib2.nii.gz",
+        "nibscaled.nii",
+    ] {
         match load_volume(&Path::new(&folder).join(name), &VolumeRequest::default()) {
             Ok(l) => {
                 let v: Vec<f32> = (0..l.value.values.len()).map(|i| l.value.values.at(i)).collect();
                 let far = l.value.axes * DVec3::new(4.0, 5.0, 6.0) + l.value.origin;
                 let sum: f64 = v.iter().map(|v| f64::from(*v)).sum();
-                eprintln!("{name} {:?} {:?} {} {} {sum} {} {:?}", l.value.dims, l.value.stored, l.value.origin, far, v[7], l.warnings);
+                eprintln!(
+                    "{name} {:?} {:?} {} {} {sum} {} {:?}",
+                    l.value.dims, l.value.stored, l.value.origin, far, v[7], l.warnings
+                );
             }
             Err(e) => eprintln!("{name} {e}"),
         }

@@ -222,7 +222,15 @@ mod tests {
             let noise = (i * 7919 % 13) as f64 - 6.0;
             let stem = x.hypot(y) < 4.0;
             let leaf = leaves && z.rem_euclid(10.0) < 2.0 && (x - 12.0).hypot(y) < 6.0;
-            (12.0 + noise + if stem { 180.0 } else if leaf { 45.0 } else { 0.0 }) as u8
+            (12.0
+                + noise
+                + if stem {
+                    180.0
+                } else if leaf {
+                    45.0
+                } else {
+                    0.0
+                }) as u8
         };
         let values = VoxelValues::U8((0..n * n * n).map(value).collect());
         Volume::new([n; 3], DMat3::IDENTITY, DVec3::ZERO, values).unwrap()
@@ -243,7 +251,14 @@ mod tests {
         let value = |i: usize| {
             let [x, y, z] = [i % n, i / n % n, i / n / n].map(|v| v as f64 - 24.0);
             let r = (x * x + y * y + z * z).sqrt();
-            (8.0 + (i * 7919 % 7) as f64 + if r < 5.0 { 220.0 } else if r < 17.0 { 50.0 } else { 0.0 }) as u8
+            (8.0 + (i * 7919 % 7) as f64
+                + if r < 5.0 {
+                    220.0
+                } else if r < 17.0 {
+                    50.0
+                } else {
+                    0.0
+                }) as u8
         };
         let values = VoxelValues::U8((0..n * n * n).map(value).collect());
         let f = TransferFunction::auto(&Volume::new([n; 3], DMat3::IDENTITY, DVec3::ZERO, values).unwrap());

@@ -144,9 +144,10 @@ impl MovedFeatures {
     /// [`BelvedereError::Output`].
     pub fn check_name(path: &Path) -> Result<(), BelvedereError> {
         if Self::is_geopackage(path) && !cfg!(feature = "geopackage") {
-            let reason = "is a GeoPackage, which this program was built without; name the output .geojson, or build it with \
+            let reason =
+                "is a GeoPackage, which this program was built without; name the output .geojson, or build it with \
                           --features geopackage"
-                .into();
+                    .into();
             return Err(BelvedereError::Output { path: path.to_owned(), reason });
         }
         Ok(())

@@ -61,8 +61,10 @@ pub fn meta_image() -> Vec<Vec<u8>> {
     let shorts: Vec<u8> = values().flat_map(|v| u16::from(v).to_be_bytes()).collect();
     let text: Vec<String> = values().map(|v| v.to_string()).collect();
     let head = |kind: &str, more: &str| {
-        let place = "TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 1 -2 5e1\nElementSpacing = 2 3 1.5\nDimSize = 3 4 5";
-        format!("ObjectType = Image\nNDims = 3\n{more}{place}\nElementType = {kind}\nElementDataFile = LOCAL\n").into_bytes()
+        let place =
+            "TransformMatrix = 0 1 0 -1 0 0 0 0 1\nOffset = 1 -2 5e1\nElementSpacing = 2 3 1.5\nDimSize = 3 4 5";
+        format!("ObjectType = Image\nNDims = 3\n{more}{place}\nElementType = {kind}\nElementDataFile = LOCAL\n")
+            .into_bytes()
     };
     vec![
         [head("MET_UCHAR", "BinaryData = True\n"), raw.clone()].concat(),
@@ -89,7 +91,10 @@ pub fn nifti() -> Vec<Vec<u8>> {
         put(112, &0.5f32.to_le_bytes());
         put(if sform { 254 } else { 252 }, &1i16.to_le_bytes());
         put(256, &0.5f32.to_le_bytes());
-        [0.0f32, -3.0, 0.0, 9.0, 2.0, 0.0, 0.0, -4.0, 0.0, 0.0, 1.5, 7.0].iter().enumerate().for_each(|(i, n)| put(280 + 4 * i, &n.to_le_bytes()));
+        [0.0f32, -3.0, 0.0, 9.0, 2.0, 0.0, 0.0, -4.0, 0.0, 0.0, 1.5, 7.0]
+            .iter()
+            .enumerate()
+            .for_each(|(i, n)| put(280 + 4 * i, &n.to_le_bytes()));
         head[123] = 2;
         head[344..348].copy_from_slice(b"n+1\0");
         head.extend(values().flat_map(|v| if big { i16::from(v).to_be_bytes() } else { i16::from(v).to_le_bytes() }));
@@ -100,7 +105,10 @@ pub fn nifti() -> Vec<Vec<u8>> {
     two[4..12].copy_from_slice(b"n+2\0\r\n\x1a\n");
     two[12] = 2;
     [3i64, 3, 4, 5].iter().enumerate().for_each(|(i, n)| two[16 + 8 * i..24 + 8 * i].copy_from_slice(&n.to_le_bytes()));
-    [1.0f64, 2.0, 2.0, 1.5].iter().enumerate().for_each(|(i, n)| two[104 + 8 * i..112 + 8 * i].copy_from_slice(&n.to_le_bytes()));
+    [1.0f64, 2.0, 2.0, 1.5]
+        .iter()
+        .enumerate()
+        .for_each(|(i, n)| two[104 + 8 * i..112 + 8 * i].copy_from_slice(&n.to_le_bytes()));
     two[168..176].copy_from_slice(&544i64.to_le_bytes());
     two.extend(values());
     vec![one(false, true), one(true, false), two]
@@ -109,14 +117,17 @@ pub fn nifti() -> Vec<Vec<u8>> {
 /// Legacy VTK: text and binary, attributes and fields, values of points and cells.
 pub fn vtk() -> Vec<Vec<u8>> {
     let head = |kind: &str| {
-        format!("# vtk DataFile Version 5.1\na seed\n{kind}\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 4 5\nSPACING 2 1 0.5\nORIGIN 1 2 3\n")
+        format!(
+            "# vtk DataFile Version 5.1\na seed\n{kind}\nDATASET STRUCTURED_POINTS\nDIMENSIONS 3 4 5\nSPACING 2 1 0.5\nORIGIN 1 2 3\n"
+        )
     };
     let text: Vec<String> = values().map(|v| v.to_string()).collect();
     let shorts: Vec<u8> = values().flat_map(|v| u16::from(v).to_be_bytes()).collect();
     let cells = "CELL_DATA 24\nFIELD FieldData 2\nid 1 24 int\n";
     let ids: String = (0..24).map(|i| format!("{i} ")).collect();
     vec![
-        format!("{}POINT_DATA 60\nSCALARS density float 1\nLOOKUP_TABLE default\n{}\n", head("ASCII"), text.join(" ")).into_bytes(),
+        format!("{}POINT_DATA 60\nSCALARS density float 1\nLOOKUP_TABLE default\n{}\n", head("ASCII"), text.join(" "))
+            .into_bytes(),
         [
             head("BINARY").as_bytes(),
             b"POINT_DATA 60\nSCALARS a%20b unsigned_short\nLOOKUP_TABLE default\n",
