@@ -424,9 +424,9 @@ fn volume_zz_temporary_pictures() {
         for transfer in if name == "engine" {
             &["auto", "solid"][..]
         } else if name == "lidc" {
-            &["auto", "ct-bone"]
+            &["auto", "ct-bone"][..]
         } else {
-            &["auto"]
+            &["auto"][..]
         } {
             let function = TransferFunction::named(transfer, &volume).unwrap();
             eprintln!(

@@ -74,16 +74,18 @@ pub(super) struct Thin {
     pub(super) share: f64,
 }
 
-/// Least share of voxels that counts as matter.
+/// Least share of all voxels, and of those of such values, that counts as matter: fewer are borders and specks.
 const LEAST_SHARE: f64 = 2e-4;
+const LEAST_APART: f64 = 0.35;
 /// Deviations of the background's values, above which they are no noise.
 const DEVIATIONS: f64 = 4.5;
 
 /// Matter of values between the background and `dense`, the first bin of dense matter; `None` if there is none to speak of.
 pub(super) fn thin(volume: &Volume, counts: &Counts, dense: usize) -> Option<Thin> {
+    let counts = smooth(volume, &counts[..dense]);
     // Rare values would not count beside the background: their logarithms do.
-    let weights: Vec<f64> = counts[..dense].iter().map(|n| (*n as f64).ln_1p()).collect();
-    let from = otsu(&weights).max(end_of_noise(&counts[..dense]));
+    let weights: Vec<f64> = counts.iter().map(|n| n.ln_1p()).collect();
+    let from = otsu(&weights).max(end_of_noise(&counts));
     if from >= dense {
         return None;
     }
@@ -92,12 +94,13 @@ pub(super) fn thin(volume: &Volume, counts: &Counts, dense: usize) -> Option<Thi
     let values = volume.values();
     let at = |p: [usize; 3]| bin(values.at((p[2] * ny + p[1]) * nx + p[0]));
     let stride = stride(volume, COUNTED_APART);
-    let (mut found, mut all) = (0u64, 0u64);
+    let (mut found, mut low, mut all) = (0u64, 0u64, 0u64);
     for i in (0..values.len()).step_by(stride) {
         all += 1;
         if !(from..dense).contains(&bin(values.at(i))) {
             continue;
         }
+        low += 1;
         let p = [i % nx, i / nx % ny, i / nx / ny];
         let beside = |axis: usize, by: usize| {
             let most = [nx, ny, nz][axis] - 1;
@@ -115,16 +118,33 @@ pub(super) fn thin(volume: &Volume, counts: &Counts, dense: usize) -> Option<Thi
         found += u64::from(coherent && !border);
     }
     let share = found as f64 / all.max(1) as f64;
-    (share >= LEAST_SHARE).then_some(Thin { from, share })
+    let apart = found as f64 >= LEAST_APART * low as f64;
+    (share >= LEAST_SHARE && apart).then_some(Thin { from, share })
+}
+
+/// Counts without the gaps between whole numbers that are fewer than bins.
+fn smooth(volume: &Volume, counts: &[u64]) -> Vec<f64> {
+    let [lo, hi] = volume.range();
+    let whole = !matches!(volume.values(), VoxelValues::F32(_));
+    let apart = BINS as f32 / (hi - lo).max(f32::MIN_POSITIVE);
+    let reach = if whole && apart > 1.001 { (apart.ceil() as usize).min(BINS) } else { 0 };
+    let mean = |i: usize| {
+        let near = counts.iter().take(i + reach + 1).skip(i.saturating_sub(reach));
+        near.map(|n| *n as f64).sum::<f64>() / (2 * reach + 1) as f64
+    };
+    (0..counts.len()).map(mean).collect()
 }
 
 /// First bin above the noise of the most frequent value.
-fn end_of_noise(counts: &[u64]) -> usize {
-    let Some(mode) = (0..counts.len()).max_by_key(|i| (counts[*i], std::cmp::Reverse(*i))) else { return 0 };
-    // The side below the mode has no matter in it; the width at which a bell has fallen to 1/e^2 is two deviations.
-    let fallen = counts[mode] as f64 * (-2.0f64).exp();
-    let below = (0..mode).rev().find(|i| (counts[*i] as f64) < fallen).map_or(mode, |i| mode - i);
-    let above = (mode..counts.len()).find(|i| (counts[*i] as f64) < fallen).map_or(0, |i| i - mode);
-    let deviation = 0.5 * below.min(above).max(1) as f64;
-    mode + (DEVIATIONS * deviation).ceil() as usize
+fn end_of_noise(counts: &[f64]) -> usize {
+    let Some(mode) = (0..counts.len()).max_by(|a, b| counts[*a].total_cmp(&counts[*b])) else { return 0 };
+    // The middle of the top; below it there is no matter.
+    let half = 0.5 * counts[mode];
+    let first = (0..mode).rev().find(|i| counts[*i] <= half).map_or(0, |i| i + 1);
+    let last = (mode..counts.len()).find(|i| counts[*i] <= half).map_or(counts.len(), |i| i) - 1;
+    let middle = 0.5 * (first + last) as f64;
+    let below = &counts[..=middle as usize];
+    let squares: f64 = below.iter().enumerate().map(|(i, n)| n * (i as f64 - middle).powi(2)).sum();
+    let deviation = (squares / below.iter().sum::<f64>().max(f64::MIN_POSITIVE)).sqrt().max(0.5);
+    (middle + DEVIATIONS * deviation).ceil() as usize
 }
