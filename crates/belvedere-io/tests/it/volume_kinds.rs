@@ -432,32 +432,3 @@ fn damaged_files_end_in_an_error_and_soon() {
     }
     assert!(refused > 700 && start.elapsed().as_secs() < 60, "{refused} in {:?}", start.elapsed());
 }
-
-#[test]
-fn volume_zz_temporary_files() {
-    let Ok(folder) = std::env::var("ZZ_PICTURES") else { return };
-    for name in [
-        "itk.mha",
-        "itkz.mha",
-        "itk.mhd",
-        "itk.nrrd",
-        "itk.nii",
-        "itk.nii.gz",
-        "itkf.vtk",
-        "nib2.nii.gz",
-        "nibscaled.nii",
-    ] {
-        match load_volume(&Path::new(&folder).join(name), &VolumeRequest::default()) {
-            Ok(l) => {
-                let v: Vec<f32> = (0..l.value.values.len()).map(|i| l.value.values.at(i)).collect();
-                let far = l.value.axes * DVec3::new(4.0, 5.0, 6.0) + l.value.origin;
-                let sum: f64 = v.iter().map(|v| f64::from(*v)).sum();
-                eprintln!(
-                    "{name} {:?} {:?} {} {} {sum} {} {:?}",
-                    l.value.dims, l.value.stored, l.value.origin, far, v[7], l.warnings
-                );
-            }
-            Err(e) => eprintln!("{name} {e}"),
-        }
-    }
-}
