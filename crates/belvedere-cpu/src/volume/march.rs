@@ -1,17 +1,13 @@
 //! Fast ray marching: groups of samples, with empty-space skipping.
-//!
-//! Samples are taken at the ends of steps. Between two of them the value is taken to change evenly, and the step is cut into parts over
-//! which it changes little; colour and opacity are looked up for each part, without another sample, and the light of the ends is
-//! interpolated. Without the parts, thin layers of matter are met or missed by whole samples, which draws rings on surfaces.
 
 use super::bricks::{EDGE, Leaps};
 use super::light::{SURFACE, light};
 use super::ray::Segment;
 use super::sampler::{GROUP, Group, Sampler, Voxel};
 use super::spans::Spans;
-use super::table::{ENTRIES, Entry, PARTS, Table};
+use super::table::{ENTRIES, Table};
 use super::{ENOUGH, Gathered, HALF, half_within};
-use crate::simd::{self, Kernel};
+use crate::simd::{self, Kernel, nearest};
 use belvedere_core::{DVec3, View};
 use belvedere_scene::{Volume, VolumeLayer, VolumeModel, VoxelValues};
 use glam::{Mat3A, Vec3A};
@@ -22,8 +18,6 @@ pub(super) struct Marcher<'v> {
     table: Table,
     leaps: Leaps,
     step: f64,
-    /// Longest way of a step in the lattice.
-    pace: f32,
     /// Matrix from lattice gradients to scene normals, per voxel edge.
     normal_from_gradient: Mat3A,
     /// Squared gradient per voxel edge at which a sample counts as half a surface.
@@ -38,14 +32,11 @@ impl<'v> Marcher<'v> {
         let [lo, hi] = volume.range();
         let inverse_transposed = volume.lattice_axes().transpose() * volume.voxel_edge();
         let surface = (SURFACE * (hi - lo)).max(f32::MIN_POSITIVE);
-        // The Frobenius norm is a bound.
-        let norm = volume.lattice_axes().to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
         Self {
             layer,
             table,
             leaps,
             step: layer.step_length(),
-            pace: (layer.step_length() * norm) as f32,
             normal_from_gradient: Mat3A::from_cols_array(&inverse_transposed.to_cols_array().map(|v| v as f32)),
             surface_squared: surface * surface,
         }
@@ -150,36 +141,23 @@ impl Stretch {
         self.c[1] + n * (2.0 * self.c[2] + n * 3.0 * self.c[3])
     }
 
-    /// Number of whole steps, at most `to_end`, that stay within the cube of empty bricks around a brick; 0 if the next one may leave it.
-    ///
-    /// * `pace`: the longest way of a step; steps beyond the end of the stretch are bounded by it.
+    /// Number of whole steps that stay within the cube of empty bricks around a brick.
     #[inline(always)]
-    fn leap(&self, n: f32, p: Vec3A, (brick, distance): ([usize; 3], u8), to_end: f32, pace: f32) -> f32 {
+    fn leap(&self, n: f32, p: Vec3A, (brick, distance): ([usize; 3], u8)) -> f32 {
+        let v = self.direction(n);
         let corner = Vec3A::from_array(brick.map(|b| b as f32 * EDGE));
         let reach = (f32::from(distance) - 1.0) * EDGE;
         let (low, high) = (corner - reach, corner + (EDGE + reach));
-        let along = self.leap_along(n, p, low, high).min(to_end);
-        if along >= 1.0 {
-            return along.floor();
-        }
-        let gap = (high - p).min(p - low).min_element();
-        (gap / pace).floor().max(0.0)
-    }
-
-    /// Steps along the stretch that stay between two corners.
-    #[inline(always)]
-    fn leap_along(&self, n: f32, p: Vec3A, low: Vec3A, high: Vec3A) -> f32 {
-        let v = self.direction(n);
         let way = Vec3A::select(v.cmpgt(Vec3A::ZERO), high - p, p - low);
         let pace = v.abs().max(Vec3A::splat(1e-12)).recip();
         let leap = (way * pace).min_element();
-        let Some(bend) = self.bend else { return leap };
+        let Some(bend) = self.bend else { return leap.floor().max(1.0) };
         // The bend may bring the ray to a side earlier, by at most `off` within the leap. For sides that it moves away from, the distance
         // itself counts, and the speed that the bend may give it towards them.
         let off = bend * (leap * leap);
         let ahead = ((way - off) * pace).min_element();
         let behind = (high - low - way - off).min_element() + 1e-3;
-        if behind >= 0.0 { leap.min(ahead) } else { 0.0 }
+        if behind >= 0.0 { leap.min(ahead).floor().max(1.0) } else { 1.0 }
     }
 }
 
@@ -261,157 +239,84 @@ impl<'s> Run<'s> {
     }
 }
 
-/// The end of a step that the next one begins with: the index of its value in the table, and its light if it was asked for.
-#[derive(Clone, Copy)]
-struct Front {
-    at: f32,
-    light: Option<[f32; 2]>,
-}
-
-/// Adjoining samples: the distance of the first, their number, and the share of a step between them.
-#[derive(Clone, Copy)]
-struct Samples {
-    way: f64,
-    taken: usize,
-    share: f32,
-}
-
 impl<T: Voxel> Walk<'_, '_, T> {
-    /// Follows adjoining segments in steps of equal length; the last, shorter one ends with them.
+    /// Takes samples along adjoining segments, at `(k + 1/2)` steps of their joint length; the last, shorter step ends with them.
     #[inline(always)]
     fn run_of(&self, segments: &[Segment], out: &mut Gathered) {
         let step = self.marcher.step;
         let total: f64 = segments.iter().map(|s| s.length).sum::<f64>() / step;
         // Rounding must not add a step.
         let whole = (total + 1e-6).floor();
-        let part = (total - whole) as f32;
         let mut run = Run::new(segments, step);
-        let mut front: Option<Front> = None;
         let mut k = 0.0f64;
-        loop {
-            let last = k >= whole;
-            if k > whole || (last && part <= 1e-6) {
-                return;
-            }
-            run.seek(k);
-            let n = (k - run.start) as f32;
+        while k < whole {
+            let way = k + 0.5;
+            run.seek(way);
+            let n = (way - run.start) as f32;
             let p = run.stretch.at(n);
             let found = self.marcher.leaps.at(p);
             if found.1 > 0 {
-                let to_end = (run.end - k).max(0.0) as f32;
-                let leap = run.stretch.leap(n, p, found, to_end, self.marcher.pace).min(1e6);
-                if leap >= 1.0 {
-                    k += f64::from(leap);
-                    front = None;
-                    continue;
-                }
+                let to_end = (run.end - way).ceil().max(1.0);
+                k += f64::from(run.stretch.leap(n, p, found).min(1e6)).min(to_end);
+                continue;
             }
-            if last {
-                if front.is_none() {
-                    self.group(&mut run, Samples { way: k, taken: 1, share: 1.0 }, &mut front, out);
-                }
-                run.seek(total);
-                self.group(&mut run, Samples { way: total, taken: 1, share: part }, &mut front, out);
+            let taken = (whole - k).min(GROUP as f64);
+            if self.group(&mut run, way, taken as usize, 1.0, out) {
                 return;
             }
-            let begun = f64::from(u8::from(front.is_some()));
-            let taken = (whole - k + 1.0 - begun).min(GROUP as f64);
-            run.seek(k + begun);
-            if self.group(&mut run, Samples { way: k + begun, taken: taken as usize, share: 1.0 }, &mut front, out) {
-                return;
-            }
-            k += taken - 1.0 + begun;
+            k += taken;
+        }
+        let part = total - whole;
+        if part > 1e-6 {
+            let way = total - 0.5 * part;
+            run.seek(way);
+            self.group(&mut run, way, 1, part as f32, out);
         }
     }
 
-    /// Takes samples and gathers the light of the steps between them, and of the one from `front` to the first; `front` becomes the last
-    /// sample. Returns whether the ray is opaque.
+    /// Takes `taken` samples from the distance `way` on; each counts for `share` of a step. Returns whether the ray is opaque.
     #[inline(always)]
-    fn group(&self, run: &mut Run<'_>, samples: Samples, front: &mut Option<Front>, out: &mut Gathered) -> bool {
-        let Samples { way, taken, share } = samples;
+    fn group(&self, run: &mut Run<'_>, way: f64, taken: usize, share: f32, out: &mut Gathered) -> bool {
         let marcher = self.marcher;
         let table = &marcher.table;
         let shaded = marcher.layer.model == VolumeModel::Shaded;
         let (p, v) = run.group(way, taken, shaded);
         let values = self.sampler.at(&p);
-        let mut at = [0.0f32; GROUP];
+        let (mut place, mut rest) = ([0i32; GROUP], [0.0f32; GROUP]);
         for l in 0..GROUP {
-            at[l] = ((values[l] - table.least) * table.scale).max(0.0).min((ENTRIES - 1) as f32);
+            let at = ((values[l] - table.least) * table.scale).max(0.0);
+            // The entry below, or on an entry perhaps the one before, which gives the same opacity.
+            place[l] = nearest(at - 0.5);
+            rest[l] = at - place[l] as f32;
         }
         out.samples += taken as u32;
-        let first = front.unwrap_or(Front { at: at[0], light: None });
-        let mut seen = [false; GROUP];
+        let mut alphas: Group = [0.0; GROUP];
         let mut any = false;
-        let mut before: &Entry = table.entry(Table::number(first.at));
         for l in 0..taken {
-            let here = table.entry(Table::number(at[l]));
-            seen[l] = before.sees(here);
-            any |= seen[l];
-            before = here;
+            let [alpha, change] = table.alphas[place[l] as usize & (ENTRIES - 1)];
+            alphas[l] = alpha + rest[l] * change;
+            any |= alphas[l] > 0.0;
         }
         if !any {
-            *front = Some(Front { at: at[taken - 1], light: None });
             return false;
         }
-        let [factor, white] = if shaded { self.shading(&p, &v) } else { [[1.0; GROUP], [0.0; GROUP]] };
-        let light = |l: usize| [factor[l], white[l]];
-        // The first sample alone begins no step.
-        let steps = usize::from(front.is_none())..taken;
-        let mut from = (first.at, first.light.unwrap_or(light(0)));
-        for l in 0..taken {
-            let to = (at[l], light(l));
-            if seen[l] && steps.contains(&l) {
-                let start = if share == 1.0 { way + l as f64 - 1.0 } else { way - f64::from(share) };
-                if self.step([from, to], share, out, |within| {
-                    let (depth, q) = run.place(start + within);
-                    (depth, marcher.volume().scene_from_lattice(q))
-                }) {
-                    return true;
-                }
-            }
-            from = to;
+        if share != 1.0 {
+            alphas[0] = 1.0 - (1.0 - alphas[0]).powf(share);
         }
-        *front = Some(Front { at: from.0, light: Some(from.1) });
-        false
-    }
-
-    /// Gathers the light of a step between two samples, given by the index of their value and their light. Returns whether the ray is
-    /// opaque.
-    ///
-    /// * `share`: its length in steps; `place`: depth and place within it, by the distance from its start in steps.
-    #[inline(always)]
-    fn step(
-        &self,
-        [(a, light_a), (b, light_b)]: [(f32, [f32; 2]); 2],
-        share: f32,
-        out: &mut Gathered,
-        place: impl Fn(f64) -> (f64, DVec3),
-    ) -> bool {
-        let change = b - a;
-        let parts = parts_for(change.abs());
-        let length = 1.0 / parts as f32;
-        for j in 0..parts {
-            let t = (j as f32 + 0.5) * length;
-            let (mut alpha, color) = self.marcher.table.at(a + t * change);
-            if alpha <= 0.0 {
+        let [factor, white] = if shaded { self.shading(&p, &v) } else { [[1.0; GROUP], [0.0; GROUP]] };
+        for l in 0..taken {
+            if alphas[l] <= 0.0 {
                 continue;
             }
-            // From the shortest part to this one.
-            for _ in 0..(PARTS / parts).trailing_zeros() {
-                alpha *= 2.0 - alpha;
-            }
-            if share != 1.0 {
-                alpha = 1.0 - (1.0 - alpha).powf(share);
-            }
-            let factor = light_a[0] + t * (light_b[0] - light_a[0]);
-            let white = light_a[1] + t * (light_b[1] - light_a[1]);
+            let lit = table.colors[place[l] as usize & (ENTRIES - 1)] * factor[l] + white[l];
             let before = 1.0 - out.alpha;
-            let weight = alpha * before;
-            out.color += (color * factor + white) * weight;
+            let weight = alphas[l] * before;
+            out.color += lit * weight;
             out.alpha += weight;
             if out.half.is_none() && out.alpha >= HALF {
-                let within = (f64::from(j) + half_within(before, alpha)) * f64::from(length * share);
-                out.half = Some(place(within));
+                let within = f64::from(share) * (half_within(before, alphas[l]) - 0.5);
+                let (depth, q) = run.place(way + l as f64 + within);
+                out.half = Some((depth, marcher.volume().scene_from_lattice(q)));
             }
             if out.alpha >= ENOUGH {
                 return true;
@@ -444,18 +349,5 @@ impl<T: Voxel> Walk<'_, '_, T> {
             (out[0][l], out[1][l]) = (factor, white);
         }
         out
-    }
-}
-
-/// Parts of a step for a change of value, table entries: a power of two.
-#[inline(always)]
-fn parts_for(change: f32) -> u32 {
-    // Shares of the range of values over which usual functions change little.
-    const SMALL: f32 = ENTRIES as f32 / 128.0;
-    match change {
-        c if c <= SMALL => 1,
-        c if c <= 2.0 * SMALL => 2,
-        c if c <= 4.0 * SMALL => 4,
-        _ => PARTS,
     }
 }

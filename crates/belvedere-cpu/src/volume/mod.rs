@@ -3,8 +3,7 @@
 //!
 //! 1. [`ray`]: within the [`spans`] of the picture that may show the volume, the ray of a pixel becomes segments inside the box of the
 //!    volume, cubics by arc length.
-//! 2. [`march`]: samples at equal distances along them, front to back, and parts of the steps between them; [`bricks`] tell where nothing can
-//!    be seen, [`table`] gives colour
+//! 2. [`march`]: samples at equal distances along them, front to back; [`bricks`] tell where nothing can be seen, [`table`] gives colour
 //!    and opacity, [`sampler`] interpolates several samples at once.
 //! 3. [`compose`]: over the surfaces by depth, and into depth, id and place where more than half of the light is absorbed.
 //!

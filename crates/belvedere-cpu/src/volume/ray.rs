@@ -80,23 +80,21 @@ impl<'a> Rays<'a> {
 
     /// Calls `each` with the segments of those pixels of a row that `wants` selects.
     ///
-    /// * `within`: where in its pixel the ray goes, 0..1 along both sides; its centre is 0.5, 0.5;
     /// * `wants`: the depth to which the ray of a column is followed; `None`: it is not.
     pub(super) fn row(
         &self,
         y: usize,
-        within: DVec2,
         width: usize,
         volume: &Volume,
         wants: impl Fn(usize) -> Option<f64>,
         mut each: impl FnMut(usize, &[Segment]),
     ) {
-        let y = y as f64 + within.y;
+        let y = y as f64 + 0.5;
         let row = if self.pieces { None } else { self.split.row(y, self.range) };
         let mut segments = Vec::new();
         for x in 0..width {
             let Some(far) = wants(x) else { continue };
-            let pixel = DVec2::new(x as f64 + within.x, y);
+            let pixel = DVec2::new(x as f64 + 0.5, y);
             segments.clear();
             let mut clip = Clip::new(volume, &mut segments);
             if self.pieces {

@@ -1,8 +1,7 @@
 //! Reference ray marching in 64 bits: the fast method is tested against it, and the exact renderer uses it.
 //!
-//! The ray is cut into short chords by halving depths, and each chord is clipped to the box. Steps of equal length, shorter than those of
-//! the fast method, are laid along their joint length, one sample in the middle of each, weighted by the chord of its step. Nothing is
-//! tabulated or skipped.
+//! The ray is cut into short chords by halving depths, and each chord is clipped to the box. Steps of equal length are laid along their
+//! joint length, one sample in the middle of each, weighted by the chord of its step. Nothing is tabulated or skipped.
 
 use super::light::{SURFACE, light};
 use super::table::light_and_opacity;
@@ -14,8 +13,6 @@ use glam::Vec3A;
 
 /// Longest chord, steps.
 const CHORD: f64 = 0.25;
-/// Steps of this method to a step of a layer.
-const FINER: f64 = 8.0;
 /// Largest number of halvings of depths.
 const MAX_HALVINGS: u32 = 24;
 
@@ -26,12 +23,7 @@ struct Chord {
 }
 
 /// Light that the ray of `pixel` gathers between two depths.
-pub(super) fn gather(view: &View, layer: &VolumeLayer, pixel: DVec2, range: [f64; 2]) -> Gathered {
-    gather_by(view, layer, pixel, range, layer.step_length() / FINER)
-}
-
-/// The same with steps of a length, scene units.
-pub(super) fn gather_by(view: &View, layer: &VolumeLayer, pixel: DVec2, [near, far]: [f64; 2], step: f64) -> Gathered {
+pub(super) fn gather(view: &View, layer: &VolumeLayer, pixel: DVec2, [near, far]: [f64; 2]) -> Gathered {
     let mut out = Gathered::default();
     if !(near < far) {
         return out;
@@ -40,7 +32,7 @@ pub(super) fn gather_by(view: &View, layer: &VolumeLayer, pixel: DVec2, [near, f
     let Some(first) = chords.first() else { return out };
     out.enters = first.depth[0];
     for run in chords.chunk_by(|a, b| a.depth[1] == b.depth[0]) {
-        march(layer, run, step, &mut out);
+        march(layer, run, &mut out);
     }
     if out.alpha >= ENOUGH {
         out.color /= out.alpha;
@@ -49,7 +41,7 @@ pub(super) fn gather_by(view: &View, layer: &VolumeLayer, pixel: DVec2, [near, f
     out
 }
 
-fn march(layer: &VolumeLayer, run: &[Chord], step: f64, out: &mut Gathered) {
+fn march(layer: &VolumeLayer, run: &[Chord], out: &mut Gathered) {
     let volume = &*layer.volume;
     let scene = |q: DVec3| volume.scene_from_lattice(q);
     // Distance at the beginning of every chord, and at the end of the last.
@@ -64,6 +56,7 @@ fn march(layer: &VolumeLayer, run: &[Chord], step: f64, out: &mut Gathered) {
         let Chord { ends, depth } = &run[i];
         (ends[0].lerp(ends[1], t), depth[0] + t * (depth[1] - depth[0]))
     };
+    let step = layer.step_length();
     let mut begin = 0.0;
     while begin < total && out.alpha < ENOUGH {
         let end = (begin + step).min(total);
