@@ -111,7 +111,7 @@ class Layers:
         """Adds voxels.
 
         * ``values``: ``(nz, ny, nx)``: x runs along the last axis; integers or floats of any byte order. Masked floats are NaN; masked integers are
-          refused. Or the path of a file (VTK ImageData, NRRD, raw).
+          refused. Or the path of a file (VTK, NRRD, MetaImage, NIfTI, raw).
         * ``spacing``: distance between voxels along x, y, z, scene units; ``origin``: x, y, z of the first voxel.
         * ``transfer="ct-bone"`` and other ``keys`` are those of scene files.
         """

@@ -13,6 +13,7 @@ use crate::parse::{
     Outside, parse_drafts, parse_eye, parse_fallback, parse_highlight, parse_number, parse_outside, parse_part,
     parse_position, parse_scale, parse_size, parse_spacing, parse_sweep,
 };
+use crate::point_args::{DisplaceArgs, PICK_HELP, PickArgs, ProjectArgs, RaysArgs};
 use crate::preset::PresetArgs;
 use crate::print_args::PrintArgs;
 use crate::shell_args::{CompletionsArgs, ManArgs};
@@ -94,8 +95,8 @@ pub(crate) enum Verb {
     Project(ProjectArgs),
     /// Sample the curved rays of pixels: [[x,y],...]
     Rays(RaysArgs),
-    /// Give points as the stages displace them, before the pinhole
-    Displace(ProjectArgs),
+    /// Give points, or the lines, areas and points of the scene, as the stages displace them, before the pinhole
+    Displace(DisplaceArgs),
     /// Tell what pixels [[x,y],...] show: world point, depth, ray segment, layer, feature; null for sky
     #[command(after_help = PICK_HELP)]
     Pick(PickArgs),
@@ -201,7 +202,7 @@ pub(crate) struct DemoArgs {
 #[derive(Debug, Args)]
 pub(crate) struct RevealArgs {
     /// Terrain: GeoTIFF, .hgt, ESRI ASCII, a folder of tiles, or builtin:massif?seed=7; or a city: CityJSON, CityGML, OSM PBF or XML; with --see
-    /// also a model: OBJ, PLY, STL, glTF, PDB, mmCIF, VTI, NRRD, raw voxels, footprints, or a scene file
+    /// also a model: OBJ, PLY, STL, glTF, PDB, mmCIF, VTI, VTK, NRRD, MetaImage, NIfTI, raw voxels, footprints, or a scene file
     #[arg(value_name = "DATA")]
     pub(crate) dem: String,
     /// Routes, areas or points: GPX, GeoJSON, shapefiles, GeoPackages where they are built in, or builtin:massif?seed=7; elevation models
@@ -326,7 +327,7 @@ pub(crate) struct DisoccludeArgs {
     /// Any other key of a terrain_disocclusion stage, such as w=0.6; may be given several times
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Displaced elevation model: GeoTIFF, 32-bit floats in metres, on the grid and in the system of the input
+    /// Displaced elevation model: cloud-optimised GeoTIFF, 32-bit floats in metres, on the grid and in the system of the input
     #[arg(short, long, value_name = "OUT.tif")]
     pub(crate) out: PathBuf,
     /// Grid of the written heights: the input's, or the scene's in metres, on which the ground is solved and the guarantee holds exactly
@@ -338,7 +339,7 @@ pub(crate) struct DisoccludeArgs {
     /// Write the displacement, on the same grid, to this file
     #[arg(long, value_name = "D.tif")]
     pub(crate) displacement: Option<PathBuf>,
-    /// Write the features on the displaced ground, their true positions as properties, to this file
+    /// Write the features on the displaced ground, their true positions as properties, to this file: GeoJSON, or .gpkg
     #[arg(long, value_name = "OUT.geojson")]
     pub(crate) features_out: Option<PathBuf>,
     /// Draw the ground before and after from the eye, side by side, with its record
@@ -510,59 +511,6 @@ pub(crate) enum AuxKind {
     World,
     /// Displaced minus world position, 3 x f64
     Displacement,
-}
-
-/// A scene and points.
-#[derive(Debug, Args)]
-pub(crate) struct ProjectArgs {
-    /// Scene file, TOML or JSON; - = standard input
-    pub(crate) scene: PathBuf,
-    /// JSON file of points [[x,y,z],...]; texts such as "46.5N,11.3E,+20" may stand among them;
-    /// - = standard input
-    #[arg(long, value_name = "P.json")]
-    pub(crate) points: PathBuf,
-    /// Output; standard output if left out
-    #[arg(short, long, value_name = "OUT.json")]
-    pub(crate) out: Option<PathBuf>,
-}
-
-/// A scene and pixels.
-#[derive(Debug, Args)]
-pub(crate) struct RaysArgs {
-    /// Scene file, TOML or JSON; - = standard input
-    pub(crate) scene: PathBuf,
-    /// JSON file of pixels [[x,y],...]; - = standard input
-    #[arg(long, value_name = "P.json")]
-    pub(crate) pixels: PathBuf,
-    /// Samples per ray, equidistant in depth
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    pub(crate) samples: usize,
-    /// Depth of the last sample; by default the camera's far, else the scene's largest depth
-    #[arg(long, value_name = "W", allow_negative_numbers = true, value_parser = parse_number)]
-    pub(crate) far: Option<f64>,
-    /// Output; standard output if left out
-    #[arg(short, long, value_name = "OUT.json")]
-    pub(crate) out: Option<PathBuf>,
-}
-
-/// Shape of the answer of `pick`.
-const PICK_HELP: &str = r#"Pixels: origin at the outer corner of the top-left pixel, centres at .5.
-Answer, in input order, numbers round-trip exactly:
-  {"pixels":[{"point":[x,y,z],"depth":w,"segment":k,"layer":"ID","feature":"NAME" or null}, null for sky, ...]}
-point is the true place in scene coordinates, depth the forward distance at which it is seen; segment 2k = straight part of viewpoint k,
-2j-1 = transition of turn j. Visible lines and points count before the ground (the last layer first), areas belong to the ground."#;
-
-/// A scene and pixels to look through.
-#[derive(Debug, Args)]
-pub(crate) struct PickArgs {
-    /// Scene file, TOML or JSON; - = standard input
-    pub(crate) scene: PathBuf,
-    /// JSON file of pixels [[x,y],...]; - = standard input
-    #[arg(long, value_name = "P.json")]
-    pub(crate) pixels: PathBuf,
-    /// Output; standard output if left out
-    #[arg(short, long, value_name = "OUT.json")]
-    pub(crate) out: Option<PathBuf>,
 }
 
 /// A scene to show.

@@ -22,6 +22,7 @@ mod molecule_args;
 mod outputs;
 mod pack;
 mod parse;
+mod point_args;
 mod preset;
 mod print_args;
 mod report;

@@ -7,9 +7,10 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// Endings of formats; an output is not named after one that it does not have.
-const KNOWN: [&str; 30] = [
+const KNOWN: [&str; 32] = [
     "jpg", "jpeg", "png", "tif", "tiff", "webp", "gif", "bmp", "svg", "pdf", "json", "toml", "geojson", "xml", "yaml",
-    "yml", "txt", "csv", "asc", "hgt", "gpx", "obj", "ply", "stl", "gltf", "glb", "mp4", "avi", "exr", "npy",
+    "yml", "txt", "csv", "asc", "hgt", "gpx", "obj", "ply", "stl", "gltf", "glb", "mp4", "avi", "exr", "npy", "gpkg",
+    "shp",
 ];
 
 /// Refuses names with the ending of another format than those that are written.

@@ -1,8 +1,8 @@
 //! One function per verb: open, call the library, deliver.
 
 use crate::args::{
-    AnimateArgs, AuxFormatKind, AuxKind, DemoArgs, DisoccludeArgs, FigureKind, FiguresArgs, MeasureArgs, PickArgs,
-    ProjectArgs, RaysArgs, RenderArgs, SceneArgs, SchemaArgs, ShowArgs, Verb,
+    AnimateArgs, AuxFormatKind, AuxKind, DemoArgs, DisoccludeArgs, FigureKind, FiguresArgs, MeasureArgs, RenderArgs,
+    SceneArgs, SchemaArgs, ShowArgs, Verb,
 };
 use crate::draw_args::{CompositingKind, DrawArgs};
 use crate::goal::Goal;
@@ -10,6 +10,7 @@ use crate::ground_args::InfoArgs;
 use crate::inputs::as_text;
 use crate::look_args::AirArgs;
 use crate::outputs::{self, named, png_named};
+use crate::point_args::{DisplaceArgs, PickArgs, ProjectArgs, RaysArgs};
 use crate::print_args::is_vectors;
 use crate::report::{Context, is_stdout, print};
 use anyhow::Context as _;
@@ -20,6 +21,7 @@ use belvedere::scene::{Compositing, Sky};
 use belvedere::scene_file::{AnimationDoc, PaletteDoc, StylisationDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{self, AnimateRequest, Film};
 use belvedere::verbs::disocclude::{self, DisoccludeFiles, DisoccludeRequest, WrittenGrid};
+use belvedere::verbs::moved::MovedFeatures;
 use belvedere::verbs::schemas::{Animated, FailedFile, FileAnswer, Informed, Rendered};
 use belvedere::verbs::{check, info, measure, points};
 use belvedere::{CameraPicture, DataFiles, Needs, OpenOptions, Session, output};
@@ -208,6 +210,10 @@ fn disocclude_terrain(mut args: DisoccludeArgs, context: &Context) -> anyhow::Re
     for path in [Some(&files.out), files.displacement.as_ref()].into_iter().flatten() {
         named(path, &["tif", "tiff"], "elevation models are written as GeoTIFF")?;
     }
+    if let Some(path) = &files.features {
+        named(path, &["geojson", "json", "gpkg"], "moved features are written as GeoJSON and GeoPackage")?;
+        MovedFeatures::check_name(path)?;
+    }
     let inputs: Vec<PathBuf> = args.features.iter().chain(&args.rivers).chain([&args.dem]).cloned().collect();
     anyhow::ensure!(!is_stdout(&files.out), "-o -: an elevation model is written to a file; name one");
     outputs::check(&files.all(), &inputs, context)?;
@@ -392,11 +398,11 @@ fn describe(args: &InfoArgs, context: &Context) -> anyhow::Result<Goal> {
 }
 
 /// A scene and points in its coordinates; the ground is read if a point is written as a place.
-fn with_points(args: &ProjectArgs, context: &Context) -> anyhow::Result<(Session, Vec<[f64; 3]>)> {
-    let written = points::read_written_points(&context.stdin.json(&args.points)?)?;
+fn with_points(scene: &Path, points: &Path, context: &Context) -> anyhow::Result<(Session, Vec<[f64; 3]>)> {
+    let written = points::read_written_points(&context.stdin.json(points)?)?;
     let is_place = |point: &points::WrittenPoint| matches!(point, points::WrittenPoint::Place(_));
     let needs = if written.iter().any(is_place) { Needs::Ground } else { Needs::View };
-    let session = context.open(&args.scene, needs, None)?;
+    let session = context.open(scene, needs, None)?;
     let (found, said) = session.find_points(&written)?;
     context.warn(&said);
     Ok((session, found))
@@ -404,16 +410,42 @@ fn with_points(args: &ProjectArgs, context: &Context) -> anyhow::Result<(Session
 
 fn project(args: &ProjectArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[&args.scene, &args.points], context)?;
-    let (session, points) = with_points(args, context)?;
+    let (session, points) = with_points(&args.scene, &args.points, context)?;
     let report = warned(points::project(session.view(), &points), &session);
     answer("project", &session, args.out.as_ref(), &report, context)
 }
 
-fn displace(args: &ProjectArgs, context: &Context) -> anyhow::Result<Goal> {
-    ready(args.out.as_ref(), &[&args.scene, &args.points], context)?;
-    let (session, points) = with_points(args, context)?;
+fn displace(args: &DisplaceArgs, context: &Context) -> anyhow::Result<Goal> {
+    let Some(points) = &args.points else { return displace_features(args, context) };
+    ready(args.out.as_ref(), &[&args.scene, points], context)?;
+    let (session, points) = with_points(&args.scene, points, context)?;
     let report = warned(points::displace(session.view(), &points), &session);
     answer("displace", &session, args.out.as_ref(), &report, context)
+}
+
+fn displace_features(args: &DisplaceArgs, context: &Context) -> anyhow::Result<Goal> {
+    ready(args.out.as_ref(), &[&args.scene], context)?;
+    let out = outputs::file(args.out.as_ref());
+    if let Some(out) = out {
+        named(out, &["geojson", "json", "gpkg"], "moved features are written as GeoJSON and GeoPackage")?;
+        MovedFeatures::check_name(out)?;
+    }
+    let session = context.open(&args.scene, Needs::Everything, None)?;
+    ready(out, &session.inputs().iter().map(|file| file.path.as_path()).collect::<Vec<_>>(), context)?;
+    let moved = MovedFeatures::of_session(&session)?;
+    let mut warnings = session.warnings();
+    warnings.extend(moved.warnings());
+    match out {
+        None => print(&output::json(&moved.geojson()?)?)?,
+        Some(path) => {
+            moved.write(path, context.common.overwrite)?;
+            if context.common.json {
+                context.print("displace", &[path.clone()], &Written { warnings: warnings.clone() })?;
+            }
+        }
+    }
+    context.warn(&warnings);
+    Ok(Goal::Reached)
 }
 
 fn rays(args: &RaysArgs, context: &Context) -> anyhow::Result<Goal> {

@@ -39,7 +39,8 @@ const AHEAD: usize = 16 * BAND;
 /// What keeps the rasteriser from drawing a job some rows at a time.
 pub(crate) fn whole_only(job: &RenderJob<'_>) -> Option<&'static str> {
     let has_volumes = job.scene.layers.iter().any(|layer| matches!(layer.kind, LayerKind::Volume(_)));
-    let has_contours = job.scene.layers.iter().any(|layer| matches!(&layer.kind, LayerKind::Terrain(t) if t.contours.is_some()));
+    let has_contours =
+        job.scene.layers.iter().any(|layer| matches!(&layer.kind, LayerKind::Terrain(t) if t.contours.is_some()));
     let reasons = [
         (has_volumes, "its volumes"),
         (job.view.split_rays().is_some(), "its rays, which part"),

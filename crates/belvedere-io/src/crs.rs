@@ -97,6 +97,12 @@ impl CoordinateSystem {
         Ok(system)
     }
 
+    /// Its well-known text (OGC 1), if its EPSG code is a usual one.
+    #[cfg(feature = "geopackage")]
+    pub(crate) fn well_known_text(&self) -> Option<&'static str> {
+        self.epsg.and_then(tables::well_known_text)
+    }
+
     /// A system by its PROJ string, such as `+proj=utm +zone=31 +datum=WGS84`; `name` is for messages.
     ///
     /// # Errors

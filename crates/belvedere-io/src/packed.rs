@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// Names that an error lists.
 const LISTED: usize = 6;
 /// Endings of archives that are a format of their own and are not unpacked here.
-const WHOLE: [&str; 5] = [".raw.gz", ".nii.gz", ".kmz", ".3mf", ".usdz"];
+const WHOLE: [&str; 4] = [".raw.gz", ".kmz", ".3mf", ".usdz"];
 
 /// The file that `path` stands for: if it is a ZIP or gzip, the one file inside for which `reads` holds, else itself.
 ///

@@ -1,8 +1,8 @@
 //! The scene: a flat list of layers in one coordinate system.
 
 use crate::{
-    Color, Drawing, Edge, FontFile, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Representation, TerrainLayer,
-    drape_polyline,
+    Color, Drawing, Edge, FontFile, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Representation,
+    TerrainLayer, drape_polyline,
 };
 use belvedere_core::{Aabb, DVec2};
 use serde::{Deserialize, Serialize};

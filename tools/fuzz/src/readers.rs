@@ -276,6 +276,15 @@ pub const READERS: &[Reader] = &[
     reader("nrrd", "a.nrrd", alone, volumes::nrrd, Scene("[[layer]]\nid=\"v\"\nkind=\"volume\"\nsource=\"a.nrrd\"\n")),
     reader("vti", "a.vti", alone, volumes::vti, Scene("[[layer]]\nid=\"v\"\nkind=\"volume\"\nsource=\"a.vti\"\n")),
     reader(
+        "metaimage",
+        "a.mha",
+        alone,
+        volumes::meta_image,
+        Scene("[[layer]]\nid=\"v\"\nkind=\"volume\"\nsource=\"a.mha\"\n"),
+    ),
+    reader("nifti", "a.nii", alone, volumes::nifti, Scene("[[layer]]\nid=\"v\"\nkind=\"volume\"\nsource=\"a.nii\"\n")),
+    reader("vtk", "a.vtk", alone, volumes::vtk, Scene("[[layer]]\nid=\"v\"\nkind=\"volume\"\nsource=\"a.vtk\"\n")),
+    reader(
         "raw",
         "a_3x4x5_float32.raw",
         alone,

@@ -182,3 +182,46 @@ fn mistakes_in_arguments_are_one_sentence() {
     let line = place.fails(&["rays", "s.toml", "--pixels", "q.json", "--samples", "2", "--far", "-5"]);
     assert!(line.contains("rays end at depth -5"), "{line}");
 }
+
+#[test]
+fn the_features_of_a_scene_are_displaced_as_points_are() {
+    let place = Place::new();
+    let line = |id: &str, points: &str| {
+        format!(
+            r#"{{"type":"Feature","properties":{{"name":"{id}"}},"geometry":{{"type":"LineString","coordinates":{points}}}}}"#
+        )
+    };
+    let far = line("far", "[[1000,30,2],[1000,100,2],[990,140,7]]");
+    place.write("a.geojson", &format!(r#"{{"type":"FeatureCollection","features":[{far}]}}"#));
+    let turn = "[[stage]]\nkind = 'curved_rays'\n[[stage.turn]]\nviewpoint = [1010, 0, 0]\nt0 = [1000, 40, 0]\nt1 = [1000, 50, 0]\nt2 = [1000, 60, 0]\nnormal = [0, 1, 0]\n";
+    let layer = "[[layer]]\nid = \"way\"\nkind = \"line\"\nsource = \"a.geojson\"\n";
+    let camera = "format = 1\n[camera]\neye = [1000, 0, 0]\nlook_at = [1000, 100, 0]\n";
+    place.write("s.toml", &format!("{camera}{turn}{layer}"));
+    place.ok(&["displace", "s.toml", "-o", "moved.geojson"]);
+    let moved: serde_json::Value = serde_json::from_slice(&super::read(&place.path("moved.geojson"))).expect("JSON");
+    let feature = &moved["features"][0];
+    assert_eq!((&feature["properties"]["name"], &feature["properties"]["layer"]), (&"far".into(), &"way".into()));
+    let coordinates = |v: &serde_json::Value| -> Vec<[f64; 3]> { serde_json::from_value(v.clone()).expect("points") };
+    let now = coordinates(&feature["geometry"]["coordinates"]);
+    let before = coordinates(&feature["properties"]["true_coordinates"]);
+    assert!(now.len() > 3 && now.len() == before.len(), "{} points: the bend is in them", now.len());
+    place.write("p.json", &serde_json::to_string(&before).expect("JSON"));
+    let answer = place.json(&["displace", "s.toml", "--points", "p.json"]);
+    for (i, p) in now.iter().enumerate() {
+        (0..3).for_each(|k| near(&answer["points"][i]["displaced"][k], p[k]));
+    }
+    // Standard output holds the same, and readers of features take it.
+    let printed: serde_json::Value = serde_json::from_str(&place.ok(&["displace", "s.toml"])).expect("JSON");
+    assert_eq!(printed, moved);
+    assert!(place.ok(&["info", "moved.geojson"]).contains("lines: 1"));
+    assert!(place.fails(&["displace", "s.toml", "-o", "moved.shp"]).contains("GeoJSON"));
+    place.write("bare.toml", camera);
+    assert!(place.fails(&["displace", "bare.toml"]).contains("no lines, areas or points"));
+    let package = place.run(&["displace", "s.toml", "-o", "moved.gpkg"]);
+    if package.status.success() {
+        assert!(place.ok(&["info", "a.geojson"]).contains("lines: 1"));
+        assert!(super::read(&place.path("moved.gpkg")).starts_with(b"SQLite format 3"));
+    } else {
+        assert!(String::from_utf8_lossy(&package.stderr).contains("--features geopackage"));
+    }
+}

@@ -1,7 +1,7 @@
 //! Shapes that a canvas records instead of drawing them.
 
-use super::font::Fonts;
 use super::Canvas;
+use super::font::Fonts;
 use belvedere_core::DVec2;
 use belvedere_scene::Color;
 

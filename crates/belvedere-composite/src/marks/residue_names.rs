@@ -1,7 +1,7 @@
 //! Names of residues of molecules, where they are seen.
 
-use crate::marks::request::LabelRequest;
 use crate::marks::path::LinePoint;
+use crate::marks::request::LabelRequest;
 use crate::marks::{MarkBuilder, Marker, darker};
 use belvedere_core::DVec3;
 use belvedere_scene::molecule::Residue;

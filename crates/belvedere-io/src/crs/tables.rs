@@ -42,6 +42,12 @@ pub(super) fn current_code(code: u32) -> u32 {
     }
 }
 
+/// The well-known text of an EPSG code.
+#[cfg(feature = "geopackage")]
+pub(super) fn well_known_text(code: u32) -> Option<&'static str> {
+    u16::try_from(code).ok().and_then(crs_definitions::from_code).map(|d| d.wkt)
+}
+
 /// The PROJ string of an EPSG code, with the current datum shift.
 pub(super) fn definition(code: u32) -> Result<String, CrsError> {
     if SOUTH_WEST.contains(&code) {

@@ -3,16 +3,19 @@
 //! [`GeoTiff::open`] reads headers only; [`GeoTiff::read`] decodes a whole level (the image or one of its overviews),
 //! [`GeoTiff::read_window`] a part of it. What is refused is listed in `docs/unsupported.md`.
 
+mod cloud;
 mod codec;
 mod geokeys;
 mod ifd;
 mod layout;
 mod meta;
+mod overview;
 mod read;
 mod shared;
 mod source;
 mod write;
 
+pub use cloud::write_cloud_geotiff;
 pub use write::write_geotiff;
 
 use crate::raster::{Limits, Raster, RasterInfo, SampleType, Samples};

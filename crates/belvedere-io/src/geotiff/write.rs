@@ -22,8 +22,11 @@ pub fn write_geotiff(path: &Path, raster: &Raster, overwrite: bool) -> Result<()
     write_atomic(path, overwrite, |out| out.write_all(&bytes))
 }
 
+/// Why a file cannot be written.
+pub(super) const TOO_LARGE: &str = "would need 4 GiB or more, which classic TIFF cannot hold; write a smaller part";
+
 /// Value of a directory entry.
-enum Value {
+pub(super) enum Value {
     Shorts(Vec<u16>),
     Longs(Vec<u32>),
     Doubles(Vec<f64>),
@@ -43,7 +46,6 @@ impl Value {
 
 /// The bytes of the file.
 fn encode(raster: &Raster) -> Result<Vec<u8>, String> {
-    const TOO_LARGE: &str = "would need 4 GiB or more, which classic TIFF cannot hold; write a smaller part";
     let info = &raster.info;
     check(raster)?;
     let row_bytes = info.width * info.bands * info.sample_type.size();
@@ -51,7 +53,8 @@ fn encode(raster: &Raster) -> Result<Vec<u8>, String> {
     let bytes = little_endian(raster);
     let strips = bytes.par_chunks(rows_per_strip * row_bytes).map(|strip| compress(strip, info, row_bytes));
     let strips: Vec<Vec<u8>> = strips.collect::<Result<_, _>>()?;
-    let mut entries = image_entries(info, rows_per_strip)?;
+    let mut entries = image_entries(info)?;
+    entries.push((tag::ROWS_PER_STRIP, Value::Longs(vec![u32::try_from(rows_per_strip).map_err(|_| TOO_LARGE)?])));
     entries.extend(geo_entries(info)?);
     let counts = strips.iter().map(|s| u32::try_from(s.len())).collect::<Result<Vec<_>, _>>();
     let counts = counts.map_err(|_| TOO_LARGE)?;
@@ -59,7 +62,8 @@ fn encode(raster: &Raster) -> Result<Vec<u8>, String> {
     entries.push((tag::STRIP_OFFSETS, Value::Longs(vec![0; strips.len()])));
     entries.push((tag::STRIP_BYTES, Value::Longs(counts.clone())));
     entries.sort_by_key(|(number, _)| *number);
-    let mut at = u32::try_from(directory(&entries)?.len()).map_err(|_| TOO_LARGE)?;
+    let mut at =
+        u32::try_from(HEADER.len() + directory(&entries, HEADER.len(), false)?.len()).map_err(|_| TOO_LARGE)?;
     let mut offsets = Vec::with_capacity(counts.len());
     for count in counts {
         offsets.push(at);
@@ -70,12 +74,13 @@ fn encode(raster: &Raster) -> Result<Vec<u8>, String> {
             *value = Value::Longs(std::mem::take(&mut offsets));
         }
     }
-    let mut out = directory(&entries)?;
+    let mut out = HEADER.to_vec();
+    out.extend(directory(&entries, HEADER.len(), false)?);
     strips.iter().for_each(|strip| out.extend_from_slice(strip));
     Ok(out)
 }
 
-fn check(raster: &Raster) -> Result<(), String> {
+pub(super) fn check(raster: &Raster) -> Result<(), String> {
     let info = &raster.info;
     let needed = info.width.checked_mul(info.height).and_then(|n| n.checked_mul(info.bands));
     if needed != Some(raster.samples.len()) || raster.samples.is_empty() {
@@ -106,7 +111,7 @@ fn check(raster: &Raster) -> Result<(), String> {
     Ok(())
 }
 
-fn little_endian(raster: &Raster) -> Vec<u8> {
+pub(super) fn little_endian(raster: &Raster) -> Vec<u8> {
     let mut bytes: Vec<u8> = with_samples!(&raster.samples, v => v.iter().flat_map(|x| x.to_le_bytes()).collect());
     let (Some(mask), Some(nodata)) = (&raster.mask, raster.info.nodata) else { return bytes };
     let cell = match raster.info.sample_type {
@@ -132,7 +137,8 @@ fn is_float(kind: SampleType) -> bool {
     matches!(kind, SampleType::F32 | SampleType::F64)
 }
 
-fn compress(strip: &[u8], info: &RasterInfo, row_bytes: usize) -> Result<Vec<u8>, String> {
+/// Rows of little-endian samples, predicted and deflated.
+pub(super) fn compress(strip: &[u8], info: &RasterInfo, row_bytes: usize) -> Result<Vec<u8>, String> {
     let size = info.sample_type.size();
     let mut rows = strip.to_vec();
     for row in rows.chunks_exact_mut(row_bytes) {
@@ -174,7 +180,8 @@ fn float_predictor(row: &mut [u8], bands: usize, size: usize) {
     }
 }
 
-fn image_entries(info: &RasterInfo, rows_per_strip: usize) -> Result<Vec<(u16, Value)>, String> {
+/// What a directory says of the samples of an image.
+pub(super) fn image_entries(info: &RasterInfo) -> Result<Vec<(u16, Value)>, String> {
     let long = |v: usize| u32::try_from(v).map(|v| Value::Longs(vec![v])).map_err(|e| e.to_string());
     let format = match info.sample_type {
         SampleType::F32 | SampleType::F64 => 3,
@@ -199,7 +206,6 @@ fn image_entries(info: &RasterInfo, rows_per_strip: usize) -> Result<Vec<(u16, V
         (tag::COMPRESSION, Value::Shorts(vec![8])),
         (tag::PHOTOMETRIC, Value::Shorts(vec![photometric])),
         (tag::SAMPLES_PER_PIXEL, Value::Shorts(vec![info.bands as u16])),
-        (tag::ROWS_PER_STRIP, long(rows_per_strip)?),
         (tag::PREDICTOR, Value::Shorts(vec![if is_float(info.sample_type) { 3 } else { 2 }])),
         (tag::SAMPLE_FORMAT, Value::Shorts(vec![format; info.bands])),
     ];
@@ -213,7 +219,8 @@ fn image_entries(info: &RasterInfo, rows_per_strip: usize) -> Result<Vec<(u16, V
     Ok(entries)
 }
 
-fn geo_entries(info: &RasterInfo) -> Result<Vec<(u16, Value)>, String> {
+/// What a directory says of the place of an image.
+pub(super) fn geo_entries(info: &RasterInfo) -> Result<Vec<(u16, Value)>, String> {
     let mut entries = Vec::new();
     if let Some(map) = info.pixel_to_model {
         let map = if info.pixel_is_point { map.after_scale_and_shift(1.0, 1.0, 0.5, 0.5) } else { map };
@@ -256,11 +263,13 @@ fn geo_entries(info: &RasterInfo) -> Result<Vec<(u16, Value)>, String> {
     Ok(entries)
 }
 
-/// Header, directory and values that do not fit into it.
-fn directory(entries: &[(u16, Value)]) -> Result<Vec<u8>, String> {
-    let mut out = b"II\x2a\0\x08\0\0\0".to_vec();
-    let values_at = 8 + 2 + 12 * entries.len() + 4;
-    let mut values = Vec::new();
+/// Mark of little-endian classic TIFF, and the position of the first directory, which follows.
+const HEADER: [u8; 8] = *b"II\x2a\0\x08\0\0\0";
+
+/// A directory that begins at byte `at`, and its values that do not fit into it; `followed`: by another one.
+pub(super) fn directory(entries: &[(u16, Value)], at: usize, followed: bool) -> Result<Vec<u8>, String> {
+    let values_at = at + 2 + 12 * entries.len() + 4;
+    let (mut out, mut values) = (Vec::new(), Vec::new());
     out.extend((entries.len() as u16).to_le_bytes());
     for (number, value) in entries {
         let (kind, count, mut bytes) = value.kind_count_bytes();
@@ -277,7 +286,8 @@ fn directory(entries: &[(u16, Value)]) -> Result<Vec<u8>, String> {
             values.extend(bytes);
         }
     }
-    out.extend([0; 4]);
+    let next = if followed { values_at + values.len() } else { 0 };
+    out.extend(u32::try_from(next).map_err(|_| TOO_LARGE)?.to_le_bytes());
     out.extend(values);
     Ok(out)
 }

@@ -12,6 +12,9 @@ mod place_kind;
 mod rings;
 mod shapefile;
 
+#[cfg(feature = "geopackage")]
+pub use geopackage::{FeatureTable, write_geopackage};
+
 pub use area_kind::{AreaKind, area_kind};
 pub use gpx::track_times;
 pub use names::name_field;

@@ -1,11 +1,14 @@
-//! Volumes of voxels: NRRD, VTK XML ImageData and raw samples.
+//! Volumes of voxels: NRRD, MetaImage, NIfTI, VTK (XML ImageData and legacy structured points) and raw samples.
 
+mod meta_image;
+mod nifti;
 mod nrrd;
 mod number;
 mod raw;
 mod vti;
 mod vti_header;
 mod vti_stream;
+mod vtk;
 
 pub use number::{ByteOrder, Number};
 pub use raw::RawLayout;
@@ -16,7 +19,7 @@ use crate::recognise::explain;
 use crate::{InputFile, IoError, Limits, Loaded, budget, fs};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::VoxelValues;
-use flate2::read::MultiGzDecoder;
+use flate2::read::{MultiGzDecoder, ZlibDecoder};
 use glam::{DMat3, DVec3};
 use std::io::Read;
 use std::path::Path;
@@ -75,10 +78,13 @@ pub fn load_volume(path: &Path, request: &VolumeRequest) -> Result<Loaded<Volume
     let source = Source { path, bytes: &bytes, request };
     let loaded = match () {
         () if name.ends_with(".vti") => vti::read(&source).map_err(format)?,
+        () if name.ends_with(".vtk") => vtk::read(&source).map_err(format)?,
+        () if name.ends_with(".nii") => nifti::read(&source).map_err(format)?,
+        () if name.ends_with(".mha") || name.ends_with(".mhd") => meta_image::read(&source).map_err(explain)?,
         () if is_nrrd || name.ends_with(".nhdr") => nrrd::read(&source).map_err(explain)?,
         () if name.ends_with(".raw") || name.ends_with(".raw.gz") => raw::read(&source).map_err(format)?,
         () => {
-            let wanted = "a volume that this version reads: VTK XML ImageData (.vti), NRRD (.nrrd, .nhdr) or raw samples (.raw, .raw.gz)";
+            let wanted = "a volume that this version reads: VTK XML ImageData (.vti), legacy VTK (.vtk), NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), NIfTI (.nii, .nii.gz) or raw samples (.raw, .raw.gz)";
             return Err(crate::recognise::not_a(path, wanted));
         }
     };
@@ -118,19 +124,35 @@ impl Source<'_> {
     }
 }
 
+/// First bytes of gzip streams.
+const GZIP: [u8; 2] = [0x1f, 0x8b];
+
 /// Exactly `expected` bytes out of a gzip stream.
 fn gunzip(packed: &[u8], expected: usize) -> Result<Vec<u8>, String> {
+    exactly(MultiGzDecoder::new(packed), "gzip", expected)
+}
+
+/// Exactly `expected` bytes out of a zlib or gzip stream.
+fn inflate(packed: &[u8], expected: usize) -> Result<Vec<u8>, String> {
+    if packed.starts_with(&GZIP) {
+        gunzip(packed, expected)
+    } else {
+        exactly(ZlibDecoder::new(packed), "zlib", expected)
+    }
+}
+
+fn exactly(stream: impl Read, kind: &str, expected: usize) -> Result<Vec<u8>, String> {
     let mut out = budget::room("the volume", expected.saturating_add(64))?;
     let limit = expected as u64 + 1;
-    MultiGzDecoder::new(packed).take(limit).read_to_end(&mut out).map_err(|e| {
-        format!("its gzip data cannot be read ({e}) after {} of {expected} bytes; it is damaged", out.len())
+    stream.take(limit).read_to_end(&mut out).map_err(|e| {
+        format!("its {kind} data cannot be read ({e}) after {} of {expected} bytes; it is damaged", out.len())
     })?;
     match out.len() {
-        n if n < expected => {
-            Err(format!("its gzip data ends after {n} of {expected} bytes; it is cut off, or the dimensions are wrong"))
-        }
+        n if n < expected => Err(format!(
+            "its {kind} data ends after {n} of {expected} bytes; it is cut off, or the dimensions are wrong"
+        )),
         n if n > expected => {
-            Err(format!("its gzip data is longer than the {expected} bytes declared; check dimensions and type"))
+            Err(format!("its {kind} data is longer than the {expected} bytes declared; check dimensions and type"))
         }
         _ => Ok(out),
     }

@@ -384,3 +384,62 @@ fn a_log_beside_the_file_is_spoken_of_and_files_in_that_mode_are_read() {
     std::fs::write(dir.path().join("b.gpkg"), "{}").unwrap();
     assert!(load(&dir.path().join("b.gpkg?table=t")).unwrap_err().contains("no database"));
 }
+
+#[test]
+fn what_is_written_is_read_again() {
+    use belvedere_io::vector::{FeatureTable, write_geopackage};
+    use belvedere_io::{VectorFeature, Vertex};
+    let v = |x: f64, y: f64, z: f64| Vertex { xy: glam::DVec2::new(500_000.0 + x, 5_000_000.0 + y), z: Some(z) };
+    let feature = |name: &str, geometry: Geometry| VectorFeature {
+        name: name.into(),
+        properties: [("name", name), ("say \"so\"", "it's")].map(|(k, v)| (k.to_owned(), v.to_owned())).into(),
+        style: None,
+        geometry,
+    };
+    let line = vec![v(0.0, 0.0, 5.0), v(1.0, 2.0, 6.5), v(4.0, 2.0, -1.0)];
+    let ring = vec![v(0.0, 0.0, 1.0), v(9.0, 0.0, 2.0), v(9.0, 9.0, 3.0), v(0.0, 9.0, 4.0)];
+    let hole = vec![v(2.0, 2.0, 1.5), v(2.0, 3.0, 1.5), v(3.0, 3.0, 1.5)];
+    let of = |name: &str, features: Vec<VectorFeature>| FeatureTable { name: name.into(), features };
+    let tables = [
+        of("a \"path\"", vec![feature("one", Geometry::Lines(vec![line.clone(), line]))]),
+        of("lake", vec![feature("two", Geometry::Polygons(vec![vec![ring, hole]]))]),
+        of(
+            "peaks",
+            vec![
+                feature("three", Geometry::Points(vec![v(7.0, 8.0, 9.0)])),
+                feature("", Geometry::Points(vec![v(1.0, 1.0, 1.0)])),
+            ],
+        ),
+    ];
+    let dir = tempfile::tempdir().unwrap();
+    let crs = CoordinateSystem::from_epsg(32633).unwrap();
+    let [path, again] = ["a.gpkg", "b.gpkg"].map(|name| dir.path().join(name));
+    write_geopackage(&path, &tables, &crs, false).unwrap();
+    write_geopackage(&again, &tables, &crs, false).unwrap();
+    assert!(std::fs::read(&path).unwrap() == std::fs::read(&again).unwrap(), "the same features give the same bytes");
+    for table in &tables {
+        let back = load(&at(&path, &table.name)).unwrap();
+        assert_eq!((back.warnings, back.value.crs), (Vec::new(), crs.clone()));
+        let mut features = back.value.features;
+        assert!(features.iter_mut().all(|f| f.properties.remove("fid").is_some()), "rows are numbered");
+        assert_eq!(features, table.features, "{}", table.name);
+    }
+    // What the format itself asks for.
+    let bytes = std::fs::read(&path).unwrap();
+    assert_eq!((&bytes[68..72], &bytes[60..64]), (&b"GPKG"[..], &10_300u32.to_be_bytes()[..]));
+    let connection = Connection::open(&path).unwrap();
+    let check: String = connection.query_row("PRAGMA integrity_check", [], |row| row.get(0)).unwrap();
+    let broken = connection.prepare("PRAGMA foreign_key_check").unwrap().exists([]).unwrap();
+    assert_eq!((check.as_str(), broken), ("ok", false));
+    let extent: [f64; 4] = connection
+        .query_row("SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'lake'", [], |r| {
+            Ok([r.get(0)?, r.get(1)?, r.get(2)?, r.get(3)?])
+        })
+        .unwrap();
+    assert_eq!(extent, [500_000.0, 5_000_000.0, 500_009.0, 5_000_009.0]);
+    let fails = |tables: &[FeatureTable], crs: &CoordinateSystem| {
+        write_geopackage(&dir.path().join("c.gpkg"), tables, crs, false).unwrap_err().to_string()
+    };
+    assert!(fails(&[tables[1].clone(), tables[1].clone()], &crs).contains("already exists"));
+    write_geopackage(&dir.path().join("d.gpkg"), &tables, &CoordinateSystem::local(), false).unwrap();
+}

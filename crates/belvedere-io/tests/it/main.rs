@@ -13,6 +13,7 @@ mod drape;
 #[cfg(feature = "geopackage")]
 mod geopackage;
 mod geotiff;
+mod geotiff_cloud;
 mod geotiff_made;
 mod kinds_crs;
 mod kinds_files;
@@ -30,4 +31,5 @@ mod terrain;
 mod textures;
 mod tiff_writer;
 mod vectors;
+mod volume_kinds;
 mod volumes;

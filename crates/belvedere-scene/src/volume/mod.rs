@@ -1,6 +1,7 @@
 //! Volumes of voxels: values on a lattice, placed in the scene by an affine map, and how they are drawn.
 
 mod bricks;
+mod histogram;
 mod layer;
 mod presets;
 mod transfer;
@@ -232,6 +233,11 @@ impl Volume {
     /// Least and greatest value.
     pub fn range(&self) -> [f32; 2] {
         self.range
+    }
+
+    /// Whether all values are the same.
+    pub fn is_constant(&self) -> bool {
+        self.range[0] == self.range[1]
     }
 
     /// Least and greatest values of bricks.

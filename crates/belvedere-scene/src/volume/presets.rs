@@ -1,6 +1,7 @@
 //! Transfer functions by name, and the one that a volume's own values suggest.
 
-use super::{TransferFunction, TransferPoint, Volume, VoxelValues};
+use super::histogram::{BINS, counts, otsu, thin};
+use super::{TransferFunction, TransferPoint, Volume};
 use crate::Color;
 
 /// Names that [`TransferFunction::named`] knows.
@@ -74,10 +75,14 @@ const HOUNSFIELD: [f64; 2] = [-450.0, 1050.0];
 /// A volume whose values reach below and above these is in Hounsfield units.
 const AIR_TO_BONE: [f32; 2] = [-500.0, 500.0];
 
-/// Bins of the histogram.
-const BINS: usize = 256;
-/// About the largest number of voxels that are counted.
-const COUNTED: usize = 1 << 21;
+/// Share of light that matter of low values absorbs along a ray that meets as much of it as the mean one.
+const VEIL: f64 = 0.4;
+/// Its greatest opacity per voxel edge.
+const LEAF: f64 = 0.4;
+/// Colour of such matter.
+const LEAF_COLOR: [u8; 3] = [156, 168, 150];
+/// Share of light that a volume of one value absorbs along its shortest side.
+const BLOCK: f64 = 0.5;
 
 impl TransferFunction {
     /// A function by its name, fitted to the range of a volume's values, and those of CT to Hounsfield units where values are such;
@@ -93,6 +98,9 @@ impl TransferFunction {
             "grey" => GREY,
             _ => return None,
         };
+        if volume.is_constant() {
+            return Some(Self::block(name, volume));
+        }
         let [lo, hi] = volume.range();
         let is_hounsfield = lo < AIR_TO_BONE[0] && hi > AIR_TO_BONE[1];
         let range = if name.starts_with("ct-") && is_hounsfield { HOUNSFIELD } else { [lo, hi].map(f64::from) };
@@ -109,21 +117,48 @@ impl TransferFunction {
         Self::trusted(WALL, if wall > lumen { vec![clear, dense] } else { vec![dense, clear] })
     }
 
-    /// A function derived from the histogram: the background is clear, all denser values are solid. The background ends at
-    /// the threshold that parts the values into two classes of the least variance within (Otsu 1979); denser parts differ in colour.
+    /// A function derived from the histogram: the background is clear, all dense values are solid. Dense values begin at the threshold
+    /// that parts all into two classes of the least variance within (Otsu 1979); denser parts differ in colour. Matter of lower values
+    /// that is no border of dense matter, such as leaves beside stems, is shown as well: the more there is of it, the more light it lets
+    /// through. A volume of one value is a translucent block.
     pub fn auto(volume: &Volume) -> Self {
+        if volume.is_constant() {
+            return Self::block("auto", volume);
+        }
         let range = volume.range().map(f64::from);
-        let threshold = threshold_share(volume);
+        let counts = counts(volume);
+        let dense = otsu(&counts.map(|n| n as f64));
+        let threshold = dense as f64 / BINS as f64;
         let rest = 1.0 - threshold;
-        let stops = [
-            (0.0, [120, 128, 140], 0.0),
-            (threshold * 0.9, [120, 128, 140], 0.0),
+        let mut stops = vec![(0.0, [120, 128, 140], 0.0)];
+        match thin(volume, &counts, dense) {
+            Some(thin) => {
+                let length = volume.dims().iter().sum::<usize>() as f64 / 3.0;
+                // Rays meet about this much of it, voxel edges.
+                let met = (thin.share * length).max(f64::MIN_POSITIVE);
+                let opacity = (1.0 - (1.0 - VEIL).powf(1.0 / met)).min(LEAF);
+                let from = thin.from as f64 / BINS as f64;
+                let full = (from + 0.15 * (threshold - from)).min(threshold * 0.9);
+                stops.extend([(from, LEAF_COLOR, 0.0), (full, LEAF_COLOR, opacity)]);
+                stops.push((0.9 * threshold + 0.1 * full, LEAF_COLOR, opacity));
+            }
+            None => stops.push((threshold * 0.9, [120, 128, 140], 0.0)),
+        }
+        stops.extend([
             (threshold + 0.04 * rest, [166, 174, 186], 0.45),
             (threshold + 0.35 * rest, [206, 206, 204], 0.8),
             (threshold + 0.60 * rest, [226, 164, 88], 0.95),
             (1.0, [255, 232, 190], 1.0),
-        ];
+        ]);
         of_stops("auto", &stops, range)
+    }
+
+    /// A volume of one value as a translucent block.
+    fn block(name: &str, volume: &Volume) -> Self {
+        let shortest = volume.dims().into_iter().min().map_or(1, |n| n.max(2) - 1);
+        let opacity = 1.0 - (1.0 - BLOCK).powf(1.0 / shortest as f64);
+        let color = Color::rgb(168, 176, 188);
+        Self::trusted(name, vec![TransferPoint { value: f64::from(volume.range()[0]), color, opacity }])
     }
 }
 
@@ -134,7 +169,7 @@ pub fn threshold(volume: &Volume) -> f64 {
 }
 
 fn threshold_share(volume: &Volume) -> f64 {
-    otsu(&histogram(volume)) as f64 / BINS as f64
+    otsu(&counts(volume).map(|n| n as f64)) as f64 / BINS as f64
 }
 
 fn of_stops(name: &str, stops: &[Stop], [lo, hi]: [f64; 2]) -> TransferFunction {
@@ -146,52 +181,10 @@ fn of_stops(name: &str, stops: &[Stop], [lo, hi]: [f64; 2]) -> TransferFunction 
     TransferFunction::trusted(name, points.collect())
 }
 
-/// Counts of values by equal shares of their range, of every n-th voxel.
-fn histogram(volume: &Volume) -> [u64; BINS] {
-    let [lo, hi] = volume.range();
-    let scale = if hi > lo { BINS as f32 / (hi - lo) } else { 0.0 };
-    // An odd stride does not stay on one column of voxels.
-    let stride = (volume.values().len() / COUNTED).max(1) | 1;
-    let mut counts = [0; BINS];
-    let mut count = |v: f32| counts[(((v - lo) * scale) as usize).min(BINS - 1)] += 1;
-    match volume.values() {
-        VoxelValues::U8(v) => v.iter().step_by(stride).for_each(|v| count(f32::from(*v))),
-        VoxelValues::U16(v) => v.iter().step_by(stride).for_each(|v| count(f32::from(*v))),
-        VoxelValues::I16(v) => v.iter().step_by(stride).for_each(|v| count(f32::from(*v))),
-        VoxelValues::F32(v) => v.iter().step_by(stride).for_each(|v| count(*v)),
-    }
-    counts
-}
-
-/// First bin of the upper class. Source: Otsu 1979, "A threshold selection method from gray-level histograms".
-fn otsu(counts: &[u64; BINS]) -> usize {
-    let total: f64 = counts.iter().sum::<u64>() as f64;
-    let moment = |range: std::ops::Range<usize>| range.map(|i| i as f64 * counts[i] as f64).sum::<f64>();
-    let all = moment(0..BINS);
-    let (mut below, mut sum) = (0.0, 0.0);
-    // Empty bins have equal variance: the middle of the best bins is taken.
-    let (mut best, mut first, mut last) = (0.0, BINS / 2, BINS / 2);
-    for (i, count) in counts.iter().enumerate().take(BINS - 1) {
-        below += *count as f64;
-        sum += i as f64 * *count as f64;
-        let above = total - below;
-        if below == 0.0 || above == 0.0 {
-            continue;
-        }
-        let apart = sum / below - (all - sum) / above;
-        let between = below * above * apart * apart;
-        if between > best * (1.0 + 1e-12) {
-            (best, first, last) = (between, i + 1, i + 1);
-        } else if between >= best * (1.0 - 1e-12) {
-            last = i + 1;
-        }
-    }
-    (first + last) / 2
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::VoxelValues;
     use belvedere_core::{DMat3, DVec3};
 
     fn volume(values: Vec<u8>) -> Volume {
@@ -221,6 +214,37 @@ mod tests {
         assert!(f.at(36.0)[3] < 0.01 && f.at(140.0)[3] > 0.5, "{f:?}");
     }
 
+    /// A dense stem, thin leaves of low values beside it, and noise.
+    fn tree(leaves: bool) -> Volume {
+        let n = 40usize;
+        let value = |i: usize| {
+            let [x, y, z] = [i % n, i / n % n, i / n / n].map(|v| v as f64 - 20.0);
+            let noise = (i * 7919 % 13) as f64 - 6.0;
+            let stem = x.hypot(y) < 4.0;
+            let leaf = leaves && z.rem_euclid(10.0) < 2.0 && (x - 12.0).hypot(y) < 6.0;
+            (12.0
+                + noise
+                + if stem {
+                    180.0
+                } else if leaf {
+                    45.0
+                } else {
+                    0.0
+                }) as u8
+        };
+        let values = VoxelValues::U8((0..n * n * n).map(value).collect());
+        Volume::new([n; 3], DMat3::IDENTITY, DVec3::ZERO, values).unwrap()
+    }
+
+    #[test]
+    fn leaves_are_shown_as_well_as_stems() {
+        let f = TransferFunction::auto(&tree(true));
+        assert!(f.at(18.0)[3] == 0.0 && f.at(57.0)[3] > 0.15 && f.at(190.0)[3] > 0.7, "{f:?}");
+        // Without them, low values are borders of the stem, and stay clear.
+        let f = TransferFunction::auto(&tree(false));
+        assert!(f.at(57.0)[3] == 0.0 && f.at(190.0)[3] > 0.7, "{f:?}");
+    }
+
     #[test]
     fn hounsfield_units_are_shown_as_such_however_far_they_reach() {
         let of = |most: i16| {
@@ -244,9 +268,11 @@ mod tests {
     }
 
     #[test]
-    fn one_value_alone_is_no_failure() {
+    fn one_value_alone_is_a_translucent_block() {
+        let block = volume(vec![9; 4096]);
         for name in TRANSFER_NAMES {
-            assert!(TransferFunction::named(name, &volume(vec![9; 4096])).is_some());
+            let f = TransferFunction::named(name, &block).unwrap();
+            assert!((1.0 - (1.0 - f.at(9.0)[3]).powi(15) - BLOCK).abs() < 1e-12 && f.name() == *name);
         }
     }
 }

@@ -4,7 +4,7 @@ use super::loader::Loader;
 use super::{builtin, transfer};
 use crate::BelvedereError;
 use crate::scene_file::{TransformDoc, VolumeDoc};
-use belvedere_core::{DMat3, DVec3};
+use belvedere_core::{DMat3, DVec3, Warning, WarningKind};
 use belvedere_io::{ByteOrder, Number, RawLayout, VolumeFile, VolumeRequest, load_volume};
 use belvedere_scene::{LayerKind, Volume, VolumeError, VolumeLayer};
 use glam::EulerRot;
@@ -28,6 +28,8 @@ pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &VolumeDoc) -> R
         Some(transform) => placed(volume, transform).map_err(|e| loader.fail(index, "transform", e))?,
         None => volume,
     };
+    let constant = one_value(&volume);
+    loader.note(index, constant);
     let transfer = transfer::find(loader, index, &doc.transfer, &volume)?;
     Ok(LayerKind::Volume(VolumeLayer { step: doc.step, model: doc.shading, ..VolumeLayer::new(volume, transfer) }))
 }
@@ -35,6 +37,17 @@ pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &VolumeDoc) -> R
 /// The volume of a file.
 pub(crate) fn made(file: VolumeFile) -> Result<Volume, VolumeError> {
     Volume::new(file.dims, file.axes, file.origin, file.values)
+}
+
+/// A warning about a volume of one value.
+pub(crate) fn one_value(volume: &Volume) -> Option<Warning> {
+    volume.is_constant().then(|| {
+        let value = volume.range()[0];
+        let text = format!(
+            "all its values are {value}, so that nothing in it can be told apart; transfer functions by name show a translucent block"
+        );
+        Warning::new(WarningKind::Suspect, text).with("value", f64::from(value))
+    })
 }
 
 fn request(loader: &Loader<'_>, index: usize, doc: &VolumeDoc) -> Result<VolumeRequest, BelvedereError> {

@@ -5,7 +5,8 @@ use belvedere_scene::VolumeModel;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Voxels from a file: VTK XML ImageData (.vti), NRRD (.nrrd, .nhdr), or raw samples (.raw, .raw.gz).
+/// Voxels from a file: VTK XML ImageData (.vti), legacy VTK (.vtk), NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), NIfTI (.nii, .nii.gz),
+/// or raw samples (.raw, .raw.gz).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VolumeDoc {

@@ -2,6 +2,7 @@
 
 use super::in_time;
 use super::level_lakes::LevelLakes;
+use super::moved::MovedFeatures;
 use super::written_rivers::run_downhill;
 use crate::answers;
 use crate::data::DataFiles;
@@ -16,20 +17,19 @@ use crate::scene_file::{self, CameraDoc, EarthDoc, StageDoc, TerrainStageDoc};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::measure::{Shares, percent};
 use belvedere_construct::reveal::shortfall;
-use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, TerrainDisocclusion, View};
+use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, View};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_disocclusion::report::RiverReport;
 use belvedere_disocclusion::{Solved, TerrainMemory, TerrainReport, TerrainSolver, ViewpointOptions};
 use belvedere_io::IoError;
 use belvedere_io::TerrainRequest;
-use belvedere_io::crs::{CoordinateSystem, Transform};
-use belvedere_io::geotiff::write_geotiff;
+use belvedere_io::geotiff::write_cloud_geotiff;
 use belvedere_io::raster::Raster;
 use belvedere_io::terrain::{CrsChoice, OriginalTerrain, moved_terrain};
-use belvedere_scene::{Crs, Layer, LayerKind, Progress, Scene};
+use belvedere_scene::{Crs, LayerKind, Progress, Scene};
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -187,13 +187,13 @@ struct Record {
 /// Output files.
 #[derive(Debug, Clone, Default)]
 pub struct DisoccludeFiles {
-    /// Displaced elevation model, GeoTIFF on the grid of the input.
+    /// Displaced elevation model, cloud-optimised GeoTIFF on the grid of the input.
     pub out: PathBuf,
     /// Figures, JSON.
     pub report: Option<PathBuf>,
-    /// Displacement, GeoTIFF on the grid of the input.
+    /// Displacement, likewise.
     pub displacement: Option<PathBuf>,
-    /// Features on the displaced ground, GeoJSON.
+    /// Features on the displaced ground, GeoJSON, or GeoPackage where the name ends in `.gpkg`.
     pub features: Option<PathBuf>,
     /// The ground before and after from the eye, PNG, with its record and displacement beside it.
     pub picture: Option<PathBuf>,
@@ -495,14 +495,15 @@ impl Disoccluded {
     ) -> Result<Vec<PathBuf>, BelvedereError> {
         let stage = &self.solved.stage;
         let [dem, delta] = &self.rasters;
-        write_geotiff(&files.out, dem, overwrite)?;
+        write_cloud_geotiff(&files.out, dem, overwrite)?;
         let mut written = vec![files.out.clone()];
         if let Some(path) = &files.displacement {
-            write_geotiff(path, delta, overwrite)?;
+            write_cloud_geotiff(path, delta, overwrite)?;
             written.push(path.clone());
         }
         if let Some(path) = &files.features {
-            output::write_text(path, &output::json(&moved_features(&self.session, stage)?)?, overwrite)?;
+            let moved = |p: DVec3| Some(p + stage.delta_at(p) * DVec3::Z);
+            MovedFeatures::new(self.session.scene(), &|layer| layer.must_see, &moved, false).write(path, overwrite)?;
             written.push(path.clone());
         }
         if let Some(path) = &files.picture {
@@ -515,65 +516,4 @@ impl Disoccluded {
         }
         Ok(written)
     }
-}
-
-/// Features on the displaced ground: GeoJSON in WGS 84 (scene coordinates without georeference), with heights of the displaced
-/// ground and the true positions as property `true_coordinates`.
-fn moved_features(session: &Session, stage: &TerrainDisocclusion) -> Result<Value, BelvedereError> {
-    let scene = session.scene();
-    let to_wgs84 = match scene.crs {
-        Crs::Local => None,
-        crs => Some(Transform::new(&CoordinateSystem::from_scene(crs)?, &CoordinateSystem::wgs84()?)?),
-    };
-    let geographic = |p: DVec3| {
-        let xy = to_wgs84.as_ref().map_or(Some(p.truncate()), |t| t.forward_one(p.truncate()))?;
-        Some([xy.x, xy.y, p.z])
-    };
-    let moved = |p: DVec3| p + stage.delta_at(p) * DVec3::Z;
-    // A point outside the domain of the coordinate system is left out of both lists.
-    let both = |points: &[DVec3]| -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
-        points.iter().filter_map(|p| Some((geographic(moved(*p))?, geographic(*p)?))).unzip()
-    };
-    let on_ground = |xy: DVec2| xy.extend(scene.terrain().and_then(|t| t.surface_at(xy)).unwrap_or(0.0));
-    let mut features = Vec::new();
-    for layer in scene.layers.iter().filter(|l| l.must_see) {
-        match &layer.kind {
-            LayerKind::Line(l) => {
-                for f in &l.features {
-                    let (now, before) = both(&f.points);
-                    features.push(feature(layer, &f.name, "LineString", json!(now), json!(before)));
-                }
-            }
-            LayerKind::Area(a) => {
-                for f in &a.features {
-                    let closed = |ring: &Vec<DVec2>| -> Vec<DVec3> {
-                        ring.iter().chain(ring.first()).map(|p| on_ground(*p)).collect()
-                    };
-                    let (now, before): (Vec<_>, Vec<_>) = f.rings.iter().map(|r| both(&closed(r))).unzip();
-                    features.push(feature(layer, &f.name, "Polygon", json!(now), json!(before)));
-                }
-            }
-            LayerKind::Point(p) => {
-                for f in &p.features {
-                    if let (Some(now), Some(before)) = (geographic(moved(f.position)), geographic(f.position)) {
-                        features.push(feature(layer, &f.name, "Point", json!(now), json!(before)));
-                    }
-                }
-            }
-            LayerKind::Terrain(_)
-            | LayerKind::Boxes(_)
-            | LayerKind::Mesh(_)
-            | LayerKind::Molecule(_)
-            | LayerKind::Volume(_) => {}
-        }
-    }
-    Ok(json!({ "type": "FeatureCollection", "features": features }))
-}
-
-fn feature(layer: &Layer, name: &str, kind: &str, now: Value, before: Value) -> Value {
-    json!({
-        "type": "Feature",
-        "geometry": { "type": kind, "coordinates": now },
-        "properties": { "name": name, "layer": layer.id, "true_coordinates": before },
-    })
 }

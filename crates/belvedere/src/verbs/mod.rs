@@ -13,6 +13,7 @@ mod level_lakes;
 pub mod measure;
 mod model_layers;
 mod molecule_info;
+pub mod moved;
 pub mod open_files;
 pub mod pack;
 pub mod points;

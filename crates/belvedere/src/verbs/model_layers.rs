@@ -43,7 +43,7 @@ pub(super) fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, Belved
         Some(Reader::City) => Ok(LayerDoc::City(CityDoc::of(id, name))),
         Some(Reader::Volume) => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
         _ => Err(BelvedereError::Target(format!(
-            "{name} is no model that can be looked into; give meshes (OBJ, PLY, STL, glTF), cities (CityJSON, CityGML, OSM PBF), molecules (PDB, mmCIF), volumes (VTI, NRRD, raw) or a scene file; for an elevation model give its features instead of --see"
+            "{name} is no model that can be looked into; give meshes (OBJ, PLY, STL, glTF), cities (CityJSON, CityGML, OSM PBF), molecules (PDB, mmCIF), volumes (VTI, VTK, NRRD, MetaImage, NIfTI, raw) or a scene file; for an elevation model give its features instead of --see"
         ))),
     }
 }

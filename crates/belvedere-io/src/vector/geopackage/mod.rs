@@ -4,6 +4,9 @@
 
 mod blob;
 mod database;
+mod write;
+
+pub use write::{FeatureTable, write_geopackage};
 
 use super::{Geometry, VectorFeature, Vectors, name_of, not_degrees, shorten, vertex};
 use crate::crs::{CoordinateSystem, CrsError, Transform};

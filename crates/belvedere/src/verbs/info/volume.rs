@@ -1,7 +1,7 @@
 //! Description of a volume file.
 
 use crate::BelvedereError;
-use crate::resolve::volume::made;
+use crate::resolve::volume::{made, one_value};
 use belvedere_core::Warning;
 use belvedere_io::{Number, VolumeRequest, load_volume};
 use schemars::JsonSchema;
@@ -52,7 +52,7 @@ impl VolumeInfo {
             range: volume.range(),
             min: bounds.min.to_array(),
             max: bounds.max.to_array(),
-            warnings: loaded.warnings,
+            warnings: loaded.warnings.into_iter().chain(one_value(&volume).map(|w| w.in_file(path))).collect(),
         })
     }
 }
