@@ -60,6 +60,7 @@ fn of_volume(layer: &VolumeLayer, pinhole: &Pinhole, folder: &Path) -> Result<Va
     std::fs::write(&file, bytes)?;
     let Projection::Perspective { fov_y } = pinhole.projection else { bail!("a volume in parallel projection") };
     let transfer = &layer.transfer;
+    let spacing = [0, 1, 2].map(|axis| volume.axes().col(axis).length());
     let shares = |c: Color| [c.r, c.g, c.b].map(|v| f64::from(v) / 255.0);
     let points = transfer.points().iter().map(|p| {
         let [r, g, b] = shares(p.color);
@@ -70,7 +71,7 @@ fn of_volume(layer: &VolumeLayer, pinhole: &Pinhole, folder: &Path) -> Result<Va
         "file": file,
         "dtype": kind,
         "dims": volume.dims(),
-        "spacing": [0, 1, 2].map(|axis| volume.axes().col(axis).length()),
+        "spacing": spacing,
         "origin": volume.origin().to_array(),
         "transfer": points.collect::<Vec<_>>(),
         "reference": layer.reference_length(),

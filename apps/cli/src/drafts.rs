@@ -8,7 +8,6 @@ use belvedere::verbs::reveal::RevealRequest;
 use belvedere::verbs::reveal_target::TargetRequest;
 use belvedere::verbs::schemas::{DraftWithCommand, Drafts};
 use belvedere::verbs::target_drafts::target_drafts;
-use belvedere::{Needs, OpenOptions};
 use std::path::{Path, PathBuf};
 
 /// Options of the sheet that its commands leave out, with a value of their own.

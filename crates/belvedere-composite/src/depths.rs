@@ -1,5 +1,6 @@
 //! Depths of surfaces where marks read them: of the whole picture, or of its parts that are needed.
 
+use crate::skyline::Skyline;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -27,6 +28,8 @@ pub struct DepthTiles {
     /// Of each tile: 0 where nothing reads it, 1 where something does, 2 + its number once it has a place.
     slots: Vec<AtomicU32>,
     depth: Vec<f32>,
+    /// Where the sky begins, if marks read it.
+    pub skyline: Skyline,
 }
 
 impl DepthTiles {
@@ -37,7 +40,7 @@ impl DepthTiles {
     pub fn new([width, height]: [usize; 2]) -> Self {
         let across = width.div_ceil(TILE);
         let slots = (0..across * height.div_ceil(TILE)).map(|_| AtomicU32::new(0)).collect();
-        Self { across, width, height, slots, depth: Vec::new() }
+        Self { across, width, height, slots, depth: Vec::new(), skyline: Skyline::default() }
     }
 
     fn slot(&self, x: usize, y: usize) -> &AtomicU32 {

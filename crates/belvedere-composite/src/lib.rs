@@ -16,6 +16,7 @@ pub mod layers;
 pub mod marks;
 pub mod screen;
 pub mod sections;
+pub mod skyline;
 pub mod stylise;
 pub mod unsharp;
 pub mod veil;

@@ -21,6 +21,7 @@ use belvedere_composite::finish::{draw_marks_on_rows, is_open};
 use belvedere_composite::layers;
 use belvedere_composite::marks::Marks;
 use belvedere_composite::sections::Sections;
+use belvedere_composite::skyline::Skyline;
 use belvedere_composite::stylise::{self, Relief, StyledRows, Survey};
 use belvedere_composite::unsharp::{DepthGrid, Surroundings};
 use belvedere_composite::veil::{Veil, Veiled};
@@ -178,11 +179,31 @@ impl Prepared<'_> {
                 }
             })?;
         }
+        if Marks::read_skyline(job) {
+            tiles.skyline = self.skyline()?;
+            if let Some(near) = &mut near {
+                near.skyline = tiles.skyline.clone();
+            }
+        }
         self.marks = marks::place(job, passes, screen, (Depths::Tiles(&tiles), Solids::Opaque));
         if let Some(near) = &near {
             self.front = marks::place(job, passes, screen, (Depths::Tiles(near), Solids::Drawn));
         }
         Ok(())
+    }
+
+    /// Where the sky begins over each column.
+    fn skyline(&self) -> Result<Skyline, RenderError> {
+        let picture = self.picture();
+        let mut skyline = Skyline::unknown(picture);
+        let rows: Vec<usize> = (0..picture[1]).collect();
+        let mut open = true;
+        for rows in rows.chunks(AHEAD) {
+            if open {
+                self.each_row(rows, None, false, |row| open = skyline.note(row.number, &row.depth))?;
+            }
+        }
+        Ok(skyline)
     }
 
     /// Draws the depths of rows at the pixel centres, and hands them over in their order.

@@ -22,7 +22,6 @@ mod ribbon;
 mod segment;
 mod shapes;
 mod shown;
-mod skyline;
 mod symbol;
 mod visibility;
 
@@ -32,6 +31,7 @@ use crate::depths::{DepthTiles, Depths};
 use crate::drawn::{Drawn, Pass, Sight};
 use crate::screen::{BAND, COARSE_PX, Screen};
 use crate::sections::Sections;
+use crate::skyline::Skyline;
 use alike::alike;
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{
@@ -47,7 +47,6 @@ use rayon::prelude::*;
 use request::{LabelRequest, Page};
 use ribbon::{Ink, Lane, Stroke, StrokeLayer};
 pub use shapes::{LayerShapes, LineShape, Paint, Role, Shapes, SymbolShape, outline, simplified};
-use skyline::Skyline;
 use visibility::{DepthMap, LineVisibility, Run, Station};
 
 /// Width of a hidden line in widths of the visible one.
@@ -88,6 +87,12 @@ impl Marks {
         tiles
     }
 
+    /// Whether the marks of a job stand where the sky begins: names of points do.
+    pub fn read_skyline(job: &RenderJob<'_>) -> bool {
+        let named = |kind: &LayerKind| matches!(kind, LayerKind::Point(p) if p.style.label_px.is_some());
+        job.scene.layers.iter().any(|layer| named(&layer.kind))
+    }
+
     /// * `keep`: whether lines are kept as shapes.
     fn place(job: &RenderJob<'_>, drawn: &Drawn<'_>, keep: bool) -> Self {
         if !job.options.marks {
@@ -96,10 +101,10 @@ impl Marks {
         let Drawn { passes, screen, tolerance_px, depth, sight } = *drawn;
         let map = DepthMap { depth, width: screen.width, height: screen.height };
         let sections = Sections::new(job);
-        let named = |kind: &LayerKind| matches!(kind, LayerKind::Point(p) if p.style.label_px.is_some());
-        let skyline = match job.scene.layers.iter().any(|layer| named(&layer.kind)) {
-            true => Skyline::of(depth, screen.width.max(0) as usize),
-            false => Skyline::default(),
+        let skyline = match depth {
+            Depths::Whole(depth) if Self::read_skyline(job) => Skyline::of(depth, screen.width.max(0) as usize),
+            Depths::Tiles(tiles) => tiles.skyline.clone(),
+            _ => Skyline::default(),
         };
         let fonts = Fonts::with(&job.scene.fonts);
         let sight = LineOfSight { scene: job.scene, sight };

@@ -1,12 +1,13 @@
 //! Pictures that are drawn and written some rows at a time, so that memory does not grow with their height. Every byte is that of the picture
 //! in one piece.
 
-use super::displacement;
 use super::draw::{Made, draw_inset, mark_words, sidecar};
 use super::options::PictureOptions;
 use super::sidecar::{Later, OverlayRecord, Picture};
+use super::{displacement, furniture};
 use crate::bodies::RigidLayers;
 use crate::guard::guarded;
+use crate::overlays::furniture::{FurnitureRecord, Plan, with_distances};
 use crate::overlays::{badge, curve_inset, grid, highlight, thin, widths};
 use crate::record::{self, InputFile};
 use crate::scene_file::Inset;
@@ -80,6 +81,7 @@ pub(crate) fn later(
         displacement: None,
         fallback: None,
         stats: FrameStats::default(),
+        furniture: FurnitureRecord::default(),
         render_ms: 0.0,
     };
     Ok(Some(Picture {
@@ -127,7 +129,7 @@ pub(crate) fn write_straight(
     let program = format!("belvedere {}", crate::VERSION);
     let mut result = Ok(());
     request.renderer.of(session).in_rows(&job, &mut |front| {
-        let bands = Bands { session, request, view: &view, rows, thin: None };
+        let bands = Bands { session, request, view: &view, rows, furnished: &Plan::default(), thin: None };
         let [width, height] = front.size();
         let text = [("Software", program.as_str())];
         result = drawn(|failed| {
@@ -248,6 +250,7 @@ struct Bands<'a> {
     view: &'a View,
     /// Rows of a band.
     rows: usize,
+    furnished: &'a Plan,
     /// The picture of the lowered ground, and where it shows through.
     thin: Option<(&'a dyn PictureRows, thin::Thin)>,
 }
@@ -260,9 +263,12 @@ fn write(
 ) -> Result<(Picture, Vec<PathBuf>), BelvedereError> {
     session.check_drawable()?;
     let started = Instant::now();
-    let (view, options) = (drawn_view(session, request), options(session, request));
+    let (view, mut options) = (drawn_view(session, request), options(session, request));
+    let furnished = furniture::plan(session, (session.scene(), &view), request, (false, false));
+    options.keep_clear.clone_from(&furnished.keep_clear);
     let renderer = request.renderer.of(session);
-    let scaled = widths::scaled(session.scene(), request.density);
+    let ticked = with_distances(session.scene(), &session.resolved.furniture);
+    let scaled = widths::scaled(&ticked, request.density);
     let (light, progress, whole) = (session.light(), &request.progress, &*scaled);
     let job = |scene| RenderJob { scene, view: &view, light, options: &options, progress };
     let covered = session.terrain_report().map(|r| &r.covered[..]).filter(|c| !c.is_empty() && !request.straight);
@@ -273,14 +279,15 @@ fn write(
     let mut result = None;
     renderer.in_rows(&job(whole), &mut |front| {
         let Some((cut, covered)) = cut.as_ref().zip(covered) else {
-            let bands = Bands { session, request, view: &view, rows, thin: None };
+            let bands = Bands { session, request, view: &view, rows, furnished: &furnished, thin: None };
             result = Some(bands.write(front, out, (started, inputs.clone())));
             return Ok(());
         };
         let thin = thin::Thin::new(session.scene(), &view, covered, front.size());
         let mut thin = Some(thin);
         renderer.in_rows(&job(cut), &mut |behind| {
-            let bands = Bands { session, request, view: &view, rows, thin: thin.take().map(|thin| (behind, thin)) };
+            let thin = thin.take().map(|thin| (behind, thin));
+            let bands = Bands { session, request, view: &view, rows, furnished: &furnished, thin };
             result = Some(bands.write(front, out, (started, inputs.clone())));
             Ok(())
         })
@@ -319,7 +326,15 @@ impl Bands<'_> {
             grid: grid.and_then(|spacing| grid::spacing(scene, spacing)),
             ..OverlayRecord::default()
         };
-        let made = Made { view, overlay, displacement, fallback: None, stats: front.stats(), render_ms: 0.0 };
+        let made = Made {
+            view,
+            overlay,
+            displacement,
+            fallback: None,
+            stats: front.stats(),
+            furniture: self.furnished.record.clone(),
+            render_ms: 0.0,
+        };
         let sidecar = sidecar(session, request, (made, &rigid), inputs);
         let mut picture = Picture {
             frame: Frame { width, height, stats: front.stats(), ..Frame::default() },
@@ -338,6 +353,10 @@ impl Bands<'_> {
         let furnish = |pixels: &mut [[u8; 3]], first: usize| {
             if let Some((_, figure)) = &figure {
                 draw_inset(Canvas::rows(pixels, [width, height], first), figure, request);
+            }
+            for (_, shapes) in &self.furnished.kinds {
+                let mut canvas = Canvas::rows(pixels, [width, height], first);
+                shapes.iter().for_each(|shape| canvas.put(shape));
             }
             if let Some(words) = &mark {
                 badge::draw(&mut Canvas::rows(pixels, [width, height], first), words, request.density);

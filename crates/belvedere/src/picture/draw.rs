@@ -59,7 +59,7 @@ pub(crate) fn draw(
     let Drawn { view, frame, straight, overlay, furniture, displacement, fallback, vectors } = drawn;
     let rigid = RigidLayers::of(session.scene(), &view);
     let render_ms = started.elapsed().as_secs_f64() * 1e3;
-    let made = Made { view: &view, overlay, displacement, fallback, stats: frame.stats.clone(), render_ms };
+    let made = Made { view: &view, overlay, displacement, fallback, stats: frame.stats.clone(), furniture, render_ms };
     let sidecar = sidecar(session, request, (made, &rigid), inputs);
     let (aux, aux_format, crs) = (request.aux.clone(), request.aux_format, session.scene().crs);
     let unit = session.scene().unit;
@@ -73,6 +73,7 @@ pub(super) struct Made<'a> {
     pub(super) displacement: Option<DisplacementReport>,
     pub(super) fallback: Option<FallbackRecord>,
     pub(super) stats: FrameStats,
+    pub(super) furniture: FurnitureRecord,
     pub(super) render_ms: f64,
 }
 
@@ -83,7 +84,7 @@ pub(super) fn sidecar(
     (made, rigid): (Made<'_>, &RigidLayers),
     inputs: Vec<InputFile>,
 ) -> Sidecar {
-    let Made { view, overlay, displacement, fallback, stats, render_ms } = made;
+    let Made { view, overlay, displacement, fallback, stats, furniture, render_ms } = made;
     let names = session.public_names();
     let mut volumes = VolumeRecord::all(session.scene());
     volumes.iter_mut().for_each(|volume| volume.transfer = names.text(&volume.transfer));

@@ -238,8 +238,9 @@ impl Set {
                 let mut stamp = |half: f64, color: Color| match symbol {
                     Symbol::Dot => canvas.disc(middle, half, color),
                     other => {
-                        let corners: Vec<DVec2> = outline(*other, half).into_iter().map(|p| middle + p).collect();
-                        canvas.polygon([&corners[..]], color);
+                        let mut rings = outline(*other, half);
+                        rings.iter_mut().flatten().for_each(|p| *p += middle);
+                        canvas.polygon(rings.iter().map(Vec::as_slice), color);
                     }
                 };
                 if let Some(casing) = casing {

@@ -1,6 +1,6 @@
 use super::*;
 use belvedere_core::{DVec3, Pinhole, Projection};
-use belvedere_scene::{Color, Heightfield, Hidden, Layer, PointFeature, PointLayer, PointStyle, Symbol};
+use belvedere_scene::{Color, Heightfield, Hidden, PointFeature, PointLayer, PointStyle, Symbol};
 
 /// Gentle hills of 8 km, 40 m a cell.
 fn hills() -> Scene {

@@ -8,33 +8,39 @@ const NEAR: f64 = 8.0;
 const BESIDE: f64 = 60.0;
 
 /// Rows of the highest ground.
-#[derive(Debug, Default)]
-pub(crate) struct Skyline {
+#[derive(Debug, Clone, Default)]
+pub struct Skyline {
     /// By column; the height of the picture where there is sky alone.
     rows: Vec<u32>,
+    height: u32,
+    /// Columns whose ground was not met.
+    open: usize,
 }
 
 impl Skyline {
+    /// The skyline of a picture of which no row is known.
+    pub fn unknown([width, height]: [usize; 2]) -> Self {
+        Self { rows: vec![height as u32; width], height: height as u32, open: width }
+    }
+
+    /// Takes note of a row, from above; whether there are columns whose ground was not met.
+    /// * `depth`: not finite in the sky.
+    pub fn note(&mut self, row: usize, depth: &[f32]) -> bool {
+        for (first, depth) in self.rows.iter_mut().zip(depth) {
+            if *first == self.height && depth.is_finite() {
+                *first = row as u32;
+                self.open -= 1;
+            }
+        }
+        self.open > 0
+    }
+
     /// * `depth`: row-major, not finite in the sky.
     pub(crate) fn of(depth: &[f32], width: usize) -> Self {
-        if width == 0 {
-            return Self::default();
-        }
-        let height = (depth.len() / width) as u32;
-        let mut rows = vec![height; width];
-        let mut open = width;
-        for (y, line) in depth.chunks_exact(width).enumerate() {
-            for (row, depth) in rows.iter_mut().zip(line) {
-                if *row == height && depth.is_finite() {
-                    *row = y as u32;
-                    open -= 1;
-                }
-            }
-            if open == 0 {
-                break;
-            }
-        }
-        Self { rows }
+        let mut skyline = Self::unknown([width, depth.len().checked_div(width).unwrap_or(0)]);
+        let mut rows = depth.chunks_exact(width.max(1)).enumerate();
+        while rows.next().is_some_and(|(row, depth)| skyline.note(row, depth)) {}
+        skyline
     }
 
     /// Row of the highest ground around a point that stands on the skyline; `None` for others, and where no sky is above.
