@@ -9,7 +9,7 @@ const SIGMA: f32 = 0.01;
 /// Cells of the grid from which on it becomes wider than two pixels.
 const MOST_CELLS: usize = 1 << 21;
 
-/// Depths of four neighbouring pixels in the middle of each cell of a grid over the picture: all pixels of a picture of up to 16 million, some
+/// Depths of four neighbouring pixels in the middle of each cell of a grid over the picture: all pixels of a picture of up to 33 million, some
 /// of larger ones.
 #[derive(Debug)]
 pub struct DepthGrid {

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 /// Most copies of an assembly. Capsids have 60, the largest in the Protein Data Bank some thousands.
 pub const MOST_COPIES: u64 = 10_000;
 
-/// Bytes of an atom of a copy, with its share of residues and bonds; 190 were measured.
+/// Bytes of an atom of a copy, with its share of residues and bonds, reckoned from their sizes.
 const PER_ATOM: u64 = 250;
 
 /// An assembly of a file.
