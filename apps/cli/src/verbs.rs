@@ -440,7 +440,7 @@ fn displace_features(args: &DisplaceArgs, context: &Context) -> anyhow::Result<G
         Some(path) => {
             moved.write(path, context.common.overwrite)?;
             if context.common.json {
-                context.print("displace", &[path.clone()], &Written { warnings: warnings.clone() })?;
+                context.print("displace", std::slice::from_ref(path), &Written { warnings: warnings.clone() })?;
             }
         }
     }

@@ -74,7 +74,7 @@ mod tests {
         assert_eq!(skyline.over(DVec2::new(140.0, 41.0), 1.0), Some((20 + 80 / 7) as f64));
         assert_eq!(skyline.over(DVec2::new(140.0, 60.0), 1.0), None);
         assert_eq!(skyline.over(DVec2::new(-3.0, 20.0), 1.0), None);
-        assert_eq!(Skyline::of(&vec![1.0; 50], 10).over(DVec2::new(5.0, 0.0), 1.0), None);
+        assert_eq!(Skyline::of(&[1.0; 50], 10).over(DVec2::new(5.0, 0.0), 1.0), None);
         assert_eq!(Skyline::of(&[], 0).over(DVec2::ZERO, 1.0), None);
     }
 }

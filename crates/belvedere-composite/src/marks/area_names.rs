@@ -9,6 +9,9 @@ use belvedere_scene::{AreaLayer, Color, Symbol};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
+/// Colour of a name and its rank.
+type Look = (Color, Option<f64>);
+
 impl MarkBuilder<'_> {
     /// Each name of a layer once, in the largest of the areas that bear it, where that place is seen; names of large areas come first.
     ///
@@ -16,22 +19,21 @@ impl MarkBuilder<'_> {
     pub(super) fn area_names(&self, index: usize, layer: &AreaLayer) -> Vec<LabelRequest> {
         let Some(size_px) = layer.label_px else { return Vec::new() };
         let named = layer.features.par_iter().filter(|f| !f.name.trim().is_empty());
-        let poles: Vec<(&str, (Color, Option<f64>), Pole)> = named
+        let poles: Vec<(&str, Look, Pole)> = named
             .filter_map(|f| {
                 let own = f.style.unwrap_or_default();
                 let color = layer.outline.unwrap_or(own.color.unwrap_or(layer.fill));
                 Some((f.name.trim(), (color, own.rank), pole(&f.rings)?))
             })
             .collect();
-        let mut largest: HashMap<&str, ((Color, Option<f64>), Pole)> = HashMap::new();
+        let mut largest: HashMap<&str, (Look, Pole)> = HashMap::new();
         for (name, look, pole) in poles {
             let best = largest.entry(name).or_insert((look, pole));
             if pole.distance > best.1.distance {
                 *best = (look, pole);
             }
         }
-        let mut names: Vec<(&str, (Color, Option<f64>), Pole)> =
-            largest.into_iter().map(|(n, (look, pole))| (n, look, pole)).collect();
+        let mut names: Vec<(&str, Look, Pole)> = largest.into_iter().map(|(n, (look, pole))| (n, look, pole)).collect();
         // Those with a rank first, else those with the most room.
         let rank = |rank: Option<f64>| rank.filter(|rank| !rank.is_nan()).unwrap_or(f64::NEG_INFINITY);
         names.sort_by(|a, b| {

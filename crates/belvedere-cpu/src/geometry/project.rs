@@ -145,7 +145,9 @@ impl<'a> Projector<'a> {
         [&mut *x, &mut *y, &mut *z].into_iter().for_each(|list| list.clear());
         for p in places {
             let p = p - self.eye;
-            (x.push(p.x as f32), y.push(p.y as f32), z.push(p.z as f32));
+            x.push(p.x as f32);
+            y.push(p.y as f32);
+            z.push(p.z as f32);
         }
         [x, y, z, nearness].into_iter().for_each(|list| list.resize(n, 0.0));
         images.iter_mut().for_each(|list| list.resize(n, 0));

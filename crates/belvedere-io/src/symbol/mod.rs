@@ -217,7 +217,7 @@ fn restyle(own: &Attributes, look: &mut Look) -> Result<(), String> {
         look.even_odd = rule == "evenodd";
     }
     if let Some(transform) = own.get("transform") {
-        look.place = look.place * placed(transform)?;
+        look.place *= placed(transform)?;
     }
     Ok(())
 }
@@ -257,23 +257,22 @@ fn placed(text: &str) -> Result<DAffine2, String> {
     for part in text.split(')').map(|part| part.trim_matches([' ', ',', '\n', '\t', '\r'])).filter(|p| !p.is_empty()) {
         let (name, values) = part.split_once('(').ok_or_else(refused)?;
         let values = path::numbers(values)?;
-        place = place
-            * match (name.trim(), values.as_slice()) {
-                ("translate", [x]) => DAffine2::from_translation(DVec2::new(*x, 0.0)),
-                ("translate", [x, y]) => DAffine2::from_translation(DVec2::new(*x, *y)),
-                ("scale", [s]) => DAffine2::from_scale(DVec2::splat(*s)),
-                ("scale", [x, y]) => DAffine2::from_scale(DVec2::new(*x, *y)),
-                ("rotate", [a]) => DAffine2::from_angle(a.to_radians()),
-                ("rotate", [a, x, y]) => {
-                    let at = DVec2::new(*x, *y);
-                    let turned = DAffine2::from_translation(at) * DAffine2::from_angle(a.to_radians());
-                    turned * DAffine2::from_translation(-at)
-                }
-                ("skewX", [a]) => DAffine2::from_mat2(DMat2::from_cols_array(&[1.0, 0.0, a.to_radians().tan(), 1.0])),
-                ("skewY", [a]) => DAffine2::from_mat2(DMat2::from_cols_array(&[1.0, a.to_radians().tan(), 0.0, 1.0])),
-                ("matrix", [a, b, c, d, e, f]) => DAffine2::from_cols_array(&[*a, *b, *c, *d, *e, *f]),
-                _ => return Err(refused()),
-            };
+        place *= match (name.trim(), values.as_slice()) {
+            ("translate", [x]) => DAffine2::from_translation(DVec2::new(*x, 0.0)),
+            ("translate", [x, y]) => DAffine2::from_translation(DVec2::new(*x, *y)),
+            ("scale", [s]) => DAffine2::from_scale(DVec2::splat(*s)),
+            ("scale", [x, y]) => DAffine2::from_scale(DVec2::new(*x, *y)),
+            ("rotate", [a]) => DAffine2::from_angle(a.to_radians()),
+            ("rotate", [a, x, y]) => {
+                let at = DVec2::new(*x, *y);
+                let turned = DAffine2::from_translation(at) * DAffine2::from_angle(a.to_radians());
+                turned * DAffine2::from_translation(-at)
+            }
+            ("skewX", [a]) => DAffine2::from_mat2(DMat2::from_cols_array(&[1.0, 0.0, a.to_radians().tan(), 1.0])),
+            ("skewY", [a]) => DAffine2::from_mat2(DMat2::from_cols_array(&[1.0, a.to_radians().tan(), 0.0, 1.0])),
+            ("matrix", [a, b, c, d, e, f]) => DAffine2::from_cols_array(&[*a, *b, *c, *d, *e, *f]),
+            _ => return Err(refused()),
+        };
     }
     Ok(place)
 }

@@ -73,7 +73,7 @@ fn its_parts_stand_in_the_order_that_readers_over_a_network_expect() {
     assert!(at >= 51 + length);
     let (mut sizes, mut starts, mut last_directory) = (Vec::new(), Vec::new(), 0);
     while at != 0 {
-        assert!(at > last_directory && at % 2 == 0);
+        assert!(at > last_directory && at.is_multiple_of(2));
         last_directory = at;
         let (entries, next) = directory(&bytes, at);
         let get = |tag: u16| entries.iter().find(|(t, _)| *t == tag).map(|(_, v)| v.clone());

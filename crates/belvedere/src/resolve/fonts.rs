@@ -8,7 +8,7 @@ use belvedere_core::{Warning, WarningKind};
 use belvedere_io::{InputFile, IoError};
 use belvedere_scene::{FontFile, Layer, LayerKind};
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// Largest font file that is read, bytes.
@@ -97,7 +97,7 @@ fn of_system(loader: &mut Loader<'_>, mut lacking: BTreeSet<char>) -> Vec<FontFi
             continue;
         }
         searched += size;
-        let Ok((bytes, record)) = read(&path) else { continue };
+        let Ok(bytes) = belvedere_io::fs::read(&path) else { continue };
         let faces = fonts_in(&bytes, &lacking);
         let Some((index, drawn)) = faces.into_iter().enumerate().rev().max_by_key(|(_, drawn)| drawn.len()) else {
             continue;
@@ -106,19 +106,13 @@ fn of_system(loader: &mut Loader<'_>, mut lacking: BTreeSet<char>) -> Vec<FontFi
             continue;
         }
         lacking.retain(|letter| !drawn.contains(letter));
-        loader.inputs.push(record(&bytes));
+        loader.inputs.push(InputFile::of(&path, &bytes));
         fonts.push(FontFile { name: name_of(&path), bytes: Arc::new(bytes), index: index as u32 });
         if lacking.is_empty() {
             break;
         }
     }
     fonts
-}
-
-/// The bytes of a file, and its record, which is hashed only where the file is used.
-fn read(path: &Path) -> std::io::Result<(Vec<u8>, impl Fn(&[u8]) -> InputFile)> {
-    let record = |path: PathBuf| move |bytes: &[u8]| InputFile::of(&path, bytes);
-    Ok((belvedere_io::fs::read(path)?, record(path.to_owned())))
 }
 
 fn name_of(path: &Path) -> String {

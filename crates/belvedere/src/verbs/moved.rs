@@ -53,6 +53,9 @@ pub struct MovedFeatures {
 /// What moves features: the displaced point, `None` where there is none.
 type Map<'a> = &'a dyn Fn(DVec3) -> Option<DVec3>;
 
+/// Name of a feature and its parts.
+type Named<'a> = (&'a String, Vec<Vec<Moved>>);
+
 impl MovedFeatures {
     /// All lines, areas and points of a session, displaced by all stages of its view. Segments that a stage curves are divided.
     ///
@@ -77,7 +80,7 @@ impl MovedFeatures {
         let walk = Walk { moved, halvings: if divided { HALVINGS } else { 0 } };
         let (mut layers, mut lost) = (Vec::new(), 0);
         for layer in scene.layers.iter().filter(|layer| wanted(layer)) {
-            let (kind, read): (Kind, Vec<(&String, Vec<Vec<Moved>>)>) = match &layer.kind {
+            let (kind, read): (Kind, Vec<Named<'_>>) = match &layer.kind {
                 LayerKind::Line(l) => {
                     let mut parts = |points: &[DVec3]| walk.parts(points, &|p| p, &mut lost);
                     (Kind::Line, l.features.iter().map(|f| (&f.name, parts(&f.points))).collect())

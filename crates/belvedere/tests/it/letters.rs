@@ -141,7 +141,7 @@ fn a_scene_names_its_fonts_and_what_no_font_sets_is_said() {
         [("points.geojson", "no font"), ("../tiny.ttf", "leaves the folder"), ("absent.ttf", "not there")]
     {
         let said = scene(folder.path(), &places, "labels = true", &format!("[text]\nfonts = '{fonts}'"));
-        let said = said.err().expect("refused").to_string();
+        let said = said.expect_err("refused").to_string();
         assert!(said.contains(wanted) && said.chars().count() <= 500, "{said}");
     }
 }
@@ -176,9 +176,9 @@ fn points_have_the_symbols_ranks_and_heights_that_they_say() {
     let own = features("labels = true, symbol = 'pin', rank = 'weight', label_elevation = true");
     assert!(own.iter().all(|f| f.style.is_some_and(|style| style.symbol.is_none() && style.height.is_some())));
     assert_eq!(own[3].style.and_then(|style| style.rank), Some(7.0));
-    let said = scene(folder.path(), &places, "labels = true, rank = 'wait'", "").err().expect("refused").to_string();
+    let said = scene(folder.path(), &places, "labels = true, rank = 'wait'", "").expect_err("refused").to_string();
     assert!(said.contains("weight") && said.contains("rank"), "{said}");
-    let said = scene(folder.path(), &places, "label = 'name:xx'", "").err().expect("refused").to_string();
+    let said = scene(folder.path(), &places, "label = 'name:xx'", "").expect_err("refused").to_string();
     assert!(said.contains("name:de") && said.contains("label"), "{said}");
 }
 
@@ -196,9 +196,9 @@ fn symbols_of_ones_own_are_drawn_in_their_colours() {
     assert!((340..=441).contains(&pink), "{pink} pixels of the symbol");
     let found = frame.id.iter().filter(|id| **id == 2).count();
     assert!(found > 200, "{found} pixels are found");
-    let said = scene(folder.path(), &places, "symbol = 'dat'", "").err().expect("refused").to_string();
+    let said = scene(folder.path(), &places, "symbol = 'dat'", "").expect_err("refused").to_string();
     assert!(said.contains("dot"), "{said}");
     std::fs::write(folder.path().join("own.svg"), svg.replace("fill=", "stroke='#000' fill=")).expect("written");
-    let said = scene(folder.path(), &places, "symbol = 'own.svg'", "").err().expect("refused").to_string();
+    let said = scene(folder.path(), &places, "symbol = 'own.svg'", "").expect_err("refused").to_string();
     assert!(said.contains("stroke") && said.chars().count() <= 500, "{said}");
 }

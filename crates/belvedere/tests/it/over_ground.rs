@@ -92,11 +92,10 @@ fn the_edge_fades_into_the_background_and_the_middle_stays() {
         let size = (bounds.max - bounds.min).truncate().min_element();
         let world = b.world.as_ref().expect("places");
         let (mut faded, mut whole) = (0, 0);
-        for i in 0..a.color.len() {
+        for (i, [x, y, _]) in world.iter().enumerate() {
             if b.id[i] != 1 || a.id[i] != 1 {
                 continue;
             }
-            let [x, y, _] = world[i];
             let rim = (x - bounds.min.x).min(bounds.max.x - x).min(y - bounds.min.y).min(bounds.max.y - y) / size;
             if rim < 0.002 {
                 let sky = if white { [255u8, 255, 255] } else { [16, 32, 48] };

@@ -250,7 +250,7 @@ impl Set {
             }
             Sign::Bar { colors, opacity, labels } => {
                 let text = self.lines.len() as f64 * leading;
-                self.bar(canvas, at + DVec2::new(self.left, text + 2.0), (colors, opacity.as_deref(), labels));
+                self.bar(canvas, at + DVec2::new(self.left, text + 2.0), (colors, opacity.as_deref()), labels);
             }
         }
     }
@@ -259,7 +259,8 @@ impl Set {
         &self,
         canvas: &mut Canvas<'_>,
         at: DVec2,
-        (colors, opacity, labels): (&[Color], Option<&[f64]>, &[(f64, String)]),
+        (colors, opacity): (&[Color], Option<&[f64]>),
+        labels: &[(f64, String)],
     ) {
         let width = bar_width(self);
         let part = width / colors.len().max(1) as f64;
