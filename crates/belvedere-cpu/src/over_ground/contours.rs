@@ -77,7 +77,7 @@ fn slope(before: f32, after: f32) -> f32 {
 ///
 /// * `level`: height in intervals; `change`: its change per pixel.
 fn cover(level: f32, change: f32, density: f32) -> f32 {
-    if !(change > FLATTEST) {
+    if !(change > FLATTEST) || level.is_nan() {
         return 0.0;
     }
     let steps = [1.0, Contours::INDEX as f32];

@@ -56,13 +56,13 @@ fn letters_of_further_fonts_have_ink_straight_and_along_curves() {
         draw(&mut Canvas::new(&mut pixels, 200).with_fonts(&fonts));
         pixels.iter().map(|p| 1.0 - f64::from(p[0]) / 255.0).sum::<f64>()
     };
-    // Squares of 0.4 em.
+    // Squares of 0.4 em; pixels that they cover in part are lighter, for colours blend in linear light.
     let wanted = 3.0 * (0.4 * 30.0f64).powi(2);
     let straight = ink(&|canvas| canvas.text(DVec2::new(20.0, 60.0), 30.0, FUJI, BLACK, None));
-    assert!((straight / wanted - 1.0).abs() < 0.02, "{straight} of {wanted}");
+    assert!((straight / wanted - 1.0).abs() < 0.08, "{straight} of {wanted}");
     let bow: Vec<DVec2> = (0..150).map(|i| DVec2::new(20.0 + f64::from(i), 60.0 - 0.002 * f64::from(i * i))).collect();
     let curved = ink(&|canvas| canvas.text_along(&bow, 30.0, FUJI, BLACK, None));
-    assert!((curved / wanted - 1.0).abs() < 0.02, "{curved} of {wanted}");
+    assert!((curved / wanted - 1.0).abs() < 0.08, "{curved} of {wanted}");
     let mut shapes = Vec::new();
     Canvas::recording(&mut shapes, [200, 100]).with_fonts(&fonts).text_along(&bow, 30.0, FUJI, BLACK, None);
     assert!(matches!(&shapes[0], CanvasShape::Text { along, .. } if along.len() == bow.len()));
