@@ -212,7 +212,11 @@ fn cost(
         }
     }
     let moving = dragging::least(name, editor, request.image, MOVING)?;
-    let vtk_ms = request.vtk.as_deref().map(|python| vtk::straight_ms(python, &session, request)).transpose()?;
+    let vtk_ms = request
+        .vtk
+        .as_deref()
+        .map(|python| vtk::straight_ms(python, &session, (request.image, request.rounds)))
+        .transpose()?;
     let [yardstick, straight, bents @ ..] = &cases[..] else { unreachable!("five cases") };
     let pixels = request.image.map(f64::from).iter().product::<f64>();
     let sizes = scales.map(|(times, by)| pixels * (f64::from(times) / f64::from(by)).powi(2));

@@ -1,6 +1,5 @@
 //! The straight scenes drawn by VTK, in a Python that has it.
 
-use crate::over_collection::CollectionRequest;
 use anyhow::{Context, Result, bail, ensure};
 use belvedere::Session;
 use belvedere::core::{Pinhole, Projection};
@@ -27,7 +26,7 @@ pub(crate) fn version(python: &Path) -> Result<String> {
 ///
 /// # Errors
 /// A scene that cannot be written for VTK, a script that fails.
-pub(crate) fn straight_ms(python: &Path, session: &Session, request: &CollectionRequest) -> Result<f64> {
+pub(crate) fn straight_ms(python: &Path, session: &Session, (image, frames): ([u32; 2], usize)) -> Result<f64> {
     let folder = tempfile::tempdir()?;
     let volume = session.scene().layers.iter().find_map(|layer| match &layer.kind {
         LayerKind::Volume(volume) => Some(volume),
@@ -42,7 +41,7 @@ pub(crate) fn straight_ms(python: &Path, session: &Session, request: &Collection
             json!({ "kind": "glb", "file": file })
         }
     };
-    (order["image"], order["frames"]) = (json!(request.image), json!(request.rounds));
+    (order["image"], order["frames"]) = (json!(image), json!(frames));
     let answer = run(python, &order)?;
     answer["cpu_ms"].as_f64().context("VTK tells no time")
 }

@@ -33,6 +33,7 @@ mod screen;
 mod see_through;
 mod shade;
 mod simd;
+mod surfaces;
 mod tint;
 mod trace;
 mod traced_veil;

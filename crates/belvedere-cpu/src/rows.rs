@@ -3,17 +3,18 @@
 //!
 //! What marks and measures read of the depths is drawn beforehand, at the pixel centres alone and only where something reads it.
 
-use crate::cache::lock;
+use crate::cache::{GroundCache, lock};
 use crate::frame::{check_memory, threads_of};
+use crate::geometry::lod::Tree;
 use crate::geometry::pass::{BodyPasses, Pass};
 use crate::marks;
 use crate::over_ground;
 use crate::raster::band::{BAND, Band, SKY, sample_offsets};
-use crate::rasteriser::{CpuRenderer, Scratch, Surfaces, stats};
 use crate::resolve::relief::resolve_relief;
 use crate::screen::Screen;
 use crate::see_through::SeeThrough;
-use crate::shade::{Sample, Shader};
+use crate::shade::{LightCache, Sample, Shader};
+use crate::surfaces::{Scratch, Surfaces, stats};
 use belvedere_composite::buffers::Buffers;
 use belvedere_composite::color::Packed;
 use belvedere_composite::depths::{DepthTiles, Depths};
@@ -32,7 +33,7 @@ use belvedere_sight::{Carried, Solids};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::ops::Range;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 /// Rows of depths that are drawn together beforehand.
 const AHEAD: usize = 16 * BAND;
@@ -55,7 +56,7 @@ pub(crate) fn whole_only(job: &RenderJob<'_>) -> Option<&'static str> {
 
 /// Prepares a picture and lets `work` draw it.
 pub(crate) fn draw(
-    renderer: &CpuRenderer,
+    (detail, light): (&GroundCache<(), Arc<Tree>>, &LightCache),
     job: &RenderJob<'_>,
     scratch: &mut Scratch,
     work: &mut dyn FnMut(&dyn PictureRows) -> Result<(), RenderError>,
@@ -77,10 +78,10 @@ pub(crate) fn draw(
     let bodies = carried.as_ref().map(BodyPasses::new);
     let Scratch { blocks, bands, .. } = scratch;
     let sections = Sections::new(job);
-    on(pool, || blocks.build(job, (&passes, bodies.as_ref()), &screen, sections.as_ref(), &renderer.detail));
+    on(pool, || blocks.build(job, (&passes, bodies.as_ref()), &screen, sections.as_ref(), detail));
     job.progress.tick("project", 1.0)?;
     let blocks = &*blocks;
-    let shader = on(pool, || Shader::new(job, &screen, blocks, &renderer.light));
+    let shader = on(pool, || Shader::new(job, &screen, blocks, light));
     let see_through = SeeThrough::of(job.scene);
     let surfaces = Surfaces {
         job,

@@ -215,7 +215,7 @@ impl Assemblies {
     /// The molecule of an assembly, made of the molecule of the file.
     ///
     /// # Errors
-    /// One sentence: there is none of that name, it has more than [`MOST_COPIES`] copies, takes more memory than allowed, names operations
+    /// One sentence: no assembly has that name, it has more than [`MOST_COPIES`] copies, takes more memory than allowed, names operations
     /// that do not exist or distort, or has too many atoms.
     pub fn assemble(&self, molecule: &Molecule, id: &str, limits: &Limits) -> Result<Molecule, String> {
         let assembly = self.find(id)?;

@@ -1,16 +1,9 @@
 //! Categories of mmCIF besides atoms: assemblies and their operations, helices and strands, orders of bonds.
 
 use super::assembly::Described;
-use super::mmcif::{Table, Tables};
+use super::cif::{ASSEMBLIES, COMPONENT_BONDS, GENERATED, HELICES, OPERATIONS, STRANDS, Table, Tables};
 use super::structure::{Place, Stretch};
 use belvedere_scene::molecule::Secondary;
-
-pub(super) const GENERATED: &str = "_pdbx_struct_assembly_gen.";
-pub(super) const OPERATIONS: &str = "_pdbx_struct_oper_list.";
-pub(super) const ASSEMBLIES: &str = "_pdbx_struct_assembly.";
-pub(super) const HELICES: &str = "_struct_conf.";
-pub(super) const STRANDS: &str = "_struct_sheet_range.";
-pub(super) const COMPONENT_BONDS: &str = "_chem_comp_bond.";
 
 /// A row of a table, by the items of its category.
 struct Rows<'a, 't> {

@@ -2,6 +2,7 @@
 
 mod assembly;
 mod categories;
+mod cif;
 mod mmcif;
 mod pdb;
 mod sites;
