@@ -133,7 +133,9 @@ fn option_for(error: &BelvedereError) -> Option<&'static str> {
             return option_for(source);
         }
         BelvedereError::Io(belvedere::io::IoError::Exists { .. }) => "; give --overwrite to replace it",
-        BelvedereError::Render(belvedere::scene::RenderError::TooLarge { .. }) => " (--size, --samples, --max-mem)",
+        BelvedereError::Render(belvedere::scene::RenderError::TooLarge { .. }) | BelvedereError::OnePiece { .. } => {
+            " (--size, --samples, --max-mem)"
+        }
         BelvedereError::Io(_) | BelvedereError::Memory(_) if belvedere::io::budget::is_refusal(&error.to_string()) => {
             " (--max-mem)"
         }

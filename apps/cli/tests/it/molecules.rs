@@ -79,7 +79,7 @@ fn mistakes_are_told_in_one_line() {
         ),
         (format!("{HEAD}{DNA}style.selection = 'water'\n"), "matches none of the"),
         (format!("{HEAD}{DNA}select = 'chain A'\nstyle.selection = 'chain B'\n"), "is drawn by style.selection"),
-        (format!("{HEAD}{DNA}style.color = 'blue'\n"), "or one of element, chain and residue"),
+        (format!("{HEAD}{DNA}style.color = 'blue'\n"), "or one of auto, element, chain, residue and structure"),
         (format!("{HEAD}{}", DNA.replace("pairs=8", "pairs=1")), "DNA of 1 base pairs is not possible"),
         (format!("{HEAD}{}", DNA.replace("pairs", "pears")), "pairs=N (dna)"),
     ] {
@@ -135,23 +135,23 @@ fn representations_assemblies_and_models_are_chosen_on_the_command_line_and_in_s
     place.write("t.pdb", TRIMER);
     let layer = "[[layer]]\nkind = 'molecule'\nid = 't'\nsource = 't.pdb'\n";
     place.write("s.toml", &format!("{HEAD}{layer}"));
-    let record = |name: &str| -> serde_json::Value {
-        let record: serde_json::Value =
-            serde_json::from_slice(&read(&place.path(&format!("{name}.json")))).expect("a record");
-        record["molecules"][0].clone()
+    let record_of = |name: &str| -> serde_json::Value {
+        serde_json::from_slice(&read(&place.path(&format!("{name}.json")))).expect("a record")
     };
-    let mut triangles = Vec::new();
+    let record = |name: &str| record_of(name)["molecules"][0].clone();
+    let mut pictures = Vec::new();
     for kind in ["ball-and-stick", "spheres", "sticks", "ribbon", "surface"] {
         let name = format!("{kind}.png");
         let said = place.run(&["render", "s.toml", "--representation", kind, "--assembly", "1", "-o", &name]);
         assert!(said.status.success(), "{kind}: {}", String::from_utf8_lossy(&said.stderr));
         let m = record(&name);
         assert_eq!(m["drawn_atoms"], 15, "{kind}: {m}");
-        triangles.push(m["triangles"].as_u64().expect("a number"));
+        assert!(m["triangles"].as_u64().is_some_and(|count| count > 1000), "{kind}: {m}");
+        pictures.push(record_of(&name)["picture_sha256"].clone());
     }
-    triangles.sort_unstable();
-    triangles.dedup();
-    assert_eq!(triangles.len(), 5, "each is drawn in another way: {triangles:?}");
+    pictures.sort_unstable_by_key(ToString::to_string);
+    pictures.dedup();
+    assert_eq!(pictures.len(), 5, "each is drawn in another way: {pictures:?}");
     // Pieces of ribbons are named by their residues; chains of copies by their number.
     place.write("r.toml", &format!("{HEAD}{layer}assembly = '1'\nstyle.representation = 'cartoon'\n"));
     place.write("at.json", "[[1.9, 0, 0], [1.9, 0, 12], [1.9, 0, 5]]");
@@ -213,7 +213,12 @@ fn models_follow_each_other_in_films() {
     let place = Place::new();
     place.write("t.pdb", TRIMER);
     let layer = "[[layer]]\nkind = 'molecule'\nid = 't'\nsource = 't.pdb'\nmodels_per_s = 10.0\nstyle.representation = 'space_filling'\n";
-    place.write("s.toml", &format!("{HEAD}{layer}[animation]\nfps = 10\n"));
+    // A camera that stands still.
+    place.write(
+        "path.json",
+        r#"[{"eye": [0, -80, 10], "look_at": [0, 0, 0]}, {"eye": [0, -80, 10], "look_at": [0, 0, 0.001]}]"#,
+    );
+    place.write("s.toml", &format!("{HEAD}{layer}[animation]\nfps = 10\ncamera = 'path.json'\n"));
     place.ok(&["animate", "s.toml", "-o", "film", "--frames", "3"]);
     let frames: Vec<Vec<u8>> = std::fs::read_dir(place.path("film"))
         .map(|all| {
