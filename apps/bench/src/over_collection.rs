@@ -8,7 +8,7 @@ use crate::scene;
 use crate::vtk;
 use anyhow::{Context, Result, ensure};
 use belvedere::core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
-use belvedere::core::{CurvedRays, Pinhole, Stage, View};
+use belvedere::core::{CurvedRays, Stage, View};
 use belvedere::cpu::CpuRenderer;
 use belvedere::scene::{Frame, Progress, RenderJob, Renderer};
 use belvedere::{PictureOptions, Session};
@@ -194,16 +194,15 @@ fn cost(
     document.camera.image = request.image;
     let session = editor.place.session(document, progress)?;
     let view = session.view();
-    let (bend, bent) = match view.is_bent() {
-        true => (stages(view), view.clone()),
-        false => ("curved_rays (added)".to_owned(), with_turn(&session)?),
-    };
+    let bend = if view.is_bent() { stages(view) } else { "curved_rays (added)".to_owned() };
     let [_, (_, yardstick), _] = scene::views(request.image)?.map(|(name, view)| (name, view.straightened()));
     let ground = Session::from_parts(scene::ground(YARDSTICK)?, yardstick.clone());
     let scales = [(1, 2), (1, 1), (2, 1)];
     let mut cases = vec![Case::new(&ground, yardstick), Case::new(&session, view.straightened())];
     for (times, by) in scales {
-        cases.push(Case::new(&session, resized(&bent, request.image.map(|side| (side * times / by).max(1)))?));
+        let sized = session.resized(request.image.map(|side| (side * times / by).max(1)), progress)?;
+        let bent = if view.is_bent() { sized.view().clone() } else { with_turn(&sized)? };
+        cases.push(Case::new(&sized, bent));
     }
     for round in 0..=request.rounds {
         for k in 0..cases.len() {
@@ -239,10 +238,6 @@ fn cost(
 
 fn stages(view: &View) -> String {
     view.stages().iter().map(|stage| stage.name()).filter(|name| *name != "earth").collect::<Vec<_>>().join(", ")
-}
-
-fn resized(view: &View, image: [u32; 2]) -> Result<View> {
-    Ok(View::new(Pinhole { image, ..view.pinhole().clone() }, view.stages().to_vec())?)
 }
 
 /// The session's view with one turn through the middle of what it shows, to a viewpoint above.
