@@ -368,6 +368,8 @@ fn point(
     doc: &PointLayerDoc,
     ground: &Ground<'_>,
 ) -> Result<LayerKind, BelvedereError> {
+    // A wrong name is told before the file is read.
+    let symbol = symbol(loader, index, &doc.style.symbol)?;
     let mut features = vectors::points(loader, index, &doc.source, ground)?;
     if features.is_empty() {
         return Err(loader.fail(index, "source", "no point lies on the terrain; check that the source covers it"));
@@ -376,7 +378,6 @@ fn point(
     named::stand_out(style, &mut features, ground.terrain, loader.in_feet);
     let color = loader.color(index, &style.color)?;
     features.iter_mut().for_each(|f| f.style = by_property::as_opaque_as(color, f.style));
-    let symbol = symbol(loader, index, &style.symbol)?;
     Ok(LayerKind::Point(PointLayer {
         features,
         color,
