@@ -49,7 +49,9 @@ fn all(name: &str, image: [u32; 2]) {
         ("straight, with a grid", PictureOptions { straight: true, grid: Some(None), ..usual.clone() }),
         ("denser", PictureOptions { density: 2.7, ..usual }),
     ];
-    for (what, options) in options {
+    // One scene in every way, the others in two.
+    let ways = if name == "massif.toml" { options.len() } else { 2 };
+    for (what, options) in options.into_iter().take(ways) {
         are_alike(&format!("{name} {what}"), &session, &options);
     }
 }
