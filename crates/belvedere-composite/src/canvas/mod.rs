@@ -81,12 +81,7 @@ impl<'a> Canvas<'a> {
         Self { scale, ..self }
     }
 
-    /// The same picture with texts in these fonts instead of the embedded one alone.
-    pub fn with_fonts(self, fonts: &Fonts) -> Self {
-        Self { fonts: fonts.clone(), ..self }
-    }
-
-    /// Texts are written in these fonts from now on.
+    /// Texts are written in these fonts from now on, instead of the embedded one alone.
     pub fn in_fonts(&mut self, fonts: &Fonts) -> &mut Self {
         self.fonts = fonts.clone();
         self

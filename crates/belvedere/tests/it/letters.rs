@@ -53,7 +53,7 @@ fn letters_of_further_fonts_have_ink_straight_and_along_curves() {
     let fonts = fonts(FUJI);
     let ink = |draw: &dyn Fn(&mut Canvas<'_>)| {
         let mut pixels = vec![[255u8; 3]; 200 * 100];
-        draw(&mut Canvas::new(&mut pixels, 200).with_fonts(&fonts));
+        draw(Canvas::new(&mut pixels, 200).in_fonts(&fonts));
         pixels.iter().map(|p| 1.0 - f64::from(p[0]) / 255.0).sum::<f64>()
     };
     // Squares of 0.4 em; pixels that they cover in part are lighter, for colours blend in linear light.
@@ -64,7 +64,7 @@ fn letters_of_further_fonts_have_ink_straight_and_along_curves() {
     let curved = ink(&|canvas| canvas.text_along(&bow, 30.0, FUJI, BLACK, None));
     assert!((curved / wanted - 1.0).abs() < 0.08, "{curved} of {wanted}");
     let mut shapes = Vec::new();
-    Canvas::recording(&mut shapes, [200, 100]).with_fonts(&fonts).text_along(&bow, 30.0, FUJI, BLACK, None);
+    Canvas::recording(&mut shapes, [200, 100]).in_fonts(&fonts).text_along(&bow, 30.0, FUJI, BLACK, None);
     assert!(matches!(&shapes[0], CanvasShape::Text { along, .. } if along.len() == bow.len()));
 }
 
@@ -82,7 +82,7 @@ fn files_that_are_no_fonts_have_none() {
         bytes[i] ^= 0xff;
         let fonts = Fonts::with(&[FontFile { name: "t".into(), bytes: Arc::new(bytes), index: 0 }]);
         let mut pixels = vec![[255u8; 3]; 60 * 30];
-        Canvas::new(&mut pixels, 60).with_fonts(&fonts).text(DVec2::new(5.0, 20.0), 14.0, FUJI, BLACK, None);
+        Canvas::new(&mut pixels, 60).in_fonts(&fonts).text(DVec2::new(5.0, 20.0), 14.0, FUJI, BLACK, None);
     }
 }
 
