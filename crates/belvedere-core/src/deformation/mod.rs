@@ -56,6 +56,17 @@ pub struct CurveFrame {
     pub kap: f64,
 }
 
+/// The frame of a [`DeformationCurve`] at an arc length, and what the curve has turned up to there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Station {
+    /// [`DeformationCurve::frame_at`].
+    pub frame: CurveFrame,
+    /// [`DeformationCurve::turning_to`].
+    pub turning: f64,
+    /// [`DeformationCurve::curvature_variation_to`].
+    pub variation: f64,
+}
+
 impl CurveFrame {
     /// Unit normal, the tangent turned by +90 degrees: upwards on a curve that runs to the right.
     pub fn normal(&self) -> DVec2 {
@@ -102,27 +113,12 @@ impl DeformationCurve {
 
     /// Turning of the tangent from the near extension to `l`: the integral of `|kap|`, radians, never decreasing.
     pub fn turning_to(&self, l: f64) -> f64 {
-        if l < 0.0 {
-            return 0.0;
-        }
-        if l > self.length {
-            return self.turning;
-        }
-        let cell = self.cell_at(l);
-        let t = self.tangent_in(cell, cell.parameter(l));
-        cell.turning + angle(cell.tangent[0], t)
+        self.station(l).turning
     }
 
     /// Total variation of the curvature from the near extension to `l`, jumps included, 1 / curve unit, never decreasing.
     pub fn curvature_variation_to(&self, l: f64) -> f64 {
-        if l < 0.0 {
-            return 0.0;
-        }
-        if l > self.length {
-            return self.variation;
-        }
-        let cell = self.cell_at(l);
-        cell.variation + (self.curvature_at(l) - cell.kap[0]).abs()
+        self.station(l).variation
     }
 
     /// Smallest (<= 0) and largest (>= 0) curvature, 1 / curve unit, exact; infinite at a corner.
@@ -130,6 +126,23 @@ impl DeformationCurve {
         let range = self.cells.iter().flat_map(|c| c.kap).fold([0.0f64, 0.0f64], |[lo, hi], k| [lo.min(k), hi.max(k)]);
         let [down, up] = self.corner_sense;
         [if down { f64::NEG_INFINITY } else { range[0] }, if up { f64::INFINITY } else { range[1] }]
+    }
+
+    /// Everything that the curve knows of arc length `l`, which must be finite: one evaluation where the methods above take one each.
+    pub fn station(&self, l: f64) -> Station {
+        if !(0.0..=self.length).contains(&l) {
+            let (turning, variation) = if l < 0.0 { (0.0, 0.0) } else { (self.turning, self.variation) };
+            let (point, tangent) = self.at(l);
+            return Station { frame: CurveFrame { point, tangent, kap: 0.0 }, turning, variation };
+        }
+        let cell = self.cell_at(l);
+        let (span, x) = (&self.spans[cell.span], cell.parameter(l));
+        let (tangent, kap) = frame_in(span, x, cell.x_mid, self.scale);
+        Station {
+            frame: CurveFrame { point: span.point(x), tangent, kap },
+            turning: cell.turning + angle(cell.tangent[0], tangent),
+            variation: cell.variation + (kap - cell.kap[0]).abs(),
+        }
     }
 
     /// Arc lengths at which the tangent jumps (at three or more coincident control points or knots).

@@ -137,6 +137,9 @@ impl StageMap for SplineBend {
     fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
         self.edge_bound(p0, p1)
     }
+    fn edge(&self, p0: DVec3, p1: DVec3) -> Option<(DVec3, DVec3, f64)> {
+        self.edge(p0, p1)
+    }
     fn displaced_bounds(&self, bounds: &Aabb) -> Option<Aabb> {
         self.displaced_bounds(bounds)
     }

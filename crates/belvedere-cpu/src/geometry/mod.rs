@@ -10,6 +10,7 @@ mod layer_show;
 pub(crate) mod locate;
 pub(crate) mod lod;
 mod mesh_blocks;
+pub(crate) mod part;
 pub(crate) mod pass;
 pub(crate) mod project;
 mod refine;

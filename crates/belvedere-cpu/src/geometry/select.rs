@@ -1,7 +1,8 @@
 //! Chooses the blocks of the ground to draw, and their levels of detail.
 
 use crate::geometry::locate::{Held, Locator};
-use crate::geometry::lod::{Tree, nodes};
+use crate::geometry::lod::Tree;
+use crate::geometry::part::Part;
 use crate::geometry::pass::edge_error_px;
 use crate::geometry::way::Way;
 use belvedere_composite::screen::COARSE_PX;
@@ -41,6 +42,8 @@ const NOTHING: u32 = 0;
 const SPLIT: u32 = 1;
 const FIRST: u32 = 2;
 
+/// Parts of fewer cells along a side are not judged by their quarters.
+const FEWEST_CELLS: usize = 8;
 /// North, east, south, west.
 const AROUND: [[isize; 2]; 4] = [[0, -1], [1, 0], [0, 1], [-1, 0]];
 
@@ -97,14 +100,13 @@ impl DetailSelector<'_> {
         // A coarse picture judges the edges of a block only where it may be drawn.
         let judges = coarse || (!plain && (level == 0 || !self.is_coarse()));
         if !self.view.stages().is_empty() && judges {
-            let (from, to) = nodes(self.hf, level, block);
-            let n = (to[0] - from[0]).max(to[1] - from[1]).div_ceil(1 << level);
             let plain_px = self.tolerance_px * (1 << level) as f64;
             let most_px = if coarse { plain_px.max(self.lod_px) } else { plain_px };
-            bend_px = match held.whole {
-                true => self.cells_error(&bounds, out.ways(&held, self.view), n, most_px),
-                false => f64::INFINITY,
-            };
+            bend_px = f64::INFINITY;
+            if held.whole {
+                let ways: Vec<Way> = out.ways(&held, self.view).collect();
+                bend_px = self.part_error(&Part::of_block(self.hf, level, block), &bounds, &ways, most_px);
+            }
             plain |= bend_px <= plain_px;
         }
         if level == 0 || (coarse && height_px + bend_px <= self.lod_px) {
@@ -140,19 +142,37 @@ impl DetailSelector<'_> {
         self.tolerance_px >= COARSE_PX
     }
 
+    /// [`DetailSelector::cells_error`] of the part as a whole or, where that is too large, of the worst of its quarters: a smooth bend's
+    /// error falls with the square of the length, the bound of a box only in proportion to it.
+    fn part_error(&self, part: &Part, bounds: &Aabb, ways: &[Way], most_px: f64) -> f64 {
+        let whole = self.cells_error(bounds, ways, part.cells(), most_px);
+        if whole.is_finite() || self.is_coarse() || part.cells() < FEWEST_CELLS {
+            return whole;
+        }
+        let mut worst = 0.0f64;
+        for quarter in part.quarters() {
+            let Some(bounds) = quarter.bounds(self.hf, self.tree, bounds) else { continue };
+            worst = worst.max(self.part_error(&quarter, &bounds, ways, most_px));
+            if worst == f64::INFINITY {
+                break;
+            }
+        }
+        worst
+    }
+
     /// Bound on the error in pixels of drawing the edges of cells straight, `n` cells to a side of the box.
     ///
     /// The chord of a curve that turns by a given angle deviates in proportion to its length, so the bound of the box's
     /// long edges, shared out over its cells with a factor 2 in hand, covers the cells' edges. In a coarse picture two diagonals stand for
     /// all edges, and edges without an image do not count.
     /// * `ways`: ways of all passes that draw the box. `most_px`: a larger error decides nothing, and infinity stands for it.
-    fn cells_error(&self, bounds: &Aabb, ways: impl Iterator<Item = Way>, n: usize, most_px: f64) -> f64 {
+    fn cells_error(&self, bounds: &Aabb, ways: &[Way], n: usize, most_px: f64) -> f64 {
         let c = bounds.corners();
         let all = [(0, 7), (2, 5), (1, 6), (3, 4), (0, 1), (2, 3), (0, 2), (1, 3), (4, 7), (5, 6)];
         let behind = self.is_coarse() && self.locator.reaches_behind(bounds);
         let pairs = if self.is_coarse() && !behind { &all[..2] } else { &all };
         let (mut worst, mut known) = (0.0f64, false);
-        for way in ways {
+        for &way in ways {
             for &(a, b) in pairs {
                 let error = edge_error_px(self.view, way, c[a], c[b]) * 2.0 / n as f64;
                 if behind && error == f64::INFINITY {

@@ -1,11 +1,18 @@
 //! Bounds of the bend: the error of straight edges, and displaced boxes.
 
-use super::SplineBend;
+use super::{CurveCoordinates, SplineBend};
 use crate::Aabb;
+use crate::deformation::Station;
 use glam::DVec3;
 
 /// Pieces into which the bent part of a box is cut.
 const PIECES: u32 = 8;
+
+/// An end of an edge.
+struct End {
+    at: CurveCoordinates,
+    on: Station,
+}
 
 impl SplineBend {
     /// See [`crate::map::StageMap::edge_bound`].
@@ -16,23 +23,41 @@ impl SplineBend {
         if !(p0.is_finite() && p1.is_finite()) {
             return f64::INFINITY;
         }
-        let (mut c0, mut c1) = (self.coordinates(p0), self.coordinates(p1));
-        if c0.l > c1.l {
-            (c0, c1) = (c1, c0);
+        self.bound_between(&self.end(p0), &self.end(p1))
+    }
+
+    /// See [`crate::map::StageMap::edge`].
+    pub fn edge(&self, p0: DVec3, p1: DVec3) -> Option<(DVec3, DVec3, f64)> {
+        if !(p0.is_finite() && p1.is_finite()) {
+            return None;
         }
-        let curve = &self.curve;
-        let turning = curve.turning_to(c1.l) - curve.turning_to(c0.l);
-        let variation = curve.curvature_variation_to(c1.l) - curve.curvature_variation_to(c0.l);
-        if turning <= 0.0 && variation <= 0.0 && curve.curvature_at(c0.l) == 0.0 {
+        let ends = [p0, p1].map(|p| self.end(p));
+        let [a, b] = ends.each_ref().map(|end| self.image(end.at, end.on.frame.point, end.on.frame.tangent));
+        (a.is_finite() && b.is_finite()).then(|| (a, b, self.bound_between(&ends[0], &ends[1])))
+    }
+
+    fn end(&self, p: DVec3) -> End {
+        let at = self.coordinates(p);
+        End { at, on: self.curve.station(at.l) }
+    }
+
+    fn bound_between<'e>(&self, mut from: &'e End, mut to: &'e End) -> f64 {
+        if from.at.l > to.at.l {
+            (from, to) = (to, from);
+        }
+        let (c0, c1) = (from.at, to.at);
+        let turning = to.on.turning - from.on.turning;
+        let variation = to.on.variation - from.on.variation;
+        if turning <= 0.0 && variation <= 0.0 && from.on.frame.kap == 0.0 {
             return 0.0;
         }
         let h = self.scale * (c1.l - c0.l);
         let (dd, da) = ((c1.d - c0.d).abs(), (c1.a - c0.a).abs());
         let d_max = c0.d.abs().max(c1.d.abs());
-        if d_max > 0.0 && curve.corners().iter().any(|&l| l > c0.l && l < c1.l) {
+        if d_max > 0.0 && self.curve.corners().iter().any(|&l| l > c0.l && l < c1.l) {
             return f64::INFINITY;
         }
-        let kap = curve.curvature_at(c0.l).abs() + variation;
+        let kap = from.on.frame.kap.abs() + variation;
         let bend = kap * d_max / self.scale;
         let across = dd.hypot(da);
         let chord = (h * (1.0 - bend).max(0.0)).hypot(across);

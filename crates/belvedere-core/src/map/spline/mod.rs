@@ -183,6 +183,11 @@ impl SplineBend {
         self.origin + a * self.right + along * self.heading + self.scale * d * self.normal
     }
 
+    /// Image of a point over a point of the curve, where the tangent is `tangent`.
+    fn image(&self, at: CurveCoordinates, point: DVec2, tangent: DVec2) -> DVec3 {
+        self.scene_from_curve(at.a, point + self.shift + (at.d / self.scale) * tangent.perp())
+    }
+
     /// Scene point of shifted curve coordinates `q` and right offset `a`.
     fn scene_from_curve(&self, a: f64, q: DVec2) -> DVec3 {
         self.origin + a * self.right + self.scale * (q.x * self.out_u + q.y * self.out_v)
@@ -194,7 +199,7 @@ impl SpaceMap for SplineBend {
     fn apply(&self, p: DVec3) -> Result<DVec3, Miss> {
         let at = self.coordinates(finite(p)?);
         let (point, tangent) = self.curve.at(at.l);
-        finite(self.scene_from_curve(at.a, point + self.shift + (at.d / self.scale) * tangent.perp()))
+        finite(self.image(at, point, tangent))
     }
 
     /// The point nearest to the reference plane whose image is `p_displaced`.
