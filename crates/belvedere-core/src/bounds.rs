@@ -21,6 +21,7 @@ impl Aabb {
     }
 
     /// This box grown to contain `p`.
+    #[inline]
     pub fn including(self, p: DVec3) -> Self {
         Self { min: self.min.min(p), max: self.max.max(p) }
     }

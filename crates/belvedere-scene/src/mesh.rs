@@ -1,5 +1,6 @@
 //! Triangle meshes.
 
+mod boxes;
 mod openness;
 mod parts;
 
@@ -9,6 +10,7 @@ use std::sync::Arc;
 
 use crate::texture::Texturing;
 use crate::{Color, Placement, RigidParts};
+use boxes::Boxes;
 use openness::Openness;
 
 pub use openness::triangle_lattice;
@@ -31,6 +33,7 @@ pub struct Mesh {
     origin: DVec3,
     positions: Arc<Vec<Vec3>>,
     triangles: Arc<Vec<[u32; 3]>>,
+    boxes: Boxes,
     normals: Option<Vec<Vec3>>,
     colors: MeshColors,
     /// Number of the part that each triangle belongs to; empty = one part.
@@ -154,6 +157,7 @@ impl Mesh {
             origin,
             positions: positions.into(),
             triangles: triangles.into(),
+            boxes: Boxes::default(),
             normals: None,
             colors,
             parts,
@@ -183,7 +187,7 @@ impl Mesh {
         let turned = |v: &Vec3| at.turn(v.as_dvec3()).as_vec3();
         let positions: Vec<Vec3> = self.positions.iter().map(turned).collect();
         let normals = self.normals.as_ref().map(|normals| normals.iter().map(turned).collect());
-        Self { origin, positions: positions.into(), normals, ..self.clone() }
+        Self { origin, positions: positions.into(), boxes: Boxes::default(), normals, ..self.clone() }
     }
 
     fn drop_degenerate(&mut self) {
@@ -199,6 +203,7 @@ impl Mesh {
     /// Removes triangles with their colours, parts, openness and texture positions; vertices stay.
     fn retain(&mut self, kept: &[bool]) {
         let mut keep = kept.iter();
+        self.boxes = Boxes::default();
         Arc::make_mut(&mut self.triangles).retain(|_| keep.next() == Some(&true));
         if let MeshColors::PerTriangle(colors) = &mut self.colors {
             let mut keep = kept.iter();
@@ -224,6 +229,7 @@ impl Mesh {
         if equal {
             self.positions = Arc::clone(&other.positions);
             self.triangles = Arc::clone(&other.triangles);
+            self.boxes = other.boxes.clone();
         }
     }
 

@@ -1,9 +1,10 @@
 //! Bounds of the spline bend against sampled values.
 
 use crate::spline_figures::{bend, camera_at};
+use belvedere_core::map::earth::EarthCurvature;
 use belvedere_core::map::spline::SplineBend;
 use belvedere_core::presets::PresetDocument;
-use belvedere_core::{Aabb, DVec3, SpaceMap};
+use belvedere_core::{Aabb, DVec3, SpaceMap, Stage, View};
 use belvedere_testkit::Random;
 
 /// Largest distance of the sampled image of an edge from the chord of its ends.
@@ -55,6 +56,38 @@ fn edge_bound_is_never_below_the_sampled_truth() {
     let (least, median) = (ratios[0], ratios[ratios.len() / 2]);
     // An arc has exactly twice its sagitta; at the kinks where the curve ends the bound is sharp.
     assert!(least >= 1.0 && median < 4.0, "bound / truth: least {least}, median {median}");
+}
+
+#[test]
+fn edges_with_known_ends_have_the_same_bound() {
+    let camera = camera_at(36.0, 1000.0);
+    let earth = EarthCurvature { eye: camera.eye, radius: 6e4, refraction: 0.13 };
+    let mut random = Random::new(33);
+    for (name, map) in all_bends() {
+        let bend = Stage::SplineBend(map);
+        for stages in [vec![bend.clone()], vec![Stage::EarthCurvature(earth), bend]] {
+            let curved = stages.len() == 2;
+            let view = View::new(camera.clone(), stages).unwrap();
+            let edges = view.edges(0).unwrap();
+            let (mut compared, mut bounded) = (0, 0);
+            for _ in 0..2000 {
+                let ground = [random.range(-500.0, 500.0), random.range(-700.0, 1500.0)];
+                let start = DVec3::new(ground[0], ground[1], random.range(-20.0, 120.0));
+                let end = start + random.direction() * 10f64.powf(random.range(-1.0, 2.0));
+                let (Some(a), Some(b)) = (edges.point(start), edges.point(end)) else { continue };
+                let (found, want) = (edges.error_px(&a, &b), view.edge_error_px(start, end));
+                let same = found == want || (found - want).abs() <= 1e-9 * want.abs().max(1e-3);
+                assert!(same, "{name}, earth {curved}, edge {start} {end}: {found} px, not {want}");
+                compared += u32::from(want > 0.0 && want.is_finite());
+                let within = edges.box_error_px(&Aabb::of([start, end]));
+                let holds = found <= within * (1.0 + 1e-9) + 1e-9;
+                assert!(holds, "{name}, box {start} {end}: {found} px, not {within}");
+                bounded += u32::from(found > 0.0 && within.is_finite());
+            }
+            assert!(compared > 500 && (curved || bounded > 100), "{name}: {compared} compared, {bounded} bounded");
+            assert!(view.edges(1).is_none());
+        }
+    }
 }
 
 #[test]

@@ -47,7 +47,8 @@ impl Part {
         if let Some(level) = level {
             return tree.bounds(hf, level as usize, self.from.map(|node| node / self.reach));
         }
-        let rows = || (self.from[1]..=self.to[1]).map(|row| row * hf.cols() + self.from[0]..=row * hf.cols() + self.to[0]);
+        let rows =
+            || (self.from[1]..=self.to[1]).map(|row| row * hf.cols() + self.from[0]..=row * hf.cols() + self.to[0]);
         let holes = hf.states().each().is_some_and(|s| rows().any(|row| s[row].contains(&NodeState::Void)));
         let mut z = [around.min.z, around.max.z];
         if !holes {

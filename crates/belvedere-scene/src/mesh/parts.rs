@@ -17,7 +17,7 @@ impl Mesh {
     /// This mesh with each triangle moved by the `offset` of its number, scene units, finite. Triangles that share vertices and move by
     /// the same keep their shape together; others come apart.
     pub fn moved(&self, offset: &dyn Fn(usize) -> DVec3) -> Self {
-        let mut out = self.clone();
+        let mut out = Self { boxes: Default::default(), ..self.clone() };
         let mut copies: HashMap<(u32, [u64; 3]), u32> = HashMap::new();
         for t in 0..self.triangles.len() {
             let by = offset(t);

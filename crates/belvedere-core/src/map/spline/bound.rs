@@ -8,22 +8,34 @@ use glam::DVec3;
 /// Pieces into which the bent part of a box is cut.
 const PIECES: u32 = 8;
 
-/// An end of an edge.
-struct End {
+/// End of an edge.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct EdgeEnd {
     at: CurveCoordinates,
     on: Station,
 }
 
+/// What the bound of an edge depends on; it grows with each.
+struct EdgeExtent {
+    /// Length along the heading, height and distance across, scene units.
+    h: f64,
+    dd: f64,
+    da: f64,
+    /// Largest distance from the reference plane, scene units.
+    d_max: f64,
+    /// Turning of the tangent along it, total variation of the curvature, and the curvature at its near end.
+    turning: f64,
+    variation: f64,
+    kap: f64,
+}
+
 impl SplineBend {
     /// See [`crate::map::StageMap::edge_bound`].
-    ///
-    /// A quarter of the total variation of the image's derivative; of its changes of length only the part across the chord counts.
-    /// Source: ours.
     pub fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
         if !(p0.is_finite() && p1.is_finite()) {
             return f64::INFINITY;
         }
-        self.bound_between(&self.end(p0), &self.end(p1))
+        self.bound_between(&self.edge_end(p0), &self.edge_end(p1))
     }
 
     /// See [`crate::map::StageMap::edge`].
@@ -31,33 +43,78 @@ impl SplineBend {
         if !(p0.is_finite() && p1.is_finite()) {
             return None;
         }
-        let ends = [p0, p1].map(|p| self.end(p));
-        let [a, b] = ends.each_ref().map(|end| self.image(end.at, end.on.frame.point, end.on.frame.tangent));
+        let ends = [p0, p1].map(|p| self.edge_end(p));
+        let [a, b] = ends.each_ref().map(|end| self.image_of(end));
         (a.is_finite() && b.is_finite()).then(|| (a, b, self.bound_between(&ends[0], &ends[1])))
     }
 
-    fn end(&self, p: DVec3) -> End {
+    pub(crate) fn edge_end(&self, p: DVec3) -> EdgeEnd {
         let at = self.coordinates(p);
-        End { at, on: self.curve.station(at.l) }
+        EdgeEnd { at, on: self.curve.station(at.l) }
     }
 
-    fn bound_between<'e>(&self, mut from: &'e End, mut to: &'e End) -> f64 {
+    /// Image of the end of an edge.
+    pub(crate) fn image_of(&self, end: &EdgeEnd) -> DVec3 {
+        self.image(end.at, end.on.frame.point, end.on.frame.tangent)
+    }
+
+    /// Largest factor by which the map lengthens a small difference at either end of an edge (Frobenius norm of the Jacobian).
+    pub(crate) fn stretch_between(&self, a: &EdgeEnd, b: &EdgeEnd) -> f64 {
+        let along = |end: &EdgeEnd| 1.0 - end.on.frame.kap * end.at.d / self.scale;
+        let [a, b] = [a, b].map(|end| (2.0 + along(end) * along(end)).sqrt());
+        a.max(b)
+    }
+
+    /// [`SplineBend::edge_bound`] of the edge between two ends.
+    pub(crate) fn bound_between<'e>(&self, mut from: &'e EdgeEnd, mut to: &'e EdgeEnd) -> f64 {
         if from.at.l > to.at.l {
             (from, to) = (to, from);
         }
         let (c0, c1) = (from.at, to.at);
-        let turning = to.on.turning - from.on.turning;
-        let variation = to.on.variation - from.on.variation;
-        if turning <= 0.0 && variation <= 0.0 && from.on.frame.kap == 0.0 {
-            return 0.0;
-        }
-        let h = self.scale * (c1.l - c0.l);
-        let (dd, da) = ((c1.d - c0.d).abs(), (c1.a - c0.a).abs());
-        let d_max = c0.d.abs().max(c1.d.abs());
-        if d_max > 0.0 && self.curve.corners().iter().any(|&l| l > c0.l && l < c1.l) {
+        let extent = EdgeExtent {
+            h: self.scale * (c1.l - c0.l),
+            dd: (c1.d - c0.d).abs(),
+            da: (c1.a - c0.a).abs(),
+            d_max: c0.d.abs().max(c1.d.abs()),
+            turning: to.on.turning - from.on.turning,
+            variation: to.on.variation - from.on.variation,
+            kap: from.on.frame.kap.abs(),
+        };
+        self.bound(&extent, [c0.l, c1.l])
+    }
+
+    /// Bound on [`SplineBend::edge_bound`] of every edge inside a box.
+    pub(crate) fn box_bound(&self, bounds: &Aabb) -> f64 {
+        if bounds.is_empty() || !(bounds.min.is_finite() && bounds.max.is_finite()) {
             return f64::INFINITY;
         }
-        let kap = from.on.frame.kap.abs() + variation;
+        let [lo, hi] = self.coordinate_range(bounds);
+        let [near, far] = [lo.x, hi.x].map(|l| self.curve.station(l));
+        let variation = far.variation - near.variation;
+        let extent = EdgeExtent {
+            h: self.scale * (hi.x - lo.x),
+            dd: hi.y - lo.y,
+            da: hi.z - lo.z,
+            d_max: lo.y.abs().max(hi.y.abs()),
+            turning: far.turning - near.turning,
+            variation,
+            // An edge may begin anywhere in the box.
+            kap: near.frame.kap.abs() + variation,
+        };
+        self.bound(&extent, [lo.x, hi.x])
+    }
+
+    /// A quarter of the total variation of the image's derivative; of its changes of length only the part across the chord counts.
+    /// Source: ours.
+    fn bound(&self, extent: &EdgeExtent, [l0, l1]: [f64; 2]) -> f64 {
+        let &EdgeExtent { h, dd, da, d_max, turning, variation, kap } = extent;
+        if turning <= 0.0 && variation <= 0.0 && kap == 0.0 {
+            return 0.0;
+        }
+        if d_max > 0.0 && self.curve.corners().iter().any(|&l| l > l0 && l < l1) {
+            return f64::INFINITY;
+        }
+        let kap = kap + variation;
         let bend = kap * d_max / self.scale;
         let across = dd.hypot(da);
         let chord = (h * (1.0 - bend).max(0.0)).hypot(across);
@@ -72,12 +129,7 @@ impl SplineBend {
         if bounds.is_empty() || !(bounds.min.is_finite() && bounds.max.is_finite()) {
             return None;
         }
-        let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        for corner in bounds.corners() {
-            let c = self.coordinates(corner);
-            let v = DVec3::new(c.l, c.d, c.a);
-            (lo, hi) = (lo.min(v), hi.max(v));
-        }
+        let [lo, hi] = self.coordinate_range(bounds);
         let mut out = Aabb::EMPTY;
         let length = self.curve.length();
         for l in [lo.x, hi.x].into_iter().filter(|l| !(0.0..=length).contains(l)) {
@@ -91,6 +143,15 @@ impl SplineBend {
             }
         }
         (out.min.is_finite() && out.max.is_finite()).then_some(out)
+    }
+
+    /// Least and largest coordinates (l, d, a) in a box.
+    fn coordinate_range(&self, bounds: &Aabb) -> [DVec3; 2] {
+        let all = bounds.corners().map(|corner| {
+            let c = self.coordinates(corner);
+            DVec3::new(c.l, c.d, c.a)
+        });
+        all.into_iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[lo, hi], v| [lo.min(v), hi.max(v)])
     }
 
     /// Grows `out` by the image of the points within `half` of arc length `l`.

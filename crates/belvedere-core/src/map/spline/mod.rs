@@ -6,6 +6,7 @@ mod ease;
 mod plane;
 mod resolve;
 
+pub(crate) use bound::EdgeEnd;
 pub use check::{EDGE_ON, PresetWarning, check_presets};
 pub use plane::{ReferencePlane, default_pivot, viewing_angle};
 pub use resolve::{ResolvedPreset, SplineError};
