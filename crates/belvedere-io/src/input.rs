@@ -16,9 +16,18 @@ pub struct InputFile {
     pub path: PathBuf,
     /// Its size, bytes.
     pub bytes: u64,
-    /// Its sha256, hexadecimal.
+    /// Its sha256, hexadecimal; of an elevation raster of more than 2 GiB that of parts spread evenly over it, see `sampled`.
     pub sha256: String,
+    /// Whether `sha256` is of parts only: the size of the file as text and 256 parts of 64 KiB, the first at its start, the last at
+    /// its end. Reading a file of many gigabytes takes longer than drawing it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub sampled: bool,
 }
+
+/// Parts of a file of which a sampled sha256 is computed.
+pub(crate) const SAMPLES: u64 = 256;
+/// Size of such a part, bytes.
+pub(crate) const SAMPLE: u64 = 64 << 10;
 
 fn displayed<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_str(&path.display())
@@ -31,9 +40,9 @@ impl InputFile {
         if archive != path
             && let Ok(packed) = fs::read(&archive)
         {
-            return Self { path: archive, bytes: packed.len() as u64, sha256: sha256(&packed) };
+            return Self { path: archive, bytes: packed.len() as u64, sha256: sha256(&packed), sampled: false };
         }
-        Self { path: path.to_owned(), bytes: content.len() as u64, sha256: sha256(content) }
+        Self { path: path.to_owned(), bytes: content.len() as u64, sha256: sha256(content), sampled: false }
     }
 
     /// The content of a whole file, and its record.

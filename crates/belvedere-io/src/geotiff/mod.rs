@@ -89,17 +89,17 @@ impl GeoTiff {
         Ok(Loaded::new(Self { container, info, credit, limits, levels }, warnings))
     }
 
-    /// Path, size and sha256 of the file. Hashing takes as long as a fast reading: ask once.
+    /// Path, size and sha256 of the file, see [`InputFile::sampled`]. Hashing takes as long as a fast reading: ask once.
     ///
     /// # Errors
     /// [`IoError`] if a part cannot be read.
     pub fn input(&self) -> Result<InputFile, IoError> {
         let (path, source) = (&self.info.path, &self.container.source);
-        let sha256 = source.sha256().map_err(|reason| IoError::format(path, reason))?;
+        let (sha256, sampled) = source.sha256().map_err(|reason| IoError::format(path, reason))?;
         if crate::fs::archive_of(path) != *path {
             return Ok(InputFile::of(path, &[]));
         }
-        Ok(InputFile { path: path.clone(), bytes: source.len(), sha256 })
+        Ok(InputFile { path: path.clone(), bytes: source.len(), sha256, sampled })
     }
 
     /// Whom the file asks to be named: its tag Copyright, else Artist.

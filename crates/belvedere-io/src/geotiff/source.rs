@@ -9,6 +9,9 @@ use std::sync::{Mutex, PoisonError};
 /// Files up to this size are read once, whole; larger ones where their parts are wanted, bytes.
 const WHOLE: u64 = 512 << 20;
 
+/// Files up to this size are hashed whole, bytes.
+const HASHED: u64 = 2 << 30;
+
 /// Where the bytes come from. Reads may come from many threads.
 #[derive(Debug)]
 pub(super) struct Source {
@@ -45,8 +48,26 @@ impl Source {
         self.len
     }
 
-    /// sha256 of all the bytes.
-    pub(super) fn sha256(&self) -> Result<String, String> {
+    /// sha256 of all the bytes, or of parts of a file of more than [`HASHED`] bytes, and whether it is of parts.
+    pub(super) fn sha256(&self) -> Result<(String, bool), String> {
+        let sampled = self.len > HASHED;
+        Ok((if sampled { self.sha256_of_parts()? } else { self.sha256_of_all()? }, sampled))
+    }
+
+    /// See [`crate::InputFile::sampled`].
+    fn sha256_of_parts(&self) -> Result<String, String> {
+        let mut hashed = self.len.to_string().into_bytes();
+        let last = self.len.saturating_sub(input::SAMPLE);
+        let mut part = Vec::new();
+        for k in 0..input::SAMPLES {
+            let at = (u128::from(last) * u128::from(k) / u128::from(input::SAMPLES - 1)) as u64;
+            self.read_into(at, input::SAMPLE.min(self.len), "a part of the file", &mut part)?;
+            hashed.extend_from_slice(&part);
+        }
+        Ok(input::sha256(&hashed))
+    }
+
+    fn sha256_of_all(&self) -> Result<String, String> {
         match &self.inner {
             Inner::Bytes(bytes) => Ok(input::sha256(bytes)),
             Inner::File(_) => {
@@ -107,7 +128,33 @@ mod tests {
         let parts = Source { len: 1_000_000, inner: Inner::File(Mutex::new(file)) };
         let (parts, whole) = (parts.sha256(), Source::open(&path).expect("opened").sha256());
         std::fs::remove_file(&path).expect("removed");
-        assert_eq!(parts.expect("read"), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
-        assert_eq!(whole.expect("read"), "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+        let want = ("cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0".to_owned(), false);
+        assert_eq!(parts.expect("read"), want);
+        assert_eq!(whole.expect("read"), want);
+    }
+
+    #[test]
+    fn a_huge_file_is_known_by_its_size_and_by_parts_from_end_to_end() {
+        let path = std::env::temp_dir().join(format!("belvedere_huge_{}", std::process::id()));
+        let size = 30u64 << 30;
+        // Holes take no room on the disk.
+        let hash = |changed: Option<u64>, size: u64| {
+            let mut file = std::fs::File::create(&path).expect("created");
+            file.set_len(size).expect("holes");
+            if let Some(at) = changed {
+                file.seek(SeekFrom::Start(at))
+                    .and_then(|_| std::io::Write::write_all(&mut file, &[1]))
+                    .expect("written");
+            }
+            let found = Source::open(&path).expect("opened").sha256().expect("read");
+            std::fs::remove_file(&path).expect("removed");
+            assert!(found.1, "sampled");
+            found.0
+        };
+        let empty = hash(None, size);
+        assert_eq!(hash(None, size), empty);
+        for other in [hash(Some(0), size), hash(Some(size - 1), size), hash(None, size + 1)] {
+            assert_ne!(other, empty);
+        }
     }
 }
