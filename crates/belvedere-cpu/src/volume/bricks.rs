@@ -3,7 +3,6 @@
 use super::table::Table;
 use belvedere_scene::Volume;
 use belvedere_scene::volume::BRICK;
-use glam::Vec3A;
 
 /// Edge of a brick, cells.
 pub(super) const EDGE: f32 = BRICK as f32;
@@ -54,13 +53,10 @@ impl Leaps {
             .any(|row| self.distance[row + x.start..row + x.end].contains(&0))
     }
 
-    /// The brick of a position, and its distance.
+    /// Distance of a brick by its number, x fastest.
     #[inline(always)]
-    pub(super) fn at(&self, p: Vec3A) -> ([usize; 3], u8) {
-        let place = (p * (1.0 / EDGE)).to_array();
-        let brick: [usize; 3] = std::array::from_fn(|a| (place[a] as usize).min(self.dims[a] - 1));
-        let i = (brick[2] * self.dims[1] + brick[1]) * self.dims[0] + brick[0];
-        (brick, self.distance.get(i).copied().unwrap_or(0))
+    pub(super) fn distance(&self, number: usize) -> u8 {
+        self.distance.get(number).copied().unwrap_or(0)
     }
 }
 

@@ -1,7 +1,8 @@
 //! Composites volumes over the surfaces of a picture.
 
+use super::clip::Segment;
 use super::march::Marcher;
-use super::ray::{Rays, Segment};
+use super::ray::Rays;
 use super::spans::Spans;
 use super::{Gathered, reference};
 use crate::trace::deepest;
@@ -14,6 +15,8 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 /// Rows that a thread draws at a time.
 const ROWS: usize = 4;
+/// Most rays that are followed together.
+const BATCH: usize = 256;
 
 /// Algorithm that follows rays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,6 +77,31 @@ pub(crate) fn compose(job: &RenderJob<'_>, way: Way, buffers: &mut Buffers) -> R
     Ok(samples.into_inner())
 }
 
+/// Rays of a row that are followed together.
+#[derive(Default)]
+struct Batch {
+    columns: Vec<usize>,
+    /// Segments of all rays, and for each ray the number of those before its end.
+    segments: Vec<Segment>,
+    ends: Vec<usize>,
+}
+
+impl Batch {
+    fn add(&mut self, column: usize, segments: &[Segment]) {
+        self.columns.push(column);
+        self.segments.extend_from_slice(segments);
+        self.ends.push(self.segments.len());
+    }
+
+    /// Hands over what the rays gather, and forgets them.
+    fn gather(&mut self, marcher: &Marcher<'_>, take: &mut impl FnMut(usize, Gathered)) {
+        let found = marcher.gather(&self.segments, &self.ends);
+        self.columns.drain(..).zip(found).for_each(|(x, gathered)| take(x, gathered));
+        self.segments.clear();
+        self.ends.clear();
+    }
+}
+
 /// Some rows of the picture.
 struct Rows<'b> {
     width: usize,
@@ -89,25 +117,29 @@ impl Rows<'_> {
         let row = y * self.width..(y + 1) * self.width;
         // Ends of the rays: depths of the surfaces before any volume is drawn.
         let ends: Vec<f64> = self.depth[row.clone()].iter().map(|d| f64::from(*d).min(far)).collect();
-        let mut found: Vec<Vec<(usize, Gathered)>> = vec![Vec::new(); self.width];
+        let mut found: Vec<(usize, usize, Gathered)> = Vec::new();
         let mut samples = 0;
         for volume in volumes {
             let mut take = |x: usize, gathered: Gathered| {
                 samples += u64::from(gathered.samples);
                 if gathered.alpha > 0.0 {
-                    found[x].push((volume.index, gathered));
+                    found.push((x, volume.index, gathered));
                 }
             };
             match way {
-                Way::Fast => rays.row(
-                    image_y,
-                    self.width,
-                    volume.marcher.volume(),
-                    |x| volume.spans.hold([x, image_y]).then_some(ends[x]),
-                    |x, segments: &[Segment]| {
-                        take(x, volume.marcher.gather(segments));
-                    },
-                ),
+                Way::Fast => {
+                    let mut batch = Batch::default();
+                    let wants = |x| volume.spans.hold([x, image_y]).then_some(ends[x]);
+                    rays.row(image_y, self.width, volume.marcher.volume(), wants, |x, segments: &[Segment]| {
+                        if !segments.is_empty() {
+                            batch.add(x, segments);
+                            if batch.columns.len() == BATCH {
+                                batch.gather(&volume.marcher, &mut take);
+                            }
+                        }
+                    });
+                    batch.gather(&volume.marcher, &mut take);
+                }
                 Way::Exact => {
                     for (x, end) in ends.iter().enumerate() {
                         let pixel = DVec2::new(x as f64 + 0.5, image_y as f64 + 0.5);
@@ -117,13 +149,11 @@ impl Rows<'_> {
                 }
             }
         }
-        for (x, mut list) in found.into_iter().enumerate() {
-            // Farthest volume first.
-            list.sort_by(|a, b| b.1.enters.total_cmp(&a.1.enters));
-            for (layer, gathered) in list {
-                let half = gathered.half.map(|(depth, place)| (rays.depth_of(place, depth), place));
-                self.lay(y * self.width + x, layer, &Gathered { half, ..gathered });
-            }
+        // By column, the farthest volume first.
+        found.sort_by(|a, b| a.0.cmp(&b.0).then(b.2.enters.total_cmp(&a.2.enters)));
+        for (x, layer, gathered) in found {
+            let half = gathered.half.map(|(depth, place)| (rays.depth_of(place, depth), place));
+            self.lay(y * self.width + x, layer, &Gathered { half, ..gathered });
         }
         samples
     }

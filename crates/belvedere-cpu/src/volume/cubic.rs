@@ -1,38 +1,49 @@
 //! Parts of rays as cubics, clipped to a box.
 
 use belvedere_core::DVec3;
+use std::ops::{Add, Mul, Sub};
 
-/// A curve over 0..=1 of nearly constant speed: `c0 + t (c1 + t (c2 + t c3))`.
+/// A curve over 0..=1 of nearly constant speed, or a number along it: `c0 + t (c1 + t (c2 + t c3))`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Cubic(pub(super) [DVec3; 4]);
+pub(super) struct Cubic<V = DVec3>(pub(super) [V; 4]);
 
 /// Tolerance of roots, as a share of the parameter range.
 const ROOT: f64 = 1e-9;
 
-impl Cubic {
-    pub(super) fn line(a: DVec3, b: DVec3) -> Self {
-        Self([a, b - a, DVec3::ZERO, DVec3::ZERO])
+impl<V: Copy + Default + Add<Output = V> + Sub<Output = V> + Mul<f64, Output = V>> Cubic<V> {
+    pub(super) fn line(a: V, b: V) -> Self {
+        Self([a, b - a, V::default(), V::default()])
     }
 
     /// From `a` to `b`, with derivatives `da` and `db` there.
-    pub(super) fn hermite([a, b]: [DVec3; 2], [da, db]: [DVec3; 2]) -> Self {
+    pub(super) fn hermite([a, b]: [V; 2], [da, db]: [V; 2]) -> Self {
         let way = b - a;
-        Self([a, da, 3.0 * way - 2.0 * da - db, da + db - 2.0 * way])
+        Self([a, da, way * 3.0 - da * 2.0 - db, da + db - way * 2.0])
     }
 
-    pub(super) fn at(&self, t: f64) -> DVec3 {
+    pub(super) fn at(&self, t: f64) -> V {
         let [c0, c1, c2, c3] = self.0;
-        c0 + t * (c1 + t * (c2 + t * c3))
+        c0 + (c1 + (c2 + c3 * t) * t) * t
     }
 
     /// The part between two parameters, over 0..=1 again.
     pub(super) fn part(&self, [t0, t1]: [f64; 2]) -> Self {
         let [_, c1, c2, c3] = self.0;
         let h = t1 - t0;
-        let slope = c1 + t0 * (2.0 * c2 + 3.0 * t0 * c3);
-        Self([self.at(t0), h * slope, h * h * (c2 + 3.0 * t0 * c3), h * h * h * c3])
+        let slope = c1 + (c2 * 2.0 + c3 * (3.0 * t0)) * t0;
+        Self([self.at(t0), slope * h, (c2 + c3 * (3.0 * t0)) * (h * h), c3 * (h * h * h)])
     }
+}
 
+impl Cubic<f64> {
+    /// Where a rising number reaches a value between those at the ends.
+    pub(super) fn reaches(&self, value: f64) -> f64 {
+        let f = |t: f64| self.at(t) - value;
+        root(&f, (0.0, f(0.0)), (1.0, f(1.0)))
+    }
+}
+
+impl Cubic {
     /// Bezier control points, whose hull contains the curve.
     fn hull(&self) -> [DVec3; 4] {
         let [c0, c1, c2, c3] = self.0;
@@ -49,16 +60,27 @@ impl Cubic {
         if !(hi.cmpge(DVec3::ZERO).all() && lo.cmple(most).all()) {
             return;
         }
-        let mut ends = vec![0.0, 1.0];
+        if let Some([t0, t1]) = self.inside_one_way(most) {
+            if t0 < t1 {
+                take([t0, t1]);
+            }
+            return;
+        }
+        // At most three crossings of each of six faces.
+        let (mut ends, mut n) = ([1.0; 20], 1);
+        ends[0] = 0.0;
         for a in 0..3 {
             for bound in [0.0, most[a]] {
                 if lo[a] < bound && bound < hi[a] {
-                    self.crossings(a, bound, &mut ends);
+                    self.crossings(a, bound, |t| {
+                        ends[n] = t;
+                        n += 1;
+                    });
                 }
             }
         }
-        ends.sort_by(f64::total_cmp);
-        for pair in ends.windows(2) {
+        ends[1..n].sort_unstable_by(f64::total_cmp);
+        for pair in ends[..=n].windows(2) {
             let middle = self.at(0.5 * (pair[0] + pair[1]));
             if pair[0] < pair[1] && middle.cmpge(DVec3::ZERO).all() && middle.cmple(most).all() {
                 take([pair[0], pair[1]]);
@@ -66,8 +88,48 @@ impl Cubic {
         }
     }
 
+    /// The part inside the box, perhaps empty, where no coordinate turns round; `None` where one may.
+    fn inside_one_way(&self, most: DVec3) -> Option<[f64; 2]> {
+        let [c0, c1, c2, c3] = self.0;
+        let turns = c1.abs().cmple(c2.abs() * 2.0 + c3.abs() * 3.0);
+        let end = c0 + (c1 + (c2 + c3));
+        let (lo, hi) = (c0.min(end), c0.max(end));
+        if turns.any() || !(hi.cmpge(DVec3::ZERO).all() && lo.cmple(most).all()) {
+            return if turns.any() { None } else { Some([1.0, 0.0]) };
+        }
+        let (mut t0, mut t1) = (0.0f64, 1.0f64);
+        for axis in 0..3 {
+            let rises = c1[axis] > 0.0;
+            let [first, last] = if rises { [0.0, most[axis]] } else { [most[axis], 0.0] };
+            if (c0[axis] < first) == rises && c0[axis] != first {
+                t0 = t0.max(self.meets(axis, first));
+            }
+            if (end[axis] > last) == rises && end[axis] != last {
+                t1 = t1.min(self.meets(axis, last));
+            }
+        }
+        Some([t0, t1])
+    }
+
+    /// Where a coordinate that does not turn round meets a bound between its values at the ends: Newton's method with the slope of a first
+    /// estimate.
+    fn meets(&self, axis: usize, bound: f64) -> f64 {
+        let [c0, c1, c2, c3] = self.0.map(|c| c[axis]);
+        let first = ((bound - c0) / (c1 + c2 + c3)).clamp(0.0, 1.0);
+        let per_slope = 1.0 / (c1 + first * (2.0 * c2 + 3.0 * first * c3));
+        let mut t = first;
+        for _ in 0..20 {
+            let by = (c0 - bound + t * (c1 + t * (c2 + t * c3))) * per_slope;
+            t = (t - by).clamp(0.0, 1.0);
+            if by.abs() < ROOT {
+                break;
+            }
+        }
+        t
+    }
+
     /// Parameters at which a coordinate crosses a bound: at most once between its turning points.
-    fn crossings(&self, axis: usize, bound: f64, out: &mut Vec<f64>) {
+    fn crossings(&self, axis: usize, bound: f64, mut take: impl FnMut(f64)) {
         let [c0, c1, c2, c3] = self.0.map(|c| c[axis]);
         let f = |t: f64| c0 - bound + t * (c1 + t * (c2 + t * c3));
         let mut stops = [0.0, 1.0, 1.0, 1.0];
@@ -88,14 +150,14 @@ impl Cubic {
         for pair in stops[..=n].windows(2) {
             let (fa, fb) = (f(pair[0]), f(pair[1]));
             if (fa > 0.0) != (fb > 0.0) {
-                out.push(root(&f, (pair[0], fa), (pair[1], fb)));
+                take(root(&f, (pair[0], fa), (pair[1], fb)));
             }
         }
     }
 }
 
 /// The root between two parameters with values of different sign: false position (Illinois).
-fn root(f: &dyn Fn(f64) -> f64, mut a: (f64, f64), mut b: (f64, f64)) -> f64 {
+fn root(f: &impl Fn(f64) -> f64, mut a: (f64, f64), mut b: (f64, f64)) -> f64 {
     for _ in 0..60 {
         let t = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
         if !(t > a.0 && t < b.0) || b.0 - a.0 < ROOT {
@@ -147,6 +209,36 @@ mod tests {
         let part = curve.part(parts[1]);
         assert!(part.at(0.25).distance(curve.at(parts[1][0] + 0.25 * (parts[1][1] - parts[1][0]))) < 1e-12);
         curve.inside(DVec3::new(10.0, 10.0, 4.0), |part| panic!("outside: {part:?}"));
+    }
+
+    #[test]
+    fn parts_of_curves_that_do_not_turn_round_are_those_found_by_all_crossings() {
+        let most = DVec3::new(10.0, 8.0, 6.0);
+        let mut state = 5u32;
+        let mut share = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state >> 8) / f64::from(1 << 24)
+        };
+        let (mut found, mut cut) = (0, 0);
+        for _ in 0..20_000 {
+            let mut vector =
+                |least: f64, most: f64| DVec3::from_array([0; 3].map(|_| least + (most - least) * share()));
+            let c0 = vector(-8.0, 16.0);
+            let curve = Cubic([c0, vector(-14.0, 14.0), vector(-1.5, 1.5), vector(-0.5, 0.5)]);
+            let Some([t0, t1]) = curve.inside_one_way(most) else { continue };
+            let inside = |t: f64| {
+                let p = curve.at(t);
+                p.cmpge(DVec3::ZERO).all() && p.cmple(most).all()
+            };
+            for i in 0..50 {
+                let t = (f64::from(i) + 0.5) / 50.0;
+                let near_end = (t - t0).abs() < 1e-7 || (t - t1).abs() < 1e-7;
+                assert!(near_end || inside(t) == (t0 <= t && t <= t1), "{curve:?} {t} {t0} {t1}");
+            }
+            found += u32::from(t0 < t1);
+            cut += u32::from(t0 > 0.0 && t0 < t1);
+        }
+        assert!(found > 1000 && cut > 500, "{found} {cut}");
     }
 
     #[test]

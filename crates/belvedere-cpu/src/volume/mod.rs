@@ -2,23 +2,29 @@
 //! gather is composited over it.
 //!
 //! 1. [`ray`]: within the [`spans`] of the picture that may show the volume, the ray of a pixel becomes segments inside the box of the
-//!    volume, cubics by arc length.
-//! 2. [`march`]: samples at equal distances along them, front to back; [`bricks`] tell where nothing can be seen, [`table`] gives colour
-//!    and opacity, [`sampler`] interpolates several samples at once.
+//!    volume, cubics by arc length: [`clip`] computes them ([`arc`] the bent ones), [`sheaf`] interpolates them between such rays.
+//! 2. [`march`]: samples at equal distances along them, front to back, of many rays side by side ([`packet`]); [`bricks`] tell where
+//!    nothing can be seen, [`table`] gives colour and opacity, [`sampler`] interpolates many samples at once.
 //! 3. [`compose`]: over the surfaces by depth, and into depth, id and place where more than half of the light is absorbed.
 //!
 //! [`reference`] does the same in 64 bits, one sample after the other: the exact renderer uses it, and the fast method is tested against it.
 //! Source: Cui et al. 2010, section on volumes; equal steps, opacity by length and skipping are ours or common.
 
+mod arc;
 mod bricks;
+mod clip;
 mod compose;
 mod cubic;
+mod cursor;
 mod light;
 mod march;
+mod packet;
 mod pick;
+mod prepared;
 mod ray;
 mod reference;
 mod sampler;
+mod sheaf;
 mod spans;
 mod table;
 #[cfg(test)]

@@ -3,10 +3,6 @@
 use crate::simd::nearest;
 use belvedere_scene::Volume;
 
-/// Positions that are interpolated together.
-pub(super) const GROUP: usize = 8;
-pub(super) type Group = [f32; GROUP];
-
 /// A stored value; neighbours along x are read together.
 pub(super) trait Voxel: Copy + Sync {
     type Two: Copy;
@@ -21,14 +17,14 @@ pub(super) trait Voxel: Copy + Sync {
 }
 
 impl Voxel for u8 {
-    type Two = u32;
+    type Two = u16;
     type Four = u32;
-    const NO_TWO: u32 = 0;
+    const NO_TWO: u16 = 0;
     const NO_FOUR: u32 = 0;
 
     #[inline(always)]
-    fn two(values: [u8; 2]) -> u32 {
-        u32::from(u16::from_le_bytes(values))
+    fn two(values: [u8; 2]) -> u16 {
+        u16::from_le_bytes(values)
     }
 
     #[inline(always)]
@@ -37,8 +33,8 @@ impl Voxel for u8 {
     }
 
     #[inline(always)]
-    fn of_two<const K: usize>(two: u32) -> f32 {
-        ((two >> (8 * K)) & 0xff) as i32 as f32
+    fn of_two<const K: usize>(two: u16) -> f32 {
+        ((u32::from(two) >> (8 * K)) & 0xff) as i32 as f32
     }
 
     #[inline(always)]
@@ -142,9 +138,9 @@ pub(super) struct Sampler<'v, T> {
 }
 
 /// Cells of positions, and the fractions inside them.
-struct Cells {
-    cell: [[i32; GROUP]; 3],
-    share: [Group; 3],
+struct Cells<const N: usize> {
+    cell: [[i32; N]; 3],
+    share: [[f32; N]; 3],
 }
 
 #[inline(always)]
@@ -161,12 +157,12 @@ impl<'v, T: Voxel> Sampler<'v, T> {
     }
 
     #[inline(always)]
-    fn cells(&self, p: &[Group; 3]) -> Cells {
-        let mut cell = [[0i32; GROUP]; 3];
-        let mut share = [[0.0f32; GROUP]; 3];
+    fn cells<const N: usize>(&self, p: &[[f32; N]; 3]) -> Cells<N> {
+        let mut cell = [[0i32; N]; 3];
+        let mut share = [[0.0f32; N]; 3];
         for a in 0..3 {
             let (most, last) = (self.most[a], self.last[a]);
-            for l in 0..GROUP {
+            for l in 0..N {
                 // In this order NaN becomes 0.
                 let q = if p[a][l] > 0.0 { p[a][l] } else { 0.0 };
                 let q = if q < most { q } else { most };
@@ -181,20 +177,25 @@ impl<'v, T: Voxel> Sampler<'v, T> {
 
     /// Indices of the first voxels of cells.
     #[inline(always)]
-    fn numbers(&self, cell: &[[i32; GROUP]; 3]) -> [usize; GROUP] {
+    fn numbers<const N: usize>(&self, cell: &[[i32; N]; 3]) -> [usize; N] {
         let [sy, sz] = self.stride;
-        let mut out = [0; GROUP];
-        for l in 0..GROUP {
-            out[l] = cell[2][l] as usize * sz + cell[1][l] as usize * sy + cell[0][l] as usize;
+        let mut within = [0u32; N];
+        for l in 0..N {
+            // A layer has at most 2^32 voxels.
+            within[l] = cell[1][l] as u32 * sy as u32 + cell[0][l] as u32;
+        }
+        let mut out = [0; N];
+        for l in 0..N {
+            out[l] = cell[2][l] as usize * sz + within[l] as usize;
         }
         out
     }
 
     #[inline(always)]
-    fn two(&self, at: usize) -> T::Two {
-        match self.values.get(at..).and_then(|v| v.first_chunk::<2>()) {
-            Some(v) => T::two(*v),
-            None => T::NO_TWO,
+    fn two(&self, rest: &[T], off: usize) -> T::Two {
+        match rest.get(off..off + 2) {
+            Some(&[a, b]) => T::two([a, b]),
+            _ => T::NO_TWO,
         }
     }
 
@@ -208,20 +209,19 @@ impl<'v, T: Voxel> Sampler<'v, T> {
 
     /// Values at lattice coordinates; positions outside are clamped.
     #[inline(always)]
-    pub(super) fn at(&self, p: &[Group; 3]) -> Group {
+    pub(super) fn at<const N: usize>(&self, p: &[[f32; N]; 3]) -> [f32; N] {
         let Cells { cell, share } = self.cells(p);
         let [sy, sz] = self.stride;
         let numbers = self.numbers(&cell);
-        let mut rows = [[T::NO_TWO; GROUP]; 4];
-        for l in 0..GROUP {
-            let n = numbers[l];
-            rows[0][l] = self.two(n);
-            rows[1][l] = self.two(n + sy);
-            rows[2][l] = self.two(n + sz);
-            rows[3][l] = self.two(n + sz + sy);
+        let mut rows = [[T::NO_TWO; N]; 4];
+        for l in 0..N {
+            let rest = self.values.get(numbers[l]..).unwrap_or(&[]);
+            for (k, off) in [0, sy, sz, sz + sy].into_iter().enumerate() {
+                rows[k][l] = self.two(rest, off);
+            }
         }
-        let mut out = [0.0; GROUP];
-        for l in 0..GROUP {
+        let mut out = [0.0; N];
+        for l in 0..N {
             let x = |k: usize| mix(T::of_two::<0>(rows[k][l]), T::of_two::<1>(rows[k][l]), share[0][l]);
             let (y0, y1) = (mix(x(0), x(1), share[1][l]), mix(x(2), x(3), share[1][l]));
             out[l] = mix(y0, y1, share[2][l]);
@@ -231,30 +231,47 @@ impl<'v, T: Voxel> Sampler<'v, T> {
 
     /// Central differences over two voxels, per voxel.
     #[inline(always)]
-    pub(super) fn gradients(&self, p: &[Group; 3]) -> [Group; 3] {
-        let Cells { cell, share } = self.cells(p);
-        let deep = cell.iter().zip(self.last).all(|(along, last)| along.iter().all(|&c| c >= 1 && c < last));
-        if deep { self.gradients_inside(&self.numbers(&cell), &share) } else { self.gradients_anywhere(p) }
+    pub(super) fn gradients<const N: usize>(&self, p: &[[f32; N]; 3]) -> [[f32; N]; 3] {
+        let Cells { mut cell, share } = self.cells(p);
+        let mut deep = [true; N];
+        for (along, last) in cell.iter().zip(self.last) {
+            for l in 0..N {
+                deep[l] &= along[l] >= 1 && along[l] < last;
+            }
+        }
+        let Some(inner) = deep.iter().position(|d| *d) else { return self.gradients_anywhere(p) };
+        if deep.iter().all(|d| *d) {
+            return self.gradients_inside(&self.numbers(&cell), &share);
+        }
+        // What a position gets does not depend on the others.
+        for along in &mut cell {
+            let instead = along[inner];
+            for l in 0..N {
+                along[l] = if deep[l] { along[l] } else { instead };
+            }
+        }
+        let (inside, border) = (self.gradients_inside(&self.numbers(&cell), &share), self.gradients_anywhere(p));
+        std::array::from_fn(|a| std::array::from_fn(|l| if deep[l] { inside[a][l] } else { border[a][l] }))
     }
 
     /// Away from the border: interpolated differences of the neighbouring voxels, which gives the same result.
     #[inline(always)]
-    fn gradients_inside(&self, numbers: &[usize; GROUP], share: &[Group; 3]) -> [Group; 3] {
+    fn gradients_inside<const N: usize>(&self, numbers: &[usize; N], share: &[[f32; N]; 3]) -> [[f32; N]; 3] {
         let [sy, sz] = self.stride;
         // Rows of four along x by their offsets along y and z, -1..=2; those at both ends of both are not needed.
-        let mut rows = [[[T::NO_FOUR; GROUP]; 4]; 4];
+        let mut rows = [[[T::NO_FOUR; N]; 4]; 4];
         for (z, rows) in rows.iter_mut().enumerate() {
             for (y, row) in rows.iter_mut().enumerate() {
                 if (y == 0 || y == 3) && (z == 0 || z == 3) {
                     continue;
                 }
-                for l in 0..GROUP {
+                for l in 0..N {
                     row[l] = self.four(numbers[l] + z * sz + y * sy - sz - sy - 1);
                 }
             }
         }
-        let mut out = [[0.0; GROUP]; 3];
-        for l in 0..GROUP {
+        let mut out = [[0.0; N]; 3];
+        for l in 0..N {
             let [fx, fy, fz] = [share[0][l], share[1][l], share[2][l]];
             // Along x through the middle, and the difference over two voxels.
             let along = |z: usize, y: usize| mix(T::of_four::<1>(rows[z][y][l]), T::of_four::<2>(rows[z][y][l]), fx);
@@ -274,7 +291,7 @@ impl<'v, T: Voxel> Sampler<'v, T> {
     }
 
     #[inline(never)]
-    fn gradients_anywhere(&self, p: &[Group; 3]) -> [Group; 3] {
+    fn gradients_anywhere<const N: usize>(&self, p: &[[f32; N]; 3]) -> [[f32; N]; 3] {
         let moved = |axis: usize, by: f32| {
             let mut q = *p;
             q[axis].iter_mut().for_each(|v| *v += by);
@@ -293,6 +310,8 @@ mod tests {
     use belvedere_core::{DMat3, DVec3};
     use belvedere_scene::VoxelValues;
 
+    const GROUP: usize = 8;
+
     fn judged<T: Voxel>(values: &[T], stored: VoxelValues) {
         let volume = Volume::new([11, 9, 7], DMat3::IDENTITY, DVec3::ZERO, stored).unwrap();
         let sampler = Sampler::new(&volume, values);
@@ -305,7 +324,7 @@ mod tests {
                 let most = DVec3::new(10.0, 8.0, 6.0) - 2.0 * room - 1e-3;
                 DVec3::splat(room) + most * DVec3::new(share(l, 0), share(l, 1), share(l, 2))
             };
-            let p = std::array::from_fn(|a| std::array::from_fn(|l| place(l)[a] as f32));
+            let p: [[f32; GROUP]; 3] = std::array::from_fn(|a| std::array::from_fn(|l| place(l)[a] as f32));
             let (found, slopes) = (sampler.at(&p), sampler.gradients(&p));
             for l in 0..GROUP {
                 let q = place(l);

@@ -3,7 +3,6 @@
 use belvedere_composite::color::{Rgb, linear_of};
 use belvedere_scene::volume::absorbed;
 use belvedere_scene::{TransferFunction, VolumeLayer};
-use glam::Vec3A;
 
 /// Number of entries: a ramp over a hundredth of the range has forty.
 pub(super) const ENTRIES: usize = 4096;
@@ -19,8 +18,8 @@ pub(super) fn light_and_opacity(transfer: &TransferFunction, value: f64) -> ([f3
 pub(super) struct Table {
     /// Opacity of a step, and its change to the next entry.
     pub(super) alphas: Box<[[f32; 2]; ENTRIES]>,
-    /// Linear red, green, blue.
-    pub(super) colors: Box<[Vec3A; ENTRIES]>,
+    /// Linear red, green, blue, and nothing.
+    pub(super) colors: Box<[[f32; 4]; ENTRIES]>,
     /// Maps a value to an index: `(value - least) * scale`.
     pub(super) least: f32,
     pub(super) scale: f32,
@@ -34,11 +33,11 @@ impl Table {
         let per_entry = (hi - lo) / (ENTRIES - 1) as f64;
         let steps = layer.step_length() / layer.reference_length();
         let mut alphas = Box::new([[0.0; 2]; ENTRIES]);
-        let mut colors = Box::new([Vec3A::ZERO; ENTRIES]);
+        let mut colors = Box::new([[0.0; 4]; ENTRIES]);
         let mut visible_before = vec![0; ENTRIES + 1];
         for i in 0..ENTRIES {
             let (rgb, opacity) = light_and_opacity(&layer.transfer, lo + per_entry * i as f64);
-            colors[i] = Vec3A::from_array(rgb);
+            colors[i][..3].copy_from_slice(&rgb);
             alphas[i][0] = absorbed(opacity, steps) as f32;
             visible_before[i + 1] = visible_before[i] + u32::from(alphas[i][0] > 0.0);
         }

@@ -1,7 +1,8 @@
 //! Volumes against closed forms, and the fast method against the reference.
 
+use super::clip::Segment;
 use super::march::Marcher;
-use super::ray::{Rays, Segment};
+use super::ray::Rays;
 use super::{Gathered, reference};
 use belvedere_core::map::StageMap;
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
@@ -28,7 +29,10 @@ fn camera() -> Pinhole {
 
 /// A view with turns at distances from the eye; each transition extends a tenth of the distance to both sides.
 fn bent(model: Model, turns: &[(f64, DVec3)]) -> View {
-    let pinhole = camera();
+    bent_in(camera(), model, turns)
+}
+
+fn bent_in(pinhole: Pinhole, model: Model, turns: &[(f64, DVec3)]) -> View {
     let spec = |&(at, viewpoint): &(f64, DVec3)| TurnSpec {
         viewpoint: pinhole.eye + viewpoint,
         t0: pinhole.eye + pinhole.forward * (0.9 * at),
@@ -85,6 +89,11 @@ impl StageMap for Swayed {}
 
 const RANGE: [f64; 2] = [1.0, 2000.0];
 
+/// Light that one ray gathers.
+fn alone(marcher: &Marcher<'_>, segments: &[Segment]) -> Gathered {
+    marcher.gather(segments, &[segments.len()])[0]
+}
+
 /// Light gathered by the fast method, and the segments.
 fn fast(view: &View, layer: &VolumeLayer, pixel: [usize; 2], far: f64) -> (Gathered, Vec<Segment>) {
     let marcher = Marcher::new(layer);
@@ -92,7 +101,7 @@ fn fast(view: &View, layer: &VolumeLayer, pixel: [usize; 2], far: f64) -> (Gathe
     let mut out = None;
     let wanted = |x: usize| (x == pixel[0]).then_some(far);
     rays.row(pixel[1], IMAGE[0] as usize, &layer.volume, wanted, |_, segments| {
-        let mut found = marcher.gather(segments);
+        let mut found = alone(&marcher, segments);
         found.half = found.half.map(|(depth, place)| (rays.depth_of(place, depth), place));
         out = Some((found, segments.to_vec()));
     });
@@ -269,12 +278,92 @@ fn samples_go_on_over_joints_as_if_there_were_none() {
             ..segment
         };
         let parts = [cut([0.0, 0.2345], true), cut([0.2345, 0.61], false), cut([0.61, 1.0], false)];
-        let again = marcher.gather(&parts);
+        let again = alone(&marcher, &parts);
         assert!((again.alpha - whole.alpha).abs() < 2e-3 && again.color.distance(whole.color) < 2e-3, "{pixel:?}");
-        let apart = marcher.gather(&parts.map(|part| Segment { is_new: true, ..part }));
+        let apart = alone(&marcher, &parts.map(|part| Segment { is_new: true, ..part }));
         joined += u32::from(apart.alpha != again.alpha);
     }
     assert!(joined > 5, "steps that begin anew at every joint give other pictures: {joined}");
+}
+
+#[test]
+fn interpolated_rays_are_those_computed_on_their_own() {
+    let layer = colors(wavy(|v| VoxelValues::U8(v.into_iter().map(|v| (255.0 * v) as u8).collect())));
+    let camera = || Pinhole { image: [640, 480], ..camera() };
+    let side = DVec3::new(-40.0, 30.0, 20.0);
+    let turned = |model| bent_in(camera(), model, &[(146.0, side)]);
+    let views = [
+        ("straight", View::straight(camera())),
+        ("modified", turned(Model::Modified)),
+        ("original", turned(Model::Original)),
+        ("kink", turned(Model::C0)),
+        ("C2", turned(Model::C2)),
+        ("two turns", bent_in(camera(), Model::Modified, &[(130.0, side), (165.0, -side)])),
+    ];
+    for (name, view) in views {
+        let rays = Rays::new(&view, RANGE);
+        let mut alone = Rays::new(&view, RANGE);
+        alone.forget_neighbours();
+        let (mut met, mut copied) = (0, 0);
+        for y in [100, 200, 240, 301, 380] {
+            let ends = |x: usize| Some(if x.is_multiple_of(3) { 150.0 } else { 1e9 });
+            let mut want = Vec::new();
+            alone.row(y, 640, &layer.volume, ends, |_, segments| want.push(segments.to_vec()));
+            rays.row(y, 640, &layer.volume, ends, |x, found| {
+                let want = &want[x];
+                let length = |list: &[Segment]| list.iter().map(|s| s.length).sum::<f64>();
+                let off = (length(found) - length(want)).abs();
+                assert!(off < 0.02 || length(want) < 1.0, "{name} {x} {y}: {} for {}", length(found), length(want));
+                let ([Some(a), Some(b)], [Some(p), Some(q)]) =
+                    ([found.first(), want.first()], [found.last(), want.last()])
+                else {
+                    return;
+                };
+                if length(want) > 1.0 {
+                    met += 1;
+                    copied += u32::from(a.curve == b.curve && p.curve == q.curve);
+                    let ends = [(a.curve.at(0.0), b.curve.at(0.0)), (p.curve.at(1.0), q.curve.at(1.0))];
+                    assert!(ends.iter().all(|(a, b)| a.distance(*b) < 0.02), "{name} {x} {y}: {ends:?}");
+                    let depths = [a.depth.at(0.0) - b.depth.at(0.0), p.depth.at(1.0) - q.depth.at(1.0)];
+                    assert!(depths.iter().all(|d| d.abs() < 0.02), "{name} {x} {y}: {depths:?}");
+                    let breaks = |list: &[Segment]| list.iter().filter(|s| s.is_new).count();
+                    assert_eq!(breaks(found), breaks(want), "{name} {x} {y}");
+                }
+            });
+        }
+        assert!(met > 500, "{name}: {met}");
+        assert!(copied * 2 < met, "{name}: {copied} of {met} rays are not interpolated");
+    }
+}
+
+#[test]
+fn rays_side_by_side_gather_what_each_gathers_alone() {
+    let layer = colors(wavy(|v| VoxelValues::U8(v.into_iter().map(|v| (255.0 * v) as u8).collect())));
+    let marcher = Marcher::new(&layer);
+    let view = bent(Model::Modified, &[(146.0, DVec3::new(-40.0, 30.0, 20.0))]);
+    let rays = Rays::new(&view, RANGE);
+    let (mut segments, mut ends) = (Vec::new(), Vec::new());
+    for y in 0..IMAGE[1] as usize {
+        rays.row(
+            y,
+            IMAGE[0] as usize,
+            &layer.volume,
+            |_| Some(1e9),
+            |_, ray| {
+                segments.extend_from_slice(ray);
+                ends.push(segments.len());
+            },
+        );
+    }
+    let together = marcher.gather(&segments, &ends);
+    let mut begin = 0;
+    let mut seen = 0;
+    for (end, found) in ends.iter().zip(&together) {
+        assert_eq!(*found, alone(&marcher, &segments[begin..*end]));
+        seen += u32::from(found.alpha > 0.0);
+        begin = *end;
+    }
+    assert!(seen > 500, "{seen}");
 }
 
 #[test]
@@ -286,7 +375,7 @@ fn leaps_miss_nothing_and_save_samples() {
             let (found, segments) = fast(&view, &layer, pixel, 1e9);
             let mut plodding = Marcher::new(&layer);
             plodding.forget_leaps();
-            let want = plodding.gather(&segments);
+            let want = alone(&plodding, &segments);
             let off = (found.alpha - want.alpha).abs().max(found.color.distance(want.color));
             assert!(off < 2e-3, "{name} {pixel:?}: {found:?} {want:?}");
             (all, taken) = (all + want.samples, taken + found.samples);
