@@ -183,14 +183,32 @@ impl<'v, 's> Clip<'v, 's> {
         });
     }
 
+    /// What follows does not adjoin what was kept.
+    pub(super) fn leave(&mut self) {
+        self.goes_on = false;
+    }
+
     /// Keeps the parts of a cubic that lie in the box and between two depths.
-    pub(super) fn between(&mut self, curve: Cubic, length: f64, depth: Cubic<f64>, [near, far]: [f64; 2]) {
+    ///
+    /// * `is_inside`: whether it is known to lie in the box.
+    pub(super) fn between(
+        &mut self,
+        curve: Cubic,
+        length: f64,
+        depth: Cubic<f64>,
+        [near, far]: [f64; 2],
+        is_inside: bool,
+    ) {
         let [first, last] = [depth.0[0], depth.at(1.0)];
         if last <= near || first >= far {
             return;
         }
         if first >= near && last <= far {
-            return self.inside(curve, length, depth);
+            if !is_inside {
+                return self.inside(curve, length, depth);
+            }
+            let is_new = !std::mem::replace(&mut self.goes_on, true);
+            return self.keep(Segment { curve, length, depth, is_new });
         }
         let t0 = if first < near { depth.reaches(near) } else { 0.0 };
         let t1 = if last > far { depth.reaches(far) } else { 1.0 };

@@ -45,7 +45,7 @@ impl Cubic<f64> {
 
 impl Cubic {
     /// Bezier control points, whose hull contains the curve.
-    fn hull(&self) -> [DVec3; 4] {
+    pub(super) fn hull(&self) -> [DVec3; 4] {
         let [c0, c1, c2, c3] = self.0;
         [c0, c0 + c1 / 3.0, c0 + (2.0 * c1 + c2) / 3.0, c0 + c1 + c2 + c3]
     }
@@ -60,7 +60,7 @@ impl Cubic {
         if !(hi.cmpge(DVec3::ZERO).all() && lo.cmple(most).all()) {
             return;
         }
-        if let Some([t0, t1]) = self.inside_one_way(most) {
+        if let Some([t0, t1]) = self.inside_one_way(most, [lo, hi]) {
             if t0 < t1 {
                 take([t0, t1]);
             }
@@ -88,23 +88,32 @@ impl Cubic {
         }
     }
 
-    /// The part inside the box, perhaps empty, where no coordinate turns round; `None` where one may.
-    fn inside_one_way(&self, most: DVec3) -> Option<[f64; 2]> {
+    /// The part inside the box, perhaps empty, where no coordinate that may leave it turns round; `None` where one does.
+    ///
+    /// * `hull`: bounds of the curve.
+    fn inside_one_way(&self, most: DVec3, [lo, hi]: [DVec3; 2]) -> Option<[f64; 2]> {
         let [c0, c1, c2, c3] = self.0;
-        let turns = c1.abs().cmple(c2.abs() * 2.0 + c3.abs() * 3.0);
-        let end = c0 + (c1 + (c2 + c3));
-        let (lo, hi) = (c0.min(end), c0.max(end));
-        if turns.any() || !(hi.cmpge(DVec3::ZERO).all() && lo.cmple(most).all()) {
-            return if turns.any() { None } else { Some([1.0, 0.0]) };
+        let leaves = lo.cmplt(DVec3::ZERO) | hi.cmpgt(most);
+        if (leaves & c1.abs().cmple(c2.abs() * 2.0 + c3.abs() * 3.0)).any() {
+            return None;
         }
+        let end = c0 + (c1 + (c2 + c3));
         let (mut t0, mut t1) = (0.0f64, 1.0f64);
         for axis in 0..3 {
-            let rises = c1[axis] > 0.0;
-            let [first, last] = if rises { [0.0, most[axis]] } else { [most[axis], 0.0] };
-            if (c0[axis] < first) == rises && c0[axis] != first {
+            if !leaves.test(axis) {
+                continue;
+            }
+            // Along the way of the curve, distances of the ends past the faces where it enters and leaves.
+            let (way, [first, last]) =
+                if c1[axis] > 0.0 { (1.0, [0.0, most[axis]]) } else { (-1.0, [most[axis], 0.0]) };
+            let [begin, end] = [c0[axis], end[axis]].map(|c| [way * (c - first), way * (c - last)]);
+            if end[0] < 0.0 || begin[1] > 0.0 {
+                return Some([1.0, 0.0]);
+            }
+            if begin[0] < 0.0 {
                 t0 = t0.max(self.meets(axis, first));
             }
-            if (end[axis] > last) == rises && end[axis] != last {
+            if end[1] > 0.0 {
                 t1 = t1.min(self.meets(axis, last));
             }
         }
@@ -115,17 +124,17 @@ impl Cubic {
     /// estimate.
     fn meets(&self, axis: usize, bound: f64) -> f64 {
         let [c0, c1, c2, c3] = self.0.map(|c| c[axis]);
-        let first = ((bound - c0) / (c1 + c2 + c3)).clamp(0.0, 1.0);
-        let per_slope = 1.0 / (c1 + first * (2.0 * c2 + 3.0 * first * c3));
-        let mut t = first;
-        for _ in 0..20 {
-            let by = (c0 - bound + t * (c1 + t * (c2 + t * c3))) * per_slope;
+        let f = |t: f64| c0 - bound + t * (c1 + t * (c2 + t * c3));
+        let mut t = ((bound - c0) / (c1 + c2 + c3)).clamp(0.0, 1.0);
+        let per_slope = 1.0 / (c1 + t * (2.0 * c2 + 3.0 * t * c3));
+        for _ in 0..4 {
+            let by = f(t) * per_slope;
             t = (t - by).clamp(0.0, 1.0);
             if by.abs() < ROOT {
-                break;
+                return t;
             }
         }
-        t
+        root(&f, (0.0, f(0.0)), (1.0, f(1.0)))
     }
 
     /// Parameters at which a coordinate crosses a bound: at most once between its turning points.
@@ -225,7 +234,9 @@ mod tests {
                 |least: f64, most: f64| DVec3::from_array([0; 3].map(|_| least + (most - least) * share()));
             let c0 = vector(-8.0, 16.0);
             let curve = Cubic([c0, vector(-14.0, 14.0), vector(-1.5, 1.5), vector(-0.5, 0.5)]);
-            let Some([t0, t1]) = curve.inside_one_way(most) else { continue };
+            let hull = curve.hull();
+            let bounds = hull.iter().fold([hull[0]; 2], |[lo, hi], p| [lo.min(*p), hi.max(*p)]);
+            let Some([t0, t1]) = curve.inside_one_way(most, bounds) else { continue };
             let inside = |t: f64| {
                 let p = curve.at(t);
                 p.cmpge(DVec3::ZERO).all() && p.cmple(most).all()

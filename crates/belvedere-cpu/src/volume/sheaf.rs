@@ -29,6 +29,14 @@ enum Piece {
     Bent { parts: usize },
 }
 
+/// Where a line or a cubic of all rays of a tile lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Reach {
+    Inside,
+    Outside,
+    Unknown,
+}
+
 /// A ray as numbers.
 #[derive(Debug, Clone, Default)]
 struct Skeleton {
@@ -47,12 +55,14 @@ pub(super) struct Sheaf<'a> {
     /// Whether its rays can be interpolated, and then its three computed rays.
     holds: bool,
     computed: [Skeleton; 3],
+    /// For each line and cubic where it lies.
+    reaches: Vec<Reach>,
 }
 
 impl<'a> Sheaf<'a> {
     /// * `range`: nearest depth, and a depth beyond which no surface is seen. `y`: of the pixels' centres.
     pub(super) fn new(view: &'a View, volume: &'a Volume, range: [f64; 2], y: f64) -> Self {
-        Self { view, volume, range, y, at: None, holds: false, computed: Default::default() }
+        Self { view, volume, range, y, at: None, holds: false, computed: Default::default(), reaches: Vec::new() }
     }
 
     /// Hands over the parts of the ray of a column that lie in the volume between two depths. Returns false where it must be computed on
@@ -78,7 +88,53 @@ impl<'a> Sheaf<'a> {
         let (middle, end, between) = (like(first + APART), like(first + TILE), like(first + APART / 2));
         let (Some(middle), Some(end), Some(between)) = (middle, end, between) else { return false };
         self.computed = [begin, middle, end];
+        self.reaches = self.reaches();
         self.is_close(&between)
+    }
+
+    fn reaches(&self) -> Vec<Reach> {
+        let place = |k: usize, i: usize| DVec3::from_slice(&self.computed[k].numbers[i..]);
+        let (mut out, mut from) = (Vec::new(), 0);
+        for piece in &self.computed[0].pieces {
+            match *piece {
+                Piece::Line { endless } => {
+                    let end = |k: usize, i: usize| place(k, from) + self.computed[k].numbers[i] * place(k, from + 3);
+                    let ends = [from + 7, from + 8].map(|i| [0, 1, 2].map(|k| end(k, i)));
+                    // Their points are products of two interpolated numbers.
+                    out.push(if endless { Reach::Unknown } else { self.reach(&ends, 0.5) });
+                    from += OF_LINE;
+                }
+                Piece::Bent { parts } => {
+                    for _ in 0..parts {
+                        let hulls = [0, 1, 2].map(|k| Cubic([0, 3, 6, 9].map(|i| place(k, from + i))).hull());
+                        // A quadratic leaves the range of its values at 0, 1, 2 by at most an eighth of it.
+                        out.push(self.reach(&[0, 1, 2, 3].map(|i| hulls.map(|hull| hull[i])), 0.125));
+                        from += OF_CUBIC;
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// Where the hull of points lies that change with the column.
+    ///
+    /// * `points`: each of three rays. `beyond`: share of the range of these three by which the others may leave it.
+    fn reach(&self, points: &[[DVec3; 3]], beyond: f64) -> Reach {
+        let most = DVec3::from_array(self.volume.dims().map(|n| (n - 1) as f64));
+        let (mut lo, mut hi) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        for [a, b, c] in points {
+            let (least, greatest) = (a.min(*b).min(*c), a.max(*b).max(*c));
+            let room = beyond * (greatest - least) + 1e-6;
+            (lo, hi) = (lo.min(least - room), hi.max(greatest + room));
+        }
+        if hi.cmplt(DVec3::ZERO).any() || lo.cmpgt(most).any() {
+            Reach::Outside
+        } else if lo.cmpge(DVec3::ZERO).all() && hi.cmple(most).all() {
+            Reach::Inside
+        } else {
+            Reach::Unknown
+        }
     }
 
     /// The ray of a column; `like`: with pieces of these forms, else there is none.
@@ -180,22 +236,33 @@ impl<'a> Sheaf<'a> {
     fn interpolated(&self, along: f64, [near, far]: [f64; 2], clip: &mut Clip<'_, '_>) {
         let weights = Self::weights(along);
         let mut from = 0;
+        let mut reaches = self.reaches.iter().copied();
         for piece in &self.computed[0].pieces {
             match *piece {
                 Piece::Line { endless } => {
-                    let n = self.mixed::<OF_LINE>(weights, from);
-                    from += OF_LINE;
-                    let depth = [n[7].max(near), if endless { far } else { n[8].min(far) }];
-                    if depth[0] < depth[1] {
-                        clip.lattice_line([DVec3::new(n[0], n[1], n[2]), DVec3::new(n[3], n[4], n[5])], n[6], depth);
+                    if reaches.next() == Some(Reach::Outside) {
+                        clip.leave();
+                    } else {
+                        let n = self.mixed::<OF_LINE>(weights, from);
+                        let depth = [n[7].max(near), if endless { far } else { n[8].min(far) }];
+                        if depth[0] < depth[1] {
+                            let places = [0, 3].map(|k| DVec3::new(n[k], n[k + 1], n[k + 2]));
+                            clip.lattice_line(places, n[6], depth);
+                        }
                     }
+                    from += OF_LINE;
                 }
                 Piece::Bent { parts } => {
-                    for _ in 0..parts {
-                        let n = self.mixed::<OF_CUBIC>(weights, from);
+                    for reach in reaches.by_ref().take(parts) {
+                        if reach == Reach::Outside {
+                            clip.leave();
+                        } else {
+                            let n = self.mixed::<OF_CUBIC>(weights, from);
+                            let curve = Cubic([0, 3, 6, 9].map(|k| DVec3::new(n[k], n[k + 1], n[k + 2])));
+                            let depth = Cubic([n[13], n[14], n[15], n[16]]);
+                            clip.between(curve, n[12], depth, [near, far], reach == Reach::Inside);
+                        }
                         from += OF_CUBIC;
-                        let curve = Cubic([0, 3, 6, 9].map(|k| DVec3::new(n[k], n[k + 1], n[k + 2])));
-                        clip.between(curve, n[12], Cubic([n[13], n[14], n[15], n[16]]), [near, far]);
                     }
                 }
             }
