@@ -126,7 +126,7 @@ impl Edges<'_> {
             return across.length();
         }
         let px = offs.iter().map(|off| (across - along * *off).length_squared()).fold(0.0, f64::max).sqrt();
-        share(px, depth - along.abs())
+        seen_from(px, depth - along.abs())
     }
 
     /// The same for a move by at most `error` scene units to any side.
@@ -135,12 +135,12 @@ impl Edges<'_> {
             return error * self.scale_px;
         }
         let off = offs.iter().map(|off| off.length_squared()).fold(0.0, f64::max);
-        share(error * (self.scale_px * self.scale_px + off).sqrt(), depth - error)
+        seen_from(error * (self.scale_px * self.scale_px + off).sqrt(), depth - error)
     }
 }
 
 /// `px` at depth 1 as seen at `depth`; infinite behind the eye, unless nothing moves.
-fn share(px: f64, depth: f64) -> f64 {
+pub(super) fn seen_from(px: f64, depth: f64) -> f64 {
     if px == 0.0 {
         0.0
     } else if depth > 0.0 {

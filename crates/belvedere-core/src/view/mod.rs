@@ -414,14 +414,7 @@ impl View {
             error * offsets.map(|off| (scale * scale + off.length_squared()).sqrt()).into_iter().fold(0.0, f64::max);
         let nearer = error + shifts.iter().map(|d| d.dot(ph.forward).abs()).sum::<f64>();
         let depth = depth0.min(depth1) - nearer;
-        let px = ball + shifts.iter().map(|&d| across(d)).sum::<f64>();
-        if px == 0.0 {
-            0.0
-        } else if depth > 0.0 {
-            px / depth
-        } else {
-            f64::INFINITY
-        }
+        edges::seen_from(ball + shifts.iter().map(|&d| across(d)).sum::<f64>(), depth)
     }
 
     /// Conservative image of a box, or `None` if part of it has no image or lies nearer than `near`.
