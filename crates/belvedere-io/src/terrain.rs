@@ -4,14 +4,19 @@
 //! bilinearly to an axis-aligned metric grid of about the source's spacing, and the error at the source's own samples is
 //! measured and bounded (see [`ResampleError`]). Voids stay voids unless they are filled, and filled nodes are marked.
 
+mod bilinear;
 mod fill;
 mod frame;
 mod grid_map;
+mod in_bands;
 mod original;
 mod resample;
 mod sea_voids;
 mod sentinels;
 mod source;
+mod stated_system;
+mod survey;
+mod thin;
 
 use crate::crs::{CoordinateSystem, Transform, utm_epsg};
 use crate::{IoError, Limits, Loaded};
@@ -20,7 +25,8 @@ use belvedere_scene::{Crs, Heightfield, HeightfieldError, NodeState, Progress};
 use glam::DVec2;
 pub(crate) use grid_map::{Geometry, GridMap, Link};
 pub use original::{OriginalTerrain, load_original, moved_terrain};
-pub(crate) use source::stated_system;
+pub(crate) use stated_system::stated_system;
+pub use survey::{TerrainSurvey, survey};
 
 use resample::SceneGrid;
 use source::SourceGrid;

@@ -46,6 +46,11 @@ struct Level {
     mask: Option<Layout>,
 }
 
+/// Whether a file that begins with these four bytes is a TIFF.
+pub(crate) fn is_tiff(magic: &[u8]) -> bool {
+    matches!(magic, b"II*\0" | b"MM\0*" | b"II+\0" | b"MM\0+")
+}
+
 impl GeoTiff {
     /// Opens a file and reads its headers; `limits` bounds every later read.
     ///
@@ -131,6 +136,11 @@ impl GeoTiff {
     /// The smallest level whose longer side is at least `side` pixels; the image itself if none is.
     pub fn level_for(&self, side: usize) -> usize {
         self.levels.iter().rposition(|l| l.layout.width.max(l.layout.height) >= side).unwrap_or(0)
+    }
+
+    /// Rows of a level that are decoded together: the height of its strips or tiles.
+    pub(crate) fn rows_together(&self, level: usize) -> usize {
+        self.levels.get(level).map_or(1, |l| l.layout.chunk_height.clamp(1, l.layout.height.max(1)))
     }
 
     /// Type, compression and chunks for reports, such as `int16, deflate, 256 x 256 tiles`.

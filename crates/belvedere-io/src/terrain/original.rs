@@ -43,44 +43,6 @@ impl OriginalTerrain {
         [self.source.cols, self.source.rows]
     }
 
-    /// Number of samples that hold no data.
-    pub fn voids(&self) -> usize {
-        self.source.voids
-    }
-
-    /// Lowest and highest height, metres; `None` if all samples are void.
-    pub fn heights_range(&self) -> Option<[f32; 2]> {
-        let known = self.source.heights.iter().copied().filter(|h| h.is_finite());
-        known.fold(None, |range: Option<[f32; 2]>, h| Some(range.map_or([h; 2], |[lo, hi]| [lo.min(h), hi.max(h)])))
-    }
-
-    /// Distances of samples along columns and rows, in units of the file's system.
-    pub fn spacing(&self) -> [f64; 2] {
-        let a = &self.source.model_from_index.0;
-        [a[0].hypot(a[3]), a[1].hypot(a[4])]
-    }
-
-    /// Least x and y and greatest x and y of the samples, in the file's system.
-    pub fn extent(&self) -> [f64; 4] {
-        let (w, h) = (self.source.cols as f64 - 1.0, self.source.rows as f64 - 1.0);
-        let corners = [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)].map(|(c, r)| self.source.model_from_index.apply(c, r));
-        corners.iter().fold([f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY], |e, [x, y]| {
-            [e[0].min(*x), e[1].min(*y), e[2].max(*x), e[3].max(*y)]
-        })
-    }
-
-    /// Unit of the file's plane: "degrees", "m", "ft", "us-ft", or metres per unit.
-    pub fn unit(&self) -> String {
-        match self.source.system.as_ref().map(CoordinateSystem::metres_per_unit) {
-            None => "not stated".into(),
-            Some(None) => "degrees".into(),
-            Some(Some(1.0)) => "m".into(),
-            Some(Some(u)) if (u - 0.3048).abs() < 1e-9 => "ft".into(),
-            Some(Some(u)) if (u - 1200.0 / 3937.0).abs() < 1e-9 => "us-ft".into(),
-            Some(Some(u)) => format!("{u} m"),
-        }
-    }
-
     /// Heights in metres, row-major; `None` where there is no data.
     pub fn heights(&self) -> impl Iterator<Item = Option<f32>> + '_ {
         self.source.heights.iter().map(|h| h.is_finite().then_some(*h))

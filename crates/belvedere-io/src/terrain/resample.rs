@@ -1,7 +1,8 @@
 //! Resampling of sources to the axis-aligned grid of a scene.
 
+use super::bilinear::Bilinear;
 use super::grid_map::{Geometry, GridMap, Link};
-use super::source::{SourceGrid, bilinear};
+use super::source::SourceGrid;
 use super::{ResampleError, TerrainRequest};
 use crate::IoError;
 use crate::crs::CoordinateSystem;
@@ -289,6 +290,7 @@ fn round_down(v: f64) -> f64 {
 /// Bilinear heights of one source on the nodes that have none yet.
 fn draw(grid: &mut SceneGrid, source: &SourceGrid, map: &GridMap<'_>, margin: f64, first: bool) {
     let cols = grid.cols;
+    let heights = Bilinear::new(&source.heights, [source.cols, source.rows], margin);
     if first {
         grid.heights = vec![f32::INFINITY; cols * grid.rows];
     }
@@ -298,7 +300,7 @@ fn draw(grid: &mut SceneGrid, source: &SourceGrid, map: &GridMap<'_>, margin: f6
             map.row(r, indices);
             for (h, &index) in row.iter_mut().zip(indices.iter()) {
                 if !h.is_finite() {
-                    let new = source.sample(index, margin);
+                    let new = heights.at(index);
                     // a void inside an earlier source stays one where this source has nothing
                     if new.is_finite() || h.is_infinite() {
                         *h = new;
@@ -312,6 +314,7 @@ fn draw(grid: &mut SceneGrid, source: &SourceGrid, map: &GridMap<'_>, margin: f6
 /// Source minus scene at every sample of the source that has both; NaN elsewhere.
 fn residuals(grid: &SceneGrid, source: &SourceGrid, map: &GridMap<'_>, out: &mut [f32]) -> ResampleError {
     let cols = source.cols;
+    let drawn = Bilinear::new(&grid.heights, [grid.cols, grid.rows], 0.0);
     let per_row: Vec<(f32, f64)> = out
         .par_chunks_exact_mut(cols)
         .zip(source.heights.par_chunks_exact(cols))
@@ -322,7 +325,7 @@ fn residuals(grid: &SceneGrid, source: &SourceGrid, map: &GridMap<'_>, out: &mut
                 map.row(r, indices);
                 let (mut max, mut squares) = (0.0f32, 0.0f64);
                 for ((out, &h), &index) in out.iter_mut().zip(heights).zip(indices.iter()) {
-                    let e = h - bilinear(&grid.heights, grid.cols, grid.rows, index, 0.0);
+                    let e = h - drawn.at(index);
                     *out = if e.is_finite() { e } else { f32::NAN };
                     if e.is_finite() {
                         max = max.max(e.abs());
@@ -344,6 +347,8 @@ fn residuals(grid: &SceneGrid, source: &SourceGrid, map: &GridMap<'_>, out: &mut
 /// Adds the residuals to the nodes around them.
 fn add_back(grid: &mut SceneGrid, source: &SourceGrid, map: &GridMap<'_>, residual: &[f32]) {
     let cols = grid.cols;
+    let [residual, heights] =
+        [residual, &source.heights].map(|of| Bilinear::new(of, [source.cols, source.rows], EDGE_MARGIN));
     grid.heights.par_chunks_exact_mut(cols).enumerate().for_each_init(
         || vec![DVec2::ZERO; cols],
         |indices, (r, row)| {
@@ -352,10 +357,10 @@ fn add_back(grid: &mut SceneGrid, source: &SourceGrid, map: &GridMap<'_>, residu
                 if !h.is_finite() {
                     continue;
                 }
-                let e = bilinear(residual, source.cols, source.rows, index, EDGE_MARGIN);
+                let e = residual.at(index);
                 if e.is_finite() {
                     // within the samples around it: lakes stay flat, cliffs do not ring
-                    let [low, high] = source.range_around(index);
+                    let [low, high] = heights.range_around(index);
                     *h = (*h + e).clamp(low, high);
                 }
             }

@@ -9,7 +9,7 @@ const CUSTOMARY: [f32; 23] = [
     -1.0, -99.0, 8888.0, 9999.0, 9999.9, 99999.0, 32767.0, 32768.0, 65535.0, 65534.0,
 ];
 /// Those that may well be heights: they count only where the other heights are the most and differ by as much as this, metres.
-const MILD: [f32; 3] = [0.0, -1.0, -99.0];
+pub(super) const MILD: [f32; 3] = [0.0, -1.0, -99.0];
 const MILD_RELIEF_M: f32 = 20.0;
 /// Heights of the ground and of the floor of the sea, metres: any value beyond that is far from all others is a custom of its own.
 const OF_GROUND_M: std::ops::Range<f32> = -11_500.0..9_000.0;
@@ -25,24 +25,33 @@ pub(super) fn void(heights: &mut [f32], unit: f32) -> Option<Warning> {
     let mut said = Vec::new();
     let mut count = 0;
     // One at a time, the outermost first: otherwise one such value could be the near neighbour of another.
-    while let Some((value, stored)) = apart(heights, unit) {
-        let found: usize = heights
-            .par_iter_mut()
-            .with_min_len(1 << 16)
-            .map(|h| {
-                let absent = *h == value;
-                if absent {
-                    *h = f32::NAN;
-                }
-                usize::from(absent)
-            })
-            .sum();
-        count += found;
-        said.push(format!("{stored}"));
+    while let Some((value, stored)) = apart(&Outermost::of(heights), heights.len(), |v| count_of(heights, v), unit) {
+        count += void_value(heights, value);
+        said.push(stored);
     }
+    said_of(&said, count)
+}
+
+/// Makes all samples of a value void; returns their number.
+pub(super) fn void_value(heights: &mut [f32], value: f32) -> usize {
+    let samples = heights.par_iter_mut().with_min_len(1 << 16);
+    samples
+        .map(|h| {
+            let absent = *h == value;
+            if absent {
+                *h = f32::NAN;
+            }
+            usize::from(absent)
+        })
+        .sum()
+}
+
+/// The sentence about `count` samples of customary values, as they are stored, that are void now; `None` if there are none.
+pub(super) fn said_of(stored: &[f32], count: usize) -> Option<Warning> {
     if count == 0 {
         return None;
     }
+    let said: Vec<String> = stored.iter().map(f32::to_string).collect();
     let values = said.join(" and ");
     let what = format!(
         "samples of {values}, far from all other heights, are taken as voids though the file does not declare them; nodata of its layer, or --nodata, says otherwise"
@@ -51,15 +60,24 @@ pub(super) fn void(heights: &mut [f32], unit: f32) -> Option<Warning> {
 }
 
 /// The lowest or the highest height, if it is a customary value far from the next one; in metres and as stored.
-fn apart(heights: &[f32], unit: f32) -> Option<(f32, f32)> {
-    let [low, next_low, next_high, high] = outermost(heights)?;
+/// * `samples`: their number, voids included; `count_of`: the number of those of a value.
+pub(super) fn apart(
+    ends: &Outermost,
+    samples: usize,
+    count_of: impl Fn(f32) -> usize,
+    unit: f32,
+) -> Option<(f32, f32)> {
+    let Outermost([low, next_low, next_high, high]) = *ends;
+    if !ends.0.iter().all(|h| h.is_finite()) {
+        return None;
+    }
     let customary = |value: f32| {
         let stored = CUSTOMARY.into_iter().find(|c| c * unit == value);
         stored.or_else(|| (!OF_GROUND_M.contains(&value)).then_some(value / unit))
     };
     let alone = |value: f32, next: f32, inner: f32| {
         let stored = customary(value)?;
-        if MILD.contains(&stored) && (inner < MILD_RELIEF_M || 2 * count_of(heights, value) > heights.len()) {
+        if MILD.contains(&stored) && (inner < MILD_RELIEF_M || 2 * count_of(value) > samples) {
             return None;
         }
         ((value - next).abs() >= GAP_M.max(GAP_SHARE * inner)).then_some((value, stored))
@@ -67,24 +85,32 @@ fn apart(heights: &[f32], unit: f32) -> Option<(f32, f32)> {
     alone(low, next_low, high - next_low).or_else(|| alone(high, next_high, next_high - low))
 }
 
-fn count_of(heights: &[f32], value: f32) -> usize {
+pub(super) fn count_of(heights: &[f32], value: f32) -> usize {
     heights.par_iter().with_min_len(1 << 16).filter(|h| **h == value).count()
 }
 
-/// Lowest, next to lowest, next to highest and highest of at least two different heights.
-fn outermost(heights: &[f32]) -> Option<[f32; 4]> {
-    let ends = |of: &[f32]| {
-        let mut out = [f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY];
-        for &h in of.iter().filter(|h| h.is_finite()) {
-            insert(&mut out, h);
-        }
-        out
-    };
-    let all = heights.par_chunks(1 << 16).map(ends).reduce_with(|mut a, b| {
-        b.into_iter().filter(|h| h.is_finite()).for_each(|h| insert(&mut a, h));
-        a
-    })?;
-    all.iter().all(|h| h.is_finite()).then_some(all)
+/// Lowest, next to lowest, next to highest and highest of different heights; infinite where there are fewer than two.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Outermost([f32; 4]);
+
+impl Outermost {
+    pub(super) const NONE: Self = Self([f32::INFINITY, f32::INFINITY, f32::NEG_INFINITY, f32::NEG_INFINITY]);
+
+    /// Those of all known heights.
+    pub(super) fn of(heights: &[f32]) -> Self {
+        let ends = |part: &[f32]| part.iter().filter(|h| h.is_finite()).fold(Self::NONE, |ends, &h| ends.with(h));
+        heights.par_chunks(1 << 16).map(ends).reduce(|| Self::NONE, Self::and)
+    }
+
+    /// Those of both.
+    pub(super) fn and(self, other: Self) -> Self {
+        other.0.into_iter().filter(|h| h.is_finite()).fold(self, Self::with)
+    }
+
+    fn with(mut self, h: f32) -> Self {
+        insert(&mut self.0, h);
+        self
+    }
 }
 
 fn insert(out: &mut [f32; 4], h: f32) {

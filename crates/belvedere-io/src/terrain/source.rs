@@ -1,13 +1,15 @@
 //! Reading the sources of a terrain: samples as heights in metres, voids as NaN.
 
-use super::{CrsChoice, TerrainRequest, frame, sentinels};
+use super::stated_system::{is_of_another_body, stated_system};
+use super::thin::{thin, thinning};
+use super::{CrsChoice, TerrainRequest, frame, in_bands, sentinels};
 use crate::crs::CoordinateSystem;
 use crate::formats::{Reader, ends};
 use crate::fs::File;
+use crate::geotiff::is_tiff;
 use crate::packed::content;
 use crate::{
-    Affine, GeoTiff, IoError, Limits, Loaded, Photometric, Raster, RasterInfo, Samples, SourceCrs, budget, esri_ascii,
-    hgt,
+    Affine, GeoTiff, IoError, Limits, Loaded, Photometric, Raster, RasterInfo, Samples, budget, esri_ascii, hgt,
 };
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Progress;
@@ -56,49 +58,6 @@ impl SourceGrid {
             DVec2::from(self.model_from_index.apply(u * w, v * h))
         })
     }
-
-    /// Bilinear height at a fractional node: NaN if one of the four nodes is a void, infinite more than `margin` outside.
-    #[inline]
-    pub(crate) fn sample(&self, index: DVec2, margin: f64) -> f32 {
-        bilinear(&self.heights, self.cols, self.rows, index, margin)
-    }
-
-    /// Smallest and largest of the four heights around a fractional node.
-    #[inline]
-    pub(crate) fn range_around(&self, index: DVec2) -> [f32; 2] {
-        let (i, _, _) = cell(self.cols, self.rows, index);
-        let (top, bottom) = (&self.heights[i..i + 2], &self.heights[i + self.cols..i + self.cols + 2]);
-        let low = top[0].min(top[1]).min(bottom[0].min(bottom[1]));
-        [low, top[0].max(top[1]).max(bottom[0].max(bottom[1])).max(low)]
-    }
-}
-
-/// Index of the first of the four nodes around a fractional node, clamped to the grid, and the fractions.
-#[inline]
-fn cell(cols: usize, rows: usize, index: DVec2) -> (usize, f32, f32) {
-    let (x, y) = (index.x.clamp(0.0, (cols - 1) as f64), index.y.clamp(0.0, (rows - 1) as f64));
-    let (c, r) = ((x as usize).min(cols - 2), (y as usize).min(rows - 2));
-    (r * cols + c, (x - c as f64) as f32, (y - r as f64) as f32)
-}
-
-/// See [`SourceGrid::sample`].
-#[inline]
-pub(super) fn bilinear(heights: &[f32], cols: usize, rows: usize, index: DVec2, margin: f64) -> f32 {
-    let (last_c, last_r) = ((cols - 1) as f64, (rows - 1) as f64);
-    let inside = index.x >= -margin && index.y >= -margin && index.x <= last_c + margin && index.y <= last_r + margin;
-    if !inside {
-        return f32::INFINITY; // NaN indices too
-    }
-    let (i, u, v) = cell(cols, rows, index);
-    let (top, bottom) = (&heights[i..i + 2], &heights[i + cols..i + cols + 2]);
-    let upper = top[0] + (top[1] - top[0]) * u;
-    let lower = bottom[0] + (bottom[1] - bottom[0]) * u;
-    let height = upper + (lower - upper) * v;
-    if height.is_finite() {
-        return height;
-    }
-    let nearest = heights[i + usize::from(u >= 0.5) + if v >= 0.5 { cols } else { 0 }];
-    if nearest.is_infinite() { f32::INFINITY } else { f32::NAN }
 }
 
 /// Reads every source.
@@ -133,49 +92,95 @@ fn read_one(
 ) -> Result<Loaded<SourceGrid>, IoError> {
     let path = &meant(path, &request.limits)?;
     let _work = budget::work_on(path);
-    let Loaded { value: (mut raster, factor), mut warnings, files } = read_raster(path, request, most_nodes, progress)?;
-    if let Some(nodata) = request.nodata {
-        raster.info.nodata = Some(nodata);
-    }
-    if let Some(unit) = request.vertical_unit_m {
-        raster.info.vertical_unit_m = unit;
-    }
-    check_shape(&raster.info)?;
-    let bands = raster.info.bands - usize::from(raster.info.alpha.band().is_some());
+    let Loaded { value: read, mut warnings, files } = read_heights(path, request, most_nodes, progress)?;
+    let Heights { info, cols, rows, heights, every, factor, .. } = read;
+    let bands = info.bands - usize::from(info.alpha.band().is_some());
     if bands > 1 {
         let text = format!("it has {bands} bands; the first is taken as height");
         warnings.push(Warning::new(WarningKind::Ignored, text).with("bands", bands as f64).in_file(path));
     }
-    let mut heights = heights(&raster);
-    raster.samples = Samples::U8(Vec::new());
-    raster.mask = None;
-    let absurd = void_absurd(&mut heights);
     let beyond = format!(
         "samples beyond +-{MAX_HEIGHT_M:.0} m are taken as voids; nodata of its layer, or --nodata, says what they are if the file does not"
     );
-    warnings.extend(Warning::counted(WarningKind::Repaired, absurd, &beyond).map(|w| w.in_file(path)));
-    if request.nodata.is_none() && raster.info.scaling.is_empty() {
-        let unit = raster.info.vertical_unit_m as f32;
-        warnings.extend(sentinels::void(&mut heights, unit).map(|said| said.in_file(path)));
-    }
-    let (cols, rows) = (raster.info.width, raster.info.height);
-    let voids = heights.iter().filter(|h| h.is_nan()).count();
-    let samples = heights.len();
-    let system = system_of(&raster.info, request, &mut warnings)?;
+    warnings.extend(Warning::counted(WarningKind::Repaired, read.absurd, &beyond).map(|w| w.in_file(path)));
+    warnings.extend(read.customary.map(|said| said.in_file(path)));
+    let system = stated_system(&info, request.source_crs, request.crs == CrsChoice::Local, &mut warnings)?;
     if request.vertical_unit_m.is_none() {
-        warnings.extend(unit_unsaid(&raster.info, system.as_ref()).map(|said| said.in_file(path)));
+        warnings.extend(unit_unsaid(&info, system.as_ref()).map(|said| said.in_file(path)));
     }
     warn_about_frame(path, &heights, cols, rows, &mut warnings);
-    let to_model = raster.info.pixel_to_model.unwrap_or(Affine([1.0, 0.0, 0.0, 0.0, -1.0, rows as f64]));
-    let model_from_index = to_model.after_scale_and_shift(1.0, 1.0, 0.5, 0.5);
-    if raster.info.pixel_to_model.is_none() {
+    let model_from_index = node_map(&info);
+    let model_from_index = model_from_index.after_scale_and_shift(every as f64, every as f64, 0.0, 0.0);
+    if info.pixel_to_model.is_none() {
         let text = "it has no georeference; one pixel counts as one metre";
         warnings.push(Warning::new(WarningKind::Assumed, text).in_file(path));
     }
-    let is_elsewhere = request.source_crs.is_none() && is_of_another_body(&raster.info.crs);
-    let path = path.to_owned();
+    let is_elsewhere = request.source_crs.is_none() && is_of_another_body(&info.crs);
+    let (path, samples, voids) = (path.to_owned(), read.samples, read.voids);
     let grid = SourceGrid { path, cols, rows, heights, model_from_index, system, is_elsewhere, samples, voids };
     Ok(Loaded { value: within(grid, most_nodes, factor, &mut warnings), warnings, files })
+}
+
+/// From columns and rows of samples to model coordinates of their centres.
+pub(super) fn node_map(info: &RasterInfo) -> Affine {
+    let to_model = info.pixel_to_model.unwrap_or(Affine([1.0, 0.0, 0.0, 0.0, -1.0, info.height as f64]));
+    to_model.after_scale_and_shift(1.0, 1.0, 0.5, 0.5)
+}
+
+/// Heights of a file, as read.
+pub(super) struct Heights {
+    /// The raster that was read: the file's, or one of its overviews.
+    pub(super) info: RasterInfo,
+    /// Every how many samples of it along either side there is a height.
+    pub(super) every: usize,
+    pub(super) cols: usize,
+    pub(super) rows: usize,
+    /// Metres, NaN = void.
+    pub(super) heights: Vec<f32>,
+    /// Ratio of their spacing to that of the file.
+    pub(super) factor: f64,
+    /// Samples of the raster, those without data, those beyond [`MAX_HEIGHT_M`].
+    pub(super) samples: usize,
+    pub(super) voids: usize,
+    pub(super) absurd: usize,
+    /// What is said of customary values that are taken as voids.
+    pub(super) customary: Option<Warning>,
+}
+
+/// As the request says it in place of the file.
+pub(super) fn as_requested(mut info: RasterInfo, request: &TerrainRequest) -> RasterInfo {
+    info.nodata = request.nodata.or(info.nodata);
+    info.vertical_unit_m = request.vertical_unit_m.unwrap_or(info.vertical_unit_m);
+    info
+}
+
+/// Whether values that a file does not declare may mean that there are no data.
+pub(super) fn may_be_customary(info: &RasterInfo, request: &TerrainRequest) -> bool {
+    request.nodata.is_none() && info.scaling.is_empty()
+}
+
+fn read_heights(
+    path: &Path,
+    request: &TerrainRequest,
+    most_nodes: usize,
+    progress: &Progress,
+) -> Result<Loaded<Heights>, IoError> {
+    let Loaded { value, warnings, files } = read_raster(path, request, most_nodes, progress)?;
+    let (mut raster, factor) = match value {
+        Source::Whole(raster, factor) => (raster, factor),
+        Source::InBands(heights) => return Ok(Loaded { value: heights, warnings, files }),
+    };
+    raster.info = as_requested(raster.info, request);
+    check_shape(&raster.info)?;
+    let mut heights = heights(&raster);
+    let info = raster.info;
+    let absurd = void_absurd(&mut heights);
+    let unit = info.vertical_unit_m as f32;
+    let customary = may_be_customary(&info, request).then(|| sentinels::void(&mut heights, unit)).flatten();
+    let voids = heights.iter().filter(|h| h.is_nan()).count();
+    let (cols, rows, samples) = (info.width, info.height, heights.len());
+    let value = Heights { info, every: 1, cols, rows, heights, factor, samples, voids, absurd, customary };
+    Ok(Loaded { value, warnings, files })
 }
 
 /// A source of at most `budget` nodes; `factor`: ratio of its spacing to that of the file.
@@ -208,19 +213,24 @@ pub(super) fn copied_within(grid: &SourceGrid, most_nodes: usize, warnings: &mut
     within(small, most_nodes, k as f64, warnings)
 }
 
-/// The raster, and the ratio of its spacing to that of the file.
+enum Source {
+    /// A raster, and the ratio of its spacing to that of the file.
+    Whole(Raster, f64),
+    InBands(Heights),
+}
+
 fn read_raster(
     path: &Path,
     request: &TerrainRequest,
     budget: usize,
     progress: &Progress,
-) -> Result<Loaded<(Raster, f64)>, IoError> {
+) -> Result<Loaded<Source>, IoError> {
     let mut magic = [0u8; 4];
     let mut file = File::open(path).map_err(|e| IoError::os(path, e))?;
     let got = file.read(&mut magic).map_err(|e| IoError::os(path, e))?;
     let extension = crate::recognise::ending(path);
     let magic = &magic[..got];
-    if matches!(magic, b"II*\0" | b"MM\0*" | b"II+\0" | b"MM\0+") {
+    if is_tiff(magic) {
         return read_tiff(path, request, budget, progress);
     }
     let loaded = match extension.as_str() {
@@ -231,7 +241,7 @@ fn read_raster(
             return Err(crate::recognise::not_a(path, wanted));
         }
     };
-    Ok(loaded.map(|raster| (raster, 1.0)))
+    Ok(loaded.map(|raster| Source::Whole(raster, 1.0)))
 }
 
 fn read_tiff(
@@ -239,13 +249,17 @@ fn read_tiff(
     request: &TerrainRequest,
     budget: usize,
     progress: &Progress,
-) -> Result<Loaded<(Raster, f64)>, IoError> {
+) -> Result<Loaded<Source>, IoError> {
     let Loaded { value: tiff, warnings, .. } = GeoTiff::open(path, request.limits)?;
     check_shape(tiff.info())?;
     let nodes = |level: usize| tiff.level_info(level).map_or(usize::MAX, |i| i.width.saturating_mul(i.height));
     let levels = tiff.levels();
     // the largest level within the budget, else the smallest there is
     let level = (0..levels).find(|&l| nodes(l) <= budget).unwrap_or(levels - 1);
+    if nodes(level) > budget {
+        let (heights, file) = rayon::join(|| in_bands::read(&tiff, level, request, budget, progress), || tiff.input());
+        return Ok(Loaded::new(Source::InBands(heights?), warnings).with_file(file?));
+    }
     // Samples, heights, and marks of heights that were looked at.
     let info = tiff.level_info(level).unwrap_or_else(|| tiff.info().clone());
     let stored = info.bands as u64 * info.sample_type.size() as u64;
@@ -255,10 +269,10 @@ fn read_tiff(
     let (raster, file) = rayon::join(|| tiff.read(level, progress), || tiff.input());
     let raster = raster?;
     let factor = tiff.info().width as f64 / raster.info.width as f64;
-    Ok(Loaded::new((raster, factor), warnings).with_file(file?))
+    Ok(Loaded::new(Source::Whole(raster, factor), warnings).with_file(file?))
 }
 
-fn check_shape(info: &RasterInfo) -> Result<(), IoError> {
+pub(super) fn check_shape(info: &RasterInfo) -> Result<(), IoError> {
     let picture = match info.photometric {
         Photometric::Rgb(_) => Some("an RGB picture"),
         Photometric::Palette(_) => Some("a picture with a colour table"),
@@ -275,7 +289,7 @@ fn check_shape(info: &RasterInfo) -> Result<(), IoError> {
 }
 
 /// Heights of the first band in metres, NaN = void.
-fn heights(raster: &Raster) -> Vec<f32> {
+pub(super) fn heights(raster: &Raster) -> Vec<f32> {
     let info = &raster.info;
     let unit = info.vertical_unit_m as f32;
     let plain = info.bands == 1 && raster.mask.is_none() && info.scaling.is_empty() && info.alpha.band().is_none();
@@ -315,7 +329,7 @@ fn unit_unsaid(info: &RasterInfo, system: Option<&CoordinateSystem>) -> Option<W
 }
 
 /// Makes samples beyond the largest height void; returns their number.
-fn void_absurd(heights: &mut [f32]) -> usize {
+pub(super) fn void_absurd(heights: &mut [f32]) -> usize {
     heights
         .par_iter_mut()
         .with_min_len(1 << 16)
@@ -327,85 +341,6 @@ fn void_absurd(heights: &mut [f32]) -> usize {
             usize::from(absurd)
         })
         .sum()
-}
-
-fn system_of(
-    info: &RasterInfo,
-    request: &TerrainRequest,
-    warnings: &mut Vec<Warning>,
-) -> Result<Option<CoordinateSystem>, IoError> {
-    stated_system(info, request.source_crs, request.crs == CrsChoice::Local, warnings)
-}
-
-/// System of a raster: the given code, else what the file says; `None` if neither tells. Coordinates that can only be
-/// degrees are taken as such, with a warning. A `local` scene does not need one.
-pub(crate) fn stated_system(
-    info: &RasterInfo,
-    source_crs: Option<u32>,
-    local: bool,
-    warnings: &mut Vec<Warning>,
-) -> Result<Option<CoordinateSystem>, IoError> {
-    let failed = |e: crate::crs::CrsError| {
-        IoError::format(
-            &info.path,
-            format!("its coordinate system cannot be used: {e}; or set source_crs of its layer (--source-crs)"),
-        )
-    };
-    let Some(to_model) = info.pixel_to_model else {
-        return Ok(None);
-    };
-    if let Some(code) = source_crs {
-        return CoordinateSystem::from_epsg(code).map(Some).map_err(failed);
-    }
-    match &info.crs {
-        SourceCrs::Epsg(code) => CoordinateSystem::from_epsg(*code).map(Some).map_err(failed),
-        SourceCrs::Wkt(text) => {
-            let system = CoordinateSystem::from_text(text).map_err(failed)?;
-            if system.is_local() && !local {
-                warnings.push(of_another_body(&info.path, system.name()));
-            }
-            Ok((!system.is_local()).then_some(system))
-        }
-        SourceCrs::OtherBody(name) => {
-            if !local {
-                warnings.push(of_another_body(&info.path, name));
-            }
-            Ok(None)
-        }
-        SourceCrs::UserDefined(_) if local => Ok(None),
-        SourceCrs::UserDefined(text) => {
-            let reason = format!(
-                "its coordinate system cannot be used ({text}); set its EPSG code (source_crs of its layer, or --source-crs), or crs = \"local\" (--crs local) to draw it without georeference"
-            );
-            Err(IoError::format(&info.path, reason))
-        }
-        SourceCrs::Unknown if !local && looks_geographic(info, &to_model) => {
-            let text = "no coordinate system is stated and the coordinates look like degrees, so EPSG:4326 is assumed; source_crs of its layer, or --source-crs, says otherwise";
-            warnings.push(Warning::new(WarningKind::Assumed, text).in_file(&info.path));
-            CoordinateSystem::from_epsg(4326).map(Some).map_err(failed)
-        }
-        SourceCrs::Unknown => Ok(None),
-    }
-}
-
-fn is_of_another_body(crs: &SourceCrs) -> bool {
-    match crs {
-        SourceCrs::OtherBody(_) => true,
-        SourceCrs::Wkt(text) => CoordinateSystem::from_text(text).is_ok_and(|system| system.is_local()),
-        _ => false,
-    }
-}
-
-fn of_another_body(path: &Path, name: &str) -> Warning {
-    let text = format!("its coordinate system ({name}) is of another body than the Earth, so the scene is local");
-    Warning::new(WarningKind::Assumed, text).in_file(path)
-}
-
-/// Whether coordinates can only be degrees: in the range of longitude and latitude, with steps finer than any metric grid.
-fn looks_geographic(info: &RasterInfo, to_model: &Affine) -> bool {
-    let corners = [[0.0, 0.0], [info.width as f64, info.height as f64]].map(|[c, r]| to_model.apply(c, r));
-    let [step_x, step_y] = [to_model.0[0].hypot(to_model.0[3]), to_model.0[1].hypot(to_model.0[4])];
-    corners.iter().all(|p| p[0].abs() <= 360.0 && p[1].abs() <= 90.0) && step_x < 0.1 && step_y < 0.1
 }
 
 /// Warns about a frame of one value around the data: it may be voids that the file does not declare, or sea, so the heights stay.
@@ -430,45 +365,6 @@ fn warn_about_frame(path: &Path, heights: &[f32], cols: usize, rows: usize, warn
         let warning = Warning::new(WarningKind::Suspect, text).with("count", count as f64).with("share", share);
         warnings.push(warning.with("height_m", f64::from(value)).in_file(path));
     }
-}
-
-/// Factor by which each side must shrink to at most `budget` nodes; `None` if it need not.
-fn thinning(cols: usize, rows: usize, budget: usize) -> Option<usize> {
-    let fits = |k: usize| ((cols - 1) / k + 1).saturating_mul((rows - 1) / k + 1) <= budget;
-    if fits(1) {
-        return None;
-    }
-    // a step that divides both sides keeps shared edges of tiles; a slightly larger step is accepted
-    let k = (2..cols.max(rows)).find(|&k| fits(k))?;
-    let even = (k..=k + k / 2 + 1).find(|&n| (cols - 1).is_multiple_of(n) && (rows - 1).is_multiple_of(n));
-    Some(even.unwrap_or(k))
-}
-
-/// Every k-th node, smoothed by a tent of that width over its valid neighbours; voids stay voids.
-fn thin(heights: &[f32], cols: usize, rows: usize, k: usize) -> (Vec<f32>, usize, usize) {
-    let (out_cols, out_rows) = ((cols - 1) / k + 1, (rows - 1) / k + 1);
-    let reach = k as isize - 1;
-    let node = |i: usize| {
-        let (c, r) = (i % out_cols * k, i / out_cols * k);
-        if !heights[r * cols + c].is_finite() {
-            return heights[r * cols + c];
-        }
-        let (mut sum, mut weights) = (0.0f64, 0.0f64);
-        for dr in -reach..=reach {
-            for dc in -reach..=reach {
-                let (Some(cc), Some(rr)) = (c.checked_add_signed(dc), r.checked_add_signed(dr)) else { continue };
-                if cc >= cols || rr >= rows || !heights[rr * cols + cc].is_finite() {
-                    continue;
-                }
-                let w = ((k as isize - dc.abs()) * (k as isize - dr.abs())) as f64;
-                sum += w * f64::from(heights[rr * cols + cc]);
-                weights += w;
-            }
-        }
-        (sum / weights) as f32
-    };
-    let out = (0..out_cols * out_rows).into_par_iter().with_min_len(1024).map(node).collect();
-    (out, out_cols, out_rows)
 }
 
 /// Joins sources that lie on one lattice (tiles with shared or touching edges) into one, so that no seam is left.
@@ -578,18 +474,5 @@ mod tests {
         let raster = Raster { info, samples: Samples::F64(vec![1000.0, -1.0]), mask: None };
         assert_eq!(heights(&raster)[0], h[0]);
         assert!(heights(&raster)[1].is_nan());
-    }
-
-    #[test]
-    fn thinning_keeps_shared_edges_and_voids() {
-        assert_eq!(thinning(1201, 1201, 2_000_000), None);
-        assert_eq!(thinning(1201, 1201, 400_000), Some(2));
-        assert_eq!(thinning(3601, 3601, 1_000_000), Some(4));
-        let mut h = vec![10.0f32; 49];
-        h[0] = f32::NAN;
-        h[1] = 14.0;
-        let (out, cols, rows) = thin(&h, 7, 7, 3);
-        assert_eq!((cols, rows), (3, 3));
-        assert!(out[0].is_nan() && out[1] > 10.0 && out[8] == 10.0);
     }
 }

@@ -15,9 +15,9 @@ use belvedere_core::DVec2;
 use belvedere_core::{Warning, WarningKind};
 use belvedere_io::formats::{self, Reader};
 use belvedere_io::load_vectors;
-use belvedere_io::terrain::{TerrainRequest, load_original};
+use belvedere_io::terrain::{TerrainRequest, survey};
 use belvedere_io::vector::{Geometry, Vectors};
-use belvedere_io::{GeoTiff, Limits};
+use belvedere_io::{GeoTiff, Limits, Loaded};
 use belvedere_io::{join_table, split_table};
 use belvedere_scene::Progress;
 use schemars::JsonSchema;
@@ -360,21 +360,18 @@ fn geotiff(path: &Path, name: &str, request: &TerrainRequest, progress: &Progres
 }
 
 fn terrain(path: &Path, request: &TerrainRequest, progress: &Progress) -> Result<FileInfo, BelvedereError> {
-    let file = load_original(path, request, progress)?;
-    let (original, mut warnings) = (&file.value, file.warnings);
-    let loaded = original.in_scene(request, progress)?;
-    warnings.extend(loaded.warnings);
-    let (terrain, field) = (&loaded.value, &loaded.value.heightfield);
+    let Loaded { value: survey, warnings, .. } = survey(path, request, progress)?;
+    let (terrain, field) = (&survey.ground, &survey.ground.heightfield);
     let b = field.bounds();
     Ok(FileInfo::Terrain(TerrainInfo {
         path: path.display().to_string(),
-        size: original.size(),
-        crs: original.system_name().to_owned(),
-        unit: original.unit(),
-        spacing: original.spacing(),
-        extent: original.extent(),
+        size: survey.size,
+        crs: survey.system,
+        unit: survey.unit,
+        spacing: survey.spacing,
+        extent: survey.extent,
         extent_deg: terrain.extent_deg,
-        heights_m: original.heights_range(),
+        heights_m: survey.heights_m,
         voids: terrain.void_samples,
         void_share: terrain.void_share,
         scene: GroundInfo {
@@ -382,7 +379,7 @@ fn terrain(path: &Path, request: &TerrainRequest, progress: &Progress) -> Result
             nodes: [field.cols(), field.rows()],
             spacing_m: field.spacing().to_array(),
             extent: [b.min.x, b.min.y, b.max.x, b.max.y],
-            as_in_file: terrain.resample_error.is_none() && original.size() == [field.cols(), field.rows()],
+            as_in_file: terrain.resample_error.is_none() && survey.size == [field.cols(), field.rows()],
         },
         warnings,
     }))

@@ -1,0 +1,93 @@
+//! What is said of an elevation raster.
+
+use super::source::{self, SourceGrid, node_map};
+use super::{LoadedTerrain, TerrainRequest, in_scene};
+use crate::crs::CoordinateSystem;
+use crate::fs::File;
+use crate::geotiff::is_tiff;
+use crate::raster::Affine;
+use crate::{GeoTiff, IoError, Loaded};
+use belvedere_scene::Progress;
+use std::io::Read;
+use std::path::Path;
+
+/// An elevation raster: its samples as they are in the file, and the ground of a scene that they make.
+#[derive(Debug, Clone)]
+pub struct TerrainSurvey {
+    /// Columns and rows of samples.
+    pub size: [usize; 2],
+    /// Name of the file's coordinate system for messages.
+    pub system: String,
+    /// Unit of the file's plane: "degrees", "m", "ft", "us-ft", or metres per unit.
+    pub unit: String,
+    /// Distances of samples along columns and rows, in units of the file's system.
+    pub spacing: [f64; 2],
+    /// Least x and y and greatest x and y of the samples, in the file's system.
+    pub extent: [f64; 4],
+    /// Lowest and highest height, metres; `None` if all samples are void.
+    pub heights_m: Option<[f32; 2]>,
+    /// The ground.
+    pub ground: LoadedTerrain,
+}
+
+/// Surveys one raster. Of a GeoTIFF with more samples than `max_nodes` of the request, heights and voids are those of the thinned ground,
+/// and a warning says so.
+///
+/// # Errors
+/// As [`super::load_terrain`].
+pub fn survey(path: &Path, request: &TerrainRequest, progress: &Progress) -> Result<Loaded<TerrainSurvey>, IoError> {
+    let larger = larger_geotiff(path, request)?;
+    let most_nodes = if larger.is_some() { request.max_nodes } else { usize::MAX };
+    let reading = TerrainRequest { max_nodes: most_nodes, ..request.clone() };
+    let Loaded { value: mut sources, mut warnings, files } =
+        source::read_all(&[path.to_owned()], &reading, progress).map_err(crate::recognise::explain)?;
+    let source = sources.pop().ok_or_else(|| IoError::format(path, "holds no raster; give an elevation model"))?;
+    let (size, map) = larger.unwrap_or(([source.cols, source.rows], source.model_from_index));
+    let known = source.heights.iter().copied().filter(|h| h.is_finite());
+    let heights_m =
+        known.fold(None, |range: Option<[f32; 2]>, h| Some(range.map_or([h; 2], |[lo, hi]| [lo.min(h), hi.max(h)])));
+    let (system, unit) = (system_name(&source), unit(source.system.as_ref()));
+    let source = source::within(source, request.max_nodes, 1.0, &mut warnings);
+    let Loaded { value: ground, warnings, files } =
+        in_scene(Loaded { value: vec![source], warnings, files }, request, progress)?;
+    let spacing = [map.0[0].hypot(map.0[3]), map.0[1].hypot(map.0[4])];
+    let value = TerrainSurvey { size, system, unit, spacing, extent: extent(size, &map), heights_m, ground };
+    Ok(Loaded { value, warnings, files })
+}
+
+/// Size and map from samples to the model of a GeoTIFF that has more samples than the request takes.
+fn larger_geotiff(path: &Path, request: &TerrainRequest) -> Result<Option<([usize; 2], Affine)>, IoError> {
+    let path = &source::meant(path, &request.limits).map_err(crate::recognise::explain)?;
+    let mut magic = [0u8; 4];
+    let got = File::open(path).and_then(|mut file| file.read(&mut magic)).map_err(|e| IoError::os(path, e))?;
+    if !is_tiff(&magic[..got]) {
+        return Ok(None);
+    }
+    let tiff = GeoTiff::open(path, request.limits)?.value;
+    let info = tiff.info();
+    let larger = info.width.saturating_mul(info.height) > request.max_nodes;
+    Ok(larger.then(|| ([info.width, info.height], node_map(info))))
+}
+
+fn system_name(source: &SourceGrid) -> String {
+    source.system.as_ref().map_or("no coordinate system", CoordinateSystem::name).to_owned()
+}
+
+fn unit(system: Option<&CoordinateSystem>) -> String {
+    match system.map(CoordinateSystem::metres_per_unit) {
+        None => "not stated".into(),
+        Some(None) => "degrees".into(),
+        Some(Some(1.0)) => "m".into(),
+        Some(Some(u)) if (u - 0.3048).abs() < 1e-9 => "ft".into(),
+        Some(Some(u)) if (u - 1200.0 / 3937.0).abs() < 1e-9 => "us-ft".into(),
+        Some(Some(u)) => format!("{u} m"),
+    }
+}
+
+fn extent([cols, rows]: [usize; 2], map: &Affine) -> [f64; 4] {
+    let (w, h) = (cols as f64 - 1.0, rows as f64 - 1.0);
+    let corners = [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)].map(|(c, r)| map.apply(c, r));
+    corners.iter().fold([f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY], |e, [x, y]| {
+        [e[0].min(*x), e[1].min(*y), e[2].max(*x), e[3].max(*y)]
+    })
+}
