@@ -54,7 +54,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     (
         "belvedere-disocclusion",
         &["belvedere-core", "belvedere-scene", "belvedere-sight"],
-        &["glam", "pulp", "rayon", "rsparse", "rustdct", "schemars", "serde", "thiserror", "tracing"],
+        &["glam", "pulp", "rayon", "rsparse", "rustfft", "schemars", "serde", "thiserror", "tracing"],
     ),
     (
         "belvedere-construct",
