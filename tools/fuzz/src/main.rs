@@ -2,6 +2,7 @@
 #![allow(clippy::print_stdout, reason = "a program, not a library")]
 
 use anyhow::{Context, Result, bail};
+use belvedere_fuzz::bombs::{Blast, Budget, Fate, blast, bombs};
 use belvedere_fuzz::campaign::{self, Case, named};
 use belvedere_fuzz::readers::READERS;
 use clap::Parser;
@@ -45,6 +46,24 @@ enum Args {
     Corpus {
         /// Folder, such as `fuzz/corpus`.
         folder: PathBuf,
+    },
+    /// Runs a program's `info` on small files that ask for much memory, each in its own process; ends with 1 if one aborts it, hangs it or
+    /// makes it take more than a tenth over its budget.
+    Bombs {
+        /// The program.
+        program: PathBuf,
+        /// Its `--max-mem`, MiB; its own default without it.
+        #[arg(long)]
+        max_mem: Option<u64>,
+        /// Limit of its address space, MiB.
+        #[arg(long, default_value_t = 4096)]
+        address_space: u64,
+        /// What the packed files expand to, MiB.
+        #[arg(long, default_value_t = 1024)]
+        largest: usize,
+        /// Longest time for one file, seconds.
+        #[arg(long, default_value_t = 120.0)]
+        time: f64,
     },
     /// Lists the readers.
     List,
@@ -90,6 +109,20 @@ fn main() -> Result<()> {
                 }
             }
             println!("{} corpora in {}", READERS.len(), folder.display());
+        }
+        Args::Bombs { program, max_mem, address_space, largest, time } => {
+            let budget = Budget { max_mem, address_space, time: Duration::from_secs_f64(time) };
+            let mut bad = 0;
+            let all = bombs(largest);
+            for bomb in &all {
+                let Blast { name, fate, peak, time } = blast(&program, bomb, &budget)?;
+                println!("{name}: {fate:?}, {peak} MiB, {:.2} s", time.as_secs_f64());
+                bad += usize::from(fate != Fate::Answered);
+            }
+            println!("{} files, {bad} bad", all.len());
+            if bad > 0 {
+                bail!("{bad} files abort the program, hang it or take too much memory");
+            }
         }
         Args::List => READERS.iter().for_each(|reader| println!("{}", reader.name)),
     }

@@ -91,3 +91,42 @@ fn extent([cols, rows]: [usize; 2], map: &Affine) -> [f64; 4] {
         [e[0].min(*x), e[1].min(*y), e[2].max(*x), e[3].max(*y)]
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geotiff::write_geotiff;
+    use crate::{Raster, RasterInfo, SampleType, Samples, SourceCrs};
+    use belvedere_core::WarningKind;
+
+    #[test]
+    fn a_larger_raster_has_its_own_size_and_extent_and_the_heights_of_its_thinned_ground() {
+        let [cols, rows] = [301, 203];
+        let height = |i: usize| 1000.0 + 300.0 * ((i % cols) as f32 / 40.0).sin() + (i / cols) as f32;
+        let mut info = RasterInfo::new("survey.tif", cols, rows, SampleType::F32);
+        info.pixel_to_model = Some(Affine([20.0, 0.0, 4e5, 0.0, -20.0, 5e6]));
+        info.crs = SourceCrs::Epsg(32631);
+        let path = std::env::temp_dir().join(format!("belvedere_survey_{}.tif", std::process::id()));
+        let samples = Samples::F32((0..cols * rows).map(height).collect());
+        write_geotiff(&path, &Raster { info, samples, mask: None }, true).expect("written");
+        let by = |max_nodes: usize| {
+            let request = TerrainRequest { max_nodes, ..TerrainRequest::default() };
+            survey(&path, &request, &Progress::silent()).expect("surveyed")
+        };
+        let (whole, thinned) = (by(1 << 20), by(5000));
+        std::fs::remove_file(&path).expect("removed");
+        let told = |s: &Loaded<TerrainSurvey>| s.warnings.iter().any(|w| w.kind == WarningKind::Reduced);
+        assert!(!told(&whole) && told(&thinned), "{:?} {:?}", whole.warnings, thinned.warnings);
+        let (a, b) = (whole.value, thinned.value);
+        assert_eq!((a.size, a.spacing), ([cols, rows], [20.0, 20.0]));
+        assert_eq!(a.extent, [400_010.0, 4_995_950.0, 406_010.0, 4_999_990.0], "of the centres of the samples");
+        assert_eq!(
+            (a.size, a.spacing, a.extent, &a.system, &a.unit),
+            (b.size, b.spacing, b.extent, &b.system, &b.unit)
+        );
+        assert_eq!([a.ground.heightfield.cols(), a.ground.heightfield.rows()], [cols, rows]);
+        assert!(b.ground.heightfield.heights().len() <= 5000);
+        let ([low, high], [lowest, highest]) = (b.heights_m.expect("heights"), a.heights_m.expect("heights"));
+        assert!(lowest <= low && low < lowest + 30.0 && highest - 30.0 < high && high <= highest, "{low} {high}");
+    }
+}
