@@ -21,18 +21,50 @@ const LEAST: f64 = 1e-9;
 
 /// Whether the representations of a job are drawn one by one.
 pub fn are_needed(job: &RenderJob<'_>) -> bool {
-    sections_by_layers(job).is_some()
+    Levels::of(job).is_some()
 }
 
-fn sections_by_layers<'a>(job: &RenderJob<'a>) -> Option<Sections<'a>> {
-    let options = job.options;
-    let published = options.compositing == Compositing::Layers;
-    let by_layers = |s: &Sections<'_>| {
-        let apart = options.compositing == Compositing::Single && !s.has_one_surface();
-        s.representations() > 1 && (published || apart || stylise::is_on(job))
-    };
-    let sections = if options.representation.is_none() { Sections::new(job) } else { None };
-    sections.filter(by_layers)
+/// The representations of a job that are drawn one by one.
+#[derive(Debug, Clone)]
+pub struct Levels<'a> {
+    sections: Sections<'a>,
+    /// Whether marks are drawn with each representation, as published, not over the whole picture.
+    pub published: bool,
+}
+
+impl<'a> Levels<'a> {
+    /// `None` for a job that is drawn at once.
+    pub fn of(job: &RenderJob<'a>) -> Option<Self> {
+        let options = job.options;
+        let published = options.compositing == Compositing::Layers;
+        let by_layers = |s: &Sections<'_>| {
+            let apart = options.compositing == Compositing::Single && !s.has_one_surface();
+            s.representations() > 1 && (published || apart || stylise::is_on(job))
+        };
+        let sections = if options.representation.is_none() { Sections::new(job) } else { None };
+        sections.filter(by_layers).map(|sections| Self { sections, published })
+    }
+
+    /// Number of representations.
+    pub fn count(&self) -> usize {
+        self.sections.representations()
+    }
+
+    /// Options that draw one representation alone.
+    pub fn options(&self, options: &RenderOptions, number: usize) -> RenderOptions {
+        let marks = options.marks && self.published;
+        let mut options = RenderOptions { representation: Some(number), exposures: 1, marks, ..options.clone() };
+        options.aux.world = true;
+        if !marks {
+            options.overlay = Overlay::default();
+        }
+        options
+    }
+
+    /// Mixes the pictures, or the same rows of the pictures, of all representations; without colours if they have none.
+    pub fn composite(&self, levels: &[Frame], keep_world: bool) -> Frame {
+        composite(levels, &self.sections, keep_world)
+    }
 }
 
 /// Draws a job by `draw`, representation by representation if that is asked for, if no two representations show the same surface, or if
@@ -45,23 +77,16 @@ pub fn draw(
     draw: impl Fn(&RenderJob<'_>) -> Result<Frame, RenderError>,
     marks: impl Fn(&RenderJob<'_>, &Screen, &[f32]) -> Marks,
 ) -> Result<Frame, RenderError> {
-    let options = job.options;
-    let published = options.compositing == Compositing::Layers;
-    let Some(sections) = sections_by_layers(job) else {
+    let Some(levels) = Levels::of(job) else {
         return draw(job);
     };
     let alone = |number: usize| {
-        let marks = options.marks && published;
-        let mut options = RenderOptions { representation: Some(number), exposures: 1, marks, ..options.clone() };
-        options.aux.world = true;
-        if !marks {
-            options.overlay = Overlay::default();
-        }
+        let options = levels.options(job.options, number);
         draw(&RenderJob { options: &options, ..*job })
     };
-    let layers = (0..sections.representations()).map(alone).collect::<Result<Vec<_>, _>>()?;
-    let frame = composite(&layers, &sections, options.aux.world);
-    Ok(if published { frame } else { with_marks(job, frame, marks) })
+    let layers = (0..levels.count()).map(alone).collect::<Result<Vec<_>, _>>()?;
+    let frame = levels.composite(&layers, job.options.aux.world);
+    Ok(if levels.published { frame } else { with_marks(job, frame, marks) })
 }
 
 /// The picture with the lines, points and names of its job drawn over it.
@@ -100,6 +125,9 @@ fn composite(layers: &[Frame], sections: &Sections<'_>, keep_world: bool) -> Fra
             weights[*a].total_cmp(&weights[*b]).then(layers[*b].depth[i].total_cmp(&layers[*a].depth[i]))
         };
         let most = (0..layers.len()).max_by(first).unwrap_or(0);
+        if layers[most].color.is_empty() {
+            return ([0; 3], most);
+        }
         if sum < LEAST {
             return (layers[most].color[i], most);
         }
@@ -107,21 +135,25 @@ fn composite(layers: &[Frame], sections: &Sections<'_>, keep_world: bool) -> Fra
         (encode(mixed.fold(Rgb::ZERO, |a, b| a + b)), most)
     };
     let first = &layers[0];
-    let pixels: Vec<([u8; 3], usize)> = (0..first.color.len()).into_par_iter().map(pixel).collect();
+    let pixels: Vec<([u8; 3], usize)> = (0..first.depth.len()).into_par_iter().map(pixel).collect();
     let of = |i: usize| &layers[pixels[i].1];
     let all = 0..pixels.len();
-    let bytes = |layer: &Frame| (layer.color.len() * (3 + 4 + 4 + 24)) as u64;
-    let stats = layers.iter().fold(FrameStats::default(), |sum, layer| FrameStats {
-        layer_bytes: sum.layer_bytes + bytes(layer),
-        ..sum.and(&layer.stats)
-    });
+    let stats = sum_of_stats(layers.iter().map(|layer| (layer.color.len(), &layer.stats)));
     Frame {
         width: first.width,
         height: first.height,
-        color: pixels.iter().map(|p| p.0).collect(),
+        color: if first.color.is_empty() { Vec::new() } else { pixels.iter().map(|p| p.0).collect() },
         depth: all.clone().map(|i| of(i).depth[i]).collect(),
         id: all.clone().map(|i| of(i).id[i]).collect(),
         world: keep_world.then(|| all.map(|i| place(of(i), i).to_array()).collect()),
         stats,
     }
+}
+
+/// Counts of a picture that is mixed from others, given by their numbers of pixels and their counts.
+pub fn sum_of_stats<'s>(layers: impl Iterator<Item = (usize, &'s FrameStats)>) -> FrameStats {
+    layers.fold(FrameStats::default(), |sum, (pixels, stats)| FrameStats {
+        layer_bytes: sum.layer_bytes + (pixels * (3 + 4 + 4 + 24)) as u64,
+        ..sum.and(stats)
+    })
 }

@@ -190,6 +190,12 @@ impl<'a> Sections<'a> {
         thrown & seen != 0 && (thrown & seen == seen || self.prevails(layer, p))
     }
 
+    /// Whether a layer casts shadows on any that is drawn: on those of the only representation, if just one is drawn.
+    pub fn casts(&self, layer: usize) -> bool {
+        let Some(number) = self.only else { return true };
+        self.shown_by.iter().any(|seen| seen >> number & 1 == 1 && seen & self.shown_by[layer] != 0)
+    }
+
     /// Whether a layer is shown at threshold 0.5 at a point, where its lines and points are then drawn.
     pub fn prevails(&self, layer: usize, p: DVec3) -> bool {
         self.shows(layer, self.parameter(p), 0.5)

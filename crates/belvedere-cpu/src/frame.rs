@@ -4,6 +4,7 @@ use crate::raster::band::BAND;
 use crate::see_through::SeeThrough;
 use crate::shade::ground_bytes;
 use belvedere_composite::depths::DepthTiles;
+use belvedere_composite::layers::Levels;
 use belvedere_composite::marks::Marks;
 use belvedere_composite::stylise::{self, Relief};
 use belvedere_composite::unsharp::DepthGrid;
@@ -91,5 +92,8 @@ pub(crate) fn needed(job: &RenderJob<'_>, (more_per_pixel, rows): (u64, Option<u
     let Some(rows) = rows else { return pixels * per_pixel + bands + nodes };
     let grid = if job.options.stylisation.unsharp > 0.0 { DepthGrid::bytes(pixels) } else { 0 };
     let tiles = if Marks::are_in(job) { pixels / 64 * DepthTiles::BYTES_PER_TILE } else { 0 };
-    u64::from(width) * rows as u64 * per_pixel + bands + nodes + grid + tiles
+    // Representations that are drawn one by one are prepared together, and their rows are mixed by world points.
+    let (levels, mixed) = Levels::of(job).map_or((1, 0), |levels| (levels.count() as u64, 2 * (3 + 4 + 4 + 24)));
+    let (row, of_level) = (u64::from(width) * rows as u64, bands + nodes + grid + tiles);
+    (row * (per_pixel + mixed) + of_level) * levels
 }

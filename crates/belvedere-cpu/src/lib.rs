@@ -22,6 +22,7 @@ mod exact;
 mod fast;
 mod frame;
 mod geometry;
+mod level_rows;
 mod marks;
 mod over_ground;
 mod points;

@@ -4,6 +4,7 @@ use crate::cache::{GroundCache, lock};
 use crate::frame::{checked, needed};
 use crate::geometry::lod::Tree;
 use crate::geometry::pass::{BodyPasses, Pass};
+use crate::level_rows;
 use crate::marks;
 use crate::over_ground;
 use crate::raster::band::sample_offsets;
@@ -88,7 +89,7 @@ impl Renderer for CpuRenderer {
         job: &RenderJob<'_>,
         work: &mut dyn FnMut(&dyn PictureRows) -> Result<(), RenderError>,
     ) -> Result<(), RenderError> {
-        self.with_scratch(|scratch| rows::draw((&self.detail, &self.light), job, scratch, work))
+        self.with_scratch(|scratch| level_rows::draw((&self.detail, &self.light), job, scratch, work))
     }
 }
 

@@ -19,7 +19,7 @@ use belvedere_composite::buffers::Buffers;
 use belvedere_composite::color::Packed;
 use belvedere_composite::depths::{DepthTiles, Depths};
 use belvedere_composite::finish::{draw_marks_on_rows, is_open};
-use belvedere_composite::layers;
+use belvedere_composite::layers::Levels;
 use belvedere_composite::marks::Marks;
 use belvedere_composite::sections::Sections;
 use belvedere_composite::skyline::Skyline;
@@ -38,36 +38,48 @@ use std::sync::{Arc, Mutex};
 /// Rows of depths that are drawn together beforehand.
 const AHEAD: usize = 16 * BAND;
 
+/// Caches of the ground.
+pub(crate) type Caches<'a> = (&'a GroundCache<(), Arc<Tree>>, &'a LightCache);
+
 /// What keeps the rasteriser from drawing a job some rows at a time.
 pub(crate) fn whole_only(job: &RenderJob<'_>) -> Option<&'static str> {
     let has_volumes = job.scene.layers.iter().any(|layer| matches!(layer.kind, LayerKind::Volume(_)));
     let has_contours =
         job.scene.layers.iter().any(|layer| matches!(&layer.kind, LayerKind::Terrain(t) if t.contours.is_some()));
+    let is_marked = Levels::of(job).is_some_and(|levels| !levels.published) && Marks::are_in(job);
     let reasons = [
         (has_volumes, "its volumes"),
         (job.view.split_rays().is_some(), "its rays, which part"),
         (has_contours, "its contours"),
-        (layers::are_needed(job), "styling sections whose representations are drawn one by one"),
+        (is_marked, "lines, names or other marks over styling sections whose representations are drawn one by one"),
         (!job.options.overlay.faces.is_empty(), "faces over the picture"),
         (job.options.aux.exact, "buffers of exact depths"),
     ];
     reasons.into_iter().find(|(is, _)| *is).map(|(_, what)| what)
 }
 
-/// Prepares a picture and lets `work` draw it.
-pub(crate) fn draw(
-    (detail, light): (&GroundCache<(), Arc<Tree>>, &LightCache),
-    job: &RenderJob<'_>,
-    scratch: &mut Scratch,
-    work: &mut dyn FnMut(&dyn PictureRows) -> Result<(), RenderError>,
-) -> Result<(), RenderError> {
+/// Fails for a job that is not drawn some rows at a time.
+pub(crate) fn check(job: &RenderJob<'_>) -> Result<(), RenderError> {
     if let Some(what) = whole_only(job) {
         return Err(RenderError::WholeOnly { what });
     }
     if ![1, 4, 16].contains(&job.options.samples) {
         return Err(RenderError::Samples { samples: job.options.samples });
     }
-    check_memory(job, (0, Some(BAND)))?;
+    check_memory(job, (0, Some(BAND)))
+}
+
+/// Work on a prepared picture.
+pub(crate) type Work<'w> = &'w mut dyn FnMut(&dyn PictureRows) -> Result<(), RenderError>;
+
+/// Prepares a picture and lets `work` draw it.
+pub(crate) fn draw(
+    (detail, light): Caches<'_>,
+    job: &RenderJob<'_>,
+    scratch: &mut Scratch,
+    work: Work<'_>,
+) -> Result<(), RenderError> {
+    check(job)?;
     let start = Instant::now();
     let pool = threads_of(job);
     let pool = pool.as_ref();
@@ -108,7 +120,7 @@ pub(crate) fn draw(
 }
 
 /// Runs some work on threads of the job's own, if there are any.
-fn on<T: Send>(pool: Option<&ThreadPool>, work: impl FnOnce() -> T + Send) -> T {
+pub(crate) fn on<T: Send>(pool: Option<&ThreadPool>, work: impl FnOnce() -> T + Send) -> T {
     match pool {
         Some(pool) => pool.install(work),
         None => work(),

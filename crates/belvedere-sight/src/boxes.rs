@@ -1,5 +1,6 @@
 //! Boxes: tests against segments, and a bounding tree.
 
+use crate::beam::{Beam, LightAxes, Reach};
 use crate::{Lift, clip_segment};
 use belvedere_core::{Aabb, DVec3};
 use belvedere_scene::BoxShape;
@@ -65,6 +66,20 @@ impl UprightBox {
         sign * [DVec3::new(cos, sin, 0.0), DVec3::new(-sin, cos, 0.0), DVec3::Z][axis]
     }
 
+    /// Extent of the box along the axes of light, for every displacement of the ground under it.
+    pub(crate) fn reach_along(&self, light: &LightAxes) -> Reach {
+        let ((sin, cos), half) = (self.sin_cos, self.half);
+        let axes = [half.x * DVec3::new(cos, sin, 0.0), half.y * DVec3::new(-sin, cos, 0.0), half.z * DVec3::Z];
+        let lift = [self.lift[0].min(0.0), self.lift[1].max(0.0)];
+        let lifted = [axes[0], axes[1], axes[2] + 0.5 * (lift[1] - lift[0]) * DVec3::Z];
+        light.reach_of_box(self.center + 0.5 * (lift[0] + lift[1]) * DVec3::Z, lifted)
+    }
+
+    /// Whether the segment `a b` meets the box, for every displacement of the ground under it.
+    pub fn is_met(&self, a: DVec3, b: DVec3) -> bool {
+        self.within(a, b, 0.0).is_some()
+    }
+
     /// Parameters between which the segment `a b` lies within `reach` of the box, for every displacement of the ground under it.
     fn within(&self, a: DVec3, b: DVec3, reach: f64) -> Option<[f64; 2]> {
         let [low, high] = self.lift.map(|l| l * DVec3::Z);
@@ -97,14 +112,20 @@ fn clip(start: DVec3, dir: DVec3, bounds: &Aabb, reach: f64) -> Option<[f64; 2]>
 
 #[derive(Debug)]
 enum Node {
-    Inner([usize; 2]),
-    Leaf(Vec<UprightBox>),
+    Inner([u32; 2]),
+    /// Boxes from one number to another.
+    Leaf([u32; 2]),
 }
+
+/// Size of the stack of nodes to visit: halving a `usize` of boxes never needs more.
+const DEPTH: usize = 72;
 
 /// The boxes of a scene in a tree of bounds.
 #[derive(Debug, Default)]
 pub struct BoxTree {
     nodes: Vec<(Aabb, Node)>,
+    /// Leaf after leaf.
+    boxes: Vec<UprightBox>,
 }
 
 impl BoxTree {
@@ -119,10 +140,11 @@ impl BoxTree {
         out
     }
 
-    fn add(&mut self, mut boxes: Vec<UprightBox>) -> usize {
+    fn add(&mut self, mut boxes: Vec<UprightBox>) -> u32 {
         let bounds = boxes.iter().fold(Aabb::EMPTY, |b, s| b.union(s.bounds()));
         let at = self.nodes.len();
-        self.nodes.push((bounds, Node::Leaf(Vec::new())));
+        let first = self.boxes.len() as u32;
+        self.nodes.push((bounds, Node::Leaf([first, first])));
         if boxes.len() > LEAF {
             let extent = bounds.max - bounds.min;
             let axis = if extent.x >= extent.y { 0 } else { 1 };
@@ -130,9 +152,10 @@ impl BoxTree {
             let rest = boxes.split_off(boxes.len() / 2);
             self.nodes[at].1 = Node::Inner([self.add(boxes), self.add(rest)]);
         } else {
-            self.nodes[at].1 = Node::Leaf(boxes);
+            self.boxes.extend(boxes);
+            self.nodes[at].1 = Node::Leaf([first, self.boxes.len() as u32]);
         }
-        at
+        at as u32
     }
 
     /// Smallest box around all boxes, for every displacement of the ground under them.
@@ -140,22 +163,49 @@ impl BoxTree {
         self.nodes.first().map_or(Aabb::EMPTY, |(bounds, _)| *bounds)
     }
 
+    /// The boxes, in the order of the tree.
+    pub fn boxes(&self) -> &[UprightBox] {
+        &self.boxes
+    }
+
     /// Visits the boxes that come within `reach` (scene units) of the segment `a b`, in no order, with the parameters of
     /// its part there, until `visit` returns `false`; then the result is `false`.
     pub fn near(&self, a: DVec3, b: DVec3, reach: f64, visit: &mut dyn FnMut(&UprightBox, [f64; 2]) -> bool) -> bool {
-        let mut stack = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
-        while let Some(i) = stack.pop() {
-            let (bounds, node) = &self.nodes[i];
-            if clip(a, b - a, bounds, reach).is_none() {
+        let holds = |bounds: &Aabb| clip(a, b - a, bounds, reach).is_some();
+        self.visit(holds, |number| match self.boxes[number].within(a, b, reach) {
+            Some(part) => visit(&self.boxes[number], part),
+            None => true,
+        })
+    }
+
+    /// Visits the numbers of the boxes that may come into a beam.
+    pub(crate) fn in_beam(&self, beam: &Beam, mut visit: impl FnMut(usize)) {
+        let meets = |bounds: &Aabb| beam.meets(bounds.center(), 0.5 * (bounds.max - bounds.min));
+        self.visit(meets, |number| {
+            visit(number);
+            true
+        });
+    }
+
+    /// Visits the boxes of the leaves all of whose nodes are wanted, until `visit` returns `false`; then the result is `false`.
+    #[inline]
+    fn visit(&self, wanted: impl Fn(&Aabb) -> bool, mut visit: impl FnMut(usize) -> bool) -> bool {
+        let mut stack = [0u32; DEPTH];
+        let mut height = usize::from(!self.nodes.is_empty());
+        while height > 0 {
+            height -= 1;
+            let (bounds, node) = &self.nodes[stack[height] as usize];
+            if !wanted(bounds) {
                 continue;
             }
             match node {
-                Node::Inner(children) => stack.extend(children),
-                Node::Leaf(boxes) => {
-                    for shape in boxes {
-                        if let Some(part) = shape.within(a, b, reach)
-                            && !visit(shape, part)
-                        {
+                Node::Inner(children) => {
+                    stack[height..height + 2].copy_from_slice(children);
+                    height += 2;
+                }
+                Node::Leaf([first, end]) => {
+                    for number in *first..*end {
+                        if !visit(number as usize) {
                             return false;
                         }
                     }

@@ -1,5 +1,6 @@
 //! Lines of sight over a heightfield.
 
+use crate::beam::Beam;
 use crate::{GridLine, Pyramid};
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{CellTriangle, Heightfield, NodeState};
@@ -114,6 +115,47 @@ impl<'a> Ground<'a> {
         self.ranges.fold(level, first, end, true, |clear, [low, high]| {
             clear && (bounds.min.z > f64::from(*high) || bounds.max.z < f64::from(*low))
         })
+    }
+
+    /// Upper bound of the places along a beam at which a point of it above the height `low` lies on the surface of [`Ground::lifted`] or under
+    /// it; minus infinity where none does.
+    pub(crate) fn highest_along(&self, beam: &Beam, low: f64) -> f64 {
+        let top = self.ranges.levels() - 1;
+        let mut best = f64::NEG_INFINITY;
+        let mut stack = vec![(top, [0usize; 2])];
+        while let Some((level, block)) = stack.pop() {
+            let high = f64::from(self.ranges.block(level, block)[1]);
+            // Blocks without ground, and those that end below.
+            if !(high >= low) {
+                continue;
+            }
+            let side = self.ranges.side(level) as usize;
+            let ends = [0, 1].map(|axis| ((block[axis] + 1) * side).min(self.nodes()[axis] - 1));
+            let (nw, se) = (
+                self.heightfield.node_xy(block[0] * side, block[1] * side),
+                self.heightfield.node_xy(ends[0], ends[1]),
+            );
+            let half = DVec3::new(0.5 * (se.x - nw.x), 0.5 * (nw.y - se.y), 0.5 * (high - low));
+            let center = (0.5 * (nw + se)).extend(0.5 * (high + low));
+            if !beam.meets(center, half) {
+                continue;
+            }
+            let most = beam.highest_in(center, half).min(beam.place_at_height(high));
+            if most <= best {
+                continue;
+            }
+            if level == 0 {
+                best = most;
+                continue;
+            }
+            let size = self.ranges.size(level - 1);
+            for child in [[0, 0], [1, 0], [0, 1], [1, 1]].map(|step| [0, 1].map(|axis| 2 * block[axis] + step[axis])) {
+                if child[0] < size[0] && child[1] < size[1] {
+                    stack.push((level - 1, child));
+                }
+            }
+        }
+        best
     }
 
     /// Visits, from `a` to `b`, the cells in which the straight segment comes within `reach` of the heights of the

@@ -1,5 +1,6 @@
 //! Ground as it is drawn, and lines of sight over it.
 
+mod beam;
 mod boxes;
 mod carried;
 mod clip;
@@ -7,6 +8,7 @@ mod crossings;
 mod displaced;
 mod field;
 mod ground;
+mod light_buffer;
 mod line;
 mod mesh_tree;
 mod obstacles;
@@ -23,6 +25,7 @@ pub use crossings::{AT_NODE, SightLine, SightSample, guard_tau, sight_samples};
 pub use displaced::{DisplacedGround, Excess, SightVertex};
 pub use field::{Field, FieldError};
 pub use ground::{Ground, Lift};
+pub use light_buffer::{Blocker, Bundle, Found, LightBuffer};
 pub use line::{Edge, EdgeFamily, GridLine, floor};
 pub use mesh_tree::MeshTree;
 pub use obstacles::{Obstacles, SightOptions};

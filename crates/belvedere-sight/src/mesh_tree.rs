@@ -1,5 +1,6 @@
 //! A bounding volume hierarchy over the triangles of a mesh, for rays and lines of sight.
 
+use crate::beam::{Beam, LightAxes, Reach};
 use crate::clip_segment;
 use belvedere_core::{Aabb, DVec3};
 use belvedere_scene::Mesh;
@@ -164,6 +165,30 @@ impl<'a> MeshTree<'a> {
             }
         }
         false
+    }
+
+    /// Visits the numbers of the triangles whose bounds may come into a beam. Displacements count for nothing, as in [`MeshTree::crossing`].
+    pub(crate) fn in_beam(&self, beam: &Beam, mut visit: impl FnMut(usize)) {
+        let mut stack = if self.tree.nodes.is_empty() { Vec::new() } else { vec![0usize] };
+        while let Some(at) = stack.pop() {
+            let node = &self.tree.nodes[at];
+            let (low, high) = (node.aabb().min.as_dvec3(), node.aabb().max.as_dvec3());
+            if !beam.meets(self.mesh.origin() + 0.5 * (low + high), 0.5 * (high - low)) {
+                continue;
+            }
+            let first = node.first_index as usize;
+            if node.prim_count == 0 {
+                stack.extend([first + 1, first]);
+                continue;
+            }
+            let leaf = &self.tree.primitive_indices[first..first + node.prim_count as usize];
+            leaf.iter().for_each(|triangle| visit(*triangle as usize));
+        }
+    }
+
+    /// Extent of a triangle along the axes of light.
+    pub(crate) fn reach_along(&self, triangle: usize, light: &LightAxes) -> Reach {
+        light.reach_of_points(self.mesh.corners(triangle))
     }
 
     /// Parameter at which the straight segment `a b` passes a triangle. A segment through an edge passes at least one triangle at it.

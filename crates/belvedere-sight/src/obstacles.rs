@@ -47,6 +47,11 @@ impl<'a> Obstacles<'a> {
         Self::lifted(scene, None, solids)
     }
 
+    /// The same with other solids and without some layers, by their index.
+    pub fn of_solids_without(scene: &'a Scene, solids: Solids, layers: &[usize]) -> Self {
+        Self::of(scene, Without { solids, layers, ..Without::default() }, None, None)
+    }
+
     /// The same without some layers, by their index, so that a feature does not hide itself.
     pub fn without(scene: &'a Scene, layers: &[usize]) -> Self {
         Self::of(scene, Without { layers, ..Without::default() }, None, None)

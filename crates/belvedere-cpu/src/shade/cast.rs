@@ -2,7 +2,8 @@
 
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{LayerKind, Light, Scene};
-use belvedere_sight::{Obstacles, Solids};
+use belvedere_sight::{Bundle, LayerPart, LightBuffer, Obstacles, Solids};
+use std::cell::Cell;
 
 /// Angular radius of the sun, radians.
 const SUN_RADIUS: f64 = 0.004_65;
@@ -50,7 +51,7 @@ const fn pattern() -> [[f64; 4]; 16] {
 
 /// Casters of shadows, except the ground on itself.
 pub(crate) struct Casters<'a> {
-    obstacles: Obstacles<'a>,
+    buffer: LightBuffer<'a>,
     /// Bounds of all boxes and meshes, and the largest height of everything.
     solid: Aabb,
     top: f64,
@@ -61,7 +62,8 @@ pub(crate) struct Casters<'a> {
 
 impl<'a> Casters<'a> {
     /// `None` if shadows are off, the sun is down, or only the ground could cast any.
-    pub(crate) fn new(scene: &'a Scene, light: &Light) -> Option<Self> {
+    /// * `casts`: whether a layer, by its index, casts shadows on anything that is drawn; `pixels`: of the picture.
+    pub(crate) fn new(scene: &'a Scene, light: &Light, casts: &dyn Fn(usize) -> bool, pixels: usize) -> Option<Self> {
         let sun = light.direction();
         if !(light.shadows && sun.z > 0.01) {
             return None;
@@ -69,16 +71,23 @@ impl<'a> Casters<'a> {
         if !scene.layers.iter().any(|l| matches!(l.kind, LayerKind::Boxes(_)) || l.kind.triangles().is_some()) {
             return None;
         }
-        // What something shines through casts its whole shadow.
-        let obstacles = Obstacles::of_solids(scene, Solids::Drawn);
-        let solid = obstacles.solid_bounds();
+        // What something shines through casts its whole shadow. Rays end at the same heights whatever is left out.
+        let is_idle = |i: &usize| {
+            let kind = &scene.layers[*i].kind;
+            kind.triangles().is_some() && Solids::Drawn.of(*i, kind) == LayerPart::Everything && !casts(*i)
+        };
+        let idle: Vec<usize> = (0..scene.layers.len()).filter(is_idle).collect();
+        let bounds = idle.iter().filter_map(|i| Some(scene.layers[*i].kind.triangles()?.mesh.bounds()));
+        let obstacles = Obstacles::of_solids_without(scene, Solids::Drawn, &idle);
+        let solid = bounds.fold(obstacles.solid_bounds(), |all, mesh| all.union(mesh));
         if solid.is_empty() {
             return None;
         }
         let highest = obstacles.grounds().iter().map(|(_, g)| g.heightfield().z_range()[1]);
         let top = highest.fold(solid.max.z, f64::max);
         let (u, v) = sun.any_orthonormal_pair();
-        Some(Self { obstacles, solid, top, sun, across: [SUN_RADIUS * u, SUN_RADIUS * v] })
+        let buffer = LightBuffer::new(obstacles, [u, v, sun], SUN_RADIUS, pixels);
+        Some(Self { buffer, solid, top, sun, across: [SUN_RADIUS * u, SUN_RADIUS * v] })
     }
 
     /// Share of the sun's disc that boxes and meshes leave visible from a pixel on the ground, 0..=1.
@@ -108,18 +117,50 @@ impl<'a> Casters<'a> {
         self.share(p + off * normal, [side * u, side * v], true, throws)
     }
 
-    fn share(&self, p: DVec3, [right, down]: [DVec3; 2], over_ground: bool, throws: &dyn Fn(usize) -> bool) -> f32 {
-        let lit = |i: usize| {
-            let [x, y, u, v] = PATTERN[i];
-            let sun = self.sun + u * self.across[0] + v * self.across[1];
-            u32::from(self.sees(p + x * right + y * down, sun, over_ground, throws))
+    fn share(&self, p: DVec3, axes: [DVec3; 2], over_ground: bool, throws: &dyn Fn(usize) -> bool) -> f32 {
+        let throws = &remembered(throws);
+        let half = axes.map(|axis| 0.5 * axis);
+        let foot = p.z - half[0].z.abs() - half[1].z.abs();
+        let length = self.way(foot, if over_ground { self.top } else { self.solid.max.z }).max(0.0);
+        let Some(mut found) = self.buffer.around(&Bundle { center: p, half, length }) else {
+            return self.share_by_trees(p, axes, over_ground, throws);
         };
-        let corners: u32 = (0..FIRST).map(lit).sum();
-        if corners == 0 || corners as usize == FIRST {
-            return (corners / FIRST as u32) as f32;
+        found.retain(|blocker| throws(self.buffer.layer_of(blocker)));
+        let over_ground = over_ground && !found.is_over_ground;
+        if found.blockers().is_empty() && !over_ground {
+            return 1.0;
         }
-        let rest: u32 = (FIRST..PATTERN.len()).map(lit).sum();
-        (corners + rest) as f32 / PATTERN.len() as f32
+        share_of(|ray| {
+            let (p, sun) = self.ray(p, axes, ray);
+            let end = self.end(p, sun, self.solid.max.z);
+            // What hides the sun from one ray of a pixel mostly hides it from the next.
+            if let Some(k) = found.blockers().iter().position(|blocker| self.buffer.is_met(blocker, p, end)) {
+                found.prefer(k);
+                return false;
+            }
+            !over_ground || self.is_over_grounds(p, sun, throws)
+        })
+    }
+
+    /// [`Self::share`] without the light buffer: its reference, and for pixels too large for it.
+    fn share_by_trees(&self, p: DVec3, axes: [DVec3; 2], over_ground: bool, throws: &dyn Fn(usize) -> bool) -> f32 {
+        share_of(|ray| {
+            let (p, sun) = self.ray(p, axes, ray);
+            let (end, obstacles) = (self.end(p, sun, self.solid.max.z), self.buffer.obstacles());
+            obstacles.boxes().near(p, end, 0.0, &mut |shape, _| !throws(shape.layer))
+                && obstacles.meshes().iter().all(|(i, tree)| !throws(*i) || !tree.is_crossed(p, end))
+                && (!over_ground || self.is_over_grounds(p, sun, throws))
+        })
+    }
+
+    /// Start and direction of a ray of [`PATTERN`].
+    fn ray(&self, p: DVec3, [right, down]: [DVec3; 2], [x, y, u, v]: [f64; 4]) -> (DVec3, DVec3) {
+        (p + x * right + y * down, self.sun + u * self.across[0] + v * self.across[1])
+    }
+
+    fn is_over_grounds(&self, p: DVec3, sun: DVec3, throws: &dyn Fn(usize) -> bool) -> bool {
+        let end = self.end(p, sun, self.top);
+        self.buffer.obstacles().grounds().iter().all(|(i, g)| !throws(*i) || g.sees(p, end))
     }
 
     /// Length of a ray towards the sun from a height to another.
@@ -127,12 +168,33 @@ impl<'a> Casters<'a> {
         (top - z) / self.sun.z
     }
 
-    fn sees(&self, p: DVec3, sun: DVec3, over_ground: bool, throws: &dyn Fn(usize) -> bool) -> bool {
-        let to = |top: f64| p + self.way(p.z, top).max(0.0) * sun;
-        let end = to(self.solid.max.z);
-        self.obstacles.boxes().near(p, end, 0.0, &mut |shape, _| !throws(shape.layer))
-            && self.obstacles.meshes().iter().all(|(i, tree)| !throws(*i) || !tree.is_crossed(p, end))
-            && (!over_ground || self.obstacles.grounds().iter().all(|(i, g)| !throws(*i) || g.sees(p, to(self.top))))
+    /// End of a ray at a height.
+    fn end(&self, p: DVec3, sun: DVec3, top: f64) -> DVec3 {
+        p + self.way(p.z, top).max(0.0) * sun
+    }
+}
+
+/// Share of the rays of [`PATTERN`] that see the sun.
+fn share_of(mut sees: impl FnMut([f64; 4]) -> bool) -> f32 {
+    let mut lit = |ray: &[f64; 4]| u32::from(sees(*ray));
+    let corners: u32 = PATTERN[..FIRST].iter().map(&mut lit).sum();
+    if corners == 0 || corners as usize == FIRST {
+        return (corners / FIRST as u32) as f32;
+    }
+    let rest: u32 = PATTERN[FIRST..].iter().map(&mut lit).sum();
+    (corners + rest) as f32 / PATTERN.len() as f32
+}
+
+/// A function of the numbers of layers that is called once for each: styling sections take long to tell.
+fn remembered(throws: &dyn Fn(usize) -> bool) -> impl Fn(usize) -> bool {
+    let (known, held) = (Cell::new(0u64), Cell::new(0u64));
+    move |layer| {
+        let Some(bit) = 1u64.checked_shl(layer as u32) else { return throws(layer) };
+        if known.get() & bit == 0 {
+            known.set(known.get() | bit);
+            held.set(held.get() | if throws(layer) { bit } else { 0 });
+        }
+        held.get() & bit != 0
     }
 }
 
@@ -171,11 +233,24 @@ mod tests {
         LayerKind::Mesh(MeshLayer::new(mesh, Color::rgb(200, 200, 200)))
     }
 
+    fn terrain(ground: Heightfield) -> LayerKind {
+        LayerKind::Terrain(TerrainLayer {
+            heightfield: ground.into(),
+            drapes: Vec::new(),
+            relief: Relief::Sun,
+            shading: None,
+            exaggeration: 1.0,
+            palette: PaletteName::Plain.into(),
+            contours: None,
+            edge: belvedere_scene::Edge::Plain,
+        })
+    }
+
     #[test]
     fn a_tower_throws_its_shadow_away_from_the_sun_as_far_as_it_is_high() {
         for kind in [tower(), tower_mesh()] {
             let scene = Scene { layers: vec![layer(kind)], ..Scene::default() };
-            let casters = Casters::new(&scene, &SUN).unwrap();
+            let casters = Casters::new(&scene, &SUN, &|_| true, 1 << 20).unwrap();
             for i in -80..160 {
                 let x = f64::from(i) + 0.25;
                 let lit = casters.on_ground(DVec3::new(x, 3.0, 0.0), AXES, &|_| true);
@@ -198,23 +273,13 @@ mod tests {
         // A ridge of 60 in the west.
         let heights = (0..41 * 41).map(|i| if i % 41 < 3 { 60.0 } else { 0.0 }).collect();
         let hf = Heightfield::measured(DVec2::new(-100.0, 100.0), DVec2::splat(5.0), 41, 41, heights).unwrap();
-        let terrain = TerrainLayer {
-            heightfield: hf.into(),
-            drapes: Vec::new(),
-            relief: Relief::Sun,
-            shading: None,
-            exaggeration: 1.0,
-            palette: PaletteName::Plain.into(),
-            contours: None,
-            edge: belvedere_scene::Edge::Plain,
-        };
         let scene = |ground: bool| {
-            let ground = ground.then(|| layer(LayerKind::Terrain(terrain.clone())));
+            let ground = ground.then(|| layer(terrain(hf.clone())));
             Scene { layers: ground.into_iter().chain([layer(tower())]).collect(), ..Scene::default() }
         };
         let low = Light { altitude: 0.4, ..SUN };
         let (open, behind) = (scene(false), scene(true));
-        let [open, behind] = [&open, &behind].map(|s| Casters::new(s, &low).unwrap());
+        let [open, behind] = [&open, &behind].map(|s| Casters::new(s, &low, &|_| true, 1 << 20).unwrap());
         let west = |z: f64| (DVec3::new(-10.0, 0.0, z), DVec3::NEG_X);
         for z in [5.0, 20.0, 45.0] {
             let (p, n) = west(z);
@@ -230,7 +295,7 @@ mod tests {
     #[test]
     fn ground_at_the_height_of_the_highest_caster_is_lit() {
         let scene = Scene { layers: vec![layer(tower())], ..Scene::default() };
-        let casters = Casters::new(&scene, &SUN).unwrap();
+        let casters = Casters::new(&scene, &SUN, &|_| true, 1 << 20).unwrap();
         let lit = |z: f64| casters.on_ground(DVec3::new(3.0, 2.0, z), AXES, &|_| true);
         assert_eq!([49.0, 50.0, 51.0].map(lit), [0.0, 1.0, 1.0]);
     }
@@ -238,8 +303,96 @@ mod tests {
     #[test]
     fn nothing_is_asked_where_there_is_nothing_to_ask() {
         let scene = Scene { layers: vec![layer(tower())], ..Scene::default() };
-        assert!(Casters::new(&scene, &Light { shadows: false, ..SUN }).is_none());
-        assert!(Casters::new(&scene, &Light { altitude: -0.1, ..SUN }).is_none());
-        assert!(Casters::new(&Scene::default(), &SUN).is_none());
+        assert!(Casters::new(&scene, &Light { shadows: false, ..SUN }, &|_| true, 1).is_none());
+        assert!(Casters::new(&scene, &Light { altitude: -0.1, ..SUN }, &|_| true, 1).is_none());
+        assert!(Casters::new(&Scene::default(), &SUN, &|_| true, 1).is_none());
+    }
+
+    /// Numbers in 0..1 from a seed.
+    fn random(mut state: u64) -> impl FnMut() -> f64 {
+        move || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        }
+    }
+
+    /// Hilly ground, turned towers, and the same towers once more as triangles beside them; far from the origin.
+    fn town() -> Scene {
+        let mut next = random(7);
+        let corner = DVec3::new(4e5, 5e6, 0.0);
+        let mut towers = || {
+            let shape = |_| BoxShape {
+                base: corner + DVec3::new(300.0 * next(), 300.0 * next(), 4.0 * next()),
+                size: DVec3::new(4.0 + 10.0 * next(), 4.0 + 10.0 * next(), 5.0 + 30.0 * next()),
+                yaw: 3.0 * next(),
+                color: Color::rgb(200, 200, 200),
+            };
+            (0..120).map(shape).collect::<Vec<_>>()
+        };
+        let boxes = LayerKind::Boxes(BoxLayer::new(towers()));
+        let corners: Vec<DVec3> = towers().iter().flat_map(|shape| shape.corners()).collect();
+        let of = |i: usize| BoxShape::TRIANGLES.map(|t| t.map(|k| (8 * i + k) as u32));
+        let triangles = (0..corners.len() / 8).flat_map(of).collect();
+        let mesh = Mesh::new(&corners, triangles, MeshColors::Layer).unwrap();
+        let mesh = LayerKind::Mesh(MeshLayer::new(mesh, Color::rgb(200, 200, 200)));
+        let height = |i: usize| 3.0 + 3.0 * ((i % 81) as f32 * 0.2).sin() + 3.0 * ((i / 81) as f32 * 0.15).cos();
+        let north_west = DVec2::new(4e5 - 50.0, 5e6 + 350.0);
+        let heights = (0..81 * 81).map(height).collect();
+        let ground = Heightfield::measured(north_west, DVec2::splat(5.0), 81, 81, heights).unwrap();
+        Scene { layers: [terrain(ground), boxes, mesh].map(layer).to_vec(), ..Scene::default() }
+    }
+
+    #[test]
+    fn the_light_buffer_tells_what_every_ray_tells() {
+        let scene = town();
+        let mut next = random(11);
+        let (mut told, mut shares) = (0, [0; 3]);
+        let suns = [(1.5, 0.8), (0.3, 1.5), (4.1, 0.25), (2.6, 0.02), (5.9, 0.5)];
+        for (azimuth, altitude) in suns {
+            let casters = Casters::new(&scene, &Light { azimuth, altitude, ..SUN }, &|_| true, 1 << 20).unwrap();
+            let LayerKind::Boxes(towers) = &scene.layers[1].kind else { panic!("boxes") };
+            let LayerKind::Mesh(model) = &scene.layers[2].kind else { panic!("mesh") };
+            for i in 0..3000 {
+                let side = 0.02 * 200f64.powf(next());
+                let throws = |layer: usize| i % 5 > 0 || layer != 1 + i % 2;
+                let mut both = |p: DVec3, axes: [DVec3; 2], over_ground: bool| {
+                    let fast = casters.share(p, axes, over_ground, &throws);
+                    assert_eq!(
+                        fast,
+                        casters.share_by_trees(p, axes, over_ground, &throws),
+                        "{p}, {axes:?}, {altitude}"
+                    );
+                    shares[if fast == 0.0 {
+                        0
+                    } else if fast < 1.0 {
+                        1
+                    } else {
+                        2
+                    }] += 1;
+                    let half = axes.map(|axis| 0.5 * axis);
+                    let length = casters.way(p.z - 2.0 * side, casters.top);
+                    told += usize::from(casters.buffer.around(&Bundle { center: p, half, length }).is_some());
+                };
+                let LayerKind::Terrain(ground) = &scene.layers[0].kind else { panic!("terrain") };
+                let xy = DVec2::new(4e5 - 40.0, 5e6 - 40.0) + 380.0 * DVec2::new(next(), next());
+                let along = side * DVec2::from_angle(6.0 * next());
+                let z = ground.heightfield.surface_at(xy).expect("ground");
+                both(xy.extend(z), [along.extend(0.0), 3.0 * along.perp().extend(0.0)], false);
+                // A place on a side of a tower of either kind.
+                let [a, b, c] = if i % 2 == 0 {
+                    let tower = towers.boxes[i % towers.boxes.len()];
+                    BoxShape::TRIANGLES[i % 12].map(|k| tower.corners()[k])
+                } else {
+                    model.mesh.corners(i * 7 % model.mesh.triangles().len())
+                };
+                let normal = (b - a).cross(c - a).normalize();
+                let (u, v) = normal.any_orthonormal_pair();
+                let [s, t] = [next(), next()];
+                let off = OFF_PX * side + OFF * a.abs().max_element();
+                both(a + s * (b - a) + t * (1.0 - s) * (c - a) + off * normal, [side * u, side * v], true);
+            }
+        }
+        assert!(shares.iter().all(|n| *n > 500), "dark, half, lit: {shares:?}");
+        assert!(told > 20_000, "of 30000 bundles {told} are told by the buffer");
     }
 }

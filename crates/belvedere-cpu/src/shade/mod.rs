@@ -113,13 +113,15 @@ impl<'a> Shader<'a> {
         areas.sort_by_key(|a| a.surface != AreaSurface::Sea);
         let mut surfaces = layers.iter().filter(|l| !matches!(l, LayerShade::Other));
         let only_terrain = matches!((surfaces.next(), surfaces.next()), (Some(LayerShade::Terrain(_)), None));
+        let sections = Sections::new(job);
+        let casts = |layer: usize| sections.as_ref().is_none_or(|s| s.casts(layer));
         Self {
             sky: Sky::of(job.scene, job.light, job.view.pinhole()),
             screen,
             blocks,
             areas,
-            casters: Casters::new(job.scene, job.light),
-            sections: Sections::new(job),
+            casters: Casters::new(job.scene, job.light, &casts, screen.width as usize * screen.height as usize),
+            sections,
             layers,
             only_terrain,
         }
