@@ -33,15 +33,6 @@ impl LightAxes {
         let end = |sign: f64| std::array::from_fn(|k| at[k] + sign * side[k]);
         Reach { low: end(-1.0), high: end(1.0) }
     }
-
-    /// Extent of a triangle along the axes.
-    pub(crate) fn reach_of_points(&self, corners: [DVec3; 3]) -> Reach {
-        let places = corners.map(|p| self.place(p));
-        let all = |pick: fn(f64, f64) -> f64| {
-            std::array::from_fn(|k| places.iter().map(|p| p[k]).reduce(pick).unwrap_or(f64::NAN))
-        };
-        Reach { low: all(f64::min), high: all(f64::max) }
-    }
 }
 
 /// A beam of parallel light with a rectangular section.
@@ -62,12 +53,6 @@ impl Beam {
             let (at, side) = (d.dot(axis), axis.abs().dot(half));
             at + side >= self.section[k][0] && at - side <= self.section[k][1]
         })
-    }
-
-    /// Whether an extent meets the beam.
-    #[inline]
-    pub(crate) fn holds(&self, reach: &Reach) -> bool {
-        [0, 1].into_iter().all(|k| reach.high[k] >= self.section[k][0] && reach.low[k] <= self.section[k][1])
     }
 
     /// Farthest place of a box along the light.

@@ -5,8 +5,10 @@
 //! cells that are filled when they are first asked for, are ours.
 
 use crate::Obstacles;
-use crate::beam::{Beam, LightAxes, Reach};
+use crate::beam::{Beam, LightAxes};
+use crate::shadow::{Bundle, Rays, Shadow};
 use belvedere_core::{Aabb, DVec3};
+use rayon::prelude::*;
 use std::sync::OnceLock;
 
 /// Grids of cells, each `COARSER` times as wide as the one before.
@@ -14,8 +16,9 @@ const LEVELS: usize = 3;
 const COARSER: f64 = 4.0;
 /// Cells along a side of the squares for which memory is taken together.
 const TILE: usize = 16;
-/// Fewest and most cells of the finest grid.
+/// Fewest and most cells of the finest grid, and most along a side.
 const CELLS: [usize; 2] = [1 << 12, 1 << 18];
+const ALONG: f64 = 4096.0;
 /// Most solids that are found; where there are more, the trees are faster.
 const MOST: usize = 24;
 /// Widening of all bounds against rounding, as a share of the coordinates' size.
@@ -30,6 +33,10 @@ pub struct LightBuffer<'a> {
     /// Least height of the boxes and meshes.
     low: f64,
     slack: f64,
+    /// Of all boxes, then of the triangles of all meshes.
+    shadows: Vec<Shadow>,
+    /// Number of the first shadow of each mesh.
+    first: Vec<usize>,
     levels: Vec<Level>,
 }
 
@@ -44,38 +51,15 @@ struct Level {
 
 /// What rays from the points of a cell can meet.
 struct Cell {
-    /// Those nearest to the sun first.
-    solids: Box<[Blocker]>,
+    /// Numbers of the shadows of solids, those nearest to the sun first.
+    solids: Box<[u32]>,
     /// Place along the light above which no ground is.
     ground: f64,
 }
 
 /// A box or a triangle that a ray may meet.
-#[derive(Debug, Clone, Copy)]
-pub struct Blocker {
-    /// Bounds across the light.
-    low: [f32; 2],
-    high: [f32; 2],
-    /// Farthest place along the light.
-    top: f32,
-    /// Position of its mesh among the meshes, or [`BOX`].
-    mesh: u32,
-    number: u32,
-}
-
-/// In the place of a mesh: the blocker is a box.
-const BOX: u32 = u32::MAX;
-
-/// The starts of a bundle of rays towards the sun.
-#[derive(Debug, Clone, Copy)]
-pub struct Bundle {
-    /// Middle of the starts, scene coordinates.
-    pub center: DVec3,
-    /// The starts lie in the middle plus shares -1..=1 of these two.
-    pub half: [DVec3; 2],
-    /// Length of the longest ray along the light, scene units.
-    pub length: f64,
-}
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Blocker(u32);
 
 /// What the rays of a bundle may meet.
 #[derive(Debug, Clone)]
@@ -88,15 +72,17 @@ pub struct Found {
 
 impl Found {
     /// The boxes and triangles, in an order of no meaning.
+    #[inline]
     pub fn blockers(&self) -> &[Blocker] {
         &self.blockers[..self.count]
     }
 
     /// Keeps the blockers for which `is_kept` holds.
-    pub fn retain(&mut self, is_kept: impl Fn(&Blocker) -> bool) {
+    #[inline]
+    pub fn retain(&mut self, is_kept: impl Fn(Blocker) -> bool) {
         let mut kept = 0;
         for i in 0..self.count {
-            if is_kept(&self.blockers[i]) {
+            if is_kept(self.blockers[i]) {
                 self.blockers[kept] = self.blockers[i];
                 kept += 1;
             }
@@ -105,13 +91,14 @@ impl Found {
     }
 
     /// Tries a blocker before all others from now on.
+    #[inline]
     pub fn prefer(&mut self, position: usize) {
         self.blockers[..self.count].swap(0, position);
     }
 }
 
 impl<'a> LightBuffer<'a> {
-    /// Prepares the grids; cells are filled later.
+    /// Prepares the shadows of all solids; cells are filled later.
     /// * `axes`: orthonormal, the last towards the sun, which is up;
     /// * `spread`: distance by which rays depart from it along the other axes, per unit along it;
     /// * `points`: number of points that will be asked for, about: few of them are not worth many cells.
@@ -120,15 +107,23 @@ impl<'a> LightBuffer<'a> {
         let bounds = if bounds.is_empty() { Aabb::of([DVec3::ZERO]) } else { bounds };
         let half = 0.5 * (bounds.max - bounds.min);
         let light = LightAxes { origin: bounds.center(), axes };
-        let solid = light.reach_of_box(bounds.center(), [half.x * DVec3::X, half.y * DVec3::Y, half.z * DVec3::Z]);
         let slack = SLACK * bounds.min.abs().max(bounds.max.abs()).max_element().max(1e-3);
-        let triangles: usize = obstacles.meshes().iter().map(|(_, tree)| tree.mesh().triangles().len()).sum();
-        let solids = triangles + obstacles.boxes().boxes().len();
-        let most = (points / 16).min(4 * solids).clamp(CELLS[0], CELLS[1]);
+        let boxes = obstacles.boxes().boxes().par_iter().map(|shape| Shadow::of_box(&shape.reach_along(&light), slack));
+        let mut shadows: Vec<Shadow> = boxes.collect();
+        let mut first = Vec::new();
+        for (_, tree) in obstacles.meshes() {
+            let mesh = tree.mesh();
+            let triangles = (0..mesh.triangles().len()).into_par_iter();
+            first.push(shadows.len());
+            shadows.par_extend(triangles.map(|i| Shadow::of_triangle(mesh.corners(i).map(|p| light.place(p)), slack)));
+        }
+        let solid = light.reach_of_box(bounds.center(), [half.x * DVec3::X, half.y * DVec3::Y, half.z * DVec3::Z]);
         let extent = [0, 1].map(|k| solid.high[k] - solid.low[k]);
+        let most = (points / 16).min(4 * shadows.len()).clamp(CELLS[0], CELLS[1]);
+        // Rays from the foot of the lowest solid to the top of the highest, and some room for the starts.
         let departure = 1.5 * spread * 2.0 * half.z / axes[2].z + slack;
-        let side =
-            (2.0 * departure).max((extent[0] * extent[1] / most as f64).sqrt()).max(extent[0].max(extent[1]) / 4096.0);
+        let even = (extent[0] * extent[1] / most as f64).sqrt();
+        let side = (2.0 * departure).max(even).max(extent[0].max(extent[1]) / ALONG);
         let level = |k: usize| {
             let side = COARSER.powi(k as i32) * side;
             let reach = 0.5 * side;
@@ -137,7 +132,8 @@ impl<'a> LightBuffer<'a> {
             let from = [0, 1].map(|axis| solid.low[axis] - reach);
             Level { reach, side, from, size, tiles: (0..tiles).map(|_| OnceLock::new()).collect() }
         };
-        Self { light, spread, low: bounds.min.z, slack, levels: (0..LEVELS).map(level).collect(), obstacles }
+        let levels = (0..LEVELS).map(level).collect();
+        Self { light, spread, low: bounds.min.z, slack, shadows, first, levels, obstacles }
     }
 
     /// The solids.
@@ -147,27 +143,21 @@ impl<'a> LightBuffer<'a> {
 
     /// What the rays of a bundle may meet; `None` where the buffer does not tell. No ray meets a solid that is not found.
     pub fn around(&self, bundle: &Bundle) -> Option<Found> {
-        let at = self.light.place(bundle.center);
-        let half: [f64; 3] = std::array::from_fn(|k| {
-            bundle.half.map(|h| h.dot(self.light.axes[k]).abs()).iter().sum::<f64>() + self.slack
-        });
-        let start = at[2] - half[2];
-        let needed = half[0].max(half[1]) + self.spread * bundle.length.max(0.0);
+        let rays = Rays::new(&self.light, bundle, self.spread, self.slack);
+        let needed = rays.half[0].max(rays.half[1]) + self.spread * bundle.length.max(0.0);
         let level = self.levels.iter().find(|level| needed <= level.reach)?;
-        let none = Blocker { low: [0.0; 2], high: [0.0; 2], top: 0.0, mesh: BOX, number: 0 };
-        let mut found = Found { blockers: [none; MOST], count: 0, is_over_ground: false };
-        let Some(place) = level.cell_of(at) else { return Some(found) };
+        let mut found = Found { blockers: [Blocker::default(); MOST], count: 0, is_over_ground: false };
+        let Some(place) = level.cell_of(rays.at) else { return Some(found) };
         let cell = level.cell(place, || self.fill(level, place));
         let lowest = bundle.center.z - bundle.half.map(|h| h.z.abs()).iter().sum::<f64>();
-        found.is_over_ground = lowest >= self.low - self.slack && start > cell.ground;
-        for blocker in cell.solids.iter().take_while(|blocker| f64::from(blocker.top) >= start) {
-            let depart = self.spread * (f64::from(blocker.top) - start);
-            let is_met = [0, 1].into_iter().all(|k| {
-                let reach = half[k] + depart;
-                f64::from(blocker.low[k]) <= at[k] + reach && f64::from(blocker.high[k]) >= at[k] - reach
-            });
-            if is_met {
-                *found.blockers.get_mut(found.count)? = *blocker;
+        found.is_over_ground = lowest >= self.low - self.slack && rays.start > cell.ground;
+        for number in &cell.solids {
+            let shadow = &self.shadows[*number as usize];
+            if f64::from(shadow.top) < rays.start {
+                break;
+            }
+            if shadow.may_meet(&rays) {
+                *found.blockers.get_mut(found.count)? = Blocker(*number);
                 found.count += 1;
             }
         }
@@ -176,19 +166,27 @@ impl<'a> LightBuffer<'a> {
 
     /// Whether the segment `a b` meets a blocker: the test of [`MeshTree::is_crossed`](crate::MeshTree::is_crossed) or of
     /// [`BoxTree::near`](crate::BoxTree::near).
-    pub fn is_met(&self, blocker: &Blocker, a: DVec3, b: DVec3) -> bool {
-        match self.obstacles.meshes().get(blocker.mesh as usize) {
-            Some((_, tree)) => tree.crossing(blocker.number as usize, a, b).is_some(),
-            None => self.obstacles.boxes().boxes()[blocker.number as usize].is_met(a, b),
+    #[inline]
+    pub fn is_met(&self, blocker: Blocker, a: DVec3, b: DVec3) -> bool {
+        let number = blocker.0 as usize;
+        match self.mesh_of(number) {
+            Some(mesh) => self.obstacles.meshes()[mesh].1.crossing(number - self.first[mesh], a, b).is_some(),
+            None => self.obstacles.boxes().boxes()[number].is_met(a, b),
         }
     }
 
     /// Index of the layer of a blocker in the scene.
-    pub fn layer_of(&self, blocker: &Blocker) -> usize {
-        match self.obstacles.meshes().get(blocker.mesh as usize) {
-            Some((layer, _)) => *layer,
-            None => self.obstacles.boxes().boxes()[blocker.number as usize].layer,
+    pub fn layer_of(&self, blocker: Blocker) -> usize {
+        let number = blocker.0 as usize;
+        match self.mesh_of(number) {
+            Some(mesh) => self.obstacles.meshes()[mesh].0,
+            None => self.obstacles.boxes().boxes()[number].layer,
         }
+    }
+
+    /// Position, among the meshes, of the mesh of a shadow; `None` for a box.
+    fn mesh_of(&self, number: usize) -> Option<usize> {
+        self.first.iter().rposition(|first| *first <= number)
     }
 
     fn fill(&self, level: &Level, [col, row]: [usize; 2]) -> Cell {
@@ -198,22 +196,18 @@ impl<'a> LightBuffer<'a> {
         });
         let beam = Beam { light: self.light, section };
         let mut solids = Vec::new();
-        let mut add = |reach: Reach, mesh: u32, number: usize| {
-            if beam.holds(&reach) {
-                let low = [0, 1].map(|k| ((reach.low[k] - self.slack) as f32).next_down());
-                let high = [0, 1].map(|k| ((reach.high[k] + self.slack) as f32).next_up());
-                let top = ((reach.high[2] + self.slack) as f32).next_up();
-                solids.push(Blocker { low, high, top, mesh, number: number as u32 });
+        let mut add = |number: usize| {
+            if self.shadows[number].is_in(&beam) {
+                solids.push(number as u32);
             }
         };
-        let boxes = self.obstacles.boxes();
-        boxes.in_beam(&beam, |number| add(boxes.boxes()[number].reach_along(&self.light), BOX, number));
-        for (mesh, (_, tree)) in self.obstacles.meshes().iter().enumerate() {
-            tree.in_beam(&beam, |number| add(tree.reach_along(number, &self.light), mesh as u32, number));
+        self.obstacles.boxes().in_beam(&beam, &mut add);
+        for ((_, tree), first) in self.obstacles.meshes().iter().zip(&self.first) {
+            tree.in_beam(&beam, |triangle| add(first + triangle));
         }
-        solids.sort_by(|a, b| b.top.total_cmp(&a.top));
-        let grounds =
-            self.obstacles.grounds().iter().map(|(_, ground)| ground.highest_along(&beam, self.low - 2.0 * self.slack));
+        solids.sort_by(|a, b| self.shadows[*b as usize].top.total_cmp(&self.shadows[*a as usize].top));
+        let low = self.low - 2.0 * self.slack;
+        let grounds = self.obstacles.grounds().iter().map(|(_, ground)| ground.highest_along(&beam, low));
         let ground = grounds.fold(f64::NEG_INFINITY, f64::max) + self.slack;
         Cell { solids: solids.into_boxed_slice(), ground }
     }

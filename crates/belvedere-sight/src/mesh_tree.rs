@@ -1,6 +1,6 @@
 //! A bounding volume hierarchy over the triangles of a mesh, for rays and lines of sight.
 
-use crate::beam::{Beam, LightAxes, Reach};
+use crate::beam::Beam;
 use crate::clip_segment;
 use belvedere_core::{Aabb, DVec3};
 use belvedere_scene::Mesh;
@@ -184,11 +184,6 @@ impl<'a> MeshTree<'a> {
             let leaf = &self.tree.primitive_indices[first..first + node.prim_count as usize];
             leaf.iter().for_each(|triangle| visit(*triangle as usize));
         }
-    }
-
-    /// Extent of a triangle along the axes of light.
-    pub(crate) fn reach_along(&self, triangle: usize, light: &LightAxes) -> Reach {
-        light.reach_of_points(self.mesh.corners(triangle))
     }
 
     /// Parameter at which the straight segment `a b` passes a triangle. A segment through an edge passes at least one triangle at it.

@@ -134,7 +134,7 @@ impl<'a> Casters<'a> {
             let (p, sun) = self.ray(p, axes, ray);
             let end = self.end(p, sun, self.solid.max.z);
             // What hides the sun from one ray of a pixel mostly hides it from the next.
-            if let Some(k) = found.blockers().iter().position(|blocker| self.buffer.is_met(blocker, p, end)) {
+            if let Some(k) = found.blockers().iter().position(|blocker| self.buffer.is_met(*blocker, p, end)) {
                 found.prefer(k);
                 return false;
             }
