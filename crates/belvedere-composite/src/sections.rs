@@ -165,11 +165,11 @@ impl<'a> Sections<'a> {
 
     /// Intervals of thresholds at a position along the curve.
     #[inline]
-    pub fn intervals(&self, parameter: f64) -> Intervals {
+    pub fn intervals(&self, parameter: f64) -> Intervals<'_> {
         match self.only {
             None => self.table.intervals(&self.styling, parameter),
-            Some(number) if self.weight(number, parameter) > 0.0 => Intervals::of_one(number),
-            Some(_) => Intervals::of_one(MOST_REPRESENTATIONS),
+            Some(number) if self.weight(number, parameter) > 0.0 => Intervals::OfOne(number),
+            Some(_) => Intervals::OfOne(MOST_REPRESENTATIONS),
         }
     }
 
@@ -232,34 +232,53 @@ fn unrolled(strip: &Strip, p: DVec3) -> DVec3 {
 
 /// Intervals of thresholds of the representations at one position along the curve.
 #[derive(Debug)]
-pub struct Intervals {
-    ends: [f64; MOST_REPRESENTATIONS],
-    count: usize,
-    /// Number of the first representation.
-    first: usize,
+pub enum Intervals<'t> {
+    /// A single representation, by its number, holds all thresholds.
+    OfOne(usize),
+    /// Ends at two positions, and the share of the way from the first to the second.
+    Between([&'t [f64]; 2], f64),
+    /// Ends at this position.
+    Here(Box<[f64]>),
 }
 
-impl Intervals {
-    /// A single representation that holds all thresholds.
-    fn of_one(number: usize) -> Self {
-        Self { ends: [1.0; MOST_REPRESENTATIONS], count: 1, first: number }
+impl Intervals<'_> {
+    #[inline]
+    fn count(&self) -> usize {
+        match self {
+            Self::OfOne(_) => 1,
+            Self::Between([here, _], _) => here.len(),
+            Self::Here(ends) => ends.len(),
+        }
+    }
+
+    #[inline]
+    fn end(&self, number: usize) -> f64 {
+        match self {
+            Self::OfOne(_) => 1.0,
+            Self::Between([here, next], share) => here[number] + share * (next[number] - here[number]),
+            Self::Here(ends) => ends[number],
+        }
     }
 
     /// Number of the representation that holds a threshold.
     #[inline]
     pub fn holding(&self, threshold: f64) -> usize {
-        self.first + self.ends[..self.count - 1].iter().take_while(|end| threshold >= **end).count()
+        match self {
+            Self::OfOne(number) => *number,
+            _ => (0..self.count() - 1).take_while(|number| threshold >= self.end(*number)).count(),
+        }
     }
 
     /// Length of the interval of a representation: its weight.
+    #[inline]
     fn length(&self, number: usize) -> f64 {
-        let from = if number == 0 { 0.0 } else { self.ends[number - 1] };
-        (self.ends[number] - from).max(0.0)
+        let from = if number == 0 { 0.0 } else { self.end(number - 1) };
+        (self.end(number) - from).max(0.0)
     }
 
     /// Total length of the intervals of several representations, given as bits.
     fn length_of(&self, numbers: u32) -> f64 {
-        (0..self.count).filter(|number| numbers >> number & 1 == 1).map(|number| self.length(number)).sum()
+        (0..self.count()).filter(|number| numbers >> number & 1 == 1).map(|number| self.length(number)).sum()
     }
 }
 
@@ -296,20 +315,14 @@ impl Table {
     }
 
     #[inline]
-    fn intervals(&self, styling: &StylingSections, parameter: f64) -> Intervals {
+    fn intervals(&self, styling: &StylingSections, parameter: f64) -> Intervals<'_> {
         let at = ((parameter - self.from) / self.per_step).clamp(0.0, Self::STEPS as f64 - 1e-9);
         // NaN becomes 0.
-        let step = at as usize;
+        let (step, n) = (at as usize, self.representations);
         if self.has_knee[step] {
-            return Intervals { ends: styling.interval_ends(parameter), count: self.representations, first: 0 };
+            return Intervals::Here(styling.interval_ends(parameter)[..n].into());
         }
-        let (n, share) = (self.representations, at - step as f64);
-        let (here, next) = (&self.ends[step * n..][..n], &self.ends[(step + 1) * n..][..n]);
-        let mut ends = [1.0; MOST_REPRESENTATIONS];
-        for (end, (a, b)) in ends.iter_mut().zip(here.iter().zip(next)) {
-            *end = a + share * (b - a);
-        }
-        Intervals { ends, count: n, first: 0 }
+        Intervals::Between([&self.ends[step * n..][..n], &self.ends[(step + 1) * n..][..n]], at - step as f64)
     }
 }
 

@@ -243,7 +243,8 @@ impl Prepared<'_> {
     /// Offsets of the samples that are drawn beforehand: thresholds of exposures depend on all of them.
     fn offsets_ahead(&self) -> Vec<[i32; 2]> {
         let all = sample_offsets(self.job().options.samples);
-        if self.surfaces.sections.is_some() { all } else { all[..1].to_vec() }
+        let by_threshold = self.surfaces.sections.is_some() && self.job().options.representation.is_none();
+        if by_threshold { all } else { all[..1].to_vec() }
     }
 
     /// Depths of some rows of one band.

@@ -10,16 +10,16 @@ pub(crate) struct LayerShow<'a> {
     pub(crate) layer: usize,
 }
 
-impl ThinShow for LayerShow<'_> {
-    type At = Intervals;
+impl<'a> ThinShow for LayerShow<'a> {
+    type At = Intervals<'a>;
 
     #[inline]
-    fn at(&self, parameter: f64) -> Intervals {
+    fn at(&self, parameter: f64) -> Intervals<'a> {
         self.sections.intervals(parameter)
     }
 
     #[inline]
-    fn shows(&self, at: &Intervals, sample: usize, [x, y]: [i32; 2]) -> bool {
+    fn shows(&self, at: &Intervals<'a>, sample: usize, [x, y]: [i32; 2]) -> bool {
         self.sections.is_drawn_by(self.layer, at.holding(self.exposure.threshold(sample, x, y)))
     }
 }

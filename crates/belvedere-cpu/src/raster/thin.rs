@@ -53,11 +53,12 @@ impl Band {
                 for px in x0..=x1 {
                     let xs = px * SUB + ox;
                     let q = setup.nearness(xs, ys);
-                    let here = if ortho { value.nearness(xs, ys) } else { value.nearness(xs, ys) / q };
-                    let at = show.at(here);
+                    // Most samples are hidden, and need no value.
+                    let mut at = None;
                     for s in samples.clone() {
                         let i = self.index(s, px, py);
-                        if q as f32 >= self.q[i] && show.shows(&at, s, [px, py]) {
+                        let here = || if ortho { value.nearness(xs, ys) } else { value.nearness(xs, ys) / q };
+                        if q as f32 >= self.q[i] && show.shows(at.get_or_insert_with(|| show.at(here())), s, [px, py]) {
                             self.write(i, q as f32, prim);
                         }
                     }

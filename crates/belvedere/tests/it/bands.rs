@@ -80,6 +80,11 @@ fn towns_and_maps_in_parallel_projection_are_the_same_in_bands() {
 }
 
 #[test]
+fn levels_of_a_town_that_are_drawn_one_by_one_are_the_same_in_bands() {
+    all("town_sections.toml", [233, 157]);
+}
+
+#[test]
 fn molecules_and_what_shines_through_are_the_same_in_bands() {
     all("dna.toml", [233, 117]);
     all("church.toml", [233, 117]);
