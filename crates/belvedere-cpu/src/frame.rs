@@ -10,6 +10,7 @@ use belvedere_composite::stylise::{self, Relief};
 use belvedere_composite::unsharp::DepthGrid;
 use belvedere_composite::veil::Veil;
 use belvedere_scene::{Frame, LayerKind, RenderError, RenderJob};
+use belvedere_sight::LightBuffer;
 
 /// Checks the options and runs `render` on the given number of threads.
 /// * `more_per_pixel`: bytes of a pixel that the renderer takes beside those of [`check_memory`].
@@ -75,6 +76,7 @@ pub(crate) fn needed(job: &RenderJob<'_>, (more_per_pixel, rows): (u64, Option<u
         let nodes = if job.options.lod_px > 0.0 { nodes.min(8 * pixels + (1 << 20)) } else { nodes };
         nodes * NODE_BYTES * passes
     };
+    let shadow = if job.light.shadows { LightBuffer::BYTES } else { 0 };
     let nodes: u64 = job
         .scene
         .layers
@@ -84,9 +86,9 @@ pub(crate) fn needed(job: &RenderJob<'_>, (more_per_pixel, rows): (u64, Option<u
                 let nodes = (t.heightfield.cols() * t.heightfield.rows()) as u64;
                 drawn(nodes) + ground_bytes(job, &t.heightfield)
             }
-            LayerKind::Boxes(b) => b.boxes.len() as u64 * 12 * 64,
+            LayerKind::Boxes(b) => b.boxes.len() as u64 * (12 * 64 + shadow),
             // A triangle on the image and, for the tracer, its share of a tree.
-            kind => kind.triangles().map_or(0, |m| m.mesh.triangles().len() as u64 * 160),
+            kind => kind.triangles().map_or(0, |m| m.mesh.triangles().len() as u64 * (160 + shadow)),
         })
         .sum();
     let Some(rows) = rows else { return pixels * per_pixel + bands + nodes };

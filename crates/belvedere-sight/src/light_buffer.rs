@@ -4,9 +4,9 @@
 //! Source: Haines and Greenberg 1986, "The light buffer: a shadow testing accelerator". Cells that grow with the spread of the rays, and
 //! cells that are filled when they are first asked for, are ours.
 
-use crate::Obstacles;
 use crate::beam::{Beam, LightAxes};
 use crate::shadow::{Bundle, Rays, Shadow};
+use crate::{MeshTree, Obstacles};
 use belvedere_core::{Aabb, DVec3};
 use rayon::prelude::*;
 use std::sync::OnceLock;
@@ -19,6 +19,8 @@ const TILE: usize = 16;
 /// Fewest and most cells of the finest grid, and most along a side.
 const CELLS: [usize; 2] = [1 << 12, 1 << 18];
 const ALONG: f64 = 4096.0;
+/// Most shadows that are kept: of more solids the trees answer, for less memory.
+const SHADOWS: usize = 1 << 21;
 /// Most solids that are found; where there are more, the trees are faster.
 const MOST: usize = 24;
 /// Widening of all bounds against rounding, as a share of the coordinates' size.
@@ -98,7 +100,10 @@ impl Found {
 }
 
 impl<'a> LightBuffer<'a> {
-    /// Prepares the shadows of all solids; cells are filled later.
+    /// Bytes of a box or triangle, its entries in cells included.
+    pub const BYTES: u64 = 128;
+
+    /// Prepares the shadows of all solids, of which there may be at most two million; of more the buffer tells nothing. Cells are filled later.
     /// * `axes`: orthonormal, the last towards the sun, which is up;
     /// * `spread`: distance by which rays depart from it along the other axes, per unit along it;
     /// * `points`: number of points that will be asked for, about: few of them are not worth many cells.
@@ -108,6 +113,13 @@ impl<'a> LightBuffer<'a> {
         let half = 0.5 * (bounds.max - bounds.min);
         let light = LightAxes { origin: bounds.center(), axes };
         let slack = SLACK * bounds.min.abs().max(bounds.max.abs()).max_element().max(1e-3);
+        let triangles = |tree: &MeshTree<'_>| tree.mesh().triangles().len();
+        let solids =
+            obstacles.boxes().boxes().len() + obstacles.meshes().iter().map(|(_, m)| triangles(m)).sum::<usize>();
+        if solids > SHADOWS {
+            let (shadows, first, levels) = (Vec::new(), Vec::new(), Vec::new());
+            return Self { light, spread, low: bounds.min.z, slack, shadows, first, levels, obstacles };
+        }
         let boxes = obstacles.boxes().boxes().par_iter().map(|shape| Shadow::of_box(&shape.reach_along(&light), slack));
         let mut shadows: Vec<Shadow> = boxes.collect();
         let mut first = Vec::new();
