@@ -22,7 +22,7 @@ fn main() -> Result<(), Failure> {
     let argument = |k: usize| std::env::args().nth(k).filter(|a| a != "all").unwrap_or_default();
     let (range, case) = (argument(1), argument(2));
     println!(
-        "case nodes candidates rows active rounds cpu_s s_per_3000 seen report hidden_m raised_m rms_m named guaranteed MiB fallbacks"
+        "case nodes candidates rows active rounds cpu_s s_per_3000 seen report hidden_m raised_m rms_m named guaranteed MiB energy fallbacks"
     );
     let mut growth = Vec::new();
     for name in ranges::names().filter(|n| n.contains(&range)) {
@@ -90,7 +90,7 @@ fn solve(label: &str, range: &Range, layers: &[Layer], view: &View) -> Result<Op
     let seen = independent::seen(&scene, view, solved.stage.grid());
     let named: usize = r.unresolved.iter().chain(&r.hidden).map(|run| run.points).sum();
     println!(
-        "{label} {} {} {} {} {} {seconds:.1} {:.1} {seen:.4} {:.4} {:.1} {:.2} {:.1} {named} {} {mebibytes:.0} {:?}",
+        "{label} {} {} {} {} {} {seconds:.1} {:.1} {seen:.4} {:.4} {:.1} {:.2} {:.1} {named} {} {mebibytes:.0} {:.0} {:?}",
         range.ground.cols() * range.ground.rows(),
         qp.candidates,
         qp.rows,
@@ -102,6 +102,7 @@ fn solve(label: &str, range: &Range, layers: &[Layer], view: &View) -> Result<Op
         r.metrics.raised_max_m,
         r.metrics.rms_m,
         r.guaranteed,
+        qp.energy,
         r.fallbacks,
     );
     Ok(Some((qp.rows as f64, seconds)))

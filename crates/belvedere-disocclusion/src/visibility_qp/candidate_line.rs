@@ -99,13 +99,17 @@ impl CandidateLine {
         Row { nodes, weights, len: 8, bound, constraint, points }
     }
 
-    /// The row of this candidate where the ground comes nearest to its line around `at`.
+    /// The row of this candidate at `at` if its line passes there, else where the ground comes nearest to its line around `at`.
     pub(super) fn follow(&self, surface: &Surface, at: DVec2, clearance: &Clearance) -> Option<Row> {
         let mut best: Option<Touch> = None;
         for chord in self.line(self.displacement(&surface.u)) {
             let way = chord.ends[1] - chord.ends[0];
             let square = way.length_squared();
             let Some([from, to]) = chord.part(surface, self.grid, clearance.guard) else { continue };
+            let t = (at - chord.ends[0]).dot(way) / square;
+            if t > from && t < to && chord.is_at(t, at) {
+                return Some(self.row(surface, &chord.place(surface, t, clearance), clearance));
+            }
             let (t, reach) = ((at - chord.ends[0]).dot(way) / square, FOLLOW / square.sqrt());
             let part = [(t - reach).max(from), (t + reach).min(to)];
             if part[0] < part[1] {

@@ -2,20 +2,23 @@
 //!
 //! `min 1/2 m^T (K + S) m - c^T m` over `m >= 0` by the proximal method of multipliers (Rockafellar 1976): each cycle adds
 //! `near (m - m_before)^2 / 2` per row and solves what is then well conditioned by a primal-dual active set (Hintermueller, Ito, Kunisch
-//! 2002). Equations on a face are solved by conjugate gradients; a product with K is one solve of the smoother, and Cholesky
-//! factors of crowds of neighbouring rows precondition.
+//! 2002). Equations on a face are solved by conjugate gradients; a product with K is one solve of the smoother. A sparse factor
+//! preconditions, with which one or two steps are enough, or factors of crowds of neighbouring rows.
 
-use super::cholesky::{Cholesky, dot};
+use super::cholesky::dot;
 use super::metric::Metric;
+use super::preconditioner::Preconditioner;
 use super::row::Row;
-use pulp::Arch;
 use rayon::prelude::*;
 
 /// First proximal weight of a cycle, share of a row's own square; it falls and rises within limits.
 const NEARNESS: f64 = 1e-2;
 const NEARNESS_RANGE: [f64; 2] = [1e-5, 1.0];
 const NEARER: f64 = 8.0;
-const FARTHER: f64 = 0.25;
+/// By crowds, and by a sparse factor, to which a small weight does no harm.
+const FARTHER: [f64; 2] = [0.25, 0.1];
+/// Share of the last weight with which the next solution by a sparse factor begins, at most the first one.
+const AGAIN: f64 = 4.0;
 /// Changes of the face (the active set) per cycle at most, and changes in succession without fewer rows changing at most.
 const NEWTON_STEPS: usize = 40;
 const PATIENCE: usize = 5;
@@ -23,12 +26,47 @@ const PATIENCE: usize = 5;
 const CONJUGATE_STEPS: [usize; 2] = [25, 60];
 /// Tolerance of the equations on a face, share of the allowed miss of each row.
 const EXACT: f64 = 0.2;
-/// Number of neighbouring rows that share one Cholesky factor.
-const CROWD: usize = 96;
 /// Number of neighbouring rows of which only the most missed one joins a face at a time: the others are mostly met with it.
 const GROUP: usize = 8;
-/// A pivot below this share of its diagonal counts as dependent.
-const DEPENDENT: f64 = 1e-6;
+/// Most nodes of a grid for which a sparse factor is made.
+const MOST_NODES: usize = 40_000;
+/// Rows on a face from which on it is made.
+const MANY: usize = 600;
+/// Rows that join or leave, and conjugate gradient steps, up to which it is used again.
+const STALE: usize = 4;
+/// Cycles at most of rough solutions, of those within a height, by crowds and by a sparse factor, and of exact ones.
+const CYCLES: [usize; 4] = [1, 2, 4, 10];
+/// Changes of the face at most in rough solutions.
+const ROUGH_STEPS: usize = 8;
+
+/// How well rows are to be met.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Effort {
+    /// Within this height if that takes little time, metres.
+    Rough(f64),
+    /// Within this height, metres.
+    Within(f64),
+    /// As each row may be missed.
+    Exact,
+}
+
+impl Effort {
+    fn enough(self) -> f64 {
+        match self {
+            Self::Rough(enough) | Self::Within(enough) => enough,
+            Self::Exact => 0.0,
+        }
+    }
+
+    /// Cycles at most, and changes of the face in each.
+    fn limits(self, direct: bool) -> [usize; 2] {
+        match self {
+            Self::Rough(_) => [CYCLES[0], ROUGH_STEPS],
+            Self::Within(_) => [CYCLES[1 + usize::from(direct)], NEWTON_STEPS],
+            Self::Exact => [CYCLES[3], NEWTON_STEPS],
+        }
+    }
+}
 
 /// Rows with their multipliers, per unit of the row.
 #[derive(Debug, Clone, Default)]
@@ -44,7 +82,10 @@ pub(super) struct MatrixFree {
     m: Vec<f64>,
     /// `K m`, of the rows at the last solution.
     product: Vec<f64>,
+    /// 0 before the first solution.
     nearness: f64,
+    /// Rows on a face from which on the sparse factor is made, if it is not [`MANY`].
+    many: Option<usize>,
     /// Order of the rows in which neighbours follow each other.
     order: Vec<usize>,
     /// Values at the nodes of the solver's grid.
@@ -58,13 +99,7 @@ struct Equations {
     /// Diagonal of `K + diagonal`.
     whole: Vec<f64>,
     face: Vec<bool>,
-    crowds: Vec<Crowd>,
-}
-
-/// Rows of a face with the factor of their block of the matrix.
-struct Crowd {
-    members: Vec<usize>,
-    factor: Cholesky,
+    preconditioner: Option<Preconditioner>,
 }
 
 impl MatrixFree {
@@ -103,28 +138,46 @@ impl MatrixFree {
         self.product.iter().enumerate().map(of).sum()
     }
 
-    /// Runs cycles until no row is missed by more than it may be, or by `enough` if that is more. Returns whether that was reached.
+    /// Whether equations of large faces are solved by a sparse factor.
+    pub(super) fn is_direct(&self, metric: &Metric) -> bool {
+        metric.nodes() <= MOST_NODES
+    }
+
+    /// Runs cycles until no row is missed by more than it may be, or by more than the effort asks for. Returns whether that was reached.
     ///
-    /// * `cycles`: at most;
     /// * `go_on`: asked between steps; false stops with the best so far.
-    pub(super) fn solve(
+    pub(super) fn solve(&mut self, metric: &mut Metric, effort: Effort, go_on: &(dyn Fn() -> bool + Sync)) -> bool {
+        let direct = self.is_direct(metric);
+        let begin = match effort {
+            Effort::Rough(_) => self.nearness.max(NEARNESS),
+            _ if direct && self.nearness > 0.0 => (AGAIN * self.nearness).min(NEARNESS),
+            _ => NEARNESS,
+        };
+        self.cycles(metric, effort.enough(), effort.limits(direct), begin, go_on)
+    }
+
+    /// * `enough`: height by which rows may be missed if that is more than what each is allowed, metres;
+    /// * `cycles`, `newton_steps`: at most, and changes of the face in each;
+    /// * `nearness`: the first proximal weight.
+    fn cycles(
         &mut self,
         metric: &mut Metric,
         enough: f64,
-        cycles: usize,
+        [cycles, newton_steps]: [usize; 2],
+        nearness: f64,
         go_on: &(dyn Fn() -> bool + Sync),
     ) -> bool {
         if self.product.len() < self.m.len() {
             self.product = self.times(metric, &self.m.clone());
         }
-        self.nearness = NEARNESS;
+        self.nearness = nearness;
         self.order = (0..self.rows.len()).collect();
         self.order.sort_by_cached_key(|&i| crowd_key(&self.rows[i]));
         for _ in 0..cycles {
             if self.met(enough) || !go_on() {
                 break;
             }
-            self.cycle(metric, go_on);
+            self.cycle(metric, newton_steps, go_on);
         }
         self.met(enough)
     }
@@ -134,7 +187,7 @@ impl MatrixFree {
     }
 
     /// One proximal step; without progress the multipliers stay and the proximal weight of the next step is greater.
-    fn cycle(&mut self, metric: &mut Metric, go_on: &(dyn Fn() -> bool + Sync)) {
+    fn cycle(&mut self, metric: &mut Metric, newton_steps: usize, go_on: &(dyn Fn() -> bool + Sync)) {
         let n = self.m.len();
         let near: Vec<f64> = self.square.iter().map(|square| self.nearness * square).collect();
         let mut equations = Equations {
@@ -142,18 +195,21 @@ impl MatrixFree {
             diagonal: (0..n).map(|i| self.soft[i] + near[i]).collect(),
             whole: (0..n).map(|i| self.square[i] + self.soft[i] + near[i]).collect(),
             face: self.m.iter().map(|m| *m > 0.0).collect(),
-            crowds: Vec::new(),
+            preconditioner: None,
         };
         let mut changed = self.turn(&mut equations);
         let mut best = (self.objective(&equations), self.m.clone(), self.product.clone());
         let (mut improved, mut fewest, mut patience) = (false, usize::MAX, PATIENCE);
-        for _ in 0..NEWTON_STEPS {
-            let held = equations.face.iter().filter(|f| **f).count();
-            let many = 20 * changed > held;
-            if many || equations.crowds.is_empty() {
-                equations.crowds = self.crowds(metric, &equations);
+        let mut steps = 0;
+        for _ in 0..newton_steps {
+            let held: Vec<usize> = self.order.iter().copied().filter(|&i| equations.face[i]).collect();
+            let direct = self.is_direct(metric) && held.len() >= self.many.unwrap_or(MANY);
+            let many = 20 * changed > held.len();
+            let old = if direct { steps > STALE || changed > STALE } else { many };
+            if old || equations.preconditioner.is_none() {
+                equations.preconditioner = Some(self.preconditioner(metric, &equations, &held, direct));
             }
-            self.on_the_face(metric, &equations, CONJUGATE_STEPS[usize::from(!many)]);
+            steps = self.on_the_face(metric, &equations, &held, CONJUGATE_STEPS[usize::from(!many)]);
             changed = self.turn(&mut equations);
             if self.m.iter().any(|m| *m < 0.0) {
                 self.m.iter_mut().for_each(|m| *m = m.max(0.0));
@@ -173,9 +229,18 @@ impl MatrixFree {
                 break;
             }
         }
-        let change = if improved && patience > 0 { FARTHER } else { NEARER };
+        let farther = FARTHER[usize::from(self.is_direct(metric))];
+        let change = if improved && patience > 0 { farther } else { NEARER };
         self.nearness = (change * self.nearness).clamp(NEARNESS_RANGE[0], NEARNESS_RANGE[1]);
         (_, self.m, self.product) = best;
+    }
+
+    fn preconditioner(&self, metric: &Metric, e: &Equations, held: &[usize], direct: bool) -> Preconditioner {
+        if direct {
+            Preconditioner::direct(metric, &self.rows, held, &e.diagonal)
+        } else {
+            Preconditioner::crowds(metric, &self.rows, held, &e.whole)
+        }
     }
 
     fn objective(&self, e: &Equations) -> f64 {
@@ -209,28 +274,30 @@ impl MatrixFree {
         changed
     }
 
-    /// Preconditioned conjugate gradients from the multipliers as they are. They may become negative.
-    fn on_the_face(&mut self, metric: &mut Metric, e: &Equations, steps: usize) {
+    /// Preconditioned conjugate gradients from the multipliers as they are. They may become negative. Returns the number of steps.
+    ///
+    /// * `held`: all rows of the face, neighbours following each other.
+    fn on_the_face(&mut self, metric: &mut Metric, e: &Equations, held: &[usize], steps: usize) -> usize {
         let left = (0..self.m.len()).filter(|&i| !e.face[i] && self.m[i] != 0.0).count();
         if left > 0 {
             self.m.iter_mut().zip(&e.face).filter(|(_, face)| !**face).for_each(|(m, _)| *m = 0.0);
             self.product = self.times(metric, &self.m.clone());
         }
-        // All rows of the face, neighbours following each other.
-        let held: Vec<usize> = self.order.iter().copied().filter(|&i| e.face[i]).collect();
         let mut residual: Vec<f64> =
             held.iter().map(|&i| e.wanted[i] - self.product[i] - e.diagonal[i] * self.m[i]).collect();
-        let preconditioner = Preconditioner::new(e, &held);
-        let mut z = preconditioner.apply(&residual);
+        let Some(preconditioner) = &e.preconditioner else { return 0 };
+        let apply = |rows: &[Row], residual: &[f64]| preconditioner.apply(rows, held, residual, &e.whole);
+        let mut z = apply(&self.rows, &residual);
         let mut p = z.clone();
         let mut square = dot(&residual, &z);
-        for _ in 0..steps {
+        let mut taken = 0;
+        while taken < steps {
             let done = held.iter().zip(&residual).all(|(&i, r)| r.abs() <= EXACT * self.allowed[i]);
             if !(square > 0.0) || done {
                 break;
             }
-            let mut kp = self.times_on(metric, &held, &p);
-            for ((kp, p), &i) in kp.iter_mut().zip(&p).zip(&held) {
+            let mut kp = self.times_on(metric, held, &p);
+            for ((kp, p), &i) in kp.iter_mut().zip(&p).zip(held) {
                 *kp += e.diagonal[i] * p;
             }
             let curvature = dot(&p, &kp);
@@ -242,13 +309,15 @@ impl MatrixFree {
                 self.m[i] += rate * p[k];
                 residual[k] -= rate * kp[k];
             }
-            z = preconditioner.apply(&residual);
+            taken += 1;
+            z = apply(&self.rows, &residual);
             let next = dot(&residual, &z);
             let share = next / square;
             square = next;
             p.iter_mut().zip(&z).for_each(|(p, z)| *p = z + share * *p);
         }
         self.product = self.times(metric, &self.m.clone());
+        taken
     }
 
     /// `K v`.
@@ -275,64 +344,6 @@ impl MatrixFree {
             }
         }
         metric.solve(&mut self.nodes);
-    }
-    /// Factors of the rows of the face, neighbours together.
-    fn crowds(&self, metric: &Metric, e: &Equations) -> Vec<Crowd> {
-        let held: Vec<usize> = self.order.iter().copied().filter(|&i| e.face[i]).collect();
-        let crowd = |members: &[usize]| {
-            let mut factor = Cholesky::default();
-            Arch::new().dispatch(
-                #[inline(always)]
-                || {
-                    for (k, &i) in members.iter().enumerate() {
-                        let products = members[..k].iter().map(|&j| self.rows[i].product(&self.rows[j], metric));
-                        factor.push(products, e.whole[i], DEPENDENT);
-                    }
-                },
-            );
-            Crowd { members: members.to_vec(), factor }
-        };
-        held.par_chunks(CROWD).map(crowd).collect()
-    }
-}
-
-/// Solves by crowds, for the rows of a face in their order.
-struct Preconditioner<'e> {
-    crowds: &'e [Crowd],
-    /// For each row its position on the face, if it is there.
-    position: Vec<Option<u32>>,
-    /// Diagonal of the rows of the face.
-    whole: Vec<f64>,
-}
-
-impl<'e> Preconditioner<'e> {
-    fn new(e: &'e Equations, held: &[usize]) -> Self {
-        let mut position = vec![None; e.face.len()];
-        held.iter().enumerate().for_each(|(k, &i)| position[i] = Some(k as u32));
-        Self { crowds: &e.crowds, position, whole: held.iter().map(|&i| e.whole[i]).collect() }
-    }
-
-    fn apply(&self, residual: &[f64]) -> Vec<f64> {
-        let solved = |crowd: &Crowd| {
-            let of = |&i: &usize| self.position[i].map_or(0.0, |k| residual[k as usize]);
-            let mut x: Vec<f64> = crowd.members.iter().map(of).collect();
-            Arch::new().dispatch(
-                #[inline(always)]
-                || crowd.factor.solve(&mut x),
-            );
-            x
-        };
-        let parts: Vec<Vec<f64>> = self.crowds.par_iter().with_min_len(16).map(solved).collect();
-        // Rows that joined since the factors were made stand for themselves.
-        let mut out: Vec<f64> = residual.iter().zip(&self.whole).map(|(r, whole)| r / whole).collect();
-        for (crowd, x) in self.crowds.iter().zip(parts) {
-            for (&i, x) in crowd.members.iter().zip(x) {
-                if let Some(k) = self.position[i] {
-                    out[k as usize] = x;
-                }
-            }
-        }
-        out
     }
 }
 
@@ -362,22 +373,50 @@ mod tests {
         row
     }
 
+    fn negated(mut row: Row) -> Row {
+        row.weights.iter_mut().for_each(|w| *w = -*w);
+        row.points.iter_mut().for_each(|p| p.0 = -p.0);
+        row
+    }
+
+    /// Rows of a seeded program, on a grid of `nodes` a side, with their excess.
+    fn program(seed: u64, nodes: usize, count: usize, copies: bool) -> Vec<(Row, f64)> {
+        let mut random = belvedere_testkit::Random::new(seed);
+        let mut out: Vec<(Row, f64)> = Vec::new();
+        for k in 0..count {
+            let excess = 12.0 * random.unit() - 6.0;
+            let earlier = out.get((random.unit() * k as f64) as usize).copied();
+            out.push(match earlier {
+                Some((row, same)) if copies && k % 3 == 1 => (row, same + 0.1 * (k % 2) as f64),
+                // No displacement meets both.
+                Some((row, same)) if copies && k % 9 == 2 => (negated(row), 1.0 - same),
+                _ => (row((random.unit() * 1e4) as usize, nodes), excess),
+            });
+        }
+        out
+    }
+
+    /// Solves a program without a matrix, by crowds or by the sparse factor, and by the active set.
+    fn solved(metric: &mut Metric, program: &[(Row, f64)], soft: f64, many: usize) -> (MatrixFree, Dual, bool) {
+        let (mut free, mut dual) = (MatrixFree { many: Some(many), ..MatrixFree::default() }, Dual::default());
+        for (k, (row, excess)) in program.iter().enumerate() {
+            let products: Vec<f64> = program[..=k].iter().map(|(other, _)| row.product(other, metric)).collect();
+            free.push(row, products[k], 1e-7, [soft, *excess, 0.0]);
+            dual.push(&products, soft, *excess, 0.0);
+        }
+        let met = free.cycles(metric, 0.0, [40, NEWTON_STEPS], NEARNESS, &|| true);
+        assert!(dual.solve(1e-9, &|| true));
+        (free, dual, met)
+    }
+
     #[test]
     fn multipliers_are_those_of_the_active_set() {
         let nodes = 25;
         let mut metric = Metric::new(Smoother::new(nodes, nodes, 0.4, 0.0).unwrap());
-        for soft in [0.0, 0.05] {
-            let (mut free, mut dual, mut rows) = (MatrixFree::default(), Dual::default(), Vec::<Row>::new());
-            for k in 0..300 {
-                let row = row(k, nodes);
-                rows.push(row);
-                let products: Vec<f64> = rows.iter().map(|other| row.product(other, &metric)).collect();
-                let excess = ((k * 7919) % 13) as f64 - 6.0;
-                free.push(&row, products[k], 1e-7, [soft, excess, 0.0]);
-                dual.push(&products, soft, excess, 0.0);
-            }
-            assert!(free.solve(&mut metric, 0.0, 40, &|| true));
-            assert!(dual.solve(1e-9, &|| true));
+        let rows: Vec<(Row, f64)> = (0..300).map(|k| (row(k, nodes), ((k * 7919) % 13) as f64 - 6.0)).collect();
+        for (soft, many) in [(0.0, usize::MAX), (0.05, usize::MAX), (0.0, 0), (0.05, 0)] {
+            let (free, dual, met) = solved(&mut metric, &rows, soft, many);
+            assert!(met);
             let (mut held, mut largest) = (0, 0.0f64);
             for k in 0..rows.len() {
                 held += usize::from(dual.multiplier(k) > 0.0);
@@ -392,6 +431,46 @@ mod tests {
     }
 
     #[test]
+    fn random_programs_have_the_energy_of_the_active_set() {
+        let mut held = 0;
+        for (seed, (nodes, count, copies)) in
+            [(25, 200, false), (25, 200, true), (9, 60, true), (2, 9, true), (2, 1, false), (9, 0, false)]
+                .into_iter()
+                .cycle()
+                .take(24)
+                .enumerate()
+        {
+            let mut metric = Metric::new(Smoother::new(nodes, nodes, 0.4, 0.0).unwrap());
+            let program = program(seed as u64, nodes, count, copies);
+            for many in [0, usize::MAX] {
+                let (free, dual, met) = solved(&mut metric, &program, 0.02, many);
+                let label = format!("seed {seed}, {nodes} nodes, {} rows, from {many}", program.len());
+                assert!(met, "{label}");
+                let apart = (free.energy() - dual.energy()).abs();
+                assert!(apart <= 1e-6 * dual.energy(), "{label}: {} and {}", free.energy(), dual.energy());
+                held += (0..program.len()).filter(|k| free.multiplier(*k) > 0.0).count();
+            }
+        }
+        assert!(held > 500, "{held}");
+    }
+
+    #[test]
+    fn threads_change_nothing() {
+        let of = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut metric = Metric::new(Smoother::new(41, 41, 0.4, 0.0).unwrap());
+                let program = program(7, 41, 500, true);
+                let (free, ..) = solved(&mut metric, &program, 0.02, 0);
+                free.m.iter().map(|m| m.to_bits()).collect::<Vec<_>>()
+            })
+        };
+        let one = of(1);
+        assert!(one.iter().filter(|m| **m > 0).count() > 50);
+        assert!([2, 3, 7].into_iter().all(|threads| of(threads) == one));
+    }
+
+    #[test]
     fn it_stops_when_told_to() {
         let nodes = 25;
         let mut metric = Metric::new(Smoother::new(nodes, nodes, 0.4, 0.0).unwrap());
@@ -401,7 +480,7 @@ mod tests {
             let square = row.product(&row, &metric);
             free.push(&row, square, 1e-9, [0.0, 5.0, 0.0]);
         }
-        assert!(!free.solve(&mut metric, 0.0, 40, &|| false));
-        assert!(free.solve(&mut metric, 0.0, 40, &|| true));
+        assert!(!free.solve(&mut metric, Effort::Exact, &|| false));
+        assert!(free.solve(&mut metric, Effort::Exact, &|| true));
     }
 }

@@ -29,6 +29,46 @@ impl Metric {
         self.smoother.cols() * self.smoother.rows()
     }
 
+    /// Columns and rows of the grid.
+    pub(super) fn sides(&self) -> [usize; 2] {
+        [self.smoother.cols(), self.smoother.rows()]
+    }
+
+    /// For each node the first of those that move together with it.
+    pub(super) fn stands_for(&self) -> Vec<u32> {
+        let mut out: Vec<u32> = (0..self.nodes() as u32).collect();
+        for set in self.ties.iter().flat_map(|ties| ties.sets()) {
+            set.iter().for_each(|node| out[*node as usize] = set[0]);
+        }
+        out
+    }
+
+    /// Calls `visit` with weights at nodes, and a factor: H is the sum of the squares of these combinations times their factors.
+    pub(super) fn squares(&self, mut visit: impl FnMut(&[(u32, f64)], f64)) {
+        let [cols, rows] = self.sides();
+        let shift = self.smoother.shift();
+        for y in 0..rows {
+            for x in 0..cols {
+                let node = y * cols + x;
+                let around = [
+                    (x > 0).then(|| node - 1),
+                    (x + 1 < cols).then(|| node + 1),
+                    (y > 0).then(|| node - cols),
+                    (y + 1 < rows).then(|| node + cols),
+                ];
+                let mut entries = [(node as u32, 0.0); 5];
+                let mut len = 1;
+                for other in around.into_iter().flatten() {
+                    entries[len] = (other as u32, 1.0);
+                    entries[0].1 -= 1.0;
+                    len += 1;
+                }
+                visit(&entries[..len], 1.0);
+                visit(&[(node as u32, 1.0)], shift);
+            }
+        }
+    }
+
     /// `H^-1 v` in place.
     pub(super) fn solve(&mut self, v: &mut [f64]) {
         self.smoother.solve(v);

@@ -7,10 +7,14 @@
 mod bundle;
 mod candidate_line;
 mod cholesky;
+mod dissection;
 mod dual;
+mod front;
+mod fronts;
 mod lanes;
 mod matrix_free;
 mod metric;
+mod preconditioner;
 mod problem;
 mod register;
 mod remembered;

@@ -1,7 +1,7 @@
 //! The rows in play with their multipliers.
 
 use super::dual::Dual;
-use super::matrix_free::MatrixFree;
+use super::matrix_free::{Effort, MatrixFree};
 use super::metric::Metric;
 use super::problem::{Certificate, SolvedRow};
 use super::row::{Constraint, Row, Stretch};
@@ -49,8 +49,8 @@ pub(super) struct NewRow {
 
 /// Most rows for which a matrix over all of them is made. Up to it the active set is quicker, and exact.
 const MOST_EXACT: usize = 2000;
-/// Cycles of the solver without a matrix in rounds that need not be exact, and in the others.
-const CYCLES: [usize; 2] = [2, 10];
+/// Rows that are met with less room than this are kept for the next solution too, where there are too many for an exact one, metres.
+const NEAR: f64 = 5.0;
 
 #[derive(Debug)]
 enum Multipliers {
@@ -79,8 +79,8 @@ pub(super) struct RowsInPlay {
 pub(super) struct Accuracy {
     /// Tolerance of the active set, metres.
     pub(super) exact: f64,
-    /// Tolerance of this round where there is no matrix, metres; 0 = the allowed miss of each row.
-    pub(super) enough: f64,
+    /// How well rows are to be met in this round where there is no matrix.
+    pub(super) effort: Effort,
 }
 
 impl RowsInPlay {
@@ -141,18 +141,31 @@ impl RowsInPlay {
         matches!(self.multipliers, Multipliers::MatrixFree(_))
     }
 
+    /// Whether there are so many rows, on a grid that is not too fine, that equations are solved by a sparse factor.
+    pub(super) fn is_large(&self, metric: &Metric) -> bool {
+        matches!(&self.multipliers, Multipliers::MatrixFree(free) if free.is_direct(metric))
+    }
+
     /// Finds the multipliers. Returns whether all rows are met within their tolerances.
     ///
     /// * `go_on`: asked between steps; false stops with the best so far.
     pub(super) fn solve(
         &mut self,
         metric: &mut Metric,
-        Accuracy { exact, enough }: Accuracy,
+        Accuracy { exact, effort }: Accuracy,
         go_on: &(dyn Fn() -> bool + Sync),
     ) -> bool {
         match &mut self.multipliers {
             Multipliers::ActiveSet(dual) => dual.solve(exact, go_on),
-            Multipliers::MatrixFree(free) => free.solve(metric, enough, CYCLES[usize::from(enough == 0.0)], go_on),
+            Multipliers::MatrixFree(free) => free.solve(metric, effort, go_on),
+        }
+    }
+
+    /// Whether a row that is not active may become so.
+    fn is_near(&self, row: usize) -> bool {
+        match &self.multipliers {
+            Multipliers::ActiveSet(_) => false,
+            Multipliers::MatrixFree(free) => free.missed(row) > -NEAR,
         }
     }
 
@@ -207,7 +220,7 @@ impl RowsInPlay {
         let mut out = Vec::new();
         for (i, row) in self.rows.iter().enumerate() {
             let multiplier = self.multiplier(i);
-            let idle = if multiplier > 0.0 { 0 } else { self.idle[i] + 1 };
+            let idle = if multiplier > 0.0 || self.is_near(i) { 0 } else { self.idle[i] + 1 };
             if idle < IDLE {
                 let key = match row.constraint {
                     Constraint::Ceiling(node) => RowKey::Ceiling(node),

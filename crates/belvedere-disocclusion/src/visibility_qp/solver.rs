@@ -2,6 +2,7 @@
 
 use super::bundle::Bundle;
 use super::candidate_line::CandidateLine;
+use super::matrix_free::Effort;
 use super::metric::Metric;
 use super::problem::{QpError, QpOptions, QpProblem, QpResult, Reason, Unresolved};
 use super::rise::Rise;
@@ -30,11 +31,15 @@ const DEPTH: f64 = 4.0;
 const LAST_PRICE: f64 = 1e3;
 /// New rows per round at most.
 const MOST_NEW: usize = 2000;
-/// While a row is missed by more than this, metres, rounds without a matrix meet rows only to within `ROUGH_SHARE` of the largest
-/// miss, at most `ROUGH` metres.
+/// While new rows are missed by more than this share of the first miss, rounds without a matrix meet rows only as far as it takes little
+/// time, for which rows join depends little on it.
+const COARSE: f64 = 0.1;
+/// While a position is missed by more than this, metres, such rounds meet rows only to within `ROUGH_SHARE` of the largest new miss.
 const FINE: f64 = 0.4;
 const ROUGH_SHARE: f64 = 0.05;
 const ROUGH: f64 = 3.0;
+/// The least such tolerance, metres.
+const ALMOST: f64 = 0.05;
 /// Rounds in succession without a new row, at most, while rows or ceilings are still missed.
 const STALLED: usize = 6;
 /// Distance up to which a row stands for a missed position, steps of the solver's grid.
@@ -185,18 +190,19 @@ impl QpSolver {
         out.kept = frame.pool.rows.len();
         let depth = self.depth(&frame);
         let mut missed = Vec::new();
-        let (mut enough, mut stalled, mut first) = (ROUGH, 0, 0.0f64);
+        let (mut effort, mut stalled, mut first) = (Effort::Within(ROUGH), 0, 0.0f64);
         while out.rounds < o.rounds {
-            let settled = self.settle(&mut frame, enough);
-            missed = frame.missed(&self.surface);
+            let settled = self.settle(&mut frame, effort);
+            let size = fineness(out.rounds + 1).min(KNOWN) * self.surface.lattice.step;
+            missed = frame.missed(&self.surface, Some(size));
             out.rounds += 1;
             out.stopped = progress.should_end();
             if out.stopped {
                 break;
             }
-            let worst = missed.iter().map(|(_, touch)| touch.excess).fold(0.0, f64::max);
-            first = first.max(worst);
-            frame.tell(out.rounds, worst, first);
+            let all = missed.iter().map(|(_, touch)| touch.excess).fold(0.0, f64::max);
+            first = first.max(all);
+            frame.tell(out.rounds, all, first);
             let deepest = self.surface.u.iter().copied().fold(0.0, f64::min);
             if deepest < -depth && frame.soft == 0.0 {
                 self.soften(&mut frame);
@@ -204,12 +210,25 @@ impl QpSolver {
             }
             let new = frame.thinned(&self.surface, &missed, out.rounds);
             let worst = new.iter().map(|row| row.at(&self.surface.u) - row.bound).fold(0.0, f64::max);
-            enough = if worst > FINE { (ROUGH_SHARE * worst).min(ROUGH) } else { 0.0 };
+            let large = frame.pool.is_large(&self.metric);
+            effort = if large && out.kept == 0 && worst > COARSE * first {
+                Effort::Rough(ROUGH_SHARE * worst)
+            } else if large && all > FINE && !new.is_empty() {
+                Effort::Within((ROUGH_SHARE * worst).max(ALMOST))
+            } else if !large && worst > FINE {
+                Effort::Within((ROUGH_SHARE * worst).min(ROUGH))
+            } else {
+                Effort::Exact
+            };
             stalled = if new.is_empty() { stalled + 1 } else { 0 };
             if new.is_empty() && (settled || stalled > STALLED) {
                 break;
             }
             self.push(&mut frame, new);
+        }
+        if !missed.is_empty() && !out.stopped {
+            // All of them are reported.
+            missed = frame.missed(&self.surface, None);
         }
         if o.slack_price.is_some() {
             // Positions that are still missed were left hidden at their price.
@@ -294,18 +313,18 @@ impl QpSolver {
 
     /// Solves with the rows in play and adds ceilings until no node rises above its own, and likewise rows of rivers; without a
     /// matrix it adds them once, for the next round. Returns whether rows and ceilings are met as they must be in the end.
-    fn settle(&mut self, frame: &mut Frame, enough: f64) -> bool {
+    fn settle(&mut self, frame: &mut Frame, effort: Effort) -> bool {
         let mut u = vec![0.0; frame.target.len()];
         let mut settled = false;
         let progress = frame.progress;
         for _ in 0..CEILING_ROUNDS {
-            let accuracy = Accuracy { exact: EXACT, enough };
+            let accuracy = Accuracy { exact: EXACT, effort };
             let met = frame.pool.solve(&mut self.metric, accuracy, &|| !progress.should_end());
             frame.pool.displacement(&mut self.metric, &frame.target, &mut u);
             let risen = self.risen(frame, &u);
             let rising = self.uphill.rising(&u);
             if risen.is_empty() && rising.is_empty() {
-                settled = met && (enough == 0.0 || !frame.pool.is_matrix_free());
+                settled = met && (effort == Effort::Exact || !frame.pool.is_matrix_free());
                 break;
             }
             let known = frame.pool.ceilings();
@@ -399,10 +418,21 @@ impl Frame<'_> {
         self.bundles.par_iter_mut().with_min_len(32).for_each(|b| b.moved(seen, &rise));
     }
 
-    /// All positions where the required clearance is missed, with the index of their line in `seen`. Lines with room left are not followed.
-    fn missed(&mut self, surface: &Surface) -> Vec<(usize, Touch)> {
+    /// Positions where the required clearance is missed, with the index of their line in `seen`. Lines with room left are not followed.
+    ///
+    /// * `size`: of the groups of neighbours of which the most missed one counts, grid cells; `None` = all positions.
+    fn missed(&mut self, surface: &Surface, size: Option<DVec2>) -> Vec<(usize, Touch)> {
         let (seen, clearance, progress) = (&self.seen, &self.clearance, self.progress);
-        let walk = |b: &mut Bundle| if progress.should_end() { Vec::new() } else { b.walk(seen, surface, clearance) };
+        let walk = |b: &mut Bundle| {
+            if progress.should_end() {
+                return Vec::new();
+            }
+            let found = b.walk(seen, surface, clearance);
+            match size {
+                Some(size) => worst_of_groups(&found, |(k, touch)| key(touch.at, seen[*k].grid, size)),
+                None => found,
+            }
+        };
         self.bundles.par_iter_mut().with_min_len(8).flat_map_iter(walk).collect()
     }
 
@@ -411,9 +441,6 @@ impl Frame<'_> {
     /// first.
     fn thinned(&self, surface: &Surface, missed: &[(usize, Touch)], round: usize) -> Vec<Row> {
         let step = surface.lattice.step;
-        let key = |at: DVec2, grid: DVec2, size: DVec2| {
-            [at / size, grid / size].map(|v| (v.x.floor() as i64, v.y.floor() as i64))
-        };
         let candidates = self.problem.candidates;
         let mut known = BTreeMap::<_, f64>::new();
         if self.soft > 0.0 || self.pool.is_matrix_free() {
@@ -430,8 +457,7 @@ impl Frame<'_> {
             known.is_none_or(|known| touch.excess > 1.1 * known + spare)
         };
         let new: Vec<&(usize, Touch)> = missed.iter().filter(is_new).collect();
-        let fine = if self.soft > 0.0 { KNOWN } else { 0.5f64.powi(round as i32 / 3 - 1).max(1.0 / 32.0) };
-        let mut size = fine * step;
+        let mut size = if self.soft > 0.0 { KNOWN } else { fineness(round) } * step;
         loop {
             let mut best: BTreeMap<_, &(usize, Touch)> = BTreeMap::new();
             for touch in &new {
@@ -455,6 +481,27 @@ impl Frame<'_> {
         // Whether to stop is tested at the end of each round.
         let _ = self.progress.tick(&stage, 0.5 + 0.4 * (1.0 - left));
     }
+}
+
+/// Size of the groups of neighbours of which one position brings a row, steps of the solver's grid.
+fn fineness(round: usize) -> f64 {
+    0.5f64.powi(round as i32 / 3 - 1).max(1.0 / 32.0)
+}
+
+/// Group of a position on a line of sight: its own place, and that of the point that must be seen.
+fn key(at: DVec2, grid: DVec2, size: DVec2) -> [(i64, i64); 2] {
+    [at / size, grid / size].map(|v| (v.x.floor() as i64, v.y.floor() as i64))
+}
+
+/// The most missed position of each group, the first one of equal ones.
+fn worst_of_groups(found: &[(usize, Touch)], key: impl Fn(&(usize, Touch)) -> [(i64, i64); 2]) -> Vec<(usize, Touch)> {
+    let mut order: Vec<([(i64, i64); 2], usize)> = found.iter().enumerate().map(|(i, touch)| (key(touch), i)).collect();
+    order.sort_unstable();
+    let worst = |group: &[([(i64, i64); 2], usize)]| {
+        let of = |&(_, i): &([(i64, i64); 2], usize)| found[i];
+        group.iter().map(of).reduce(|worst, touch| if touch.1.excess > worst.1.excess { touch } else { worst })
+    };
+    order.chunk_by(|a, b| a.0 == b.0).filter_map(worst).collect()
 }
 
 fn length(what: &'static str, values: &[f64], nodes: usize) -> Result<(), QpError> {

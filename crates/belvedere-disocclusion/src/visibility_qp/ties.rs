@@ -40,6 +40,11 @@ impl Ties {
         (!rows.is_empty()).then(|| Self { sets, factor, lattice: [smoother.cols(), smoother.rows()] })
     }
 
+    /// Sets of at least two nodes.
+    pub(super) fn sets(&self) -> &[Vec<u32>] {
+        &self.sets
+    }
+
     /// `C v`.
     fn apart(&self, value: impl Fn(u32) -> f64) -> Vec<f64> {
         let mut out = Vec::with_capacity(self.factor.size());

@@ -72,6 +72,9 @@ pub(super) const LEAF: f64 = 8.0;
 /// Longest part whose crossings are visited without asking the finest bounds, cells.
 const FINE: f64 = 3.0;
 
+/// Distance below which positions are the same, cells.
+const SAME: f64 = 1e-6;
+
 impl Chord {
     fn plan(&self) -> GridLine {
         GridLine::between(self.ends[0], self.ends[1])
@@ -246,8 +249,13 @@ impl Chord {
         }
     }
 
+    /// Whether a position is that at a parameter, but for rounding.
+    pub(super) fn is_at(&self, t: f64, at: DVec2) -> bool {
+        self.at(t).distance(at) < SAME
+    }
+
     /// The position at a parameter.
-    fn place(&self, surface: &Surface, t: f64, clearance: &Clearance) -> Touch {
+    pub(super) fn place(&self, surface: &Surface, t: f64, clearance: &Clearance) -> Touch {
         self.touch(surface, t, self.at(t), surface.ground(self.at(t)), clearance)
     }
 
