@@ -30,7 +30,8 @@ const EXACT: f64 = 0.2;
 const GROUP: usize = 8;
 /// Most nodes of a grid for which a sparse factor is made.
 const MOST_NODES: usize = 40_000;
-/// Rows on a face from which on it is made.
+/// Rows up to which none is made, and rows on a face from which on it is. With fewer, crowds are quicker.
+const MOST_CROWDED: usize = 4000;
 const MANY: usize = 600;
 /// Rows that join or leave, and conjugate gradient steps, up to which it is used again.
 const STALE: usize = 4;
@@ -84,7 +85,9 @@ pub(super) struct MatrixFree {
     product: Vec<f64>,
     /// 0 before the first solution.
     nearness: f64,
-    /// Rows on a face from which on the sparse factor is made, if it is not [`MANY`].
+    /// Whether a sparse factor served the last solution.
+    direct: bool,
+    /// Limit in place of [`MOST_CROWDED`] and [`MANY`].
     many: Option<usize>,
     /// Order of the rows in which neighbours follow each other.
     order: Vec<usize>,
@@ -138,9 +141,14 @@ impl MatrixFree {
         self.product.iter().enumerate().map(of).sum()
     }
 
+    /// Whether rows that are nearly met are worth keeping: the last solution was quick however many rows there were.
+    pub(super) fn keeps_near(&self) -> bool {
+        self.direct
+    }
+
     /// Whether equations of large faces are solved by a sparse factor.
     pub(super) fn is_direct(&self, metric: &Metric) -> bool {
-        metric.nodes() <= MOST_NODES
+        self.rows.len() > self.many.unwrap_or(MOST_CROWDED) && metric.nodes() <= MOST_NODES
     }
 
     /// Runs cycles until no row is missed by more than it may be, or by more than the effort asks for. Returns whether that was reached.
@@ -148,6 +156,7 @@ impl MatrixFree {
     /// * `go_on`: asked between steps; false stops with the best so far.
     pub(super) fn solve(&mut self, metric: &mut Metric, effort: Effort, go_on: &(dyn Fn() -> bool + Sync)) -> bool {
         let direct = self.is_direct(metric);
+        self.direct = direct;
         let begin = match effort {
             Effort::Rough(_) => self.nearness.max(NEARNESS),
             _ if direct && self.nearness > 0.0 => (AGAIN * self.nearness).min(NEARNESS),

@@ -165,7 +165,7 @@ impl RowsInPlay {
     fn is_near(&self, row: usize) -> bool {
         match &self.multipliers {
             Multipliers::ActiveSet(_) => false,
-            Multipliers::MatrixFree(free) => free.missed(row) > -NEAR,
+            Multipliers::MatrixFree(free) => free.keeps_near() && free.missed(row) > -NEAR,
         }
     }
 
