@@ -11,6 +11,7 @@ mod grid_map;
 mod in_bands;
 mod original;
 mod resample;
+mod samples;
 mod sea_voids;
 mod sentinels;
 mod source;

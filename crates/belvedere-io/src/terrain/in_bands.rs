@@ -1,8 +1,8 @@
 //! Reading an elevation raster with more samples than are wanted, in bands of rows that are thinned as they come.
 
 use super::TerrainRequest;
+use super::samples::{Heights, as_requested, check_shape, heights, may_be_customary, void_absurd};
 use super::sentinels::{self, MILD, Outermost};
-use super::source::{Heights, as_requested, check_shape, heights, may_be_customary, void_absurd};
 use super::thin::{Rows, thinned_size, thinning};
 use crate::{GeoTiff, IoError, RasterInfo};
 use belvedere_scene::Progress;
@@ -142,7 +142,6 @@ impl Bands<'_> {
 mod tests {
     use super::*;
     use crate::geotiff::write_geotiff;
-    use crate::terrain::source::heights;
     use crate::terrain::thin::thin;
     use crate::{Affine, Limits, Raster, SampleType, Samples};
 

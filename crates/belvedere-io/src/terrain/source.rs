@@ -1,5 +1,6 @@
 //! Reading the sources of a terrain: samples as heights in metres, voids as NaN.
 
+use super::samples::{Heights, MAX_HEIGHT_M, as_requested, check_shape, heights, may_be_customary, void_absurd};
 use super::stated_system::{is_of_another_body, stated_system};
 use super::thin::{thin, thinning};
 use super::{CrsChoice, TerrainRequest, frame, in_bands, sentinels};
@@ -8,18 +9,13 @@ use crate::formats::{Reader, ends};
 use crate::fs::File;
 use crate::geotiff::is_tiff;
 use crate::packed::content;
-use crate::{
-    Affine, GeoTiff, IoError, Limits, Loaded, Photometric, Raster, RasterInfo, Samples, budget, esri_ascii, hgt,
-};
+use crate::{Affine, GeoTiff, IoError, Limits, Loaded, Raster, RasterInfo, budget, esri_ascii, hgt};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Progress;
 use glam::DVec2;
-use rayon::prelude::*;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// Largest valid height, metres, above that of any planet.
-const MAX_HEIGHT_M: f32 = 1.0e5;
 /// Share of the samples from which a frame of one value is worth a warning.
 const FRAME_SHARE: f64 = 0.01;
 
@@ -125,38 +121,6 @@ fn read_one(
 pub(super) fn node_map(info: &RasterInfo) -> Affine {
     let to_model = info.pixel_to_model.unwrap_or(Affine([1.0, 0.0, 0.0, 0.0, -1.0, info.height as f64]));
     to_model.after_scale_and_shift(1.0, 1.0, 0.5, 0.5)
-}
-
-/// Heights of a file, as read.
-pub(super) struct Heights {
-    /// The raster that was read: the file's, or one of its overviews.
-    pub(super) info: RasterInfo,
-    /// Every how many samples of it along either side there is a height.
-    pub(super) every: usize,
-    pub(super) cols: usize,
-    pub(super) rows: usize,
-    /// Metres, NaN = void.
-    pub(super) heights: Vec<f32>,
-    /// Ratio of their spacing to that of the file.
-    pub(super) factor: f64,
-    /// Samples of the raster, those without data, those beyond [`MAX_HEIGHT_M`].
-    pub(super) samples: usize,
-    pub(super) voids: usize,
-    pub(super) absurd: usize,
-    /// What is said of customary values that are taken as voids.
-    pub(super) customary: Option<Warning>,
-}
-
-/// As the request says it in place of the file.
-pub(super) fn as_requested(mut info: RasterInfo, request: &TerrainRequest) -> RasterInfo {
-    info.nodata = request.nodata.or(info.nodata);
-    info.vertical_unit_m = request.vertical_unit_m.unwrap_or(info.vertical_unit_m);
-    info
-}
-
-/// Whether values that a file does not declare may mean that there are no data.
-pub(super) fn may_be_customary(info: &RasterInfo, request: &TerrainRequest) -> bool {
-    request.nodata.is_none() && info.scaling.is_empty()
 }
 
 fn read_heights(
@@ -272,45 +236,6 @@ fn read_tiff(
     Ok(Loaded::new(Source::Whole(raster, factor), warnings).with_file(file?))
 }
 
-pub(super) fn check_shape(info: &RasterInfo) -> Result<(), IoError> {
-    let picture = match info.photometric {
-        Photometric::Rgb(_) => Some("an RGB picture"),
-        Photometric::Palette(_) => Some("a picture with a colour table"),
-        _ => None,
-    };
-    if let Some(picture) = picture {
-        return Err(IoError::format(&info.path, format!("it is {picture}, not heights; use it as a drape")));
-    }
-    if info.width < 2 || info.height < 2 {
-        let reason = format!("it has {} x {} samples, terrain needs at least 2 x 2", info.width, info.height);
-        return Err(IoError::format(&info.path, reason));
-    }
-    Ok(())
-}
-
-/// Heights of the first band in metres, NaN = void.
-pub(super) fn heights(raster: &Raster) -> Vec<f32> {
-    let info = &raster.info;
-    let unit = info.vertical_unit_m as f32;
-    let plain = info.bands == 1 && raster.mask.is_none() && info.scaling.is_empty() && info.alpha.band().is_none();
-    let nodata = info.nodata;
-    match &raster.samples {
-        Samples::I16(v) if plain => {
-            let nodata = nodata.filter(|n| n.fract() == 0.0 && (-32768.0..=32767.0).contains(n)).map(|n| n as i16);
-            v.par_iter().map(|&h| if Some(h) == nodata { f32::NAN } else { f32::from(h) * unit }).collect()
-        }
-        Samples::F32(v) if plain => {
-            let nodata = nodata.map(|n| n as f32);
-            v.par_iter().map(|&h| if Some(h) == nodata || !h.is_finite() { f32::NAN } else { h * unit }).collect()
-        }
-        _ => {
-            let width = info.width;
-            let height = |i: usize| raster.sample_f64(0, i % width, i / width).map_or(f32::NAN, |h| h as f32 * unit);
-            (0..width * info.height).into_par_iter().with_min_len(4096).map(height).collect()
-        }
-    }
-}
-
 /// A warning if the unit of heights is not stated, so that metres are taken, and the plane has another unit.
 fn unit_unsaid(info: &RasterInfo, system: Option<&CoordinateSystem>) -> Option<Warning> {
     let plane = info.linear_unit_m.or_else(|| system?.metres_per_unit())?;
@@ -326,21 +251,6 @@ fn unit_unsaid(info: &RasterInfo, system: Option<&CoordinateSystem>) -> Option<W
         "its plane counts in {unit} and nothing says in which unit heights are, so they count as metres; if they are feet the relief is 3.28 times too high: vertical_unit = \"{option}\" of its layer, or --vertical-unit {option}, settles it (\"m\" confirms metres)"
     );
     Some(Warning::new(WarningKind::Assumed, text).with("plane_unit_m", plane))
-}
-
-/// Makes samples beyond the largest height void; returns their number.
-pub(super) fn void_absurd(heights: &mut [f32]) -> usize {
-    heights
-        .par_iter_mut()
-        .with_min_len(1 << 16)
-        .map(|h| {
-            let absurd = h.abs() > MAX_HEIGHT_M;
-            if absurd {
-                *h = f32::NAN;
-            }
-            usize::from(absurd)
-        })
-        .sum()
 }
 
 /// Warns about a frame of one value around the data: it may be voids that the file does not declare, or sea, so the heights stay.
@@ -456,23 +366,4 @@ fn lattice_offset(a: &SourceGrid, b: &SourceGrid) -> Option<[i64; 2]> {
         (p[0] - turn - start[0] - c).abs() < 0.01 && (p[1] - start[1] - r).abs() < 0.01
     });
     (on_lattice && start.iter().all(|v| v.abs() < 1e9)).then(|| [start[0] as i64, start[1] as i64])
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::SampleType;
-
-    #[test]
-    fn heights_in_feet_become_metres() {
-        let mut info = RasterInfo::new("x", 2, 1, SampleType::I16);
-        (info.vertical_unit_m, info.nodata) = (0.3048, Some(-1.0));
-        let raster = Raster { info: info.clone(), samples: Samples::I16(vec![1000, -1]), mask: None };
-        let h = heights(&raster);
-        assert!((h[0] - 304.8).abs() < 1e-3 && h[1].is_nan());
-        info.sample_type = SampleType::F64;
-        let raster = Raster { info, samples: Samples::F64(vec![1000.0, -1.0]), mask: None };
-        assert_eq!(heights(&raster)[0], h[0]);
-        assert!(heights(&raster)[1].is_nan());
-    }
 }
