@@ -115,7 +115,7 @@ mod tests {
         };
         let (whole, thinned) = (by(1 << 20), by(5000));
         std::fs::remove_file(&path).expect("removed");
-        let told = |s: &Loaded<TerrainSurvey>| s.warnings.iter().any(|w| w.kind == WarningKind::Reduced);
+        let told = |s: &Loaded<TerrainSurvey>| s.warnings.iter().any(|w| w.kind() == WarningKind::Reduced);
         assert!(!told(&whole) && told(&thinned), "{:?} {:?}", whole.warnings, thinned.warnings);
         let (a, b) = (whole.value, thinned.value);
         assert_eq!((a.size, a.spacing), ([cols, rows], [20.0, 20.0]));
