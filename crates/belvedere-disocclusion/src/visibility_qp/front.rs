@@ -250,8 +250,8 @@ impl Block {
                 for j in 0..i {
                     row[j] /= self.triangle[j][j];
                     let value = row[j];
-                    for k in j + 1..i {
-                        row[k] -= value * self.triangle[j][k];
+                    for (x, t) in row[j + 1..i].iter_mut().zip(&self.triangle[j][j + 1..i]) {
+                        *x -= value * t;
                     }
                     row[i] -= value * value;
                 }

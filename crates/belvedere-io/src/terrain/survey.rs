@@ -96,7 +96,7 @@ fn extent([cols, rows]: [usize; 2], map: &Affine) -> [f64; 4] {
 mod tests {
     use super::*;
     use crate::geotiff::write_geotiff;
-    use crate::{Raster, RasterInfo, SampleType, Samples, SourceCrs};
+    use crate::{CrsKind, Raster, RasterInfo, SampleType, Samples, SourceCrs};
     use belvedere_core::WarningKind;
 
     #[test]
@@ -105,7 +105,7 @@ mod tests {
         let height = |i: usize| 1000.0 + 300.0 * ((i % cols) as f32 / 40.0).sin() + (i / cols) as f32;
         let mut info = RasterInfo::new("survey.tif", cols, rows, SampleType::F32);
         info.pixel_to_model = Some(Affine([20.0, 0.0, 4e5, 0.0, -20.0, 5e6]));
-        info.crs = SourceCrs::Epsg(32631);
+        (info.crs, info.crs_kind) = (SourceCrs::Epsg(32631), CrsKind::Projected);
         let path = std::env::temp_dir().join(format!("belvedere_survey_{}.tif", std::process::id()));
         let samples = Samples::F32((0..cols * rows).map(height).collect());
         write_geotiff(&path, &Raster { info, samples, mask: None }, true).expect("written");
