@@ -3,11 +3,12 @@
 use super::Place;
 use std::process::Command;
 
-/// Heights of 16384 x 16384 samples of 16 bits in tiles that all lie at one place: 0.5 GiB of samples in 139 KB.
+/// Heights of 16384 x 16384 samples of 16 bits in tiles as high as the raster, so that no band of it can be read alone, which all lie at one
+/// place: 0.5 GiB of samples in 8 MiB.
 fn heights(place: &Place) -> String {
     const SIDE: u32 = 16_384;
-    let tiles = (SIDE / 256).pow(2);
-    let tile = 256 * 256 * 2;
+    let tiles = SIDE / 256;
+    let tile = 256 * SIDE * 2;
     let lists = 8 + tile;
     let entries: [(u16, u16, u32, u32); 11] = [
         (256, 4, 1, SIDE),
@@ -17,7 +18,7 @@ fn heights(place: &Place) -> String {
         (262, 3, 1, 1),
         (277, 3, 1, 1),
         (322, 4, 1, 256),
-        (323, 4, 1, 256),
+        (323, 4, 1, SIDE),
         (324, 4, tiles, lists),
         (325, 4, tiles, lists + 4 * tiles),
         (339, 3, 1, 2),
@@ -62,7 +63,7 @@ fn what_passes_the_budget_is_refused_before_it_is_read() {
     let place = Place::new();
     let file = heights(&place);
     let line = place.fails(&["info", &file, "--max-mem", "256MiB", "-q"]);
-    assert!(line.contains("heights.tif: the raster needs 1792 MiB") && line.ends_with("(--max-mem)"), "{line}");
+    assert!(line.contains("heights.tif: the raster needs 2603 MiB") && line.ends_with("(--max-mem)"), "{line}");
 }
 
 /// The budget by default is a part of what the system gives.
@@ -71,7 +72,7 @@ fn a_limit_of_the_system_is_obeyed() {
     let place = Place::new();
     let file = heights(&place);
     let line = fails_within(&place, 2 << 20, &["info", &file, "-q"]);
-    assert!(line.contains("the raster needs 1792 MiB") && line.contains("allow more memory"), "{line}");
+    assert!(line.contains("the raster needs 2603 MiB") && line.contains("allow more memory"), "{line}");
 }
 
 /// A budget beyond what the system gives is cut to that.
@@ -80,7 +81,7 @@ fn a_budget_beyond_the_system_is_refused_in_one_line() {
     let place = Place::new();
     let file = heights(&place);
     let line = fails_within(&place, 1 << 20, &["info", &file, "-q", "--max-mem", "64GiB"]);
-    assert!(line.contains("the raster needs 1792 MiB"), "{line}");
+    assert!(line.contains("the raster needs 2603 MiB"), "{line}");
 }
 
 /// A tree of JSON takes far more than its text, which no estimate foresees.
