@@ -19,8 +19,9 @@ const TILE: usize = 16;
 /// Fewest and most cells of the finest grid, and most along a side.
 const CELLS: [usize; 2] = [1 << 12, 1 << 18];
 const ALONG: f64 = 4096.0;
-/// Most shadows that are kept: of more solids the trees answer, for less memory.
+/// Most shadows that are kept, in all and for each point: of more solids the trees answer, for less memory, and sooner where few points ask.
 const SHADOWS: usize = 1 << 21;
+const PER_POINT: usize = 2;
 /// Most solids that are found; where there are more, the trees are faster.
 const MOST: usize = 24;
 /// Widening of all bounds against rounding, as a share of the coordinates' size.
@@ -103,10 +104,10 @@ impl<'a> LightBuffer<'a> {
     /// Bytes of a box or triangle, its entries in cells included.
     pub const BYTES: u64 = 128;
 
-    /// Prepares the shadows of all solids, of which there may be at most two million; of more the buffer tells nothing. Cells are filled later.
+    /// Prepares the shadows of all solids, of which there may be at most two million, and two for each point; of more the buffer tells nothing. Cells are filled later.
     /// * `axes`: orthonormal, the last towards the sun, which is up;
     /// * `spread`: distance by which rays depart from it along the other axes, per unit along it;
-    /// * `points`: number of points that will be asked for, about: few of them are not worth many cells.
+    /// * `points`: number of points that will be asked for, about: few of them are worth neither many cells nor many shadows.
     pub fn new(obstacles: Obstacles<'a>, axes: [DVec3; 3], spread: f64, points: usize) -> Self {
         let bounds = obstacles.solid_bounds();
         let bounds = if bounds.is_empty() { Aabb::of([DVec3::ZERO]) } else { bounds };
@@ -116,7 +117,7 @@ impl<'a> LightBuffer<'a> {
         let triangles = |tree: &MeshTree<'_>| tree.mesh().triangles().len();
         let solids =
             obstacles.boxes().boxes().len() + obstacles.meshes().iter().map(|(_, m)| triangles(m)).sum::<usize>();
-        if solids > SHADOWS {
+        if solids > SHADOWS.min(PER_POINT * points) {
             let (shadows, first, levels) = (Vec::new(), Vec::new(), Vec::new());
             return Self { light, spread, low: bounds.min.z, slack, shadows, first, levels, obstacles };
         }
