@@ -98,7 +98,7 @@ pub(crate) fn fetch(workspace: &Path) -> Result<()> {
 pub(crate) fn refused(tree: &Path, target: &Path, args: &Args, planted: &Planted) -> Result<BTreeSet<usize>> {
     let mut command = cargo(tree, target, &["check", "--offline", "--keep-going", "--message-format=json", "--lib"]);
     command.args(args.release.then_some("--release"));
-    command.args(args.packages.iter().flat_map(|p| ["-p", p])).stderr(Stdio::null());
+    command.args(args.planted().iter().flat_map(|p| ["-p", p])).stderr(Stdio::null());
     let out = command.output()?;
     let mut found = BTreeSet::new();
     let mut unexplained = String::new();

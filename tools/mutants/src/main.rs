@@ -36,6 +36,9 @@ struct Args {
     /// The same number of faults from each package; else every line of them has the same chance.
     #[arg(long)]
     each: bool,
+    /// With `--each`, plants only the faults drawn from this package: those that a run of all packages plants in it.
+    #[arg(long, requires = "each")]
+    only: Option<String>,
     /// Builds with the release profile: without checks of overflow, and with the loops of all crates optimised.
     #[arg(long)]
     release: bool,
@@ -56,17 +59,26 @@ struct Args {
     list: bool,
 }
 
+impl Args {
+    /// The packages that get faults.
+    fn planted(&self) -> &[String] {
+        self.only.as_ref().map_or(&self.packages[..], std::slice::from_ref)
+    }
+}
+
 /// The settings of a run, saved so that it can be continued.
 #[derive(Debug, Serialize, Deserialize)]
 struct Plan {
     seed: u64,
     count: usize,
     packages: Vec<String>,
+    #[serde(default)]
+    only: Option<String>,
     /// Commit of the source.
     commit: String,
     /// All faults that were tried, in the order in which they were drawn.
     faults: Vec<Fault>,
-    /// Numbers of the faults that compile, at most `count`.
+    /// Numbers of the faults that compile, at most `count`, or its share of them where only one package gets faults.
     chosen: Vec<usize>,
 }
 
@@ -99,14 +111,15 @@ fn main() -> Result<()> {
         }
     };
     ensure!(
-        (plan.seed, plan.count, &plan.packages) == (args.seed, args.count, &args.packages),
-        "an earlier run is of {} faults by seed {} in {}; give the same to go on with it, or --fresh",
+        (plan.seed, plan.count, &plan.packages, &plan.only) == (args.seed, args.count, &args.packages, &args.only),
+        "an earlier run is of {} faults by seed {} in {}{}; give the same to go on with it, or --fresh",
         plan.count,
         plan.seed,
-        plan.packages.join(", ")
+        plan.packages.join(", "),
+        plan.only.iter().map(|p| format!(", only those of {p}")).collect::<String>()
     );
     eprintln!("{} faults at {}", plan.chosen.len(), plan.commit);
-    let only = if args.level < 2 { &plan.packages[..] } else { &[] };
+    let only = if args.level < 2 { args.planted() } else { &[] };
     let suites = build::suites(&home.join("tree"), &home.join("build"), &packages, only, args.release)?;
     let results = hunt::hunt(&plan, &suites, &home, &args)?;
     let report = table::report(&plan, &results);
@@ -123,13 +136,15 @@ fn draw(workspace: &Path, packages: &Packages, args: &Args) -> Result<Vec<Fault>
     if !args.each {
         return draw_from(workspace, packages, &args.packages, enough, &mut random);
     }
+    ensure!(args.planted().iter().all(|p| args.packages.contains(p)), "--only names none of the packages");
     let mut parts = Vec::new();
     for package in args.packages.chunks(1) {
         parts.push(draw_from(workspace, packages, package, enough.div_ceil(args.packages.len()), &mut random)?);
     }
     // In turn, so that the first ones are from all packages too.
     let longest = parts.iter().map(Vec::len).max().unwrap_or(0);
-    Ok((0..longest).flat_map(|k| parts.iter().filter_map(move |part| part.get(k).cloned())).collect())
+    let mixed = (0..longest).flat_map(|k| parts.iter().filter_map(move |part| part.get(k).cloned()));
+    Ok(mixed.filter(|f| args.planted().contains(&f.package)).collect())
 }
 
 /// At most `enough` faults of these packages.
@@ -170,7 +185,7 @@ fn prepare(workspace: &Path, home: &Path, packages: &Packages, faults: Vec<Fault
     build::fetch(workspace)?;
     let (tree, target) = (home.join("tree"), home.join("build"));
     let _ = std::fs::remove_dir_all(&tree);
-    let roots = packages.roots.iter().filter(|(p, _)| args.packages.contains(p));
+    let roots = packages.roots.iter().filter(|(p, _)| args.planted().contains(p));
     let roots: BTreeMap<_, _> = roots.map(|(p, r)| (p.clone(), r.clone())).collect();
     let mut compiling: BTreeSet<usize> = (0..faults.len()).collect();
     loop {
@@ -182,13 +197,15 @@ fn prepare(workspace: &Path, home: &Path, packages: &Packages, faults: Vec<Fault
         }
         compiling.retain(|id| !refused.contains(id));
     }
+    let count = if args.only.is_some() { args.count.div_ceil(args.packages.len()) } else { args.count };
     let commit = Command::new("git").args(["describe", "--always", "--dirty"]).current_dir(workspace).output()?;
     Ok(Plan {
         seed: args.seed,
         count: args.count,
         packages: args.packages.clone(),
+        only: args.only.clone(),
         commit: String::from_utf8(commit.stdout)?.trim().to_owned(),
-        chosen: compiling.into_iter().take(args.count).collect(),
+        chosen: compiling.into_iter().take(count).collect(),
         faults,
     })
 }

@@ -23,7 +23,7 @@ pub(crate) fn report(plan: &Plan, results: &Results) -> String {
         let share = 100.0 * noticed as f64 / all.len().max(1) as f64;
         out += &format!("| {name} | {} | {noticed} ({share:.0} %) | {} |\n", all.len(), all.len() - noticed);
     };
-    for package in &plan.packages {
+    for package in plan.packages.iter().filter(|p| plan.only.as_ref().is_none_or(|o| o == *p)) {
         row(package, &|f| f.package == *package);
     }
     row("all", &|_| true);
