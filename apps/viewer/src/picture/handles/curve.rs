@@ -33,10 +33,11 @@ pub(super) fn show(
     let at = view.stages().iter().position(|stage| matches!(stage, Stage::SplineBend(_)));
     let Some((at, Stage::SplineBend(bend))) = at.and_then(|at| Some((at, view.stages().get(at)?))) else { return };
     let Ok(after) = View::new(view.pinhole().clone(), view.stages()[at + 1..].to_vec()) else { return };
-    // Between two presets the picture shows a curve of neither.
+    // Between two presets the picture shows a curve of neither. During a drag it lags behind the document, and the handle stays.
+    let lags = ui.input(|input| input.pointer.any_down());
     let stated = &bend.resolved().control;
     let same = |(a, b): (&[f64; 2], &[f64; 2])| DVec2::from(*a).distance(DVec2::from(*b)) < 1e-6;
-    if stated.len() != preset.control.len() || !stated.iter().zip(&preset.control).all(same) {
+    if stated.len() != preset.control.len() || !lags && !stated.iter().zip(&preset.control).all(same) {
         return;
     }
     let curve = bend.curve();
