@@ -3,6 +3,7 @@
 mod accessible;
 mod authoring;
 mod bookmarks;
+mod choosing;
 mod clicks;
 mod consent;
 mod controls;
