@@ -363,3 +363,19 @@ fn make(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_film_of_the_viewing_angle_runs_from_10_to_80_degrees_in_its_time() {
+        for (seconds, rate) in [(2.0, 8.0), (10.0, RATE)] {
+            let exporter = Exporter { film: Film::Sweep, seconds: Some(seconds), rate, ..Exporter::default() };
+            let animation = exporter.animation(Path::new("film.mp4"), &[]).expect("an animation");
+            let [from, to, step] = animation.sweep.expect("a sweep").phi_deg;
+            assert_eq!([from, to], [10.0, 80.0], "as the choice says");
+            assert!(((to - from) / step + 1.0 - seconds * rate).abs() < 1e-9, "{step} degrees a frame");
+        }
+    }
+}

@@ -182,4 +182,24 @@ mod tests {
         assert!(viewer.resumes(&ctx) && viewer.document().title == "mine" && viewer.is_changed());
         assert!(!viewer.resumes(&ctx), "nothing waits any more");
     }
+
+    #[test]
+    fn what_the_browser_does_not_keep_is_said_with_the_reason() {
+        use egui_kittest::kittest::Queryable;
+        type Tell = fn(&mut Viewer, bool);
+        let new = |cc: &mut eframe::CreationContext<'_>| Viewer::new(&cc.egui_ctx, &Opening::default());
+        let mut harness = egui_kittest::Harness::builder().with_max_steps(4).build_eframe(new);
+        let tells: [(Tell, bool, &str); 4] = [
+            (Viewer::tell_not_remembered, true, "The browser has no room to keep this scene"),
+            (Viewer::tell_not_remembered, false, "The browser keeps no scenes here"),
+            (Viewer::tell_not_kept, true, "The browser has no room to keep this file"),
+            (Viewer::tell_not_kept, false, "The browser keeps no files here"),
+        ];
+        for (tell, is_full, words) in tells {
+            assert!(harness.query_by_label_contains(words).is_none());
+            tell(harness.state_mut(), is_full);
+            (0..2).for_each(|_| harness.step());
+            assert!(harness.query_by_label_contains(words).is_some(), "{words}");
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::{app, find, opened, press, scene, settle};
 use belvedere::picture::PictureOptions;
-use belvedere::scene_file::{PresetsDoc, StageDoc};
+use belvedere::scene_file::{PresetsDoc, SplineStageDoc, StageDoc};
 use belvedere::{OpenOptions, Session};
 use eframe::egui::{Key, Modifiers, vec2};
 
@@ -138,4 +138,37 @@ fn turns_by_hand_make_way_for_a_preview_in_one_step_that_is_undone() {
     settle(&mut harness);
     let document = harness.state().document().clone();
     assert!(document.constructor.is_none() && document.stage.len() == 1);
+}
+
+#[test]
+fn of_several_presets_the_chosen_one_is_edited_and_those_without_a_name_have_a_number() {
+    let folder = tempfile::tempdir().expect("folder");
+    let path = scene(folder.path());
+    let builtin = |name: &str| belvedere::core::presets::PresetDocument::builtin(name).expect("built in");
+    let mut own = builtin("progressive");
+    own.presets.extend(builtin("map").presets);
+    own.presets.iter_mut().for_each(|preset| preset.name.clear());
+    let mut editor = belvedere::editor::Editor::open(&path, Vec::new()).expect("scene");
+    let stage = SplineStageDoc { presets: PresetsDoc::Inline(Box::new(own.clone())), pivot: None, plane: None };
+    editor.edit(|document| document.stage.push(StageDoc::SplineBend(stage)));
+    editor.save(&path).expect("saved");
+    let mut harness = app(&opened(&[path]));
+    settle(&mut harness);
+    press(&mut harness, "Spline");
+    settle(&mut harness);
+    for (chosen, other, name) in [(1, 0, "Preset 2 at 80°"), (0, 1, "Preset 1 at 40°")] {
+        find(&harness, name).scroll_to_me();
+        (0..20).for_each(|_| harness.step());
+        press(&mut harness, name);
+        find(&harness, &format!("Preset {}", chosen + 1));
+        press(&mut harness, "Mirror");
+        settle(&mut harness);
+        let Some(StageDoc::SplineBend(stage)) = harness.state().document().stage.first().cloned() else {
+            panic!("no spline")
+        };
+        let PresetsDoc::Inline(now) = stage.presets else { panic!("the presets are not the user's own") };
+        assert_ne!(now.presets[chosen], own.presets[chosen], "{name} was not edited");
+        assert_eq!(now.presets[other], own.presets[other], "another one than {name} was edited");
+        own = *now;
+    }
 }

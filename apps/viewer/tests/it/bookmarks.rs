@@ -4,7 +4,7 @@ use crate::{app, find, opened, press, scene, settle};
 use belvedere_viewer::{Opening, Viewer};
 use eframe::egui::{Event, Key, Modifiers};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 
 type Window = Harness<'static, Viewer>;
 
@@ -93,4 +93,20 @@ fn bookmarks_of_a_scene_without_a_file_survive_a_crash_and_are_kept_once_it_is_s
     settle(&mut harness);
     list(&mut harness);
     assert_eq!(names(&harness), ["View 1"]);
+}
+
+#[test]
+fn the_first_bookmark_has_no_way_up_and_the_last_none_down() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut harness = app(&opened(&[scene(folder.path())]));
+    settle(&mut harness);
+    for _ in 0..3 {
+        harness.key_press(Key::B);
+        harness.step();
+    }
+    list(&mut harness);
+    let ways = |n: i32| {
+        ["up", "down"].map(|way| !find(&harness, &format!("Move View {n} {way}")).accesskit_node().is_disabled())
+    };
+    assert_eq!([1, 2, 3].map(ways), [[false, true], [true, true], [true, false]]);
 }

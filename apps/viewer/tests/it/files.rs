@@ -157,3 +157,14 @@ fn without_windows_of_the_system_files_are_chosen_in_our_own() {
     press(&mut harness, "Cancel");
     assert!(harness.query_by_label("Cancel").is_none());
 }
+
+#[test]
+fn without_a_folder_for_its_state_the_window_says_so_and_works() {
+    let folder = tempfile::tempdir().expect("folder");
+    let state = folder.path().join("state");
+    std::fs::write(&state, "a file where the folder should be").expect("file");
+    let mut harness = app(&Opening { state: Some(state), ..opened(&[scene(folder.path())]) });
+    harness.get_by_label_contains("what you do is not written down for the case of a crash: ");
+    settle(&mut harness);
+    assert_eq!(harness.state().document().title, "A small massif");
+}

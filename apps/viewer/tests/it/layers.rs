@@ -146,3 +146,16 @@ fn atoms_become_space_filling_and_coloured_by_chain() {
     assert_eq!(style.color, "chain");
     assert_ne!(style.representation, belvedere::scene::molecule::Representation::default());
 }
+
+#[test]
+fn the_title_is_what_is_written_in_its_field() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut harness = app(&opened(&[scene(folder.path())]));
+    settle(&mut harness);
+    find(&harness, "Title").focus();
+    harness.step();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::A);
+    harness.event(Event::Text("Seen from the south".into()));
+    settle(&mut harness);
+    assert_eq!(harness.state().document().title, "Seen from the south");
+}

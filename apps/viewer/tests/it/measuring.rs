@@ -68,7 +68,7 @@ fn clicked_points_are_measured_along_the_ground_also_through_a_bend() {
     let bent = folder.path().join("bent.toml");
     std::fs::write(&bent, text + "[[stage]]\nkind = \"spline_bend\"\npresets = \"progressive\"\n").expect("scene");
     let ground = session.scene().terrain().expect("terrain");
-    for file in [path, bent] {
+    for (file, is_bent) in [(path, false), (bent, true)] {
         let mut harness = app(&opened(&[file]));
         settle(&mut harness);
         harness.key_press(Key::M);
@@ -99,6 +99,8 @@ fn clicked_points_are_measured_along_the_ground_also_through_a_bend() {
         let text = copied(&mut harness, "Copy as text");
         assert!(text.contains("along the ground\t") && text.lines().count() == 9, "{text}");
         find(&harness, "Height profile");
+        let said = harness.query_by_label("Lengths are of true space, not of the bent picture.").is_some();
+        assert_eq!(said, is_bent, "whether lengths are those of the picture is said where they are not");
     }
 }
 

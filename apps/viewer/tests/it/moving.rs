@@ -102,3 +102,56 @@ fn a_strip_along_a_route_is_drawn_while_the_camera_moves_and_at_rest() {
     assert_eq!(harness.state().document().stage[0].kind(), "strip");
     assert!(find(&harness, "Picture").rect().width() > 100.0);
 }
+
+#[test]
+fn each_drag_is_a_step_of_its_own() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut harness = app(&opened(&[scene(folder.path())]));
+    settle(&mut harness);
+    let middle = find(&harness, "Picture").rect().center() + vec2(0.0, 60.0);
+    let mut eyes = vec![eye(&harness)];
+    for way in [vec2(60.0, 20.0), vec2(-30.0, 40.0)] {
+        harness.drag_at(middle);
+        harness.step();
+        for k in 1..=4 {
+            harness.hover_at(middle + way * (k as f32 / 4.0));
+            harness.step();
+        }
+        harness.drop_at(middle + way);
+        settle(&mut harness);
+        eyes.push(eye(&harness));
+    }
+    for before in eyes.iter().rev().skip(1) {
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        settle(&mut harness);
+        assert_eq!(eye(&harness), *before);
+    }
+}
+
+/// Left and right go across the view, up and down along it, level both; two opposite keys end where they began.
+#[test]
+fn arrow_keys_go_along_and_across_the_view_and_opposite_ones_cancel() {
+    let folder = tempfile::tempdir().expect("folder");
+    let mut harness = app(&opened(&[scene(folder.path())]));
+    settle(&mut harness);
+    let from = eye(&harness);
+    // The scene looks at the middle of its ground.
+    let ahead = [-from[0], -from[1]];
+    let right = [ahead[1], -ahead[0]];
+    for (there, back, way) in [
+        (Key::ArrowUp, Key::ArrowDown, ahead),
+        (Key::ArrowDown, Key::ArrowUp, ahead.map(|x| -x)),
+        (Key::ArrowRight, Key::ArrowLeft, right),
+        (Key::ArrowLeft, Key::ArrowRight, right.map(|x| -x)),
+    ] {
+        harness.key_press(there);
+        settle(&mut harness);
+        let by = [0, 1, 2].map(|i| eye(&harness)[i] - from[i]);
+        let (along, length) = (by[0] * way[0] + by[1] * way[1], by[0].hypot(by[1]) * way[0].hypot(way[1]));
+        assert!(length > 0.0 && along > (1.0 - 1e-6) * length && by[2].abs() < 1e-6, "{there:?}: {by:?}, not {way:?}");
+        harness.key_press(back);
+        settle(&mut harness);
+        let now = eye(&harness);
+        assert!(now.iter().zip(from).all(|(a, b)| (a - b).abs() < 1e-6), "{there:?} and {back:?}: {now:?}");
+    }
+}

@@ -159,3 +159,33 @@ fn one_click_keeps_a_thing_in_sight_in_place_of_turns_by_hand_and_the_ground_is_
     assert!(harness.state().document().constructor.is_none());
     find(&harness, "Click what has to stay in sight.");
 }
+
+#[test]
+fn of_a_model_the_part_that_was_clicked_is_kept_in_sight() {
+    let folder = tempfile::tempdir().expect("folder");
+    let square = |name: &str, [a, b]: [i32; 2], k: i32| {
+        let corners = format!("v {a} 0 0\nv {b} 0 0\nv {b} 0 24\nv {a} 0 24\n");
+        format!("o {name}\n{corners}f {} {} {} {}\n", k + 1, k + 2, k + 3, k + 4)
+    };
+    let text = square("left", [-40, -2], 0) + &square("right", [2, 40], 4);
+    std::fs::write(folder.path().join("two.obj"), text).expect("model");
+    let path = folder.path().join("two.toml");
+    let text = "format = 1\n[camera]\neye = [0, -90, 12]\nlook_at = [0, 0, 12]\nimage = [320, 180]\n\
+        [[layer]]\nkind = \"mesh\"\nid = \"two\"\nsource = \"two.obj\"\n";
+    std::fs::write(&path, text).expect("scene");
+    for (name, right) in [("left", -0.15), ("right", 0.15)] {
+        let mut harness = app(&opened(std::slice::from_ref(&path)));
+        settle(&mut harness);
+        press(&mut harness, "Curved rays");
+        press(&mut harness, "To keep something in sight");
+        let picture = find(&harness, "Picture").rect();
+        let at = picture.center() + vec2(right * picture.width(), 0.0);
+        harness.hover_at(at);
+        harness.drag_at(at);
+        harness.drop_at(at);
+        (0..2).for_each(|_| harness.step());
+        let document = harness.state().document().clone();
+        let target = document.constructor.as_ref().and_then(|doc| doc.target.clone()).unwrap_or_default();
+        assert!(target.contains(name), "{target:?}, not {name}");
+    }
+}

@@ -141,3 +141,66 @@ fn rims_marks_and_the_property_of_names_are_chosen() {
     let LayerDoc::Line(line) = &harness.state().document().layer[1] else { panic!("no line") };
     assert_eq!((line.style.labels, line.name_field.as_deref()), (true, Some("highway")));
 }
+
+/// A scene of one layer of points or areas, each with a kind.
+fn places(folder: &Path, layer: &str, shape: impl Fn(f64) -> String) -> std::path::PathBuf {
+    let place = |(i, kind): (usize, &str)| {
+        let shape = shape(700.0 * i as f64 - 700.0);
+        format!(r#"{{"type": "Feature", "properties": {{"kind": "{kind}"}}, "geometry": {shape}}}"#)
+    };
+    let all: Vec<String> = ["old", "new", "old"].into_iter().enumerate().map(place).collect();
+    let text = format!(r#"{{"type": "FeatureCollection", "features": [{}]}}"#, all.join(","));
+    std::fs::write(folder.join("places.geojson"), text).expect("places");
+    let text = std::fs::read_to_string(roads(folder)).expect("scene");
+    let text = text.replace("\"line\"", &format!("\"{layer}\"")).replace("roads", "places");
+    let path = folder.join("places.toml");
+    std::fs::write(&path, text).expect("scene");
+    path
+}
+
+/// The window with the style of the places open, coloured by their kind.
+fn by_kind(path: std::path::PathBuf) -> Window {
+    let mut harness = app(&opened(&[path]));
+    settle(&mut harness);
+    press(&mut harness, "Style of places");
+    wait_for(&mut harness, "the properties", |harness| harness.query_by_label("places coloured by").is_some());
+    (0..20).for_each(|_| harness.step());
+    press(&mut harness, "places coloured by");
+    press(&mut harness, "kind: old, new");
+    settle(&mut harness);
+    find(&harness, "old (2)");
+    find(&harness, "new (1)");
+    harness
+}
+
+#[test]
+fn points_are_coloured_by_their_kind() {
+    let folder = tempfile::tempdir().expect("folder");
+    let point = |x: f64| format!(r#"{{"type": "Point", "coordinates": [{x}, 0]}}"#);
+    let harness = by_kind(places(folder.path(), "point", point));
+    let LayerDoc::Point(points) = &harness.state().document().layer[1] else { panic!("no points") };
+    assert_eq!(points.style.color_by.as_ref().map(|by| by.property.as_str()), Some("kind"));
+}
+
+#[test]
+fn areas_are_coloured_by_their_kind_and_the_line_round_them_is_chosen() {
+    let folder = tempfile::tempdir().expect("folder");
+    let square = |x: f64| {
+        let [a, b] = [x, x + 400.0];
+        format!(r#"{{"type": "Polygon", "coordinates": [[[{a}, 0], [{b}, 0], [{b}, 400], [{a}, 400], [{a}, 0]]]}}"#)
+    };
+    let mut harness = by_kind(places(folder.path(), "area", square));
+    let style = |harness: &Window| {
+        let LayerDoc::Area(areas) = &harness.state().document().layer[1] else { panic!("no areas") };
+        (areas.style.color_by.as_ref().map(|by| by.property.clone()), areas.style.outline.clone())
+    };
+    assert_eq!(style(&harness), (Some("kind".into()), None));
+    for (choice, outline) in [("none", Some("none")), ("as the surface has it", None)] {
+        find(&harness, "line round places").scroll_to_me();
+        (0..20).for_each(|_| harness.step());
+        press(&mut harness, "line round places");
+        press(&mut harness, choice);
+        settle(&mut harness);
+        assert_eq!(style(&harness).1.as_deref(), outline, "{choice}");
+    }
+}

@@ -174,6 +174,7 @@ fn a_broken_scene_leaves_the_good_one_with_its_changes() {
     settle(&mut harness);
     assert_eq!(*now(&harness), *good);
     assert!(harness.state().is_changed(), "its changes count as saved");
+    assert!(!harness.state().is_opening(), "dropped files that were answered still wait");
     press(&mut harness, "Edit");
     press(&mut harness, "Undo");
     settle(&mut harness);
@@ -258,4 +259,17 @@ fn thirty_actions(seed: u64) {
 #[test]
 fn nothing_is_lost_in_thirty_mixed_actions() {
     (1..=6).for_each(thirty_actions);
+}
+
+#[test]
+fn the_present_scene_keeps_its_panel_while_another_file_is_opened() {
+    let folder = tempfile::tempdir().expect("folder");
+    let other = titled(folder.path(), "Another");
+    let mut harness = app(&opened(&[scene(folder.path())]));
+    settle(&mut harness);
+    harness.input_mut().dropped_files.push(Arc::new(Dropped(other)));
+    harness.step();
+    assert!(harness.state().is_opening());
+    find(&harness, "Hide trail");
+    crate::wait_for(&mut harness, "the scene", |harness| harness.state().document().title == "Another");
 }

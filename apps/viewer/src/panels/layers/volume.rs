@@ -156,4 +156,22 @@ mod tests {
         assert_eq!(stated(&text(&points)), Some(points));
         assert_eq!(stated("engine"), None);
     }
+
+    #[test]
+    fn bars_are_higher_where_more_voxels_are() {
+        use belvedere::core::{DMat3, DVec3};
+        use belvedere::scene::volume::{TransferFunction, Volume, VoxelValues};
+        // Of eight voxels five are 0, two 100 and one 50.
+        let values = VoxelValues::U8(vec![0, 100, 0, 0, 50, 0, 100, 0]);
+        let volume = Volume::new([2, 2, 2], DMat3::IDENTITY, DVec3::ZERO, values).expect("volume");
+        let point = TransferPoint { value: 50.0, color: belvedere::scene::Color::rgb(1, 200, 30), opacity: 0.5 };
+        let transfer = TransferFunction::new("own", vec![point], 1.0).expect("transfer");
+        let layer = VolumeLayer::new(volume, transfer);
+        eframe::egui::__run_test_ui(|ui| {
+            let bars = histogram(ui, Id::NULL, &layer, [0.0, 100.0]);
+            let [low, middle, high] = [0, BARS / 2, BARS - 1].map(|i| bars[i]);
+            assert!(low == 1.0 && low > high && high > middle && middle > 0.0, "{bars:?}");
+            assert_eq!(bars.iter().filter(|bar| **bar > 0.0).count(), 3);
+        });
+    }
 }
