@@ -12,6 +12,8 @@ const MAX_HALVINGS: u8 = 10;
 /// long.
 const MAX_BLIND_HALVINGS: u8 = 9;
 const MAX_BLIND_HALVINGS_BESIDE_STRIPS: u8 = 6;
+/// Stages are taken to enlarge what lies at a border by this factor at most.
+const BORDER_STRETCH: f64 = 2.0;
 /// Fewest of them in a coarse picture.
 const LEAST_BLIND_HALVINGS: u8 = 3;
 /// Tolerance of a picture that is not coarse, pixels; each doubling saves a halving.
@@ -112,7 +114,7 @@ impl<'a> Refiner<'a> {
     fn edge_error(&self, a: &Corner, b: &Corner) -> f64 {
         let missing = [a.is_missing(), b.is_missing()];
         if missing == [true; 2] && self.pass.crosses(a.p, b.p) {
-            return f64::INFINITY;
+            return self.border_error(a, b);
         }
         // An edge without images matters only beside an edge with one.
         if a.v.is_none() && b.v.is_none() {
@@ -132,8 +134,21 @@ impl<'a> Refiner<'a> {
         if error == 0.0 || missing == [false; 2] {
             return error;
         }
-        // An edge that crosses the border of the domain is halved towards it.
-        f64::INFINITY
+        self.border_error(a, b)
+    }
+
+    /// Error of an edge that crosses the border of the domain: it is halved towards the border until it is too short to be seen.
+    /// How long it is in the image is judged by where it would be seen without stages, in either direction alike.
+    fn border_error(&self, a: &Corner, b: &Corner) -> f64 {
+        let beside_border = [a, b].iter().any(|c| c.v.is_none());
+        let depth = [a.p, b.p].map(|p| self.screen.view_from(p).z).into_iter().fold(f64::INFINITY, f64::min);
+        let per_unit = if self.screen.ortho { self.screen.scale } else { self.screen.scale / depth };
+        let length_px = (a.p - b.p).length() * per_unit;
+        if beside_border && per_unit > 0.0 && BORDER_STRETCH * length_px <= self.tolerance_px {
+            0.0
+        } else {
+            f64::INFINITY
+        }
     }
 
     fn is_off_image(&self, c: &[Corner; 3], margin_px: f64) -> bool {
