@@ -24,6 +24,8 @@ pub struct DisplacedGround<'a> {
 struct Table {
     /// Displacement of the nodes.
     moved: Vec<f64>,
+    /// Whether the displacement is bilinear on each cell of the ground: the nodes of its grid are nodes of the ground.
+    aligned: bool,
     /// Upper bound of the height in each block of [`BLOCK`] x [`BLOCK`] cells.
     highest: Vec<f64>,
     blocks: [usize; 2],
@@ -63,21 +65,49 @@ impl<'a> DisplacedGround<'a> {
         let [cols, rows] = self.field.nodes();
         let node = |i: usize| self.displacement(DVec2::new((i % cols) as f64, (i / cols) as f64));
         let moved: Vec<f64> = (0..cols * rows).map(node).collect();
+        let aligned = self.is_aligned();
         let blocks = [cols, rows].map(|n| (n - 1).div_ceil(BLOCK));
         let height = self.field.heights();
         let top = |b: usize| {
             let [x, y] = [b % blocks[0], b / blocks[0]].map(|k| k * BLOCK);
             let [across, down] = [x..=(x + BLOCK).min(cols - 1), y..=(y + BLOCK).min(rows - 1)];
-            let nodes = down.flat_map(|y| across.clone().map(move |x| y * cols + x));
+            let nodes = down.clone().flat_map(|y| across.clone().map(move |x| y * cols + x));
             // Ground and displacement may be largest at different nodes.
             let [h, u, sum] = nodes.fold([f64::NEG_INFINITY; 3], |[h, u, sum], i| {
                 [h.max(height[i]), u.max(moved[i]), sum.max(height[i] + moved[i])]
             });
-            if self.faceted { sum } else { h + u }
+            match (self.faceted, aligned) {
+                (true, _) => sum,
+                (false, true) => h + u,
+                (false, false) => h + self.most_moved([*across.start(), *down.start()], [*across.end(), *down.end()]),
+            }
         };
         let highest = (0..blocks[0] * blocks[1]).map(top).collect();
-        self.table = Some(Table { moved, highest, blocks });
+        self.table = Some(Table { moved, aligned, highest, blocks });
         self
+    }
+
+    /// Whether all nodes of the displacement are nodes of the ground, but for rounding, and cover it.
+    fn is_aligned(&self) -> bool {
+        let [cols, rows] = self.field.nodes().map(|n| (n - 1) as f64);
+        let place = |g: DVec2| self.delta.grid_from_scene(self.field.scene_from_grid(g));
+        let (first, last) = (place(DVec2::ZERO), place(DVec2::new(cols, rows)));
+        // Cells of the ground per cell of the displacement, and where its first node lies on the ground.
+        let step = DVec2::new(cols, rows) / (last - first);
+        let start = -first * step;
+        let whole = |v: DVec2| (v - v.round()).abs().max_element() < 1e-6;
+        whole(step) && whole(start) && self.delta.contains(first) && self.delta.contains(last)
+    }
+
+    /// Upper bound of the displacement between two nodes of the ground, north-west and south-east.
+    fn most_moved(&self, north_west: [usize; 2], south_east: [usize; 2]) -> f64 {
+        let [a, b] = [north_west, south_east].map(|n| self.field.scene_from_grid(DVec2::new(n[0] as f64, n[1] as f64)));
+        self.delta.range_over(DVec2::new(a.x, b.y), DVec2::new(b.x, a.y)).map_or(0.0, |range| range[1].max(0.0))
+    }
+
+    /// Columns and rows of its nodes.
+    pub fn nodes(&self) -> [usize; 2] {
+        self.field.nodes()
     }
 
     fn displacement(&self, g: DVec2) -> f64 {
@@ -162,30 +192,40 @@ impl<'a> DisplacedGround<'a> {
         let cols = self.field.cols();
         let nw = cell[1] * cols + cell[0];
         let nodes = [nw, nw + 1, nw + cols, nw + cols + 1];
-        let heights = nodes.map(|i| self.field.heights()[i]);
-        let top = heights.into_iter().fold(f64::NEG_INFINITY, f64::max) + self.delta.range()[1].max(0.0);
+        let mut heights = nodes.map(|i| self.field.heights()[i]);
         let low = (z + part[0] * dz).min(z + part[1] * dz);
-        if top - low <= worst.over {
+        let most = |values: [f64; 4]| values.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        let moved = match &self.table {
+            Some(table) if table.aligned || self.faceted => Some(nodes.map(|i| table.moved[i])),
+            _ => None,
+        };
+        let rise = moved.map_or(self.delta.range()[1].max(0.0), most);
+        if most(heights) + rise - low <= worst.over {
             return;
         }
         let corner = DVec2::new(cell[0] as f64, cell[1] as f64);
-        let heights = if self.faceted {
-            let moved = self.at_corners(cell);
-            std::array::from_fn(|k| heights[k] + moved[k])
-        } else {
-            heights
-        };
+        if self.faceted {
+            let moved = moved.unwrap_or_else(|| self.at_corners(cell));
+            heights.iter_mut().zip(moved).for_each(|(height, moved)| *height += moved);
+            if most(heights) - low <= worst.over {
+                return;
+            }
+        }
         for (triangle, [from, to]) in line.by_triangle(cell, part) {
             if to <= from || triangle.corners().iter().any(|&k| self.field.void()[nodes[k]]) {
                 continue;
             }
             let slope = triangle.slope(heights);
             // Over a flat triangle the excess is largest at an end.
-            let steps = if self.faceted { 1.0 } else { (to - from) * line.dir.length() / STEP };
+            let steps = if self.faceted || moved.is_some() { 1.0 } else { (to - from) * line.dir.length() / STEP };
             let count = steps.ceil().max(1.0) as usize;
             let mut over_at = |t: f64| {
                 let at = line.at(t);
-                let moved = if self.faceted { 0.0 } else { self.displacement(at) };
+                let moved = match moved {
+                    _ if self.faceted => 0.0,
+                    Some(corners) => bilinear(corners, at - corner),
+                    None => self.displacement(at),
+                };
                 let over = heights[0] + slope.dot(at - corner) + moved - (z + t * dz);
                 if over > worst.over {
                     *worst = Excess { over, at };
@@ -209,6 +249,11 @@ impl<'a> DisplacedGround<'a> {
             }
         }
     }
+}
+
+/// Bilinear value in a cell from its corners: north-west, north-east, south-west, south-east.
+fn bilinear([nw, ne, sw, se]: [f64; 4], within: DVec2) -> f64 {
+    nw + (ne - nw) * within.x + (sw - nw) * within.y + (nw - ne - sw + se) * within.x * within.y
 }
 
 /// The start of the part of a straight line from `a` to `b` that lies beyond `guard` cells of `p`.

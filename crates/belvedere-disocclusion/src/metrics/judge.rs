@@ -9,8 +9,8 @@ use rayon::prelude::*;
 
 /// Depth under the ground down to which a line of sight still counts as clear, scene units: rounding.
 const TOUCH: f64 = 1e-6;
-/// Number of points from which on it is worth preparing the grounds.
-const MANY: usize = 20_000;
+/// Cells that lines of sight cross, per node of the ground, from which on it is worth preparing the grounds.
+const MANY: usize = 2;
 
 /// A displacement of zero everywhere.
 pub(crate) fn still(field: &Field) -> Result<Grid, GridError> {
@@ -134,9 +134,11 @@ impl<'a> Judge<'a> {
 
     /// Prepares the grounds if there are enough points for that to pay.
     pub(crate) fn prepared(mut self, points: usize) -> Self {
-        if points >= MANY {
-            self.grounds = self.grounds.into_iter().map(DisplacedGround::prepared).collect();
-        }
+        let pays = |ground: &DisplacedGround| {
+            let [cols, rows] = ground.nodes();
+            points * (cols + rows) > MANY * cols * rows
+        };
+        self.grounds = self.grounds.into_iter().map(|g| if pays(&g) { g.prepared() } else { g }).collect();
         self
     }
 
