@@ -10,6 +10,8 @@ const BOW: f64 = 0.05;
 const BOW_PLAN: f64 = 0.02;
 /// Chords are halved at most this often.
 const HALVINGS: u32 = 9;
+/// Halves of a chord leave the ray by a quarter of what it does; by up to this much more if the bend is uneven.
+const UNEVEN: f64 = 1.5;
 /// Chords to begin with.
 const PIECES: usize = 8;
 
@@ -54,11 +56,16 @@ impl ViewSight {
             && let Some(m) = at(w)
         {
             let off = m - 0.5 * (a + b);
-            let plan = off.truncate() / self.spacing;
-            if plan.length() > BOW_PLAN || off.z.abs() > BOW {
-                self.halve(at, (w0, a), (w, m), halvings + 1, out);
+            let bow = ((off.truncate() / self.spacing).length() / BOW_PLAN).max(off.z.abs() / BOW);
+            if bow > 1.0 {
+                let bent = 0.25 * UNEVEN * bow > 1.0;
+                if bent {
+                    self.halve(at, (w0, a), (w, m), halvings + 1, out);
+                }
                 out.push(self.grid(m));
-                self.halve(at, (w, m), (w1, b), halvings + 1, out);
+                if bent {
+                    self.halve(at, (w, m), (w1, b), halvings + 1, out);
+                }
             }
         }
     }
