@@ -1,6 +1,6 @@
 //! The passes of one frame, in the order of the mode.
 
-use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult};
+use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult, QpSolver};
 use super::super::{BlockMaxima, Field, Hierarchy, Naive, ReferencePoint, Smoother, SolverMode, TerrainSettings};
 use super::agreement::Agreement;
 use super::fallback::{self, Fallback};
@@ -291,7 +291,7 @@ impl Passes<'_> {
             let (coarse, detail) = (&prepared.grid, detail.as_deref());
             let waters = &*prepared.waters;
             let grids = Finer { coarse, ground: &ground, detail, weights, waters, options, check: &check };
-            result = self.on_finer_grids(&grids, &problem, (result, hidden), done)?;
+            result = self.on_finer_grids(&grids, qp, &problem, (result, hidden), done)?;
         }
         done.qp = Some(QpReport::of(&result, in_view.candidates.len()));
         done.stopped = result.stopped || (fallback::stuck(&result) > 0 && self.progress.is_late());
@@ -311,15 +311,18 @@ impl Passes<'_> {
         fallback::stuck(result) + hidden > 0 && !self.progress.should_end()
     }
 
-    /// Solves again on finer and finer grids until no candidate is missed; returns the best result.
+    /// Solves again on finer and finer grids until no candidate is missed; returns the best result. Each begins with the rows of the one
+    /// before.
     fn on_finer_grids(
         &self,
         grids: &Finer<'_>,
+        solver: &QpSolver,
         problem: &QpProblem<'_>,
         (mut best, mut hidden): (QpResult, usize),
         done: &mut Outcome,
     ) -> Result<QpResult, DisocclusionError> {
         let Finer { coarse, ground, detail, weights, waters, options, check } = *grids;
+        let mut before = (Cow::Borrowed(solver), coarse.clone(), best.u.clone());
         for grid in fallback::finer(coarse, self.field) {
             if !self.unfinished(&best, hidden) {
                 break;
@@ -329,6 +332,7 @@ impl Passes<'_> {
             let target = problem.target.map(|t| fallback::resampled(coarse, t, &grid));
             let mut finer = memory::program(self.field, &grid, weights, options, waters)?;
             finer.set_heights(ground)?;
+            finer.begin_from(&before.0, &fallback::resampled(&before.1, &before.2, &grid));
             let problem = QpProblem { target: target.as_deref(), ..*problem };
             let mut next = finer.solve_with(&problem, self.progress)?;
             let mut left = 0;
@@ -337,6 +341,7 @@ impl Passes<'_> {
                 (next, left) = Agreement { field, grid: &grid, detail, waters, check, options, progress }
                     .reach(&mut finer, ground, &problem, next)?;
             }
+            before = (Cow::Owned(finer), grid.clone(), next.u.clone());
             if (fallback::stuck(&next), left) < (fallback::stuck(&best), hidden) {
                 done.fine = Some((grid, next.u.clone()));
                 (best, hidden) = (next, left);

@@ -99,6 +99,30 @@ impl QpSolver {
         Ok(())
     }
 
+    /// Begins the next frame with the rows of a solver on another grid over the same ground.
+    ///
+    /// * `u`: its displacement at the nodes of this grid, scene units.
+    pub(crate) fn begin_from(&mut self, other: &Self, u: &[f64]) {
+        let (from, to) = (other.surface.lattice, self.surface.lattice);
+        // Bending counts per node, and so the price of a metre grows with the area of a cell.
+        let share = (to.step.x * to.step.y) / (from.step.x * from.step.y);
+        let nearest = |node: u32| {
+            let at = DVec2::new((node as usize % from.cols) as f64, (node as usize / from.cols) as f64);
+            let at = (at * from.step / to.step).round();
+            let index = |v: f64, n: usize| (v as usize).min(n - 1);
+            (index(at.y, to.rows) * to.cols + index(at.x, to.cols)) as u32
+        };
+        let row = |row: &RememberedRow| {
+            let key = match row.key {
+                RowKey::Ceiling(node) => RowKey::Ceiling(nearest(node)),
+                key => key,
+            };
+            RememberedRow { key, multiplier: share * row.multiplier, ..*row }
+        };
+        self.kept = other.kept.iter().map(row).collect();
+        self.surface.displace(u);
+    }
+
     /// Parameters of the next frames.
     pub fn set_options(&mut self, options: QpOptions) {
         self.options = options;
