@@ -23,6 +23,17 @@ impl Squares {
         self.scales.len()
     }
 
+    /// Product of their matrix with values at the nodes.
+    pub(super) fn times(&self, values: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; values.len()];
+        for (k, scale) in self.scales.iter().enumerate() {
+            let entries = self.entries(k);
+            let sum: f64 = entries.iter().map(|(node, w)| w * values[*node as usize]).sum();
+            entries.iter().for_each(|(node, w)| out[*node as usize] += scale * sum * w);
+        }
+        out
+    }
+
     fn entries(&self, k: usize) -> &[(u32, f64)] {
         let end = self.starts.get(k + 1).map_or(self.entries.len(), |end| *end as usize);
         &self.entries[self.starts[k] as usize..end]

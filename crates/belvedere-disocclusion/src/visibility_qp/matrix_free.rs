@@ -1,23 +1,27 @@
 //! The dual program without its matrix, for thousands of rows.
 //!
 //! `min 1/2 m^T (K + S) m - c^T m` over `m >= 0` by the proximal method of multipliers (Rockafellar 1976): each cycle adds
-//! `near (m - m_before)^2 / 2` per row and solves what is then well conditioned by a primal-dual active set (Hintermueller, Ito, Kunisch
-//! 2002). Equations on a face are solved by conjugate gradients; a product with K is one solve of the smoother. A sparse factor
-//! preconditions, with which one or two steps are enough, or factors of crowds of neighbouring rows.
+//! `near (m - m_before)^2 / 2` per row and solves what is then well conditioned. With very many rows on a grid that is not too fine this is
+//! done over displacements, see [`super::augmented`]; else by a primal-dual active set (Hintermueller, Ito, Kunisch 2002), whose equations
+//! on a face are solved by conjugate gradients: a product with K is one solve of the smoother, and factors of crowds of neighbouring rows
+//! precondition.
 
+use super::augmented::{Augmented, Terms};
 use super::cholesky::dot;
 use super::metric::Metric;
 use super::preconditioner::Preconditioner;
 use super::row::Row;
 use rayon::prelude::*;
 
-/// First proximal weight of a cycle, share of a row's own square; it falls and rises within limits.
+/// First proximal weight of a cycle, share of a row's own square, by crowds and by a sparse factor; it falls and rises within limits.
 const NEARNESS: f64 = 1e-2;
+const NEARNESS_BY_FACTOR: f64 = 1e-3;
 const NEARNESS_RANGE: [f64; 2] = [1e-5, 1.0];
 const NEARER: f64 = 8.0;
 /// By crowds, and by a sparse factor, to which a small weight does no harm.
 const FARTHER: [f64; 2] = [0.25, 0.1];
-/// Share of the last weight with which the next solution by a sparse factor begins, at most the first one.
+/// With a sparse factor, and fewer new rows than one in so many, the weight begins with this multiple of the last.
+const FEW: usize = 50;
 const AGAIN: f64 = 4.0;
 /// Changes of the face (the active set) per cycle at most, and changes in succession without fewer rows changing at most.
 const NEWTON_STEPS: usize = 40;
@@ -28,13 +32,9 @@ const CONJUGATE_STEPS: [usize; 2] = [25, 60];
 const EXACT: f64 = 0.2;
 /// Number of neighbouring rows of which only the most missed one joins a face at a time: the others are mostly met with it.
 const GROUP: usize = 8;
-/// Most nodes of a grid for which a sparse factor is made.
+/// Most nodes of a grid for which a sparse factor is made, and rows up to which none is made: with fewer, crowds are quicker.
 const MOST_NODES: usize = 40_000;
-/// Rows up to which none is made, and rows on a face from which on it is. With fewer, crowds are quicker.
 const MOST_CROWDED: usize = 4000;
-const MANY: usize = 600;
-/// Rows that join or leave, and conjugate gradient steps, up to which it is used again.
-const STALE: usize = 4;
 /// Cycles at most of rough solutions, of those within a height, by crowds and by a sparse factor, and of exact ones.
 const CYCLES: [usize; 4] = [1, 2, 4, 10];
 /// Changes of the face at most in rough solutions.
@@ -87,7 +87,7 @@ pub(super) struct MatrixFree {
     nearness: f64,
     /// Whether a sparse factor served the last solution.
     direct: bool,
-    /// Limit in place of [`MOST_CROWDED`] and [`MANY`].
+    /// Limit in place of [`MOST_CROWDED`].
     many: Option<usize>,
     /// Order of the rows in which neighbours follow each other.
     order: Vec<usize>,
@@ -95,11 +95,10 @@ pub(super) struct MatrixFree {
     nodes: Vec<f64>,
 }
 
-/// Equations of one cycle: `(K + diagonal) m = wanted` on the face, m = 0 off it.
+/// Equations of one cycle: `(K + D) m = wanted` on the face, m = 0 off it.
 struct Equations {
-    wanted: Vec<f64>,
-    diagonal: Vec<f64>,
-    /// Diagonal of `K + diagonal`.
+    terms: Terms,
+    /// Diagonal of `K + D`.
     whole: Vec<f64>,
     face: Vec<bool>,
     preconditioner: Option<Preconditioner>,
@@ -157,9 +156,12 @@ impl MatrixFree {
     pub(super) fn solve(&mut self, metric: &mut Metric, effort: Effort, go_on: &(dyn Fn() -> bool + Sync)) -> bool {
         let direct = self.is_direct(metric);
         self.direct = direct;
+        let new = self.m.len() - self.product.len();
+        let few = FEW * new < self.m.len();
         let begin = match effort {
             Effort::Rough(_) => self.nearness.max(NEARNESS),
-            _ if direct && self.nearness > 0.0 => (AGAIN * self.nearness).min(NEARNESS),
+            _ if direct && self.nearness > 0.0 && few => (AGAIN * self.nearness).min(NEARNESS),
+            _ if direct => NEARNESS_BY_FACTOR,
             _ => NEARNESS,
         };
         self.cycles(metric, effort.enough(), effort.limits(direct), begin, go_on)
@@ -182,11 +184,16 @@ impl MatrixFree {
         self.nearness = nearness;
         self.order = (0..self.rows.len()).collect();
         self.order.sort_by_cached_key(|&i| crowd_key(&self.rows[i]));
+        let direct = self.is_direct(metric);
         for _ in 0..cycles {
             if self.met(enough) || !go_on() {
                 break;
             }
-            self.cycle(metric, newton_steps, go_on);
+            if direct {
+                self.step(metric, enough, newton_steps, go_on);
+            } else {
+                self.cycle(metric, newton_steps, go_on);
+            }
         }
         self.met(enough)
     }
@@ -195,36 +202,54 @@ impl MatrixFree {
         (0..self.m.len()).all(|i| self.missed(i) <= self.allowed[i].max(enough))
     }
 
+    /// The proximal step from the multipliers as they are.
+    fn terms(&self, enough: f64) -> Terms {
+        let near: Vec<f64> = self.square.iter().map(|square| self.nearness * square).collect();
+        Terms {
+            wanted: (0..near.len()).map(|i| self.excess[i] + near[i] * self.m[i]).collect(),
+            diagonal: near.iter().zip(&self.soft).map(|(near, soft)| near + soft).collect(),
+            allowed: self.allowed.iter().map(|allowed| allowed.max(enough)).collect(),
+        }
+    }
+
+    /// One proximal step by a sparse factor; one that neither ends nor gains is not taken, and the next one is shorter.
+    fn step(&mut self, metric: &mut Metric, enough: f64, newton_steps: usize, go_on: &(dyn Fn() -> bool + Sync)) {
+        let terms = self.terms(enough);
+        let (m, done) =
+            Augmented::new(metric, &self.rows).minimum(&terms, (&self.m, &self.product), newton_steps, go_on);
+        let product = self.times(metric, &m);
+        if done || terms.value(&m, &product) < terms.value(&self.m, &self.product) {
+            (self.m, self.product) = (m, product);
+        }
+        let change = if done { FARTHER[1] } else { NEARER };
+        self.nearness = (change * self.nearness).clamp(NEARNESS_RANGE[0], NEARNESS_RANGE[1]);
+    }
+
     /// One proximal step; without progress the multipliers stay and the proximal weight of the next step is greater.
     fn cycle(&mut self, metric: &mut Metric, newton_steps: usize, go_on: &(dyn Fn() -> bool + Sync)) {
-        let n = self.m.len();
-        let near: Vec<f64> = self.square.iter().map(|square| self.nearness * square).collect();
+        let terms = self.terms(0.0);
         let mut equations = Equations {
-            wanted: (0..n).map(|i| self.excess[i] + near[i] * self.m[i]).collect(),
-            diagonal: (0..n).map(|i| self.soft[i] + near[i]).collect(),
-            whole: (0..n).map(|i| self.square[i] + self.soft[i] + near[i]).collect(),
+            whole: self.square.iter().zip(&terms.diagonal).map(|(square, d)| square + d).collect(),
+            terms,
             face: self.m.iter().map(|m| *m > 0.0).collect(),
             preconditioner: None,
         };
         let mut changed = self.turn(&mut equations);
-        let mut best = (self.objective(&equations), self.m.clone(), self.product.clone());
+        let mut best = (equations.terms.value(&self.m, &self.product), self.m.clone(), self.product.clone());
         let (mut improved, mut fewest, mut patience) = (false, usize::MAX, PATIENCE);
-        let mut steps = 0;
         for _ in 0..newton_steps {
             let held: Vec<usize> = self.order.iter().copied().filter(|&i| equations.face[i]).collect();
-            let direct = self.is_direct(metric) && held.len() >= self.many.unwrap_or(MANY);
             let many = 20 * changed > held.len();
-            let old = if direct { steps > STALE || changed > STALE } else { many };
-            if old || equations.preconditioner.is_none() {
-                equations.preconditioner = Some(self.preconditioner(metric, &equations, &held, direct));
+            if many || equations.preconditioner.is_none() {
+                equations.preconditioner = Some(Preconditioner::new(metric, &self.rows, &held, &equations.whole));
             }
-            steps = self.on_the_face(metric, &equations, &held, CONJUGATE_STEPS[usize::from(!many)]);
+            self.on_the_face(metric, &equations, &held, CONJUGATE_STEPS[usize::from(!many)]);
             changed = self.turn(&mut equations);
             if self.m.iter().any(|m| *m < 0.0) {
                 self.m.iter_mut().for_each(|m| *m = m.max(0.0));
                 self.product = self.times(metric, &self.m.clone());
             }
-            let objective = self.objective(&equations);
+            let objective = equations.terms.value(&self.m, &self.product);
             if objective < best.0 {
                 best = (objective, self.m.clone(), self.product.clone());
                 improved = true;
@@ -238,23 +263,9 @@ impl MatrixFree {
                 break;
             }
         }
-        let farther = FARTHER[usize::from(self.is_direct(metric))];
-        let change = if improved && patience > 0 { farther } else { NEARER };
+        let change = if improved && patience > 0 { FARTHER[0] } else { NEARER };
         self.nearness = (change * self.nearness).clamp(NEARNESS_RANGE[0], NEARNESS_RANGE[1]);
         (_, self.m, self.product) = best;
-    }
-
-    fn preconditioner(&self, metric: &Metric, e: &Equations, held: &[usize], direct: bool) -> Preconditioner {
-        if direct {
-            Preconditioner::direct(metric, &self.rows, held, &e.diagonal)
-        } else {
-            Preconditioner::crowds(metric, &self.rows, held, &e.whole)
-        }
-    }
-
-    fn objective(&self, e: &Equations) -> f64 {
-        let of = |i: usize| self.m[i] * (0.5 * (self.product[i] + e.diagonal[i] * self.m[i]) - e.wanted[i]);
-        (0..self.m.len()).map(of).sum()
     }
 
     /// Rows without a multiplier leave the face, and of each group the most missed row joins it. Returns the number of rows that changed.
@@ -270,7 +281,7 @@ impl MatrixFree {
                     }
                     continue;
                 }
-                let over = e.wanted[i] - self.product[i] - e.diagonal[i] * self.m[i];
+                let over = e.terms.wanted[i] - self.product[i] - e.terms.diagonal[i] * self.m[i];
                 if over > (EXACT * self.allowed[i]).max(worst.0) {
                     worst = (over, Some(i));
                 }
@@ -283,31 +294,30 @@ impl MatrixFree {
         changed
     }
 
-    /// Preconditioned conjugate gradients from the multipliers as they are. They may become negative. Returns the number of steps.
+    /// Preconditioned conjugate gradients from the multipliers as they are. They may become negative.
     ///
     /// * `held`: all rows of the face, neighbours following each other.
-    fn on_the_face(&mut self, metric: &mut Metric, e: &Equations, held: &[usize], steps: usize) -> usize {
+    fn on_the_face(&mut self, metric: &mut Metric, e: &Equations, held: &[usize], steps: usize) {
         let left = (0..self.m.len()).filter(|&i| !e.face[i] && self.m[i] != 0.0).count();
         if left > 0 {
             self.m.iter_mut().zip(&e.face).filter(|(_, face)| !**face).for_each(|(m, _)| *m = 0.0);
             self.product = self.times(metric, &self.m.clone());
         }
         let mut residual: Vec<f64> =
-            held.iter().map(|&i| e.wanted[i] - self.product[i] - e.diagonal[i] * self.m[i]).collect();
-        let Some(preconditioner) = &e.preconditioner else { return 0 };
-        let apply = |rows: &[Row], residual: &[f64]| preconditioner.apply(rows, held, residual, &e.whole);
-        let mut z = apply(&self.rows, &residual);
+            held.iter().map(|&i| e.terms.wanted[i] - self.product[i] - e.terms.diagonal[i] * self.m[i]).collect();
+        let Some(preconditioner) = &e.preconditioner else { return };
+        let apply = |residual: &[f64]| preconditioner.apply(held, residual, &e.whole);
+        let mut z = apply(&residual);
         let mut p = z.clone();
         let mut square = dot(&residual, &z);
-        let mut taken = 0;
-        while taken < steps {
+        for _ in 0..steps {
             let done = held.iter().zip(&residual).all(|(&i, r)| r.abs() <= EXACT * self.allowed[i]);
             if !(square > 0.0) || done {
                 break;
             }
             let mut kp = self.times_on(metric, held, &p);
             for ((kp, p), &i) in kp.iter_mut().zip(&p).zip(held) {
-                *kp += e.diagonal[i] * p;
+                *kp += e.terms.diagonal[i] * p;
             }
             let curvature = dot(&p, &kp);
             if !(curvature > 0.0) {
@@ -318,15 +328,13 @@ impl MatrixFree {
                 self.m[i] += rate * p[k];
                 residual[k] -= rate * kp[k];
             }
-            taken += 1;
-            z = apply(&self.rows, &residual);
+            z = apply(&residual);
             let next = dot(&residual, &z);
             let share = next / square;
             square = next;
             p.iter_mut().zip(&z).for_each(|(p, z)| *p = z + share * *p);
         }
         self.product = self.times(metric, &self.m.clone());
-        taken
     }
 
     /// `K v`.

@@ -4,6 +4,7 @@
 //! would come too close to a line of sight, and to a ceiling for every node. That a point is seen is linear in u, so the
 //! program is convex and its solution is the only one. Not in the paper.
 
+mod augmented;
 mod bundle;
 mod candidate_line;
 mod cholesky;
