@@ -95,8 +95,10 @@ impl<'a> DisplacedGround<'a> {
         // Cells of the ground per cell of the displacement, and where its first node lies on the ground.
         let step = DVec2::new(cols, rows) / (last - first);
         let start = -first * step;
+        let end = start + step * DVec2::new((self.delta.cols() - 1) as f64, (self.delta.rows() - 1) as f64);
         let whole = |v: DVec2| (v - v.round()).abs().max_element() < 1e-6;
-        whole(step) && whole(start) && self.delta.contains(first) && self.delta.contains(last)
+        let regular = whole(step) && step.min_element() > 0.5 && whole(start) && whole(end);
+        regular && self.delta.contains(first) && self.delta.contains(last)
     }
 
     /// Upper bound of the displacement between two nodes of the ground, north-west and south-east.

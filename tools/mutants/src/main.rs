@@ -136,7 +136,12 @@ fn draw(workspace: &Path, packages: &Packages, args: &Args) -> Result<Vec<Fault>
     if !args.each {
         return draw_from(workspace, packages, &args.packages, enough, &mut random);
     }
-    ensure!(args.planted().iter().all(|p| args.packages.contains(p)), "--only names none of the packages");
+    for package in args.planted() {
+        ensure!(
+            args.packages.contains(package),
+            "--only {package}: it is none of the packages drawn from; name it by --package too"
+        );
+    }
     let mut parts = Vec::new();
     for package in args.packages.chunks(1) {
         parts.push(draw_from(workspace, packages, package, enough.div_ceil(args.packages.len()), &mut random)?);

@@ -121,6 +121,7 @@ fn each_drag_is_a_step_of_its_own() {
         settle(&mut harness);
         eyes.push(eye(&harness));
     }
+    assert!(eyes.windows(2).all(|pair| pair[0] != pair[1]), "{eyes:?}");
     for before in eyes.iter().rev().skip(1) {
         harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
         settle(&mut harness);

@@ -12,10 +12,10 @@ const MAX_HALVINGS: u8 = 10;
 /// long.
 const MAX_BLIND_HALVINGS: u8 = 9;
 const MAX_BLIND_HALVINGS_BESIDE_STRIPS: u8 = 6;
-/// Stages are taken to enlarge what lies at a border by this factor at most.
-const BORDER_STRETCH: f64 = 2.0;
 /// Fewest of them in a coarse picture.
 const LEAST_BLIND_HALVINGS: u8 = 3;
+/// Stages are assumed to enlarge what lies at a border by this factor at most.
+const BORDER_STRETCH: f64 = 2.0;
 /// Tolerance of a picture that is not coarse, pixels; each doubling saves a halving.
 const FINE_PX: f64 = 0.5;
 /// Distance beyond the image up to which triangles whose bend is unknown are refined.
@@ -138,10 +138,11 @@ impl<'a> Refiner<'a> {
     }
 
     /// Error of an edge that crosses the border of the domain: it is halved towards the border until it is too short to be seen.
-    /// How long it is in the image is judged by where it would be seen without stages, in either direction alike.
+    /// How long it is in the image is judged by the least depth of its ends, with and without stages.
     fn border_error(&self, a: &Corner, b: &Corner) -> f64 {
         let beside_border = [a, b].iter().any(|c| c.v.is_none());
-        let depth = [a.p, b.p].map(|p| self.screen.view_from(p).z).into_iter().fold(f64::INFINITY, f64::min);
+        let depth = |c: &Corner| c.v.map_or(f64::INFINITY, |v| v.z).min(self.screen.view_from(c.p).z);
+        let depth = depth(a).min(depth(b));
         let per_unit = if self.screen.ortho { self.screen.scale } else { self.screen.scale / depth };
         let length_px = (a.p - b.p).length() * per_unit;
         if beside_border && per_unit > 0.0 && BORDER_STRETCH * length_px <= self.tolerance_px {

@@ -25,7 +25,7 @@ pub struct Deformation<'a> {
     pub cells: Option<&'a Cells>,
     /// Reference points in view.
     pub points: &'a [ReferencePoint],
-    /// Points in view that stand for equal parts of the features, such as [`super::reference_points`] every fifth of a cell.
+    /// Points in view that stand for equal parts of the features, such as [`super::reference_points`] every tenth of a cell.
     pub dense: &'a [ReferencePoint],
     /// Lines of sight of the points.
     pub sight: &'a dyn LinesOfSight,

@@ -20,10 +20,12 @@ const NEARNESS_RANGE: [f64; 2] = [1e-5, 1.0];
 const NEARER: f64 = 8.0;
 /// By crowds, and by a sparse factor, to which a small weight does no harm.
 const FARTHER: [f64; 2] = [0.25, 0.1];
-/// With a sparse factor, and fewer new rows than one in so many, the weight begins with this multiple of the last.
-const FEW: usize = 50;
+/// With a sparse factor the weight begins with this multiple of the last, where less than this share of the rows is new.
 const AGAIN: f64 = 4.0;
-/// Changes of the face (the active set) per cycle at most, and changes in succession without fewer rows changing at most.
+const FEW: f64 = 0.02;
+/// Share by which the value of a step may rise by rounding.
+const ROUNDING: f64 = 1e-12;
+/// Newton steps, each a change of the face (the active set), per cycle at most, and changes in succession without fewer rows changing at most.
 const NEWTON_STEPS: usize = 40;
 const PATIENCE: usize = 5;
 /// Conjugate gradient steps on a face while many rows change, and afterwards.
@@ -145,7 +147,7 @@ impl MatrixFree {
         self.direct
     }
 
-    /// Whether equations of large faces are solved by a sparse factor.
+    /// Whether steps are solved over displacements, by a sparse factor.
     pub(super) fn is_direct(&self, metric: &Metric) -> bool {
         self.rows.len() > self.many.unwrap_or(MOST_CROWDED) && metric.nodes() <= MOST_NODES
     }
@@ -157,10 +159,10 @@ impl MatrixFree {
         let direct = self.is_direct(metric);
         self.direct = direct;
         let new = self.m.len() - self.product.len();
-        let few = FEW * new < self.m.len();
+        let few = (new as f64) < FEW * self.m.len() as f64;
         let begin = match effort {
             Effort::Rough(_) => self.nearness.max(NEARNESS),
-            _ if direct && self.nearness > 0.0 && few => (AGAIN * self.nearness).min(NEARNESS),
+            _ if direct && self.nearness > 0.0 && few => (AGAIN * self.nearness).min(NEARNESS_BY_FACTOR),
             _ if direct => NEARNESS_BY_FACTOR,
             _ => NEARNESS,
         };
@@ -212,16 +214,19 @@ impl MatrixFree {
         }
     }
 
-    /// One proximal step by a sparse factor; one that neither ends nor gains is not taken, and the next one is shorter.
+    /// One proximal step by a sparse factor; one that does not gain is not taken. The next one is longer if this one reached its
+    /// minimum, else shorter.
     fn step(&mut self, metric: &mut Metric, enough: f64, newton_steps: usize, go_on: &(dyn Fn() -> bool + Sync)) {
         let terms = self.terms(enough);
         let (m, done) =
             Augmented::new(metric, &self.rows).minimum(&terms, (&self.m, &self.product), newton_steps, go_on);
         let product = self.times(metric, &m);
-        if done || terms.value(&m, &product) < terms.value(&self.m, &self.product) {
+        let (before, after) = (terms.value(&self.m, &self.product), terms.value(&m, &product));
+        let gains = after <= before + ROUNDING * before.abs();
+        if gains {
             (self.m, self.product) = (m, product);
         }
-        let change = if done { FARTHER[1] } else { NEARER };
+        let change = if done && gains { FARTHER[1] } else { NEARER };
         self.nearness = (change * self.nearness).clamp(NEARNESS_RANGE[0], NEARNESS_RANGE[1]);
     }
 
@@ -498,6 +503,14 @@ mod tests {
             free.push(&row, square, 1e-9, [0.0, 5.0, 0.0]);
         }
         assert!(!free.solve(&mut metric, Effort::Exact, &|| false));
+        // Half-way, with a sparse factor: multipliers that were taken are no worse than none.
+        let mut direct = MatrixFree { many: Some(0), ..free.clone() };
+        let asked = std::sync::atomic::AtomicUsize::new(0);
+        direct.solve(&mut metric, Effort::Exact, &|| asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed) < 3);
+        assert!(direct.m.iter().all(|m| *m >= 0.0) && direct.energy() >= 0.0);
+        let gain: f64 = direct.m.iter().map(|m| 5.0 * m).sum();
+        assert!(gain >= direct.energy(), "{gain} {}", direct.energy());
+        assert!(direct.solve(&mut metric, Effort::Within(0.01), &|| true));
         // To a billionth of a metre in as many cycles as it takes.
         assert!(free.cycles(&mut metric, 0.0, [40, NEWTON_STEPS], NEARNESS, &|| true));
     }

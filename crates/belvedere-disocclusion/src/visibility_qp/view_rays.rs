@@ -4,14 +4,14 @@ use super::problem::LinesOfSight;
 use crate::Field;
 use belvedere_core::{DVec2, DVec3, View};
 
-/// A chord leaves the ray that it stands for by less than this in height, metres; the usual margin is twenty times that.
+/// A chord leaves the ray that it stands for by less than this in height, metres, but where the ray has a kink; the usual margin is twenty times that.
 const BOW: f64 = 0.05;
 /// Largest such distance in plan, cells.
 const BOW_PLAN: f64 = 0.02;
 /// Chords are halved at most this often.
 const HALVINGS: u32 = 9;
-/// Halves of a chord leave the ray by a quarter of what it does; by up to this much more if the bend is uneven.
-const UNEVEN: f64 = 1.5;
+/// Halves of a chord leave the ray by a quarter of what it does; by this factor more where only one half is bent, evenly.
+const UNEVEN: f64 = 2.0;
 /// Chords to begin with.
 const PIECES: usize = 8;
 

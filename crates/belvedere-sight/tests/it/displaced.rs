@@ -8,13 +8,15 @@ use belvedere_testkit::Random;
 
 const SPACING: f64 = 10.0;
 
-fn ground(random: &mut Random, [cols, rows]: [usize; 2]) -> (Field, Grid) {
+/// * `step`: cells of the ground per cell of the displacement; its first node lies `shift` cells beside a node of the ground.
+fn ground(random: &mut Random, [cols, rows]: [usize; 2], (step, shift): (f64, f64)) -> (Field, Grid) {
     let heights = (0..cols * rows).map(|_| random.range(0.0, 12.0) as f32).collect();
     let hf = Heightfield::measured(DVec2::ZERO, DVec2::splat(SPACING), cols, rows, heights).expect("ground");
     // Wider by a cell on every side: beside the grid nothing is displaced, and the ground would jump at its border.
-    let (cols, rows) = (cols + 2, rows + 2);
+    let [cols, rows] = [cols, rows].map(|n| ((n as f64 + 1.0 + shift) / step).ceil() as usize + 1);
     let delta = (0..cols * rows).map(|_| random.range(-12.0, 12.0)).collect();
-    let delta = Grid::new(DVec2::new(-SPACING, SPACING), DVec2::splat(SPACING), cols, rows, delta).expect("grid");
+    let north_west = DVec2::new(-1.0 - shift, 1.0 + shift) * SPACING;
+    let delta = Grid::new(north_west, DVec2::splat(step * SPACING), cols, rows, delta).expect("grid");
     (Field::new(&hf, |_| 0.0).expect("heights"), delta)
 }
 
@@ -48,7 +50,8 @@ fn the_largest_excess_is_that_of_many_points() {
     let (mut hidden, mut free) = (0, 0);
     for n in 0..200 {
         let size = [[2, 2], [3, 2], [4, 3], [20, 11]][n % 4];
-        let (field, delta) = ground(random, size);
+        let displacement = [(1.0, 0.0), (3.0, 1.0), (0.3, 0.0), (1.7, 0.4)][n / 4 % 4];
+        let (field, delta) = ground(random, size, displacement);
         let (line, guard) = (line(random, size), [0.0, 0.4, 1.5][random.below(3)]);
         let plain = [DisplacedGround::new(&field, &delta), DisplacedGround::faceted(&field, &delta)];
         let tables =

@@ -33,8 +33,9 @@ pub(super) fn show(
     let at = view.stages().iter().position(|stage| matches!(stage, Stage::SplineBend(_)));
     let Some((at, Stage::SplineBend(bend))) = at.and_then(|at| Some((at, view.stages().get(at)?))) else { return };
     let Ok(after) = View::new(view.pinhole().clone(), view.stages()[at + 1..].to_vec()) else { return };
-    // Between two presets the picture shows a curve of neither. During a drag it lags behind the document, and the handle stays.
-    let lags = ui.input(|input| input.pointer.any_down());
+    // Between two presets the picture shows a curve of neither. During a drag of a point it lags behind the document, and the handles stay.
+    let control = |i: usize| id.with(("control", i));
+    let lags = (0..preset.control.len()).any(|i| ui.ctx().is_being_dragged(control(i)));
     let stated = &bend.resolved().control;
     let same = |(a, b): (&[f64; 2], &[f64; 2])| DVec2::from(*a).distance(DVec2::from(*b)) < 1e-6;
     if stated.len() != preset.control.len() || !lags && !stated.iter().zip(&preset.control).all(same) {
@@ -51,7 +52,7 @@ pub(super) fn show(
         let at_height = |v: f64| place(&after, world(bend, view, DVec2::new(point.x, v)), rect);
         let Some(at) = at_height(point.y).filter(|at| rect.shrink(4.0).contains(*at)) else { continue };
         let name = fill(tr("Control point {0} in the picture"), &[&(i + 1)]);
-        let response = handle(ui, (rect, id.with(("control", i))), at, (&name, INK));
+        let response = handle(ui, (rect, control(i)), at, (&name, INK));
         let [u, v] = stated[i];
         let way = || {
             let one = |k: i32| {
