@@ -139,7 +139,7 @@ fn draw(workspace: &Path, packages: &Packages, args: &Args) -> Result<Vec<Fault>
     for package in args.planted() {
         ensure!(
             args.packages.contains(package),
-            "--only {package}: it is none of the packages drawn from; name it by --package too"
+            "--only {package}: faults are not drawn from that package; name it by --package too"
         );
     }
     let mut parts = Vec::new();
