@@ -8,7 +8,8 @@ use crate::resolve::{self, LayerRequest};
 use crate::scene_file::paths::{Roots, folder_of};
 use crate::scene_file::{
     AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, LayerDoc, LineDoc, LineStyleDoc, Origin, PaletteDoc, Paths,
-    PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, VerticalUnit,
+    PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, TextDoc,
+    VerticalUnit,
 };
 use crate::session::{Description, Loaded};
 use crate::{BelvedereError, OpenOptions, Session};
@@ -19,6 +20,7 @@ use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::{join_table, split_table};
 use belvedere_scene::{Hidden, Scene, Unit};
 use std::collections::BTreeMap;
+use std::mem::take;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -77,6 +79,7 @@ pub(crate) struct Data {
     notes: LayerNotes,
     inputs: Vec<InputFile>,
     layers: Vec<LayerDoc>,
+    text: Option<TextDoc>,
     roots: Roots,
 }
 
@@ -150,9 +153,14 @@ impl DataFiles {
             rivers.push(id);
         }
         let crs = self.crs.as_deref().unwrap_or("auto");
-        let request =
-            LayerRequest { vectors, keep_original, ..LayerRequest::new(&Origin::MEMORY, &layers, crs, &roots) };
-        let options = OpenOptions { area_style: self.area_style.or(options.area_style), ..options.clone() };
+        let mut options = OpenOptions { area_style: self.area_style.or(options.area_style), ..options.clone() };
+        let text = text_of(take(&mut options.fonts), &mut roots.files)?;
+        let request = LayerRequest {
+            vectors,
+            keep_original,
+            text: text.as_ref(),
+            ..LayerRequest::new(&Origin::MEMORY, &layers, crs, &roots)
+        };
         let loaded = resolve::load(request, &options)?;
         let (inputs, warnings, areas, original) = (loaded.inputs, loaded.warnings, loaded.areas, loaded.original);
         let notes = loaded.notes;
@@ -165,7 +173,7 @@ impl DataFiles {
             ..Scene::default()
         };
         resolve::fill_surfaces(&mut layers, &scene);
-        Ok(Data { scene: Arc::new(scene), warnings, original, rivers, areas, notes, inputs, layers, roots })
+        Ok(Data { scene: Arc::new(scene), warnings, original, rivers, areas, notes, inputs, layers, text, roots })
     }
 }
 
@@ -183,7 +191,7 @@ impl Data {
             furniture: None,
             stylisation: None,
             print: None,
-            text: None,
+            text: self.text,
             light: None,
             representations: Default::default(),
             hidden: Vec::new(),
@@ -197,6 +205,18 @@ impl Data {
         let loaded = Loaded { scene, motions: None, areas, notes, inputs, warnings };
         Session::of_view(loaded, view, Description { source, resolved, roots })
     }
+}
+
+/// Fonts that the user named, as a scene states them; the scene may then read their files.
+pub(crate) fn text_of(fonts: Vec<PathBuf>, allowed: &mut Vec<PathBuf>) -> Result<Option<TextDoc>, BelvedereError> {
+    let mut names = Vec::new();
+    for font in &fonts {
+        let real = belvedere_io::fs::canonicalize(font).map_err(|e| belvedere_io::IoError::os(font, e))?;
+        let name = real.to_str().ok_or_else(|| BelvedereError::not_utf8(&font.display().to_string()))?;
+        names.push(name.to_owned());
+        allowed.push(real);
+    }
+    Ok((!names.is_empty()).then(|| TextDoc { fonts: Some(tiles::paths(names)), ..TextDoc::default() }))
 }
 
 /// The absolute path of a file that the user named, whose folder is then allowed; built-in names stay.

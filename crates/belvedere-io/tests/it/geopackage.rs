@@ -1,7 +1,8 @@
 //! GeoPackages: a real one against the GeoJSON made from it, one with unusual values in every field, and broken ones.
 
 use belvedere_io::crs::{CoordinateSystem, Transform};
-use belvedere_io::{Geometry, Limits, Loaded, Vectors, load_city, load_vectors};
+use belvedere_io::{Geometry, Limits, Loaded, Vectors, lines_on_terrain, load_city, load_vectors};
+use belvedere_scene::Crs;
 use belvedere_testkit::data;
 use rusqlite::{Connection, MAIN_DB, params};
 use std::path::{Path, PathBuf};
@@ -280,10 +281,15 @@ fn tables_in_several_systems_come_to_that_of_the_first() {
     let want = Transform::new(&degrees, &utm).unwrap().forward_one(glam::DVec2::new(15.0, 49.6)).unwrap();
     assert!((value.features[1].geometry.vertices().next().unwrap().xy - want).length() < 1e-6);
     assert!(warnings.iter().any(|w| w.text().contains("taken to EPSG:32633")), "{warnings:?}");
-    // Undefined degrees give a warning; an undefined plane is an error.
+    // Undefined degrees give a warning; an undefined plane fits only scenes without georeference.
     let one = |srs_id: i64| Package::new().table("a", srs_id).row("a", line([1.0, 2.0, 3.0, 4.0], srs_id as i32), "");
     assert!(one(0).load().unwrap().warnings[0].text().contains("taken as WGS 84"));
-    for (srs_id, said) in [(-1, "undefined plane"), (77, "does not list"), (100_002, "is in \"lost\"")] {
+    let plane = one(-1).load().unwrap().value;
+    let lines = lines_on_terrain(&plane, Crs::Local, None).unwrap();
+    assert!(lines.value.len() == 1 && lines.warnings.is_empty(), "{:?}", lines.warnings);
+    let text = lines_on_terrain(&plane, Crs::Epsg(32633), None).unwrap_err().to_string();
+    assert!(text.contains("not stated"), "{text}");
+    for (srs_id, said) in [(77, "does not list"), (100_002, "is in \"lost\"")] {
         let text = one(srs_id).load().unwrap_err();
         assert!(text.contains(said) && text.contains("-a_srs"), "{text}");
     }
@@ -441,5 +447,9 @@ fn what_is_written_is_read_again() {
         write_geopackage(&dir.path().join("c.gpkg"), tables, crs, false).unwrap_err().to_string()
     };
     assert!(fails(&[tables[1].clone(), tables[1].clone()], &crs).contains("already exists"));
-    write_geopackage(&dir.path().join("d.gpkg"), &tables, &CoordinateSystem::local(), false).unwrap();
+    // A local system comes back as one.
+    let path = dir.path().join("d.gpkg");
+    write_geopackage(&path, &tables, &CoordinateSystem::local(), false).unwrap();
+    let Vectors { crs, crs_stated, features, .. } = load_vectors(&path).unwrap().value;
+    assert!(crs.is_local() && crs_stated && !features.is_empty());
 }

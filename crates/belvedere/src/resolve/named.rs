@@ -31,6 +31,12 @@ fn rank(layer: &LayerDoc) -> Option<&str> {
     .filter(|rank| *rank != "auto")
 }
 
+/// Key of a layer's style that asks for a property, if it has one: only files have properties.
+pub(super) fn key_of(layer: &LayerDoc) -> Option<&'static str> {
+    let by_property = |rank: &&str| !RANKS.contains(rank) || *rank == "population";
+    label(layer).map(|_| "label").or(rank(layer).filter(by_property).map(|_| "rank"))
+}
+
 /// Gives the features of a layer's files their names, what they are, and their ranks by properties.
 pub(super) fn tell(loader: &Loader<'_>, index: usize, files: &mut [Vectors]) -> Result<(), BelvedereError> {
     let Some(layer) = loader.layers.get(index) else { return Ok(()) };

@@ -152,7 +152,7 @@ fn layer_sources(layer: &LayerDoc) -> Result<(), Complaint> {
     }
 }
 
-/// Styles by a property: the keys that lead to the mistake, and the reason.
+/// Styles and names by a property: the keys that lead to the mistake, and the reason.
 fn by_property(layer: &LayerDoc) -> Result<(), (Vec<&'static str>, String)> {
     let made = match layer {
         LayerDoc::Line(l) => l.route.is_some() || l.source.as_ref().is_some_and(is_builtin),
@@ -160,7 +160,7 @@ fn by_property(layer: &LayerDoc) -> Result<(), (Vec<&'static str>, String)> {
         LayerDoc::Point(l) => is_builtin(&l.source),
         _ => false,
     };
-    match super::by_property::key_of(layer).filter(|_| made) {
+    match super::by_property::key_of(layer).or(super::named::key_of(layer)).filter(|_| made) {
         Some(key) => {
             Err((vec![key], format!("{key} needs a file, for what is generated has no properties; remove it")))
         }

@@ -4,7 +4,7 @@ use super::model_layers::{layer, set_transfer, unit_of};
 use super::open_files::ground;
 use super::target_names::{is_building, known_names};
 use super::target_request::TargetRequest;
-use crate::data::features_of;
+use crate::data::{features_of, text_of};
 use crate::places::Place;
 use crate::resolve::vectors::{FeatureKind, kinds_of};
 use crate::scene_file::{CameraDoc, CityDoc, Document, LayerDoc, LineDoc, LineStyleDoc, Paths, SourceDocument};
@@ -19,6 +19,7 @@ use belvedere_io::load_vectors;
 use belvedere_io::{Limits, join_table, load_city, split_table};
 use belvedere_scene::molecule::Selection;
 use belvedere_scene::{LayerKind, Scene};
+use std::mem::take;
 use std::path::{Path, PathBuf};
 
 /// Points of lines and points by which bends are chosen, at most, and by which shares are judged, about.
@@ -179,7 +180,8 @@ pub(super) fn open(request: &TargetRequest, options: &OpenOptions) -> Result<(Se
         "" => "Revealed".into(),
         see => format!("{see} revealed"),
     };
-    let document = Document { title, crs: crs.into(), unit, layer: layers, ..Document::seen_by(camera) };
+    let text = text_of(take(&mut options.fonts), &mut options.allow_files)?;
+    let document = Document { title, crs: crs.into(), unit, layer: layers, text, ..Document::seen_by(camera) };
     Ok((Session::from_document(SourceDocument::new(document), &options)?, meant))
 }
 

@@ -141,9 +141,16 @@ fn what_is_wrong_is_told_with_its_line_and_a_remedy() {
         let said = open(folder.path(), "line", properties, style).expect_err(style).to_string();
         assert!(said.contains(remedy) && said.contains("scene.toml:16"), "{style}: {said}");
     }
-    let scene =
-        format!("{SCENE}kind = \"line\"\nsource = \"builtin:massif?seed=7\"\nstyle.color_by.property = \"x\"\n");
-    std::fs::write(folder.path().join("scene.toml"), scene).expect("scene");
-    let said = Session::open(&folder.path().join("scene.toml"), &OpenOptions::default()).expect_err("no properties");
-    assert!(said.to_string().contains("has no properties; remove it"), "{said}");
+    let styles = [
+        ("line", "color_by.property = \"x\""),
+        ("line", "label = \"name:de\""),
+        ("point", "rank = \"population\""),
+        ("point", "rank = \"stars\""),
+    ];
+    for (kind, style) in styles {
+        let scene = format!("{SCENE}kind = \"{kind}\"\nsource = \"builtin:massif?seed=7\"\nstyle.{style}\n");
+        std::fs::write(folder.path().join("scene.toml"), scene).expect("scene");
+        let said = Session::open(&folder.path().join("scene.toml"), &OpenOptions::default()).expect_err(style);
+        assert!(said.to_string().contains("has no properties; remove it"), "{said}");
+    }
 }

@@ -132,7 +132,7 @@ fn property(name: &str, value: &Value<'_>) -> Option<(String, String)> {
 /// Advice for tables without a known coordinate system.
 const REMEDY: &str = "set it, as by ogr2ogr -a_srs EPSG:n";
 
-/// The coordinate system of a table.
+/// The coordinate system of a table; an undefined plane (srs_id -1) is that of a scene without georeference.
 fn system_of(
     database: &Database,
     table: &Table,
@@ -141,7 +141,7 @@ fn system_of(
 ) -> Result<CoordinateSystem, String> {
     let name = &table.name;
     let crs = match table.srs_id {
-        -1 => return Err(format!("table \"{name}\" is in an undefined plane (srs_id -1); {REMEDY}")),
+        -1 => CoordinateSystem::local(),
         0 => {
             let text = format!("table \"{name}\" is in undefined degrees (srs_id 0), taken as WGS 84");
             warnings.push(Warning::new(WarningKind::Assumed, text));
