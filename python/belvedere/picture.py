@@ -6,12 +6,13 @@ import json
 import os
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Callable, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
+from .errors import InputError
 from .reports import Displacement, Note, notes_of
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ class Picture:
     In a notebook it shows itself. Arrays have row 0 on top; all of them are copies.
     """
 
-    def __init__(self, native: NativePicture, again: Callable[[], NativePicture] | None = None, exact: bool = False) -> None:
+    def __init__(self, native: NativePicture, again: Callable[[Mapping[str, Any]], NativePicture] | None = None, exact: bool = False) -> None:
         self._native = native
         self._again = again
         self._exact = exact
@@ -104,16 +105,28 @@ class Picture:
         *,
         buffers: Sequence[str] = (),
         exr: bool = False,
+        vectors_only: bool = False,
         overwrite: bool = False,
     ) -> list[Path]:
-        """Writes the picture (PNG), its record beside it (``.json``), and buffers; returns the paths.
+        """Writes the picture, its record beside it (``.json``), and buffers; returns the paths.
 
+        The name's ending tells the format: PNG, TIFF, JPEG, WebP; or SVG and PDF, for which the scene is drawn again: lines, areas, points, names
+        and legends are vectors there, over the raster of the surfaces.
+
+        * ``vectors_only``: leaves the raster out of an SVG or PDF.
         * ``buffers``: of ``depth``, ``id``, ``world`` and ``displacement``, one ``.npy`` file each, or with ``exr`` all in one OpenEXR file.
         * ``overwrite``: replaces files.
 
         Raises :class:`belvedere.FileError`.
         """
         native = self._with_buffers() if buffers else self._native
+        ending = Path(path).suffix.lower()
+        if ending in (".svg", ".pdf"):
+            if self._again is None:
+                raise InputError(f"{path}: this picture has no scene to draw vectors of; write a PNG")
+            native = self._again({"vectors": "alone" if vectors_only else "over_raster", "buffers": bool(buffers)})
+        elif vectors_only:
+            raise InputError(f"{path}: vectors_only needs a name that ends in .svg or .pdf")
         return [Path(p) for p in native.save(os.fspath(path), list(buffers), exr, overwrite)]
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
@@ -133,7 +146,7 @@ class Picture:
     def _with_buffers(self) -> NativePicture:
         if not self._exact and self._again is not None:
             # Colours, ids and record stay those of the first drawing: a picture does not change when it is looked at.
-            self._native, self._exact = self._native.with_buffers_of(self._again()), True
+            self._native, self._exact = self._native.with_buffers_of(self._again({"buffers": True})), True
         return self._native
 
     def _array(self, data: bytearray, dtype: Any, channels: int = 0) -> NDArray[Any]:

@@ -36,8 +36,8 @@ class Revealed:
     @cached_property
     def picture(self) -> Picture:
         """The picture; its ``straight`` is the one without bends, unless nothing is bent."""
-        scene, options = self._native.scene(), text("render", {**self._drawn, "buffers": True})
-        return Picture(self._native.picture(), lambda: scene.render(options, (0, None, None)))
+        scene = self._native.scene()
+        return Picture(self._native.picture(), lambda changed: scene.render(text("render", {**self._drawn, **changed}), (0, None, None)))
 
     @cached_property
     def scene(self) -> Scene:

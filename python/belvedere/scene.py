@@ -206,7 +206,7 @@ class Scene(Layers):
             raise InputError(f"altitude_deg={altitude_deg}, fov_y_deg={fov_y_deg}: give less than 90 degrees over the horizon, and more than 0 and less than 180 degrees of view")
         anywhere = {"eye": [0.0, 0.0, 0.0], "look_at": [0.0, 1.0, 0.0]}
         with asked() as ask:
-            native = self._native_of({**self._document, "camera": anywhere, "stage": []}, {"unsolved": True}, ask)
+            native = self._native_of(*self._text_of({**self._document, "camera": anywhere, "stage": []}), {"unsolved": True}, ask)
         bounds = native.bounds
         if bounds is None:
             raise InputError("the scene has no layer, so that there is nothing to look at; add a layer, or give camera=")
@@ -298,6 +298,9 @@ class Scene(Layers):
         overhead: bool = False,
         outside: bool | Sequence[Sequence[float]] = False,
         buffers: bool = False,
+        paper: str | None = None,
+        dpi: float | None = None,
+        margin_mm: float | None = None,
         threads: int | None = None,
         progress: Progress = None,
         time_limit_s: float | None = None,
@@ -312,6 +315,9 @@ class Scene(Layers):
         * ``grid``: a grid on the ground, ``True`` or its spacing, scene units. ``heatmap``, ``ghost``, ``highlight``: what the bend did.
         * ``mark``: the mark in the corner of bent pictures; the record says so in any case.
         * ``overhead``, ``outside``: draws the camera itself, from above, or from outside: ``True`` or (eye, target).
+        * ``paper``: ``A0`` to ``A6`` (landscape where the scene's picture is wider than high), ``A3-portrait``, or a size such as ``420x297mm``;
+          pixels, widths of lines and heights of letters follow from it. ``dpi``: pixels per inch, 300 on a paper without ``size``.
+          ``margin_mm``: white margin of the paper. By default those of the scene, unless ``size`` is given.
         * ``buffers``: draws depth and world at once, see ``Picture.depth``.
         * ``threads``, ``progress``, ``time_limit_s``: see :func:`belvedere.reveal`.
         """
@@ -321,11 +327,13 @@ class Scene(Layers):
             outside=outside, buffers=buffers,
         )  # fmt: skip
         with asked(threads, progress, time_limit_s) as ask:
-            native = self._sized(_size(size), ask)
+            sheet, pixels = self._sheet(_size(size), {"paper": paper, "dpi": dpi, "margin_mm": margin_mm})
+            options.update(sheet)
+            native = self._sized(pixels, ask)
             with self._named():
                 drawn = native.render(_text("render", options), ask)
         silent: Ask = (ask[0], ask[1], None)
-        again: Callable[[], NativePicture] = lambda: native.render(_text("render", {**options, "buffers": True}), silent)
+        again: Callable[[Mapping[str, Any]], NativePicture] = lambda changed: native.render(_text("render", {**options, **changed}), silent)
         return Picture(drawn, again, exact=buffers)
 
     def measure(
@@ -435,6 +443,15 @@ class Scene(Layers):
 
         return cast("dict[str, Any]", named(document))
 
+    def _sheet(self, size: list[int] | None, asked: Mapping[str, Any]) -> tuple[dict[str, Any], list[int] | None]:
+        """Options that tell the paper of a picture, if it has one, and the size of the picture."""
+        asked = {key: value for key, value in asked.items() if value is not None}
+        if not asked and (size is not None or (self._file is None and not self._document.get("print"))):
+            return {}, size
+        with self._named():
+            found = _native.sheet(*self._described(), _text("paper", asked), size)
+        return ({}, size) if found is None else ({"print": json.loads(found[0])}, found[1])
+
     def _sized(self, size: list[int] | None, ask: Ask) -> NativeScene:
         if size is None:
             return self._opened(ask)
@@ -456,17 +473,27 @@ class Scene(Layers):
         return self._natives[None]
 
     def _open(self, options: dict[str, Any], ask: Ask) -> NativeScene:
-        if self._file is None and "camera" not in self._document:
-            self.overview()
-        return self._native_of(self._document, options, ask)
+        return self._native_of(*self._described(), options, ask)
 
-    def _native_of(self, document: Mapping[str, Any], options: Mapping[str, Any], ask: Ask) -> NativeScene:
+    def _described(self) -> tuple[str, str | None]:
+        """The path of the scene file, and the text of a scene that is no file."""
+        if self._file is not None:
+            return os.fspath(self._file), None
+        if "camera" not in self._document:
+            self.overview()
+        return self._text_of(self._document)
+
+    def _text_of(self, document: Mapping[str, Any]) -> tuple[str, str]:
+        """The path that a document would have as a scene file, and its text."""
+        base = self._base or (self._folder.path if self._folder is not None else Path(os.path.abspath(".")))
+        return os.fspath(base / "scene.json"), _text("the scene", document)
+
+    def _native_of(self, path: str, text: str | None, options: Mapping[str, Any], ask: Ask) -> NativeScene:
         opening = _text("options", {**options, "allow_roots": self._roots, "seed": self._seed})
         with self._named():
-            if self._file is not None:
-                return _native.NativeScene.open(os.fspath(self._file), opening, ask)
-            base = self._base or (self._folder.path if self._folder is not None else Path(os.path.abspath(".")))
-            return _native.NativeScene.from_text(os.fspath(base / "scene.json"), _text("the scene", document), opening, ask)
+            if text is None:
+                return _native.NativeScene.open(path, opening, ask)
+            return _native.NativeScene.from_text(path, text, opening, ask)
 
     def _named(self) -> Named:
         return Named(None if self._folder is None else os.fspath(self._folder.path))

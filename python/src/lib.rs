@@ -37,7 +37,7 @@ mod native {
     #[pymodule_export]
     use super::reveal::{NativeReveal, drafts, reveal};
     #[pymodule_export]
-    use super::scene::{NativeScene, schema};
+    use super::scene::{NativeScene, schema, sheet};
     #[pymodule_export]
     use super::solve::{NativeGround, disocclude};
     #[pymodule_export]

@@ -1,10 +1,12 @@
 //! Options that Python gives as JSON.
 
-use crate::errors::wrong;
+use crate::errors::{raised, wrong};
 use belvedere::picture::{AuxBuffer, PictureOptions, RendererChoice};
 use belvedere::places::Place;
+use belvedere::print::Sheet;
 use belvedere::scene::{Compositing, Progress};
-use belvedere::scene_file::{HighlightMark, StylisationDoc};
+use belvedere::scene_file::{HighlightMark, PrintDoc, StylisationDoc};
+use belvedere::vectors::VectorContent;
 use belvedere::{CameraPicture, OpenOptions};
 use pyo3::PyResult;
 use serde::Deserialize;
@@ -101,6 +103,29 @@ pub(crate) struct Drawing {
     outside: Option<[[f64; 3]; 2]>,
     from_outside: bool,
     buffers: bool,
+    vectors: Vectors,
+    /// The whole paper, as [`Sheet::document`] tells it.
+    print: PrintDoc,
+}
+
+/// Marks that are drawn as vectors.
+#[derive(Debug, Clone, Copy, Default, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Vectors {
+    #[default]
+    Nothing,
+    OverRaster,
+    Alone,
+}
+
+impl From<Vectors> for VectorContent {
+    fn from(vectors: Vectors) -> Self {
+        match vectors {
+            Vectors::Nothing => Self::Nothing,
+            Vectors::OverRaster => Self::OverRaster,
+            Vectors::Alone => Self::Alone,
+        }
+    }
 }
 
 /// All buffers beside a picture but displacements.
@@ -118,6 +143,7 @@ impl Drawing {
             ghost: self.ghost,
             highlight: self.highlight.clone(),
             no_mark: self.no_mark,
+            vectors: self.vectors.into(),
             progress,
             ..PictureOptions::default()
         };
@@ -139,6 +165,10 @@ impl Drawing {
         if self.buffers {
             options.aux = BUFFERS.to_vec();
         }
-        Ok(options)
+        // With paper and pixels per inch no size is left open.
+        match Sheet::of(&self.print, None, [1, 1]).map_err(|e| raised(&e))? {
+            Some(sheet) => Ok(options.on(sheet)),
+            None => Ok(options),
+        }
     }
 }

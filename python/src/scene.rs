@@ -4,6 +4,8 @@ use crate::errors::{raised, wrong};
 use crate::picture::NativePicture;
 use crate::request::{self, Drawing, Opening, RendererName};
 use crate::work::{Ask, run};
+use belvedere::print::Sheet;
+use belvedere::scene_file::{self, PrintDoc};
 use belvedere::verbs::measure::{self, MeasureOptions};
 use belvedere::{Session, answers, output};
 use pyo3::prelude::*;
@@ -13,6 +15,23 @@ use std::path::PathBuf;
 #[pyfunction]
 pub(crate) fn schema() -> PyResult<String> {
     output::schema_json().map_err(|e| raised(&e))
+}
+
+/// The paper that a caller (`asked`, JSON) and a scene file ask for: its document, JSON, and the size of the picture, pixels.
+///
+/// * `text`: of the scene, instead of that of the file at `path`.
+#[pyfunction]
+pub(crate) fn sheet(
+    path: PathBuf,
+    text: Option<&str>,
+    asked: &str,
+    size: Option<[u32; 2]>,
+) -> PyResult<Option<(String, [u32; 2])>> {
+    let asked: PrintDoc = request::read("paper", asked)?;
+    let source = text.map_or_else(|| scene_file::read(&path), |text| scene_file::parse(&path, text));
+    let document = source.map_err(|e| raised(&e))?.document;
+    let sheet = Sheet::asked(&asked, document.print.as_ref(), size, document.camera.image).map_err(|e| raised(&e))?;
+    sheet.map(|s| Ok((output::json(&s.document()).map_err(|e| raised(&e))?, s.pixels()))).transpose()
 }
 
 /// An opened scene.

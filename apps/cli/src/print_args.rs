@@ -41,23 +41,12 @@ impl PrintArgs {
         size: Option<[u32; 2]>,
         shape: [u32; 2],
     ) -> anyhow::Result<Option<Sheet>> {
-        let scene = scene.cloned().unwrap_or_default();
-        if Sheet::of(&scene, None, shape).is_err() {
+        if scene.is_some_and(|scene| Sheet::of(scene, None, shape).is_err()) {
             // Opening the scene tells the line of the mistake.
             return Ok(None);
         }
-        if size.is_some() && self.paper.is_none() && self.dpi.is_none() && self.margin_mm.is_none() {
-            // A size in pixels sets the paper of the scene aside.
-            return Ok(None);
-        }
-        let paper = self.paper.clone().or(scene.paper);
-        anyhow::ensure!(
-            !(paper.is_some() && self.dpi.is_some() && size.is_some()),
-            "--size and --dpi contradict each other on a paper; give one of them, the other follows"
-        );
-        let dpi = self.dpi.or(scene.dpi.filter(|_| size.is_none() || paper.is_none()));
-        let document = PrintDoc { paper, dpi, margin_mm: self.margin_mm.or(scene.margin_mm) };
-        Ok(Sheet::of(&document, size, shape)?)
+        let asked = PrintDoc { paper: self.paper.clone(), dpi: self.dpi, margin_mm: self.margin_mm };
+        Ok(Sheet::asked(&asked, scene, size, shape)?)
     }
 
     /// Refuses names of pictures with the ending of a format that is not written.

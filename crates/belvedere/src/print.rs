@@ -53,6 +53,32 @@ impl Sheet {
         PrintDoc { paper: Some(format!("{w}x{h}mm")), dpi: Some(self.dpi), margin_mm: Some(self.margin_mm) }
     }
 
+    /// The sheet that a caller and the `[print]` of a scene ask for: what the caller says goes before, and a size in pixels alone sets
+    /// the paper of the scene aside.
+    ///
+    /// * `size`, `shape`: as of [`Sheet::of`].
+    ///
+    /// # Errors
+    /// As [`Sheet::of`]; [`BelvedereError::Paper`] if the caller states paper, size and pixels per inch.
+    pub fn asked(
+        asked: &PrintDoc,
+        scene: Option<&PrintDoc>,
+        size: Option<[u32; 2]>,
+        shape: [u32; 2],
+    ) -> Result<Option<Self>, BelvedereError> {
+        if size.is_some() && *asked == PrintDoc::default() {
+            return Ok(None);
+        }
+        let scene = scene.cloned().unwrap_or_default();
+        let paper = asked.paper.clone().or(scene.paper);
+        if paper.is_some() && asked.dpi.is_some() && size.is_some() {
+            let reason = "size and dpi contradict each other on a paper; give one of them, the other follows";
+            return Err(BelvedereError::Paper { key: "dpi", reason: reason.into() });
+        }
+        let dpi = asked.dpi.or(scene.dpi.filter(|_| size.is_none() || paper.is_none()));
+        Self::of(&PrintDoc { paper, dpi, margin_mm: asked.margin_mm.or(scene.margin_mm) }, size, shape)
+    }
+
     /// The sheet that a document asks for; `None` for an empty one.
     ///
     /// A sheet without a size in pixels is as large as its paper and its pixels per inch say. With one, the pixels per inch follow from the

@@ -34,6 +34,23 @@ fn reveal(place: &Place, more: &[&str]) {
     place.ok(&[&args[..], &view, more].concat());
 }
 
+#[test]
+fn the_scene_that_reveal_wrote_names_the_fonts_of_the_call() {
+    let place = place();
+    let font = belvedere_testkit::font::tiny_font("Tiny Squares", &['富']);
+    std::fs::write(place.path("data/tiny.ttf"), font).expect("written");
+    reveal(&place, &["--font", "data/tiny.ttf"]);
+    let see = ["reveal", "data/a.obj", "--see", "0.2,0.2,0", "-o", "out/b.png", "--scene", "out/t.toml"];
+    place.ok(&[&see[..], &["--size", "64x48", "--font", "data/tiny.ttf", "--quiet"]].concat());
+    for name in ["s", "t"] {
+        let scene = String::from_utf8(read(&place.path(&format!("out/{name}.toml")))).expect("UTF-8");
+        assert!(scene.contains("fonts = \"../data/tiny.ttf\""), "{scene}");
+        place.ok(&["render", &format!("out/{name}.toml"), "-o", "c.png", "--size", "64x48", "--overwrite"]);
+        let record = String::from_utf8(read(&place.path("c.png.json"))).expect("UTF-8");
+        assert!(record.contains("tiny.ttf"), "{record}");
+    }
+}
+
 /// The program in another folder with the same settings.
 fn code_in(place: &Place, folder: &Path, args: &[&str]) -> Option<i32> {
     place.command(args).current_dir(folder).output().expect("the program starts").status.code()
