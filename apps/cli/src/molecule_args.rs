@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 /// Molecules of the picture.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct MoleculeArgs {
-    /// What molecules are shown as
+    /// What molecules are shown as, instead of what the scene says; without a scene auto
     #[arg(long, value_enum, value_name = "KIND")]
     pub(crate) representation: Option<RepresentationKind>,
     /// Colours of molecules: auto (by element; ribbons and surfaces by chain), element, chain, residue, structure, or one colour #rrggbb
@@ -37,6 +37,8 @@ pub(crate) enum RepresentationKind {
     Ribbon,
     /// The smooth surface around all atoms
     Surface,
+    /// Ribbons from 100 residues on, else small balls joined by rods
+    Auto,
 }
 
 impl From<RepresentationKind> for Representation {
@@ -47,6 +49,7 @@ impl From<RepresentationKind> for Representation {
             RepresentationKind::Sticks => Self::Sticks,
             RepresentationKind::Ribbon => Self::Ribbon,
             RepresentationKind::Surface => Self::Surface,
+            RepresentationKind::Auto => Self::Auto,
         }
     }
 }

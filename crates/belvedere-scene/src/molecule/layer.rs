@@ -80,7 +80,7 @@ impl MoleculeLayer {
         let drawn = style.selection.mask(&molecule);
         let sticks = style.sticks.as_ref().map(|s| s.mask(&molecule)).unwrap_or_default();
         let colors = colors(&molecule, style, &drawn);
-        let representation = style.representation;
+        let representation = style.representation.of(&molecule);
         let look = Look { representation, detail: style.detail, orders: style.orders };
         let made = surface::build(&molecule, (&drawn, &sticks), &colors, look, &placement)?;
         let surface = MeshLayer::new(made.mesh, Element::C.color());
@@ -231,8 +231,12 @@ mod tests {
     use super::*;
     use crate::molecule::{Atom, Residue};
 
-    /// Six residues of a chain with a side atom each, a ligand, a water.
+    /// Six residues of a chain with a side atom each, and a ligand.
     fn chain() -> Molecule {
+        chain_of(6)
+    }
+
+    fn chain_of(residues_of_chain: i32) -> Molecule {
         let mut atoms = Vec::new();
         let mut residues = Vec::new();
         let mut add = |name: &str, number: i32, hetero: bool, list: &[(&str, Element, DVec3)]| {
@@ -243,7 +247,7 @@ mod tests {
                 atoms.push(Atom { serial, name: (*name).into(), element: *element, residue, position: *position });
             }
         };
-        for i in 0..6 {
+        for i in 0..residues_of_chain {
             let at = DVec3::new(3.8 * f64::from(i), 0.0, 0.0);
             add("ALA", i + 1, false, &[("CA", Element::C, at), ("CB", Element::C, at + 1.53 * DVec3::Z)]);
         }
@@ -260,6 +264,14 @@ mod tests {
         let sticks = sticks.map(|text| Selection::parse(text).unwrap());
         let style = MoleculeStyle { representation, sticks, ..MoleculeStyle::default() };
         MoleculeLayer::new(chain(), &style, ModelTransform::default()).unwrap()
+    }
+
+    #[test]
+    fn chains_become_ribbons_from_a_hundred_residues_on() {
+        let auto = |residues| Representation::Auto.of(&chain_of(residues));
+        assert_eq!((auto(99), auto(100)), (Representation::BallAndStick, Representation::Ribbon));
+        assert_eq!(Representation::Sticks.of(&chain_of(100)), Representation::Sticks);
+        assert_eq!(layer(Representation::Auto, None).representation, Representation::BallAndStick);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Style and placement of molecules.
 
-use super::Selection;
+use super::{Atom, Element, Molecule, Selection};
 use crate::Color;
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -24,6 +24,24 @@ pub enum Representation {
     Ribbon,
     /// The smooth surface around all atoms: where the sum of their Gaussian densities is 1.
     Surface,
+    /// Ribbons if chains of proteins and nucleic acids have 100 residues and more together, else small balls joined by rods.
+    Auto,
+}
+
+impl Representation {
+    /// Residues of chains from which on balls and rods hide each other.
+    const MANY: usize = 100;
+
+    /// The representation of a molecule: what [`Representation::Auto`] means for it, and all others as they are.
+    pub fn of(self, molecule: &Molecule) -> Self {
+        if self != Self::Auto {
+            return self;
+        }
+        // Every amino acid has one alpha carbon, every nucleotide but the first of a chain one phosphorus atom.
+        let stands_for_residue = |a: &&Atom| matches!((&*a.name, a.element), ("CA", Element::C) | ("P", Element::P));
+        let many = molecule.atoms().iter().filter(stands_for_residue).nth(Self::MANY - 1).is_some();
+        if many { Self::Ribbon } else { Self::BallAndStick }
+    }
 }
 
 /// What an atom is drawn as.

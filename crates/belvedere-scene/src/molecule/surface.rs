@@ -27,7 +27,9 @@ pub(super) fn ball_radius(element: Element, representation: Representation) -> f
     match representation {
         Representation::SpaceFilling | Representation::Surface => element.van_der_waals_radius(),
         Representation::Sticks => STICK,
-        Representation::BallAndStick | Representation::Ribbon => BALL * element.van_der_waals_radius(),
+        Representation::BallAndStick | Representation::Ribbon | Representation::Auto => {
+            BALL * element.van_der_waals_radius()
+        }
     }
 }
 
@@ -118,7 +120,8 @@ pub(super) fn build(
             }
             balls_look.representation = Representation::BallAndStick;
         }
-        Representation::BallAndStick | Representation::SpaceFilling | Representation::Sticks => {}
+        Representation::BallAndStick | Representation::SpaceFilling | Representation::Sticks | Representation::Auto => {
+        }
     }
     let atoms: Vec<u32> = (0..all.len() as u32).filter(|&i| shown[i as usize] == Shown::Ball).collect();
     let bonds = balls(&mut pieces, molecule, (&atoms, colors), balls_look);

@@ -19,7 +19,7 @@ pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &MoleculeDoc) ->
     loader
         .options
         .limits()
-        .ask("the picture of the molecule", drawn_atoms.saturating_mul(per_atom(doc)))
+        .ask("the picture of the molecule", drawn_atoms.saturating_mul(per_atom(doc, &molecule)))
         .map_err(|e| loader.fail(index, "source", e))?;
     let wanted =
         doc.select.as_deref().map(Selection::parse).transpose().map_err(|e| loader.fail(index, "select", e))?;
@@ -59,9 +59,9 @@ pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &MoleculeDoc) ->
 }
 
 /// Bytes at the peak of making the triangles of an atom: 120 for each triangle, in sizes from 100,000 atoms on.
-fn per_atom(doc: &MoleculeDoc) -> u64 {
+fn per_atom(doc: &MoleculeDoc, molecule: &Molecule) -> u64 {
     let cuts = u64::from(doc.style.detail.unwrap_or(1).clamp(1, 16));
-    match doc.style.representation {
+    match doc.style.representation.of(molecule) {
         Representation::Surface => 2000,
         Representation::Ribbon => 1000,
         _ => 5000 * cuts * cuts,

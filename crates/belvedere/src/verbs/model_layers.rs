@@ -4,6 +4,7 @@ use crate::scene_file::{CityDoc, LayerDoc, MeshDoc, MoleculeDoc, VolumeDoc};
 use crate::{BelvedereError, OpenOptions};
 use belvedere_io::formats::{self, Reader};
 use belvedere_scene::Unit;
+use belvedere_scene::molecule::Representation;
 use std::path::Path;
 
 /// The unit of a scene of such layers.
@@ -38,7 +39,11 @@ pub(super) fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, Belved
         _ if is_city || (builtin && stem == "town") => Ok(LayerDoc::City(CityDoc::of(id, name))),
         // Unknown names go on to the error that suggests the nearest one.
         _ if builtin && !matches!(stem, "massif" | "canyon" | "street") => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
-        Some(Reader::Molecule) => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
+        Some(Reader::Molecule) => {
+            let mut molecule = MoleculeDoc::of(id, name);
+            molecule.style.representation = Representation::Auto;
+            Ok(LayerDoc::Molecule(molecule))
+        }
         Some(Reader::Mesh) => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
         Some(Reader::City) => Ok(LayerDoc::City(CityDoc::of(id, name))),
         Some(Reader::Volume) => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),

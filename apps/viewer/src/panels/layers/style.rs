@@ -138,6 +138,7 @@ fn molecule(ui: &mut Ui, id: &str, style: &mut MoleculeStyleDoc) {
         Representation::Sticks => tr("sticks"),
         Representation::Ribbon => tr("ribbons"),
         Representation::Surface => tr("smooth surface"),
+        Representation::Auto => tr("auto"),
     };
     ComboBox::from_label(fill(tr("atoms of {0}"), &[&id])).selected_text(name(style.representation)).show_ui(
         ui,
@@ -148,6 +149,7 @@ fn molecule(ui: &mut Ui, id: &str, style: &mut MoleculeStyleDoc) {
                 Representation::Sticks,
                 Representation::Ribbon,
                 Representation::Surface,
+                Representation::Auto,
             ];
             for one in all {
                 ui.selectable_value(&mut style.representation, one, name(one));
