@@ -20,26 +20,39 @@ pub(crate) fn regions(mask: &[bool], width: usize, close: usize, open: usize) ->
     spread(&spread(&closed, width, open, false), width, open, true)
 }
 
-/// Sets every pixel to `value` within `reach` columns and rows of a pixel with that value (dilation or erosion).
+/// Sets every pixel to `value` within a disc around a pixel with that value (dilation or erosion), in time linear in their number.
+///
+/// * `reach`: pixels; the disc holds those less than half a pixel farther away.
 pub(crate) fn spread(mask: &[bool], width: usize, reach: usize, value: bool) -> Vec<bool> {
     let height = mask.len().checked_div(width).unwrap_or(0);
-    let along = |mask: &[bool], lines: usize, length: usize, at: &dyn Fn(usize, usize) -> usize| {
-        let mut out = mask.to_vec();
-        for line in 0..lines {
-            let mut last: Option<usize> = None;
-            for i in (0..length).chain((0..length).rev()) {
-                if mask[at(line, i)] == value {
-                    last = Some(i);
-                }
-                if last.is_some_and(|l| l.abs_diff(i) <= reach) {
-                    out[at(line, i)] = value;
-                }
+    // Distance to the nearest such pixel of the column, and how far the disc extends along the row there.
+    let mut away = vec![reach + 1; mask.len()];
+    let half: Vec<usize> = (0..=reach).map(|d| (reach * reach + reach - d * d).isqrt()).collect();
+    for x in 0..width {
+        for rows in [&mut (0..height) as &mut dyn Iterator<Item = usize>, &mut (0..height).rev()] {
+            let mut last = reach + 1;
+            for y in rows {
+                let i = y * width + x;
+                last = if mask[i] == value { 0 } else { (last + 1).min(reach + 1) };
+                away[i] = away[i].min(last);
             }
         }
-        out
-    };
-    let rows = along(mask, height, width, &|y, x| y * width + x);
-    along(&rows, width, height, &|x, y| y * width + x)
+    }
+    let mut out = vec![!value; mask.len()];
+    for (row, away) in out.chunks_mut(width.max(1)).zip(away.chunks(width.max(1))) {
+        // Discs that begin less those that end at each column.
+        let mut begun = vec![0i32; width + 1];
+        for (x, half) in away.iter().enumerate().filter_map(|(x, d)| Some((x, half.get(*d)?))) {
+            begun[x.saturating_sub(*half)] += 1;
+            begun[(x + half + 1).min(width)] -= 1;
+        }
+        let mut covering = 0;
+        for (pixel, begun) in row.iter_mut().zip(begun) {
+            covering += begun;
+            *pixel = if covering > 0 { value } else { !value };
+        }
+    }
+    out
 }
 
 /// Pixels of the mask with a neighbour beside, above or below that is not in it.
@@ -105,7 +118,8 @@ mod tests {
         let mask: Vec<bool> = (0u64..13 * 9).map(|i| i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 61 == 0).collect();
         for (reach, value) in [(1, true), (2, true), (1, false), (4, true), (20, false)] {
             let near = |i: usize| {
-                let is_near = |k: &usize| (k % 13).abs_diff(i % 13) <= reach && (k / 13).abs_diff(i / 13) <= reach;
+                let away = |k: usize| (k % 13).abs_diff(i % 13).pow(2) + (k / 13).abs_diff(i / 13).pow(2);
+                let is_near = |k: &usize| away(*k) as f64 <= (reach as f64 + 0.5).powi(2);
                 let found = (0..mask.len()).filter(is_near).any(|k| mask[k] == value);
                 if found { value } else { !value }
             };
