@@ -77,10 +77,11 @@ impl MoleculeLayer {
         placement: ModelTransform,
     ) -> Result<Self, MeshError> {
         let molecule: Arc<Molecule> = molecule.into();
+        let representation = style.representation.of(&molecule);
+        let style = &MoleculeStyle { representation, ..style.clone() };
         let drawn = style.selection.mask(&molecule);
         let sticks = style.sticks.as_ref().map(|s| s.mask(&molecule)).unwrap_or_default();
         let colors = colors(&molecule, style, &drawn);
-        let representation = style.representation.of(&molecule);
         let look = Look { representation, detail: style.detail, orders: style.orders };
         let made = surface::build(&molecule, (&drawn, &sticks), &colors, look, &placement)?;
         let surface = MeshLayer::new(made.mesh, Element::C.color());
@@ -271,7 +272,13 @@ mod tests {
         let auto = |residues| Representation::Auto.of(&chain_of(residues));
         assert_eq!((auto(99), auto(100)), (Representation::BallAndStick, Representation::Ribbon));
         assert_eq!(Representation::Sticks.of(&chain_of(100)), Representation::Sticks);
-        assert_eq!(layer(Representation::Auto, None).representation, Representation::BallAndStick);
+        // Everything else follows, colours too.
+        let made = |representation| {
+            let style = MoleculeStyle { representation, ..MoleculeStyle::default() };
+            MoleculeLayer::new(chain_of(100), &style, ModelTransform::default()).unwrap()
+        };
+        let (auto, ribbon) = (made(Representation::Auto), made(Representation::Ribbon));
+        assert_eq!((auto.representation, &auto.surface.mesh), (Representation::Ribbon, &ribbon.surface.mesh));
     }
 
     #[test]
