@@ -24,19 +24,14 @@ pub(crate) fn regions(mask: &[bool], width: usize, close: usize, open: usize) ->
 ///
 /// * `reach`: pixels; the disc holds those less than half a pixel farther away.
 pub(crate) fn spread(mask: &[bool], width: usize, reach: usize, value: bool) -> Vec<bool> {
-    let height = mask.len().checked_div(width).unwrap_or(0);
     // Distance to the nearest such pixel of the column, and how far the disc extends along the row there.
-    let mut away = vec![reach + 1; mask.len()];
+    let mut away: Vec<usize> = mask.iter().map(|m| if *m == value { 0 } else { reach + 1 }).collect();
     let half: Vec<usize> = (0..=reach).map(|d| (reach * reach + reach - d * d).isqrt()).collect();
-    for x in 0..width {
-        for rows in [&mut (0..height) as &mut dyn Iterator<Item = usize>, &mut (0..height).rev()] {
-            let mut last = reach + 1;
-            for y in rows {
-                let i = y * width + x;
-                last = if mask[i] == value { 0 } else { (last + 1).min(reach + 1) };
-                away[i] = away[i].min(last);
-            }
-        }
+    for i in width..away.len() {
+        away[i] = away[i].min(away[i - width] + 1);
+    }
+    for i in (0..away.len().saturating_sub(width)).rev() {
+        away[i] = away[i].min(away[i + width] + 1);
     }
     let mut out = vec![!value; mask.len()];
     for (row, away) in out.chunks_mut(width.max(1)).zip(away.chunks(width.max(1))) {
