@@ -32,7 +32,7 @@ def test_a_pdf_has_layers_and_text_that_is_copied(named: belvedere.Scene, tmp_pa
     assert all(name in page.extract_text() for name in NAMES)
     groups = reader.trailer["/Root"]["/OCProperties"]["/OCGs"]
     layers = [group.get_object()["/Name"] for group in groups]
-    assert layers[0] == "surfaces" and {"features", "points", "names"} <= set(layers), layers
+    assert layers == ["surfaces", "lines", "points", "names", "mark"]
     # Every layer holds marks, each begun and ended.
     content = page.get_contents().get_data().decode("latin-1")
     begun = re.findall(r"/OC /(\w+) BDC", content)
@@ -46,7 +46,7 @@ def test_an_svg_has_layers_and_live_text(named: belvedere.Scene, tmp_path: Path)
     root = ElementTree.parse(path).getroot()
     label = "{http://www.inkscape.org/namespaces/inkscape}label"
     layers = [group.get(label) for group in root.iter("{http://www.w3.org/2000/svg}g") if group.get(label)]
-    assert layers[0] == "surfaces" and layers[-1] == "names", layers
+    assert layers == ["surfaces", "lines", "points", "names", "mark"]
     text = ["".join(element.itertext()) for element in root.iter("{http://www.w3.org/2000/svg}text")]
     assert set(NAMES) <= set(text), text
 
