@@ -42,7 +42,7 @@ mod volume;
 
 pub use exact::ExactRenderer;
 pub use geometry::project::GroundImage;
-pub use marks::mark_shapes;
+pub use marks::{mark_shapes, next_names};
 pub use rasteriser::CpuRenderer;
 pub use tint::GroundTint;
 pub use trace::{RayHit, Tracer};

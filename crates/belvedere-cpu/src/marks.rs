@@ -4,7 +4,7 @@ use crate::geometry::pass::{InView, Pass};
 use crate::trace::Tracer;
 use belvedere_composite::depths::{DepthTiles, Depths};
 use belvedere_composite::drawn::{self, Drawn, Sight};
-use belvedere_composite::marks::{Marks, Shapes};
+use belvedere_composite::marks::{Marks, NameMemory, Patience, Shapes};
 use belvedere_composite::screen::{COARSE_PX, Screen};
 use belvedere_composite::sections::{Exposure, Sections};
 use belvedere_core::{Aabb, DVec2, DVec3};
@@ -46,15 +46,23 @@ const SHAPE_TOLERANCE_PX: f64 = 0.05;
 /// * `job`: the job by which the surfaces were drawn, with its marks.
 /// * `depth`: depths of the surfaces at the pixel centres, row by row, see [`belvedere_scene::Frame::depth`].
 pub fn mark_shapes(job: &RenderJob<'_>, depth: &[f32]) -> Shapes {
+    let tolerance_px = job.options.tolerance_px.clamp(0.01, SHAPE_TOLERANCE_PX);
+    over(job, (depth, tolerance_px), |drawn| Marks::shapes(job, drawn))
+}
+
+/// The names of a frame of a film over its drawn surfaces, see [`Marks::next_names`].
+///
+/// * `job`: as of [`mark_shapes`]; `depth`: depths of the surfaces at the pixel centres, row by row.
+pub fn next_names(job: &RenderJob<'_>, depth: &[f32], before: (&NameMemory, Patience)) -> NameMemory {
+    over(job, (depth, job.options.tolerance_px.max(0.01)), |drawn| Marks::next_names(job, drawn, before))
+}
+
+fn over<T>(job: &RenderJob<'_>, (depth, tolerance_px): (&[f32], f64), work: impl FnOnce(&Drawn<'_>) -> T) -> T {
     let passes = Pass::all(job.view);
     let passes: Vec<&dyn drawn::Pass> = passes.iter().map(|pass| pass as &dyn drawn::Pass).collect();
     let screen = Screen::new(job.view.pinhole());
     let sight = TracedSight { job, solids: Solids::Opaque, tracer: OnceLock::new() };
-    let tolerance_px = job.options.tolerance_px.clamp(0.01, SHAPE_TOLERANCE_PX);
-    Marks::shapes(
-        job,
-        &Drawn { passes: &passes, screen: &screen, tolerance_px, depth: Depths::Whole(depth), sight: &sight },
-    )
+    work(&Drawn { passes: &passes, screen: &screen, tolerance_px, depth: Depths::Whole(depth), sight: &sight })
 }
 
 /// The same as [`place`] for surfaces that were not drawn by passes.

@@ -1,8 +1,9 @@
 //! Pictures: options, jobs, results and the trait of renderers.
 
-use crate::{Cancelled, Light, Overlay, Progress, Scene};
+use crate::{Cancelled, Light, Overlay, PlacedName, Progress, Scene};
 use belvedere_core::{DVec2, View};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Buffers wanted beside colour, depth and id.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -45,6 +46,9 @@ pub struct RenderOptions {
     pub density: f64,
     /// Rectangles of the picture in which no name is written, such as those of legends: upper left and lower right corner, pixels.
     pub keep_clear: Vec<[DVec2; 2]>,
+    /// The names of a frame of a film, in the order in which they find room, and no others; a name whose place is taken stands at the next
+    /// best one. `None`: all names that find room, each at its best place.
+    pub names: Option<Arc<[PlacedName]>>,
     /// Memory the renderer may use for one picture, bytes; more is [`RenderError::TooLarge`].
     pub max_bytes: u64,
 }
@@ -65,6 +69,7 @@ impl Default for RenderOptions {
             marks: true,
             density: 1.0,
             keep_clear: Vec::new(),
+            names: None,
             max_bytes: 4 << 30,
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::marks::path::LinePoint;
 use crate::marks::pole::{Pole, pole};
-use crate::marks::request::LabelRequest;
+use crate::marks::request::{LabelRequest, rank_of};
 use crate::marks::{MarkBuilder, Marker, darker};
 use belvedere_core::DVec3;
 use belvedere_scene::{AreaLayer, Color, Symbol};
@@ -35,14 +35,13 @@ impl MarkBuilder<'_> {
         }
         let mut names: Vec<(&str, Look, Pole)> = largest.into_iter().map(|(n, (look, pole))| (n, look, pole)).collect();
         // Those with a rank first, else those with the most room.
-        let rank = |rank: Option<f64>| rank.filter(|rank| !rank.is_nan()).unwrap_or(f64::NEG_INFINITY);
         names.sort_by(|a, b| {
-            let by_rank = rank(b.1.1).total_cmp(&rank(a.1.1));
+            let by_rank = rank_of(b.1.1).total_cmp(&rank_of(a.1.1));
             by_rank.then(b.2.distance.total_cmp(&a.2.distance)).then(a.0.cmp(b.0))
         });
         let (shown, is_shown) = self.shows(index);
         let mut requests = Vec::new();
-        for (name, (color, _), pole) in names {
+        for (name, (color, rank), pole) in names {
             // On no ground nothing is painted.
             let Some(height) = self.scene.terrain().and_then(|ground| ground.surface_at(pole.at)) else { continue };
             let p: DVec3 = pole.at.extend(height + layer.lift_m);
@@ -54,8 +53,12 @@ impl MarkBuilder<'_> {
             let on_line = LinePoint { p, along: 0.0, on_ground: true };
             let seen = self.mark(&on_line, layer.lift_m, marker, &mut Vec::new());
             let color = darker(color.with_alpha(255));
-            let request = |at| LabelRequest { over: true, ..LabelRequest::new(name, at, size_px, color) };
-            requests.extend(seen.into_iter().map(request));
+            let rank = rank_of(rank);
+            requests.extend(seen.iter().map(|seen| LabelRequest {
+                over: true,
+                rank,
+                ..seen.request(name, size_px, color)
+            }));
         }
         requests
     }

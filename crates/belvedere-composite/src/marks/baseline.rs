@@ -27,8 +27,22 @@ pub(crate) struct Letters {
     pub(crate) gap: f64,
 }
 
+/// A baseline along a line.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Along {
+    /// Pixels, from left to right.
+    pub(crate) points: Vec<DVec2>,
+    /// Share of the line's length at the middle of the text, 0..=1.
+    pub(crate) middle: f64,
+    /// Whether it lies above the line.
+    pub(crate) upper: bool,
+    /// Whether it is the one that was asked for.
+    pub(crate) held: bool,
+}
+
 /// Baselines along a line, the flattest first, above the line before below it.
-pub(crate) fn baselines(line: &[DVec2], letters: Letters) -> Vec<Vec<DVec2>> {
+/// * `held`: the middle and the side that are tried before all others.
+pub(crate) fn baselines(line: &[DVec2], letters: Letters, held: Option<(f64, bool)>) -> Vec<Along> {
     let step = (0.25 * letters.size_px).max(1.0);
     let line = samples(line, step);
     let count = ((ROOM * letters.width + 2.0) / step).ceil();
@@ -36,20 +50,24 @@ pub(crate) fn baselines(line: &[DVec2], letters: Letters) -> Vec<Vec<DVec2>> {
         return Vec::new();
     }
     let count = count as usize;
-    let mut found: Vec<(f64, Vec<DVec2>)> = Vec::new();
-    for middle in MIDDLES {
-        let room = line.len() - 1 - count;
+    let room = line.len() - 1 - count;
+    let along = |middle: f64, upper: bool| {
         let start = ((middle * (line.len() - 1) as f64 - 0.5 * count as f64).max(0.0) as usize).min(room);
-        for (side, off) in
-            [(0.0, letters.gap + DESCENT * letters.size_px), (0.4, -letters.gap - ASCENT * letters.size_px)]
-        {
-            if let Some((turn, baseline)) = beside(&line, start..start + count + 1, off) {
-                found.push((turn + side + (middle - 0.5).abs(), baseline));
-            }
+        let (under, over) = (letters.gap + DESCENT * letters.size_px, -letters.gap - ASCENT * letters.size_px);
+        let (turn, points) = beside(&line, start..start + count + 1, if upper { under } else { over })?;
+        let middle = (start as f64 + 0.5 * count as f64) / (line.len() - 1) as f64;
+        Some((turn, Along { points, middle, upper, held: false }))
+    };
+    let mut found: Vec<(f64, Along)> = Vec::new();
+    for middle in MIDDLES {
+        for (side, upper) in [(0.0, true), (0.4, false)] {
+            found.extend(along(middle, upper).map(|(turn, found)| (turn + side + (middle - 0.5).abs(), found)));
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    found.into_iter().map(|(_, baseline)| baseline).filter(|b| stays_off(b, &line, letters)).take(MOST).collect()
+    let held = held.and_then(|(middle, upper)| along(middle, upper)).map(|(_, along)| Along { held: true, ..along });
+    let found = held.into_iter().chain(found.into_iter().map(|(_, along)| along));
+    found.filter(|along| stays_off(&along.points, &line, letters)).take(MOST).collect()
 }
 
 /// Points at equal steps along a line, pixels.
@@ -131,9 +149,10 @@ mod tests {
         // From right to left, in a gentle bow.
         let bow: Vec<DVec2> =
             (0..600).map(|i| DVec2::new(600.0 - f64::from(i), 300.0 + 80.0 * (f64::from(i) * 0.006).sin())).collect();
-        let found = baselines(&bow, letters(120.0));
+        let found = baselines(&bow, letters(120.0), None);
         assert!(found.len() >= 4, "{} baselines", found.len());
         for baseline in &found {
+            let baseline = &baseline.points;
             assert!(baseline.windows(2).all(|pair| pair[1].x > pair[0].x));
             for share in [-DESCENT, ASCENT] {
                 let lifted = baseline.iter().map(|p| *p - DVec2::Y * share * 12.0);
@@ -143,19 +162,39 @@ mod tests {
             }
         }
         // The first is above the line.
-        assert!(found[0].iter().all(|p| bow.iter().any(|q| q.y > p.y && (q.x - p.x).abs() < 8.0)));
+        assert!(
+            found[0].upper && found[0].points.iter().all(|p| bow.iter().any(|q| q.y > p.y && (q.x - p.x).abs() < 8.0))
+        );
+    }
+
+    #[test]
+    fn a_held_middle_and_side_come_first_and_stay_within_the_line() {
+        let line: Vec<DVec2> = (0..500).map(|i| DVec2::new(f64::from(i), 100.0)).collect();
+        let first = |middle: f64, upper: bool| baselines(&line, letters(120.0), Some((middle, upper))).swap_remove(0);
+        let held = first(0.62, false);
+        assert!(!held.upper && (held.middle - 0.62).abs() < 0.01, "{}", held.middle);
+        assert!(held.points.iter().all(|p| p.y > 100.0));
+        let last = first(1.0, true);
+        assert!(last.upper && (0.8..0.9).contains(&last.middle), "{}", last.middle);
+        assert_eq!(baselines(&line, letters(120.0), None)[0].middle, 0.5);
     }
 
     #[test]
     fn short_steep_and_winding_lines_have_none() {
         let line = |f: fn(f64) -> [f64; 2]| (0..400).map(|i| DVec2::from_array(f(f64::from(i)))).collect::<Vec<_>>();
-        assert!(baselines(&line(|i| [0.1 * i, 0.0]), letters(120.0)).is_empty());
-        assert!(baselines(&line(|i| [50.0, i]), letters(120.0)).is_empty());
+        assert!(baselines(&line(|i| [0.1 * i, 0.0]), letters(120.0), None).is_empty());
+        assert!(baselines(&line(|i| [50.0, i]), letters(120.0), None).is_empty());
         assert!(
-            baselines(&line(|i| [200.0 + 30.0 * (i * 0.03).cos(), 200.0 + 30.0 * (i * 0.03).sin()]), letters(120.0))
-                .is_empty()
+            baselines(
+                &line(|i| [200.0 + 30.0 * (i * 0.03).cos(), 200.0 + 30.0 * (i * 0.03).sin()]),
+                letters(120.0),
+                None
+            )
+            .is_empty()
         );
-        assert!(baselines(&[], letters(5.0)).is_empty() && baselines(&[DVec2::ONE], letters(5.0)).is_empty());
-        assert!(baselines(&line(|i| [i, 0.0]), letters(f64::NAN)).is_empty());
+        assert!(
+            baselines(&[], letters(5.0), None).is_empty() && baselines(&[DVec2::ONE], letters(5.0), None).is_empty()
+        );
+        assert!(baselines(&line(|i| [i, 0.0]), letters(f64::NAN), None).is_empty());
     }
 }

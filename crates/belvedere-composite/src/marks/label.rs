@@ -2,10 +2,11 @@
 
 use crate::canvas::{Canvas, Fonts};
 use crate::marks::candidates::candidates;
+use crate::marks::name_memory::{Choice, NameMemory, Turn};
 use crate::marks::occupied::{Occupied, Rect, overlap};
 use crate::marks::request::{Candidate, LabelRequest, Lines, Page};
 use belvedere_core::{DVec2, polygon::to_segment};
-use belvedere_scene::Color;
+use belvedere_scene::{Color, PlacedName};
 
 /// Most texts of a picture.
 const MOST: usize = 5000;
@@ -30,20 +31,27 @@ pub(crate) struct Labels {
     /// Pixels per unit of gaps, leaders and rims.
     density: f64,
     fonts: Fonts,
+    /// What the next frame of a film needs to know of this one.
+    memory: NameMemory,
 }
 
 impl Labels {
-    /// Places the texts that fit into a picture, in the order of the requests.
-    pub(crate) fn place(requests: Vec<LabelRequest>, page: &Page<'_>) -> Self {
+    /// Places the texts that fit into a picture, in the order of their turns.
+    pub(crate) fn place(requests: Vec<LabelRequest>, page: &Page<'_>, choice: Choice<'_>) -> Self {
         let density = page.density;
         let mut markers = Occupied::new(SQUARE * density);
-        requests.iter().enumerate().for_each(|(i, request)| markers.take(marker(request), i));
+        let turns = choice.turns(requests);
+        turns.iter().enumerate().for_each(|(i, turn)| markers.take(marker(&turn.request), i));
         let mut taken = Occupied::new(SQUARE * density);
         page.keep_clear.iter().for_each(|rect| taken.take(*rect, NOBODY));
         let mut placed: Vec<Placed> = Vec::new();
-        for (i, request) in requests.into_iter().enumerate() {
+        let mut names: Vec<(PlacedName, bool)> = Vec::new();
+        for (i, Turn { request, held, written }) in turns.into_iter().enumerate() {
             if placed.len() >= MOST {
                 break;
+            }
+            if !written {
+                continue;
             }
             let lines = Lines::of(&request, page.fonts);
             let inside = |r: &Rect| r[0].cmpge(DVec2::ZERO).all() && r[1].cmple(page.size).all();
@@ -54,13 +62,19 @@ impl Labels {
                 let leader = candidate.leader.as_ref().map(|leader| line_box(leader, density));
                 off && candidate.boxes.iter().all(free) && leader.is_none_or(|rect| taken.is_free(&rect, i))
             };
-            if let Some(candidate) = candidates(&request, &lines, page).into_iter().find(can_stand) {
+            if let Some(candidate) = candidates(&request, &lines, page, held).into_iter().find(can_stand) {
                 candidate.boxes.iter().for_each(|rect| taken.take(*rect, i));
                 candidate.leader.iter().for_each(|leader| taken.take(line_box(leader, density), i));
+                names.push((PlacedName { id: request.id(), place: candidate.place }, request.seen));
                 placed.push(Placed { color: request.color, size_px: request.size_px, lines, candidate });
             }
         }
-        Self { placed, density, fonts: page.fonts.clone() }
+        Self { placed, density, fonts: page.fonts.clone(), memory: choice.remembered(names) }
+    }
+
+    /// What the next frame of a film needs to know of this one.
+    pub(crate) fn into_memory(self) -> NameMemory {
+        self.memory
     }
 
     /// Draws the texts.
@@ -126,11 +140,14 @@ fn crosses(a: DVec2, b: DVec2, [lo, hi]: &Rect) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::marks::name_memory::Patience;
+    use crate::marks::request::Baseline;
+    use std::collections::HashMap;
 
     const BLACK: Color = Color::rgb(0, 0, 0);
 
     fn place(requests: Vec<LabelRequest>, size: DVec2, keep_clear: &[Rect]) -> Labels {
-        Labels::place(requests, &Page { size, density: 1.0, fonts: &Fonts::default(), keep_clear })
+        Labels::place(requests, &Page { size, density: 1.0, fonts: &Fonts::default(), keep_clear }, Choice::Free)
     }
 
     fn summit(i: usize, at: DVec2) -> LabelRequest {
@@ -174,6 +191,77 @@ mod tests {
         assert!(labels.placed.len() > 5);
         assert_apart(&labels, size);
         assert!(boxes(&labels).iter().all(|rect| !overlap(rect, &legend)));
+    }
+
+    /// Names of summits that drift to the left, the farther ones slowlier, as past a moving camera, frame by frame.
+    fn drifting(frames: usize, held: bool) -> Vec<HashMap<String, (belvedere_scene::NamePlace, DVec2)>> {
+        let size = DVec2::new(700.0, 400.0);
+        let mut memory = NameMemory::default();
+        let frame = |frame: usize| {
+            let requests: Vec<LabelRequest> = (0..40)
+                .map(|i| {
+                    let (near, row) = (1.0 + f64::from(i % 5), f64::from(i * 37 % 90));
+                    let x = f64::from(i * 53 % 900) - 0.35 * near * frame as f64;
+                    let rank = f64::from(2000 + i * 71 % 1500);
+                    let at = DVec2::new(x, 220.0 + row);
+                    let skyline = (row < 40.0).then_some(225.0 + 6.0 * (0.05 * x).sin());
+                    LabelRequest { rank, skyline, layer: 1, ..summit(i as usize, at) }
+                })
+                .collect();
+            let fonts = Fonts::default();
+            let page = Page { size, density: 1.0, fonts: &fonts, keep_clear: &[] };
+            let none = NameMemory::default();
+            let labels = Labels::place(requests, &page, Choice::Next(if held { &memory } else { &none }, Patience(5)));
+            assert_apart(&labels, size);
+            let at = labels.placed.iter().map(|p| p.candidate.baseline).collect::<Vec<_>>();
+            memory = labels.into_memory();
+            memory.names().into_iter().zip(at).map(|(name, at)| (name.id.text, (name.place, at))).collect()
+        };
+        (0..frames).map(frame).collect()
+    }
+
+    /// Changes of place of names that are there in two frames that follow each other, and names that come or go.
+    fn changes(film: &[HashMap<String, (belvedere_scene::NamePlace, DVec2)>]) -> [usize; 2] {
+        film.windows(2).fold([0; 2], |[moved, went], pair| {
+            let both = pair[0].iter().filter_map(|(name, (place, _))| Some((place, pair[1].get(name)?.0)));
+            let (both, there): (Vec<_>, usize) = (both.collect(), pair[0].len() + pair[1].len());
+            [moved + both.iter().filter(|(a, b)| **a != *b).count(), went + there - 2 * both.len()]
+        })
+    }
+
+    #[test]
+    fn names_keep_their_places_while_summits_drift_past_each_other() {
+        let (steady, anew) = (drifting(200, true), drifting(200, false));
+        let (kept, placed) = (changes(&steady), changes(&anew));
+        assert!(8 * kept[0] < placed[0], "{kept:?} and without memory {placed:?}");
+        assert!(2 * kept[1] < placed[1], "{kept:?} and without memory {placed:?}");
+        // No fewer names are there.
+        let names = |film: &[HashMap<_, _>]| film.iter().map(HashMap::len).sum::<usize>();
+        assert!(names(&steady) as f64 > 0.9 * names(&anew) as f64, "{} of {}", names(&steady), names(&anew));
+        // A name that goes does not come back at once.
+        for name in steady.iter().flat_map(HashMap::keys) {
+            let there: Vec<bool> = steady.iter().map(|frame| frame.contains_key(name)).collect();
+            let gaps = there.split(|there| *there).filter(|gap| !gap.is_empty()).count();
+            assert!(
+                gaps <= 1 || !there.windows(6).any(|w| w[0] && !w[1] && w[2..].contains(&true)),
+                "{name}: {there:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn names_given_beforehand_stand_where_they_were_placed() {
+        let requests = |n: usize| (0..n).map(|i| summit(i, DVec2::new(100.0 + 7.0 * i as f64, 230.0))).collect();
+        let (fonts, none) = (Fonts::default(), NameMemory::default());
+        let page = Page { size: DVec2::new(400.0, 300.0), density: 1.0, fonts: &fonts, keep_clear: &[] };
+        let first = Labels::place(requests(20), &page, Choice::Next(&none, Patience(3)));
+        let free = Labels::place(requests(20), &page, Choice::Free);
+        assert_eq!(first.placed, free.placed, "the first frame is that of a picture");
+        let placed = first.placed.clone();
+        let names = first.into_memory().names();
+        let given = Labels::place(requests(20), &page, Choice::Given(&names));
+        assert_eq!(given.placed, placed);
+        assert!(Labels::place(requests(20), &page, Choice::Given(&names[..1])).placed.len() == 1);
     }
 
     #[test]
@@ -260,11 +348,14 @@ mod tests {
         requests.extend(lines.iter().enumerate().map(|(i, (line, half))| {
             let text = format!("Via Alpina {i}");
             let width = Fonts::default().text_size(13.0 * density, &text).width;
-            let along = crate::marks::baseline::baselines(line, letters(width, half + density));
+            let along = crate::marks::baseline::baselines(line, letters(width, half + density), None);
+            let along =
+                along.into_iter().map(|a| Baseline { points: a.points, upper: a.upper, anchor: None }).collect();
             let request = LabelRequest::new(text, line[450], 13.0 * density, BLACK);
             LabelRequest { along, line: (line.clone(), *half), marker: [*half; 2], ..request }
         }));
-        let labels = Labels::place(requests, &Page { size, density, fonts: &Fonts::default(), keep_clear: &[] });
+        let page = Page { size, density, fonts: &Fonts::default(), keep_clear: &[] };
+        let labels = Labels::place(requests, &page, Choice::Free);
         let taken = started.elapsed();
         assert!(taken.as_secs_f64() < 5.0, "{taken:?}");
         assert!(labels.placed.len() > 1500, "{} names", labels.placed.len());

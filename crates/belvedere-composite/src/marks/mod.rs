@@ -11,6 +11,7 @@ mod drawn;
 mod face;
 mod label;
 mod line_of_sight;
+mod name_memory;
 mod names;
 mod occupied;
 mod path;
@@ -41,6 +42,8 @@ use drawing::PlacedDrawing;
 use face::Face;
 use label::Labels;
 use line_of_sight::LineOfSight;
+use name_memory::Choice;
+pub use name_memory::{NameMemory, Patience};
 use path::LinePoint;
 use point::PointMarks;
 use rayon::prelude::*;
@@ -66,12 +69,35 @@ pub struct Marks {
 impl Marks {
     /// Places all marks of a job over its drawn surfaces.
     pub fn new(job: &RenderJob<'_>, drawn: &Drawn<'_>) -> Self {
-        Self::place(job, drawn, false)
+        Self::place(job, drawn, Purpose::Picture)
+    }
+
+    /// The names of a job that is the frame of a film, in their places; a name stays where it was in the frame before while it can.
+    ///
+    /// * `job`: without names given beforehand; `before`: the names of the frame before, none at first.
+    /// * `patience`: for how many frames a name stays whose point is hidden, and for how many one that went stays away.
+    pub fn next_names(
+        job: &RenderJob<'_>,
+        drawn: &Drawn<'_>,
+        (before, patience): (&NameMemory, Patience),
+    ) -> NameMemory {
+        Self::place(job, drawn, Purpose::Names(Choice::Next(before, patience))).labels.into_memory()
+    }
+
+    /// Whether a scene may have names, symbols with texts or marks of distances.
+    pub fn are_named(scene: &Scene) -> bool {
+        scene.layers.iter().any(|layer| match &layer.kind {
+            LayerKind::Line(line) => line.label_px.is_some() || line.markers.is_some(),
+            LayerKind::Area(area) => area.label_px.is_some(),
+            LayerKind::Point(point) => point.style.label_px.is_some(),
+            LayerKind::Molecule(molecule) => molecule.label_px.is_some(),
+            _ => false,
+        })
     }
 
     /// The marks of a job as shapes: the ones that [`Marks::new`] places, to be written instead of drawn.
     pub fn shapes(job: &RenderJob<'_>, drawn: &Drawn<'_>) -> Shapes {
-        let marks = Self::place(job, drawn, true);
+        let marks = Self::place(job, drawn, Purpose::Shapes);
         let of = |sheets: &[StrokeLayer]| sheets.iter().map(StrokeLayer::shapes).collect();
         let mut names = Vec::new();
         marks.write_names(&mut Canvas::recording(&mut names, job.view.pinhole().image.map(|side| side as usize)));
@@ -83,7 +109,7 @@ impl Marks {
     /// * `drawn`: its depths and rays are not used.
     pub fn wanted_depths(job: &RenderJob<'_>, drawn: &Drawn<'_>) -> DepthTiles {
         let tiles = DepthTiles::new([drawn.screen.width, drawn.screen.height].map(|side| side.max(0) as usize));
-        Self::place(job, &Drawn { depth: Depths::Wanted(&tiles), sight: &NoSight, ..*drawn }, false);
+        Self::place(job, &Drawn { depth: Depths::Wanted(&tiles), sight: &NoSight, ..*drawn }, Purpose::Picture);
         tiles
     }
 
@@ -93,8 +119,7 @@ impl Marks {
         job.scene.layers.iter().any(|layer| named(&layer.kind))
     }
 
-    /// * `keep`: whether lines are kept as shapes.
-    fn place(job: &RenderJob<'_>, drawn: &Drawn<'_>, keep: bool) -> Self {
+    fn place(job: &RenderJob<'_>, drawn: &Drawn<'_>, purpose: Purpose<'_>) -> Self {
         if !job.options.marks {
             return Self::default();
         }
@@ -106,6 +131,12 @@ impl Marks {
             Depths::Tiles(tiles) => tiles.skyline.clone(),
             _ => Skyline::default(),
         };
+        let choice = match (purpose, &job.options.names) {
+            (Purpose::Names(choice), _) => choice,
+            (_, Some(names)) => Choice::Given(names),
+            _ => Choice::Free,
+        };
+        let names_alone = matches!(purpose, Purpose::Names(_));
         let fonts = Fonts::with(&job.scene.fonts);
         let sight = LineOfSight { scene: job.scene, sight };
         let builder = MarkBuilder {
@@ -121,23 +152,28 @@ impl Marks {
             density: job.options.density,
             fonts: &fonts,
             skyline: &skyline,
-            keep,
+            keep: matches!(purpose, Purpose::Shapes),
+            choice,
         };
         let overlay = &job.options.overlay;
         let mut requests: Vec<LabelRequest> = Vec::new();
         let mut points = PointMarks::default();
         let mut sheets: Vec<StrokeLayer> = Vec::new();
         for (i, layer) in job.scene.layers.iter().enumerate() {
-            let id = i as u32 + 1;
+            let (id, first) = (i as u32 + 1, requests.len());
             match &layer.kind {
                 LayerKind::Line(l) => {
                     let l = &*builder.shown_lines(i, l);
-                    sheets.extend(builder.line_sheets(l, id));
+                    if !names_alone {
+                        sheets.extend(builder.line_sheets(l, id));
+                    }
                     sheets.extend(builder.distances(l, id, &mut requests));
-                    requests.extend(builder.line_names(l));
+                    requests.extend(builder.line_names(l, id));
                 }
                 LayerKind::Area(a) => {
-                    sheets.extend(builder.outlines(a, id));
+                    if !names_alone {
+                        sheets.extend(builder.outlines(a, id));
+                    }
                     requests.extend(builder.area_names(i, a));
                 }
                 LayerKind::Point(p) => {
@@ -147,10 +183,12 @@ impl Marks {
                 LayerKind::Molecule(m) => requests.extend(builder.residue_names(m)),
                 _ => {}
             }
+            requests[first..].iter_mut().for_each(|request| request.layer = id);
         }
-        sheets.extend(overlay.over.iter().map(|l| builder.overlay_line(l, &mut requests)));
+        let with_text = |l: &&OverlayLine| !names_alone || !l.label.is_empty();
+        sheets.extend(overlay.over.iter().filter(with_text).map(|l| builder.overlay_line(l, &mut requests)));
         sheets.extend(overlay.points.iter().map(|p| builder.overlay_point(p, &mut requests)));
-        let under = overlay.under.iter().map(|l| builder.overlay_line(l, &mut requests)).collect();
+        let under = overlay.under.iter().filter(with_text).map(|l| builder.overlay_line(l, &mut requests)).collect();
         if map.only_asks() {
             return Self::default();
         }
@@ -159,7 +197,7 @@ impl Marks {
             .iter()
             .flat_map(|f| passes.iter().take(job.view.records()).filter_map(|p| Face::new(f, *p, screen)));
         let (size, density, keep_clear) = (2.0 * screen.center, job.options.density, &job.options.keep_clear[..]);
-        let labels = Labels::place(requests, &Page { size, density, fonts: &fonts, keep_clear });
+        let labels = Labels::place(requests, &Page { size, density, fonts: &fonts, keep_clear }, choice);
         Self { under, faces: faces.collect(), sheets, drawings: points.drawings, labels }
     }
 
@@ -205,6 +243,16 @@ impl Marks {
     }
 }
 
+/// What marks are placed for.
+#[derive(Clone, Copy)]
+enum Purpose<'a> {
+    Picture,
+    /// Lines are kept as shapes.
+    Shapes,
+    /// Nothing but names.
+    Names(Choice<'a>),
+}
+
 /// Rays of a picture that is not drawn yet.
 struct NoSight;
 
@@ -232,6 +280,7 @@ struct MarkBuilder<'a> {
     skyline: &'a Skyline,
     /// Whether lines are kept as shapes.
     keep: bool,
+    choice: Choice<'a>,
 }
 
 /// Width and treatment of hidden parts of a line.
@@ -426,12 +475,13 @@ impl MarkBuilder<'_> {
         let hidden = if layer.hidden == Hidden::Show { Hidden::Show } else { Hidden::Cut };
         let marker = Marker { symbol: Symbol::Dot, half_px, casing: true, hidden };
         let mut strokes = Vec::new();
-        for (on_line, text) in lines.iter().flat_map(|l| distance::marks(l, every)) {
-            for at in self.mark(&on_line, layer.lift_m, marker, &mut strokes) {
-                let color = darker(layer.color);
-                let side = half_px + 2.0 * self.density;
-                let marker = [side, side];
-                requests.push(LabelRequest { marker, ..LabelRequest::new(text.clone(), at, layer.marker_px, color) });
+        let side = half_px + 2.0 * self.density;
+        for (number, line) in (0..).zip(&lines) {
+            for (on_line, text) in distance::marks(line, every) {
+                requests.extend(self.mark(&on_line, layer.lift_m, marker, &mut strokes).iter().map(|seen| {
+                    let request = seen.request(text.clone(), layer.marker_px, darker(layer.color));
+                    LabelRequest { marker: [side; 2], number, ..request }
+                }));
             }
         }
         let white = Color::rgb(255, 255, 255);

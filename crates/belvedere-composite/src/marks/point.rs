@@ -3,26 +3,26 @@
 use crate::marks::alike::{self, alike};
 use crate::marks::drawing::PlacedDrawing;
 use crate::marks::path::LinePoint;
-use crate::marks::request::LabelRequest;
+use crate::marks::request::{LabelRequest, rank_of};
 use crate::marks::ribbon::{Lane, Stroke, StrokeLayer};
 use crate::marks::{HIDDEN_WIDTH, MarkBuilder, Marker, casing_of, darker, inks, symbol, width_or_none};
 use crate::screen::BAND;
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{Color, Hidden, OverlayPoint, PointFeature, PointLayer, PointStyle, Symbol};
 use rayon::prelude::*;
+use std::collections::HashMap;
 
 impl MarkBuilder<'_> {
     /// The symbols of a layer; names of points of higher rank come first.
     pub(super) fn points(&self, layer: &PointLayer, id: u32, out: &mut PointMarks) -> Vec<StrokeLayer> {
-        let mut named: Vec<(Option<f64>, LabelRequest)> = Vec::new();
+        let mut named = Named::default();
         let sheets = alike(&layer.features, layer.color, |f| f.style)
             .into_iter()
             .map(|group| self.points_alike(layer, group, id, (&mut named, &mut out.drawings)))
             .collect();
         // Those without a rank come last, in their order.
-        let rank = |rank: Option<f64>| rank.filter(|rank| !rank.is_nan()).unwrap_or(f64::NEG_INFINITY);
-        named.sort_by(|a, b| rank(b.0).total_cmp(&rank(a.0)));
-        out.requests.extend(named.into_iter().map(|(_, request)| request));
+        named.requests.sort_by(|a, b| b.rank.total_cmp(&a.rank));
+        out.requests.append(&mut named.requests);
         sheets
     }
 
@@ -31,7 +31,7 @@ impl MarkBuilder<'_> {
         layer: &PointLayer,
         group: alike::Alike<'_, PointFeature>,
         id: u32,
-        (requests, drawings): (&mut Vec<(Option<f64>, LabelRequest)>, &mut Vec<PlacedDrawing>),
+        (out, drawings): (&mut Named, &mut Vec<PlacedDrawing>),
     ) -> StrokeLayer {
         let half_px = 0.5 * width_or_none(group.scale * layer.size_px, self.density);
         let PointStyle { symbol, casing, label_px } = layer.style;
@@ -65,14 +65,14 @@ impl MarkBuilder<'_> {
             }
             let Some(size_px) = label_px.filter(|_| !feature.name.trim().is_empty()) else { continue };
             let own = feature.style.unwrap_or_default();
+            let number = out.number(feature.name.trim());
             let request = |seen: Seen| {
-                let request =
-                    label_request(feature.name.trim(), seen.pixel, marker, (size_px, group.color), self.density);
+                let request = label_request(feature.name.trim(), &seen, marker, (size_px, group.color), self.density);
                 let second = own.height.map(|height| height.to_string()).unwrap_or_default();
                 let skyline = self.skyline.over(seen.pixel, self.density);
-                (own.rank, LabelRequest { second, skyline, ..request })
+                LabelRequest { second, skyline, number, rank: rank_of(own.rank), ..request }
             };
-            requests.extend(named.into_iter().filter(|seen| seen.is_named(layer.hidden)).map(request));
+            out.requests.extend(named.into_iter().filter(|seen| self.asks_for(seen)).map(request));
         }
         // Under drawings lie discs that are not seen, so that they are found at their pixels.
         let color = if is_own { group.color.with_alpha(0) } else { group.color };
@@ -87,27 +87,31 @@ impl MarkBuilder<'_> {
         let mut strokes = Vec::new();
         let named = self.mark(&on_line, 0.0, marker, &mut strokes);
         if !point.label.is_empty() {
-            requests.extend(
-                named.into_iter().map(|at| {
-                    label_request(&point.label, at, marker, (13.0 * self.density, point.color), self.density)
-                }),
-            );
+            requests.extend(named.iter().map(|seen| {
+                label_request(&point.label, seen, marker, (13.0 * self.density, point.color), self.density)
+            }));
         }
         let casing = Some(Color::rgb(255, 255, 255));
         StrokeLayer::new(strokes, inks(point.color, casing, point.hidden), 0, self.screen.height as usize, BAND)
     }
 
     /// Draws a marker at every image of a point; returns where a name belongs.
-    pub(super) fn mark(&self, on_line: &LinePoint, lift_m: f64, marker: Marker, out: &mut Vec<Stroke>) -> Vec<DVec2> {
-        let seen = self.mark_all(on_line, lift_m, marker, out).into_iter();
-        seen.filter(|seen| seen.is_named(marker.hidden)).map(|seen| seen.pixel).collect()
+    pub(super) fn mark(&self, on_line: &LinePoint, lift_m: f64, marker: Marker, out: &mut Vec<Stroke>) -> Vec<Seen> {
+        let mut seen = self.mark_all(on_line, lift_m, marker, out);
+        seen.retain(|seen| self.asks_for(seen));
+        seen
+    }
+
+    /// Whether a name is asked for at an image of a point.
+    fn asks_for(&self, seen: &Seen) -> bool {
+        seen.is_named || self.choice.asks_for_hidden()
     }
 
     /// Draws a marker at every image of a point, and returns them.
     fn mark_all(&self, on_line: &LinePoint, lift_m: f64, marker: Marker, out: &mut Vec<Stroke>) -> Vec<Seen> {
         let mut all = Vec::new();
         let p = self.sight.on_surface(on_line, lift_m);
-        for pass in self.passes_for(std::iter::once(Aabb::of([p; 2]))) {
+        for (image, pass) in self.passes_for(std::iter::once(Aabb::of([p; 2]))).iter().enumerate() {
             let Some(v) = pass.displace(p).map(|d| self.screen.view_from(d)) else { continue };
             if !v.is_finite() || !self.screen.is_drawable(v) || pass.margins(p).iter().any(|m| !(*m >= 0.0)) {
                 continue;
@@ -116,7 +120,8 @@ impl MarkBuilder<'_> {
             let Some(behind) = self.map.behind(self.screen, pixel, v.z) else { continue };
             let visible = self.sight.sees(self.screen, pixel, v.z).unwrap_or(behind <= 1.5);
             stamp(pixel, marker, (visible, self.density), out);
-            all.push(Seen { pixel, visible });
+            let is_named = visible || marker.hidden == Hidden::Show;
+            all.push(Seen { pixel, image: image as u32, is_named });
         }
         all
     }
@@ -124,23 +129,43 @@ impl MarkBuilder<'_> {
 
 /// An image of a point.
 #[derive(Debug, Clone, Copy)]
-struct Seen {
-    pixel: DVec2,
-    visible: bool,
+pub(super) struct Seen {
+    pub(super) pixel: DVec2,
+    /// Number of the image among those of the point.
+    pub(super) image: u32,
+    /// Whether it is visible, or named behind surfaces as well.
+    pub(super) is_named: bool,
 }
 
 impl Seen {
-    fn is_named(&self, hidden: Hidden) -> bool {
-        self.visible || hidden == Hidden::Show
+    /// A name beside it.
+    pub(super) fn request(&self, text: impl Into<String>, size_px: f64, color: Color) -> LabelRequest {
+        LabelRequest { image: self.image, seen: self.is_named, ..LabelRequest::new(text, self.pixel, size_px, color) }
     }
 
     /// Opacity of a drawing; `None`: it is not drawn.
     fn opacity(&self, hidden: Hidden) -> Option<f32> {
         match hidden {
-            _ if self.is_named(hidden) => Some(1.0),
+            _ if self.is_named => Some(1.0),
             Hidden::Cut => None,
             _ => Some(FAINT),
         }
+    }
+}
+
+/// Names of a layer, and how many features there are of each.
+#[derive(Default)]
+struct Named {
+    requests: Vec<LabelRequest>,
+    counts: HashMap<String, u32>,
+}
+
+impl Named {
+    /// Number of the next feature of a name.
+    fn number(&mut self, name: &str) -> u32 {
+        let count = self.counts.entry(name.to_owned()).or_default();
+        *count += 1;
+        *count - 1
     }
 }
 
@@ -171,8 +196,14 @@ fn stamp(at: DVec2, marker: Marker, (visible, density): (bool, f64), out: &mut V
     }
 }
 
-fn label_request(text: &str, at: DVec2, marker: Marker, (size_px, color): (f64, Color), density: f64) -> LabelRequest {
+fn label_request(
+    text: &str,
+    seen: &Seen,
+    marker: Marker,
+    (size_px, color): (f64, Color),
+    density: f64,
+) -> LabelRequest {
     let side = marker.half_px + 2.0 * density;
     let above = symbol::top(marker.symbol) * marker.half_px + 2.5 * density;
-    LabelRequest { marker: [side, above], leader: true, ..LabelRequest::new(text, at, size_px, darker(color)) }
+    LabelRequest { marker: [side, above], leader: true, ..seen.request(text, size_px, darker(color)) }
 }

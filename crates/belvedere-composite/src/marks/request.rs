@@ -3,7 +3,7 @@
 use crate::canvas::Fonts;
 use crate::marks::occupied::Rect;
 use belvedere_core::DVec2;
-use belvedere_scene::Color;
+use belvedere_scene::{Color, NameAnchor, NameId, NamePlace};
 
 /// A text to be placed.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,11 +23,38 @@ pub(crate) struct LabelRequest {
     /// Whether the text stands over its point, not beside it.
     pub(crate) over: bool,
     /// Baselines along which the text may run, best first.
-    pub(crate) along: Vec<Vec<DVec2>>,
+    pub(crate) along: Vec<Baseline>,
     /// The line that it names and half its width with the casing, pixels: the text stays clear of it.
     pub(crate) line: (Vec<DVec2>, f64),
     /// Row of the highest ground above the columns around the point, where the point stands on the skyline.
     pub(crate) skyline: Option<f64>,
+    /// 1 + index of the layer; 0 for texts of none.
+    pub(crate) layer: u32,
+    /// Number among the features of the layer that bear this text, and of the image of the feature.
+    pub(crate) number: u32,
+    pub(crate) image: u32,
+    /// How much it counts among the texts of its layer; negative infinity where nothing says so.
+    pub(crate) rank: f64,
+    /// Whether its point is seen, or its style names hidden ones.
+    pub(crate) seen: bool,
+    /// The point of its line at `at`.
+    pub(crate) anchor: Option<NameAnchor>,
+}
+
+/// How much a text of this rank counts: one without a rank less than any other.
+pub(crate) fn rank_of(rank: Option<f64>) -> f64 {
+    rank.filter(|rank| !rank.is_nan()).unwrap_or(f64::NEG_INFINITY)
+}
+
+/// Where a text may run along a line.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Baseline {
+    /// Pixels, from left to right.
+    pub(crate) points: Vec<DVec2>,
+    /// Whether it lies above the line.
+    pub(crate) upper: bool,
+    /// Point of the line at the middle of the text.
+    pub(crate) anchor: Option<NameAnchor>,
 }
 
 impl LabelRequest {
@@ -45,7 +72,24 @@ impl LabelRequest {
             along: Vec::new(),
             line: (Vec::new(), 0.0),
             skyline: None,
+            layer: 0,
+            number: 0,
+            image: 0,
+            rank: f64::NEG_INFINITY,
+            seen: true,
+            anchor: None,
         }
+    }
+
+    /// The same text, which stays clear of a line.
+    /// * `half_px`: half the width of the line with its casing, pixels.
+    pub(crate) fn clear_of(self, line: Vec<DVec2>, half_px: f64) -> Self {
+        Self { line: (line, half_px), ..self }
+    }
+
+    /// Which text it is in all frames of a film.
+    pub(crate) fn id(&self) -> NameId {
+        NameId { layer: self.layer, text: self.text.clone(), number: self.number, image: self.image }
     }
 }
 
@@ -99,6 +143,8 @@ pub(crate) struct Candidate {
     pub(crate) baseline: DVec2,
     /// The baseline of a text along a curve, else empty.
     pub(crate) along: Vec<DVec2>,
+    /// The same, relative to what is named.
+    pub(crate) place: NamePlace,
 }
 
 /// The picture that texts are placed on.

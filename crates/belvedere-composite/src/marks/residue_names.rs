@@ -50,9 +50,12 @@ impl MarkBuilder<'_> {
             let marker = Marker { symbol: Symbol::Dot, half_px: 0.0, casing: false, hidden: Hidden::Cut };
             let on_line = LinePoint { p, along: 0.0, on_ground: false };
             let seen = self.mark(&on_line, 0.0, marker, &mut Vec::new());
-            requests.extend(seen.into_iter().map(|at| LabelRequest {
+            // Chains number their residues alike.
+            let number = molecule.atoms()[atom].residue;
+            requests.extend(seen.iter().map(|seen| LabelRequest {
                 over: true,
-                ..LabelRequest::new(name(molecule.residue_of(atom)), at, size_px, darker(INK))
+                number,
+                ..seen.request(name(molecule.residue_of(atom)), size_px, darker(INK))
             }));
         }
         requests

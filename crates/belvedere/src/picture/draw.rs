@@ -203,6 +203,7 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
         .then(|| {
             // The straight picture is always one of pixels.
             let scene = &*widths::scaled(session.scene(), request.density);
+            let options = RenderOptions { names: None, ..options.clone() };
             let job =
                 RenderJob { scene, view: &view.straightened(), light: session.light(), options: &options, progress };
             request.renderer.of(session).render(&job)

@@ -4,6 +4,7 @@ mod bands;
 mod buffers;
 mod displacement;
 mod draw;
+pub(crate) mod film_names;
 mod furniture;
 mod mark_target;
 mod options;

@@ -4,6 +4,7 @@ mod claim;
 mod clock;
 mod film;
 mod manifest;
+mod names;
 mod overlay;
 mod parts;
 mod plan;
@@ -23,8 +24,10 @@ use crate::record::ViewRecord;
 use crate::resolve::solving::{Memory, Solving};
 use crate::scene_file::{AnimationDoc, Document};
 use crate::{BelvedereError, Session};
+use belvedere_composite::marks::NameMemory;
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Instant, Progress, Sky};
+use names::{FilmNames, with_names};
 use overlay::FilmOverlay;
 use std::path::{Path, PathBuf};
 
@@ -211,6 +214,8 @@ struct DrawnFrame {
     session: Session,
     picture: picture::Picture,
     ground: Option<FrameGround>,
+    /// Names that were placed with it.
+    names: Option<NameMemory>,
 }
 
 impl Drawing<'_> {
@@ -227,6 +232,13 @@ impl Drawing<'_> {
         let last = missing.last().map_or(0, |f| f + 1);
         let work: Vec<usize> = if solves { (0..last).collect() } else { missing.clone() };
         let mut memory = Memory::default();
+        let options = &self.request.picture;
+        let mut names = FilmNames::new(session, options, path.fps).filter(|_| !work.is_empty());
+        if let Some(names) = names.as_mut().filter(|_| !solves) {
+            let mut memory = Memory::default();
+            let resolved = |frame| self.resolved(path, frame, solved, &mut memory);
+            names.place_all((self.folder, &*manifest, options), progress, resolved)?;
+        }
         let bends = if work.is_empty() { Vec::new() } else { tracking::plan(session, path, progress)? };
         let (started, mut turned) = (Instant::now(), 0.0);
         for (step, &frame) in work.iter().enumerate() {
@@ -245,10 +257,16 @@ impl Drawing<'_> {
                 following.adjustments[frame].aim = turned;
             }
             if known.is_some() || self.request.part.as_ref().is_some_and(|part| !part.contains(&frame)) {
-                self.resolved(path, frame, solved, &mut memory)?;
+                let session = self.resolved(path, frame, solved, &mut memory)?;
+                if let Some(names) = names.as_mut().filter(|_| solves) {
+                    names.put(names.next(&session, options, &progress.unheard())?);
+                }
                 continue;
             }
-            let drawn = self.frame(path, frame, solved, (&mut memory, manifest))?;
+            let drawn = self.frame(path, (frame, names.as_ref()), (solved, solves), (&mut memory, manifest))?;
+            if let (Some(names), Some(placed)) = (&mut names, &drawn.names) {
+                names.put(placed.clone());
+            }
             turned = drawn.ground.filter(|_| sinks).map_or(0.0, |g| Adjustment::next_aim(g.aimed_m, g.walker_m));
             let record = self.write(path, frame, drawn)?;
             manifest.put(frame, record);
@@ -273,8 +291,8 @@ impl Drawing<'_> {
     fn frame(
         &self,
         path: &mut CameraPath,
-        frame: usize,
-        solved: bool,
+        (frame, names): (usize, Option<&FilmNames>),
+        (solved, solves): (bool, bool),
         (memory, manifest): (&mut Memory, &Manifest),
     ) -> Result<DrawnFrame, BelvedereError> {
         let quiet = self.progress.unheard();
@@ -283,7 +301,10 @@ impl Drawing<'_> {
         loop {
             let session = self.resolved(path, frame, solved, memory)?;
             let steady_mark = path.has_stages() && !self.request.picture.straight;
-            let options = PictureOptions { steady_mark, ..self.request.picture.clone() };
+            let asked = &self.request.picture;
+            let next = names.filter(|_| solves).map(|names| names.next(&session, asked, &quiet)).transpose()?;
+            let options = PictureOptions { steady_mark, ..asked.clone() };
+            let options = with_names(options, names, (frame, next.as_ref()));
             let picture = picture::draw(&session, &options, manifest.inputs.clone(), &quiet)?;
             let adjusted = path.following.as_ref().map_or(Adjustment::NONE, |f| f.adjustments[frame]);
             let walker = path.following.as_ref().map(|f| f.walkers[frame]);
@@ -314,7 +335,7 @@ impl Drawing<'_> {
             let (Some(lacking), Some(following)) =
                 (ground.filter(|g| !g.is_clear() && tries < TRIES), &mut path.following)
             else {
-                return Ok(DrawnFrame { session, picture, ground });
+                return Ok(DrawnFrame { session, picture, ground, names: next });
             };
             let camera = following.camera(frame);
             let short = lacking.clearance_m.map_or(0.0, |c| lacking.needed_m - c);
@@ -333,7 +354,7 @@ impl Drawing<'_> {
 
     /// Draws the overlays over a frame and writes it.
     fn write(&self, path: &CameraPath, frame: usize, drawn: DrawnFrame) -> Result<FrameRecord, BelvedereError> {
-        let DrawnFrame { session, mut picture, ground } = drawn;
+        let DrawnFrame { session, mut picture, ground, names: _ } = drawn;
         let mark = picture.sidecar.overlay.mark;
         let marker = match (&self.overlay, &path.following) {
             (Some(overlay), Some(following)) => {

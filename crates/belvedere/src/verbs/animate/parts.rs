@@ -18,6 +18,8 @@ const WHOLE: &str = "animation.json";
 const PART: &str = "animation.part_";
 /// Name of the plan that the parts share.
 const PLAN: &str = "animation.plan.json";
+/// Name of the file of the names of a film, which is kept until the film is finished.
+pub(super) const NAMES: &str = "animation.names.json";
 
 /// Name of the record that a run writes.
 pub(super) fn record_name(part: Option<&Part>) -> String {
@@ -49,9 +51,9 @@ pub(super) fn records(folder: &Path) -> Vec<PathBuf> {
     records
 }
 
-/// Removes the records of the parts and their plan.
+/// Removes the records of the parts, their plan, and the names that are kept while a film is drawn.
 pub(super) fn forget(folder: &Path) {
-    for path in records(folder).into_iter().chain([folder.join(PLAN)]) {
+    for path in records(folder).into_iter().chain([PLAN, NAMES].map(|name| folder.join(name))) {
         let _ = std::fs::remove_file(path);
     }
 }
@@ -65,7 +67,8 @@ struct Plan {
     frames: Vec<[f64; 2]>,
 }
 
-fn key(manifest: &Manifest) -> Result<String, BelvedereError> {
+/// What tells films apart: sha256 of the record of a film without its frames.
+pub(super) fn key(manifest: &Manifest) -> Result<String, BelvedereError> {
     let film = Manifest { frames: vec![None; manifest.frames.len()], done: 0, ..manifest.clone() };
     Ok(belvedere_io::sha256(output::json(&film)?.as_bytes()))
 }

@@ -1,0 +1,103 @@
+//! Names of a film, placed frame by frame from the first on before they are drawn, so that they stay in their places.
+
+use super::manifest::Manifest;
+use super::parts;
+use crate::picture::{PictureOptions, film_names};
+use crate::{BelvedereError, Session, output};
+use belvedere_composite::marks::{NameMemory, Patience};
+use belvedere_scene::{PlacedName, Progress, RenderOptions};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use std::sync::Arc;
+
+/// How long a name stays whose point is hidden, and one that went stays away, seconds.
+const PATIENCE_S: f64 = 0.3;
+
+/// The names of the frames of a film from the first on.
+pub(super) struct FilmNames {
+    patience: Patience,
+    /// Of the last frame that is placed.
+    memory: NameMemory,
+    /// Names, and the first frame that has them.
+    changes: Vec<(usize, Arc<[PlacedName]>)>,
+    /// Frames that are placed.
+    frames: usize,
+}
+
+/// Names of a film as they are kept in a file.
+#[derive(Serialize, Deserialize)]
+struct Kept {
+    /// As of the plan of parts.
+    film: String,
+    changes: Vec<(usize, Vec<PlacedName>)>,
+}
+
+impl FilmNames {
+    /// None placed yet; `None` for films without names, and for those whose names cannot be placed beforehand.
+    pub(super) fn new(session: &Session, options: &PictureOptions, fps: f64) -> Option<Self> {
+        let patience = Patience((PATIENCE_S * fps).round().clamp(1.0, 1e6) as u32);
+        let none = Self { patience, memory: NameMemory::default(), changes: Vec::new(), frames: 0 };
+        film_names::are_placed(session, options).then_some(none)
+    }
+
+    /// The names of the next frame.
+    /// * `session`: in that frame.
+    pub(super) fn next(
+        &self,
+        session: &Session,
+        options: &PictureOptions,
+        progress: &Progress,
+    ) -> Result<NameMemory, BelvedereError> {
+        film_names::placed(session, options, (&self.memory, self.patience), progress)
+    }
+
+    /// Takes over the names of the next frame.
+    pub(super) fn put(&mut self, memory: NameMemory) {
+        let names = memory.names();
+        if self.changes.last().is_none_or(|(_, last)| **last != names[..]) {
+            self.changes.push((self.frames, names.into()));
+        }
+        (self.memory, self.frames) = (memory, self.frames + 1);
+    }
+
+    /// The names of a frame that is placed.
+    fn of(&self, frame: usize) -> Option<Arc<[PlacedName]>> {
+        let after = self.changes.partition_point(|(first, _)| *first <= frame);
+        Some(self.changes[after.checked_sub(1)?].1.clone()).filter(|_| frame < self.frames)
+    }
+
+    /// Places the names of a film all of whose frames can be resolved by themselves, or takes them over from its folder.
+    /// * `resolved`: the session in a frame.
+    pub(super) fn place_all(
+        &mut self,
+        (folder, manifest, options): (&Path, &Manifest, &PictureOptions),
+        progress: &Progress,
+        mut resolved: impl FnMut(usize) -> Result<Session, BelvedereError>,
+    ) -> Result<(), BelvedereError> {
+        let (film, frames) = (parts::key(manifest)?, manifest.frames.len());
+        let text = belvedere_io::fs::read_to_string(folder.join(parts::NAMES)).unwrap_or_default();
+        if let Some(kept) = serde_json::from_str::<Kept>(&text).ok().filter(|kept| kept.film == film) {
+            self.changes = kept.changes.into_iter().map(|(first, names)| (first, names.into())).collect();
+            self.frames = frames;
+            return Ok(());
+        }
+        let quiet = progress.unheard();
+        for frame in 0..frames {
+            progress.tick("placing names", frame as f64 / frames as f64)?;
+            let names = self.next(&resolved(frame)?, options, &quiet)?;
+            self.put(names);
+        }
+        let changes = self.changes.iter().map(|(first, names)| (*first, names.to_vec())).collect();
+        output::write_text(&folder.join(parts::NAMES), &output::json(&Kept { film, changes })?, true)
+    }
+}
+
+/// The options of a frame: with names that were placed before, or those of `next`.
+pub(super) fn with_names(
+    options: PictureOptions,
+    names: Option<&FilmNames>,
+    (frame, next): (usize, Option<&NameMemory>),
+) -> PictureOptions {
+    let names = next.map(|memory| memory.names().into()).or_else(|| names?.of(frame));
+    PictureOptions { quality: RenderOptions { names, ..options.quality }, ..options }
+}
