@@ -18,6 +18,7 @@ mod sections;
 mod see_through;
 mod steady;
 mod steady_lines;
+mod steady_names;
 mod strip;
 mod subdivision;
 mod support;

@@ -23,6 +23,8 @@ id = "trail"
 source = "builtin:massif?seed=7&size=65"
 must_see = true
 "#;
+/// Names of points of a file beside the scene.
+const NAMED: &str = "[[layer]]\nkind = 'point'\nid = 'summits'\nsource = 'summits.geojson'\nstyle = { labels = true, label_px = 7.0 }\n";
 const SPLINE: &str = "[[stage]]\nkind = 'spline_bend'\npresets = 'progressive'\n";
 const TERRAIN: &str = "[[stage]]\nkind = 'terrain_disocclusion'\n";
 const FRAMES: u32 = 7;
@@ -39,7 +41,7 @@ fn turning() -> AnimationDoc {
 /// Each call opens the scene anew, as another process does.
 fn draw(stage: &str, animation: &AnimationDoc, out: &Path, part: Option<Part>) -> Result<Animation, BelvedereError> {
     let options = OpenOptions { unsolved: true, ..OpenOptions::default() };
-    let session = Session::from_text(Path::new("scene.toml"), &format!("{SCENE}{stage}"), &options)?;
+    let session = Session::from_text(&out.with_file_name("scene.toml"), &format!("{SCENE}{stage}"), &options)?;
     let resume = part.is_none();
     let request =
         AnimateRequest { animation: animation.clone(), out: out.to_owned(), resume, part, ..AnimateRequest::default() };
@@ -59,8 +61,11 @@ fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
 }
 
 fn parts_are_the_whole(stage: &str, animation: &AnimationDoc) {
-    let folder = tempfile::tempdir().expect("folder");
-    let (whole, parted) = (folder.path().join("whole"), folder.path().join("parted"));
+    parts_are_the_whole_in(tempfile::tempdir().expect("folder").path(), stage, animation);
+}
+
+fn parts_are_the_whole_in(folder: &Path, stage: &str, animation: &AnimationDoc) {
+    let (whole, parted) = (folder.join("one"), folder.join("parted"));
     assert_eq!(draw(stage, animation, &whole, None).expect("whole").drawn, FRAMES as usize);
     for part in [3..=4, 0..=2, 5..=6] {
         draw(stage, animation, &parted, Some(part)).expect("part");
@@ -71,6 +76,40 @@ fn parts_are_the_whole(stage: &str, animation: &AnimationDoc) {
     assert_eq!(draw(stage, animation, &parted, Some(3..=4)).expect("again").drawn, 1);
     assert_eq!(draw(stage, animation, &parted, None).expect("collected").drawn, 0);
     assert!(files(&whole) == files(&parted), "{stage}: parts differ from the whole");
+}
+
+/// Twelve summits in three rows.
+fn write_summits(folder: &Path) {
+    let point = |i: i32| {
+        let [x, y] = [1500 * (i % 4) - 2200, 2000 * (i / 4) - 2000];
+        format!(
+            r#"{{"type": "Feature", "properties": {{"name": "P{i}"}}, "geometry": {{"type": "Point", "coordinates": [{x}, {y}]}}}}"#
+        )
+    };
+    let points = (0..12).map(point).collect::<Vec<_>>().join(", ");
+    let text = format!(r#"{{"type": "FeatureCollection", "features": [{points}]}}"#);
+    std::fs::write(folder.join("summits.geojson"), text).expect("summits");
+}
+
+#[test]
+fn names_of_a_film_in_parts_and_of_a_frame_alone_are_those_of_the_film_in_one() {
+    for stage in [SPLINE, TERRAIN] {
+        let scene = format!("{NAMED}{stage}");
+        for animation in [turning(), along()].into_iter().filter(|a| stage == SPLINE || a.along.is_none()) {
+            let folder = tempfile::tempdir().expect("folder");
+            write_summits(folder.path());
+            let (whole, bare) = (folder.path().join("whole"), folder.path().join("bare"));
+            draw(&scene, &animation, &whole, None).expect("whole");
+            draw(stage, &animation, &bare, None).expect("without names");
+            let last = FRAMES as usize - 1;
+            let read = |out: &Path| std::fs::read(out.join(frame_name(last))).expect("frame");
+            assert!(read(&whole) != read(&bare), "the names are seen");
+            let alone = folder.path().join("alone");
+            draw(&scene, &animation, &alone, Some(last..=last)).expect("the last frame alone");
+            assert!(read(&whole) == read(&alone), "{stage}: a frame alone differs");
+            parts_are_the_whole_in(folder.path(), &scene, &animation);
+        }
+    }
 }
 
 #[test]

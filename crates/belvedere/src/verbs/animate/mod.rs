@@ -258,7 +258,7 @@ impl Drawing<'_> {
             }
             if known.is_some() || self.request.part.as_ref().is_some_and(|part| !part.contains(&frame)) {
                 let session = self.resolved(path, frame, solved, &mut memory)?;
-                if let Some(names) = names.as_mut().filter(|_| solves) {
+                if let Some(names) = names.as_mut().filter(|names| solves && names.is_due(frame)) {
                     names.put(names.next(&session, options, &progress.unheard())?);
                 }
                 continue;
@@ -302,7 +302,8 @@ impl Drawing<'_> {
             let session = self.resolved(path, frame, solved, memory)?;
             let steady_mark = path.has_stages() && !self.request.picture.straight;
             let asked = &self.request.picture;
-            let next = names.filter(|_| solves).map(|names| names.next(&session, asked, &quiet)).transpose()?;
+            let due = names.filter(|names| solves && names.is_due(frame));
+            let next = due.map(|names| names.next(&session, asked, &quiet)).transpose()?;
             let options = PictureOptions { steady_mark, ..asked.clone() };
             let options = with_names(options, names, (frame, next.as_ref()));
             let picture = picture::draw(&session, &options, manifest.inputs.clone(), &quiet)?;

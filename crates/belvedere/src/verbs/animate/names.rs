@@ -12,16 +12,21 @@ use std::sync::Arc;
 
 /// How long a name stays whose point is hidden, and one that went stays away, seconds.
 const PATIENCE_S: f64 = 0.3;
+/// How often names are placed, times per second of a film: between, each keeps its place while it is free.
+const PER_SECOND: f64 = 8.0;
 
 /// The names of the frames of a film from the first on.
 pub(super) struct FilmNames {
+    /// Frames from one placing to the next.
+    every: usize,
+    /// Placings for which names stay or stay away.
     patience: Patience,
-    /// Of the last frame that is placed.
+    /// Of the last placing.
     memory: NameMemory,
-    /// Names, and the first frame that has them.
+    /// Names, and the number of the first placing that has them.
     changes: Vec<(usize, Arc<[PlacedName]>)>,
-    /// Frames that are placed.
-    frames: usize,
+    /// Placings that are done.
+    done: usize,
 }
 
 /// Names of a film as they are kept in a file.
@@ -35,12 +40,19 @@ struct Kept {
 impl FilmNames {
     /// None placed yet; `None` for films without names, and for those whose names cannot be placed beforehand.
     pub(super) fn new(session: &Session, options: &PictureOptions, fps: f64) -> Option<Self> {
-        let patience = Patience((PATIENCE_S * fps).round().clamp(1.0, 1e6) as u32);
-        let none = Self { patience, memory: NameMemory::default(), changes: Vec::new(), frames: 0 };
+        let every = (fps / PER_SECOND).round().clamp(1.0, 1e6);
+        let patience = Patience((PATIENCE_S * fps / every).round().clamp(1.0, 1e6) as u32);
+        let every = every as usize;
+        let none = Self { every, patience, memory: NameMemory::default(), changes: Vec::new(), done: 0 };
         film_names::are_placed(session, options).then_some(none)
     }
 
-    /// The names of the next frame.
+    /// Whether names are placed in a frame.
+    pub(super) fn is_due(&self, frame: usize) -> bool {
+        frame.is_multiple_of(self.every)
+    }
+
+    /// The names of the next frame in which they are placed.
     /// * `session`: in that frame.
     pub(super) fn next(
         &self,
@@ -51,19 +63,20 @@ impl FilmNames {
         film_names::placed(session, options, (&self.memory, self.patience), progress)
     }
 
-    /// Takes over the names of the next frame.
+    /// Takes over names that are placed.
     pub(super) fn put(&mut self, memory: NameMemory) {
         let names = memory.names();
         if self.changes.last().is_none_or(|(_, last)| **last != names[..]) {
-            self.changes.push((self.frames, names.into()));
+            self.changes.push((self.done, names.into()));
         }
-        (self.memory, self.frames) = (memory, self.frames + 1);
+        (self.memory, self.done) = (memory, self.done + 1);
     }
 
     /// The names of a frame that is placed.
     fn of(&self, frame: usize) -> Option<Arc<[PlacedName]>> {
-        let after = self.changes.partition_point(|(first, _)| *first <= frame);
-        Some(self.changes[after.checked_sub(1)?].1.clone()).filter(|_| frame < self.frames)
+        let placing = frame / self.every;
+        let after = self.changes.partition_point(|(first, _)| *first <= placing);
+        Some(self.changes[after.checked_sub(1)?].1.clone()).filter(|_| placing < self.done)
     }
 
     /// Places the names of a film all of whose frames can be resolved by themselves, or takes them over from its folder.
@@ -78,11 +91,11 @@ impl FilmNames {
         let text = belvedere_io::fs::read_to_string(folder.join(parts::NAMES)).unwrap_or_default();
         if let Some(kept) = serde_json::from_str::<Kept>(&text).ok().filter(|kept| kept.film == film) {
             self.changes = kept.changes.into_iter().map(|(first, names)| (first, names.into())).collect();
-            self.frames = frames;
+            self.done = frames.div_ceil(self.every);
             return Ok(());
         }
         let quiet = progress.unheard();
-        for frame in 0..frames {
+        for frame in (0..frames).step_by(self.every) {
             progress.tick("placing names", frame as f64 / frames as f64)?;
             let names = self.next(&resolved(frame)?, options, &quiet)?;
             self.put(names);
