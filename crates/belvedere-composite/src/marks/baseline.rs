@@ -44,41 +44,53 @@ pub(crate) struct Along {
 /// * `held`: the middle and the side that are tried before all others.
 pub(crate) fn baselines(line: &[DVec2], letters: Letters, held: Option<(f64, bool)>) -> Vec<Along> {
     let step = (0.25 * letters.size_px).max(1.0);
-    let line = samples(line, step);
     let count = ((ROOM * letters.width + 2.0) / step).ceil();
+    let length: f64 = line.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+    // What is held does not follow the steps, whose beginning moves with that of the line.
+    let held = held.and_then(|(middle, upper)| {
+        let room = (length - count * step - 1e-6).max(0.0);
+        let start = (middle * length - 0.5 * count * step).clamp(0.0, room);
+        let line = samples(line, step, start.rem_euclid(step));
+        along(&line, ((start / step) as usize, count as usize), (letters, upper))
+    });
+    let line = samples(line, step, 0.0);
     if !(count >= 1.0 && count < line.len() as f64) {
         return Vec::new();
     }
     let count = count as usize;
     let room = line.len() - 1 - count;
-    let along = |middle: f64, upper: bool| {
-        let start = ((middle * (line.len() - 1) as f64 - 0.5 * count as f64).max(0.0) as usize).min(room);
-        let (under, over) = (letters.gap + DESCENT * letters.size_px, -letters.gap - ASCENT * letters.size_px);
-        let (turn, points) = beside(&line, start..start + count + 1, if upper { under } else { over })?;
-        let middle = (start as f64 + 0.5 * count as f64) / (line.len() - 1) as f64;
-        Some((turn, Along { points, middle, upper, held: false }))
-    };
     let mut found: Vec<(f64, Along)> = Vec::new();
     for middle in MIDDLES {
+        let start = ((middle * (line.len() - 1) as f64 - 0.5 * count as f64).max(0.0) as usize).min(room);
         for (side, upper) in [(0.0, true), (0.4, false)] {
-            found.extend(along(middle, upper).map(|(turn, found)| (turn + side + (middle - 0.5).abs(), found)));
+            let along = along(&line, (start, count), (letters, upper));
+            found.extend(along.map(|(turn, found)| (turn + side + (middle - 0.5).abs(), found)));
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let held = held.and_then(|(middle, upper)| along(middle, upper)).map(|(_, along)| Along { held: true, ..along });
+    let held = held.map(|(_, along)| Along { held: true, ..along });
     let found = held.into_iter().chain(found.into_iter().map(|(_, along)| along));
     found.filter(|along| stays_off(&along.points, &line, letters)).take(MOST).collect()
 }
 
-/// Points at equal steps along a line, pixels.
-fn samples(line: &[DVec2], step: f64) -> Vec<DVec2> {
-    let mut out: Vec<DVec2> = line.first().copied().into_iter().collect();
-    let mut left = step;
+/// The baseline beside `count` steps of samples from one on, and its whole turn.
+fn along(line: &[DVec2], (start, count): (usize, usize), (letters, upper): (Letters, bool)) -> Option<(f64, Along)> {
+    let (above, below) = (letters.gap + DESCENT * letters.size_px, -letters.gap - ASCENT * letters.size_px);
+    let stretch = Some(start..start + count + 1).filter(|stretch| stretch.end <= line.len())?;
+    let (turn, points) = beside(line, stretch, if upper { above } else { below })?;
+    let middle = (start as f64 + 0.5 * count as f64) / (line.len() - 1) as f64;
+    Some((turn, Along { points, middle, upper, held: false }))
+}
+
+/// Points at equal steps along a line, the first `from` behind its beginning, pixels.
+fn samples(line: &[DVec2], step: f64, from: f64) -> Vec<DVec2> {
+    let mut out = Vec::new();
+    let mut left = from;
     for pair in line.windows(2) {
         let long = pair[0].distance(pair[1]);
         let mut at = left;
         while at <= long {
-            out.push(pair[0].lerp(pair[1], at / long));
+            out.push(pair[0].lerp(pair[1], at / long.max(1e-12)));
             at += step;
         }
         left = at - long;
@@ -174,6 +186,10 @@ mod tests {
         let held = first(0.62, false);
         assert!(!held.upper && (held.middle - 0.62).abs() < 0.01, "{}", held.middle);
         assert!(held.points.iter().all(|p| p.y > 100.0));
+        // A line that begins a little later carries it at the same place.
+        let (share, later) = ((0.62 * 499.0 - 1.3) / 497.7, [&[DVec2::new(1.3, 100.0)], &line[2..]].concat());
+        let again = baselines(&later, letters(120.0), Some((share, false))).swap_remove(0);
+        assert!(held.points.iter().zip(&again.points).all(|(a, b)| a.distance(*b) < 1e-6));
         let last = first(1.0, true);
         assert!(last.upper && (0.8..0.9).contains(&last.middle), "{}", last.middle);
         assert_eq!(baselines(&line, letters(120.0), None)[0].middle, 0.5);

@@ -20,25 +20,15 @@ const HELD_FARTHER: f64 = 100.0;
 /// Shares of a text that stand to the left of its point.
 const SHIFTS: [f64; 3] = [0.5, 0.15, 0.85];
 
-/// Places to try: the one that the name held before, if it has one and the picture still offers it, then all others, best first.
-pub(crate) fn candidates(
-    request: &LabelRequest,
-    lines: &Lines,
-    page: &Page<'_>,
-    held: Option<NamePlace>,
-) -> Vec<Candidate> {
+/// Places to try, best first.
+pub(crate) fn candidates(request: &LabelRequest, lines: &Lines, page: &Page<'_>) -> Vec<Candidate> {
+    Places { request, lines, density: page.density }.all()
+}
+
+/// The place that a name held in the frame before; `None` where the picture does not offer it any more.
+pub(crate) fn held(request: &LabelRequest, lines: &Lines, page: &Page<'_>, place: NamePlace) -> Option<Candidate> {
     let places = Places { request, lines, density: page.density };
-    let mut out = places.all();
-    let Some(held) = held else { return out };
-    match out.iter().position(|candidate| candidate.place == held) {
-        Some(found) => out[..=found].rotate_right(1),
-        None => {
-            if let Some(row) = places.held_row(held) {
-                out.insert(0, row);
-            }
-        }
-    }
-    out
+    places.held_row(place).or_else(|| places.all().into_iter().find(|candidate| candidate.place == place))
 }
 
 struct Places<'a> {

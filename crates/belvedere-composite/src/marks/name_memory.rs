@@ -48,10 +48,20 @@ pub struct Patience(pub u32);
 #[derive(Debug, PartialEq)]
 pub(crate) struct Turn {
     pub(crate) request: LabelRequest,
-    /// The place that is tried first.
-    pub(crate) held: Option<NamePlace>,
-    /// Whether the text is written; else its marker alone is kept clear.
-    pub(crate) written: bool,
+    pub(crate) when: When,
+}
+
+/// When a text finds room.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum When {
+    /// In its turn.
+    InTurn,
+    /// In its turn at the place that it had; if that is taken, after all other turns.
+    Held(NamePlace),
+    /// After all other turns.
+    Last,
+    /// It is not written, its marker alone is kept clear.
+    Never,
 }
 
 impl Choice<'_> {
@@ -74,7 +84,7 @@ impl Choice<'_> {
     /// * `requests`: the most important of a layer first.
     pub(crate) fn turns(&self, requests: Vec<LabelRequest>) -> Vec<Turn> {
         match self {
-            Self::Free => requests.into_iter().map(|request| Turn { request, held: None, written: true }).collect(),
+            Self::Free => requests.into_iter().map(|request| Turn { request, when: When::InTurn }).collect(),
             Self::Given(names) => given(names, requests),
             Self::Next(memory, patience) => next(memory, *patience, requests),
         }
@@ -107,9 +117,8 @@ fn given(names: &[PlacedName], requests: Vec<LabelRequest>) -> Vec<Turn> {
         .into_iter()
         .filter_map(|request| {
             let number = order.get(&request.id()).copied();
-            let held = number.map(|i| names[i].place);
-            let turn = Turn { written: number.is_some(), held, request };
-            (turn.written || turn.request.seen).then_some((number.unwrap_or(usize::MAX), turn))
+            let when = number.map_or(When::Never, |i| When::Held(names[i].place));
+            (number.is_some() || request.seen).then_some((number.unwrap_or(usize::MAX), Turn { request, when }))
         })
         .collect();
     turns.sort_by_key(|(number, _)| *number);
@@ -123,11 +132,11 @@ fn next(memory: &NameMemory, Patience(patience): Patience, requests: Vec<LabelRe
         let id = request.id();
         match before.get(&id) {
             Some(shown) if request.seen || shown.hidden < patience => {
-                held.push(Turn { request, held: Some(shown.name.place), written: true });
+                held.push(Turn { request, when: When::Held(shown.name.place) });
             }
             _ if !request.seen => {}
-            None if !memory.away.contains_key(&id) => new.push(Turn { request, held: None, written: true }),
-            _ => silent.push(Turn { request, held: None, written: false }),
+            None if !memory.away.contains_key(&id) => new.push(Turn { request, when: When::Last }),
+            _ => silent.push(Turn { request, when: When::Never }),
         }
     }
     // A new name goes before the first of its layer that it clearly outranks, else behind all names that were there.
@@ -143,7 +152,7 @@ fn next(memory: &NameMemory, Patience(patience): Patience, requests: Vec<LabelRe
     let mut new = before_held.into_iter().peekable();
     for (i, turn) in held.into_iter().enumerate() {
         while let Some((_, first)) = new.next_if(|(place, _)| *place <= i) {
-            out.push(first);
+            out.push(Turn { when: When::InTurn, ..first });
         }
         out.push(turn);
     }
@@ -172,7 +181,7 @@ mod tests {
     fn after(memory: &NameMemory, patience: u32, requests: Vec<LabelRequest>) -> NameMemory {
         let choice = Choice::Next(memory, Patience(patience));
         let place = NamePlace { side: NameSide::Right, anchor: None };
-        let turns = choice.turns(requests).into_iter().filter(|turn| turn.written);
+        let turns = choice.turns(requests).into_iter().filter(|turn| turn.when != When::Never);
         choice.remembered(turns.map(|t| (PlacedName { id: t.request.id(), place }, t.request.seen)).collect())
     }
 
@@ -216,7 +225,7 @@ mod tests {
         let all =
             vec![request("A", 2.0, false), request("C", 9.0, true), request("B", 1.0, true), request("D", 1.0, false)];
         let turns = Choice::Given(&names).turns(all);
-        let told: Vec<(&str, bool)> = turns.iter().map(|t| (t.request.text.as_str(), t.written)).collect();
+        let told: Vec<(&str, bool)> = turns.iter().map(|t| (t.request.text.as_str(), t.when != When::Never)).collect();
         assert_eq!(told, [("B", true), ("A", true), ("C", false)]);
     }
 }
