@@ -2,8 +2,12 @@
 //!
 //! The program does not know these limits. Ground that it digs too deep or too steep is filled up again, to the least surface above
 //! it that keeps them. This is never higher than the terrain was, which keeps the limits itself. Filling up to a level floor below
-//! the eye hides nothing that was seen, for lines of sight run above the floor. Filling up steep sides may hide something; the judge
-//! finds that.
+//! the eye hides little, for lines of sight run above the floor. But a facet between a node that was filled up and one that was not
+//! rises with the first, and where the displacement is drawn bilinear between nodes, filled ground is rough. The judge finds what that
+//! hides, and what filling up steep sides hides.
+//!
+//! The program has no rows for the floor: within a cell of its grid the terrain is often rougher than the room between the floor and
+//! the lines of sight, and such rows would contradict those of lines of sight.
 
 use super::super::{Field, Hierarchy};
 use super::waters::Waters;

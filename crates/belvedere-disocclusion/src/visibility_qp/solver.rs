@@ -531,3 +531,6 @@ fn worst_of_groups(found: &[(usize, Touch)], key: impl Fn(&(usize, Touch)) -> [(
 fn length(what: &'static str, values: &[f64], nodes: usize) -> Result<(), QpError> {
     if values.len() == nodes { Ok(()) } else { Err(QpError::Length { what, given: values.len(), nodes }) }
 }
+
+#[cfg(test)]
+mod tests;
