@@ -6,8 +6,8 @@
 //! rises with the first, and where the displacement is drawn bilinear between nodes, filled ground is rough. The judge finds what that
 //! hides, and what filling up steep sides hides.
 //!
-//! The program has no rows for the floor: within a cell of its grid the terrain is often rougher than the room between the floor and
-//! the lines of sight, and such rows would contradict those of lines of sight.
+//! The program has no rows for the floor: where they were tried they contradicted those of lines of sight, for a displacement of the
+//! solver's grid is smooth and cannot flatten the ground within a cell as filling up does.
 
 use super::super::{Field, Hierarchy};
 use super::waters::Waters;
