@@ -119,7 +119,7 @@ pub fn sixteen_bits(v: f32) -> u16 {
 }
 
 /// Linear light kept in 16 bits per channel, by square root so that dark tones keep their steps.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Packed([u16; 3]);
 
 impl Packed {
@@ -133,6 +133,12 @@ impl Packed {
     #[inline(always)]
     pub fn of_roots(root: [u16; 3]) -> Self {
         Self(root)
+    }
+
+    /// The square roots of linear light, 65535 for 1.
+    #[inline(always)]
+    pub fn roots(self) -> [u16; 3] {
+        self.0
     }
 
     /// sRGB, as [`encode`] gives it.

@@ -3,6 +3,7 @@
 use super::clip::Segment;
 use super::march::Marcher;
 use super::ray::Rays;
+use super::smooth::{self, Behind};
 use super::spans::Spans;
 use super::{Gathered, reference};
 use crate::trace::deepest;
@@ -35,8 +36,23 @@ struct Drawn<'a> {
     spans: Spans,
 }
 
-/// Composites the volumes of a scene over its surfaces, at the pixel centres. Volumes that overlap are composited as wholes, the
-/// one that a ray enters first in front. Returns the number of samples taken.
+/// What a ray of a column gathers in a layer.
+pub(super) struct Found {
+    pub(super) column: usize,
+    layer: usize,
+    pub(super) gathered: Gathered,
+}
+
+/// The volumes of a scene and the rays through them.
+pub(super) struct Drawing<'a> {
+    rays: Rays<'a>,
+    volumes: Vec<Drawn<'a>>,
+    way: Way,
+    width: usize,
+}
+
+/// Composites the volumes of a scene over its surfaces, at the pixel centres, and at their edges at more places of the pixel. Volumes that
+/// overlap are composited as wholes, the one that a ray enters first in front. Returns the number of samples taken.
 pub(crate) fn compose(job: &RenderJob<'_>, way: Way, buffers: &mut Buffers) -> Result<u64, RenderError> {
     let volumes: Vec<Drawn<'_>> = job
         .scene
@@ -57,9 +73,11 @@ pub(crate) fn compose(job: &RenderJob<'_>, way: Way, buffers: &mut Buffers) -> R
     let height = job.view.pinhole().image[1] as usize;
     let far = job.view.pinhole().far.unwrap_or(f64::INFINITY);
     let rays = Rays::new(job.view, [job.view.pinhole().near, deepest(job.scene, job.view)]);
+    let drawing = Drawing { rays, volumes, way, width };
+    let behind = Behind::of(job, buffers, far);
     let (samples, done) = (AtomicU64::new(0), AtomicUsize::new(0));
     let chunk = ROWS * width;
-    let Buffers { color, depth, id, world, .. } = buffers;
+    let Buffers { color, depth, id, world, .. } = &mut *buffers;
     let mut worlds: Vec<Option<&mut [[f64; 3]]>> = match world {
         Some(w) => w.chunks_mut(chunk).map(Some).collect(),
         None => (0..height.div_ceil(ROWS)).map(|_| None).collect(),
@@ -68,13 +86,61 @@ pub(crate) fn compose(job: &RenderJob<'_>, way: Way, buffers: &mut Buffers) -> R
     parts.zip(worlds.par_iter_mut()).enumerate().try_for_each(|(i, (((color, depth), id), world))| {
         let mut rows = Rows { width, color, depth, id, world: world.as_deref_mut() };
         for y in 0..rows.depth.len() / width {
-            let taken = rows.draw(&rays, &volumes, way, far, [y, i * ROWS + y]);
+            let taken = rows.draw(&drawing, far, [y, i * ROWS + y]);
             samples.fetch_add(taken, Ordering::Relaxed);
         }
         let done = (done.fetch_add(1, Ordering::Relaxed) + 1) * ROWS;
         job.progress.tick("volumes", (done as f64 / height as f64).min(1.0))
     })?;
-    Ok(samples.into_inner())
+    let smoothed = match behind {
+        Some(behind) => smooth::edges(job, &drawing, &behind, &mut buffers.color)?,
+        None => 0,
+    };
+    Ok(samples.into_inner() + smoothed)
+}
+
+impl Drawing<'_> {
+    /// What the rays of a row gather at a place within their pixels: by column, the farthest volume first; and the number of samples.
+    ///
+    /// * `wants`: the depth to which the ray of a column is followed; `None`: it is not.
+    pub(super) fn row(&self, (y, within): (usize, DVec2), wants: impl Fn(usize) -> Option<f64>) -> (Vec<Found>, u64) {
+        let mut found: Vec<Found> = Vec::new();
+        let mut samples = 0;
+        for volume in &self.volumes {
+            let mut take = |column: usize, gathered: Gathered| {
+                samples += u64::from(gathered.samples);
+                if gathered.alpha > 0.0 {
+                    found.push(Found { column, layer: volume.index, gathered });
+                }
+            };
+            match self.way {
+                Way::Fast => {
+                    let mut batch = Batch::default();
+                    let wants = |x| wants(x).filter(|_| volume.spans.hold([x, y]));
+                    let voxels = volume.marcher.volume();
+                    self.rays.row((y, within), self.width, voxels, wants, |x, segments: &[Segment]| {
+                        if !segments.is_empty() {
+                            batch.add(x, segments);
+                            if batch.columns.len() == BATCH {
+                                batch.gather(&volume.marcher, &mut take);
+                            }
+                        }
+                    });
+                    batch.gather(&volume.marcher, &mut take);
+                }
+                Way::Exact => {
+                    for x in 0..self.width {
+                        let Some(end) = wants(x) else { continue };
+                        let pixel = DVec2::new(x as f64, y as f64) + within;
+                        let range = [self.rays.near(), end.min(self.rays.deepest())];
+                        take(x, reference::gather(self.rays.view(), volume.layer, pixel, range));
+                    }
+                }
+            }
+        }
+        found.sort_by(|a, b| a.column.cmp(&b.column).then(b.gathered.enters.total_cmp(&a.gathered.enters)));
+        (found, samples)
+    }
 }
 
 /// Rays of a row that are followed together.
@@ -113,53 +179,20 @@ struct Rows<'b> {
 
 impl Rows<'_> {
     /// Draws row `y` of these, row `image_y` of the picture.
-    fn draw(&mut self, rays: &Rays<'_>, volumes: &[Drawn<'_>], way: Way, far: f64, [y, image_y]: [usize; 2]) -> u64 {
+    fn draw(&mut self, drawing: &Drawing<'_>, far: f64, [y, image_y]: [usize; 2]) -> u64 {
         let row = y * self.width..(y + 1) * self.width;
         // Ends of the rays: depths of the surfaces before any volume is drawn.
-        let ends: Vec<f64> = self.depth[row.clone()].iter().map(|d| f64::from(*d).min(far)).collect();
-        let mut found: Vec<(usize, usize, Gathered)> = Vec::new();
-        let mut samples = 0;
-        for volume in volumes {
-            let mut take = |x: usize, gathered: Gathered| {
-                samples += u64::from(gathered.samples);
-                if gathered.alpha > 0.0 {
-                    found.push((x, volume.index, gathered));
-                }
-            };
-            match way {
-                Way::Fast => {
-                    let mut batch = Batch::default();
-                    let wants = |x| volume.spans.hold([x, image_y]).then_some(ends[x]);
-                    rays.row(image_y, self.width, volume.marcher.volume(), wants, |x, segments: &[Segment]| {
-                        if !segments.is_empty() {
-                            batch.add(x, segments);
-                            if batch.columns.len() == BATCH {
-                                batch.gather(&volume.marcher, &mut take);
-                            }
-                        }
-                    });
-                    batch.gather(&volume.marcher, &mut take);
-                }
-                Way::Exact => {
-                    for (x, end) in ends.iter().enumerate() {
-                        let pixel = DVec2::new(x as f64 + 0.5, image_y as f64 + 0.5);
-                        let range = [rays.near(), end.min(rays.deepest())];
-                        take(x, reference::gather(rays.view(), volume.layer, pixel, range));
-                    }
-                }
-            }
-        }
-        // By column, the farthest volume first.
-        found.sort_by(|a, b| a.0.cmp(&b.0).then(b.2.enters.total_cmp(&a.2.enters)));
-        for (x, layer, gathered) in found {
-            let half = gathered.half.map(|(depth, place)| (rays.depth_of(place, depth), place));
-            self.lay(y * self.width + x, layer, &Gathered { half, ..gathered });
+        let ends: Vec<f64> = self.depth[row].iter().map(|d| f64::from(*d).min(far)).collect();
+        let (found, samples) = drawing.row((image_y, DVec2::splat(0.5)), |x| Some(ends[x]));
+        for Found { column, layer, gathered } in found {
+            let half = gathered.half.map(|(depth, place)| (drawing.rays.depth_of(place, depth), place));
+            self.lay(y * self.width + column, layer, &Gathered { half, ..gathered });
         }
         samples
     }
 
     fn lay(&mut self, i: usize, layer: usize, gathered: &Gathered) {
-        self.color[i] = Packed::new(gathered.color + self.color[i].rgb() * (1.0 - gathered.alpha));
+        self.color[i] = Packed::new(gathered.over(self.color[i].rgb()));
         if let Some((depth, place)) = gathered.half {
             self.depth[i] = depth as f32;
             self.id[i] = layer as u32 + 1;

@@ -5,7 +5,8 @@
 //!    volume, cubics by arc length: [`clip`] computes them ([`arc`] the bent ones), [`sheaf`] interpolates them between such rays.
 //! 2. [`march`]: samples at equal distances along them, front to back, of many rays side by side ([`packet`]); [`bricks`] tell where
 //!    nothing can be seen, [`table`] gives colour and opacity, [`sampler`] interpolates many samples at once.
-//! 3. [`compose`]: over the surfaces by depth, and into depth, id and place where more than half of the light is absorbed.
+//! 3. [`compose`]: over the surfaces by depth, and into depth, id and place where more than half of the light is absorbed; [`smooth`]
+//!    follows more rays where neighbouring pixels differ.
 //!
 //! [`reference`] does the same in 64 bits, one sample after the other: the exact renderer uses it, and the fast method is tested against it.
 //! Source: Cui et al. 2010, section on volumes; equal steps, opacity by length and skipping are ours or common.
@@ -25,6 +26,7 @@ mod ray;
 mod reference;
 mod sampler;
 mod sheaf;
+mod smooth;
 mod spans;
 mod table;
 #[cfg(test)]
@@ -54,6 +56,13 @@ pub(crate) struct Gathered {
     pub(crate) half: Option<(f64, DVec3)>,
     /// Samples taken.
     pub(crate) samples: u32,
+}
+
+impl Gathered {
+    /// Its light over that of what lies behind.
+    pub(crate) fn over(&self, behind: Vec3A) -> Vec3A {
+        self.color + behind * (1.0 - self.alpha)
+    }
 }
 
 /// Share of a step, 0..=1, after which half of the light is left; light decays exponentially along the step.

@@ -62,22 +62,22 @@ impl<'a> Rays<'a> {
 
     /// Calls `each` with the segments of those pixels of a row that `wants` selects.
     ///
-    /// * `wants`: the depth to which the ray of a column is followed; `None`: it is not.
+    /// * `within`: place of the rays within their pixels, 0..=1. `wants`: the depth to which the ray of a column is followed; `None`: it is not.
     pub(super) fn row(
         &self,
-        y: usize,
+        (y, within): (usize, DVec2),
         width: usize,
         volume: &Volume,
         wants: impl Fn(usize) -> Option<f64>,
         mut each: impl FnMut(usize, &[Segment]),
     ) {
-        let y = y as f64 + 0.5;
-        let row = if self.pieces { None } else { self.split.row(y, self.range) };
-        let mut sheaf = Sheaf::new(self.view, volume, self.range, y);
+        let first = DVec2::new(0.0, y as f64) + within;
+        let row = if self.pieces { None } else { self.split.row(first.y, self.range) };
+        let mut sheaf = Sheaf::new(self.view, volume, self.range, first);
         let mut segments = Vec::new();
         for x in 0..width {
             let Some(far) = wants(x) else { continue };
-            let pixel = DVec2::new(x as f64 + 0.5, y);
+            let pixel = first + DVec2::new(x as f64, 0.0);
             segments.clear();
             let mut clip = Clip::new(volume, &mut segments);
             if self.pieces {

@@ -49,7 +49,8 @@ pub(super) struct Sheaf<'a> {
     view: &'a View,
     volume: &'a Volume,
     range: [f64; 2],
-    y: f64,
+    /// Pixel coordinates of the ray of column 0.
+    first: DVec2,
     /// First column of the current tile.
     at: Option<usize>,
     /// Whether its rays can be interpolated, and then its three computed rays.
@@ -60,9 +61,9 @@ pub(super) struct Sheaf<'a> {
 }
 
 impl<'a> Sheaf<'a> {
-    /// * `range`: nearest depth, and a depth beyond which no surface is seen. `y`: of the pixels' centres.
-    pub(super) fn new(view: &'a View, volume: &'a Volume, range: [f64; 2], y: f64) -> Self {
-        Self { view, volume, range, y, at: None, holds: false, computed: Default::default(), reaches: Vec::new() }
+    /// * `range`: nearest depth, and a depth beyond which no surface is seen. `first`: pixel coordinates of the ray of column 0.
+    pub(super) fn new(view: &'a View, volume: &'a Volume, range: [f64; 2], first: DVec2) -> Self {
+        Self { view, volume, range, first, at: None, holds: false, computed: Default::default(), reaches: Vec::new() }
     }
 
     /// Hands over the parts of the ray of a column that lie in the volume between two depths. Returns false where it must be computed on
@@ -139,7 +140,7 @@ impl<'a> Sheaf<'a> {
 
     /// The ray of a column; `like`: with pieces of these forms, else there is none.
     fn skeleton(&self, x: usize, like: Option<&[Piece]>) -> Option<Skeleton> {
-        let pieces = self.view.ray(DVec2::new(x as f64 + 0.5, self.y)).pieces().ok()?;
+        let pieces = self.view.ray(self.first + DVec2::new(x as f64, 0.0)).pieces().ok()?;
         if like.is_some_and(|like| like.len() != pieces.len()) {
             return None;
         }

@@ -88,6 +88,7 @@ impl SpaceMap for Swayed {
 impl StageMap for Swayed {}
 
 const RANGE: [f64; 2] = [1.0, 2000.0];
+const CENTER: DVec2 = DVec2::splat(0.5);
 
 /// Light that one ray gathers.
 fn alone(marcher: &Marcher<'_>, segments: &[Segment]) -> Gathered {
@@ -100,7 +101,7 @@ fn fast(view: &View, layer: &VolumeLayer, pixel: [usize; 2], far: f64) -> (Gathe
     let rays = Rays::new(view, RANGE);
     let mut out = None;
     let wanted = |x: usize| (x == pixel[0]).then_some(far);
-    rays.row(pixel[1], IMAGE[0] as usize, &layer.volume, wanted, |_, segments| {
+    rays.row((pixel[1], CENTER), IMAGE[0] as usize, &layer.volume, wanted, |_, segments| {
         let mut found = alone(&marcher, segments);
         found.half = found.half.map(|(depth, place)| (rays.depth_of(place, depth), place));
         out = Some((found, segments.to_vec()));
@@ -308,8 +309,8 @@ fn interpolated_rays_are_those_computed_on_their_own() {
         for y in [100, 200, 240, 301, 380] {
             let ends = |x: usize| Some(if x.is_multiple_of(3) { 150.0 } else { 1e9 });
             let mut want = Vec::new();
-            alone.row(y, 640, &layer.volume, ends, |_, segments| want.push(segments.to_vec()));
-            rays.row(y, 640, &layer.volume, ends, |x, found| {
+            alone.row((y, CENTER), 640, &layer.volume, ends, |_, segments| want.push(segments.to_vec()));
+            rays.row((y, CENTER), 640, &layer.volume, ends, |x, found| {
                 let want = &want[x];
                 let length = |list: &[Segment]| list.iter().map(|s| s.length).sum::<f64>();
                 let off = (length(found) - length(want)).abs();
@@ -345,7 +346,7 @@ fn rays_side_by_side_gather_what_each_gathers_alone() {
     let (mut segments, mut ends) = (Vec::new(), Vec::new());
     for y in 0..IMAGE[1] as usize {
         rays.row(
-            y,
+            (y, CENTER),
             IMAGE[0] as usize,
             &layer.volume,
             |_| Some(1e9),
