@@ -5,7 +5,7 @@ use super::march::Marcher;
 use super::ray::Rays;
 use super::smooth::{self, Behind};
 use super::spans::Spans;
-use super::{Gathered, reference};
+use super::{Gathered, place_in_step, reference};
 use crate::trace::deepest;
 use belvedere_composite::buffers::Buffers;
 use belvedere_composite::color::Packed;
@@ -120,7 +120,7 @@ impl Drawing<'_> {
                     let voxels = volume.marcher.volume();
                     self.rays.row((y, within), self.width, voxels, wants, |x, segments: &[Segment]| {
                         if !segments.is_empty() {
-                            batch.add(x, segments);
+                            batch.add(x, place_in_step(DVec2::new(x as f64, y as f64) + within), segments);
                             if batch.columns.len() == BATCH {
                                 batch.gather(&volume.marcher, &mut take);
                             }
@@ -150,21 +150,25 @@ struct Batch {
     /// Segments of all rays, and for each ray the number of those before its end.
     segments: Vec<Segment>,
     ends: Vec<usize>,
+    /// For each ray the place of its samples within their steps.
+    within: Vec<f64>,
 }
 
 impl Batch {
-    fn add(&mut self, column: usize, segments: &[Segment]) {
+    fn add(&mut self, column: usize, within: f64, segments: &[Segment]) {
         self.columns.push(column);
+        self.within.push(within);
         self.segments.extend_from_slice(segments);
         self.ends.push(self.segments.len());
     }
 
     /// Hands over what the rays gather, and forgets them.
     fn gather(&mut self, marcher: &Marcher<'_>, take: &mut impl FnMut(usize, Gathered)) {
-        let found = marcher.gather(&self.segments, &self.ends);
+        let found = marcher.gather(&self.segments, &self.ends, &self.within);
         self.columns.drain(..).zip(found).for_each(|(x, gathered)| take(x, gathered));
         self.segments.clear();
         self.ends.clear();
+        self.within.clear();
     }
 }
 

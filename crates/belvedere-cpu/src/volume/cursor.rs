@@ -19,12 +19,14 @@ pub(super) struct Stretch {
     pub(super) share: f32,
 }
 
-/// Goes along a ray. Adjoining segments are a run, with samples at `(k + 1/2)` steps of their joint length; the last, shorter step ends
+/// Goes along a ray. Adjoining segments are a run, with samples at `(k + within)` steps of their joint length; the last, shorter step ends
 /// with them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cursor<'s> {
     segments: &'s [Segment],
     step: f64,
+    /// Place of samples within their steps, 0..=1.
+    within: f64,
     /// First segment of the run, and the one past its last.
     run: [usize; 2],
     /// The current segment, and its start and end in steps from the beginning of the run.
@@ -40,9 +42,19 @@ pub(super) struct Cursor<'s> {
 
 impl<'s> Cursor<'s> {
     /// * `segments`: not empty.
-    pub(super) fn new(segments: &'s [Segment], step: f64) -> Self {
-        let mut out =
-            Self { segments, step, run: [0; 2], at: 0, start: 0.0, end: 0.0, taken: [0.0; 2], whole: 0.0, part: 0.0 };
+    pub(super) fn new(segments: &'s [Segment], step: f64, within: f64) -> Self {
+        let mut out = Self {
+            segments,
+            step,
+            within,
+            run: [0; 2],
+            at: 0,
+            start: 0.0,
+            end: 0.0,
+            taken: [0.0; 2],
+            whole: 0.0,
+            part: 0.0,
+        };
         out.begin(0);
         out
     }
@@ -69,7 +81,7 @@ impl<'s> Cursor<'s> {
             samples = self.whole + self.part.ceil();
         }
         let k = self.taken[1];
-        let way = k + 0.5;
+        let way = k + self.within;
         while way >= self.end && self.at + 1 < self.run[1] {
             self.at += 1;
             self.start = self.end;
@@ -79,7 +91,7 @@ impl<'s> Cursor<'s> {
         let count = if is_last { samples - k } else { (self.end - way).ceil().clamp(1.0, samples - k) };
         self.taken = [k, k + count];
         let ends = self.taken[1] > self.whole;
-        let last = if ends { (self.whole + 0.5 * self.part - self.start).max(0.0) } else { f64::INFINITY };
+        let last = if ends { (self.whole + self.within * self.part - self.start).max(0.0) } else { f64::INFINITY };
         let segment = &self.segments[self.at];
         let per_step = self.step / segment.length;
         let mut scale = 1.0;

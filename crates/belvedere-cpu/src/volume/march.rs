@@ -40,20 +40,24 @@ impl<'v> Marcher<'v> {
 
     /// Light gathered by rays along their segments.
     ///
-    /// * `ends`: for each ray the number of segments before its end.
-    pub(super) fn gather(&self, segments: &[Segment], ends: &[usize]) -> Vec<Gathered> {
+    /// * `ends`: for each ray the number of segments before its end. `within`: the place of its samples within their steps, 0..=1.
+    pub(super) fn gather(&self, segments: &[Segment], ends: &[usize], within: &[f64]) -> Vec<Gathered> {
         let volume = self.volume();
         match volume.values() {
-            VoxelValues::U8(v) => self.gather_in(Sampler::new(volume, v), segments, ends),
-            VoxelValues::U16(v) => self.gather_in(Sampler::new(volume, v), segments, ends),
-            VoxelValues::I16(v) => self.gather_in(Sampler::new(volume, v), segments, ends),
-            VoxelValues::F32(v) => self.gather_in(Sampler::new(volume, v), segments, ends),
+            VoxelValues::U8(v) => self.gather_in(Sampler::new(volume, v), (segments, ends, within)),
+            VoxelValues::U16(v) => self.gather_in(Sampler::new(volume, v), (segments, ends, within)),
+            VoxelValues::I16(v) => self.gather_in(Sampler::new(volume, v), (segments, ends, within)),
+            VoxelValues::F32(v) => self.gather_in(Sampler::new(volume, v), (segments, ends, within)),
         }
     }
 
-    fn gather_in<T: Voxel>(&self, sampler: Sampler<'_, T>, segments: &[Segment], ends: &[usize]) -> Vec<Gathered> {
+    fn gather_in<T: Voxel>(
+        &self,
+        sampler: Sampler<'_, T>,
+        (segments, ends, within): (&[Segment], &[usize], &[f64]),
+    ) -> Vec<Gathered> {
         let mut out = vec![Gathered::default(); ends.len()];
-        simd::run(Packet { prepared: &self.0, sampler, segments, ends, out: &mut out });
+        simd::run(Packet { prepared: &self.0, sampler, segments, ends, within, out: &mut out });
         for ray in out.iter_mut().filter(|ray| ray.alpha >= ENOUGH) {
             ray.color /= ray.alpha;
             ray.alpha = 1.0;

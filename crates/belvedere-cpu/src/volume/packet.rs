@@ -32,6 +32,8 @@ pub(super) struct Packet<'m, 'v, T> {
     /// Segments of all rays, and for each ray the number of those before its end.
     pub(super) segments: &'m [Segment],
     pub(super) ends: &'m [usize],
+    /// For each ray the place of its samples within their steps, 0..=1.
+    pub(super) within: &'m [f64],
     /// What each ray gathers.
     pub(super) out: &'m mut [Gathered],
 }
@@ -145,7 +147,8 @@ impl<'m, T: Voxel> Packet<'m, '_, T> {
             let segments = &self.segments[begin..self.ends[*next]];
             if let Some(first) = segments.first() {
                 self.out[*next].enters = first.depth.0[0];
-                *follower = Some(Follower { number: *next, cursor: Cursor::new(segments, self.prepared.step) });
+                let cursor = Cursor::new(segments, self.prepared.step, self.within[*next]);
+                *follower = Some(Follower { number: *next, cursor });
             }
             *next += 1;
         }

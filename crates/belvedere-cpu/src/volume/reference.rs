@@ -1,11 +1,11 @@
 //! Reference ray marching in 64 bits: the fast method is tested against it, and the exact renderer uses it.
 //!
 //! The ray is cut into short chords by halving depths, and each chord is clipped to the box. Steps of equal length are laid along their
-//! joint length, one sample in the middle of each, weighted by the chord of its step. Nothing is tabulated or skipped.
+//! joint length, one sample within each, weighted by the chord of its step. Nothing is tabulated or skipped.
 
 use super::light::{SURFACE, light};
 use super::table::light_and_opacity;
-use super::{ENOUGH, Gathered, HALF, half_within};
+use super::{ENOUGH, Gathered, HALF, half_within, place_in_step};
 use belvedere_core::{DVec2, DVec3, RayPath, View};
 use belvedere_scene::volume::absorbed;
 use belvedere_scene::{VolumeLayer, VolumeModel};
@@ -32,7 +32,7 @@ pub(super) fn gather(view: &View, layer: &VolumeLayer, pixel: DVec2, [near, far]
     let Some(first) = chords.first() else { return out };
     out.enters = first.depth[0];
     for run in chords.chunk_by(|a, b| a.depth[1] == b.depth[0]) {
-        march(layer, run, &mut out);
+        march(layer, (run, place_in_step(pixel)), &mut out);
     }
     if out.alpha >= ENOUGH {
         out.color /= out.alpha;
@@ -41,7 +41,7 @@ pub(super) fn gather(view: &View, layer: &VolumeLayer, pixel: DVec2, [near, far]
     out
 }
 
-fn march(layer: &VolumeLayer, run: &[Chord], out: &mut Gathered) {
+fn march(layer: &VolumeLayer, (run, within): (&[Chord], f64), out: &mut Gathered) {
     let volume = &*layer.volume;
     let scene = |q: DVec3| volume.scene_from_lattice(q);
     // Distance at the beginning of every chord, and at the end of the last.
@@ -63,7 +63,7 @@ fn march(layer: &VolumeLayer, run: &[Chord], out: &mut Gathered) {
         let chord = scene(at(end).0) - scene(at(begin).0);
         out.samples += 1;
         let before = 1.0 - out.alpha;
-        let alpha = sample(layer, at(0.5 * (begin + end)).0, chord, out);
+        let alpha = sample(layer, at(begin + within * (end - begin)).0, chord, out);
         if out.half.is_none() && out.alpha >= HALF {
             let (q, depth) = at(begin + half_within(before, alpha) * (end - begin));
             out.half = Some((depth, scene(q)));

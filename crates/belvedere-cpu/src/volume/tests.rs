@@ -3,7 +3,7 @@
 use super::clip::Segment;
 use super::march::Marcher;
 use super::ray::Rays;
-use super::{Gathered, reference};
+use super::{Gathered, place_in_step, reference};
 use belvedere_core::map::StageMap;
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::map::spline::{ReferencePlane, default_pivot};
@@ -90,9 +90,13 @@ impl StageMap for Swayed {}
 const RANGE: [f64; 2] = [1.0, 2000.0];
 const CENTER: DVec2 = DVec2::splat(0.5);
 
-/// Light that one ray gathers.
-fn alone(marcher: &Marcher<'_>, segments: &[Segment]) -> Gathered {
-    marcher.gather(segments, &[segments.len()])[0]
+/// Light that one ray gathers, with samples at a place within their steps.
+fn alone(marcher: &Marcher<'_>, segments: &[Segment], within: f64) -> Gathered {
+    marcher.gather(segments, &[segments.len()], &[within])[0]
+}
+
+fn center(pixel: [usize; 2]) -> DVec2 {
+    DVec2::from_array(pixel.map(|v| v as f64)) + CENTER
 }
 
 /// Light gathered by the fast method, and the segments.
@@ -102,15 +106,15 @@ fn fast(view: &View, layer: &VolumeLayer, pixel: [usize; 2], far: f64) -> (Gathe
     let mut out = None;
     let wanted = |x: usize| (x == pixel[0]).then_some(far);
     rays.row((pixel[1], CENTER), IMAGE[0] as usize, &layer.volume, wanted, |_, segments| {
-        let mut found = alone(&marcher, segments);
+        let mut found = alone(&marcher, segments, place_in_step(center(pixel)));
         found.half = found.half.map(|(depth, place)| (rays.depth_of(place, depth), place));
         out = Some((found, segments.to_vec()));
     });
     out.unwrap()
 }
 
-fn exact(view: &View, layer: &VolumeLayer, [x, y]: [usize; 2], far: f64) -> Gathered {
-    reference::gather(view, layer, DVec2::new(x as f64 + 0.5, y as f64 + 0.5), [RANGE[0], far.min(RANGE[1])])
+fn exact(view: &View, layer: &VolumeLayer, pixel: [usize; 2], far: f64) -> Gathered {
+    reference::gather(view, layer, center(pixel), [RANGE[0], far.min(RANGE[1])])
 }
 
 fn pixels() -> impl Iterator<Item = [usize; 2]> {
@@ -279,9 +283,10 @@ fn samples_go_on_over_joints_as_if_there_were_none() {
             ..segment
         };
         let parts = [cut([0.0, 0.2345], true), cut([0.2345, 0.61], false), cut([0.61, 1.0], false)];
-        let again = alone(&marcher, &parts);
+        let within = place_in_step(center(pixel));
+        let again = alone(&marcher, &parts, within);
         assert!((again.alpha - whole.alpha).abs() < 2e-3 && again.color.distance(whole.color) < 2e-3, "{pixel:?}");
-        let apart = alone(&marcher, &parts.map(|part| Segment { is_new: true, ..part }));
+        let apart = alone(&marcher, &parts.map(|part| Segment { is_new: true, ..part }), place_in_step(center(pixel)));
         joined += u32::from(apart.alpha != again.alpha);
     }
     assert!(joined > 5, "steps that begin anew at every joint give other pictures: {joined}");
@@ -356,11 +361,12 @@ fn rays_side_by_side_gather_what_each_gathers_alone() {
             },
         );
     }
-    let together = marcher.gather(&segments, &ends);
+    let within: Vec<f64> = (0..ends.len()).map(|i| (0.3 * i as f64).fract()).collect();
+    let together = marcher.gather(&segments, &ends, &within);
     let mut begin = 0;
     let mut seen = 0;
-    for (end, found) in ends.iter().zip(&together) {
-        assert_eq!(*found, alone(&marcher, &segments[begin..*end]));
+    for (i, (end, found)) in ends.iter().zip(&together).enumerate() {
+        assert_eq!(*found, alone(&marcher, &segments[begin..*end], within[i]));
         seen += u32::from(found.alpha > 0.0);
         begin = *end;
     }
@@ -376,7 +382,7 @@ fn leaps_miss_nothing_and_save_samples() {
             let (found, segments) = fast(&view, &layer, pixel, 1e9);
             let mut plodding = Marcher::new(&layer);
             plodding.forget_leaps();
-            let want = alone(&plodding, &segments);
+            let want = alone(&plodding, &segments, place_in_step(center(pixel)));
             let off = (found.alpha - want.alpha).abs().max(found.color.distance(want.color));
             assert!(off < 2e-3, "{name} {pixel:?}: {found:?} {want:?}");
             (all, taken) = (all + want.samples, taken + found.samples);
@@ -448,4 +454,16 @@ fn lines_of_sight_let_through_what_the_picture_does() {
         }
     }
     assert!(dim > 80, "{dim} are neither light nor dark; worst {worst}");
+}
+
+#[test]
+fn samples_of_neighbouring_pixels_lie_apart_within_their_steps_and_fill_them_evenly() {
+    let of = |x: i32, y: i32| place_in_step(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
+    let mut counts = [0; 8];
+    for (x, y) in (0..64).flat_map(|y| (0..64).map(move |x| (x, y))) {
+        counts[(8.0 * of(x, y)) as usize] += 1;
+        let apart = (of(x, y) - of(x + 1, y)).abs();
+        assert!(apart.min(1.0 - apart) > 0.1, "{x} {y}: {apart}");
+    }
+    assert!(counts.iter().all(|n| (400..640).contains(n)), "{counts:?}");
 }

@@ -22,5 +22,5 @@ mod steady_names;
 mod strip;
 mod subdivision;
 mod support;
-mod volume_edges;
 mod support_views;
+mod volume_edges;

@@ -3,7 +3,9 @@
 use crate::exact::trace;
 use crate::support::{layer, options, pinhole, render, scene};
 use belvedere_core::{DMat3, DVec3, View};
-use belvedere_scene::{Color, Frame, LayerKind, Scene, TransferFunction, TransferPoint, Volume, VolumeLayer, VoxelValues};
+use belvedere_scene::{
+    Color, Frame, LayerKind, Scene, TransferFunction, TransferPoint, Volume, VolumeLayer, VoxelValues,
+};
 
 const IMAGE: [u32; 2] = [120, 90];
 /// How many times wider and higher the picture is that tells the right colours.
@@ -19,9 +21,11 @@ fn balls() -> Scene {
         (127.5 + 42.0 * d) as u8
     };
     let values = (0..n * n * n).map(value).collect();
-    let volume = Volume::new([n; 3], DMat3::IDENTITY, DVec3::splat(-15.5), VoxelValues::U8(values)).expect("well formed");
+    let volume =
+        Volume::new([n; 3], DMat3::IDENTITY, DVec3::splat(-15.5), VoxelValues::U8(values)).expect("well formed");
     let point = |value, opacity| TransferPoint { value, color: Color::rgb(150, 40, 30), opacity };
-    let transfer = TransferFunction::new("balls", vec![point(120.0, 0.0), point(135.0, 0.999), point(255.0, 0.999)], 1.0);
+    let transfer =
+        TransferFunction::new("balls", vec![point(120.0, 0.0), point(135.0, 0.999), point(255.0, 0.999)], 1.0);
     scene(vec![layer("balls", LayerKind::Volume(VolumeLayer::new(volume, transfer.expect("rising"))))])
 }
 
