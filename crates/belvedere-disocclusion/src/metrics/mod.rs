@@ -12,6 +12,9 @@ use super::{Cells, Field, ReferencePoint};
 use belvedere_core::grid::Grid;
 use serde::Serialize;
 
+/// In films the angles of normals and the steps between neighbours are those of every so many rows.
+const FILM_ROWS: usize = 16;
+
 /// A displacement of the ground, and the points that it was made for.
 #[derive(Clone, Copy)]
 pub struct Deformation<'a> {
@@ -29,7 +32,8 @@ pub struct Deformation<'a> {
     pub dense: &'a [ReferencePoint],
     /// Lines of sight of the points.
     pub sight: &'a dyn LinesOfSight,
-    /// Whether ground that is traced is judged too, or only what is rasterised and written, as of films.
+    /// Whether ground that is traced is judged too and every node is looked at, or only what is rasterised and written is judged and the
+    /// unevenness taken from every sixteenth row, as of films.
     pub traced: bool,
     /// Points that only ground nearer than this hides are told apart, grid cells.
     pub guard: f64,
@@ -116,8 +120,9 @@ pub(super) fn judged(of: &Deformation<'_>) -> Judged {
 fn figures(of: &Deformation<'_>, u: &[f64], points: &[Verdict], dense: &[Verdict]) -> TerrainMetrics {
     let [visible_dense, hidden_in_guard] = shares(of.dense, dense);
     let over = points.iter().chain(dense).filter_map(|v| v.hides()).map(Hides::over);
-    let steps = change::steps(of.field, of.cells, u);
-    let normals = change::normals(of.field, u);
+    let every = if of.traced { 1 } else { FILM_ROWS };
+    let steps = change::steps(of.field, of.cells, u, every);
+    let normals = change::normals(of.field, u, every);
     let size = change::size(of.field, u);
     let [steepest_before_deg, steepest_deg] = change::steepest(of.field, u);
     let frame = of.previous.map(|before| {

@@ -123,7 +123,8 @@ impl Limits {
     fn keep(&self, field: &Field, waters: &Waters, u: &mut [f64]) -> Option<LimitsReport> {
         let (h, lakes) = (field.heights(), &waters.lakes);
         let solid = |i: usize| !field.void()[i];
-        let mut ground: Vec<f64> = h.iter().zip(u.iter()).map(|(h, u)| (h + u).max(self.floor.min(*h))).collect();
+        let ways = Ways::over(field);
+        let mut ground: Vec<f64> = h.par_iter().zip(&*u).map(|(h, u)| (h + u).max(self.floor.min(*h))).collect();
         let lake_of: BTreeMap<u32, &[u32]> =
             lakes.nodes().flat_map(|lake| lake.iter().map(move |n| (*n, lake))).collect();
         for lake in lakes.nodes() {
@@ -132,10 +133,11 @@ impl Limits {
         }
         let allowed = |i: usize, j: usize, d: f64| (self.slope * d).max((h[i] - h[j]).abs());
         let short = |ground: &[f64], i: usize| {
-            ways(field, i).any(|(j, d)| solid(j) && ground[j] < ground[i] - allowed(i, j, d) - KEPT)
+            ways.from(i).any(|(j, d)| solid(j) && ground[j] < ground[i] - allowed(i, j, d) - KEPT)
         };
-        let mut open: BinaryHeap<Node> =
-            (0..h.len()).filter(|&i| solid(i) && short(&ground, i)).map(|i| Node(ground[i], i)).collect();
+        let all = (0..h.len()).into_par_iter().with_min_len(4096);
+        let steep: Vec<Node> = all.filter(|&i| solid(i) && short(&ground, i)).map(|i| Node(ground[i], i)).collect();
+        let mut open = BinaryHeap::from(steep);
         let lift = |ground: &mut [f64], open: &mut BinaryHeap<Node>, j: usize, least: f64| {
             ground[j] = least;
             open.push(Node(least, j));
@@ -153,7 +155,7 @@ impl Limits {
                 if height < ground[i] {
                     continue;
                 }
-                for (j, d) in ways(field, i).filter(|(j, _)| solid(*j)) {
+                for (j, d) in ways.from(i).filter(|(j, _)| solid(*j)) {
                     let least = height - allowed(i, j, d);
                     if ground[j] < least {
                         lift(&mut ground, &mut open, j, least);
@@ -216,16 +218,31 @@ impl PartialEq for Node {
 
 impl Eq for Node {}
 
-/// The neighbours of a node in all eight directions, with their distances in plan.
-fn ways(field: &Field, i: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
-    let (cols, rows, d) = (field.cols() as isize, field.rows() as isize, field.spacing());
-    let (x, y) = (i as isize % cols, i as isize / cols);
-    let all = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
-    all.into_iter().filter_map(move |(dx, dy)| {
-        let (col, row) = (x + dx, y + dy);
-        let inside = col >= 0 && row >= 0 && col < cols && row < rows;
-        inside.then(|| ((row * cols + col) as usize, (dx as f64 * d.x).hypot(dy as f64 * d.y)))
-    })
+/// Directions from a node to its neighbours.
+struct Ways {
+    size: [isize; 2],
+    /// Columns, rows and distance in plan.
+    all: [(isize, isize, f64); 8],
+}
+
+impl Ways {
+    fn over(field: &Field) -> Self {
+        let d = field.spacing();
+        let all = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
+        let all = all.map(|(dx, dy)| (dx, dy, (dx as f64 * d.x).hypot(dy as f64 * d.y)));
+        Self { size: [field.cols() as isize, field.rows() as isize], all }
+    }
+
+    /// The neighbours of a node, with their distances.
+    fn from(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
+        let [cols, rows] = self.size;
+        let (x, y) = (i as isize % cols, i as isize / cols);
+        self.all.iter().filter_map(move |(dx, dy, d)| {
+            let (col, row) = (x + dx, y + dy);
+            let inside = col >= 0 && row >= 0 && col < cols && row < rows;
+            inside.then_some(((row * cols + col) as usize, *d))
+        })
+    }
 }
 
 /// Lowest height and steepest slope between neighbours of a block of grid cells, from its first to its last columns and rows of nodes.
@@ -304,7 +321,7 @@ mod tests {
             assert!(u[i] >= dug[i] && u[i] <= 1e-9, "between what was dug and the terrain");
             assert!(h[i] + u[i] >= limits.floor - 1e-9);
             let mut stands_on_a_limit = u[i] == dug[i] || (h[i] + u[i] - limits.floor).abs() < 1e-9;
-            for (j, d) in ways(&field, i) {
+            for (j, d) in Ways::over(&field).from(i) {
                 let allowed = (limits.slope * d).max((h[i] - h[j]).abs());
                 let fall = h[j] + u[j] - h[i] - u[i];
                 assert!(fall <= allowed + 1e-5, "{i} {j}: {fall} of {allowed}");
