@@ -26,14 +26,23 @@ def draw(row):
     scene.render.resolution_percentage = 100
     scene.camera.data.clip_end = 1e6
     sun = bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN"))
-    sun.data.energy, sun.data.angle = 2.2, math.radians(1.0)
+    sun.data.energy, sun.data.angle = 3.0, math.radians(1.0)
     sun.rotation_euler = (math.radians(55), 0, math.radians(45))      # from the north-west, 35 degrees high
     scene.collection.objects.link(sun)
     world = bpy.data.worlds.new("sky")
     scene.world = world
     world.use_nodes = True
-    world.node_tree.nodes["Background"].inputs[0].default_value = (0.55, 0.72, 0.95, 1)
-    world.node_tree.nodes["Background"].inputs[1].default_value = 0.55
+    nodes, links = world.node_tree.nodes, world.node_tree.links
+    light = nodes["Background"]
+    light.inputs[0].default_value = (0.55, 0.72, 0.95, 1)
+    light.inputs[1].default_value = 0.35
+    # The sky that the camera sees is brighter than the light it gives, as over a landscape that is lit by the sun.
+    seen, mix, path = (nodes.new(kind) for kind in ("ShaderNodeBackground", "ShaderNodeMixShader", "ShaderNodeLightPath"))
+    seen.inputs[0].default_value = (0.45, 0.63, 0.87, 1)
+    links.new(path.outputs["Is Camera Ray"], mix.inputs[0])
+    links.new(light.outputs[0], mix.inputs[1])
+    links.new(seen.outputs[0], mix.inputs[2])
+    links.new(mix.outputs[0], nodes["World Output"].inputs["Surface"])
     scene.view_settings.view_transform = "Standard"
     for material in bpy.data.materials:
         if not material.node_tree:

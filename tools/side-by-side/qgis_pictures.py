@@ -62,6 +62,7 @@ def ground_layers(row, terrain):
     # Files in degrees have steps of degrees and heights of metres.
     hill.setZFactor(1 / 90000.0 if shade.crs().isGeographic() else 1.0)
     shade.setRenderer(hill)
+    shade.renderer().setOpacity(0.6)
     shade.setBlendMode(QPainter.CompositionMode_Multiply)
     return [*photographs, shade, tint]
 
@@ -76,19 +77,20 @@ def draw(row):
     if not terrain.isValid():
         raise RuntimeError("the elevation model could not be read")
     layers = ground_layers(row, terrain)
-    lines = QgsVectorLayer(row["lines"] + "|geometrytype=LineString", "lines")
-    if lines.isValid():
-        line = QgsLineSymbol.createSimple({"color": "#d7301f", "width": "0.8"})
-        lines.setRenderer(QgsSingleSymbolRenderer(line))
-        layers.insert(0, lines)
-    for layer in [terrain, *layers]:
-        project.addMapLayer(layer)
-
     eye, forward = view["eye"], view["forward"]
     # The point on the axis of view at the height of the middle of the ground.
     stats = terrain.dataProvider().bandStatistics(1, QgsRasterBandStats.Mean)
     away = (stats.mean - eye[2]) / forward[2] if forward[2] < -0.02 else 20000.0
     point = [e + away * f for e, f in zip(eye, forward)]
+
+    lines = QgsVectorLayer(row["lines"] + "|geometrytype=LineString", "lines")
+    if lines.isValid():
+        # About three pixels wide at the middle of the picture.
+        line = QgsLineSymbol.createSimple({"color": "#d7301f", "width": str(3 * away / view["scale_px"]), "width_unit": "MapUnit"})
+        lines.setRenderer(QgsSingleSymbolRenderer(line))
+        layers.insert(0, lines)
+    for layer in [terrain, *layers]:
+        project.addMapLayer(layer)
 
     # The generator of the ground is set through XML: Python has no other way to it in QGIS 3.22.
     document = QDomDocument()

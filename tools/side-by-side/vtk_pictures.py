@@ -20,8 +20,11 @@ def window(row):
     camera.SetFocalPoint(*target(view))
     camera.SetViewUp(*[-d for d in view["down"]])
     camera.SetViewAngle(view["fov_y_deg"])
-    renderer.AutomaticLightCreationOff()
-    vtk.vtkLightKit().AddLightsToRenderer(renderer)     # ParaView's default
+    if row["kind"] != "volume":     # volumes have a light at the eye
+        renderer.AutomaticLightCreationOff()
+        kit = vtk.vtkLightKit()     # as ParaView's, a little brighter
+        kit.SetKeyLightIntensity(1.0)
+        kit.AddLightsToRenderer(renderer)
     return renderer
 
 
