@@ -3,6 +3,8 @@
 
 The pictures stand for ParaView: the same filters and the same renderer, without its window."""
 
+import json
+import struct
 import sys
 
 import vtk
@@ -65,8 +67,6 @@ def town(row):
     joined = vtk.vtkCompositeDataGeometryFilter()
     joined.SetInputConnection(reader.GetOutputPort())
     joined.Update()
-    import json
-    import struct
     blob = open(row["glb"], "rb").read()
     header = json.loads(blob[20:20 + struct.unpack("<I", blob[12:16])[0]])
     origin = header["scenes"][0]["extras"]["belvedere"]["origin"]
