@@ -119,7 +119,7 @@ def draw(row):
     pose.setCenterPoint(QgsVector3D(0, point[2], 0))
     pose.setDistanceFromCenterPoint(abs(away))
     pose.setPitchAngle(90 + math.degrees(math.asin(forward[2])))
-    pose.setHeadingAngle(math.degrees(math.atan2(forward[0], forward[1])))
+    pose.setHeadingAngle(-math.degrees(math.atan2(forward[0], forward[1])))     # QGIS turns against the clock
 
     layout = QgsPrintLayout(project)
     layout.initializeDefaults()
