@@ -11,9 +11,9 @@ from PIL import Image, ImageDraw, ImageFont
 from rows import ROWS, SIZE, rows_of
 
 NAMES = {"straight": "Belvedere, straight", "bent": "Belvedere, bent", "blender": "Blender (Cycles)", "qgis": "QGIS 3D",
-         "vtk": "VTK, as in ParaView", "molstar": "Mol*", "rayshader": "rayshader"}
+         "vtk": "VTK, as in ParaView", "molstar": "Mol*"}
 # Two blocks: each has the rivals that are made for what it shows.
-BLOCKS = [(("terrain",), ("straight", "bent", "blender", "qgis", "rayshader")),
+BLOCKS = [(("terrain",), ("straight", "bent", "blender", "qgis")),
           (("town", "molecule", "volume"), ("straight", "bent", "blender", "vtk", "molstar"))]
 GAP, CAPTION, HEAD = 12, 26, 44
 

@@ -24,8 +24,7 @@ def main():
     parser.add_argument("--pillow-python", default=sys.executable, help="Python that has Pillow")
     parser.add_argument("--molstar", default="node_modules/molstar", help="folder of the npm package molstar")
     parser.add_argument("--chromium", default="chromium", help="a browser of the family of Chromium")
-    parser.add_argument("--rscript", default="Rscript", help="the program Rscript, with the R packages rayshader, terra, jsonlite and png")
-    parser.add_argument("--only", help="draw these alone, separated by commas: ours, blender, qgis, vtk, molstar, rayshader; the sheet is always laid out")
+    parser.add_argument("--only", help="draw these alone, separated by commas: ours, blender, qgis, vtk, molstar; the sheet is always laid out")
     given = parser.parse_args()
     out = pathlib.Path(given.out).resolve()
     out.mkdir(parents=True, exist_ok=True)
@@ -66,8 +65,6 @@ def main():
     rival("molstar", "the npm package molstar is not installed" if not viewer.exists()
           else "" if shutil.which(given.chromium) else "no browser was found",
           [sys.executable, HERE / "molstar_pictures.py", out, given.molstar, given.chromium])
-    rival("rayshader", "" if shutil.which(given.rscript) else "R (Rscript) is not installed",
-          [given.rscript, HERE / "rayshader_pictures.R", out])
     record.write_text(json.dumps(skipped, indent=1))
     sys.exit(subprocess.run([given.pillow_python, HERE / "sheet.py", out]).returncode)
 

@@ -1,7 +1,6 @@
 //! Charts are drawn with the lines and letters of pictures.
 
 use belvedere::composite::canvas::{Canvas, text_size};
-use belvedere::composite::color::linear;
 use belvedere::core::DVec2;
 use belvedere::scene::Color;
 use plotters_backend::text_anchor::{HPos, VPos};
@@ -101,7 +100,7 @@ impl DrawingBackend for ChartCanvas<'_> {
     }
 }
 
-/// Coverage of a pixel in which black letters were drawn on white in linear light.
+/// Coverage of a pixel in which black letters were drawn on white.
 fn inked(value: u8) -> f32 {
-    1.0 - linear([value; 3]).x
+    1.0 - f32::from(value) / 255.0
 }

@@ -1,4 +1,4 @@
-//! Drawing over a finished picture: rectangles, lines and letters, anti-aliased in linear light.
+//! Drawing over a finished picture: rectangles, lines and letters, anti-aliased.
 
 mod bidi;
 mod font;
@@ -15,7 +15,6 @@ pub use line::{Letter, OutlinePiece};
 pub use shape::CanvasShape;
 pub use text::{TextSize, can_set, text_size};
 
-use crate::color::{encode, linear};
 use belvedere_core::{DVec2, polygon::to_segment};
 use belvedere_scene::Color;
 
@@ -97,7 +96,8 @@ impl<'a> Canvas<'a> {
         DVec2::new(self.width as f64, self.height as f64)
     }
 
-    /// Blends `color` over a pixel; `coverage` in 0..=1 scales its opacity.
+    /// Blends `color` over a pixel; `coverage` in 0..=1 scales its opacity. sRGB values are mixed, as SVG and PDF viewers do: in linear
+    /// light small dark letters would be pale.
     pub fn blend(&mut self, x: i64, y: i64, color: Color, coverage: f32) {
         let row = y - self.first as i64;
         if self.record.is_some() || x < 0 || row < 0 || x >= self.width as i64 || y >= self.height as i64 {
@@ -108,7 +108,11 @@ impl<'a> Canvas<'a> {
             return;
         }
         let Some(pixel) = self.pixels.get_mut(row as usize * self.width + x as usize) else { return };
-        *pixel = encode(linear(*pixel).lerp(linear([color.r, color.g, color.b]), alpha));
+        let over = [color.r, color.g, color.b];
+        *pixel = std::array::from_fn(|c| {
+            let (under, over) = (f32::from(pixel[c]), f32::from(over[c]));
+            (under + (over - under) * alpha + 0.5) as u8
+        });
     }
 
     /// Fills a shape given by its signed distance, negative inside, within the box `lo..hi`.

@@ -110,11 +110,11 @@ impl Canvas<'_> {
 mod tests {
     use super::*;
 
-    /// Black on white, in linear light: 1 - coverage.
+    /// Black on white: 1 - coverage.
     fn drawn(rings: &[Vec<DVec2>]) -> Vec<f64> {
         let mut pixels = vec![[255u8; 3]; 20 * 10];
         Canvas::new(&mut pixels, 20).polygon(rings.iter().map(Vec::as_slice), Color::rgb(0, 0, 0));
-        pixels.iter().map(|p| 1.0 - f64::from(crate::color::linear(*p).x)).collect()
+        pixels.iter().map(|p| 1.0 - f64::from(p[0]) / 255.0).collect()
     }
 
     fn ring(points: &[[f64; 2]]) -> Vec<DVec2> {

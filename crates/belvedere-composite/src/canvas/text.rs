@@ -119,6 +119,9 @@ fn paint(canvas: &mut Canvas<'_>, ink: &Ink, whole: [i64; 2], writing: &Writing<
     paint(&mask, writing.color);
 }
 
+/// Coverage from which on a letter has its whole rim: thin strokes cover no pixel whole.
+const WHOLE: f32 = 0.4;
+
 /// The mask widened by a soft disc of radius `rim`.
 fn grown(mask: &[f32], w: usize, h: usize, rim: f64) -> Vec<f32> {
     let reach = rim.ceil() as i64;
@@ -134,7 +137,7 @@ fn grown(mask: &[f32], w: usize, h: usize, rim: f64) -> Vec<f32> {
             let (x, y) = (x + dx, y + dy);
             if x >= 0 && y >= 0 && x < w as i64 && y < h as i64 {
                 let m = &mut out[y as usize * w + x as usize];
-                *m = m.max(c * b);
+                *m = m.max((c / WHOLE).min(1.0) * b);
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Colour of meshes: matt like the boxes, the same from both sides.
 
 use crate::geometry::block::DrawnTriangle;
+use crate::shade::around;
 use crate::shade::relief::ReliefLight;
 use belvedere_composite::color::{Rgb, linear, smoothstep};
 use belvedere_core::DVec3;
@@ -77,8 +78,8 @@ impl<'a> MeshShade<'a> {
         // Shadows depend on the normal of the triangle, not on the smooth one.
         let face = mesh.face_normal(triangle);
         let sun = sun(p, if front { face } else { -face });
-        let lit = self.light.at(Vec3A::new(n.x as f32, n.y as f32, n.z as f32), open, sun) * 0.82
-            + Rgb::new(0.19, 0.18, 0.18) * open;
+        let n = Vec3A::new(n.x as f32, n.y as f32, n.z as f32);
+        let lit = self.light.at(n, open, sun) * 0.82 + around(n, open);
         linear([color.r, color.g, color.b]) * lit * (0.76 + 0.24 * open)
     }
 

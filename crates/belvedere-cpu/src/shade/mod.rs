@@ -217,10 +217,18 @@ impl Shader<'_> {
         let n = Vec3A::new(n.x as f32, n.y as f32, n.z as f32);
         let c = shape.color;
         let ink = 1.0 - 0.42 * edge_share(shape, world - centre, footprint);
-        // Streets return light that open ground does not.
-        let lit = light.at(n, open, sun) * 0.82 + Rgb::new(0.19, 0.18, 0.18) * open;
+        let lit = light.at(n, open, sun) * 0.82 + around(n, open);
         linear([c.r, c.g, c.b]) * lit * ((0.76 + 0.24 * open) * ink)
     }
+}
+
+/// How much more light from around upright faces get: walls away from the sun are shades, not black.
+const WALLS: f32 = 1.3;
+
+/// Light that streets and walls return, which open ground does not.
+/// * `n`: unit normal; `open`: share of the surroundings that is not blocked.
+fn around(n: Vec3A, open: f32) -> Rgb {
+    Rgb::new(0.19, 0.18, 0.18) * (open * (1.0 + WALLS * (1.0 - n.z.abs())))
 }
 
 /// Pixel of a fixed-point position.
