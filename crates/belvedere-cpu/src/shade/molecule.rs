@@ -64,7 +64,8 @@ impl<'a> MoleculeShade<'a> {
         let half = (self.light + towards).normalize_or(self.light);
         let shine = (n.dot(half).max(0.0) as f32).powi(SHARPNESS) * HIGHLIGHT * open * open;
         let ink = 1.0 - INK * (1.0 - smoothstep(INKED[0], INKED[1], facing));
-        let light = DIRECT * lit * (0.45 + 0.55 * open) + AROUND * around * open;
+        // Gaps between chains tell their depth by being dark.
+        let light = DIRECT * lit * (0.35 + 0.65 * open) + AROUND * around * open * open;
         (linear([color.r, color.g, color.b]) * light + Rgb::splat(shine)) * ink
     }
 

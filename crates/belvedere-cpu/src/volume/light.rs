@@ -1,8 +1,8 @@
 //! Shading of samples by a headlight along the ray.
 
 /// Ambient light, and diffuse light of a surface perpendicular to the ray.
-const AMBIENT: f32 = 0.26;
-const DIFFUSE: f32 = 0.74;
+const AMBIENT: f32 = 0.16;
+const DIFFUSE: f32 = 0.84;
 /// Light of a sample with a small gradient, where there is no surface.
 const INSIDE: f32 = 0.80;
 /// Difference in light between normals that point down and up.
