@@ -46,8 +46,8 @@ pub struct RenderOptions {
     pub density: f64,
     /// Rectangles of the picture in which no name is written, such as those of legends: upper left and lower right corner, pixels.
     pub keep_clear: Vec<[DVec2; 2]>,
-    /// The names of a frame of a film, in the order in which they find room, and no others; a name whose place is taken stands at the next
-    /// best one. `None`: all names that find room, each at its best place.
+    /// The names of a frame of a film, in the order in which they find room, and no others; a name whose place is taken stands, after
+    /// all others, at the best free one. `None`: all names that find room, each at its best place.
     pub names: Option<Arc<[PlacedName]>>,
     /// Memory the renderer may use for one picture, bytes; more is [`RenderError::TooLarge`].
     pub max_bytes: u64,

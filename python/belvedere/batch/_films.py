@@ -68,7 +68,7 @@ def _clear(target: str) -> None:
     try:
         if folder != path:
             path.unlink(missing_ok=True)
-        for pattern in ("frame_*.png", "animation.json", "animation.p*.json"):
+        for pattern in ("frame_*.png", "animation.json", "animation.p*.json", "animation.names.json"):
             for file in folder.glob(pattern):
                 file.unlink()
     except OSError as error:

@@ -11,14 +11,14 @@ const CLEARLY: f64 = 0.5;
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct NameMemory {
     shown: Vec<Shown>,
-    /// Names that went, and for how many more frames they stay away.
+    /// Names that went, and for how many more placings they stay away.
     away: HashMap<NameId, u32>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
 struct Shown {
     name: PlacedName,
-    /// Frames for which something has hidden its point.
+    /// Placings for which something has hidden its point.
     hidden: u32,
 }
 
@@ -40,7 +40,7 @@ pub(crate) enum Choice<'a> {
     Next(&'a NameMemory, Patience),
 }
 
-/// Frames for which a hidden name stays, and for which a name that went stays away.
+/// Placings for which a hidden name stays, and for which a name that went stays away.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Patience(pub u32);
 

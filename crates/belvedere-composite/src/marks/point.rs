@@ -111,7 +111,7 @@ impl MarkBuilder<'_> {
     fn mark_all(&self, on_line: &LinePoint, lift_m: f64, marker: Marker, out: &mut Vec<Stroke>) -> Vec<Seen> {
         let mut all = Vec::new();
         let p = self.sight.on_surface(on_line, lift_m);
-        for (image, pass) in self.passes_for(std::iter::once(Aabb::of([p; 2]))).iter().enumerate() {
+        for pass in self.passes_for(std::iter::once(Aabb::of([p; 2]))) {
             let Some(v) = pass.displace(p).map(|d| self.screen.view_from(d)) else { continue };
             if !v.is_finite() || !self.screen.is_drawable(v) || pass.margins(p).iter().any(|m| !(*m >= 0.0)) {
                 continue;
@@ -121,7 +121,7 @@ impl MarkBuilder<'_> {
             let visible = self.sight.sees(self.screen, pixel, v.z).unwrap_or(behind <= 1.5);
             stamp(pixel, marker, (visible, self.density), out);
             let is_named = visible || marker.hidden == Hidden::Show;
-            all.push(Seen { pixel, image: image as u32, is_named });
+            all.push(Seen { pixel, image: all.len() as u32, is_named });
         }
         all
     }

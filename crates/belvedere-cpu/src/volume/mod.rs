@@ -17,6 +17,7 @@ mod clip;
 mod compose;
 mod cubic;
 mod cursor;
+mod gather;
 mod light;
 mod march;
 mod packet;
@@ -32,7 +33,8 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use compose::{Way, compose};
+pub(crate) use compose::compose;
+pub(crate) use gather::Way;
 pub use pick::VolumeTracer;
 
 use belvedere_core::{DVec2, DVec3};

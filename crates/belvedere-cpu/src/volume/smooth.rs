@@ -1,6 +1,6 @@
 //! Smooth edges of volumes: where the picture changes from pixel to pixel, more rays of the pixel are followed.
 
-use super::compose::{Drawing, Found};
+use super::gather::{Drawing, Found};
 use crate::raster::band::sample_offsets;
 use crate::screen::SUB;
 use belvedere_composite::buffers::Buffers;
@@ -19,14 +19,14 @@ const EDGE: u16 = 4600;
 pub(super) struct Behind {
     color: Vec<Packed>,
     /// Depths at which rays end.
-    ends: Vec<f64>,
+    ends: Vec<f32>,
+    far: f64,
 }
 
 impl Behind {
     /// What is drawn before the volumes; `None` for pictures of one sample per pixel, whose edges stay as they are.
     pub(super) fn of(job: &RenderJob<'_>, buffers: &Buffers, far: f64) -> Option<Self> {
-        let ends = || buffers.depth.iter().map(|depth| f64::from(*depth).min(far)).collect();
-        (job.options.samples >= RAYS).then(|| Self { color: buffers.color.clone(), ends: ends() })
+        (job.options.samples >= RAYS).then(|| Self { color: buffers.color.clone(), ends: buffers.depth.clone(), far })
     }
 }
 
@@ -55,7 +55,8 @@ pub(super) fn edges(
             let mut sums = vec![Rgb::ZERO; width];
             for within in &offsets {
                 let mut light: Vec<Rgb> = back.iter().map(|light| light.rgb()).collect();
-                let (found, taken) = drawing.row((y, *within), |x| is_edge[x].then_some(ends[x]));
+                let (found, taken) =
+                    drawing.row((y, *within), |x| is_edge[x].then(|| f64::from(ends[x]).min(behind.far)));
                 samples.fetch_add(taken, Ordering::Relaxed);
                 for Found { column, gathered, .. } in found {
                     light[column] = gathered.over(light[column]);

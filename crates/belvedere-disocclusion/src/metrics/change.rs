@@ -115,8 +115,8 @@ pub(super) fn normals(field: &Field, u: &[f64], every: usize) -> Normals {
 
 /// Arc tangent of `y / x`, `y >= 0`; by a series where it is small, as of most nodes, to 1e-9.
 fn angle_of(y: f64, x: f64) -> f64 {
-    let t = y / x;
-    if (0.0..0.05).contains(&t) {
+    if x > 0.0 && y < 0.05 * x {
+        let t = y / x;
         let s = t * t;
         return t * (1.0 - s * (1.0 / 3.0 - s * (1.0 / 5.0 - s * (1.0 / 7.0))));
     }

@@ -13,7 +13,9 @@ use belvedere_scene::{Progress, RenderJob, RenderOptions};
 pub(crate) fn are_placed(session: &Session, request: &PictureOptions) -> bool {
     let document = session.resolved.description.as_ref().map(|d| &d.source.document);
     let falls_back = document.and_then(|d| d.constructor.as_ref()).is_some_and(|c| !c.fallback.is_empty());
-    request.camera.is_none() && (request.straight || !falls_back) && Marks::are_named(session.scene())
+    let is_one = request.straight || (!falls_back && session.view().split_rays().is_none());
+    let scene = with_distances(session.scene(), &session.resolved.furniture);
+    request.camera.is_none() && is_one && Marks::are_named(&scene)
 }
 
 /// The names of a frame, each where it was in the frame before while it can stay there.
