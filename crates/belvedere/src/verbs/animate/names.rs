@@ -38,7 +38,7 @@ struct Kept {
 }
 
 impl FilmNames {
-    /// Before any frame is placed; `None` for films without names, and for those whose names cannot be placed beforehand.
+    /// Before any frame is placed; `None` for films without names, or with names that cannot be placed beforehand.
     pub(super) fn new(session: &Session, options: &PictureOptions, fps: f64) -> Option<Self> {
         let every = (fps / PER_SECOND).round().clamp(1.0, 1e6);
         let patience = Patience((PATIENCE_S * fps / every).round().clamp(1.0, 1e6) as u32);
