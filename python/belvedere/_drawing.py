@@ -22,6 +22,8 @@ def drawing(
     ghost: bool = False,
     highlight: Sequence[str] = (),
     mark: bool = True,
+    furniture: bool | str | Sequence[str] | None = None,
+    title: str | None = None,
     overhead: bool = False,
     outside: bool | Sequence[Sequence[float]] = False,
     buffers: bool = False,
@@ -50,8 +52,19 @@ def drawing(
         "ghost": bool(ghost),
         "highlight": [highlight] if isinstance(highlight, str) else list(highlight),
         "no_mark": not mark,
+        "furniture": _furniture(furniture),
+        "title": None if title is None else str(title),
         "overhead": bool(overhead),
         "from_outside": outside is not False,
         "outside": None if isinstance(outside, bool) else outside,
         "buffers": bool(buffers),
     }
+
+
+def _furniture(wanted: bool | str | Sequence[str] | None) -> list[str] | None:
+    """Names of furniture; ``None``: as the scene says."""
+    if wanted is None:
+        return None
+    if isinstance(wanted, bool):
+        return ["all" if wanted else "none"]
+    return wanted.split(",") if isinstance(wanted, str) else [str(name) for name in wanted]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any
+from typing import Any, Sequence
 
 from . import _native
 from ._ask import Progress, asked, number
@@ -29,6 +29,8 @@ def animate(
     marker: bool | None = None,
     clock: bool | None = None,
     profile: bool | None = None,
+    furniture: bool | str | Sequence[str] | None = None,
+    title: str | None = None,
     size: tuple[int, int] | None = None,
     straight: bool = False,
     compare: bool = False,
@@ -45,7 +47,8 @@ def animate(
     * ``along``: id of a line layer that the camera follows; or ``sweep_deg``: viewing angles (first, last, step), ``True``: those of the presets; or
       ``turntable_deg_per_s``: a turn, ``True``: at the usual speed; or what the scene's ``[animation]`` says.
     * ``frames``: their number; ``fps``: frames per second, 25 by default; ``speed_mps``: ground speed, metres per second of film.
-    * ``marker``, ``clock``, ``profile``: what is drawn over a film along a route.
+    * ``marker``, ``clock``, ``profile``: what is drawn over a film along a route. ``furniture``, ``title``: see
+      :meth:`belvedere.Scene.render`.
     * ``resume``: goes on with existing frames, to the same bytes as an uninterrupted film. Ctrl-C leaves whole frames.
     * ``part``: first and last frame, counted from 0: one of several processes that draw a film into one folder, see :mod:`belvedere.batch`; a call
       without it and with ``resume`` collects the parts.
@@ -68,7 +71,7 @@ def animate(
     animation["speed_mps"] = None if speed_mps is None else number("speed_mps", speed_mps)
     animation = {key: value for key, value in animation.items() if value is not None}
     first_and_last = None if part is None else _part(part)
-    drawn = drawing(straight=straight, compare=compare, samples=samples)
+    drawn = drawing(straight=straight, compare=compare, samples=samples, furniture=furniture, title=title)
     with asked(threads, progress) as ask, scene._named():
         # The ground is solved for every frame, not on opening.
         native = scene._open({"unsolved": True, "size": size_of(size)}, ask)

@@ -121,6 +121,8 @@ def reveal(
     stylise: bool | tuple[float, float] = False,
     exaggeration: float | None = None,
     mark: bool = True,
+    furniture: bool | str | Sequence[str] | None = None,
+    title: str | None = None,
     sea: bool = True,
     rivers: object = None,
     drape: object = None,
@@ -142,6 +144,7 @@ def reveal(
     * ``technique``: ``spline`` (default), ``terrain``, ``both``, ``curved_rays``, or ``auto``, which tries them.
     * ``see``: a target in models or a city: id of a layer, atoms, a building, or x,y,z. ``fallback``, ``transfer``: see ``belvedere reveal --help``.
     * ``hidden``: ``show``, ``fade``, ``dash`` or ``cut``. ``palette``, ``relief``, ``light``, ``stylise``, ``exaggeration``: how it looks.
+    * ``furniture``, ``title``: legend, compass and more, see :meth:`belvedere.Scene.render`.
     * ``rivers``: lines, given as ``routes`` are, that do not run uphill where the ground makes way (``technique`` ``terrain``, ``both`` or ``auto``).
     * ``drape``: a georeferenced picture that is laid over the ground, such as an aerial photograph, or several, later ones on top: paths.
     * ``threads``: number of threads; ``None``: one per core. The picture does not depend on it.
@@ -160,8 +163,8 @@ def reveal(
     request = _request(
         dem, routes, folder, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata, features_crs=features_crs,
         fill_voids=fill_voids, size=size, technique=technique, curved_earth=curved_earth, no_limits=no_limits, labels=labels, hidden=hidden,
-        palette=palette, relief=relief, light=light, stylise=stylise, exaggeration=exaggeration, mark=mark, sea=sea, rivers=rivers, drape=drape,
-        samples=samples,
+        palette=palette, relief=relief, light=light, stylise=stylise, exaggeration=exaggeration, mark=mark, furniture=furniture,
+        title=title, sea=sea, rivers=rivers, drape=drape, samples=samples,
     )  # fmt: skip
     if see is not None and (request["files"]["rivers"] or request["files"]["drape"]):
         raise InputError("rivers and drape are of terrain with routes; leave them out with see")
@@ -202,6 +205,8 @@ def _request(
     stylise: bool | tuple[float, float] = False,
     exaggeration: float | None = None,
     mark: bool = True,
+    furniture: bool | str | Sequence[str] | None = None,
+    title: str | None = None,
     sea: bool = True,
     rivers: object = None,
     drape: object = None,
@@ -217,12 +222,14 @@ def _request(
         fill_voids=fill_voids, folder=folder, rivers=rivers, drape=drape,
     )  # fmt: skip
     files.update(labels=bool(labels), hidden=hidden, palette=palette, no_sea=not sea)
-    drawn = drawing(stylise=stylise, mark=mark, samples=samples)
+    drawn = drawing(stylise=stylise, mark=mark, furniture=furniture, title=title, samples=samples)
     look = {
         "light": None if light is None else dict(light),
         "relief": relief,
         "stylise": drawn.pop("stylise"),
         "no_mark": drawn.pop("no_mark"),
+        "furniture": drawn.pop("furniture"),
+        "title": drawn.pop("title"),
         "exaggeration": None if exaggeration is None else number("exaggeration", exaggeration),
     }
     return {

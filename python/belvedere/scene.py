@@ -295,6 +295,8 @@ class Scene(Layers):
         ghost: bool = False,
         highlight: Sequence[str] = (),
         mark: bool = True,
+        furniture: bool | str | Sequence[str] | None = None,
+        title: str | None = None,
         overhead: bool = False,
         outside: bool | Sequence[Sequence[float]] = False,
         buffers: bool = False,
@@ -314,6 +316,8 @@ class Scene(Layers):
         * ``stylise``: dark edges and depth unsharp masking: ``True``, or strengths in 0..=1 and 0..=10.
         * ``grid``: a grid on the ground, ``True`` or its spacing, scene units. ``heatmap``, ``ghost``, ``highlight``: what the bend did.
         * ``mark``: the mark in the corner of bent pictures; the record says so in any case.
+        * ``furniture``: any of ``title``, ``legend``, ``attribution``, ``source``, ``date``, ``compass``, ``scale``, ``distances``; ``True``: all,
+          ``False``: none, ``None``: as the scene says. ``title``: its text, which is then drawn.
         * ``overhead``, ``outside``: draws the camera itself, from above, or from outside: ``True`` or (eye, target).
         * ``paper``: ``A0`` to ``A6`` (landscape where the scene's picture is wider than high), ``A3-portrait``, or a size such as ``420x297mm``;
           pixels, widths of lines and heights of letters follow from it. ``dpi``: pixels per inch, 300 on a paper without ``size``.
@@ -323,8 +327,8 @@ class Scene(Layers):
         """
         options = drawing(
             straight=straight, compare=compare, renderer=renderer, samples=samples, lod_px=lod_px, compositing=compositing,
-            stylise=stylise, grid=grid, heatmap=heatmap, ghost=ghost, highlight=highlight, mark=mark, overhead=overhead,
-            outside=outside, buffers=buffers,
+            stylise=stylise, grid=grid, heatmap=heatmap, ghost=ghost, highlight=highlight, mark=mark, furniture=furniture,
+            title=title, overhead=overhead, outside=outside, buffers=buffers,
         )  # fmt: skip
         with asked(threads, progress, time_limit_s) as ask:
             sheet, pixels = self._sheet(_size(size), {"paper": paper, "dpi": dpi, "margin_mm": margin_mm})

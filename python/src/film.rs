@@ -26,7 +26,7 @@ pub(crate) fn animate(
     let animation = request::read("animation", animation)?;
     let drawing: Drawing = request::read("animate", drawing)?;
     let picture = drawing.options(Default::default())?;
-    let session = scene.session.clone();
+    let session = scene.session.clone().furnished(&drawing.furniture()?);
     run(py, &ask, move |progress| {
         let mut request =
             AnimateRequest { animation, picture, out, resume, overwrite, part: part.map(|[first, last]| first..=last) };

@@ -5,7 +5,7 @@ use belvedere::picture::{AuxBuffer, PictureOptions, RendererChoice};
 use belvedere::places::Place;
 use belvedere::print::Sheet;
 use belvedere::scene::{Compositing, Progress};
-use belvedere::scene_file::{HighlightMark, PrintDoc, StylisationDoc};
+use belvedere::scene_file::{FurnitureItem, FurnitureWish, HighlightMark, PrintDoc, StylisationDoc};
 use belvedere::vectors::VectorContent;
 use belvedere::{CameraPicture, OpenOptions};
 use pyo3::PyResult;
@@ -99,6 +99,8 @@ pub(crate) struct Drawing {
     ghost: bool,
     highlight: Vec<HighlightMark>,
     no_mark: bool,
+    furniture: Option<Vec<String>>,
+    title: Option<String>,
     overhead: bool,
     outside: Option<[[f64; 3]; 2]>,
     from_outside: bool,
@@ -131,7 +133,19 @@ impl From<Vectors> for VectorContent {
 /// All buffers beside a picture but displacements.
 pub(crate) const BUFFERS: [AuxBuffer; 3] = [AuxBuffer::Depth, AuxBuffer::Id, AuxBuffer::World];
 
+/// Furniture by its names: see `FurnitureItem::listed`.
+pub(crate) fn furniture(names: Option<&Vec<String>>, title: Option<&String>) -> PyResult<FurnitureWish> {
+    let items = names.map(|names| FurnitureItem::listed(names.iter().map(String::as_str))).transpose();
+    let items = items.map_err(|reason| wrong(&format!("furniture: {reason}")))?;
+    Ok(FurnitureWish { items, title: title.cloned() })
+}
+
 impl Drawing {
+    /// The furniture that is asked for.
+    pub(crate) fn furniture(&self) -> PyResult<FurnitureWish> {
+        furniture(self.furniture.as_ref(), self.title.as_ref())
+    }
+
     /// The options of the facade.
     pub(crate) fn options(&self, progress: Progress) -> PyResult<PictureOptions> {
         let mut options = PictureOptions {

@@ -97,13 +97,16 @@ struct Look {
     relief: Option<Relief>,
     stylise: Option<StylisationDoc>,
     no_mark: bool,
+    furniture: Option<Vec<String>>,
+    title: Option<String>,
     exaggeration: Option<f64>,
 }
 
 impl Look {
-    fn appearance(self) -> Appearance {
-        let Self { light, relief, stylise: stylisation, no_mark, exaggeration } = self;
-        Appearance { light, relief, stylisation, no_mark, exaggeration, ..Appearance::default() }
+    fn appearance(self) -> PyResult<Appearance> {
+        let furniture = request::furniture(self.furniture.as_ref(), self.title.as_ref())?;
+        let Self { light, relief, stylise: stylisation, no_mark, exaggeration, .. } = self;
+        Ok(Appearance { light, relief, stylisation, no_mark, furniture, exaggeration })
     }
 }
 
@@ -135,7 +138,7 @@ impl Asked {
         Ok(RevealRequest {
             data: self.files.data(),
             places: request::places(self.eye.as_deref(), self.look_at.as_deref())?,
-            appearance: self.look.appearance(),
+            appearance: self.look.appearance()?,
             fov_y_deg: self.fov_y_deg,
             image: self.size,
             curved_earth: self.curved_earth,
@@ -271,7 +274,7 @@ pub(crate) fn reveal(py: Python<'_>, asked: &str, ask: Ask) -> PyResult<NativeRe
     }
     let places = request::places(asked.eye.as_deref(), asked.look_at.as_deref())?;
     let picture = asked.draw.options(Default::default())?;
-    let appearance = std::mem::take(&mut asked.look).appearance();
+    let appearance = std::mem::take(&mut asked.look).appearance()?;
     let technique = asked.technique.filter(|name| !matches!(name, TechniqueName::Auto));
     let request = TargetRequest {
         files,

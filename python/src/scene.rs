@@ -69,7 +69,7 @@ impl NativeScene {
         let drawing: Drawing = request::read("render", options)?;
         // Mistakes are told before the work begins.
         drawing.options(Default::default())?;
-        let session = self.session.clone();
+        let session = self.session.clone().furnished(&drawing.furniture()?);
         run(py, &ask, move |progress| {
             // Checked above.
             let options = drawing.options(progress).unwrap_or_default();

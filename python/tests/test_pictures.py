@@ -93,6 +93,19 @@ def test_a_built_in_scene_is_that_of_the_command_line(tmp_path: Path) -> None:
         belvedere.Scene.builtin("masif")
 
 
+def test_furniture_is_that_of_the_program(scene: belvedere.Scene, tmp_path: Path) -> None:
+    words = ("--size", "480x270", "--title", "Over the hills", "--furniture", "compass,legend")
+    ran = program("render", str(scene.save(tmp_path / "scene.json")), *words, "-o", str(tmp_path / "a.png"))
+    assert ran.returncode == 0, ran.stderr
+    furnished = scene.render(size=(480, 270), furniture=["compass", "legend"], title="Over the hills")
+    assert furnished.record["furniture"]["title"] == "Over the hills"
+    assert furnished.record["furniture"]["compass"] is not None
+    assert furnished.png() == (tmp_path / "a.png").read_bytes()
+    assert scene.render(size=(480, 270)).png() != furnished.png()
+    with pytest.raises(belvedere.InputError, match="no furniture; possible: title"):
+        scene.render(size=(48, 27), furniture="north arrow")
+
+
 def test_the_program_is_installed() -> None:
     ran = program("--version")
     assert ran.returncode == 0 and belvedere.__version__ in ran.stdout

@@ -61,18 +61,7 @@ pub(crate) struct FurnitureArgs {
 pub(crate) struct FurnitureItems(Vec<FurnitureItem>);
 
 fn parse_furniture(text: &str) -> Result<FurnitureItems, String> {
-    let all = FurnitureItem::ALL;
-    let one = |name: &str| match name.trim() {
-        "all" => Ok(all.iter().map(|(_, item)| *item).collect()),
-        "none" => Ok(Vec::new()),
-        name => all.iter().find(|(known, _)| *known == name).map(|(_, item)| vec![*item]).ok_or_else(|| {
-            let names: Vec<&str> = all.iter().map(|(known, _)| *known).collect();
-            let shown: String = name.chars().take(40).collect();
-            format!("\"{shown}\" is no furniture; possible: {}, all, none", names.join(", "))
-        }),
-    };
-    let items = text.split(',').map(one).collect::<Result<Vec<Vec<FurnitureItem>>, String>>()?;
-    Ok(FurnitureItems(items.concat()))
+    FurnitureItem::listed(text.split(',')).map(FurnitureItems)
 }
 
 impl FurnitureArgs {

@@ -91,7 +91,7 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
         Some(layers) => Some(layers.trace(&seen)?),
         None => None,
     };
-    over_ground::paint(job, (&shader, &screen), 0, &mut buffers);
+    over_ground::paint(job, (&shader, &screen), (0, [None, None]), &mut buffers);
     let samples = volume::compose(job, Way::Exact, &mut buffers)?;
     let marks = marks::place_alone(job, &screen, &buffers.depth);
     job.progress.tick("lines", 0.0)?;

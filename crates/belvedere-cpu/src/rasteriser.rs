@@ -141,7 +141,7 @@ impl CpuRenderer {
         let whole = screen.width as usize * screen.height as usize;
         let bands_of_relief = relief.as_mut().map(|relief| (relief, 0..whole));
         surfaces.draw(0, &mut buffers, (bands_of_relief, veil.as_mut()))?;
-        over_ground::paint(job, (&shader, &screen), 0, &mut buffers);
+        over_ground::paint(job, (&shader, &screen), (0, [None, None]), &mut buffers);
         let samples = volume::compose(job, Way::Fast, &mut buffers)?;
         if buffers.open {
             let marks = marks::place(job, &passes, &screen, (Depths::Whole(&buffers.depth), Solids::Opaque));

@@ -8,9 +8,10 @@ use crate::frame::{check_memory, threads_of};
 use crate::geometry::lod::Tree;
 use crate::geometry::pass::{BodyPasses, Pass};
 use crate::marks;
-use crate::over_ground;
+use crate::over_ground::{self, SeenRow};
 use crate::raster::band::{BAND, Band, SKY, sample_offsets};
 use crate::resolve::relief::resolve_relief;
+use crate::resolve::{Colors, Rows, resolve};
 use crate::screen::Screen;
 use crate::see_through::SeeThrough;
 use crate::shade::{LightCache, Sample, Shader};
@@ -44,13 +45,10 @@ pub(crate) type Caches<'a> = (&'a GroundCache<(), Arc<Tree>>, &'a LightCache);
 /// What keeps the rasteriser from drawing a job some rows at a time.
 pub(crate) fn whole_only(job: &RenderJob<'_>) -> Option<&'static str> {
     let has_volumes = job.scene.layers.iter().any(|layer| matches!(layer.kind, LayerKind::Volume(_)));
-    let has_contours =
-        job.scene.layers.iter().any(|layer| matches!(&layer.kind, LayerKind::Terrain(t) if t.contours.is_some()));
     let is_marked = Levels::of(job).is_some_and(|levels| !levels.published) && Marks::are_in(job);
     let reasons = [
         (has_volumes, "its volumes"),
         (job.view.split_rays().is_some(), "its rays, which part"),
-        (has_contours, "its contours"),
         (is_marked, "lines, names or other marks over styling sections whose representations are drawn one by one"),
         (!job.options.overlay.faces.is_empty(), "faces over the picture"),
         (job.options.aux.exact, "buffers of exact depths"),
@@ -337,7 +335,12 @@ impl Prepared<'_> {
         let mut veil = (!self.surfaces.layers.is_empty()).then(|| Veil::clear(pixels));
         let part = relief.as_mut().map(|relief| (relief, own));
         self.surfaces.draw(rows.start, &mut buffers, (part, veil.as_mut()))?;
-        over_ground::paint(job, (self.surfaces.shader, screen), rows.start, &mut buffers);
+        let around = if over_ground::needs_rows_around(job) {
+            [above.then(|| rows.start - 1), below.then_some(rows.end)].map(|row| row.map(|row| self.seen_row(row)))
+        } else {
+            [None, None]
+        };
+        over_ground::paint(job, (self.surfaces.shader, screen), (rows.start, around), &mut buffers);
         if buffers.open {
             if stylise::is_on(job) {
                 let styled = StyledRows { width, first: rows.start, above };
@@ -350,6 +353,21 @@ impl Prepared<'_> {
         *lock(&self.color) = color;
         *frame = Frame { width, height: rows.len(), color: out, depth, id, world, stats: FrameStats::default() };
         Ok(())
+    }
+
+    /// What a row sees at its pixel centres.
+    fn seen_row(&self, row: usize) -> SeenRow {
+        let Surfaces { job, screen, shader, .. } = self.surfaces;
+        let [width, _] = self.picture();
+        let y = [row as i32, row as i32 + 1];
+        let (band, _) = self.surfaces.filled(y, &sample_offsets(job.options.samples), None);
+        let (mut color, mut depth) = (vec![Packed::default(); width], vec![0.0; width]);
+        let (mut world, mut id) = (vec![[f64::NAN; 3]; width], vec![0; width]);
+        let color = &mut Colors::Open(&mut color);
+        let (depth, id_out, world_out) = (&mut depth[..], &mut id[..], Some(&mut world[..]));
+        resolve(&band, shader, screen, &mut Rows { color, depth, id: id_out, world: world_out, centers: None });
+        lock(self.surfaces.spare).push(band);
+        (world, id)
     }
 
     /// Layers and world points of some pixels of a row.

@@ -525,6 +525,18 @@ impl LayerKind {
         Some(name.as_str()).filter(|name| !name.is_empty())
     }
 
+    /// The name that all lines, areas or points have in common.
+    pub fn only_name(&self) -> Option<&str> {
+        let count = match self {
+            Self::Line(l) => l.features.len(),
+            Self::Area(a) => a.features.len(),
+            Self::Point(p) => p.features.len(),
+            Self::Terrain(_) | Self::Boxes(_) | Self::Mesh(_) | Self::Molecule(_) | Self::Volume(_) => 0,
+        };
+        let first = self.feature_name(0);
+        first.filter(|_| (1..count).all(|i| self.feature_name(i) == first))
+    }
+
     /// Whether both are known to be one surface and differ at most in colour: terrain on the same heights, meshes of the same triangles
     /// that move alike and are as opaque.
     pub fn is_surface_of(&self, other: &Self) -> bool {

@@ -18,7 +18,7 @@ use belvedere_core::Warning;
 use belvedere_io::load_vectors;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::{join_table, split_table};
-use belvedere_scene::{Hidden, Scene, Unit};
+use belvedere_scene::{Hidden, Layer, Scene, Unit};
 use std::collections::BTreeMap;
 use std::mem::take;
 use std::path::{Path, PathBuf};
@@ -165,7 +165,7 @@ impl DataFiles {
         let (inputs, warnings, areas, original) = (loaded.inputs, loaded.warnings, loaded.areas, loaded.original);
         let notes = loaded.notes;
         let scene = Scene {
-            title: "Revealed".into(),
+            title: title_of(&loaded.layers),
             crs: loaded.crs,
             layers: loaded.layers,
             fonts: loaded.fonts,
@@ -205,6 +205,13 @@ impl Data {
         let loaded = Loaded { scene, motions: None, areas, notes, inputs, warnings };
         Session::of_view(loaded, view, Description { source, resolved, roots })
     }
+}
+
+/// The name of what must be seen, if it has one.
+fn title_of(layers: &[Layer]) -> String {
+    let names: Vec<Option<&str>> = layers.iter().filter(|l| l.must_see).map(|layer| layer.kind.only_name()).collect();
+    let only = names.first().copied().flatten().filter(|first| names.iter().all(|name| *name == Some(first)));
+    only.unwrap_or("Revealed").to_owned()
 }
 
 /// Fonts that the user named, as a scene states them; the scene may then read their files.

@@ -11,7 +11,7 @@ use crate::resolve::solving::{Memory, Solving};
 use crate::resolve::terrain;
 use crate::resolve::{validate, view, wall};
 use crate::scene_file::paths::{Roots, folder_of, stays_below};
-use crate::scene_file::{Document, FurnitureDoc, OverlayDoc, SourceDocument, StageDoc};
+use crate::scene_file::{Document, FurnitureDoc, FurnitureWish, OverlayDoc, SourceDocument, StageDoc};
 use crate::{BelvedereError, OpenOptions};
 use belvedere_core::Warning;
 use belvedere_core::{Pinhole, SpaceMap, View};
@@ -185,6 +185,19 @@ impl Session {
     /// The same with other furniture: title, legend, attribution, compass, scale.
     pub fn with_furniture(self, furniture: FurnitureDoc) -> Self {
         Self { resolved: Resolved { furniture, ..self.resolved }, ..self }
+    }
+
+    /// The same with the furniture that is asked for, in pictures and in the documents.
+    pub fn furnished(mut self, wish: &FurnitureWish) -> Self {
+        let mut furniture = Some(std::mem::take(&mut self.resolved.furniture));
+        wish.put_into(&mut furniture);
+        self.resolved.furniture = furniture.unwrap_or_default();
+        if let Some(description) = &mut self.resolved.description {
+            for document in [&mut description.source.document, &mut description.resolved] {
+                wish.put_into(&mut document.furniture);
+            }
+        }
+        self
     }
 
     /// The same with another stylisation of its surfaces.

@@ -20,22 +20,26 @@ const SAME_SLOPE: f32 = 3.0;
 
 /// Paints the lines.
 ///
-/// * `interval`: scene units, > 0; `density`: pixels per point of a screen.
+/// * `around`: the rows above and below those of `out`, where the picture goes on; `interval`: scene units, > 0; `density`: pixels per point of
+///   a screen.
 pub(super) fn paint(
     ground: &Seen<'_>,
+    around: [Option<Seen<'_>>; 2],
     heights: &Heightfield,
     (interval, color, density): (f64, Color, f64),
     out: &mut [Packed],
 ) {
     let width = ground.width;
     // Numbers of lines instead of heights: lines lie at whole ones.
-    let level: Vec<f32> = (0..out.len())
-        .into_par_iter()
-        .map(|i| {
-            let height = ground.place(i).and_then(|xy| heights.height_at(xy));
+    let levels = |seen: &Seen<'_>| -> Vec<f32> {
+        let level = |i| {
+            let height = seen.place(i).and_then(|xy| heights.height_at(xy));
             height.map_or(f32::NAN, |h| (h / interval) as f32)
-        })
-        .collect();
+        };
+        (0..seen.id.len()).into_par_iter().map(level).collect()
+    };
+    let level = levels(ground);
+    let [above, below] = around.map(|row| row.map(|row| levels(&row)));
     let ink = linear([color.r, color.g, color.b]);
     let rows = out.len() / width.max(1);
     out.par_iter_mut().enumerate().for_each(|(i, pixel)| {
@@ -44,12 +48,13 @@ pub(super) fn paint(
         if here.is_nan() {
             return;
         }
-        let change = |before: Option<usize>, after: Option<usize>| {
-            let difference = |other: Option<usize>, sign: f32| other.map_or(f32::NAN, |j| sign * (level[j] - here));
-            slope(difference(before, -1.0), difference(after, 1.0))
+        let change = |before: Option<f32>, after: Option<f32>| {
+            slope(before.map_or(f32::NAN, |before| here - before), after.map_or(f32::NAN, |after| after - here))
         };
-        let across = change((x > 0).then(|| i - 1), (x + 1 < width).then_some(i + 1));
-        let down = change((y > 0).then(|| i - width), (y + 1 < rows).then_some(i + width));
+        let across = change((x > 0).then(|| level[i - 1]), (x + 1 < width).then(|| level[i + 1]));
+        let up = if y > 0 { Some(level[i - width]) } else { above.as_ref().map(|row| row[x]) };
+        let down = if y + 1 < rows { Some(level[i + width]) } else { below.as_ref().map(|row| row[x]) };
+        let down = change(up, down);
         let cover = cover(here, across.hypot(down), density as f32);
         if cover > 0.0 {
             let share = cover * f32::from(color.a) / 255.0;

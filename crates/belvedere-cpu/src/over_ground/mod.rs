@@ -10,11 +10,21 @@ use belvedere_composite::stylise;
 use belvedere_core::DVec2;
 use belvedere_scene::{Edge, LayerKind, RenderJob};
 
+/// What a row of pixels sees: world points and layers.
+pub(crate) type SeenRow = (Vec<[f64; 3]>, Vec<u32>);
+
+/// Whether what is painted needs the rows around those that are drawn.
+pub(crate) fn needs_rows_around(job: &RenderJob<'_>) -> bool {
+    job.scene.layers.iter().any(|layer| matches!(&layer.kind, LayerKind::Terrain(t) if t.contours.is_some()))
+}
+
 /// Paints over the ground of every terrain layer, on the rows of a picture from `first` on.
+///
+/// * `around`: the rows above and below, where there are some and they are needed.
 pub(crate) fn paint(
     job: &RenderJob<'_>,
     (shader, screen): (&Shader<'_>, &Screen),
-    first: usize,
+    (first, around): (usize, [Option<SeenRow>; 2]),
     buffers: &mut Buffers,
 ) {
     if !job.scene.paints_over_ground() {
@@ -30,11 +40,14 @@ pub(crate) fn paint(
             let LayerKind::Terrain(terrain) = &layer.kind else { continue };
             // Areas are painted on the ground below them.
             let shows = |id: u32| id == i as u32 + 1 || is_area(id);
-            let ground = Seen { world: &world, id: &buffers.id, shows: &shows, width };
+            let seen = |world, id| Seen { world, id, shows: &shows, width };
+            let ground = seen(&world, &buffers.id);
             if let Some(lines) = &terrain.contours {
                 let density = job.options.density;
                 let interval = lines.interval_in(&terrain.heightfield, job.view.pinhole(), density);
-                contours::paint(&ground, &terrain.heightfield, (interval, lines.color, density), &mut buffers.color);
+                let around = [0, 1].map(|i| around[i].as_ref().map(|(world, id)| seen(world, id)));
+                let style = (interval, lines.color, density);
+                contours::paint(&ground, around, &terrain.heightfield, style, &mut buffers.color);
             }
             if terrain.edge == Edge::Soft {
                 let border = edge::Border::new(&terrain.heightfield);

@@ -1,17 +1,12 @@
 //! Finished pictures as files of several formats, with their resolution.
 
+mod jpeg;
 mod tiff;
 
 use crate::png::{self, Channels};
 use image_webp::{ColorType, WebPEncoder};
-use jpeg_encoder::{Encoder, PixelDensity};
 use std::io::{self, Write};
 use std::path::Path;
-
-/// Quality of JPEG pictures, 1..=100.
-const JPEG_QUALITY: u8 = 92;
-/// Most bytes in a segment of a JPEG file.
-const MOST_IN_SEGMENT: usize = 60_000;
 
 /// Format of a picture file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -100,7 +95,7 @@ impl PictureFile<'_> {
         match format {
             PictureFormat::Png => png::encode_at(out, (width, height), Channels::Rgb, self.pixels, self.text, self.dpi),
             PictureFormat::Tiff => tiff::encode(self, out, &|rows| rows.write_all(self.pixels)),
-            PictureFormat::Jpeg => self.jpeg(out),
+            PictureFormat::Jpeg => jpeg::encode(self, out),
             PictureFormat::WebP => WebPEncoder::new(out)
                 .encode(self.pixels, width as u32, height as u32, ColorType::Rgb8)
                 .map_err(|e| io::Error::other(e.to_string())),
@@ -109,7 +104,11 @@ impl PictureFile<'_> {
 
     /// Whether a format is written row by row, see [`PictureFile::encode_rows`].
     pub fn has_rows(format: PictureFormat) -> bool {
-        matches!(format, PictureFormat::Png | PictureFormat::Tiff)
+        match format {
+            PictureFormat::Png | PictureFormat::Tiff => true,
+            PictureFormat::Jpeg => jpeg::HAS_ROWS,
+            PictureFormat::WebP => false,
+        }
     }
 
     /// [`PictureFile::encode`] without the pixels in memory: `rows` writes them, row after row, in pieces of any size. The same pixels give the
@@ -127,28 +126,12 @@ impl PictureFile<'_> {
         match format {
             PictureFormat::Png => png::encode_rows(out, size, Channels::Rgb, (self.text, self.dpi), rows),
             PictureFormat::Tiff => tiff::encode(self, out, rows),
+            PictureFormat::Jpeg if jpeg::HAS_ROWS => jpeg::encode_rows(self, out, rows),
             other => {
                 let reason = format!("a {} is not written row by row; write a PNG or a TIFF", other.name());
                 Err(io::Error::new(io::ErrorKind::Unsupported, reason))
             }
         }
-    }
-
-    fn jpeg(&self, out: &mut dyn Write) -> io::Result<()> {
-        let failed = |e: jpeg_encoder::EncodingError| match e {
-            jpeg_encoder::EncodingError::IoError(e) => e,
-            other => io::Error::other(other.to_string()),
-        };
-        let mut encoder = Encoder::new(out, JPEG_QUALITY);
-        if let Some(dpi) = self.dpi {
-            encoder.set_density(PixelDensity::dpi(dpi.round().clamp(1.0, 65_535.0) as u16));
-        }
-        // A comment is a segment of its own kind; readers show the description of EXIF instead.
-        let mut words = self.words();
-        words.truncate(words.floor_char_boundary(MOST_IN_SEGMENT));
-        let exif = tiff::description_only(&words);
-        encoder.add_exif_metadata(&exif).map_err(failed)?;
-        encoder.encode(self.pixels, self.width as u16, self.height as u16, jpeg_encoder::ColorType::Rgb).map_err(failed)
     }
 
     /// Title and comment in one line; empty without both.

@@ -171,7 +171,7 @@ fn whole_only(session: &Session, request: &PictureOptions, out: &Path) -> Option
         (request.camera.is_some(), "the picture of the camera"),
         (!request.aux.is_empty(), "buffers beside it"),
         (is_vector, "its vectors"),
-        (!PictureFile::has_rows(format), "its format (PNG and TIFF are written in bands)"),
+        (!PictureFile::has_rows(format), "its format (PNG, TIFF and JPEG are written in bands)"),
         (session.light().sky == Sky::Transparent, "its transparent sky"),
         (bent && (request.ghost || overlay.ghost), "the straight picture faintly over it"),
         (is_marked, "highlights or a heat map"),

@@ -161,6 +161,29 @@ impl FurnitureItem {
         ("scale", Self::Scale),
         ("distances", Self::Distances),
     ];
+
+    /// The pieces of a list of names, which may be `all` or `none`.
+    ///
+    /// # Errors
+    /// A sentence that names the possible names.
+    pub fn listed<'n>(names: impl IntoIterator<Item = &'n str>) -> Result<Vec<Self>, String> {
+        let mut items = Vec::new();
+        for name in names {
+            match name.trim() {
+                "all" => items.extend(Self::ALL.map(|(_, item)| item)),
+                "none" => {}
+                name => match Self::ALL.into_iter().find(|(known, _)| *known == name) {
+                    Some((_, item)) => items.push(item),
+                    None => {
+                        let known = Self::ALL.map(|(known, _)| known).join(", ");
+                        let shown: String = name.chars().take(40).collect();
+                        return Err(format!("\"{shown}\" is no furniture; possible: {known}, all, none"));
+                    }
+                },
+            }
+        }
+        Ok(items)
+    }
 }
 
 /// Furniture as the command line asks for it.
@@ -211,6 +234,19 @@ impl FurnitureWish {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn names_of_furniture_are_read_and_unknown_ones_refused() {
+        let read = |text: &'static str| FurnitureItem::listed(text.split(','));
+        assert_eq!(read("scale, title"), Ok(vec![FurnitureItem::Scale, FurnitureItem::Title]));
+        assert_eq!(read("all").map(|items| items.len()), Ok(FurnitureItem::ALL.len()));
+        assert_eq!(read("none"), Ok(Vec::new()));
+        let refused = read("legend,north arrow").expect_err("unknown");
+        assert!(
+            refused.contains("north arrow") && refused.contains("compass") && refused.ends_with("none"),
+            "{refused}"
+        );
+    }
 
     #[test]
     fn a_wish_changes_what_is_drawn_and_keeps_what_is_stated() {

@@ -25,7 +25,7 @@ fn files(session: &Session, options: &PictureOptions, out: &Path, rows: usize) -
 /// Whether pictures in bands of several heights, and their records, are those in one piece, byte for byte.
 fn are_alike(name: &str, session: &Session, options: &PictureOptions) {
     let folder = tempfile::tempdir().expect("a folder");
-    for (ending, heights) in [("png", &[16, 48, 1000][..]), ("tif", &[32])] {
+    for (ending, heights) in [("png", &[16, 48, 1000][..]), ("tif", &[32]), ("jpg", &[48])] {
         let out = folder.path().join(format!("picture.{ending}"));
         let whole = files(session, options, &out, 0);
         for &rows in heights {
@@ -91,6 +91,23 @@ fn molecules_and_what_shines_through_are_the_same_in_bands() {
 }
 
 #[test]
+fn contours_do_not_break_between_bands() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/massif_curved_rays.toml");
+    let text = std::fs::read_to_string(&path).expect("a scene").replace("&size=513", "&size=129");
+    let open = |text: &str| {
+        let options = OpenOptions { image: Some([333, 217]), needs: Needs::Everything, ..OpenOptions::default() };
+        Session::from_text(&path, text, &options).expect("a scene")
+    };
+    let with = text.replacen("kind = \"terrain\"", "kind = \"terrain\"\nstyle = { contours = 20 }", 1);
+    let (lined, plain) = (open(&with), open(&text));
+    let options = PictureOptions::default();
+    let color = |session: &Session| session.render(&options).expect("drawn").frame.color;
+    let changed = color(&lined).iter().zip(&color(&plain)).filter(|(a, b)| a != b).count();
+    assert!(changed > 2000, "lines in {changed} pixels");
+    are_alike("contours", &lined, &options);
+}
+
+#[test]
 fn what_needs_one_piece_says_so_and_how_much_memory() {
     let session = scene("massif.toml", [333, 217]);
     let folder = tempfile::tempdir().expect("a folder");
@@ -108,7 +125,7 @@ fn what_needs_one_piece_says_so_and_how_much_memory() {
     let usual = PictureOptions::default;
     assert!(refused(PictureOptions { compare: true, ..usual() }, "a.png").contains("the pair of pictures"));
     assert!(refused(PictureOptions { heatmap: true, ..usual() }, "a.png").contains("heat map"));
-    assert!(refused(usual(), "a.jpg").contains("its format"));
+    assert!(refused(usual(), "a.webp").contains("its format"));
     let mut tight = usual();
     tight.quality.max_bytes = 12 << 20;
     tight.compare = true;

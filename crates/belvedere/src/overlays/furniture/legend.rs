@@ -19,7 +19,8 @@ pub(super) fn rows(subject: &Subject<'_>) -> Vec<Row> {
 }
 
 fn of_layer(subject: &Subject<'_>, layer: &Layer) -> Vec<Row> {
-    let words = subject.doc.names.get(&layer.id).unwrap_or(&layer.id).trim();
+    let stated = subject.doc.names.get(&layer.id).map(String::as_str);
+    let words = stated.or(layer.kind.only_name()).unwrap_or(&layer.id).trim();
     // Sides and mats of the ground are no layer of the scene.
     let is_edge = layer.id == Edge::LAYER || layer.id.starts_with("edge of ");
     if words.is_empty() || is_edge && matches!(layer.kind, LayerKind::Mesh(_)) {

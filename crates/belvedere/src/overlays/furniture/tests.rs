@@ -59,6 +59,39 @@ fn with_point() -> Scene {
     hills().with_layer("huts", LayerKind::Point(layer))
 }
 
+/// A point layer is called by the name of its points, unless they have several, or the scene says otherwise.
+#[test]
+fn rows_of_the_legend_have_the_name_of_what_they_show() {
+    let words = |names: &[&str], doc: &FurnitureDoc| {
+        let mut scene = with_point();
+        if let LayerKind::Point(layer) = &mut scene.layers[1].kind {
+            let point = layer.features[0].clone();
+            layer.features = names.iter().map(|name| PointFeature { name: (*name).into(), ..point.clone() }).collect();
+        }
+        let notes = LayerNotes::default();
+        let subject = Subject {
+            doc,
+            scene: &scene,
+            view: &view([900, 600]),
+            notes: &notes,
+            files: Vec::new(),
+            density: 1.0,
+            reserved: Vec::new(),
+            north: &|_| DVec2::Y,
+            today: None,
+        };
+        legend::rows(&subject).into_iter().map(|row| row.words).next_back()
+    };
+    let doc = FurnitureDoc::default();
+    assert_eq!(words(&["Piz Bernina"], &doc).as_deref(), Some("Piz Bernina"));
+    assert_eq!(words(&["Piz Bernina", "Piz Bernina"], &doc).as_deref(), Some("Piz Bernina"));
+    for several in [&["Piz Bernina", "Piz Palü"][..], &["Piz Bernina", ""], &[""]] {
+        assert_eq!(words(several, &doc).as_deref(), Some("huts"));
+    }
+    let named = FurnitureDoc { names: [("huts".into(), "Summits".into())].into(), ..doc };
+    assert_eq!(words(&["Piz Bernina"], &named).as_deref(), Some("Summits"));
+}
+
 #[test]
 fn nothing_is_drawn_unless_it_is_asked_for() {
     let plan = plan(&hills(), &FurnitureDoc::default(), ([900, 600], 1.0));
