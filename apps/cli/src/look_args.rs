@@ -159,11 +159,7 @@ impl LookArgs {
         let time = self.light_time.clone();
         let shadows = self.shadows || time.is_some();
         let AirArgs { sky, haze, .. } = self.air.clone();
-        let mut furniture = self.air.furniture.wish();
-        // Files have no title of their own.
-        if let (Some(items), None) = (&mut furniture.items, &furniture.title) {
-            items.retain(|item| *item != FurnitureItem::Title);
-        }
+        let furniture = self.air.furniture.wish();
         let stated = shadows || self.light.is_some() || sky.is_some() || haze.is_some();
         Appearance {
             light: stated.then_some(LightDoc { azimuth_deg, altitude_deg, time, shadows, sky, haze }),

@@ -207,11 +207,11 @@ impl Data {
     }
 }
 
-/// The name of what must be seen, if it has one.
+/// The name of what must be seen; empty if it has several, or none.
 fn title_of(layers: &[Layer]) -> String {
     let names: Vec<Option<&str>> = layers.iter().filter(|l| l.must_see).map(|layer| layer.kind.only_name()).collect();
     let only = names.first().copied().flatten().filter(|first| names.iter().all(|name| *name == Some(first)));
-    only.unwrap_or("Revealed").to_owned()
+    only.unwrap_or_default().to_owned()
 }
 
 /// Fonts that the user named, as a scene states them; the scene may then read their files.

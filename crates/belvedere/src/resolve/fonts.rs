@@ -33,7 +33,8 @@ pub(super) fn choose(
         .collect();
     let mut fonts = given(loader, text)?;
     // Names are many, their letters are few.
-    let all = named.iter().flat_map(|(_, names)| names.iter().copied()).chain([words]);
+    let in_legend = layers.iter().flatten().filter_map(|layer| layer.kind.only_name());
+    let all = named.iter().flat_map(|(_, names)| names.iter().copied()).chain(in_legend).chain([words]);
     let letters: String = all.flat_map(str::chars).collect::<BTreeSet<char>>().into_iter().collect();
     let mut lacking = Fonts::with(&fonts).lacks(&letters);
     if !lacking.is_empty() && text.is_none_or(|text| text.system_fonts) {
