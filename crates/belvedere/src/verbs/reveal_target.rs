@@ -134,7 +134,8 @@ impl Opened {
     pub(super) fn refitted(&self, sight: &TargetSight<'_>, view: &View, sidestep: Option<&Sidestep>) -> Option<Refit> {
         let (scene, target) = (self.session.scene(), &self.targets.search);
         let is_city = self.is_city();
-        let points = if is_city { city_views::region(target) } else { target_views::outline(scene, target_views::MANY) };
+        let points =
+            if is_city { city_views::region(target) } else { target_views::outline(scene, target_views::MANY) };
         let content = Content { points: &points, up: self.up, may_zoom: !self.states_fov };
         refit_to(sight, view, sidestep, &content)
     }
@@ -234,6 +235,10 @@ fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnsw
         Bend::Rays(..) => Technique::CurvedRays,
         Bend::Spline(_) => Technique::Spline,
     });
+    // Scene files say themselves whether they have shadows.
+    if session.path().is_none() {
+        request.appearance.shade_molecules(&mut document);
+    }
     request.appearance.describe(&mut document);
     let session = match request.appearance.is_usual() {
         true => session.with_document(document, None)?,
@@ -248,7 +253,7 @@ fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnsw
     let mut picture = session.render(&pair)?;
     let mut mark = "lines and points in colour, dashed where they are hidden";
     if let Some(place) = &place {
-        picture.mark_target(place, &report);
+        picture.mark_target(place, &report, pair.density);
         mark = place.mark;
     } else if let Some(shares) = picture.mark_shape(&session, (&targets.shape, &targets.judge), &pair)? {
         mark = "an outline around it, of dashes where it is hidden";

@@ -49,7 +49,8 @@ fn drafted(request: &TargetRequest, count: usize, options: &OpenOptions) -> Resu
     for (k, view) in views.iter().enumerate() {
         let found = bend_around_by(&sight, view, &AroundOptions::default(), &options.progress)?;
         let moved = opened.refitted(&sight, view, found.bent.as_ref().map(|(_, sidestep)| sidestep));
-        let Some((viewpoint, fov_y_deg)) = rounded(moved.as_ref().map_or(view, |m| &m.straight), opened.targets.search.center())
+        let Some((viewpoint, fov_y_deg)) =
+            rounded(moved.as_ref().map_or(view, |m| &m.straight), opened.targets.search.center())
         else {
             continue;
         };
