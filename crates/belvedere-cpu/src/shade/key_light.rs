@@ -11,20 +11,20 @@ use std::f64::consts::TAU;
 /// Direction towards the light: right, down and forward of the camera.
 const LIGHT: [f64; 3] = [-0.42, -0.58, -0.70];
 /// Half the width of the light at a distance of 1.
-const SPREAD: f64 = 0.11;
+const SPREAD: f32 = 0.05;
 /// Cells of the map along the longest side, least and most, and for each pixel along the side of a square picture.
 const CELLS: [f64; 2] = [256.0, 1536.0];
 const PER_PIXEL: f64 = 1.2;
 /// Rows of the map that a thread draws at a time.
 const STRIP: usize = 32;
 /// Samples by which what casts a shadow is sought, and by which its share is told.
-const SOUGHT: usize = 16;
-const COUNTED: usize = 32;
+const SOUGHT: usize = 12;
+const COUNTED: usize = 20;
 /// Offset of a place from its surface, and heights over its plane between which a sample fades to shadow, cells.
 const OFF: f64 = 1.5;
-const OVER: [f64; 2] = [0.7, 2.2];
+const OVER: [f32; 2] = [0.7, 2.2];
 /// Steepest plane of a receiver that samples follow.
-const STEEPEST: f64 = 4.0;
+const STEEPEST: f32 = 4.0;
 
 /// Unit vector towards the key light, which stands above the viewer's left shoulder: molecules have no upright direction.
 pub(super) fn towards(pinhole: &Pinhole) -> DVec3 {
@@ -48,10 +48,10 @@ pub(crate) struct KeyShadows {
     /// Heights towards the light, cells; negative infinity where nothing stands.
     heights: Vec<f32>,
     /// The largest of them.
-    top: f64,
+    top: f32,
     /// Places on a disc of radius 1: with a density that grows towards the middle, and even.
-    sought: Vec<[f64; 3]>,
-    counted: Vec<[f64; 3]>,
+    sought: [[f32; 3]; SOUGHT],
+    counted: [[f32; 3]; COUNTED],
 }
 
 impl KeyShadows {
@@ -89,9 +89,9 @@ impl KeyShadows {
             cell,
             size,
             heights: vec![f32::NEG_INFINITY; size[0] * size[1]],
-            top: (high.z - low.z) / cell,
-            sought: disc(SOUGHT, 1.0),
-            counted: disc(COUNTED, 0.5),
+            top: ((high.z - low.z) / cell) as f32,
+            sought: disc(1.0),
+            counted: disc(0.5),
         };
         for (mesh, placed) in meshes.iter().zip(placed) {
             let placed: Vec<DVec3> = placed.into_iter().map(|p| (p - low) / cell).collect();
@@ -121,60 +121,56 @@ impl KeyShadows {
 
     /// Share of the key light that reaches a place with a unit normal, 0..=1.
     pub(crate) fn lit(&self, p: DVec3, normal: DVec3) -> f32 {
-        let [nu, nv, nw] = self.axes.map(|axis| normal.dot(axis));
+        let [nu, nv, nw] = self.axes.map(|axis| normal.dot(axis) as f32);
         if nw <= 0.0 {
             return 0.0;
         }
         let from = p + OFF * self.cell * normal - self.origin;
-        let [u, v, w] = self.axes.map(|axis| from.dot(axis) / self.cell);
+        let [u, v, w] = self.axes.map(|axis| (from.dot(axis) / self.cell) as f32);
         let left = self.top - w;
         if left <= 0.0 {
             return 1.0;
         }
         let slope = [nu, nv].map(|n| (-n / nw).clamp(-STEEPEST, STEEPEST));
-        // Height of what stands beside the place over the plane through it.
-        let over = |du: f64, dv: f64| {
-            let height = f64::from(self.at(u + du, v + dv)) - w;
-            (height, height - slope[0] * du - slope[1] * dv)
-        };
         let reach = SPREAD * left;
-        let (mut sum, mut count) = (0.0, 0.0);
+        let (mut sum, mut count) = (0.0, 0);
         for [x, y, radius] in &self.sought {
-            let (height, above) = over(reach * x, reach * y);
+            let (du, dv) = (reach * x, reach * y);
+            let height = self.at(u + du, v + dv) - w;
             // What stands outside the cone of the light takes none of it.
-            if above > OVER[0] && 1.5 * SPREAD * height >= reach * radius {
-                (sum, count) = (sum + height, count + 1.0);
+            if height - slope[0] * du - slope[1] * dv > OVER[0] && 1.5 * SPREAD * height >= reach * radius {
+                (sum, count) = (sum + height, count + 1);
             }
         }
-        if count == 0.0 {
-            return 1.0;
+        if count == 0 || count == SOUGHT {
+            return if count == 0 { 1.0 } else { 0.0 };
         }
-        let width = (SPREAD * sum / count).max(1.0);
-        let taken = self.counted.iter().map(|[x, y, _]| {
-            let (_, above) = over(width * x, width * y);
-            ((above - OVER[0]) / (OVER[1] - OVER[0])).clamp(0.0, 1.0)
-        });
-        1.0 - (taken.sum::<f64>() / COUNTED as f64) as f32
+        let width = (SPREAD * sum / count as f32).max(1.0);
+        let mut taken = 0.0;
+        for [x, y, _] in &self.counted {
+            let (du, dv) = (width * x, width * y);
+            let above = self.at(u + du, v + dv) - w - slope[0] * du - slope[1] * dv;
+            taken += ((above - OVER[0]) / (OVER[1] - OVER[0])).clamp(0.0, 1.0);
+        }
+        1.0 - taken / COUNTED as f32
     }
 
-    fn at(&self, u: f64, v: f64) -> f32 {
-        if u < 0.0 || v < 0.0 {
-            return f32::NEG_INFINITY;
-        }
-        let [x, y] = [u as usize, v as usize];
+    #[inline(always)]
+    fn at(&self, u: f32, v: f32) -> f32 {
+        // Negative numbers are beyond all rows and columns when they are cut to whole ones without sign.
+        let [x, y] = [u.floor() as i32 as u32 as usize, v.floor() as i32 as u32 as usize];
         if x < self.size[0] && y < self.size[1] { self.heights[y * self.size[0] + x] } else { f32::NEG_INFINITY }
     }
 }
 
 /// Places on a disc along a spiral of the golden angle, and their distance from the middle.
 /// * `power`: 0.5 for even places, more for more of them near the middle.
-fn disc(count: usize, power: f64) -> Vec<[f64; 3]> {
-    let place = |i: usize| {
-        let radius = ((i as f64 + 0.5) / count as f64).powf(power);
+fn disc<const N: usize>(power: f64) -> [[f32; 3]; N] {
+    std::array::from_fn(|i| {
+        let radius = ((i as f64 + 0.5) / N as f64).powf(power);
         let (sin, cos) = (TAU * 0.381_966_011_25 * i as f64).sin_cos();
-        [radius * cos, radius * sin, radius]
-    };
-    (0..count).map(place).collect()
+        [radius * cos, radius * sin, radius].map(|v| v as f32)
+    })
 }
 
 /// Raises cells of a strip of rows to a triangle.
@@ -224,10 +220,10 @@ mod tests {
 
     #[test]
     fn a_plate_takes_as_much_of_the_light_as_it_covers_of_it() {
-        for height in [4.0, 10.0, 25.0] {
+        for height in [10.0, 25.0, 60.0] {
             let mesh = plates(&[(DVec3::ZERO, 40.0), (DVec3::new(0.0, 0.0, height), 8.0)]);
             let shadows = KeyShadows::new(&[&mesh], DVec3::Z, 800.0);
-            let half = SPREAD * height;
+            let half = f64::from(SPREAD) * height;
             for i in -160..160 {
                 let x = 0.1 * f64::from(i) + 8.0;
                 let lit = f64::from(shadows.lit(DVec3::new(x, 0.0, 0.0), DVec3::Z));

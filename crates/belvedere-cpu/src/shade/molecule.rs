@@ -16,7 +16,7 @@ const DIRECT: f32 = 0.72;
 const HIGHLIGHT: f32 = 0.16;
 const SHARPNESS: i32 = 28;
 /// Share of the direct light that shadows take: their colours stay readable.
-const SHADOW: f32 = 0.62;
+const SHADOW: f32 = 0.8;
 /// Share of the colour that the ink takes, and the cosines between which it fades in.
 const INK: f32 = 0.62;
 const INKED: [f32; 2] = [0.10, 0.42];
@@ -61,13 +61,13 @@ impl<'a> MoleculeShade<'a> {
         let facing = n.dot(towards).abs() as f32;
         // Wrapped diffuse light shades small balls softly.
         let lit = ((n.dot(self.light) as f32 + 0.25) / 1.25).max(0.0);
-        let lit = lit * (1.0 - SHADOW * (1.0 - self.shadows.as_ref().map_or(1.0, |s| s.lit(p, n))));
+        let shown = 1.0 - SHADOW * (1.0 - self.shadows.as_ref().map_or(1.0, |s| s.lit(p, n)));
         let around = FROM_BELOW + (1.0 - FROM_BELOW) * (0.5 + 0.5 * n.dot(self.up) as f32);
         let half = (self.light + towards).normalize_or(self.light);
-        let shine = (n.dot(half).max(0.0) as f32).powi(SHARPNESS) * HIGHLIGHT * open * open;
+        let shine = (n.dot(half).max(0.0) as f32).powi(SHARPNESS) * HIGHLIGHT * open * open * shown;
         let ink = 1.0 - INK * (1.0 - smoothstep(INKED[0], INKED[1], facing));
         // Gaps between chains tell their depth by being dark.
-        let light = DIRECT * lit * (0.35 + 0.65 * open) + AROUND * around * open * open;
+        let light = DIRECT * lit * shown * (0.35 + 0.65 * open) + AROUND * around * open * open;
         (linear([color.r, color.g, color.b]) * light + Rgb::splat(shine)) * ink
     }
 
