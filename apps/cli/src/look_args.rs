@@ -85,6 +85,9 @@ pub(crate) struct LookArgs {
     /// Draw cast shadows
     #[arg(long)]
     pub(crate) shadows: bool,
+    /// Draw no shadows on molecules, which have them without --shadows
+    #[arg(long, conflicts_with_all = ["shadows", "light_time"])]
+    pub(crate) no_shadows: bool,
     /// Shading of the terrain; swiss by default, sun with --light-time
     #[arg(long, value_enum, value_name = "SHADING")]
     pub(crate) relief: Option<ReliefKind>,
@@ -165,6 +168,7 @@ impl LookArgs {
             light: stated.then_some(LightDoc { azimuth_deg, altitude_deg, time, shadows, sky, haze }),
             relief: self.relief.map(Into::into),
             stylisation: self.stylise,
+            no_shadows: self.no_shadows,
             no_mark: self.no_mark,
             furniture,
             exaggeration: self.exaggeration,

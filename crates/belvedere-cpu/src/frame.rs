@@ -2,7 +2,7 @@
 
 use crate::raster::band::BAND;
 use crate::see_through::SeeThrough;
-use crate::shade::ground_bytes;
+use crate::shade::{ground_bytes, key_light};
 use belvedere_composite::depths::DepthTiles;
 use belvedere_composite::layers::Levels;
 use belvedere_composite::marks::Marks;
@@ -79,6 +79,7 @@ pub(crate) fn needed(job: &RenderJob<'_>, (more_per_pixel, rows): (u64, Option<u
         nodes * NODE_BYTES * passes
     };
     let shadow = if job.light.shadows { LightBuffer::BYTES } else { 0 };
+    let key_light = if job.light.shadows { key_light::most_bytes() } else { 0 };
     let nodes: u64 = job
         .scene
         .layers
@@ -89,6 +90,7 @@ pub(crate) fn needed(job: &RenderJob<'_>, (more_per_pixel, rows): (u64, Option<u
                 drawn(nodes) + ground_bytes(job, &t.heightfield)
             }
             LayerKind::Boxes(b) => b.boxes.len() as u64 * (12 * 64 + shadow),
+            LayerKind::Molecule(m) => m.surface.mesh.triangles().len() as u64 * (160 + shadow) + key_light,
             // A triangle on the image and, for the tracer, its share of a tree.
             kind => kind.triangles().map_or(0, |m| m.mesh.triangles().len() as u64 * (160 + shadow)),
         })

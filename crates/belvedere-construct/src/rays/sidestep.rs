@@ -27,10 +27,18 @@ impl Sidestep {
     /// # Errors
     /// [`ConstructError::Rays`] if the turn is not possible, e.g. with an orthographic camera.
     pub fn view(&self, base: &View) -> Result<View, ConstructError> {
-        let root = base.pinhole();
-        let rays = CurvedRays::new(root, Model::Modified, &[self.turn(root)])?;
+        self.seen_by(base.pinhole(), base)
+    }
+
+    /// The turn behind `root`, which stays where it is in space, in the picture of `base`: a camera at the same eye that may look elsewhere.
+    ///
+    /// # Errors
+    /// As [`Sidestep::view`].
+    pub fn seen_by(&self, root: &Pinhole, base: &View) -> Result<View, ConstructError> {
+        let pinhole = base.pinhole();
+        let rays = CurvedRays::new(pinhole, Model::Modified, &[self.turn(root)])?;
         let earlier = base.stages().iter().filter(|s| !s.bends_rays()).cloned();
-        Ok(View::new(root.clone(), earlier.chain([Stage::CurvedRays(rays)]).collect())?)
+        Ok(View::new(pinhole.clone(), earlier.chain([Stage::CurvedRays(rays)]).collect())?)
     }
 }
 

@@ -185,7 +185,8 @@ impl<'a> TargetSight<'a> {
         self.scene
     }
 
-    pub(super) fn target(&self) -> &'a Target {
+    /// The target.
+    pub fn target(&self) -> &'a Target {
         self.target
     }
 

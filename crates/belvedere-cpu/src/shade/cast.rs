@@ -1,4 +1,5 @@
-//! Cast shadows of boxes and meshes, and shadows on them: straight rays towards the sun in the undisplaced scene.
+//! Cast shadows of boxes and meshes, and shadows on them: straight rays towards the sun in the undisplaced scene. Those on molecules are in
+//! `key_light`.
 
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{LayerKind, Light, Scene};
@@ -69,6 +70,12 @@ impl<'a> Casters<'a> {
             return None;
         }
         if !scene.layers.iter().any(|l| matches!(l.kind, LayerKind::Boxes(_)) || l.kind.triangles().is_some()) {
+            return None;
+        }
+        // Molecules alone have shadows by a light of their own.
+        let takes_sun =
+            |kind: &LayerKind| matches!(kind, LayerKind::Boxes(_) | LayerKind::Mesh(_) | LayerKind::Terrain(_));
+        if !scene.layers.iter().any(|l| takes_sun(&l.kind)) {
             return None;
         }
         // What something shines through casts its whole shadow. Rays end at the same heights whatever is left out.

@@ -3,6 +3,7 @@
 mod cast;
 pub(crate) mod footprint;
 pub(crate) mod ground;
+pub(crate) mod key_light;
 mod mesh;
 mod mix;
 mod molecule;
@@ -33,10 +34,12 @@ use glam::Vec3A;
 pub(crate) use ground::terrain::LightCache;
 use ground::terrain::TerrainShade;
 use ground::{surface, tiles};
+use key_light::KeyShadows;
 use overlay::area::AreaMap;
 pub(crate) use painted::{Painted, Samples};
 use relief::ReliefLight;
 use sky::Sky;
+use std::sync::Arc;
 
 /// Data for colouring, prepared once per frame.
 pub(crate) struct Shader<'a> {
@@ -91,6 +94,7 @@ pub(crate) fn ground_bytes(job: &RenderJob<'_>, hf: &Heightfield) -> u64 {
 
 impl<'a> Shader<'a> {
     pub(crate) fn new(job: &RenderJob<'a>, screen: &'a Screen, blocks: &'a Blocks, cache: &LightCache) -> Self {
+        let key_shadows = KeyShadows::of(job).map(Arc::new);
         let layers: Vec<_> = job
             .scene
             .layers
@@ -100,7 +104,9 @@ impl<'a> Shader<'a> {
                 LayerKind::Terrain(t) => LayerShade::Terrain(Box::new(TerrainShade::new((i, t), job, cache))),
                 LayerKind::Boxes(b) => LayerShade::Boxes(b, ReliefLight::new(Relief::Sun, job.light)),
                 LayerKind::Mesh(m) => LayerShade::Mesh(mesh::MeshShade::new(m, job.light)),
-                LayerKind::Molecule(m) => LayerShade::Molecule(molecule::MoleculeShade::new(&m.surface, job.view)),
+                LayerKind::Molecule(m) => {
+                    LayerShade::Molecule(molecule::MoleculeShade::new(&m.surface, job.view, key_shadows.clone()))
+                }
                 _ => LayerShade::Other,
             })
             .collect();

@@ -1,12 +1,12 @@
-//! Colour of molecules: soft light from behind the viewer's left shoulder, darker between atoms, inked where the surface turns away.
+//! Colour of molecules: soft light from behind the viewer's left shoulder, with shadows if they are wanted, darker between atoms, inked where
+//! the surface turns away.
 
 use crate::geometry::block::DrawnTriangle;
+use crate::shade::key_light::{self, KeyShadows};
 use belvedere_composite::color::{Rgb, linear, smoothstep};
 use belvedere_core::{DVec3, View};
 use belvedere_scene::MeshLayer;
-
-/// Direction towards the light: right, down and forward of the camera.
-const LIGHT: [f64; 3] = [-0.42, -0.58, -0.70];
+use std::sync::Arc;
 
 /// Share of ambient light, and the part of it that comes from below.
 const AROUND: f32 = 0.50;
@@ -15,6 +15,8 @@ const FROM_BELOW: f32 = 0.62;
 const DIRECT: f32 = 0.72;
 const HIGHLIGHT: f32 = 0.16;
 const SHARPNESS: i32 = 28;
+/// Share of the direct light that shadows take: their colours stay readable.
+const SHADOW: f32 = 0.8;
 /// Share of the colour that the ink takes, and the cosines between which it fades in.
 const INK: f32 = 0.62;
 const INKED: [f32; 2] = [0.10, 0.42];
@@ -26,14 +28,13 @@ pub(crate) struct MoleculeShade<'a> {
     straight: bool,
     light: DVec3,
     up: DVec3,
+    shadows: Option<Arc<KeyShadows>>,
 }
 
 impl<'a> MoleculeShade<'a> {
-    pub(crate) fn new(layer: &'a MeshLayer, view: &'a View) -> Self {
+    pub(crate) fn new(layer: &'a MeshLayer, view: &'a View, shadows: Option<Arc<KeyShadows>>) -> Self {
         let pinhole = view.pinhole();
-        let [right, down, forward] = LIGHT;
-        let light = (right * pinhole.right + down * pinhole.down + forward * pinhole.forward).normalize();
-        Self { layer, view, straight: !view.is_bent(), light, up: -pinhole.down }
+        Self { layer, view, straight: !view.is_bent(), light: key_light::towards(pinhole), up: -pinhole.down, shadows }
     }
 
     /// True position of a sample.
@@ -60,12 +61,13 @@ impl<'a> MoleculeShade<'a> {
         let facing = n.dot(towards).abs() as f32;
         // Wrapped diffuse light shades small balls softly.
         let lit = ((n.dot(self.light) as f32 + 0.25) / 1.25).max(0.0);
+        let shown = 1.0 - SHADOW * (1.0 - self.shadows.as_ref().map_or(1.0, |s| s.lit(p, n)));
         let around = FROM_BELOW + (1.0 - FROM_BELOW) * (0.5 + 0.5 * n.dot(self.up) as f32);
         let half = (self.light + towards).normalize_or(self.light);
-        let shine = (n.dot(half).max(0.0) as f32).powi(SHARPNESS) * HIGHLIGHT * open * open;
+        let shine = (n.dot(half).max(0.0) as f32).powi(SHARPNESS) * HIGHLIGHT * open * open * shown;
         let ink = 1.0 - INK * (1.0 - smoothstep(INKED[0], INKED[1], facing));
         // Gaps between chains tell their depth by being dark.
-        let light = DIRECT * lit * (0.35 + 0.65 * open) + AROUND * around * open * open;
+        let light = DIRECT * lit * shown * (0.35 + 0.65 * open) + AROUND * around * open * open;
         (linear([color.r, color.g, color.b]) * light + Rgb::splat(shine)) * ink
     }
 

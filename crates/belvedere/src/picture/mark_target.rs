@@ -6,11 +6,12 @@ use crate::overlays::{contour, ring};
 use crate::{BelvedereError, Session};
 use belvedere_construct::rays::{BendReport, Target};
 use belvedere_core::{DVec3, View};
-use belvedere_scene::{RenderJob, RenderOptions, Scene};
+use belvedere_scene::{Light, RenderJob, RenderOptions, Scene};
 
 impl Picture {
     /// Marks a target point in both pictures, and records its position.
-    pub(crate) fn mark_target(&mut self, place: &TargetPlace, report: &BendReport) {
+    /// * `density`: pixels per unit of symbols.
+    pub(crate) fn mark_target(&mut self, place: &TargetPlace, report: &BendReport, density: f64) {
         let p = DVec3::from_array(place.point);
         let straight = self.view.straightened();
         let frames = [
@@ -21,7 +22,7 @@ impl Picture {
             if let (Some(frame), Ok(image)) = (frame, view.project(p))
                 && image.pixel.length() < 1e6
             {
-                ring::draw(frame, image.pixel, visible < 0.5);
+                ring::draw(frame, image.pixel, visible < 0.5, density);
             }
         }
         self.sidecar.target = Some(place.clone());
@@ -40,9 +41,10 @@ impl Picture {
         let Some(alone) = target_alone(session.scene(), target) else { return Ok(None) };
         let ground = if on_ground == target { None } else { target_alone(session.scene(), on_ground) };
         let drawing = RenderOptions { marks: false, ..options.quality.clone() };
+        // These pictures tell what is seen where, for which shadows do not matter.
+        let light = Light { shadows: false, ..*session.light() };
         let draw = |scene: &Scene, view: &View| {
-            let (light, progress) = (session.light(), &options.progress);
-            let job = RenderJob { scene, view, light, options: &drawing, progress };
+            let job = RenderJob { scene, view, light: &light, options: &drawing, progress: &options.progress };
             options.renderer.of(session).render(&job)
         };
         // Around everything in the picture an outline tells nothing.

@@ -312,7 +312,7 @@ pub struct LightDoc {
     /// The sun at this time (RFC 3339, e.g. `2026-07-01T15:00:00Z`) over the eye.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<String>,
-    /// Whether cast shadows are wanted.
+    /// Whether cast shadows are wanted: by the sun, and on molecules by the light over the viewer's left shoulder.
     #[serde(default)]
     pub shadows: bool,
     /// What stands behind everything: `auto` (by the height of the sun), `day`, `dusk`, `night`, `white`, a colour `#rrggbb`, or

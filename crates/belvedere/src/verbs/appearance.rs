@@ -20,6 +20,8 @@ pub struct Appearance {
     pub relief: Option<Relief>,
     /// Dark edges and depth unsharp masking.
     pub stylisation: Option<StylisationDoc>,
+    /// Leaves out the shadows that molecules have without being asked for ([`Appearance::shade_molecules`]).
+    pub no_shadows: bool,
     /// Leaves out the mark that says that the view is bent; the record still says so.
     pub no_mark: bool,
     /// Title, legend, attribution, compass and scale.
@@ -49,6 +51,13 @@ impl Appearance {
         }
         let strengths = self.stylisation.unwrap_or_default().strengths();
         strengths.map(|_| ()).map_err(|(_, reason)| BelvedereError::Appearance { option: "stylise", reason })
+    }
+
+    /// Gives molecules of a document their shadows, which tell what stands in front of what.
+    pub(super) fn shade_molecules(&self, document: &mut Document) {
+        if !self.no_shadows && document.layer.iter().any(|layer| matches!(layer, LayerDoc::Molecule(_))) {
+            document.light.get_or_insert_default().shadows = true;
+        }
     }
 
     /// Puts light, marks and stylisation into a document.

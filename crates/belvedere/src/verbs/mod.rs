@@ -18,6 +18,7 @@ pub mod open_files;
 pub mod pack;
 pub mod points;
 pub mod preset;
+mod refit;
 pub mod reveal;
 mod reveal_files;
 pub mod reveal_target;

@@ -2,6 +2,8 @@
 //! spline where it lies on the ground.
 
 use super::appearance::{Appearance, check_background};
+pub use super::refit::RefitRecord;
+use super::refit::{Content, Refit, refit as refit_to};
 pub use super::target_request::TargetRequest;
 use super::target_scene::{self, Meant, Targets};
 use super::{city_views, target_views};
@@ -48,12 +50,24 @@ pub struct TargetAnswer {
     pub technique: Option<Technique>,
     /// Kind of the target's mark in the pictures.
     pub mark: &'static str,
+    /// Change of the frame after the bend was known; `None` where the camera was given, a spline bends, or the frame stayed.
+    pub refit: Option<RefitRecord>,
 }
 
 /// A bend that was found.
 enum Bend {
-    Rays(Sidestep),
+    /// A turn behind the planes of a camera, which may look elsewhere than that of the picture.
+    Rays(Sidestep, Box<Pinhole>),
     Spline(Box<Revealed>),
+}
+
+impl Bend {
+    fn sidestep(&self) -> Option<&Sidestep> {
+        match self {
+            Self::Rays(sidestep, _) => Some(sidestep),
+            Self::Spline(_) => None,
+        }
+    }
 }
 
 /// A scene that was opened, and what must be seen in it.
@@ -65,6 +79,8 @@ pub(super) struct Opened {
     pub(super) targets: Targets,
     pub(super) up: DVec3,
     pub(super) lens: ([u32; 2], f64),
+    /// Whether the field of view is that of the request.
+    states_fov: bool,
 }
 
 impl Opened {
@@ -87,7 +103,8 @@ impl Opened {
             return Err(BelvedereError::Target(reason.into()));
         }
         let lens = (request.image.unwrap_or(IMAGE), fov_y_deg.to_radians());
-        Ok(Self { session, meant, see, targets, up: request.up.unwrap_or(DVec3::Z), lens })
+        let (up, states_fov) = (request.up.unwrap_or(DVec3::Z), request.fov_y_deg.is_some());
+        Ok(Self { session, meant, see, targets, up, lens, states_fov })
     }
 
     /// Whether views are chosen as those of a city.
@@ -113,11 +130,14 @@ impl Opened {
         }
     }
 
-    /// The camera of a bent picture, brought back to what it is to hold.
-    pub(super) fn reframed(&self, sight: &TargetSight<'_>, view: &View, sidestep: &Sidestep) -> Option<View> {
+    /// The camera in the frame that holds what is drawn, as the bend moves it.
+    pub(super) fn refitted(&self, sight: &TargetSight<'_>, view: &View, sidestep: Option<&Sidestep>) -> Option<Refit> {
         let (scene, target) = (self.session.scene(), &self.targets.search);
-        let points = if self.is_city() { city_views::region(target) } else { target_views::outline(scene) };
-        target_views::reframed(sight, view, sidestep, &points)
+        let is_city = self.is_city();
+        let points =
+            if is_city { city_views::region(target) } else { target_views::outline(scene, target_views::MANY) };
+        let content = Content { points: &points, up: self.up, may_zoom: !self.states_fov };
+        refit_to(sight, view, sidestep, &content)
     }
 
     /// The spline that shows more of the features in a view, if there is one.
@@ -174,16 +194,19 @@ fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnsw
         return Err(BelvedereError::Target("there is no view to look from".into()));
     };
     let only_spline = request.technique == Some(Technique::Spline);
-    let mut bend = sidestep.filter(|_| !only_spline).map(Bend::Rays);
-    if let Some(Bend::Rays(sidestep)) = bend.as_ref().filter(|_| free)
-        && let Some(moved) = opened.reframed(&searching, &view, sidestep)
-    {
-        view = moved;
+    let root = Box::new(view.pinhole().clone());
+    let mut bend = sidestep.filter(|_| !only_spline).map(|sidestep| Bend::Rays(sidestep, root));
+    let mut refit = None;
+    if free {
+        let sidestep = bend.as_ref().and_then(Bend::sidestep);
+        if let Some(found) = opened.refitted(&searching, &view, sidestep) {
+            (view, refit) = (found.straight, Some(found.record));
+        }
     }
     let other = (targets.judge != targets.search).then(|| TargetSight::new(scene, &targets.judge));
     let sight = other.as_ref().unwrap_or(&searching);
     let bent = match &bend {
-        Some(Bend::Rays(sidestep)) => sidestep.view(&view)?,
+        Some(Bend::Rays(sidestep, root)) => sidestep.seen_by(root, &view)?,
         _ => view.clone(),
     };
     let mut report = BendReport { tried, light_best, ..judged(sight, &view, &bent, report) };
@@ -195,7 +218,7 @@ fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnsw
         let by_spline = judged(sight, &view, &found.view, report);
         let gain = if only_spline { 0.0 } else { SPLINE_GAIN };
         if by_spline.visible > report.visible + gain {
-            (report, bend) = (by_spline, Some(Bend::Spline(Box::new(found))));
+            (report, bend, refit) = (by_spline, Some(Bend::Spline(Box::new(found))), None);
         }
     }
     let mut document = document(session, &view, bend.as_ref(), target)?;
@@ -209,9 +232,13 @@ fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnsw
         document.constructor = Some(ConstructorDoc { target, fallback, ..ConstructorDoc::of(ConstructorKind::Manual) });
     }
     let technique = bend.as_ref().map(|bend| match bend {
-        Bend::Rays(_) => Technique::CurvedRays,
+        Bend::Rays(..) => Technique::CurvedRays,
         Bend::Spline(_) => Technique::Spline,
     });
+    // Scene files say themselves whether they have shadows.
+    if session.path().is_none() {
+        request.appearance.shade_molecules(&mut document);
+    }
     request.appearance.describe(&mut document);
     let session = match request.appearance.is_usual() {
         true => session.with_document(document, None)?,
@@ -226,7 +253,7 @@ fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnsw
     let mut picture = session.render(&pair)?;
     let mut mark = "lines and points in colour, dashed where they are hidden";
     if let Some(place) = &place {
-        picture.mark_target(place, &report);
+        picture.mark_target(place, &report, pair.density);
         mark = place.mark;
     } else if let Some(shares) = picture.mark_shape(&session, (&targets.shape, &targets.judge), &pair)? {
         mark = "an outline around it, of dashes where it is hidden";
@@ -238,7 +265,7 @@ fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnsw
         }
     }
     let see = see.clone();
-    Ok(TargetAnswer { session, picture, report, see, place, technique, mark })
+    Ok(TargetAnswer { session, picture, report, see, place, technique, mark, refit })
 }
 
 /// A report with the shares of a straight and of a bent view.
@@ -308,7 +335,7 @@ fn document(session: &Session, view: &View, bend: Option<&Bend>, target: &Target
     document.constructor = None;
     document.stage.retain(|stage| !matches!(stage, StageDoc::CurvedRays(_)));
     match bend {
-        Some(Bend::Rays(s)) => document.stage.push(StageDoc::CurvedRays(sidestep_stage(s, pinhole))),
+        Some(Bend::Rays(s, root)) => document.stage.push(StageDoc::CurvedRays(sidestep_stage(s, root))),
         Some(Bend::Spline(found)) => document.stage.extend(spline_stage(found)),
         None => {}
     }
@@ -329,6 +356,10 @@ pub struct TargetDocument<'a> {
     #[serde(flatten)]
     report: BendReport,
     technique: Option<Technique>,
+    /// Change of the frame after the bend was known, so that all of the bent model lies inside; left out where the frame stayed, as it does
+    /// where the camera is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    refit: Option<RefitRecord>,
     /// Report of the fallback; left out if none was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     fallback: &'a Option<FallbackRecord>,
@@ -395,6 +426,7 @@ impl TargetAnswer {
             in_frame_bent: self.report.in_frame,
             report: self.report,
             technique: self.technique,
+            refit: self.refit,
             fallback: &sidecar.fallback,
             mark: self.mark,
             view: &sidecar.view,

@@ -48,8 +48,9 @@ fn drafted(request: &TargetRequest, count: usize, options: &OpenOptions) -> Resu
     let mut out = DraftsAnswer { drafts: Vec::new(), warnings: Vec::new() };
     for (k, view) in views.iter().enumerate() {
         let found = bend_around_by(&sight, view, &AroundOptions::default(), &options.progress)?;
-        let moved = found.bent.and_then(|(_, sidestep)| opened.reframed(&sight, view, &sidestep));
-        let Some((viewpoint, fov_y_deg)) = rounded(moved.as_ref().unwrap_or(view), opened.targets.search.center())
+        let moved = opened.refitted(&sight, view, found.bent.as_ref().map(|(_, sidestep)| sidestep));
+        let Some((viewpoint, fov_y_deg)) =
+            rounded(moved.as_ref().map_or(view, |m| &m.straight), opened.targets.search.center())
         else {
             continue;
         };

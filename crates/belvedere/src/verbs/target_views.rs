@@ -1,7 +1,7 @@
-//! Views of models around a target: the whole model fills the picture, and what a bend moves is brought back into its middle.
+//! Views of models around a target: the whole model fills the picture.
 
 use crate::BelvedereError;
-use belvedere_construct::rays::{Sidestep, Target, TargetSight};
+use belvedere_construct::rays::{Target, TargetSight};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_scene::{Layer, LayerKind, Scene, Unit};
 use rayon::prelude::*;
@@ -18,17 +18,17 @@ const WORTH: f64 = 0.03;
 const FITTED: f64 = 0.92;
 /// Share of the picture's height that the target takes up at least.
 const LEAST_TARGET: f64 = 0.22;
-/// Points by which a layer is framed, at most about.
-const MOST_POINTS: usize = 3000;
-/// Visible share that moving the frame may cost.
-const MAY_COST: f64 = 0.005;
+/// Triangles or voxels by which a layer is framed, at most about: when many views are tried, and when the one that was chosen is refitted.
+const FEW: usize = 3000;
+pub(super) const MANY: usize = 200_000;
 
 /// Points that show how far the visible layers reach.
-pub(super) fn outline(scene: &Scene) -> Vec<DVec3> {
+/// * `most`: triangles or voxels of a layer by which that is told, at most about.
+pub(super) fn outline(scene: &Scene, most: usize) -> Vec<DVec3> {
     let of = |layer: &Layer| -> Vec<DVec3> {
-        let thin = |count: usize| count.div_ceil(MOST_POINTS).max(1);
+        let thin = |count: usize| count.div_ceil(most).max(1);
         match &layer.kind {
-            LayerKind::Volume(v) => v.visible_voxels(MOST_POINTS),
+            LayerKind::Volume(v) => v.visible_voxels(most),
             LayerKind::Mesh(m) => {
                 let count = m.mesh.triangles().len();
                 (0..count).step_by(thin(count)).flat_map(|t| m.mesh.corners(t)).collect()
@@ -66,7 +66,7 @@ pub(super) fn around(
     (image, fov_y): ([u32; 2], f64),
     most: usize,
 ) -> Result<Vec<View>, BelvedereError> {
-    let points = outline(scene);
+    let points = outline(scene, FEW);
     let points = if points.is_empty() { target.points.clone() } else { points };
     let [east, north, up] = axes(up);
     let mut views = Vec::new();
@@ -128,52 +128,4 @@ pub(super) fn fitted(
     let near = 0.02 * (depths[0] - eye.dot(forward)).max(0.05 * distance).max(1e-6);
     let lens = Projection::Perspective { fov_y };
     Ok(Pinhole::look_at(eye, middle, up, lens, image, near, None)?)
-}
-
-/// The camera of a bent picture, turned and zoomed so that the model fills the bent picture and lies in the middle of the straight and the
-/// bent one together; `None` if it stays as it is because the target would be seen less.
-///
-/// * `points`: what the picture is to hold.
-pub(super) fn reframed(sight: &TargetSight<'_>, base: &View, sidestep: &Sidestep, points: &[DVec3]) -> Option<View> {
-    let share = |view: &View| sidestep.view(view).map_or(0.0, |bent| sight.share(&bent, 0.0));
-    let (before, mut best) = (share(base), None);
-    let mut view = base.clone();
-    for _ in 0..3 {
-        let (low, high) = extent(&view, sidestep, points)?;
-        view = turned(&view, (low, high))?;
-        if share(&view) + MAY_COST >= before {
-            best = Some(view.clone());
-        }
-    }
-    best
-}
-
-/// Box in the picture around the bent and the straight image of the points, pixels; without the outermost hundredth.
-fn extent(view: &View, sidestep: &Sidestep, points: &[DVec3]) -> Option<(DVec2, DVec2)> {
-    let bent = sidestep.view(view).ok()?;
-    let images = |view: &View| points.iter().filter_map(|p| Some(view.project(*p).ok()?.pixel)).collect::<Vec<_>>();
-    let all: Vec<DVec2> = images(&bent).into_iter().chain(images(view)).filter(|p| p.is_finite()).collect();
-    let range = |of: fn(&DVec2) -> f64| {
-        let mut values: Vec<f64> = all.iter().map(of).collect();
-        values.sort_by(f64::total_cmp);
-        let last = values.len().checked_sub(1)?;
-        let cut = last / 200;
-        Some((values[cut], values[last - cut]))
-    };
-    let ((left, right), (top, bottom)) = (range(|p| p.x)?, range(|p| p.y)?);
-    Some((DVec2::new(left, top), DVec2::new(right, bottom)))
-}
-
-/// The camera turned towards the middle of a box in its picture, with the field of view that holds the box.
-fn turned(view: &View, (low, high): (DVec2, DVec2)) -> Option<View> {
-    let old = view.pinhole();
-    let Projection::Perspective { fov_y } = old.projection else { return None };
-    let size = DVec2::from(old.image.map(f64::from));
-    let off = (0.5 * (low + high) - old.center_px()) / old.scale_px();
-    let forward = (old.forward + off.x * old.right + off.y * old.down).normalize();
-    let zoom = ((high - low) / (FITTED * size)).max_element().clamp(0.5, 2.0);
-    let fov_y = 2.0 * ((0.5 * fov_y).tan() * zoom).atan();
-    let lens = Projection::Perspective { fov_y: fov_y.clamp(0.02, 1.6) };
-    let pinhole = Pinhole::look_at(old.eye, old.eye + forward, -old.down, lens, old.image, old.near, old.far).ok()?;
-    View::new(pinhole, view.stages().to_vec()).ok()
 }

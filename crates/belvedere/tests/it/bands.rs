@@ -7,10 +7,15 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, OnceLock};
 
 fn scene(name: &str, image: [u32; 2]) -> Session {
+    scene_with(name, image, "")
+}
+
+/// * `more`: text at the end of the scene file.
+fn scene_with(name: &str, image: [u32; 2], more: &str) -> Session {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes").join(name);
     let options = OpenOptions { image: Some(image), needs: Needs::Everything, ..OpenOptions::default() };
     // Coarser ground is solved sooner.
-    let text = std::fs::read_to_string(&path).expect("a scene").replace("&size=513", "&size=129");
+    let text = std::fs::read_to_string(&path).expect("a scene").replace("&size=513", "&size=129") + more;
     Session::from_text(&path, &text, &options).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
@@ -105,6 +110,24 @@ fn contours_do_not_break_between_bands() {
     let changed = color(&lined).iter().zip(&color(&plain)).filter(|(a, b)| a != b).count();
     assert!(changed > 2000, "lines in {changed} pixels");
     are_alike("contours", &lined, &options);
+}
+
+#[test]
+fn molecules_with_shadows_are_the_same_in_bands_and_on_any_number_of_threads() {
+    let lit = |shadows: bool| scene_with("dna.toml", [233, 117], &format!("\n[light]\nshadows = {shadows}\n"));
+    let session = lit(true);
+    are_alike("dna.toml with shadows", &session, &PictureOptions::default());
+    let drawn = |session: &Session, threads: usize| {
+        let mut options = PictureOptions::default();
+        options.quality.threads = threads;
+        session.render(&options).expect("drawn").frame.color
+    };
+    let one = drawn(&session, 1);
+    assert!(one == drawn(&session, 3), "threads change nothing");
+    let bright = |colors: &[[u8; 3]]| colors.iter().flatten().map(|c| f64::from(*c)).sum::<f64>() / colors.len() as f64;
+    let without = drawn(&lit(false), 1);
+    let darker = one.iter().zip(&without).filter(|(a, b)| a[0] + 8 < b[0]).count();
+    assert!(darker > one.len() / 100 && bright(&one) < bright(&without), "{darker} pixels lie in shadow");
 }
 
 #[test]

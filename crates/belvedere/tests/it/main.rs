@@ -7,6 +7,7 @@ mod exact;
 mod examples;
 mod export;
 mod films;
+mod framed;
 mod letters;
 mod memory;
 mod moving_pictures;
