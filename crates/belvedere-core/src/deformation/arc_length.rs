@@ -1,6 +1,6 @@
 //! Construction of the arc-length parametrisation.
 
-use super::{Cell, DeformationCurve, angle, curvature_in, tangent_in};
+use super::{Cell, DeformationCurve, Gate, angle, curvature_in, tangent_in};
 use crate::bspline::{BSpline, CubicSpan};
 use glam::DVec2;
 
@@ -260,6 +260,7 @@ fn finish(spans: Vec<CubicSpan>, builder: Builder) -> DeformationCurve {
     DeformationCurve {
         far: (far_point, tangent.unwrap_or(DVec2::X)),
         spans,
+        gates: gates(&cells, far_point),
         cells,
         starts,
         length,
@@ -269,4 +270,17 @@ fn finish(spans: Vec<CubicSpan>, builder: Builder) -> DeformationCurve {
         corners,
         corner_sense,
     }
+}
+
+fn gates(cells: &[Cell], far: DVec2) -> Vec<Gate> {
+    let mut out = Vec::with_capacity(cells.len() + 1);
+    for (i, cell) in cells.iter().enumerate() {
+        out.push(Gate { point: cell.point, tangent: cell.tangent[0], cell: Some(i) });
+        let next = cells.get(i + 1);
+        if next.is_none_or(|next| angle(cell.tangent[1], next.tangent[0]) > CORNER) {
+            let point = next.map_or(far, |next| next.point);
+            out.push(Gate { point, tangent: cell.tangent[1], cell: None });
+        }
+    }
+    out
 }

@@ -13,25 +13,29 @@ impl DeformationCurve {
                 best = Some((l, d));
             }
         };
-        let near = &self.cells[0];
-        let along = (q - near.point).dot(near.tangent[0]);
+        let near = &self.gates[0];
+        let along = (q - near.point).dot(near.tangent);
         if along < 0.0 {
-            offer(along, (q - near.point).dot(near.tangent[0].perp()));
+            offer(along, (q - near.point).dot(near.tangent.perp()));
         }
         let (far_point, far_tangent) = self.far;
         let along = (q - far_point).dot(far_tangent);
         if along > 0.0 {
             offer(self.length + along, (q - far_point).dot(far_tangent.perp()));
         }
-        for (i, cell) in self.cells.iter().enumerate() {
-            let end = self.cells.get(i + 1).map_or(far_point, |c| c.point);
-            let along = [(q - cell.point).dot(cell.tangent[0]), (q - end).dot(cell.tangent[1])];
-            if along[0] >= 0.0
-                && along[1] <= 0.0
-                && let Some((l, d)) = self.foot_in(cell, q, along)
+        let mut before = f64::NEG_INFINITY;
+        let mut cell = None;
+        // Where the tangent points away from the position at a cell's end and towards it at its start, the cell has a foot.
+        for gate in &self.gates {
+            let along = (q - gate.point).dot(gate.tangent);
+            if before >= 0.0
+                && along <= 0.0
+                && let Some(cell) = cell
+                && let Some((l, d)) = self.foot_in(&self.cells[cell], q, [before, along])
             {
                 offer(l, d);
             }
+            (before, cell) = (along, gate.cell);
         }
         best
     }

@@ -16,6 +16,7 @@ use glam::DVec2;
 pub struct DeformationCurve {
     spans: Vec<CubicSpan>,
     cells: Vec<Cell>,
+    gates: Vec<Gate>,
     starts: Vec<f64>,
     length: f64,
     scale: f64,
@@ -46,6 +47,15 @@ struct Cell {
     /// Turning and total variation of the curvature from `l = -inf` to the start of the cell.
     turning: f64,
     variation: f64,
+}
+
+/// A point between cells, or an end, with the tangent there; corners have one for each of their tangents.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Gate {
+    point: DVec2,
+    tangent: DVec2,
+    /// The cell that begins here.
+    cell: Option<usize>,
 }
 
 /// Point, unit tangent and curvature of a [`DeformationCurve`].
