@@ -17,6 +17,7 @@ mod clip;
 mod compose;
 mod cubic;
 mod cursor;
+mod edges;
 mod gather;
 mod light;
 mod march;
@@ -72,8 +73,9 @@ impl Gathered {
 fn place_in_step(pixel: DVec2) -> f64 {
     let at = pixel.floor();
     let noise = (52.982_918_9 * (0.067_110_56 * at.x + 0.005_837_15 * at.y).fract()).fract();
-    // Rays of one pixel share the step among them.
-    (noise + (4.0 * (pixel.y - at.y)).floor() / 4.0).fract()
+    // The three rays of a pixel at an edge share the step among them.
+    let thirds = (3.0 * (pixel - at)).floor();
+    (noise + 0.5 + (thirds.x + thirds.y - 2.0) / 3.0).rem_euclid(1.0)
 }
 
 /// Share of a step, 0..=1, after which half of the light is left; light decays exponentially along the step.
