@@ -25,7 +25,7 @@ impl DeformationCurve {
         }
         let mut before = f64::NEG_INFINITY;
         let mut cell = None;
-        // Where the tangent points away from the position at a cell's end and towards it at its start, the cell has a foot.
+        // A cell has a foot where the position lies ahead of its start and behind its end.
         for gate in &self.gates {
             let along = (q - gate.point).dot(gate.tangent);
             if before >= 0.0

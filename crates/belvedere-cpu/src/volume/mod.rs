@@ -6,7 +6,7 @@
 //! 2. [`march`]: samples at equal distances along them, front to back, of many rays side by side ([`packet`]); [`bricks`] tell where
 //!    nothing can be seen, [`table`] gives colour and opacity, [`sampler`] interpolates many samples at once.
 //! 3. [`compose`]: over the surfaces by depth, and into depth, id and place where more than half of the light is absorbed; [`smooth`]
-//!    follows more rays where neighbouring pixels differ.
+//!    follows more rays at the [`edges`].
 //!
 //! [`reference`] does the same in 64 bits, one sample after the other: the exact renderer uses it, and the fast method is tested against it.
 //! Source: Cui et al. 2010, section on volumes; equal steps, opacity by length and skipping are ours or common.
