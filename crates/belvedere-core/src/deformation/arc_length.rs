@@ -1,6 +1,6 @@
 //! Construction of the arc-length parametrisation.
 
-use super::{Cell, DeformationCurve, angle, curvature_in, tangent_in};
+use super::{Cell, DeformationCurve, Gate, angle, curvature_in, tangent_in};
 use crate::bspline::{BSpline, CubicSpan};
 use glam::DVec2;
 
@@ -11,6 +11,8 @@ const CORNER: f64 = 1e-3;
 /// Most cells of a curve, which bounds the subdivision; typical curves need 1 to 100.
 const MAX_CELLS: usize = 4096;
 const LOBATTO: usize = 8;
+/// Coefficients of a polynomial in -1..=1.
+type Poly = [f64; LOBATTO];
 
 /// Positive nodes and weights of the 16-point Gauss-Legendre rule on -1..=1.
 const GAUSS: [(f64, f64); 8] = [
@@ -128,7 +130,7 @@ impl Builder {
         if (whole - halves).abs() <= 0.1 * self.tolerance || last {
             let poly = fit_inverse(span, x0, x1, whole);
             if last || inverse_error(span, x0, x1, whole, &poly) <= self.tolerance {
-                self.push(span, index, [x0, x1], whole, poly);
+                self.push(span, index, [x0, x1], whole, (poly, fit_length(span, x0, x1, whole)));
                 return;
             }
         }
@@ -136,7 +138,7 @@ impl Builder {
         self.cover(span, index, mid, x1, depth + 1);
     }
 
-    fn push(&mut self, span: &CubicSpan, index: usize, [x0, x1]: [f64; 2], length: f64, poly: [f64; LOBATTO]) {
+    fn push(&mut self, span: &CubicSpan, index: usize, [x0, x1]: [f64; 2], length: f64, (poly, arc): (Poly, Poly)) {
         let (l0, l1) = (self.end, self.end + length);
         if !(l1 > l0) {
             return;
@@ -149,6 +151,7 @@ impl Builder {
             x_mid,
             x_half: 0.5 * (x1 - x0),
             poly,
+            arc,
             point: span.point(x0),
             tangent: [x0, x1].map(|x| tangent_in(span, x, x_mid, self.scale)),
             kap: [x0, x1].map(|x| curvature_in(span, x, x_mid, self.scale)),
@@ -181,17 +184,27 @@ fn solve(span: &CubicSpan, x0: f64, x1: f64, length: f64, l: f64) -> f64 {
     x
 }
 
-/// Coefficients of the polynomial through the inverse at the Chebyshev-Lobatto points, in `y` of -1..=1.
-fn fit_inverse(span: &CubicSpan, x0: f64, x1: f64, length: f64) -> [f64; LOBATTO] {
+/// The parameter, as `y` of -1..=1, over the arc length.
+fn fit_inverse(span: &CubicSpan, x0: f64, x1: f64, length: f64) -> Poly {
+    fit(|y| {
+        let x = solve(span, x0, x1, length, 0.5 * (y + 1.0) * length);
+        (2.0 * x - x0 - x1) / (x1 - x0)
+    })
+}
+
+/// The arc length, as `y` of -1..=1, over the parameter.
+fn fit_length(span: &CubicSpan, x0: f64, x1: f64, length: f64) -> Poly {
+    fit(|y| 2.0 * gauss_length(span, x0, 0.5 * (x0 + x1 + y * (x1 - x0))) / length - 1.0)
+}
+
+/// The polynomial through a function at the Chebyshev-Lobatto points; at -1 and 1 it is -1 and 1.
+fn fit(of: impl Fn(f64) -> f64) -> Poly {
     let last = LOBATTO - 1;
-    let y: [f64; LOBATTO] = std::array::from_fn(|k| -(std::f64::consts::PI * k as f64 / last as f64).cos());
-    let mut c: [f64; LOBATTO] = std::array::from_fn(|k| match k {
+    let y: Poly = std::array::from_fn(|k| -(std::f64::consts::PI * k as f64 / last as f64).cos());
+    let mut c: Poly = std::array::from_fn(|k| match k {
         0 => -1.0,
         k if k == last => 1.0,
-        k => {
-            let x = solve(span, x0, x1, length, 0.5 * (y[k] + 1.0) * length);
-            (2.0 * x - x0 - x1) / (x1 - x0)
-        }
+        k => of(y[k]),
     });
     for order in 1..LOBATTO {
         for k in (order..LOBATTO).rev() {
@@ -199,7 +212,7 @@ fn fit_inverse(span: &CubicSpan, x0: f64, x1: f64, length: f64) -> [f64; LOBATTO
         }
     }
     // Newton's form to powers of y.
-    let mut poly = [0.0; LOBATTO];
+    let mut poly: Poly = [0.0; LOBATTO];
     for k in (0..LOBATTO).rev() {
         for i in (1..LOBATTO).rev() {
             poly[i] = poly[i - 1] - y[k] * poly[i];
@@ -210,7 +223,7 @@ fn fit_inverse(span: &CubicSpan, x0: f64, x1: f64, length: f64) -> [f64; LOBATTO
 }
 
 /// Largest error in arc length of a fitted inverse, measured halfway between its nodes.
-fn inverse_error(span: &CubicSpan, x0: f64, x1: f64, length: f64, poly: &[f64; LOBATTO]) -> f64 {
+fn inverse_error(span: &CubicSpan, x0: f64, x1: f64, length: f64, poly: &Poly) -> f64 {
     (0..LOBATTO - 1)
         .map(|k| {
             let y = -(std::f64::consts::PI * (k as f64 + 0.5) / (LOBATTO - 1) as f64).cos();
@@ -247,6 +260,7 @@ fn finish(spans: Vec<CubicSpan>, builder: Builder) -> DeformationCurve {
     DeformationCurve {
         far: (far_point, tangent.unwrap_or(DVec2::X)),
         spans,
+        gates: gates(&cells, far_point),
         cells,
         starts,
         length,
@@ -256,4 +270,17 @@ fn finish(spans: Vec<CubicSpan>, builder: Builder) -> DeformationCurve {
         corners,
         corner_sense,
     }
+}
+
+fn gates(cells: &[Cell], far: DVec2) -> Vec<Gate> {
+    let mut out = Vec::with_capacity(cells.len() + 1);
+    for (i, cell) in cells.iter().enumerate() {
+        out.push(Gate { point: cell.point, tangent: cell.tangent[0], cell: Some(i) });
+        let next = cells.get(i + 1);
+        if next.is_none_or(|next| angle(cell.tangent[1], next.tangent[0]) > CORNER) {
+            let point = next.map_or(far, |next| next.point);
+            out.push(Gate { point, tangent: cell.tangent[1], cell: None });
+        }
+    }
+    out
 }

@@ -1,6 +1,7 @@
 //! A planar curve parametrised by arc length, with its curvature, turning and closest points.
 
 mod arc_length;
+mod foot;
 
 pub use arc_length::CurveTooShort;
 
@@ -15,6 +16,7 @@ use glam::DVec2;
 pub struct DeformationCurve {
     spans: Vec<CubicSpan>,
     cells: Vec<Cell>,
+    gates: Vec<Gate>,
     starts: Vec<f64>,
     length: f64,
     scale: f64,
@@ -35,6 +37,8 @@ struct Cell {
     x_half: f64,
     /// Span parameter as `x_mid + x_half * poly(y)`, `y` in -1..=1 over the cell's arc length.
     poly: [f64; 8],
+    /// Roughly its inverse: `y` by `(x - x_mid) / x_half`.
+    arc: [f64; 8],
     point: DVec2,
     /// Tangents at the start and at the end.
     tangent: [DVec2; 2],
@@ -43,6 +47,15 @@ struct Cell {
     /// Turning and total variation of the curvature from `l = -inf` to the start of the cell.
     turning: f64,
     variation: f64,
+}
+
+/// A point between cells, or an end, with the tangent there; corners have one for each of their tangents.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Gate {
+    point: DVec2,
+    tangent: DVec2,
+    /// The cell that begins here.
+    cell: Option<usize>,
 }
 
 /// Point, unit tangent and curvature of a [`DeformationCurve`].
@@ -98,8 +111,14 @@ impl DeformationCurve {
 
     /// Point, tangent and curvature at arc length `l`. At the ends of the curve the curvature is that of the curve.
     pub fn frame_at(&self, l: f64) -> CurveFrame {
-        let (point, tangent) = self.at(l);
-        CurveFrame { point, tangent, kap: self.curvature_at(l) }
+        if !(0.0..=self.length).contains(&l) {
+            let (point, tangent) = self.at(l);
+            return CurveFrame { point, tangent, kap: 0.0 };
+        }
+        let cell = self.cell_at(l);
+        let (span, x) = (&self.spans[cell.span], cell.parameter(l));
+        let (tangent, kap) = frame_in(span, x, cell.x_mid, self.scale);
+        CurveFrame { point: span.point(x), tangent, kap }
     }
 
     /// Signed curvature at arc length `l`, 1 / curve unit; at its jumps that of the far side.
@@ -130,112 +149,22 @@ impl DeformationCurve {
 
     /// Everything that the curve knows of arc length `l`, which must be finite: one evaluation where the methods above take one each.
     pub fn station(&self, l: f64) -> Station {
+        let frame = self.frame_at(l);
         if !(0.0..=self.length).contains(&l) {
             let (turning, variation) = if l < 0.0 { (0.0, 0.0) } else { (self.turning, self.variation) };
-            let (point, tangent) = self.at(l);
-            return Station { frame: CurveFrame { point, tangent, kap: 0.0 }, turning, variation };
+            return Station { frame, turning, variation };
         }
         let cell = self.cell_at(l);
-        let (span, x) = (&self.spans[cell.span], cell.parameter(l));
-        let (tangent, kap) = frame_in(span, x, cell.x_mid, self.scale);
         Station {
-            frame: CurveFrame { point: span.point(x), tangent, kap },
-            turning: cell.turning + angle(cell.tangent[0], tangent),
-            variation: cell.variation + (kap - cell.kap[0]).abs(),
+            frame,
+            turning: cell.turning + angle(cell.tangent[0], frame.tangent),
+            variation: cell.variation + (frame.kap - cell.kap[0]).abs(),
         }
     }
 
     /// Arc lengths at which the tangent jumps (at three or more coincident control points or knots).
     pub fn corners(&self) -> &[f64] {
         &self.corners
-    }
-
-    /// Arc length and signed distance of the closest foot of the perpendicular from `q`; extensions included.
-    /// `None` if no foot lies before the centre of curvature, e.g. opposite a corner.
-    pub fn foot(&self, q: DVec2) -> Option<(f64, f64)> {
-        let mut best: Option<(f64, f64)> = None;
-        let mut offer = |l: f64, d: f64| {
-            if best.is_none_or(|(_, b)| d.abs() < b.abs()) {
-                best = Some((l, d));
-            }
-        };
-        let near = &self.cells[0];
-        let along = (q - near.point).dot(near.tangent[0]);
-        if along < 0.0 {
-            offer(along, (q - near.point).dot(near.tangent[0].perp()));
-        }
-        let (far_point, far_tangent) = self.far;
-        let along = (q - far_point).dot(far_tangent);
-        if along > 0.0 {
-            offer(self.length + along, (q - far_point).dot(far_tangent.perp()));
-        }
-        for (i, cell) in self.cells.iter().enumerate() {
-            let end = self.cells.get(i + 1).map_or(far_point, |c| c.point);
-            let along = [(q - cell.point).dot(cell.tangent[0]), (q - end).dot(cell.tangent[1])];
-            if along[0] >= 0.0
-                && along[1] <= 0.0
-                && let Some((l, d)) = self.foot_in(cell, q, along)
-            {
-                offer(l, d);
-            }
-        }
-        best
-    }
-
-    /// The foot that Newton's method finds from arc length `near`, which should be close to it; that of [`DeformationCurve::foot`] where it
-    /// finds none. `near` must be finite.
-    pub fn foot_near(&self, q: DVec2, near: f64) -> Option<(f64, f64)> {
-        let mut l = near;
-        for _ in 0..6 {
-            let frame = self.frame_at(l);
-            let v = q - frame.point;
-            let (along, d) = (v.dot(frame.tangent), v.dot(frame.normal()));
-            let stretch = 1.0 - frame.kap * d;
-            if !(stretch > 0.05) {
-                break;
-            }
-            l += along / stretch;
-            // Quadratic convergence: the next step would be below rounding, and d is least here.
-            if (along / stretch).abs() <= 1e-8 * self.length {
-                return Some((l, d));
-            }
-        }
-        self.foot(q)
-    }
-
-    /// Root of `(q - P(l)) . T(l)` in a cell at whose ends it has the values `along`, + and -.
-    fn foot_in(&self, cell: &Cell, q: DVec2, along: [f64; 2]) -> Option<(f64, f64)> {
-        let span = &self.spans[cell.span];
-        // Along, across, and the derivative of -along.
-        let offsets = |l: f64| {
-            let x = cell.parameter(l);
-            let (t, kap) = frame_in(span, x, cell.x_mid, self.scale);
-            let v = q - span.point(x);
-            let d = v.dot(t.perp());
-            (v.dot(t), d, 1.0 - kap * d)
-        };
-        let (mut lo, mut hi) = (cell.l0, cell.l1);
-        let share = along[0] / (along[0] - along[1]);
-        let mut l = if share.is_finite() { lo + share * (hi - lo) } else { 0.5 * (lo + hi) };
-        for _ in 0..80 {
-            let (g, _, j) = offsets(l);
-            if g > 0.0 {
-                lo = l
-            } else {
-                hi = l
-            }
-            let newton = l + g / j;
-            let smooth = j > 0.0 && newton >= lo && newton <= hi;
-            let next = if smooth { newton } else { 0.5 * (lo + hi) };
-            let step = (next - l).abs();
-            l = next;
-            if step <= if smooth { 1e-6 } else { 1e-8 } * self.length {
-                break;
-            }
-        }
-        // Quadratic convergence: one more step from here is exact.
-        let (g, d, j) = offsets(l);
-        (j > 1e-9).then(|| (l + g / j, d))
     }
 
     /// Smallest sine of the angle between the curve and the ray from `eye`, for `l` between `l0 <= l1`; negative where the eye lies
@@ -266,6 +195,15 @@ impl Cell {
     fn parameter(&self, l: f64) -> f64 {
         let y = ((2.0 * l - self.l0 - self.l1) / (self.l1 - self.l0)).clamp(-1.0, 1.0);
         self.x_mid + self.x_half * self.poly.iter().rev().fold(0.0, |sum, c| sum * y + c)
+    }
+
+    /// Arc length at a parameter: one step of Newton's method on `poly` from `arc`.
+    fn arc_length(&self, x: f64) -> f64 {
+        let u = (x - self.x_mid) / self.x_half;
+        let y = self.arc.iter().rev().fold(0.0, |sum, c| sum * u + c);
+        let (value, slope) = self.poly.iter().rev().fold((0.0, 0.0), |(v, d), c| (v * y + c, d * y + v));
+        let y = (y - (value - u) / slope).clamp(-1.0, 1.0);
+        0.5 * (self.l0 + self.l1 + y * (self.l1 - self.l0))
     }
 }
 

@@ -299,3 +299,58 @@ fn hostile_control_points_end_in_a_finite_curve_or_an_error() {
         assert!(DeformationCurve::new(&BSpline::clamped_uniform(control).unwrap()).is_err());
     }
 }
+
+/// The nearest foot by bisection between places half a thousandth of the curve apart: arc length and signed distance.
+fn slow_foot(curve: &DeformationCurve, q: DVec2) -> Option<(f64, f64)> {
+    let along = |l: f64| {
+        let frame = curve.frame_at(l);
+        (q - frame.point).dot(frame.tangent)
+    };
+    let reach = curve.length() + q.length() + curve.at(0.0).0.length();
+    let inner = (0..=2000).map(|i| f64::from(i) / 2000.0 * curve.length());
+    let places: Vec<f64> = std::iter::once(-reach).chain(inner).chain([curve.length() + reach]).collect();
+    let root = |[mut lo, mut hi]: [f64; 2]| {
+        for _ in 0..120 {
+            let middle = 0.5 * (lo + hi);
+            if along(middle) > 0.0 { lo = middle } else { hi = middle }
+        }
+        let frame = curve.frame_at(hi);
+        (hi, (q - frame.point).dot(frame.normal()))
+    };
+    let falls = |pair: &&[f64]| along(pair[0]) > 0.0 && along(pair[1]) <= 0.0;
+    let roots = places.windows(2).filter(falls).map(|pair| root([pair[0], pair[1]]));
+    roots.min_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
+}
+
+#[test]
+fn feet_are_those_of_bisection_near_centres_of_curvature_and_beyond_the_ends_too() {
+    let mut random = Random::new(77);
+    let mut tight = 0;
+    for round in 0..60 {
+        let mut x = 0.0;
+        let mut next = || {
+            x += random.range(0.2, 1.0);
+            DVec2::new(x, random.range(-0.6, 0.6))
+        };
+        let control = (0..7).map(|_| next()).collect();
+        let curve = DeformationCurve::new(&BSpline::clamped_uniform(control).unwrap()).unwrap();
+        for _ in 0..12 {
+            let frame = curve.frame_at(random.range(-0.3, 1.3) * curve.length());
+            // Up to the centre of curvature, where a foot is no longer the nearest point, and on the other side.
+            let share = [random.range(-2.0, 0.9), random.range(0.9, 0.999)][random.below(2)];
+            let d = if frame.kap == 0.0 { random.range(-1.0, 1.0) } else { (share / frame.kap).clamp(-3.0, 3.0) };
+            let q = frame.point + d * frame.normal();
+            let (Some((l, d)), Some((want_l, want_d))) = (curve.foot(q), slow_foot(&curve, q)) else {
+                panic!("round {round}: no foot of {q}")
+            };
+            assert!((d.abs() - want_d.abs()).abs() < 1e-12, "round {round}: {d} for {want_d} from {q}");
+            // Two feet may be equally near; near centres of curvature the foot is less certain than its distance.
+            let stretch = (1.0 - curve.curvature_at(want_l) * want_d).abs();
+            if (d - want_d).abs() < 1e-12 && (l - want_l).abs() < 0.1 * curve.length() {
+                assert!((l - want_l).abs() * stretch < 1e-12, "round {round}: {l} for {want_l} from {q}");
+                tight += u32::from(stretch < 0.1 && frame.kap != 0.0);
+            }
+        }
+    }
+    assert!(tight > 20, "{tight} feet near centres of curvature");
+}

@@ -1,7 +1,8 @@
 //! Composites volumes over the surfaces of a picture.
 
 use super::Gathered;
-use super::gather::{Drawing, Drawn, Found, Way};
+use super::edges::Cover;
+use super::gather::{Drawing, Drawn, Found, Row, Way};
 use super::march::Marcher;
 use super::ray::Rays;
 use super::smooth::{self, Behind};
@@ -39,29 +40,34 @@ pub(crate) fn compose(job: &RenderJob<'_>, way: Way, buffers: &mut Buffers) -> R
     let far = job.view.pinhole().far.unwrap_or(f64::INFINITY);
     let rays = Rays::new(job.view, [job.view.pinhole().near, deepest(job.scene, job.view)]);
     let drawing = Drawing { rays, volumes, way, width };
-    let behind = Behind::of(job, buffers, far);
+    let mut behind = Behind::of(job, buffers, far);
     let (samples, done) = (AtomicU64::new(0), AtomicUsize::new(0));
     let chunk = ROWS * width;
     let Buffers { color, depth, id, world, .. } = &mut *buffers;
-    let mut worlds: Vec<Option<&mut [[f64; 3]]>> = match world {
-        Some(w) => w.chunks_mut(chunk).map(Some).collect(),
-        None => (0..height.div_ceil(ROWS)).map(|_| None).collect(),
-    };
+    let mut worlds = parts(world.as_deref_mut(), chunk, height);
+    let mut covers = parts(behind.as_mut().map(|behind| &mut behind.cover[..]), chunk, height);
     let parts = color.par_chunks_mut(chunk).zip(depth.par_chunks_mut(chunk)).zip(id.par_chunks_mut(chunk));
-    parts.zip(worlds.par_iter_mut()).enumerate().try_for_each(|(i, (((color, depth), id), world))| {
-        let mut rows = Rows { width, color, depth, id, world: world.as_deref_mut() };
-        for y in 0..rows.depth.len() / width {
-            let taken = rows.draw(&drawing, far, [y, i * ROWS + y]);
-            samples.fetch_add(taken, Ordering::Relaxed);
-        }
+    let parts = parts.zip(worlds.par_iter_mut()).zip(covers.par_iter_mut());
+    parts.enumerate().try_for_each(|(i, ((((color, depth), id), world), cover))| {
+        let (world, cover) = (world.as_deref_mut(), cover.as_deref_mut());
+        let mut rows = Rows { width, color, depth, id, world, cover };
+        samples.fetch_add(rows.draw(&drawing, far, i * ROWS), Ordering::Relaxed);
         let done = (done.fetch_add(1, Ordering::Relaxed) + 1) * ROWS;
         job.progress.tick("volumes", (done as f64 / height as f64).min(1.0))
     })?;
     let smoothed = match behind {
-        Some(behind) => smooth::edges(job, &drawing, &behind, &mut buffers.color)?,
+        Some(behind) => smooth::draw(job, &drawing, &behind, buffers)?,
         None => 0,
     };
     Ok(samples.into_inner() + smoothed)
+}
+
+/// Chunks of something that there may be for every pixel, for each [`ROWS`] rows.
+fn parts<T>(all: Option<&mut [T]>, chunk: usize, height: usize) -> Vec<Option<&mut [T]>> {
+    match all {
+        Some(all) => all.chunks_mut(chunk).map(Some).collect(),
+        None => (0..height.div_ceil(ROWS)).map(|_| None).collect(),
+    }
 }
 
 /// Some rows of the picture.
@@ -71,18 +77,26 @@ struct Rows<'b> {
     depth: &'b mut [f32],
     id: &'b mut [u32],
     world: Option<&'b mut [[f64; 3]]>,
+    cover: Option<&'b mut [Cover]>,
 }
 
 impl Rows<'_> {
-    /// Draws row `y` of these, row `image_y` of the picture.
-    fn draw(&mut self, drawing: &Drawing<'_>, far: f64, [y, image_y]: [usize; 2]) -> u64 {
-        let row = y * self.width..(y + 1) * self.width;
+    /// Draws the rows, the first of which is row `first` of the picture. Returns the number of samples taken.
+    fn draw(&mut self, drawing: &Drawing<'_>, far: f64, first: usize) -> u64 {
         // Ends of the rays: depths of the surfaces before any volume is drawn.
-        let ends: Vec<f64> = self.depth[row].iter().map(|d| f64::from(*d).min(far)).collect();
-        let (found, samples) = drawing.row((image_y, DVec2::splat(0.5)), |x| Some(ends[x]));
-        for Found { column, layer, gathered } in found {
-            let half = gathered.half.map(|(depth, place)| (drawing.rays.depth_of(place, depth), place));
-            self.lay(y * self.width + column, layer, &Gathered { half, ..gathered });
+        let ends: Vec<f64> = self.depth.iter().map(|d| f64::from(*d).min(far)).collect();
+        let rows: Vec<Row> =
+            (0..ends.len() / self.width).map(|y| Row { y: first + y, within: DVec2::splat(0.5) }).collect();
+        let (found, samples) = drawing.gather(&rows, |row, x| Some(ends[row * self.width + x]));
+        for ray in found.chunk_by(|a, b| (a.row, a.column) == (b.row, b.column)) {
+            let i = ray[0].row * self.width + ray[0].column;
+            if let Some(cover) = &mut self.cover {
+                cover[i] = Cover::of(ray.iter().map(|found| &found.gathered));
+            }
+            for Found { layer, gathered, .. } in ray {
+                let half = gathered.half.map(|(depth, place)| (drawing.rays.depth_of(place, depth), place));
+                self.lay(i, *layer, &Gathered { half, ..*gathered });
+            }
         }
         samples
     }

@@ -1,4 +1,4 @@
-//! What the rays of a row gather in all volumes of a scene.
+//! What the rays of some rows gather in all volumes of a scene.
 
 use super::clip::Segment;
 use super::march::Marcher;
@@ -8,8 +8,9 @@ use super::{Gathered, place_in_step, reference};
 use belvedere_core::DVec2;
 use belvedere_scene::VolumeLayer;
 
-/// Most rays that are followed together.
-const BATCH: usize = 256;
+/// Most rays that are followed together, and segments of rays beyond which no more are added.
+const BATCH: usize = 1024;
+const SEGMENTS: usize = 4096;
 
 /// Algorithm that follows rays.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,8 +29,17 @@ pub(super) struct Drawn<'a> {
     pub(super) spans: Spans,
 }
 
-/// What a ray of a column gathers in a layer.
+/// Rays of a row of the picture, at one place within their pixels, 0..=1.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Row {
+    pub(super) y: usize,
+    pub(super) within: DVec2,
+}
+
+/// What a ray gathers in a layer.
 pub(super) struct Found {
+    /// Which of the rows, and the column.
+    pub(super) row: usize,
     pub(super) column: usize,
     pub(super) layer: usize,
     pub(super) gathered: Gathered,
@@ -44,53 +54,73 @@ pub(super) struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    /// What the rays of a row gather at a place within their pixels: by column, the farthest volume first; and the number of samples.
+    /// The longest edge of a voxel, of those that [`belvedere_scene::Volume::voxel_edge`] tells, scene units.
+    pub(super) fn voxel(&self) -> f64 {
+        self.volumes.iter().map(|volume| volume.marcher.volume().voxel_edge()).fold(0.0, f64::max)
+    }
+
+    /// What the rays of rows gather: by row and column, the farthest volume first; and the number of samples.
     ///
-    /// * `wants`: the depth to which the ray of a column is followed; `None`: it is not.
-    pub(super) fn row(&self, (y, within): (usize, DVec2), wants: impl Fn(usize) -> Option<f64>) -> (Vec<Found>, u64) {
+    /// * `wants`: the depth to which the ray of a row and column is followed; `None`: it is not.
+    pub(super) fn gather(&self, rows: &[Row], wants: impl Fn(usize, usize) -> Option<f64>) -> (Vec<Found>, u64) {
         let mut found: Vec<Found> = Vec::new();
         let mut samples = 0;
         for volume in &self.volumes {
-            let mut take = |column: usize, gathered: Gathered| {
+            let mut take = |[row, column]: [usize; 2], gathered: Gathered| {
                 samples += u64::from(gathered.samples);
                 if gathered.alpha > 0.0 {
-                    found.push(Found { column, layer: volume.index, gathered });
+                    found.push(Found { row, column, layer: volume.index, gathered });
                 }
             };
             match self.way {
-                Way::Fast => {
-                    let mut batch = Batch::default();
-                    let wants = |x| wants(x).filter(|_| volume.spans.hold([x, y]));
-                    let voxels = volume.marcher.volume();
-                    self.rays.row((y, within), self.width, voxels, wants, |x, segments: &[Segment]| {
-                        if !segments.is_empty() {
-                            batch.add(x, place_in_step(DVec2::new(x as f64, y as f64) + within), segments);
-                            if batch.columns.len() == BATCH {
-                                batch.gather(&volume.marcher, &mut take);
-                            }
-                        }
-                    });
-                    batch.gather(&volume.marcher, &mut take);
-                }
+                Way::Fast => self.side_by_side(volume, rows, &wants, &mut take),
                 Way::Exact => {
-                    for x in 0..self.width {
-                        let Some(end) = wants(x) else { continue };
-                        let pixel = DVec2::new(x as f64, y as f64) + within;
-                        let range = [self.rays.near(), end.min(self.rays.deepest())];
-                        take(x, reference::gather(self.rays.view(), volume.layer, pixel, range));
+                    for (row, Row { y, within }) in rows.iter().enumerate() {
+                        for x in 0..self.width {
+                            let Some(end) = wants(row, x) else { continue };
+                            let pixel = DVec2::new(x as f64, *y as f64) + *within;
+                            let range = [self.rays.near(), end.min(self.rays.deepest())];
+                            take([row, x], reference::gather(self.rays.view(), volume.layer, pixel, range));
+                        }
                     }
                 }
             }
         }
-        found.sort_by(|a, b| a.column.cmp(&b.column).then(b.gathered.enters.total_cmp(&a.gathered.enters)));
+        let order = |f: &Found| [f.row, f.column];
+        found.sort_by(|a, b| order(a).cmp(&order(b)).then(b.gathered.enters.total_cmp(&a.gathered.enters)));
         (found, samples)
+    }
+
+    /// Follows the rays through one volume.
+    fn side_by_side(
+        &self,
+        volume: &Drawn<'_>,
+        rows: &[Row],
+        wants: &impl Fn(usize, usize) -> Option<f64>,
+        take: &mut impl FnMut([usize; 2], Gathered),
+    ) {
+        let mut batch = Batch::default();
+        let voxels = volume.marcher.volume();
+        for (row, Row { y, within }) in rows.iter().enumerate() {
+            let wants = |x| if volume.spans.hold([x, *y]) { wants(row, x) } else { None };
+            self.rays.row((*y, *within), self.width, voxels, wants, |x, segments: &[Segment]| {
+                if !segments.is_empty() {
+                    batch.add([row, x], place_in_step(DVec2::new(x as f64, *y as f64) + *within), segments);
+                    if batch.rays.len() == BATCH || batch.segments.len() >= SEGMENTS {
+                        batch.gather(&volume.marcher, take);
+                    }
+                }
+            });
+        }
+        batch.gather(&volume.marcher, take);
     }
 }
 
-/// Rays of a row that are followed together.
+/// Rays that are followed together.
 #[derive(Default)]
 struct Batch {
-    columns: Vec<usize>,
+    /// Row and column of each.
+    rays: Vec<[usize; 2]>,
     /// Segments of all rays, and for each ray the number of those before its end.
     segments: Vec<Segment>,
     ends: Vec<usize>,
@@ -99,17 +129,17 @@ struct Batch {
 }
 
 impl Batch {
-    fn add(&mut self, column: usize, within: f64, segments: &[Segment]) {
-        self.columns.push(column);
+    fn add(&mut self, ray: [usize; 2], within: f64, segments: &[Segment]) {
+        self.rays.push(ray);
         self.within.push(within);
         self.segments.extend_from_slice(segments);
         self.ends.push(self.segments.len());
     }
 
     /// Hands over what the rays gather, and forgets them.
-    fn gather(&mut self, marcher: &Marcher<'_>, take: &mut impl FnMut(usize, Gathered)) {
+    fn gather(&mut self, marcher: &Marcher<'_>, take: &mut impl FnMut([usize; 2], Gathered)) {
         let found = marcher.gather(&self.segments, &self.ends, &self.within);
-        self.columns.drain(..).zip(found).for_each(|(x, gathered)| take(x, gathered));
+        self.rays.drain(..).zip(found).for_each(|(ray, gathered)| take(ray, gathered));
         self.segments.clear();
         self.ends.clear();
         self.within.clear();

@@ -6,7 +6,7 @@
 //! 2. [`march`]: samples at equal distances along them, front to back, of many rays side by side ([`packet`]); [`bricks`] tell where
 //!    nothing can be seen, [`table`] gives colour and opacity, [`sampler`] interpolates many samples at once.
 //! 3. [`compose`]: over the surfaces by depth, and into depth, id and place where more than half of the light is absorbed; [`smooth`]
-//!    follows more rays where neighbouring pixels differ.
+//!    follows more rays at the [`edges`].
 //!
 //! [`reference`] does the same in 64 bits, one sample after the other: the exact renderer uses it, and the fast method is tested against it.
 //! Source: Cui et al. 2010, section on volumes; equal steps, opacity by length and skipping are ours or common.
@@ -17,6 +17,7 @@ mod clip;
 mod compose;
 mod cubic;
 mod cursor;
+mod edges;
 mod gather;
 mod light;
 mod march;
@@ -72,8 +73,9 @@ impl Gathered {
 fn place_in_step(pixel: DVec2) -> f64 {
     let at = pixel.floor();
     let noise = (52.982_918_9 * (0.067_110_56 * at.x + 0.005_837_15 * at.y).fract()).fract();
-    // Rays of one pixel share the step among them.
-    (noise + (4.0 * (pixel.y - at.y)).floor() / 4.0).fract()
+    // The three rays of a pixel at an edge share the step among them.
+    let thirds = (3.0 * (pixel - at)).floor();
+    (noise + 0.5 + (thirds.x + thirds.y - 2.0) / 3.0).rem_euclid(1.0)
 }
 
 /// Share of a step, 0..=1, after which half of the light is left; light decays exponentially along the step.

@@ -1,13 +1,16 @@
 //! The rays of the pixels of a view as segments inside the box of a volume.
 
 use super::clip::{Clip, Segment};
-use super::sheaf::Sheaf;
+use super::sheaf::{Sheaf, TILE};
 use crate::trace::curve::Split;
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::Volume;
 
 /// Relative difference below which two depths belong to one image of a point.
 const SAME_DEPTH: f64 = 0.02;
+
+/// Rays of a tile above which it pays to interpolate them.
+const MANY: usize = 6;
 
 /// Generates the segments of the rays of a view.
 pub(super) struct Rays<'a> {
@@ -75,14 +78,13 @@ impl<'a> Rays<'a> {
         let row = if self.pieces { None } else { self.split.row(first.y, self.range) };
         let mut sheaf = Sheaf::new(self.view, volume, self.range, first);
         let mut segments = Vec::new();
-        for x in 0..width {
-            let Some(far) = wants(x) else { continue };
+        for (x, far, is_one_of_many) in wanted(width, wants) {
             let pixel = first + DVec2::new(x as f64, 0.0);
             segments.clear();
             let mut clip = Clip::new(volume, &mut segments);
             if self.pieces {
                 let range = [self.range[0], far];
-                if !(self.interpolates && sheaf.ray(x, range, &mut clip)) {
+                if !(self.interpolates && is_one_of_many && sheaf.ray(x, range, &mut clip)) {
                     clip.pieces(self.view, pixel, range);
                 }
             } else {
@@ -92,4 +94,14 @@ impl<'a> Rays<'a> {
             each(x, &segments);
         }
     }
+}
+
+/// Columns of the rays to follow, the depths to which they are followed, and whether there are many in their tile.
+fn wanted(width: usize, wants: impl Fn(usize) -> Option<f64>) -> impl Iterator<Item = (usize, f64, bool)> {
+    (0..width).step_by(TILE).flat_map(move |first| {
+        let columns = first..(first + TILE).min(width);
+        let depths: Vec<Option<f64>> = columns.clone().map(&wants).collect();
+        let is_many = depths.iter().flatten().count() >= MANY;
+        columns.zip(depths).filter_map(move |(x, far)| Some((x, far?, is_many)))
+    })
 }

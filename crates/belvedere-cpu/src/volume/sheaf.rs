@@ -12,7 +12,7 @@ use belvedere_scene::Volume;
 
 /// Columns between computed rays, and those that three of them serve.
 const APART: usize = 16;
-const TILE: usize = 2 * APART;
+pub(super) const TILE: usize = 2 * APART;
 /// Largest number of cubics of a bent piece.
 const MAX_PARTS: usize = 48;
 /// Numbers of a straight piece: lattice coordinates at depth 0, their change per unit of depth, that of the length, first and last depth.
