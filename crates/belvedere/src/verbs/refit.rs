@@ -144,7 +144,7 @@ mod tests {
             BoxShape { base, size, yaw: 0.0, color: Color::rgb(200, 200, 200) }
         };
         let wall = BoxLayer::new(vec![slab(0.0, DVec3::new(60.0, 2.0, 40.0), 0.0)]);
-        let low = BoxLayer::new(vec![slab(40.0, DVec3::new(50.0, 2.0, 12.0), 22.0)]);
+        let low = BoxLayer::new(vec![slab(40.0, DVec3::new(50.0, 2.0, 12.0), 28.0)]);
         let layer = |id: &str, boxes| Layer { id: id.into(), must_see: false, kind: LayerKind::Boxes(boxes) };
         Scene { layers: vec![layer("wall", wall), layer("low", low)], unit: Unit::Angstrom, ..Scene::default() }
     }
