@@ -144,7 +144,7 @@ mod tests {
             BoxShape { base, size, yaw: 0.0, color: Color::rgb(200, 200, 200) }
         };
         let wall = BoxLayer::new(vec![slab(0.0, DVec3::new(60.0, 2.0, 40.0), 0.0)]);
-        let low = BoxLayer::new(vec![slab(40.0, DVec3::new(50.0, 2.0, 12.0), 4.0)]);
+        let low = BoxLayer::new(vec![slab(40.0, DVec3::new(50.0, 2.0, 12.0), 28.0)]);
         let layer = |id: &str, boxes| Layer { id: id.into(), must_see: false, kind: LayerKind::Boxes(boxes) };
         Scene { layers: vec![layer("wall", wall), layer("low", low)], unit: Unit::Angstrom, ..Scene::default() }
     }
@@ -155,9 +155,9 @@ mod tests {
         View::straight(Pinhole::look_at(eye, look, DVec3::Z, lens, image, 1.0, None).unwrap())
     }
 
-    /// A bend that looks over the wall: what stands behind moves up in the picture.
+    /// A bend by which everything moves up in the picture, partly out of it.
     fn over() -> Sidestep {
-        Sidestep { offset: DVec3::new(0.0, 0.0, -120.0), planes: [20.0, 70.0, 120.0] }
+        Sidestep { offset: DVec3::new(0.0, 0.0, -16.0), planes: [20.0, 70.0, 120.0] }
     }
 
     fn points(scene: &Scene) -> Vec<DVec3> {
