@@ -102,7 +102,7 @@ fn papers_that_cannot_be_drawn_are_refused_in_one_line() {
         (&["s.toml", "-o", "a.png", "--paper", "A6", "--margin-mm", "90"], "leaves nothing of 148 x 105 mm"),
         (&["s.toml", "-o", "a.png", "--margin-mm", "9"], "a margin needs a paper"),
         (&["s.toml", "-o", "a.png", "--paper", "A4", "--dpi", "90", "--size", "9x9"], "size and dpi contradict"),
-        (&["s.toml", "-o", "a.jpg", "--paper", "A0", "--max-mem", "300MiB"], "--max-mem"),
+        (&["s.toml", "-o", "a.png", "--compare", "--paper", "A0", "--max-mem", "300MiB"], "--max-mem"),
         (&["s.toml", "-o", "a.png", "--vectors-only"], "--vectors-only needs an output named .svg or .pdf"),
         (&["s.toml", "-o", "a.svg", "--compare"], "two pictures of pixels"),
         (&["p.toml", "-o", "a.png"], "p.toml:13: \"A9\" is not a paper"),
