@@ -106,7 +106,7 @@ impl Look {
     fn appearance(self) -> PyResult<Appearance> {
         let furniture = request::furniture(self.furniture.as_ref(), self.title.as_ref())?;
         let Self { light, relief, stylise: stylisation, no_mark, exaggeration, .. } = self;
-        Ok(Appearance { light, relief, stylisation, no_mark, furniture, exaggeration })
+        Ok(Appearance { light, relief, stylisation, no_mark, furniture, exaggeration, ..Appearance::default() })
     }
 }
 
