@@ -4,7 +4,6 @@
 //! behind the volumes counts for nothing, so edges over a white and over a black background are the same.
 
 use super::Gathered;
-use super::smooth::Behind;
 use belvedere_composite::color::{Packed, Rgb};
 use belvedere_core::{DVec2, Pinhole};
 
@@ -65,7 +64,9 @@ impl Across {
 /// Finds edges in what was drawn at the pixel centres.
 pub(super) struct Edges<'a> {
     pub(super) pinhole: &'a Pinhole,
-    pub(super) behind: &'a Behind,
+    pub(super) cover: &'a [Cover],
+    /// Depths at which rays end.
+    pub(super) ends: &'a [f32],
     pub(super) depth: &'a [f32],
     /// The longest edge of a voxel of all volumes, scene units.
     pub(super) voxel: f64,
@@ -78,7 +79,7 @@ impl Edges<'_> {
         let at = y * width + x;
         let beside = [(x > 0).then(|| at - 1), (x + 1 < width).then(|| at + 1)];
         let above_below = [(y > 0).then(|| at - width), (y + 1 < height).then(|| at + width)];
-        let cover = &self.behind.cover;
+        let cover = self.cover;
         if cover[at].is_clear() && beside.iter().chain(&above_below).flatten().all(|i| cover[*i].is_clear()) {
             return None;
         }
@@ -89,19 +90,19 @@ impl Edges<'_> {
 
     /// Whether an edge lies between two pixels.
     fn parts(&self, a: usize, b: usize) -> bool {
-        let [p, q] = [a, b].map(|i| self.behind.cover[i]);
+        let [p, q] = [a, b].map(|i| self.cover[i]);
         let off = p.off(q);
         p.alpha.abs_diff(q.alpha) > OUTLINE || off > STRONG || (off > VISIBLE && self.is_step(a, b))
     }
 
     fn change(&self, a: usize, b: usize) -> u32 {
-        let [a, b] = [a, b].map(|i| self.behind.cover[i]);
+        let [a, b] = [a, b].map(|i| self.cover[i]);
         u32::from(a.off(b).max(a.alpha.abs_diff(b.alpha))).pow(2)
     }
 
     /// Whether the depth of a volume steps between two pixels.
     fn is_step(&self, a: usize, b: usize) -> bool {
-        let shows = |i: usize| self.depth[i] != self.behind.ends[i];
+        let shows = |i: usize| self.depth[i] != self.ends[i];
         if !(shows(a) || shows(b)) {
             return false;
         }

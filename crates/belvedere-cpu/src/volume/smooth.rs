@@ -20,7 +20,7 @@ const ROWS: usize = 8;
 pub(super) struct Behind {
     color: Vec<Packed>,
     /// Depths at which rays end.
-    pub(super) ends: Vec<f32>,
+    ends: Vec<f32>,
     far: f64,
     pub(super) cover: Vec<Cover>,
 }
@@ -46,7 +46,8 @@ pub(super) fn draw(
     buffers: &mut Buffers,
 ) -> Result<u64, RenderError> {
     let [width, height] = job.view.pinhole().image.map(|n| n as usize);
-    let edges = Edges { pinhole: job.view.pinhole(), behind, depth: &buffers.depth, voxel: drawing.voxel() };
+    let Behind { cover, ends, .. } = behind;
+    let edges = Edges { pinhole: job.view.pinhole(), cover, ends, depth: &buffers.depth, voxel: drawing.voxel() };
     let color = &buffers.color;
     let samples = AtomicU64::new(0);
     let drawn: Vec<Vec<(usize, Packed)>> = (0..height.div_ceil(ROWS))
