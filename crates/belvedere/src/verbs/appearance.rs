@@ -20,7 +20,7 @@ pub struct Appearance {
     pub relief: Option<Relief>,
     /// Dark edges and depth unsharp masking.
     pub stylisation: Option<StylisationDoc>,
-    /// Leaves out the shadows that molecules have without being asked for ([`Appearance::shade_molecules`]).
+    /// Leaves out the shadows that molecules have without being asked for.
     pub no_shadows: bool,
     /// Leaves out the mark that says that the view is bent; the record still says so.
     pub no_mark: bool,
