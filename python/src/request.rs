@@ -134,16 +134,16 @@ impl From<Vectors> for VectorContent {
 pub(crate) const BUFFERS: [AuxBuffer; 3] = [AuxBuffer::Depth, AuxBuffer::Id, AuxBuffer::World];
 
 /// Furniture by its names: see `FurnitureItem::listed`.
-pub(crate) fn furniture(names: Option<&Vec<String>>, title: Option<&String>) -> PyResult<FurnitureWish> {
+pub(crate) fn furniture(names: Option<&[String]>, title: Option<&str>) -> PyResult<FurnitureWish> {
     let items = names.map(|names| FurnitureItem::listed(names.iter().map(String::as_str))).transpose();
     let items = items.map_err(|reason| wrong(&format!("furniture: {reason}")))?;
-    Ok(FurnitureWish { items, title: title.cloned() })
+    Ok(FurnitureWish { items, title: title.map(str::to_owned) })
 }
 
 impl Drawing {
     /// The furniture that is asked for.
     pub(crate) fn furniture(&self) -> PyResult<FurnitureWish> {
-        furniture(self.furniture.as_ref(), self.title.as_ref())
+        furniture(self.furniture.as_deref(), self.title.as_deref())
     }
 
     /// The options of the facade.

@@ -104,7 +104,7 @@ struct Look {
 
 impl Look {
     fn appearance(self) -> PyResult<Appearance> {
-        let furniture = request::furniture(self.furniture.as_ref(), self.title.as_ref())?;
+        let furniture = request::furniture(self.furniture.as_deref(), self.title.as_deref())?;
         let Self { light, relief, stylise: stylisation, no_mark, exaggeration, .. } = self;
         Ok(Appearance { light, relief, stylisation, no_mark, furniture, exaggeration, ..Appearance::default() })
     }
