@@ -127,7 +127,9 @@ class Scene(Layers):
         progress: Progress = None,
         time_limit_s: float | None = None,
     ) -> Scene:
-        """Opens a scene file, TOML or JSON.
+        """Opens a scene file, TOML or JSON; or data, all of which is shown from the south.
+
+        Data are an elevation model, a folder of its tiles, a city, a mesh, a molecule or a volume.
 
         * ``allow_roots``: folders beside its own from which the scene may read files.
         * ``seed``: seed of generated data instead of the scene's.
@@ -461,7 +463,7 @@ class Scene(Layers):
             return self._opened(ask)
         key = (size[0], size[1])
         if key not in self._natives:
-            if None in self._natives:
+            if None in self._natives and not self._natives[None].is_framed():
                 with self._named():
                     native = self._natives[None].resized(size, ask)
             else:

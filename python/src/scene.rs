@@ -7,6 +7,7 @@ use crate::work::{Ask, run};
 use belvedere::print::Sheet;
 use belvedere::scene_file::{self, PrintDoc};
 use belvedere::verbs::measure::{self, MeasureOptions};
+use belvedere::verbs::open_files::scene_or_data;
 use belvedere::{Session, answers, output};
 use pyo3::prelude::*;
 use std::path::PathBuf;
@@ -28,7 +29,7 @@ pub(crate) fn sheet(
     size: Option<[u32; 2]>,
 ) -> PyResult<Option<(String, [u32; 2])>> {
     let asked: PrintDoc = request::read("paper", asked)?;
-    let source = text.map_or_else(|| scene_file::read(&path), |text| scene_file::parse(&path, text));
+    let source = text.map_or_else(|| scene_or_data(&path), |text| scene_file::parse(&path, text));
     let document = source.map_err(|e| raised(&e))?.document;
     let sheet = Sheet::asked(&asked, document.print.as_ref(), size, document.camera.image).map_err(|e| raised(&e))?;
     sheet.map(|s| Ok((output::json(&s.document()).map_err(|e| raised(&e))?, s.pixels()))).transpose()
@@ -42,11 +43,12 @@ pub(crate) struct NativeScene {
 
 #[pymethods]
 impl NativeScene {
-    /// Opens a scene file.
+    /// Opens a scene file, or data that can be drawn without one.
     #[staticmethod]
     fn open(py: Python<'_>, path: PathBuf, options: &str, ask: Ask) -> PyResult<Self> {
         let opening: Opening = request::read("options", options)?;
-        let session = run(py, &ask, move |progress| Session::open(&path, &opening.options(progress)))?;
+        let session =
+            run(py, &ask, move |progress| Session::from_document(scene_or_data(&path)?, &opening.options(progress)))?;
         Ok(Self { session })
     }
 
@@ -56,6 +58,11 @@ impl NativeScene {
         let opening: Opening = request::read("options", options)?;
         let session = run(py, &ask, move |progress| Session::from_text(&path, &text, &opening.options(progress)))?;
         Ok(Self { session })
+    }
+
+    /// Whether the camera fits the size of the picture alone, so that another size is opened anew.
+    fn is_framed(&self) -> bool {
+        self.session.is_framed()
     }
 
     /// The same in another size, pixels.

@@ -41,6 +41,20 @@ def test_arrays_are_added_to_a_document_of_another_folder(file: Path) -> None:
         "ground.tif", "lines.geojson", "more.geojson"]  # fmt: skip
 
 
+def test_data_alone_are_shown_whole_in_every_size(file: Path) -> None:
+    ground = belvedere.Scene.open(file.parent / "ground.tif")
+    assert ground.layers == ["ground"]
+    wide, tall = ground.render(size=(160, 60)), ground.render(size=(60, 160))
+    for picture in (wide, tall):
+        seen = picture.id > 0
+        assert seen.any() and not seen[[0, -1]].any() and not seen[:, [0, -1]].any()
+        assert max(np.ptp(np.nonzero(seen)[0]) / seen.shape[0], np.ptp(np.nonzero(seen)[1]) / seen.shape[1]) > 0.8
+    # Whatever was drawn before: the same picture, and the scene that is saved draws it too.
+    assert (belvedere.Scene.open(file.parent / "ground.tif").render(size=(60, 160)).rgba == tall.rgba).all()
+    again = belvedere.Scene.open(ground.save(file.parent / "of_data.json"))
+    assert (again.render().rgba == ground.render().rgba).all()
+
+
 def test_an_opened_scene_is_saved_in_another_folder(file: Path) -> None:
     opened = belvedere.Scene.open(file)
     copied = opened.save(file.parent.parent / "b" / "scene.json")

@@ -85,7 +85,7 @@ pub(crate) enum Verb {
     Generalise(GeneraliseArgs),
     /// List, make, change, check and plot presets of spline bends
     Preset(PresetArgs),
-    /// Draw a scene file: one picture and its record
+    /// Draw a scene, or data as they are: one picture and its record
     Render(RenderArgs),
     /// Draw a film or numbered frames: along a route, through viewing angles, or once around
     Animate(AnimateArgs),
@@ -386,7 +386,8 @@ impl From<RendererKind> for RendererChoice {
 /// A picture.
 #[derive(Debug, Args)]
 pub(crate) struct RenderArgs {
-    /// Scene file, TOML or JSON; - = standard input
+    /// Scene file, TOML or JSON; or data of which all is shown from the south: an elevation model, a folder of its tiles, a city, a mesh, a
+    /// molecule or a volume; - = standard input
     pub(crate) scene: PathBuf,
     /// Output: PNG, TIFF, JPEG, WebP, SVG or PDF, as its name ends, and OUT.png.json, its record; - = a PNG on standard output alone
     #[arg(short, long, value_name = "OUT.png")]
@@ -458,7 +459,7 @@ pub(crate) enum AuxFormatKind {
 /// A moving camera.
 #[derive(Debug, Args)]
 pub(crate) struct AnimateArgs {
-    /// Scene file, TOML or JSON; - = standard input
+    /// Scene file, TOML or JSON, or data as `render` takes them; - = standard input
     pub(crate) scene: PathBuf,
     /// Film, made by the ffmpeg program, with its frames in the folder OUT.frames; or a folder for the frames alone
     #[arg(short, long, value_name = "OUT.mp4|DIR")]
@@ -516,7 +517,7 @@ pub(crate) enum AuxKind {
 /// A scene to show.
 #[derive(Debug, Args)]
 pub(crate) struct ShowArgs {
-    /// Scene file, TOML or JSON; - = standard input
+    /// Scene file, TOML or JSON, or data as `render` takes them; - = standard input
     pub(crate) scene: PathBuf,
     /// Output (TOML, or JSON if named so); standard output if left out
     #[arg(short, long, value_name = "OUT")]

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 /// A scene and where it goes.
 #[derive(Debug, Args)]
 pub(crate) struct ExportArgs {
-    /// Scene file, TOML or JSON; - = standard input
+    /// Scene file, TOML or JSON, or data as `render` takes them; - = standard input
     scene: PathBuf,
     /// Output, glTF 2.0 in one binary file; - = standard output
     #[arg(short, long, value_name = "OUT.glb")]
@@ -37,7 +37,7 @@ pub(crate) fn export_scene(args: &ExportArgs, context: &Context) -> anyhow::Resu
     }
     outputs::check(&files, std::slice::from_ref(&args.scene), context)?;
     let options = OpenOptions { unsolved: args.straight, ..context.options(Needs::Everything, args.size) };
-    let session = context.open_with(&args.scene, &options)?;
+    let session = context.open_drawable(&args.scene, &options)?;
     outputs::check(&files, &session.input_paths(), context)?;
     let options = ExportOptions {
         ground_nodes: args.nodes as usize,

@@ -6,6 +6,7 @@ use crate::timings::Timings;
 use belvedere::answers::{self, Content, Written};
 use belvedere::core::{PinholeError, plain};
 use belvedere::scene::Progress;
+use belvedere::verbs::open_files::scene_of_data;
 use belvedere::{BelvedereError, Needs, OpenOptions, Session, Trust, Warning};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -102,7 +103,11 @@ fn in_options(error: &BelvedereError) -> String {
             None => error.to_string(),
         },
         BelvedereError::Scene { path: Some(path), reason, .. } if reason.ends_with("not a scene document") => {
-            format!("{error}; for a description: belvedere info {}", path.display())
+            let file = path.display();
+            match scene_of_data(path) {
+                Ok(Some(_)) => format!("{error}; for a scene of it: belvedere show {file} -o scene.toml"),
+                _ => format!("{error}; for a description: belvedere info {file}"),
+            }
         }
         _ => format!("{error}{}", option_for(error).unwrap_or_default()),
     }
@@ -201,6 +206,11 @@ impl Context {
     /// The same with other options.
     pub(crate) fn open_with(&self, scene: &Path, options: &OpenOptions) -> anyhow::Result<Session> {
         Ok(Session::from_document(self.stdin.scene(scene)?, options)?)
+    }
+
+    /// Opens a scene, or data that can be drawn without one.
+    pub(crate) fn open_drawable(&self, input: &Path, options: &OpenOptions) -> anyhow::Result<Session> {
+        Ok(Session::from_document(self.stdin.drawable(input)?, options)?)
     }
 
     /// The options of the run.

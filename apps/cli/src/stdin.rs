@@ -2,6 +2,7 @@
 
 use anyhow::{Context as _, ensure};
 use belvedere::scene_file::{self, SourceDocument};
+use belvedere::verbs::open_files::scene_or_data;
 use std::io::{IsTerminal, Read};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -26,6 +27,11 @@ impl Stdin {
         }
         let text = String::from_utf8(self.read()?).context("standard input is no text in UTF-8")?;
         Ok(scene_file::parse(path, &text)?)
+    }
+
+    /// A scene, or data that can be drawn without one.
+    pub(crate) fn drawable(&self, path: &Path) -> anyhow::Result<SourceDocument> {
+        if is_stdin(path) { self.scene(path) } else { Ok(scene_or_data(path)?) }
     }
 
     /// A file of data: itself, or one that holds standard input.

@@ -227,7 +227,7 @@ pub(crate) fn text_of(fonts: Vec<PathBuf>, allowed: &mut Vec<PathBuf>) -> Result
 }
 
 /// The absolute path of a file that the user named, whose folder is then allowed; built-in names stay.
-fn locate(name: &str, roots: &mut Roots) -> Result<String, BelvedereError> {
+pub(crate) fn locate(name: &str, roots: &mut Roots) -> Result<String, BelvedereError> {
     if name.starts_with("builtin:") {
         return Ok(name.to_owned());
     }
@@ -240,6 +240,11 @@ fn locate(name: &str, roots: &mut Roots) -> Result<String, BelvedereError> {
     roots.allowed.extend(named.as_deref().and_then(Path::parent).map(Path::to_owned));
     let path = join_table(named.unwrap_or(real), table);
     path.to_str().map(str::to_owned).ok_or_else(|| BelvedereError::not_utf8(name))
+}
+
+/// The elevation models of a terrain: its file, or those of its folder.
+pub(crate) fn ground_files(dem: &str) -> Result<Vec<String>, BelvedereError> {
+    Ok(tiles::of(dem, &[])?.ground)
 }
 
 /// A layer of the features of a file, with an id from its name.

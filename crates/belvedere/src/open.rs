@@ -1,5 +1,6 @@
 //! Opens scene files and documents as sessions.
 
+use crate::editor::{framed, set_camera};
 use crate::guard::guarded;
 use crate::resolve::constructor;
 use crate::resolve::motion::Motions;
@@ -11,7 +12,9 @@ use crate::scene_file::{
     self, Document, EarthDoc, LayerDoc, LightDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc,
 };
 use crate::session::Loaded;
+use crate::verbs::target_views::outline;
 use crate::{BelvedereError, Needs, OpenOptions, Session};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_io::crs::utm_epsg;
 use belvedere_scene::{Crs, Scene};
 use std::path::Path;
@@ -46,6 +49,7 @@ impl Session {
     fn opened(mut source: SourceDocument, options: &OpenOptions) -> Result<Self, BelvedereError> {
         let document = &mut source.document;
         let mut allowed = options.allow_roots.clone();
+        allowed.extend(source.of_files.iter().flatten().cloned());
         document.camera.image = options.image.unwrap_or(document.camera.image);
         if options.sky.is_some() || options.haze.is_some() {
             resolve::check_air(&LightDoc { sky: options.sky.clone(), haze: options.haze, ..LightDoc::default() })?;
@@ -92,12 +96,16 @@ impl Session {
             words: &document.title,
             ..LayerRequest::new(&source.origin, &document.layer, &document.crs, &roots)
         };
-        let loaded = resolve::load(request, options)?;
+        let mut loaded = resolve::load(request, options)?;
         let (title, crs, unit) = (document.title.clone(), loaded.crs, document.unit);
         let representations = representations::of(&source, &roots)?;
         let (layers, fonts, drawings) = (loaded.layers, loaded.fonts, loaded.drawings);
         let mut scene = Scene { title, crs, unit, layers, representations, fonts, drawings };
         hidden::apply(&mut scene, document);
+        if source.of_files.is_some() {
+            show_all(&mut source.document, &scene)?;
+            loaded.warnings.push(Warning::new(WarningKind::Assumed, NO_VIEW));
+        }
         resolve::fill_surfaces(&mut source.document.layer, &scene);
         let (mut scene, mut inputs) = (Arc::new(scene), loaded.inputs);
         let motions = Motions::read(&source, &roots, &scene, &mut inputs)?.map(Arc::new);
@@ -118,11 +126,32 @@ impl Session {
     }
 }
 
+/// Said of a document whose camera was found.
+const NO_VIEW: &str = "no scene says how to look at this: all of it is shown, from the south; `belvedere show` with -o writes a scene to change";
+/// Heading and fall of the camera that shows everything, degrees.
+const ALL_SEEN_FROM: [f64; 2] = [20.0, 30.0];
+/// Share of the width or height of the picture that it fills.
+const FILLED: f64 = 0.92;
+/// Triangles or voxels of a layer by which it is framed, at most about.
+const OUTLINE: usize = 50_000;
+
+/// Sets the camera of a document so that the whole scene is in its picture.
+fn show_all(document: &mut Document, scene: &Scene) -> Result<(), BelvedereError> {
+    let [heading, fall] = ALL_SEEN_FROM;
+    let camera = framed(&scene.bounds(), heading, fall, document.camera.image)
+        .and_then(|camera| camera.holding(&outline(scene, OUTLINE), FILLED).ok())
+        .ok_or_else(|| BelvedereError::Target("there is nothing to see in these files".into()))?;
+    document.camera.near = camera.pinhole.near;
+    set_camera(document, &camera);
+    Ok(())
+}
+
 /// Parts of the scene to read for the given options.
 fn needs(source: &SourceDocument, options: &OpenOptions) -> Needs {
     let document = &source.document;
     let constructs = document.solves_terrain() || constructor::stated(source).is_some();
     match options.needs {
+        _ if source.of_files.is_some() => Needs::Everything,
         _ if constructs && !options.unsolved => Needs::Everything,
         _ if document.stage.iter().any(|s| matches!(s, StageDoc::Strip(strip) if strip.along.is_some())) => {
             Needs::Everything

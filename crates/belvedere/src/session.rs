@@ -222,7 +222,8 @@ impl Session {
             Some(d) => (d.source.origin.clone(), d.roots.clone()),
             None => Default::default(),
         };
-        let resolved = Resolved::of(SourceDocument { origin, document }, roots, &self.loaded.scene, solving, true)?;
+        let source = SourceDocument { origin, ..SourceDocument::new(document) };
+        let resolved = Resolved::of(source, roots, &self.loaded.scene, solving, true)?;
         let Resolved { overlay, furniture, stylisation, .. } = self.resolved.clone();
         let resolved = Resolved { overlay, furniture, stylisation, ..resolved };
         Ok(Self { loaded: self.loaded.clone().drawn_for(&resolved), resolved, ..self.clone() })
@@ -343,6 +344,16 @@ impl Session {
     /// view. `None` for a session from parts.
     pub fn resolved(&self) -> Option<&Document> {
         self.resolved.description.as_ref().map(|d| &d.resolved)
+    }
+
+    /// Whether the camera was found when the files were read, to show all of them: it fits this size of the picture alone.
+    pub fn is_framed(&self) -> bool {
+        self.resolved.description.as_ref().is_some_and(|d| d.source.of_files.is_some())
+    }
+
+    /// The document as it was given. `None` for a session from parts.
+    pub(crate) fn stated(&self) -> Option<&Document> {
+        self.resolved.description.as_ref().map(|d| &d.source.document)
     }
 
     /// The intent of terrain disocclusion in the document, which a solver has to solve.

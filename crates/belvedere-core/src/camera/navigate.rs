@@ -10,6 +10,8 @@ const LEAST_TILT: f64 = 1e-3;
 
 /// Margin around a framed box, as a factor of the eye's distance or of the picture's height.
 const ROOM: f64 = 1.06;
+/// Halvings of the range of offsets of an eye.
+const HALVINGS: usize = 40;
 
 /// A camera and the point that it looks at. No operation rolls the camera; zooming an orthographic camera changes the height of its
 /// picture.
@@ -104,6 +106,31 @@ impl Navigation {
         self.placed(middle - (ROOM * most(&away)).max(2.0 * behind) * p.forward, middle)
     }
 
+    /// Moves a camera in perspective, without turning it, to the nearest place from which all `points` lie within `share` (0..1) of the
+    /// picture's width and height, in its middle; it then looks at the middle of their depths.
+    ///
+    /// From an eye at depth `e` and offset `x` along an axis of the picture whose half angle has the tangent `t`, all points are inside if
+    /// `t e - x` and `t e + x` are at most the least of `t d - p` and of `t d + p` over the depths `d` and offsets `p` of the points: the
+    /// largest `e` follows without iteration (ours).
+    ///
+    /// # Errors
+    /// [`PinholeError`] without points, or with points that are not finite.
+    pub fn holding(&self, points: &[DVec3], share: f64) -> Result<Self, PinholeError> {
+        let p = &self.pinhole;
+        let depths = points.iter().map(|c| c.dot(p.forward));
+        let [least, greatest] = depths.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], d| [a.min(d), b.max(d)]);
+        let axes = [(p.right, p.image[0]), (p.down, p.image[1])];
+        let farthest = |(axis, pixels): (DVec3, u32)| {
+            let t = share * 0.5 * f64::from(pixels) / p.scale_px();
+            let inside = |side: f64| points.iter().map(move |c| t * c.dot(p.forward) + side * c.dot(axis));
+            [-1.0, 1.0].map(|side| inside(side).fold(f64::INFINITY, f64::min)).iter().sum::<f64>() / (2.0 * t)
+        };
+        let depth = axes.map(farthest).into_iter().fold(least - 2.0 * p.near, f64::min);
+        let [x, y] = axes.map(|(axis, _)| middle(points, p.forward, axis, depth));
+        let eye = depth * p.forward + x * p.right + y * p.down;
+        self.placed(eye, eye + (0.5 * (least + greatest) - depth) * p.forward)
+    }
+
     fn placed(&self, eye: DVec3, target: DVec3) -> Result<Self, PinholeError> {
         let p = &self.pinhole;
         let pinhole = Pinhole::look_at(eye, target, DVec3::Z, p.projection, p.image, p.near, p.far)?;
@@ -118,6 +145,20 @@ impl Navigation {
         let t = (held.z - start.z) / direction.z;
         (t > 0.0 && t < farthest).then(|| start + t * direction)
     }
+}
+
+/// Offset along an axis of the picture of an eye at `depth` whose picture shows points, all of them in front of it, as far to one side of its
+/// middle as to the other.
+fn middle(points: &[DVec3], forward: DVec3, axis: DVec3, depth: f64) -> f64 {
+    let offsets = points.iter().map(|c| c.dot(axis));
+    let [mut low, mut high] = offsets.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
+    for _ in 0..HALVINGS {
+        let x = 0.5 * (low + high);
+        let tangents = points.iter().map(|c| (c.dot(axis) - x) / (c.dot(forward) - depth));
+        let [least, greatest] = tangents.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], t| [a.min(t), b.max(t)]);
+        if least + greatest > 0.0 { low = x } else { high = x }
+    }
+    0.5 * (low + high)
 }
 
 /// `direction` turned about the vertical by `yaw` and towards it by `pitch`, radians.
@@ -140,6 +181,28 @@ mod tests {
         let lens = Projection::Perspective { fov_y: 0.8 };
         let pinhole = Pinhole::look_at(eye, target, DVec3::Z, lens, [1280, 720], 1.0, None).expect("camera");
         Navigation { pinhole, target }
+    }
+
+    #[test]
+    fn all_points_are_held_in_the_middle_and_fill_the_share() {
+        let before = camera();
+        let points: Vec<DVec3> = (0..300)
+            .map(f64::from)
+            .map(|i| DVec3::new(700.0 * (i * 0.7).sin() + i, 900.0 * (i * 1.3).cos(), 150.0 * (i * 2.1).sin() + 40.0))
+            .collect();
+        for share in [0.5, 0.92, 1.0] {
+            let after = before.holding(&points, share).expect("a camera").pinhole;
+            assert!((after.forward - before.pinhole.forward).length() < 1e-9, "it is not turned");
+            let half = DVec2::new(640.0, 360.0);
+            let seen: Vec<DVec2> = points.iter().map(|p| (after.project(*p).expect("seen").0 - half) / half).collect();
+            let low = seen.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+            let high = seen.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+            assert!(
+                (high.max_element() - share).abs() < 1e-6 && (low + high).abs().max_element() < 1e-6,
+                "{low} {high}"
+            );
+        }
+        assert!(before.holding(&[], 0.9).is_err());
     }
 
     #[test]

@@ -68,7 +68,7 @@ pub use volume::VolumeDoc;
 use crate::BelvedereError;
 use belvedere_core::presets::PresetDocument;
 use belvedere_io::InputFile;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Largest document, bytes.
@@ -130,12 +130,19 @@ pub struct SourceDocument {
     pub(crate) origin: Origin,
     /// The document.
     pub document: Document,
+    /// Folders of the files that it was made of; its camera is to show all of them. `None` for a document that states its camera.
+    pub(crate) of_files: Option<Vec<PathBuf>>,
 }
 
 impl SourceDocument {
     /// A document that was made in memory rather than read.
     pub fn new(document: Document) -> Self {
-        Self { origin: Origin::MEMORY, document }
+        Self { origin: Origin::MEMORY, document, of_files: None }
+    }
+
+    /// A document of files that the user named, whose camera is found when they are read: it shows all of them.
+    pub(crate) fn of_files(document: Document, folders: Vec<PathBuf>) -> Self {
+        Self { of_files: Some(folders), ..Self::new(document) }
     }
 
     /// File it came from; `None` if it was made in memory.
@@ -173,7 +180,7 @@ pub fn parse(path: &Path, text: &str) -> Result<SourceDocument, BelvedereError> 
 fn parse_as(file: InputFile, text: &str) -> Result<SourceDocument, BelvedereError> {
     let root = tree(&file.path, text).map_err(|e| e.in_file(&file.path))?;
     let document = document(&root).map_err(|e| e.in_file(&file.path))?;
-    Ok(SourceDocument { origin: Origin(Some(Arc::new((file, root)))), document })
+    Ok(SourceDocument { origin: Origin(Some(Arc::new((file, root)))), ..SourceDocument::new(document) })
 }
 
 /// Parses a preset document, TOML or JSON; `path` serves messages only.

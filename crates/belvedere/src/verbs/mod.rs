@@ -27,7 +27,7 @@ pub mod target_drafts;
 mod target_names;
 mod target_request;
 mod target_scene;
-mod target_views;
+pub(crate) mod target_views;
 mod written_rivers;
 
 pub use target_names::CitySee;

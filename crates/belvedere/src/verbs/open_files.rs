@@ -3,13 +3,14 @@
 use super::info::{self, FileInfo};
 use super::model_layers::{layer, unit_of};
 use super::reveal::{RevealRequest, reveal};
-use crate::data::features_of;
-use crate::editor::{Editor, Place, framed, set_camera};
+use crate::data::{features_of, ground_files, locate};
+use crate::editor::{Editor, Place};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, CameraDoc, Document, LayerDoc, Paths, SourceDocument, TerrainDoc, TerrainStyleDoc};
 use crate::{BelvedereError, DataFiles, OpenOptions, Session, Trust};
 use belvedere_core::DVec3;
-use belvedere_io::{fs, join_table, split_table};
+use belvedere_io::formats::Reader;
+use belvedere_io::{GeoTiff, Limits, fs, join_table, split_table};
 use belvedere_scene::Progress;
 use std::path::{Path, PathBuf};
 
@@ -142,19 +143,81 @@ pub(super) fn ground(mut files: Vec<String>) -> LayerDoc {
     })
 }
 
-/// A document of layers with a camera that shows all of them.
+/// A document of layers with a camera that shows all of them, and how it is opened.
 fn shown(layers: Vec<LayerDoc>, crs: &str, place: &Place, options: &OpenOptions) -> Result<Document, BelvedereError> {
-    let camera = CameraDoc::looking(DVec3::new(0.0, -1.0, 0.0), DVec3::ZERO);
+    let session = Session::from_document(whole(layers, crs, place.roots.allowed.clone()), options)?;
+    session.stated().cloned().ok_or(BelvedereError::NoFeatures)
+}
+
+/// A document of layers whose camera is found when they are read.
+fn whole(layers: Vec<LayerDoc>, crs: &str, folders: Vec<PathBuf>) -> SourceDocument {
+    let provisional = CameraDoc::looking(DVec3::new(0.0, -1.0, 0.0), DVec3::ZERO);
     let unit = unit_of(&layers);
-    let mut document = Document { crs: crs.into(), unit, layer: layers, ..Document::seen_by(camera) };
-    let options = OpenOptions { allow_roots: place.roots.allowed.clone(), ..options.clone() };
-    let session = Session::from_document(SourceDocument::new(document.clone()), &options)?;
-    let view = framed(&session.scene().bounds(), 20.0, 30.0, document.camera.image);
-    let view =
-        view.ok_or_else(|| BelvedereError::Target(format!("there is nothing to see in these files; {REMEDY}")))?;
-    document.camera.near = view.pinhole.near;
-    set_camera(&mut document, &view);
-    Ok(document)
+    let document = Document { crs: crs.into(), unit, layer: layers, ..Document::seen_by(provisional) };
+    SourceDocument::of_files(document, folders)
+}
+
+/// A scene file, or the [scene of data](scene_of_data).
+///
+/// # Errors
+/// As [`scene_file::read`].
+pub fn scene_or_data(path: &Path) -> Result<SourceDocument, BelvedereError> {
+    match scene_of_data(path)? {
+        Some(source) => Ok(source),
+        None => scene_file::read(path),
+    }
+}
+
+/// The scene of one file of data that can be drawn without others, seen from the south: an elevation model, a folder of its tiles, a city, a
+/// mesh, a molecule, a volume, or a built-in one. `None` for scene files and all other data.
+///
+/// # Errors
+/// [`BelvedereError`] of a file that cannot be read.
+pub fn scene_of_data(path: &Path) -> Result<Option<SourceDocument>, BelvedereError> {
+    let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
+    let mut roots = Roots::default();
+    // A file that is not there is told by whoever reads it as a scene.
+    let Ok(file) = locate(name, &mut roots) else { return Ok(None) };
+    let (layer, crs) = match reader(&file)? {
+        Some(Reader::Terrain) => {
+            let tiles = ground_files(&file)?.iter().map(|tile| locate(tile, &mut roots)).collect::<Result<_, _>>()?;
+            (ground(tiles), "auto")
+        }
+        Some(Reader::City | Reader::Mesh | Reader::Molecule | Reader::Volume) => {
+            (layer(Path::new(&file), &[])?, "local")
+        }
+        Some(Reader::Features) | None => return Ok(None),
+    };
+    let mut source = whole(vec![layer], crs, roots.allowed);
+    let title = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    source.document.title = title.trim_start_matches("builtin:").split(['.', '?']).next().unwrap_or_default().into();
+    Ok(Some(source))
+}
+
+/// The loader of data, told by their name and their beginning; `None` for scene files, pictures and unknown formats.
+fn reader(file: &str) -> Result<Option<Reader>, BelvedereError> {
+    let path = Path::new(file);
+    if let Some(built_in) = file.strip_prefix("builtin:") {
+        let is_ground = ["massif", "canyon"].iter().any(|ground| built_in.starts_with(ground));
+        return Ok(Some(if is_ground { Reader::Terrain } else { Reader::Mesh }));
+    }
+    if path.is_dir() {
+        return Ok(Some(Reader::Terrain));
+    }
+    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
+        return Ok(None);
+    }
+    let meant = belvedere_io::inside(path)?;
+    if belvedere_io::city::is_city(&meant)? {
+        return Ok(Some(Reader::City));
+    }
+    match belvedere_io::readable(&meant)? {
+        Some(format) if format.name == "GeoTIFF" => {
+            let tiff = GeoTiff::open(&meant, Limits::default())?.value;
+            Ok(format.reader.filter(|_| !info::is_picture(tiff.info())))
+        }
+        format => Ok(format.and_then(|format| format.reader)),
+    }
 }
 
 #[cfg(test)]

@@ -24,7 +24,7 @@ pub(super) const MANY: usize = 200_000;
 
 /// Points that show how far the visible layers reach.
 /// * `most`: triangles or voxels of a layer by which that is told, at most about.
-pub(super) fn outline(scene: &Scene, most: usize) -> Vec<DVec3> {
+pub(crate) fn outline(scene: &Scene, most: usize) -> Vec<DVec3> {
     let of = |layer: &Layer| -> Vec<DVec3> {
         let thin = |count: usize| count.div_ceil(most).max(1);
         match &layer.kind {

@@ -24,11 +24,14 @@ const DATA: &[&str] = &[
 
 /// Lines in which FILE stands for a file, and the files that they cannot take.
 const PLACES: &[(&str, &[&str])] = &[
-    ("render FILE -o x.png", DATA),
+    (
+        "render FILE -o x.png",
+        &["route.gpx", "way.geojson", "line.shp", "picture.png", "preset.toml", "folder", "gone.toml", "points.json"],
+    ),
     ("check FILE", DATA),
-    ("show FILE", &["dem.tif", "picture.png", "route.gpx"]),
+    ("show FILE", &["picture.png", "route.gpx"]),
     ("measure FILE", &["dem.tif", "way.geojson"]),
-    ("animate FILE -o frames --turntable", &["picture.png", "dem.tif", "folder"]),
+    ("animate FILE -o frames --turntable", &["picture.png", "folder"]),
     ("pick FILE --pixels pixels.json", &["dem.tif"]),
     ("project FILE --points points.json", &["cube.obj"]),
     (

@@ -1,0 +1,88 @@
+//! Pictures, films, scenes and models of data without a scene file.
+
+use super::light_and_tints::pixels;
+use super::{Place, read};
+
+const CUBE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n\
+    f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+const ATOMS: &str = "\
+ATOM      1  N   ALA A   1      11.104   6.134  -6.504  1.00  0.00           N
+ATOM      2  CA  ALA A   1      11.639   6.071  -5.147  1.00  0.00           C
+ATOM      3  C   ALA A   1      12.123   7.437  -4.670  1.00  0.00           C
+END
+";
+
+fn hills(file: &str, west: f64, place: &Place) {
+    let mut text =
+        format!("ncols 40\nnrows 30\nxllcorner {west}\nyllcorner 5100000\ncellsize 30\nNODATA_value -9999\n");
+    for row in 0..30 {
+        let heights: Vec<String> = (0..40).map(|col| (500 + 7 * col + 90 * (row % 9)).to_string()).collect();
+        text += &format!("{}\n", heights.join(" "));
+    }
+    place.write(file, &text);
+}
+
+/// What the pixels of a picture of 120 x 90 show: 0 is sky.
+fn drawn(place: &Place, input: &str) -> Vec<u32> {
+    place.ok(&["render", input, "-o", "x.png", "--size", "120x90", "--aux", "id", "--overwrite"]);
+    let npy = read(&place.path("x.png.id.npy"));
+    npy[npy.len() - 4 * 120 * 90..].as_chunks::<4>().0.iter().map(|b| u32::from_le_bytes(*b)).collect()
+}
+
+#[test]
+fn each_kind_of_data_is_shown_whole() {
+    let place = Place::new();
+    hills("hills.asc", 500_000.0, &place);
+    std::fs::create_dir(place.path("tiles")).expect("folder");
+    hills("tiles/a.asc", 500_000.0, &place);
+    hills("tiles/b.asc", 501_200.0, &place);
+    place.write("cube.obj", CUBE);
+    place.write("atoms.pdb", ATOMS);
+    for input in ["hills.asc", "tiles", "cube.obj", "atoms.pdb", "builtin:massif?seed=7&size=65", "builtin:dna"] {
+        let seen = drawn(&place, input);
+        let (inside, border): (Vec<usize>, Vec<usize>) =
+            (0..seen.len()).partition(|i| (1..119).contains(&(i % 120)) && (1..89).contains(&(i / 120)));
+        let shown = inside.iter().filter(|i| seen[**i] > 0).count();
+        assert!(shown * 8 > seen.len(), "{input} fills {shown} pixels");
+        assert!(border.iter().all(|i| seen[*i] == 0), "{input} is cut off");
+    }
+}
+
+#[test]
+fn the_scene_of_data_is_written_and_draws_the_same_picture() {
+    let place = Place::new();
+    hills("hills.asc", 500_000.0, &place);
+    let said = place.run(&["show", "hills.asc", "-o", "scene.toml"]).stderr;
+    let said = String::from_utf8(said).expect("UTF-8");
+    assert!(said.contains("all of it is shown"), "{said}");
+    let scene = String::from_utf8(read(&place.path("scene.toml"))).expect("UTF-8");
+    assert!(scene.contains("source = \"hills.asc\"") && scene.contains("title = \"hills\""), "{scene}");
+    place.ok(&["show", "hills.asc", "-o", "scene.json"]);
+    place.ok(&["render", "scene.toml", "-o", "scene.png"]);
+    place.ok(&["render", "hills.asc", "-o", "usual.png"]);
+    let drawn = |name: &str| pixels(&read(&place.path(name)));
+    assert!(drawn("scene.png") == drawn("usual.png"), "the scene draws what the data drew");
+    place.ok(&["export", "hills.asc", "-o", "hills.glb"]);
+    place.ok(&["animate", "hills.asc", "-o", "frames", "--turntable", "--frames", "2", "--size", "64x48"]);
+    assert_eq!(
+        std::fs::read_dir(place.path("frames"))
+            .expect("frames")
+            .filter(|f| { f.as_ref().is_ok_and(|f| f.path().extension().is_some_and(|e| e == "png")) })
+            .count(),
+        2
+    );
+}
+
+#[test]
+fn what_makes_no_picture_alone_is_an_error_that_helps() {
+    let place = Place::new();
+    place.write("way.geojson", r#"{"type":"LineString","coordinates":[[9,46],[9.01,46]]}"#);
+    hills("hills.asc", 500_000.0, &place);
+    std::fs::create_dir(place.path("empty")).expect("folder");
+    let error = place.fails(&["render", "way.geojson", "-o", "x.png"]);
+    assert!(error.contains("not a scene document") && error.contains("belvedere info way.geojson"), "{error}");
+    let error = place.fails(&["check", "hills.asc"]);
+    assert!(error.contains("belvedere show hills.asc -o scene.toml"), "{error}");
+    let error = place.fails(&["render", "empty", "-o", "x.png"]);
+    assert!(error.contains("without elevation models"), "{error}");
+}
