@@ -3,6 +3,7 @@
 use crate::args::Cli;
 use crate::report::fail;
 use belvedere::core::plain as plain_text;
+use belvedere::io::formats::Reader;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, CommandFactory};
 use std::path::Path;
@@ -66,8 +67,18 @@ fn words(error: &clap::Error, command: &Command) -> String {
             };
             format!("there is no verb \"{word}\"; {}", near.unwrap_or_else(|| format!("possible: {}", choices())))
         }
+        (ErrorKind::UnknownArgument, _) if command.get_name() == "render" && is_of_features(error) => {
+            format!("{}; features and their terrain are drawn by the verb reveal", rendered(error))
+        }
         _ => rendered(error),
     }
+}
+
+/// Whether the word that is too much is a file of routes, areas or points.
+fn is_of_features(error: &clap::Error) -> bool {
+    let Some(ContextValue::String(word)) = error.get(ContextKind::InvalidArg) else { return false };
+    let format = belvedere::io::readable(Path::new(word)).ok().flatten();
+    Path::new(word).is_file() && format.is_some_and(|format| format.reader == Some(Reader::Features))
 }
 
 /// The text that clap makes, on one line and in our words.

@@ -81,6 +81,8 @@ fn what_makes_no_picture_alone_is_an_error_that_helps() {
     std::fs::create_dir(place.path("empty")).expect("folder");
     let error = place.fails(&["render", "way.geojson", "-o", "x.png"]);
     assert!(error.contains("not a scene document") && error.contains("belvedere info way.geojson"), "{error}");
+    let error = place.fails(&["render", "hills.asc", "way.geojson", "-o", "x.png"]);
+    assert!(error.contains("way.geojson") && error.contains("reveal"), "{error}");
     let error = place.fails(&["check", "hills.asc"]);
     assert!(error.contains("belvedere show hills.asc -o scene.toml"), "{error}");
     let error = place.fails(&["render", "empty", "-o", "x.png"]);
