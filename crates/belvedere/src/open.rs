@@ -138,8 +138,14 @@ const OUTLINE: usize = 50_000;
 /// Sets the camera of a document so that the whole scene is in its picture.
 fn show_all(document: &mut Document, scene: &Scene) -> Result<(), BelvedereError> {
     let [heading, fall] = ALL_SEEN_FROM;
+    let is_city = |layer: &&LayerDoc| matches!(layer, LayerDoc::City(_));
+    let cities: Vec<&str> = document.layer.iter().filter(is_city).map(LayerDoc::id).collect();
+    let mut points = outline(scene, OUTLINE, &cities);
+    if points.is_empty() {
+        points = outline(scene, OUTLINE, &[]);
+    }
     let camera = framed(&scene.bounds(), heading, fall, document.camera.image)
-        .and_then(|camera| camera.holding(&outline(scene, OUTLINE), FILLED).ok())
+        .and_then(|camera| camera.holding(&points, FILLED).ok())
         .ok_or_else(|| BelvedereError::Target("there is nothing to see in these files".into()))?;
     document.camera.near = camera.pinhole.near;
     set_camera(document, &camera);

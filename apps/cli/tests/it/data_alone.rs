@@ -74,6 +74,21 @@ fn the_scene_of_data_is_written_and_draws_the_same_picture() {
 }
 
 #[test]
+fn a_town_in_degrees_is_as_wide_as_it_is_on_the_earth() {
+    let place = Place::new();
+    let corners = [(42.5, 1.5), (42.5, 1.501), (42.5005, 1.501), (42.5005, 1.5)];
+    let nodes: String =
+        (1..).zip(corners).map(|(id, (lat, lon))| format!("<node id='{id}' lat='{lat}' lon='{lon}'/>")).collect();
+    let refs: String = [1, 2, 3, 4, 1].iter().map(|id| format!("<nd ref='{id}'/>")).collect();
+    let way = format!("<way id='9'>{refs}<tag k='building' v='yes'/><tag k='height' v='12'/></way>");
+    place.write("town.osm", &format!("<osm version='0.6'>{nodes}{way}</osm>"));
+    let scene = place.ok(&["show", "town.osm"]);
+    assert!(scene.contains("crs = \"EPSG:32631\""), "{scene}");
+    // A house 82 m wide and 12 m high fills the picture: in degrees it would be a needle.
+    assert!(drawn(&place, "town.osm").iter().filter(|id| **id > 0).count() > 120 * 90 / 4);
+}
+
+#[test]
 fn what_makes_no_picture_alone_is_an_error_that_helps() {
     let place = Place::new();
     place.write("way.geojson", r#"{"type":"LineString","coordinates":[[9,46],[9.01,46]]}"#);

@@ -71,13 +71,13 @@ pub fn open_trusted(
             let found = reveal(&RevealRequest { data, ..RevealRequest::default() }, &options)?.session;
             found.resolved().cloned().ok_or(BelvedereError::NoFeatures)?
         }
-        ([_, ..], true, true) => shown(vec![ground(grounds)], "auto", &place, &options)?,
+        ([_, ..], true, true) => shown(vec![ground(grounds)], &place, &options)?,
         ([], true, false) => {
             let layers = models.iter().try_fold(Vec::new(), |mut layers, path| {
                 layers.push(layer(path, &layers)?);
                 Ok::<_, BelvedereError>(layers)
             })?;
-            shown(layers, "local", &place, &options)?
+            shown(layers, &place, &options)?
         }
         _ => return Err(BelvedereError::Target(format!("these files make no scene together; {REMEDY}"))),
     };
@@ -144,13 +144,16 @@ pub(super) fn ground(mut files: Vec<String>) -> LayerDoc {
 }
 
 /// A document of layers with a camera that shows all of them, and how it is opened.
-fn shown(layers: Vec<LayerDoc>, crs: &str, place: &Place, options: &OpenOptions) -> Result<Document, BelvedereError> {
-    let session = Session::from_document(whole(layers, crs, place.roots.allowed.clone()), options)?;
+fn shown(layers: Vec<LayerDoc>, place: &Place, options: &OpenOptions) -> Result<Document, BelvedereError> {
+    let session = Session::from_document(whole(layers, place.roots.allowed.clone()), options)?;
     session.stated().cloned().ok_or(BelvedereError::NoFeatures)
 }
 
 /// A document of layers whose camera is found when they are read.
-fn whole(layers: Vec<LayerDoc>, crs: &str, folders: Vec<PathBuf>) -> SourceDocument {
+fn whole(layers: Vec<LayerDoc>, folders: Vec<PathBuf>) -> SourceDocument {
+    // Models have no place on the earth; ground and cities may, in degrees too.
+    let is_placed = layers.iter().any(|layer| matches!(layer, LayerDoc::Terrain(_) | LayerDoc::City(_)));
+    let crs = if is_placed { "auto" } else { "local" };
     let provisional = CameraDoc::looking(DVec3::new(0.0, -1.0, 0.0), DVec3::ZERO);
     let unit = unit_of(&layers);
     let document = Document { crs: crs.into(), unit, layer: layers, ..Document::seen_by(provisional) };
@@ -178,17 +181,15 @@ pub fn scene_of_data(path: &Path) -> Result<Option<SourceDocument>, BelvedereErr
     let mut roots = Roots::default();
     // A file that is not there is told by whoever reads it as a scene.
     let Ok(file) = locate(name, &mut roots) else { return Ok(None) };
-    let (layer, crs) = match reader(&file)? {
+    let layer = match reader(&file)? {
         Some(Reader::Terrain) => {
             let tiles = ground_files(&file)?.iter().map(|tile| locate(tile, &mut roots)).collect::<Result<_, _>>()?;
-            (ground(tiles), "auto")
+            ground(tiles)
         }
-        Some(Reader::City | Reader::Mesh | Reader::Molecule | Reader::Volume) => {
-            (layer(Path::new(&file), &[])?, "local")
-        }
+        Some(Reader::City | Reader::Mesh | Reader::Molecule | Reader::Volume) => layer(Path::new(&file), &[])?,
         Some(Reader::Features) | None => return Ok(None),
     };
-    let mut source = whole(vec![layer], crs, roots.allowed);
+    let mut source = whole(vec![layer], roots.allowed);
     let title = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
     source.document.title = title.trim_start_matches("builtin:").split(['.', '?']).next().unwrap_or_default().into();
     Ok(Some(source))

@@ -135,7 +135,7 @@ impl Opened {
         let (scene, target) = (self.session.scene(), &self.targets.search);
         let is_city = self.is_city();
         let points =
-            if is_city { city_views::region(target) } else { target_views::outline(scene, target_views::MANY) };
+            if is_city { city_views::region(target) } else { target_views::outline(scene, target_views::MANY, &[]) };
         let content = Content { points: &points, up: self.up, may_zoom: !self.states_fov };
         refit_to(sight, view, sidestep, &content)
     }

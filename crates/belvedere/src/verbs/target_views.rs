@@ -2,7 +2,7 @@
 
 use crate::BelvedereError;
 use belvedere_construct::rays::{Target, TargetSight};
-use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
+use belvedere_core::{Aabb, DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_scene::{Layer, LayerKind, Scene, Unit};
 use rayon::prelude::*;
 
@@ -23,15 +23,20 @@ const FEW: usize = 3000;
 pub(super) const MANY: usize = 200_000;
 
 /// Points that show how far the visible layers reach.
-/// * `most`: triangles or voxels of a layer by which that is told, at most about.
-pub(crate) fn outline(scene: &Scene, most: usize) -> Vec<DVec3> {
+/// * `most`: triangles or voxels of a layer by which that is told, at most about;
+/// * `cities`: ids of layers that stand on a plate, whose margin around them does not count.
+pub(crate) fn outline(scene: &Scene, most: usize, cities: &[&str]) -> Vec<DVec3> {
     let of = |layer: &Layer| -> Vec<DVec3> {
         let thin = |count: usize| count.div_ceil(most).max(1);
         match &layer.kind {
             LayerKind::Volume(v) => v.visible_voxels(most),
             LayerKind::Mesh(m) => {
                 let count = m.mesh.triangles().len();
-                (0..count).step_by(thin(count)).flat_map(|t| m.mesh.corners(t)).collect()
+                let Aabb { min, max } = layer.bounds();
+                let is_inside = |p: &DVec3| p.cmpgt(min).all() && p.cmplt(max).all();
+                let on_plate = cities.contains(&layer.id.as_str());
+                let corners = (0..count).step_by(thin(count)).flat_map(|t| m.mesh.corners(t));
+                corners.filter(|p| !on_plate || is_inside(&p.with_z(0.5 * (min.z + max.z)))).collect()
             }
             LayerKind::Molecule(m) => {
                 let mesh = &m.surface.mesh;
@@ -66,7 +71,7 @@ pub(super) fn around(
     (image, fov_y): ([u32; 2], f64),
     most: usize,
 ) -> Result<Vec<View>, BelvedereError> {
-    let points = outline(scene, FEW);
+    let points = outline(scene, FEW, &[]);
     let points = if points.is_empty() { target.points.clone() } else { points };
     let [east, north, up] = axes(up);
     let mut views = Vec::new();
