@@ -105,7 +105,9 @@ fn in_options(error: &BelvedereError) -> String {
         BelvedereError::Scene { path: Some(path), reason, .. } if reason.ends_with("not a scene document") => {
             let file = path.display();
             match scene_of_data(path) {
-                Ok(Some(_)) => format!("{error}; for a scene of it: belvedere show {file} -o scene.toml"),
+                Ok(Some(source)) => {
+                    format!("{error}; for a scene of it: belvedere show {file} -o {}.toml", source.document.title)
+                }
                 _ => format!("{error}; for a description: belvedere info {file}"),
             }
         }

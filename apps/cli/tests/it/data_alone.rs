@@ -99,7 +99,7 @@ fn what_makes_no_picture_alone_is_an_error_that_helps() {
     let error = place.fails(&["render", "hills.asc", "way.geojson", "-o", "x.png"]);
     assert!(error.contains("way.geojson") && error.contains("reveal"), "{error}");
     let error = place.fails(&["check", "hills.asc"]);
-    assert!(error.contains("belvedere show hills.asc -o scene.toml"), "{error}");
+    assert!(error.contains("belvedere show hills.asc -o hills.toml"), "{error}");
     let error = place.fails(&["render", "empty", "-o", "x.png"]);
     assert!(error.contains("without elevation models"), "{error}");
 }
