@@ -74,6 +74,18 @@ fn the_scene_of_data_is_written_and_draws_the_same_picture() {
 }
 
 #[test]
+fn a_file_that_holds_a_scene_is_one_whatever_its_name() {
+    let place = Place::new();
+    let layer = "[[layer]]\nid = 'ground'\nkind = 'terrain'\nsource = 'builtin:massif?seed=7&size=65'\n";
+    let scene = format!("{}{layer}", super::BARE);
+    // Endings of elevation models and of a mesh in text.
+    for name in ["scene.toml", "scene", "scene.txt", "scene.grd", "scene.asc", "scene.obj"] {
+        place.write(name, &scene);
+        assert!(place.ok(&["show", name]).contains("eye = [0.0, 0.0, 0.0]"), "{name}");
+    }
+}
+
+#[test]
 fn a_town_in_degrees_is_as_wide_as_it_is_on_the_earth() {
     let place = Place::new();
     let corners = [(42.5, 1.5), (42.5, 1.501), (42.5005, 1.501), (42.5005, 1.5)];

@@ -143,7 +143,7 @@ pub(super) fn ground(mut files: Vec<String>) -> LayerDoc {
     })
 }
 
-/// A document of layers with a camera that shows all of them, and how it is opened.
+/// A document of layers with a camera that shows all of them.
 fn shown(layers: Vec<LayerDoc>, place: &Place, options: &OpenOptions) -> Result<Document, BelvedereError> {
     let session = Session::from_document(whole(layers, place.roots.allowed.clone()), options)?;
     session.stated().cloned().ok_or(BelvedereError::NoFeatures)
@@ -160,14 +160,14 @@ fn whole(layers: Vec<LayerDoc>, folders: Vec<PathBuf>) -> SourceDocument {
     SourceDocument::of_files(document, folders)
 }
 
-/// A scene file, or the [scene of data](scene_of_data).
+/// A scene file, whatever its name, or the [scene of data](scene_of_data).
 ///
 /// # Errors
-/// As [`scene_file::read`].
+/// As [`scene_file::read`] and [`scene_of_data`].
 pub fn scene_or_data(path: &Path) -> Result<SourceDocument, BelvedereError> {
-    match scene_of_data(path)? {
-        Some(source) => Ok(source),
-        None => scene_file::read(path),
+    match scene_file::read(path) {
+        Err(error) => scene_of_data(path)?.ok_or(error),
+        read => read,
     }
 }
 
