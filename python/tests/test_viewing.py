@@ -17,7 +17,7 @@ import pytest
 
 import belvedere
 
-PAGE = ["index.html", "page.css", "page.js", "kept.js", "mirror.js", "belvedere.js", "belvedere_bg.wasm"]
+PAGE = ["index.html", "page.css", "page.js", "kept.js", "mirror.js", "LICENCES.txt", "belvedere.js", "belvedere_bg.wasm"]
 POLICY = "default-src 'none'; script-src 'self'"
 
 

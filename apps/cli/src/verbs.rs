@@ -79,7 +79,7 @@ fn answer(
 
 /// Content with the warnings of opening a scene.
 fn warned<T>(content: T, session: &Session) -> Warned<T> {
-    Warned { content, warnings: session.public_warnings() }
+    Warned { content, warnings: session.warnings() }
 }
 
 /// Options common to all pictures and frames.
@@ -489,9 +489,11 @@ fn show(args: &ShowArgs, context: &Context) -> anyhow::Result<Goal> {
     let out = outputs::file(args.out.as_ref());
     let named_json = out.is_some_and(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")));
     let json = if out.is_some() { named_json } else { context.common.json };
-    let document = match out {
-        Some(path) => session.resolved_for(path),
-        None => session.resolved().cloned(),
+    let document = match (out, session.path()) {
+        (Some(path), _) => session.resolved_for(path),
+        (None, Some(_)) => session.resolved().cloned(),
+        // Data alone: a scene of the current folder, where a shell's redirection puts it.
+        (None, None) => session.resolved_for(Path::new("scene.toml")),
     };
     let document = document.context("the scene has no document")?;
     let text = if json { output::document_json(&document)? } else { output::document_toml(&document)? };

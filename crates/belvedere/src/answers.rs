@@ -1,6 +1,6 @@
 //! Answers of verbs as JSON: one shape on standard output and in report files. Their schemas are in [`crate::verbs::schemas`].
 
-use crate::{BelvedereError, Session, output};
+use crate::{BelvedereError, output};
 use belvedere_core::Warning;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -39,13 +39,6 @@ pub struct Warned<T> {
 pub struct Written {
     /// Warnings.
     pub warnings: Vec<Warning>,
-}
-
-impl Session {
-    /// Warnings of opening, with the names of files that outputs give them.
-    pub fn public_warnings(&self) -> Vec<Warning> {
-        self.public_names().warnings(&self.warnings())
-    }
 }
 
 /// The answer of a verb as one line of JSON.

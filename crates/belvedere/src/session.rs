@@ -19,7 +19,7 @@ use belvedere_cpu::CpuRenderer;
 use belvedere_disocclusion::{TerrainReport, TerrainSettings};
 use belvedere_io::{budget, split_table};
 use belvedere_scene::{Light, Progress, Renderer, Scene, Stylisation};
-use std::path::{Path, PathBuf};
+use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 use std::sync::Arc;
 
 /// Scene, view and light, from memory ([`Session::from_parts`]) or from a scene file ([`Session::open`]).
@@ -312,12 +312,15 @@ impl Session {
         self.resolved.description.as_ref().is_some_and(|d| constructor::tracks(&d.source))
     }
 
-    /// Warnings of loading and then of resolving, each text once.
+    /// Warnings of loading and then of resolving, each text once, with the names of files that outputs give them.
     pub fn warnings(&self) -> Vec<Warning> {
         let mut all = self.loaded.warnings.clone();
         let known = |text: &str| self.loaded.warnings.iter().any(|w| w.text() == text);
         all.extend(self.resolved.warnings.iter().filter(|w| !known(w.text())).cloned());
-        all
+        // Names cost a look at every file, and the window asks in every frame.
+        let paths =
+            |w: &Warning| w.text().contains(MAIN_SEPARATOR) || w.subject().is_some_and(|s| s.contains(MAIN_SEPARATOR));
+        if all.iter().any(paths) { self.public_names().warnings(&all) } else { all }
     }
 
     /// Surfaces that the areas of each layer are drawn as, and their sources; empty for a session from parts.

@@ -154,7 +154,7 @@ fn a_full_disk_leaves_nothing_and_harms_nothing() {
     write_town(&place);
     let app = place.path("app");
     std::fs::create_dir(&app).expect("folder");
-    ["index.html", "page.css", "page.js", "kept.js", "mirror.js", "belvedere.js", "belvedere_bg.wasm"]
+    ["index.html", "page.css", "page.js", "kept.js", "mirror.js", "LICENCES.txt", "belvedere.js", "belvedere_bg.wasm"]
         .iter()
         .for_each(|name| std::fs::write(app.join(name), [7; 3000]).expect("written"));
     let before = names(&place.path("."));

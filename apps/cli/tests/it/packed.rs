@@ -13,6 +13,7 @@ fn with_application() -> Place {
     for name in ["index.html", "page.css", "page.js", "kept.js", "mirror.js"] {
         std::fs::copy(page.join(name), place.path("app").join(name)).expect("the page");
     }
+    place.write("app/LICENCES.txt", "licences");
     for (folder, word) in [("app", "one"), ("app/threads", "many")] {
         ["belvedere.js", "belvedere_bg.wasm"]
             .iter()
@@ -39,6 +40,7 @@ fn a_folder_holds_one_application() {
         for name in ["belvedere.js", "belvedere_bg.wasm"] {
             assert_eq!(read(&place.path(&format!("{out}/{name}"))), word.as_bytes());
         }
+        assert_eq!(read(&place.path(&format!("{out}/LICENCES.txt"))), b"licences");
         assert!(!place.path(&format!("{out}/threads")).exists());
         assert_eq!(place.path(&format!("{out}/snippets/helper/workers.js")).exists(), threads);
         let headers = String::from_utf8(read(&place.path(&format!("{out}/_headers")))).expect("text");

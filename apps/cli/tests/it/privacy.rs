@@ -91,7 +91,7 @@ fn nothing_that_is_written_tells_the_folder_of_the_data() {
     run(&["render", absolute.to_str().expect("UTF-8"), "-o", "out/abs.png", "--allow-root", &root]);
     let app = place.path("app");
     std::fs::create_dir(&app).expect("folder");
-    ["index.html", "page.css", "page.js", "kept.js", "mirror.js", "belvedere.js", "belvedere_bg.wasm"]
+    ["index.html", "page.css", "page.js", "kept.js", "mirror.js", "LICENCES.txt", "belvedere.js", "belvedere_bg.wasm"]
         .iter()
         .for_each(|n| std::fs::write(app.join(n), "x").expect("file"));
     run(&["pack", "out/s.toml", "-o", "out/page", "--app", "app"]);
@@ -116,6 +116,34 @@ fn nothing_that_is_written_tells_the_folder_of_the_data() {
     assert_eq!(record["inputs"][0]["path"], "dem.asc");
     assert_eq!(record["inputs"][0]["sha256"].as_str().map(str::len), Some(64));
     assert!(holds(&read(&place.path("out/a.png")), "\"path\":\"dem.asc\""), "the picture says what it was made from");
+}
+
+#[test]
+fn what_is_printed_of_data_in_the_current_folder_tells_no_folder() {
+    let place = place();
+    let plain = "ncols 3\nnrows 3\nxllcorner 8.01\nyllcorner 46.01\ncellsize 0.01\n1000 1010 1020\n1030 1040 1050\n1060 1070 1080\n";
+    place.write("plain.asc", plain);
+    let root = place.0.path().canonicalize().expect("folder");
+    let root = root.to_str().expect("UTF-8");
+    let out = place.ok(&["show", "plain.asc"]);
+    assert!(out.contains("source = \"plain.asc\"") && !out.contains(root), "{out}");
+    let below = format!("{TELLING}/dem.asc");
+    assert!(place.ok(&["show", &below]).contains(&format!("source = \"{below}\"")));
+    for args in [
+        &["render", "plain.asc", "-o", "p.png", "--size", "32x24"][..],
+        &["show", "plain.asc"],
+        &["check", "out.toml"],
+        &["info", "plain.asc"],
+    ] {
+        if args[0] == "check" {
+            place.ok(&["show", "plain.asc", "-o", "out.toml"]);
+        }
+        let said = place.run(args);
+        assert!(said.status.success(), "{args:?}");
+        let said = String::from_utf8_lossy(&said.stderr).into_owned() + &String::from_utf8_lossy(&said.stdout);
+        assert!(!said.contains(root), "{args:?}: {said}");
+        assert!(args[0] == "info" || said.contains("plain.asc"), "{args:?}: {said}");
+    }
 }
 
 #[test]

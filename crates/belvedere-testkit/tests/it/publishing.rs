@@ -1,5 +1,6 @@
 //! What publishing asks of a crate: `cargo publish --dry-run` is tried by tools/release, these are its reasons to fail that need no build.
 
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 fn metadata() -> serde_json::Value {
@@ -100,4 +101,43 @@ fn packages_hold_their_sources_and_nothing_that_was_built() {
         file.starts_with("target") || file.starts_with('.') && **file != ".cargo_vcs_info.json" || file.contains("~")
     };
     assert_eq!(files.iter().find(odd), None);
+}
+
+/// Fonts below a folder, but for what is built.
+fn fonts(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("folder").flatten() {
+        let path = entry.path();
+        let hidden = entry.file_name().to_string_lossy().starts_with('.') || entry.file_name() == "target";
+        if path.is_dir() && !hidden {
+            fonts(&path, found);
+        } else if path.extension().is_some_and(|e| e == "ttf" || e == "otf") {
+            found.push(path);
+        }
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn the_licence_of_a_font_that_is_compiled_in_travels_with_archives_wheels_and_pages() {
+    let root = belvedere_testkit::workspace_root();
+    let mut found = Vec::new();
+    fonts(&root, &mut found);
+    assert!(!found.is_empty(), "the letters of names are a font");
+    let run =
+        Command::new(root.join("tools/licences")).arg("belvedere-composite").output().expect("tools/licences runs");
+    let written = String::from_utf8_lossy(&run.stdout);
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    for font in found {
+        let beside = std::fs::read_dir(font.parent().expect("a folder")).expect("folder").flatten();
+        let licences: Vec<_> = beside.map(|e| e.path()).filter(|p| p.extension().is_some_and(|e| e == "txt")).collect();
+        assert!(!licences.is_empty(), "{}: no licence beside it", font.display());
+        for licence in licences {
+            let text = std::fs::read_to_string(&licence).expect("text");
+            assert!(written.contains(text.trim()), "tools/licences leaves out {}", licence.display());
+        }
+    }
+    for script in ["tools/release", "python/build-wheel", "apps/viewer/web/build"] {
+        let script = std::fs::read_to_string(root.join(script)).expect("a script");
+        assert!(script.lines().any(|line| line.trim().starts_with("tools/licences")), "the licences are left out");
+    }
 }

@@ -123,7 +123,7 @@ fn exported(session: &Session, options: &ExportOptions) -> Result<Exported, Belv
     }
     session.check_drawable()?;
     let (scene, carrier) = (session.scene(), Carrier { view: &view });
-    let mut warnings = session.public_warnings();
+    let mut warnings = session.warnings();
     let (mut sheets, mut balls, mut layers) = (Vec::new(), Vec::new(), Vec::new());
     let count = scene.layers.len().max(1) as f64;
     for (k, layer) in scene.layers.iter().enumerate() {

@@ -117,7 +117,7 @@ pub(super) fn sidecar(
         }),
         title: session.scene().title.clone(),
         inputs,
-        warnings: names.warnings(&session.warnings()),
+        warnings: session.warnings(),
         stats,
         render_ms,
     }

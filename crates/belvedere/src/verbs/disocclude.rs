@@ -289,7 +289,7 @@ fn disoccluded(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Dis
         guaranteed: solved.report.guaranteed && visible_written.is_none_or(|share| share >= KEPT_SHARE),
         layers: session.scene().layers.iter().map(|l| l.id.clone()).collect(),
         inputs: names.inputs(&record::inputs(&session.inputs())?),
-        warnings: names.warnings(&session.warnings()),
+        warnings: session.warnings(),
     };
     Ok(Disoccluded { session, solved, rasters, record })
 }

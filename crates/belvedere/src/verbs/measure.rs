@@ -86,7 +86,7 @@ fn measured(
     let mut measures =
         belvedere_construct::measure(session.scene(), session.view(), Some(renderer), options, progress)?;
     let shares = shares(&measures, session.terrain_report());
-    let scene_warnings = session.public_warnings();
+    let scene_warnings = session.warnings();
     measures.warnings.splice(..0, scene_warnings.iter().cloned());
     Ok(MeasureReport {
         scene: session.name(),

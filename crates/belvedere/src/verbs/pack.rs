@@ -11,8 +11,8 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
-/// The files of the page, for any application.
-const PAGE: [&str; 5] = ["index.html", "page.css", "page.js", "kept.js", "mirror.js"];
+/// The files of the page, for any application; its licences travel with it.
+const PAGE: [&str; 6] = ["index.html", "page.css", "page.js", "kept.js", "mirror.js", "LICENCES.txt"];
 /// The files of an application.
 const PROGRAM: [&str; 2] = ["belvedere.js", "belvedere_bg.wasm"];
 /// Folder of the multi-threaded application, if it was built.

@@ -250,7 +250,7 @@ fn a_page_holds_no_file_from_elsewhere() {
     folders.opened(carrier, "link.png");
     let app = folders.inside.join("app");
     fs::create_dir_all(app.join("threads/snippets")).expect("folder");
-    let page = ["index.html", "page.css", "page.js", "kept.js", "mirror.js"];
+    let page = ["index.html", "page.css", "page.js", "kept.js", "mirror.js", "LICENCES.txt"];
     let program = ["threads/belvedere.js", "threads/belvedere_bg.wasm"];
     page.iter().chain(&program).for_each(|name| fs::write(app.join(name), "app").expect("written"));
     symlink(&folders.canary, app.join("threads/snippets/worker.js")).expect("link");
