@@ -9,6 +9,7 @@ mod cities;
 mod city_targets;
 mod constructors;
 mod curve_inset;
+mod curved_earth;
 mod data_alone;
 mod figures;
 mod furniture;

@@ -1,7 +1,7 @@
 //! Positions on the map: the scene's coordinate system, its terrain, and the shape of the earth.
 
 use crate::scene_file::EarthDoc;
-use belvedere_core::{DVec2, DVec3, EarthCurvature, Stage};
+use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Stage, View, ViewError};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_io::crs::{CoordinateSystem, Transform, gaussian_radius_m};
 use belvedere_scene::{Crs, Heightfield, Scene};
@@ -26,6 +26,17 @@ pub(crate) fn earth(shape: EarthDoc, ground: &Ground<'_>, eye: DVec3, warnings: 
         let (radius, refraction) = (radius_at(ground, eye.truncate(), warnings), EarthCurvature::REFRACTION);
         Stage::EarthCurvature(EarthCurvature { eye, radius, refraction })
     })
+}
+
+/// The view of a camera before any bend: the shape of the earth is its only stage.
+pub(crate) fn unbent(
+    pinhole: Pinhole,
+    shape: EarthDoc,
+    scene: &Scene,
+    warnings: &mut Vec<Warning>,
+) -> Result<View, ViewError> {
+    let stages = earth(shape, &Ground::of(scene), pinhole.eye, warnings);
+    View::new(pinhole, stages.into_iter().collect())
 }
 
 fn radius_at(ground: &Ground<'_>, xy: DVec2, warnings: &mut Vec<Warning>) -> f64 {

@@ -7,7 +7,7 @@ use crate::data::{Data, DataFiles};
 use crate::guard::guarded;
 use crate::picture::{self, DisplacementReport, Picture, PictureOptions, TerrainRecord};
 use crate::places::{Place, PlaceFinder};
-use crate::resolve::ground::earth_radius;
+use crate::resolve::ground::{earth_radius, unbent};
 use crate::resolve::rays::sidestep_stage;
 use crate::resolve::solving::Memory;
 use crate::resolve::solving::Solving;
@@ -70,6 +70,12 @@ pub struct Viewpoint {
     pub target: [f64; 2],
     /// Height of the target, metres; that of the ground if left out.
     pub target_height: Option<f64>,
+}
+
+impl RevealRequest {
+    fn earth(&self) -> EarthDoc {
+        if self.curved_earth { EarthDoc::Curved } else { EarthDoc::Flat }
+    }
 }
 
 impl From<Viewpoint> for [Place; 2] {
@@ -247,8 +253,12 @@ fn revealed(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAnsw
     let middle = found.bend.as_ref().map_or_else(|| middle(&searched_scene), |bend| bend.pivot);
     let ahead = (middle - pinhole.eye).length().max(1.0);
     let camera = CameraDoc::of(pinhole, pinhole.eye + ahead * pinhole.forward);
-    let earth = if request.curved_earth { EarthDoc::Curved } else { EarthDoc::Flat };
-    let mut spline = data.session(found.view.clone(), camera, spline_stage(&found).into_iter().collect(), earth);
+    let mut spline =
+        data.session(found.view.clone(), camera, spline_stage(&found).into_iter().collect(), request.earth());
+    if let Some(document) = spline.resolved().filter(|_| request.curved_earth).cloned() {
+        // Eyes are chosen with one radius of the earth; a scene is drawn with that at its eye.
+        spline = spline.with_document(document, None)?;
+    }
     spline.loaded.warnings.extend(found.report.warnings.iter().cloned());
     let spline = request.appearance.put_on(spline, taller.as_ref())?;
     let candidates: &[Technique] = match request.technique {
@@ -513,6 +523,8 @@ fn base_view(request: &RevealRequest, scene: &Scene) -> Result<(Option<View>, Ve
     let ((eye, of_eye), (target, of_target)) = (finder.find(&eye, "eye")?, finder.find(&target, "target")?);
     let lens = Projection::Perspective { fov_y: request.fov_y_deg.unwrap_or(FOV_Y_DEG).to_radians() };
     let image = request.image.unwrap_or(IMAGE);
-    let view = View::straight(Pinhole::look_at(eye, target, DVec3::Z, lens, image, 1.0, None)?);
-    Ok((Some(view), of_eye.into_iter().chain(of_target).collect()))
+    let pinhole = Pinhole::look_at(eye, target, DVec3::Z, lens, image, 1.0, None)?;
+    let mut said: Vec<Warning> = of_eye.into_iter().chain(of_target).collect();
+    let view = unbent(pinhole, request.earth(), scene, &mut said)?;
+    Ok((Some(view), said))
 }

@@ -11,8 +11,9 @@ use crate::fallback::FallbackRecord;
 use crate::guard::guarded;
 use crate::picture::{Picture, PictureOptions, TargetPlace};
 use crate::places::{Place, PlaceHeight};
+use crate::resolve::ground::unbent;
 use crate::resolve::rays::sidestep_stage;
-use crate::scene_file::{CameraDoc, ConstructorDoc, ConstructorKind, Document, PointDoc, StageDoc};
+use crate::scene_file::{CameraDoc, ConstructorDoc, ConstructorKind, Document, EarthDoc, PointDoc, StageDoc};
 use crate::targets;
 use crate::verbs::reveal::{IMAGE, RevealFiles, Technique, spline_stage};
 use crate::{BelvedereError, OpenOptions, Session};
@@ -298,8 +299,11 @@ fn given(
         let ((eye, of_eye), (look, of_look)) =
             (session.find_place(&eye, "eye")?, session.find_place(&target, "target")?);
         let near = 1e-3 * (look - eye).length();
-        let view = View::straight(Pinhole::look_at(eye, look, up, lens, image, near, None)?);
-        return Ok((Some(view), of_eye.into_iter().chain(of_look).collect()));
+        let pinhole = Pinhole::look_at(eye, look, up, lens, image, near, None)?;
+        let mut said: Vec<Warning> = of_eye.into_iter().chain(of_look).collect();
+        let earth = session.resolved().map_or(EarthDoc::Flat, |document| document.earth);
+        let view = unbent(pinhole, earth, session.scene(), &mut said)?;
+        return Ok((Some(view), said));
     }
     if is_scene_file && request.up.is_some() {
         return Err(BelvedereError::Target("a scene file states what is up in camera.up; leave --up out".into()));
