@@ -335,7 +335,7 @@ impl Prepared<'_> {
         let mut veil = (!self.surfaces.layers.is_empty()).then(|| Veil::clear(pixels));
         let part = relief.as_mut().map(|relief| (relief, own));
         self.surfaces.draw(rows.start, &mut buffers, (part, veil.as_mut()))?;
-        let around = if over_ground::needs_rows_around(job) {
+        let around = if job.scene.paints_over_ground() {
             [above.then(|| rows.start - 1), below.then_some(rows.end)].map(|row| row.map(|row| self.seen_row(row)))
         } else {
             [None, None]

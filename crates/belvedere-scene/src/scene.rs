@@ -1,8 +1,8 @@
 //! The scene: a flat list of layers in one coordinate system.
 
 use crate::{
-    Color, Drawing, Edge, FontFile, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Representation,
-    TerrainLayer, drape_polyline,
+    Color, Drawing, FontFile, Heightfield, Layer, LayerKind, LineFeature, LineLayer, Representation, TerrainLayer,
+    drape_polyline,
 };
 use belvedere_core::{Aabb, DVec2};
 use serde::{Deserialize, Serialize};
@@ -91,12 +91,9 @@ impl Scene {
         self.layers.iter().any(|layer| layer.kind.is_see_through())
     }
 
-    /// Whether something is painted on ground that was drawn: lines of equal height, or a soft edge.
+    /// Whether something is painted on ground that was drawn: lines of equal height.
     pub fn paints_over_ground(&self) -> bool {
-        self.layers.iter().any(|layer| match &layer.kind {
-            LayerKind::Terrain(t) => t.contours.is_some() || t.edge == Edge::Soft,
-            _ => false,
-        })
+        self.layers.iter().any(|layer| matches!(&layer.kind, LayerKind::Terrain(t) if t.contours.is_some()))
     }
 
     /// The first terrain layer's heightfield.

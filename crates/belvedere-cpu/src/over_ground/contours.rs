@@ -4,7 +4,8 @@
 //! lines that would come closer than some pixels fade, thin ones before thick ones.
 
 use super::Seen;
-use belvedere_composite::color::{Packed, linear, smoothstep};
+use belvedere_composite::color::{Packed, Rgb, linear, smoothstep};
+use belvedere_core::DVec2;
 use belvedere_scene::{Color, Contours, Heightfield};
 use rayon::prelude::*;
 
@@ -21,12 +22,13 @@ const SAME_SLOPE: f32 = 3.0;
 /// Paints the lines.
 ///
 /// * `around`: the rows above and below those of `out`, where the picture goes on; `interval`: scene units, > 0; `density`: pixels per point of
-///   a screen.
+///   a screen; `ink`: the colour of lines, linear, as it is at a pixel and a place.
 pub(super) fn paint(
     ground: &Seen<'_>,
     around: [Option<Seen<'_>>; 2],
     heights: &Heightfield,
     (interval, color, density): (f64, Color, f64),
+    ink: &(dyn Fn(usize, DVec2, Rgb) -> Rgb + Sync),
     out: &mut [Packed],
 ) {
     let width = ground.width;
@@ -40,7 +42,7 @@ pub(super) fn paint(
     };
     let level = levels(ground);
     let [above, below] = around.map(|row| row.map(|row| levels(&row)));
-    let ink = linear([color.r, color.g, color.b]);
+    let line = linear([color.r, color.g, color.b]);
     let rows = out.len() / width.max(1);
     out.par_iter_mut().enumerate().for_each(|(i, pixel)| {
         let (x, y) = (i % width, i / width);
@@ -56,9 +58,11 @@ pub(super) fn paint(
         let down = if y + 1 < rows { Some(level[i + width]) } else { below.as_ref().map(|row| row[x]) };
         let down = change(up, down);
         let cover = cover(here, across.hypot(down), density as f32);
-        if cover > 0.0 {
+        if cover > 0.0
+            && let Some(place) = ground.place(i)
+        {
             let share = cover * f32::from(color.a) / 255.0;
-            *pixel = Packed::new(pixel.rgb().lerp(ink, share));
+            *pixel = Packed::new(pixel.rgb().lerp(ink(i, place, line), share));
         }
     });
 }

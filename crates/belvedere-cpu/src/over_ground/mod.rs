@@ -1,26 +1,21 @@
-//! What is painted on ground that was drawn, by the places that the pixels see: lines of equal height, and the soft edge of the data.
+//! What is painted on ground that was drawn, by the places that the pixels see: lines of equal height.
 
 mod contours;
-mod edge;
 
 use crate::screen::Screen;
 use crate::shade::Shader;
 use belvedere_composite::buffers::Buffers;
+use belvedere_composite::color::Rgb;
 use belvedere_composite::stylise;
 use belvedere_core::DVec2;
-use belvedere_scene::{Edge, LayerKind, RenderJob};
+use belvedere_scene::{LayerKind, RenderJob};
 
 /// What a row of pixels sees: world points and layers.
 pub(crate) type SeenRow = (Vec<[f64; 3]>, Vec<u32>);
 
-/// Whether what is painted needs the rows around those that are drawn.
-pub(crate) fn needs_rows_around(job: &RenderJob<'_>) -> bool {
-    job.scene.layers.iter().any(|layer| matches!(&layer.kind, LayerKind::Terrain(t) if t.contours.is_some()))
-}
-
 /// Paints over the ground of every terrain layer, on the rows of a picture from `first` on.
 ///
-/// * `around`: the rows above and below, where there are some and they are needed.
+/// * `around`: the rows above and below, where there are some.
 pub(crate) fn paint(
     job: &RenderJob<'_>,
     (shader, screen): (&Shader<'_>, &Screen),
@@ -43,19 +38,16 @@ pub(crate) fn paint(
             let seen = |world, id| Seen { world, id, shows: &shows, width };
             let ground = seen(&world, &buffers.id);
             if let Some(lines) = &terrain.contours {
+                // On a soft edge lines fade as the ground does.
+                let ink = |pixel: usize, place: DVec2, line: Rgb| {
+                    let at = [pixel % width, first + pixel / width].map(|v| v as f32 + 0.5);
+                    shader.faded(i, place, at, line).unwrap_or(line)
+                };
                 let density = job.options.density;
                 let interval = lines.interval_in(&terrain.heightfield, job.view.pinhole(), density);
                 let around = [0, 1].map(|i| around[i].as_ref().map(|(world, id)| seen(world, id)));
                 let style = (interval, lines.color, density);
-                contours::paint(&ground, around, &terrain.heightfield, style, &mut buffers.color);
-            }
-            if terrain.edge == Edge::Soft {
-                let border = edge::Border::new(&terrain.heightfield);
-                let sky = |pixel: usize| {
-                    let [x, y] = [pixel % width, first + pixel / width].map(|v| v as f32 + 0.5);
-                    shader.sky.at([x, y])
-                };
-                edge::fade(&ground, &border, &sky, &mut buffers.color);
+                contours::paint(&ground, around, &terrain.heightfield, style, &ink, &mut buffers.color);
             }
         }
         buffers.world = Some(world);

@@ -66,6 +66,7 @@ impl Shader<'_> {
     pub(crate) fn paint(&self, samples: Samples<'_>, painted: &mut Painted) {
         self.paint_as(None, samples, painted);
         self.mix(samples, painted);
+        self.fade(samples, painted);
     }
 
     /// Colours of samples as if they belonged to another layer of the same surface.

@@ -15,7 +15,8 @@ impl Shader<'_> {
         };
         let (color, id) = self.mixed_at(seen.layer, seen.point, |layer| self.color_of(layer, view, seen, pixel));
         let color = self.sky.through_air(color, seen.depth as f32);
-        Shaded { color, id, world: seen.point }
+        let faded = self.faded(seen.layer, seen.point.truncate(), pixel.as_vec2().to_array(), color);
+        Shaded { color: faded.unwrap_or(color), id, world: seen.point }
     }
 
     /// Colour and id of a hit, in the colours of a layer that is the same surface.

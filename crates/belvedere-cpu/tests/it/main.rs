@@ -16,6 +16,7 @@ mod rigid;
 mod robust;
 mod sections;
 mod see_through;
+mod soft_edge;
 mod steady;
 mod steady_lines;
 mod steady_names;

@@ -3,6 +3,7 @@
 pub(crate) mod batch;
 mod climate_tint;
 mod displaced;
+mod edge;
 pub(crate) mod grain;
 pub(crate) mod lit;
 pub(crate) mod palette;

@@ -3,6 +3,7 @@
 use crate::cache::GroundCache;
 use crate::shade::footprint::{Footprint, LONGEST};
 use crate::shade::ground::displaced::{self, DisplacedLight};
+use crate::shade::ground::edge::Border;
 use crate::shade::ground::grain::grain;
 use crate::shade::ground::lit::{Lit, LitGround, LitKey};
 use crate::shade::ground::palette::Tint;
@@ -40,6 +41,8 @@ pub(crate) struct TerrainShade<'a> {
     to_light: [f32; 2],
     exaggeration: f32,
     drapes: Arc<Vec<DrapeMap>>,
+    /// Where the ground fades, if its edge is soft.
+    pub(super) border: Option<Border>,
 }
 
 /// The drapes with their averages, from the cache if they were made from the same pictures.
@@ -120,6 +123,7 @@ impl<'a> TerrainShade<'a> {
             to_light: [light.azimuth.sin() as f32, -light.azimuth.cos() as f32],
             exaggeration: layer.exaggeration as f32,
             drapes: drapes(layer, cache),
+            border: Border::of(layer),
         }
     }
 

@@ -1,10 +1,12 @@
 //! The soft edge of the data: ground fades into what stands behind everything, by its distance from where the data end.
+//!
+//! Every sample is faded by its own place, so that pixels whose samples see the rim and the sky are mixed of faded colours.
 
-use super::Seen;
-use belvedere_composite::color::{Packed, Rgb, smoothstep};
+use crate::raster::band::SKY;
+use crate::shade::{LayerShade, Painted, Sample, Samples, Shader, pixel_of};
+use belvedere_composite::color::{Rgb, smoothstep};
 use belvedere_core::DVec2;
-use belvedere_scene::{Heightfield, NodeState};
-use rayon::prelude::*;
+use belvedere_scene::{Edge, Heightfield, NodeState, TerrainLayer};
 
 /// Width of the edge as a share of the shorter side of the data.
 const SHARE: f64 = 0.05;
@@ -12,7 +14,7 @@ const SHARE: f64 = 0.05;
 const CELLS: usize = 384;
 
 /// Distances from where the data end: from their rim, and from voids that reach it; holes within are holes.
-pub(super) struct Border {
+pub(crate) struct Border {
     cols: usize,
     rows: usize,
     /// Distances of the cells, widths of the edge, at most about 1.
@@ -23,7 +25,12 @@ pub(super) struct Border {
 }
 
 impl Border {
-    pub(super) fn new(ground: &Heightfield) -> Self {
+    /// The border of a ground that fades; `None` for other edges.
+    pub(super) fn of(layer: &TerrainLayer) -> Option<Self> {
+        (layer.edge == Edge::Soft).then(|| Self::new(&layer.heightfield))
+    }
+
+    fn new(ground: &Heightfield) -> Self {
         let [cols, rows] = [ground.cols(), ground.rows()].map(|n| (n - 1).clamp(1, CELLS));
         let bounds = ground.bounds();
         let size = (bounds.max - bounds.min).truncate();
@@ -36,7 +43,7 @@ impl Border {
     }
 
     /// Opacity of the ground at a place, 0..=1.
-    pub(super) fn opacity(&self, xy: DVec2) -> f32 {
+    fn opacity(&self, xy: DVec2) -> f32 {
         let at = DVec2::new(xy.x - self.north_west.x, self.north_west.y - xy.y) * self.per_unit;
         let rim = at.min(DVec2::new(self.cols as f64, self.rows as f64) - at).min_element();
         if !(rim > 0.0) {
@@ -101,17 +108,35 @@ fn distances(outside: &[bool], [cols, rows]: [usize; 2], cell: DVec2) -> Vec<f64
     distance
 }
 
-/// Fades the ground into what stands behind.
-///
-/// * `sky`: its colour at a pixel.
-pub(super) fn fade(ground: &Seen<'_>, border: &Border, sky: &(dyn Fn(usize) -> Rgb + Sync), out: &mut [Packed]) {
-    out.par_iter_mut().enumerate().for_each(|(i, pixel)| {
-        let Some(xy) = ground.place(i) else { return };
-        let opacity = border.opacity(xy);
-        if opacity < 1.0 {
-            *pixel = Packed::new(sky(i).lerp(pixel.rgb(), opacity));
+impl Shader<'_> {
+    /// Fades samples of grounds with a soft edge into the sky behind them.
+    pub(in crate::shade) fn fade(&self, samples: Samples<'_>, painted: &mut Painted) {
+        if !self.layers.iter().any(|layer| matches!(layer, LayerShade::Terrain(t) if t.border.is_some())) {
+            return;
         }
-    });
+        for (k, &prim) in samples.prim.iter().enumerate() {
+            let drawn = if prim == SKY { None } else { self.blocks.layer_of(prim) };
+            let Some(layer) = drawn.filter(|layer| self.border(*layer as usize).is_some()) else { continue };
+            let place = self.world(Sample { prim, at: samples.at(k) }).truncate();
+            let root = Rgb::from_array(painted.root.each_ref().map(|plane| plane[k]));
+            if let Some(color) = self.faded(layer as usize, place, pixel_of(samples.at(k)), root * root) {
+                painted.set(k, color, painted.id[k]);
+            }
+        }
+    }
+
+    /// `color` on the ground of a layer at a place, faded into the sky at a pixel; `None` where nothing fades.
+    pub(crate) fn faded(&self, layer: usize, place: DVec2, pixel: [f32; 2], color: Rgb) -> Option<Rgb> {
+        let opacity = self.border(layer)?.opacity(place);
+        (opacity < 1.0).then(|| self.sky.at(pixel).lerp(color, opacity))
+    }
+
+    fn border(&self, layer: usize) -> Option<&Border> {
+        match self.layers.get(layer) {
+            Some(LayerShade::Terrain(ground)) => ground.border.as_ref(),
+            _ => None,
+        }
+    }
 }
 
 #[cfg(test)]
