@@ -154,3 +154,28 @@ fn a_scene_is_trusted_listed_and_forgotten() {
     assert!(place.fails(&["trust"]).contains("required"));
     assert!(place.fails(&["trust", "out/s.toml", "--no-remember"]).contains("nothing is remembered"));
 }
+
+/// A named pipe, whose opening waits for its other end.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_record_that_is_no_regular_file_is_as_if_it_were_not_there() {
+    use std::process::Command;
+    let place = Place::new();
+    place.write("bare.toml", BARE);
+    let check = place.command(&["check", "bare.toml"]);
+    let settings = check.get_envs().find(|(name, _)| *name == "XDG_CONFIG_HOME").and_then(|(_, value)| value);
+    let folder = Path::new(settings.expect("a folder for settings")).join("belvedere");
+    std::fs::create_dir_all(&folder).expect("a folder");
+    for name in ["trusted.json", "trusted.lock"] {
+        let made = Command::new("mkfifo").args(["-m", "600"]).arg(folder.join(name)).status().expect("mkfifo");
+        assert!(made.success());
+    }
+    let envs = check.get_envs().filter_map(|(name, value)| Some((name, value?)));
+    for args in [&["check", "bare.toml"][..], &["trust", "bare.toml"]] {
+        let mut within = Command::new("timeout");
+        within.arg("20").arg(check.get_program()).args(args).envs(envs.clone()).current_dir(place.0.path());
+        let out = within.output().expect("it ends");
+        assert_eq!(out.status.code(), Some(0), "{args:?}: {}", String::from_utf8_lossy(&out.stderr));
+    }
+    std::fs::remove_dir_all(&folder).expect("removed");
+}

@@ -31,9 +31,12 @@ struct Content {
     scenes: Vec<Trusted>,
 }
 
-/// The entries, the oldest first; none if the file is missing, damaged, too large, or may be written by others.
+/// The entries, the oldest first; none if the file is missing, no regular file, damaged, too large, or may be written by others.
 pub(super) fn read(path: &Path) -> Vec<Trusted> {
     use std::io::Read;
+    if is_odd(path) {
+        return Vec::new();
+    }
     let Ok(file) = File::open(path) else { return Vec::new() };
     if !file.metadata().is_ok_and(|meta| meta.is_file() && is_private(&meta)) {
         return Vec::new();
@@ -106,8 +109,16 @@ fn make_folder(folder: &Path) -> io::Result<()> {
     builder.create(folder)
 }
 
+/// Whether something lies there that is no regular file: opening a pipe waits for its other end.
+fn is_odd(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|meta| !meta.is_file())
+}
+
 /// Holds the lock until the file is dropped; the system drops it with the process. Where the file system has no locks the last writer wins.
 fn lock(path: &Path) -> io::Result<Option<File>> {
+    if is_odd(path) {
+        return Ok(None);
+    }
     let mut options = OpenOptions::new();
     options.write(true).create(true).truncate(false);
     #[cfg(unix)]
