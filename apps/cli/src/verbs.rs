@@ -470,7 +470,7 @@ fn pick_pixels(args: &PickArgs, context: &Context) -> anyhow::Result<Goal> {
 
 fn check_scene(args: &SceneArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(None, &[&args.scene], context)?;
-    let options = OpenOptions { unsolved: true, ..context.options(Needs::Everything, None) };
+    let options = OpenOptions { unsolved: true, undrawn: true, ..context.options(Needs::Everything, None) };
     let session = context.open_with(&args.scene, &options)?;
     let report = check::check(&session)?;
     if context.common.json {

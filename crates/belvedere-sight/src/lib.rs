@@ -30,7 +30,7 @@ pub use light_buffer::{Blocker, Found, LightBuffer};
 pub use line::{Edge, EdgeFamily, GridLine, floor};
 pub use mesh_tree::MeshTree;
 pub use obstacles::{Obstacles, SightOptions};
-pub use openness::{GroundHeight, OpennessSettings, with_ambient_occlusion};
+pub use openness::{GroundHeight, Occluded, OpennessSettings, with_ambient_occlusion};
 pub use pyramid::Pyramid;
 pub use shadow::Bundle;
 pub use solids::{LayerPart, Solids};

@@ -36,11 +36,28 @@ const MOST_INWARDS: f64 = 0.01;
 const INSIDE: f64 = 0.3;
 /// Triangles that are computed at a time.
 const BATCH: usize = 256;
+/// Most sample points of a mesh: so many times its triangles, and so many more, which show all that a picture has room for.
+const MOST_POINTS: [usize; 2] = [64, 1 << 17];
+/// Factor by which points move apart until there are no more than that.
+const APART: f64 = 1.25;
 
 /// Height of the ground at a position in plan; `None` beside the ground.
 pub type GroundHeight<'a> = dyn Fn(DVec2) -> Option<f64> + Sync + 'a;
 
+/// A mesh with ambient occlusion, and how it was sampled.
+#[derive(Debug, Clone)]
+pub struct Occluded {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// Spacing of the sample points, scene units: that of the settings, or a larger one where there would be too many points.
+    pub step: f64,
+    /// Triangles that take all light, because the time was up before they were sampled.
+    pub left_out: usize,
+}
+
 /// The mesh with the share of the light from all around that reaches it past itself and the ground, on the lighter side of each triangle.
+/// The sample points are at most 64 times as many as triangles, and 131,072 more. When the time of `progress` is up, the other triangles
+/// take all light.
 ///
 /// Rays are spread by the cosine to the normal; their lengths are spread so that a hit at r counts `1 - (r / reach)^2` on average, and each
 /// ray is only a yes-or-no test. Source: Pasewaldt et al. 2011, section 6; the rule in our specification, section 7.
@@ -52,18 +69,28 @@ pub fn with_ambient_occlusion(
     ground: Option<&GroundHeight<'_>>,
     settings: &OpennessSettings,
     progress: &Progress,
-) -> Result<Mesh, Cancelled> {
+) -> Result<Occluded, Cancelled> {
     let rays = rays(settings);
+    let step = spacing(&mesh, settings.step);
     let tree = MeshTree::new(&mesh);
     let count = mesh.triangles().len();
-    let batches: Vec<(Vec<u8>, Vec<u8>)> = (0..count.div_ceil(BATCH))
+    let batches: Vec<(Vec<u8>, Vec<u8>, usize)> = (0..count.div_ceil(BATCH))
         .into_par_iter()
         .map(|batch| {
             progress.tick("ambient occlusion", batch as f64 * BATCH as f64 / count as f64)?;
-            let (mut steps, mut shares) = (Vec::new(), Vec::new());
+            let (mut steps, mut shares, mut left_out) = (Vec::new(), Vec::new(), 0);
             for triangle in batch * BATCH..count.min((batch + 1) * BATCH) {
+                if progress.is_cancelled() {
+                    return Err(Cancelled);
+                }
+                if progress.is_late() {
+                    steps.push(1);
+                    shares.extend([u8::MAX; 3]);
+                    left_out += 1;
+                    continue;
+                }
                 let [a, b, c] = mesh.corners(triangle);
-                let n = steps_of([a, b, c], settings.step);
+                let n = steps_of([a, b, c], step);
                 steps.push(n);
                 let around = Around { tree: &tree, ground, rays: &rays, lift: LIFT * settings.reach };
                 let normal = mesh.face_normal(triangle);
@@ -76,13 +103,45 @@ pub fn with_ambient_occlusion(
                     (255.0 * open).round() as u8
                 }));
             }
-            Ok((steps, shares))
+            Ok((steps, shares, left_out))
         })
         .collect::<Result<_, Cancelled>>()?;
-    let (steps, shares): (Vec<_>, Vec<_>) = batches.into_iter().unzip();
-    let (steps, shares) = (steps.concat(), shares.concat());
+    let (mut steps, mut shares, mut left_out) = (Vec::new(), Vec::new(), 0);
+    for (of_batch, open, late) in batches {
+        steps.extend(of_batch);
+        shares.extend(open);
+        left_out += late;
+    }
     // The lengths fit by construction.
-    Ok(mesh.clone().with_open_lattices(&steps, shares).unwrap_or(mesh))
+    let mesh = mesh.clone().with_open_lattices(&steps, shares).unwrap_or(mesh);
+    Ok(Occluded { mesh, step, left_out })
+}
+
+/// Spacing at which a mesh has no more sample points than [`MOST_POINTS`] allow: `step` or more.
+fn spacing(mesh: &Mesh, step: f64) -> f64 {
+    let count = mesh.triangles().len();
+    let most = MOST_POINTS[0] * count + MOST_POINTS[1];
+    let points = |step: f64| {
+        let of = |t: usize| {
+            let n = usize::from(steps_of(mesh.corners(t), step));
+            (n + 1) * (n + 2) / 2
+        };
+        (0..count).into_par_iter().map(of).sum::<usize>()
+    };
+    if points(step) <= most {
+        return step;
+    }
+    // Below this spacing every triangle has the most steps.
+    let longest = |t: usize| {
+        let [a, b, c] = mesh.corners(t);
+        a.distance(b).max(b.distance(c)).max(c.distance(a))
+    };
+    let shortest = (0..count).map(longest).filter(|length| *length > 0.0).fold(f64::INFINITY, f64::min);
+    let mut step = if shortest.is_finite() { step.max(shortest / MOST_STEPS) } else { step };
+    while points(step) > most {
+        step *= APART;
+    }
+    step
 }
 
 /// Steps along the edges of a triangle.
@@ -184,6 +243,43 @@ mod tests {
         Mesh::new(&positions, triangles, MeshColors::Layer).unwrap()
     }
 
+    #[test]
+    fn sample_points_are_bounded_by_the_triangles_whatever_the_reach() {
+        let mut whole = Vec::new();
+        for side in [1.0, 30.0] {
+            let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+            for k in 0..200 {
+                let (x, y) = (2.0 * side * f64::from(k % 20), 2.0 * side * f64::from(k / 20));
+                let corner = |dx: f64, dy: f64| [x + dx * side, y + dy * side, 0.0];
+                let corners = [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)];
+                rectangle(corners, &mut positions, &mut triangles);
+            }
+            let mesh = Mesh::new(&positions, triangles, MeshColors::Layer).unwrap();
+            for reach in [20.0, 0.2, 1e-3, 1e-9, f64::MIN_POSITIVE] {
+                let settings = OpennessSettings::reaching(reach);
+                let step = spacing(&mesh, settings.step);
+                let of = |t: usize| usize::from(steps_of(mesh.corners(t), step));
+                let points: usize = (0..400).map(|t| (of(t) + 1) * (of(t) + 2) / 2).sum();
+                assert!(points <= 64 * 400 + 131_072, "{points} for a reach of {reach}");
+                assert!(step == settings.step || points > 50_000, "no coarser than needed: {points}, {reach}");
+                whole.push(step == settings.step);
+            }
+        }
+        assert!(whole[0] && whole[5] && !whole[8], "{whole:?}");
+    }
+
+    #[test]
+    fn triangles_that_no_time_is_left_for_take_all_light_and_are_counted() {
+        let late = Progress::silent().limited(std::time::Duration::ZERO).begin();
+        let found = with_ambient_occlusion(corner(60.0), None, &settings(32), &late).unwrap();
+        assert_eq!(found.left_out, 4);
+        let all = with_ambient_occlusion(corner(60.0), None, &settings(32), &Progress::silent()).unwrap();
+        assert_eq!((all.left_out, all.step), (0, 8.0));
+        let cancelled = Progress::silent();
+        cancelled.cancel_flag().store(true, std::sync::atomic::Ordering::Relaxed);
+        assert!(with_ambient_occlusion(corner(60.0), None, &settings(32), &cancelled).is_err());
+    }
+
     /// Openness of the floor at a distance from an infinite wall, by quadrature over directions.
     fn by_quadrature(distance: f64, reach: f64) -> f64 {
         let n = 400;
@@ -202,7 +298,7 @@ mod tests {
     #[test]
     fn a_wall_takes_from_the_floor_what_the_integral_says() {
         let fine = OpennessSettings { step: 4.0, ..settings(512) };
-        let mesh = with_ambient_occlusion(corner(60.0), None, &fine, &Progress::silent()).unwrap();
+        let mesh = with_ambient_occlusion(corner(60.0), None, &fine, &Progress::silent()).unwrap().mesh;
         for distance in [2.0, 6.0, 12.0, 25.0, 60.0] {
             let p = DVec3::new(distance, 100.0, 0.0);
             let triangle = usize::from(distance < 100.0);
@@ -214,7 +310,7 @@ mod tests {
 
     #[test]
     fn what_is_alone_is_open_and_ground_shades_the_foot_of_a_wall() {
-        let alone = with_ambient_occlusion(corner(0.0), None, &settings(32), &Progress::silent()).unwrap();
+        let alone = with_ambient_occlusion(corner(0.0), None, &settings(32), &Progress::silent()).unwrap().mesh;
         assert_eq!(alone.openness_at(0, [0.3, 0.3, 0.4]), 1.0);
         let (mut positions, mut triangles) = (Vec::new(), Vec::new());
         rectangle(
@@ -224,7 +320,7 @@ mod tests {
         );
         let wall = Mesh::new(&positions, triangles, MeshColors::Layer).unwrap();
         let level = |_: DVec2| Some(10.0);
-        let wall = with_ambient_occlusion(wall, Some(&level), &settings(256), &Progress::silent()).unwrap();
+        let wall = with_ambient_occlusion(wall, Some(&level), &settings(256), &Progress::silent()).unwrap().mesh;
         let open = |z: f64| wall.openness_at(0, wall.weights_at(0, DVec3::new(0.0, 95.0, z)));
         // Half of the directions meet the ground, those of its foot at distance 0.
         assert!((open(10.0) - 0.5).abs() < 0.06, "{}", open(10.0));
@@ -250,7 +346,7 @@ mod tests {
             rectangle(corners, &mut positions, &mut triangles);
         }
         let cube = Mesh::new(&positions, triangles, MeshColors::Layer).unwrap();
-        let cube = with_ambient_occlusion(cube, None, &settings(64), &Progress::silent()).unwrap();
+        let cube = with_ambient_occlusion(cube, None, &settings(64), &Progress::silent()).unwrap().mesh;
         for triangle in 0..12 {
             assert!(cube.openness_at(triangle, [0.3, 0.3, 0.4]) > 0.98, "{triangle}");
         }

@@ -55,6 +55,8 @@ pub struct OpenOptions {
     pub molecule: MoleculeOptions,
     /// Leaves stages that need a solver out of the view, for callers that need the document alone.
     pub unsolved: bool,
+    /// Leaves out what only pictures need, such as ambient occlusion, for callers that draw none.
+    pub undrawn: bool,
     /// Leaves out the check of presets at viewing angles that the picture does not show, for pictures that are drawn while something moves.
     pub unchecked: bool,
     /// Memory limit for the samples of one file, bytes; `None`: that of [`Limits::default`].

@@ -160,3 +160,66 @@ fn blocks_on_slopes_are_seen_from_above_as_their_buildings_are() {
         assert!(seen[1] >= 0.9 * seen[0] && seen[2] >= 0.9 * seen[0], "slope {slope}: {seen:?} m^2");
     }
 }
+
+/// A building that crosses itself at nearly every pair of its edges, beside a house.
+fn tangle(place: &Place, corners: usize) {
+    let mut random = belvedere_testkit::Random::new(5);
+    let mut at = |x: f64, y: f64| json!([20.0 + x / 92_000.0, -34.0 + y / 111_000.0]);
+    let mut ring: Vec<Value> = (0..corners).map(|_| at(random.range(0.0, 200.0), random.range(0.0, 200.0))).collect();
+    ring.push(ring[0].clone());
+    let house = [[300.0, 0.0], [320.0, 0.0], [320.0, 20.0], [300.0, 0.0]].map(|[x, y]| at(x, y)).to_vec();
+    let feature = |ring: Vec<Value>| {
+        let geometry = json!({ "type": "Polygon", "coordinates": [ring] });
+        json!({ "type": "Feature", "properties": { "building": "yes", "height": 9 }, "geometry": geometry })
+    };
+    let all = json!({ "type": "FeatureCollection", "features": [feature(ring), feature(house)] });
+    place.write("tangle.geojson", &all.to_string());
+}
+
+#[test]
+fn a_building_that_crosses_itself_everywhere_is_taken_as_its_hull_with_one_warning() {
+    let place = Place::new();
+    tangle(&place, 700);
+    let begun = std::time::Instant::now();
+    let out = place.run(&["generalise", "tangle.geojson", "-o", "g", "--max-mem", "600MiB"]);
+    let said = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert_eq!(out.status.code(), Some(0), "{said}");
+    assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
+    assert_eq!(said.matches("cross themselves more than 1000 times").count(), 1, "{said}");
+    let report: Value = serde_json::from_slice(&read(&place.path("g/report.json"))).expect("JSON");
+    let built = report["levels"][0]["built_area_m2"].as_f64().expect("an area");
+    assert!((36_000.0..41_000.0).contains(&built), "the hull of points all over a square of 200 m: {built}");
+    let scene = "format = 1\n[camera]\neye = { lon = 20.001, lat = -34.003, height_m = 180.0 }\n\
+         look_at = { lon = 20.001, lat = -33.999, height_m = 0.0 }\nimage = [96, 72]\n\
+         [[layer]]\nid = \"town\"\nkind = \"city\"\nsource = \"tangle.geojson\"\nloa = 1\n";
+    place.write("scene.toml", scene);
+    let out = place.run(&["render", "scene.toml", "-o", "p.png", "--max-mem", "600MiB"]);
+    let said = String::from_utf8_lossy(&out.stderr).into_owned();
+    assert_eq!(out.status.code(), Some(0), "{said}");
+    assert_eq!(said.matches("cross themselves more than 1000 times").count(), 1, "{said}");
+}
+
+#[test]
+fn ambient_occlusion_of_a_small_reach_is_bounded_and_check_computes_none() {
+    let place = place();
+    let scene = "format = 1\n[camera]\neye = { lon = 20.001, lat = -34.003, height_m = 180.0 }\n\
+         look_at = { lon = 20.001, lat = -33.999, height_m = 0.0 }\nimage = [96, 72]\n\
+         [[layer]]\nid = \"town\"\nkind = \"city\"\nsource = \"houses.geojson\"\nstyle = { ambient_occlusion = REACH }\n";
+    let timed = |reach: &str, args: &[&str]| {
+        place.write("scene.toml", &scene.replace("REACH", reach));
+        let begun = std::time::Instant::now();
+        let out = place.run(args);
+        assert_eq!(out.status.code(), Some(0), "{}", String::from_utf8_lossy(&out.stderr));
+        (begun.elapsed().as_secs_f64(), String::from_utf8_lossy(&out.stderr).into_owned())
+    };
+    let render = ["render", "scene.toml", "-o", "p.png", "--overwrite"];
+    let (_, said) = timed("30.0", &render);
+    assert!(!said.contains("ambient_occlusion"), "a usual reach is sampled as asked for: {said}");
+    let (took, said) = timed("0.02", &render);
+    assert!(took < 20.0, "{took} s");
+    assert_eq!(said.matches("ambient_occlusion = 0.02 asks for points").count(), 1, "{said}");
+    let (_, said) = timed("0.02", &["check", "scene.toml"]);
+    assert!(!said.contains("ambient_occlusion"), "{said}");
+    let (_, said) = timed("0.02", &[&render[..], &["--time-limit", "0.000001"]].concat());
+    assert!(said.contains("time was up before"), "{said}");
+}

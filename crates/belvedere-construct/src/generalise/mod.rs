@@ -9,6 +9,7 @@
 
 mod blocks;
 mod cells;
+mod crossings;
 mod error;
 mod index;
 mod land_cover;
@@ -119,6 +120,16 @@ fn notes_of(mut notes: Vec<Warning>, levels: [&Level; 2]) -> Vec<Warning> {
     notes
 }
 
+/// Warning about outlines that are taken as their convex hulls.
+fn tangled(city: &City) -> Option<Warning> {
+    let footprints = city.buildings.par_iter().map(|b| &b.footprint);
+    let count = footprints.chain(city.areas.par_iter().map(|a| &a.polygons)).filter(|p| shapes::is_tangled(p)).count();
+    let most = shapes::MOST_CROSSINGS;
+    let what =
+        format!("outlines cross themselves more than {most} times and are taken as their convex hulls; draw them anew");
+    Warning::counted(WarningKind::Repaired, count, &what)
+}
+
 fn input<'a>(city: &'a City, notes: &mut Vec<Warning>) -> Result<Input<'a>, GeneraliseError> {
     let lands: Vec<shapes::Land> = city.buildings.par_iter().map(|b| shapes::land_of(&b.footprint)).collect();
     let (mut input, mut bad_heights) =
@@ -137,6 +148,7 @@ fn input<'a>(city: &'a City, notes: &mut Vec<Warning>) -> Result<Input<'a>, Gene
     }
     let taken = "buildings have no usable height and are taken as 9 m high";
     notes.extend(Warning::counted(WarningKind::Assumed, bad_heights, taken));
+    notes.extend(tangled(city));
     let points = city.buildings.iter().flat_map(|b| &b.footprint).flat_map(|p| &p.outer).copied();
     let [low, high] = index::bounds(points.filter(|p| p.is_finite())).unwrap_or([DVec2::ZERO; 2]);
     let [width, height] = (high - low).to_array();

@@ -1,10 +1,14 @@
 //! Areas in plan: from cities to the geometry library and back, grown, shrunk, closed and simplified.
 
+use super::crossings;
 use belvedere_core::DVec2;
 use belvedere_scene::city::Polygon;
 use geo::algorithm::buffer::{BufferStyle, LineCap, LineJoin};
 use geo::algorithm::orient::{Direction, Orient};
-use geo::{Area as _, BooleanOps, Buffer, Coord, LineString, MinimumRotatedRect, MultiPolygon, Simplify, Validation};
+use geo::{
+    Area as _, BooleanOps, Buffer, ConvexHull, Coord, LineString, MinimumRotatedRect, MultiPolygon, Simplify,
+    Validation,
+};
 use rayon::prelude::*;
 
 /// Several polygons, none overlapping another.
@@ -22,8 +26,23 @@ fn ring(points: &[DVec2]) -> Option<LineString<f64>> {
         .then(|| LineString::from(points.iter().map(|p| (p.x, p.y)).collect::<Vec<_>>()))
 }
 
-/// The land of an outline; rings that cross themselves or each other are repaired, rings that are not finite are left out.
+/// Crossings of the rings of an outline up to which they are repaired: what repair costs grows with the crossings, which may be as many
+/// as pairs of edges.
+pub(super) const MOST_CROSSINGS: usize = 1000;
+
+/// Whether the rings of an outline cross themselves or each other so often that [`land_of`] is their convex hull.
+pub(super) fn is_tangled(polygons: &[Polygon]) -> bool {
+    crossings::exceed(polygons, MOST_CROSSINGS)
+}
+
+/// The land of an outline; rings that cross themselves or each other are repaired, or replaced by their convex hull where they are tangled
+/// ([`is_tangled`]); rings that are not finite are left out.
 pub(super) fn land_of(polygons: &[Polygon]) -> Land {
+    if is_tangled(polygons) {
+        let points = polygons.iter().flat_map(|p| &p.outer).filter(|p| p.is_finite());
+        let points: LineString<f64> = points.map(|p| (p.x, p.y)).collect::<Vec<_>>().into();
+        return one(points.convex_hull());
+    }
     let parts: Vec<Land> = polygons
         .iter()
         .filter_map(|p| {

@@ -183,7 +183,12 @@ fn abstraction(
         let blocks = level.city.buildings.iter_mut().take(level.blocks.len());
         blocks.for_each(|b| b.faces.retain(|f| f.surface != Surface::Ground));
     }
-    loader.note(index, found.report.notes.into_iter().filter(|note| note.subject() == Some(level.name)));
+    // Notes on both levels tell how the city was generalised; of them only what is wrong with its outlines matters here.
+    let matters = |note: &Warning| match note.subject() {
+        Some(subject) => subject == level.name,
+        None => note.kind() == WarningKind::Repaired,
+    };
+    loader.note(index, found.report.notes.into_iter().filter(matters));
     let failing = found.report.levels.iter().filter(|l| l.name == level.name).flat_map(|l| l.failing());
     loader.note(index, failing);
     let missed = found.report.levels.iter().find(|l| l.name == level.name && !l.volume_kept);

@@ -5,11 +5,11 @@ use super::ground::{Ground, epsg};
 use super::loader::Loader;
 use crate::BelvedereError;
 use crate::scene_file::{MeshDoc, Paths, TransformDoc};
-use belvedere_core::{DVec2, DVec3};
+use belvedere_core::{DVec2, DVec3, Warning, WarningKind};
 use belvedere_io::crs::{CoordinateSystem, Transform};
 use belvedere_io::{MeshFile, load_mesh};
 use belvedere_scene::{Crs, LayerKind, Mesh, MeshColors, MeshLayer, RigidParts, Texturing};
-use belvedere_sight::{GroundHeight, OpennessSettings};
+use belvedere_sight::{GroundHeight, Occluded, OpennessSettings};
 use glam::{DMat3, EulerRot};
 
 /// The layer.
@@ -45,9 +45,9 @@ pub(super) fn layer(
     Ok(LayerKind::Mesh(layer))
 }
 
-/// The mesh with ambient occlusion, if that is asked for.
+/// The mesh with ambient occlusion, if that is asked for and something is drawn.
 pub(super) fn with_ambient_occlusion(
-    loader: &Loader<'_>,
+    loader: &mut Loader<'_>,
     index: usize,
     mesh: Mesh,
     reach: Option<f64>,
@@ -62,7 +62,29 @@ pub(super) fn with_ambient_occlusion(
     let height = |xy: DVec2| ground.terrain.and_then(|terrain| terrain.surface_at(xy));
     let ground: Option<&GroundHeight<'_>> = if ground.terrain.is_some() { Some(&height) } else { None };
     let settings = OpennessSettings::reaching(reach);
-    Ok(belvedere_sight::with_ambient_occlusion(mesh, ground, &settings, &loader.options.progress)?)
+    if loader.options.undrawn {
+        return Ok(mesh);
+    }
+    let triangles = mesh.triangles().len();
+    let Occluded { mesh, step, left_out } =
+        belvedere_sight::with_ambient_occlusion(mesh, ground, &settings, &loader.options.progress)?;
+    if step > settings.step {
+        let text = format!(
+            "ambient_occlusion = {reach} asks for points {:.2e} apart, which are too many for {triangles} triangles; they lie {step:.2e} apart, so \
+             that shade of that reach is coarse: a greater distance shows more",
+            settings.step
+        );
+        let warning = Warning::new(WarningKind::Reduced, text);
+        loader.note(index, [warning.with("asked", settings.step).with("step", step)]);
+    }
+    if left_out > 0 {
+        let text = format!(
+            "ambient_occlusion: time was up before {left_out} of {triangles} triangles, which are drawn without it"
+        );
+        let warning = Warning::new(WarningKind::Limited, text);
+        loader.note(index, [warning.with("left_out", left_out as f64).with("of", triangles as f64)]);
+    }
+    Ok(mesh)
 }
 
 /// All files of the layer joined into one.
