@@ -221,6 +221,7 @@ fn reveal_features(
         context.say(&format!("{}\n", answer.summary()), &picture)?;
     }
     context.warn(&answer.session.warnings());
+    context.warn(&answer.picture.sidecar.of_picture);
     context.warn(answer.missed());
     Ok(if answer.missed().is_empty() { Goal::Reached } else { Goal::Missed })
 }

@@ -15,6 +15,7 @@ use crate::print_args::is_vectors;
 use crate::report::{Context, is_stdout, print};
 use anyhow::Context as _;
 use belvedere::answers::{self, Content, Warned, Written};
+use belvedere::core::{Warning, WarningKind};
 use belvedere::pick;
 use belvedere::picture::{self, AuxBuffer, AuxFormat, PictureOptions};
 use belvedere::scene::{Compositing, Sky};
@@ -184,6 +185,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         false => session.render_to(&request, &args.out, context.common.overwrite)?,
     };
     context.timings.note_picture(&picture.sidecar);
+    warnings.extend(picture.sidecar.of_picture.iter().cloned());
     if context.common.json {
         let record = &picture.sidecar;
         let (displacement, render_ms) = (record.displacement, record.render_ms);
@@ -195,7 +197,9 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         context.say(&format!("{fallback}\n"), &args.out)?;
     }
     context.warn(&warnings);
-    Ok(Goal::Reached)
+    // A picture of nothing is a missed goal.
+    let shows_nothing = |w: &Warning| w.kind() == WarningKind::Suspect && w.subject() == Some("camera");
+    Ok(if picture.sidecar.of_picture.iter().any(shows_nothing) { Goal::Missed } else { Goal::Reached })
 }
 
 fn disocclude_terrain(mut args: DisoccludeArgs, context: &Context) -> anyhow::Result<Goal> {

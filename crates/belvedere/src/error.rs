@@ -115,6 +115,15 @@ pub enum BelvedereError {
     /// A picture that cannot be written as vectors.
     #[error("{0} cannot be written as vectors; write a PNG")]
     NoVectors(&'static str),
+    /// A scene without anything that vectors draw.
+    #[error(
+        "nothing in this scene is drawn as vectors: {layers}; draw the vectors over the raster of the surfaces, write a PNG, or add lines, \
+         areas, points or names"
+    )]
+    NothingAsVectors {
+        /// Its layers and their kinds.
+        layers: String,
+    },
     /// Highlights that cannot be drawn together.
     #[error("{0}")]
     Highlight(&'static str),

@@ -55,7 +55,7 @@ use visibility::{DepthMap, LineVisibility, Run, Station};
 /// Width of a hidden line in widths of the visible one.
 const HIDDEN_WIDTH: f64 = 0.6;
 
-/// All marks of a frame, in the order of the layers.
+/// All marks of a frame, in the order of drawing: outlines and lines in the order of the layers, then points, whose symbols no line crosses.
 #[derive(Debug, Default)]
 pub struct Marks {
     under: Vec<StrokeLayer>,
@@ -158,7 +158,7 @@ impl Marks {
         let overlay = &job.options.overlay;
         let mut requests: Vec<LabelRequest> = Vec::new();
         let mut points = PointMarks::default();
-        let mut sheets: Vec<StrokeLayer> = Vec::new();
+        let (mut sheets, mut symbols): (Vec<StrokeLayer>, Vec<StrokeLayer>) = Default::default();
         for (i, layer) in job.scene.layers.iter().enumerate() {
             let (id, first) = (i as u32 + 1, requests.len());
             match &layer.kind {
@@ -177,7 +177,7 @@ impl Marks {
                     requests.extend(builder.area_names(i, a));
                 }
                 LayerKind::Point(p) => {
-                    sheets.extend(builder.points(&builder.shown_points(i, p), id, &mut points));
+                    symbols.extend(builder.points(&builder.shown_points(i, p), id, &mut points));
                     requests.append(&mut points.requests);
                 }
                 LayerKind::Molecule(m) => requests.extend(builder.residue_names(m)),
@@ -185,6 +185,7 @@ impl Marks {
             }
             requests[first..].iter_mut().for_each(|request| request.layer = id);
         }
+        sheets.append(&mut symbols);
         let with_text = |l: &&OverlayLine| !names_alone || !l.label.is_empty();
         sheets.extend(overlay.over.iter().filter(with_text).map(|l| builder.overlay_line(l, &mut requests)));
         sheets.extend(overlay.points.iter().map(|p| builder.overlay_point(p, &mut requests)));
@@ -452,7 +453,7 @@ impl MarkBuilder<'_> {
         LineShape {
             number,
             points: part.iter().map(|station| station.pixel).collect(),
-            length: lengths.map(|pair| pair[1].on_line.along - pair[0].on_line.along).sum(),
+            length: lengths.map(|pair| self.length([pair[0].on_line.p, pair[1].on_line.p])).sum(),
             visible,
             drawn: drawn || style.hidden != Hidden::Cut,
             role: if drawn { Role::Fill } else { Role::Hidden },
@@ -463,11 +464,25 @@ impl MarkBuilder<'_> {
         }
     }
 
+    /// Length as measures count it, scene units: in plan where there is ground.
+    fn length(&self, [a, b]: [DVec3; 2]) -> f64 {
+        match self.scene.terrain() {
+            Some(_) => a.truncate().distance(b.truncate()),
+            None => a.distance(b),
+        }
+    }
+
     /// Marks at equal distances along the lines of a layer.
     fn distances(&self, layer: &LineLayer, id: u32, requests: &mut Vec<LabelRequest>) -> Option<StrokeLayer> {
         let markers = layer.markers?;
-        let lines: Vec<_> =
-            layer.features.iter().map(|f| path::drape(self.scene, &f.points, layer.lift_m, self.coarse())).collect();
+        let draped = |f: &LineFeature| {
+            let mut line = path::drape(self.scene, &f.points, layer.lift_m, self.coarse());
+            for i in 1..line.len() {
+                line[i].along = line[i - 1].along + self.length([line[i - 1].p, line[i].p]);
+            }
+            line
+        };
+        let lines: Vec<_> = layer.features.iter().map(draped).collect();
         let lengths = lines.iter().filter_map(|l| l.last().map(|p| p.along));
         let every = distance::spacing(markers, lengths)?;
         let half_px = (0.5 * width_or_none(layer.width_px, self.density)).max(self.density) + 1.2 * self.density;

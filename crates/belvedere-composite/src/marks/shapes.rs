@@ -32,7 +32,7 @@ pub struct LineShape {
     pub number: usize,
     /// Vertices about a pixel apart, pixels.
     pub points: Vec<DVec2>,
-    /// Length in the world of what lies inside the picture, scene units.
+    /// Length of what lies inside the picture as measures count it, scene units: in plan where there is ground.
     pub length: f64,
     /// Whether it is visible.
     pub visible: bool,
@@ -85,7 +85,7 @@ pub struct LayerShapes {
 pub struct Shapes {
     /// Marks of no layer below all layers, such as the grid.
     pub under: Vec<LayerShapes>,
-    /// Marks of the layers, and those of no layer above them.
+    /// Marks of the layers, lines before points, and those of no layer above them; the marks of a layer follow each other.
     pub layers: Vec<LayerShapes>,
     /// Names and their leaders.
     pub names: Vec<CanvasShape>,

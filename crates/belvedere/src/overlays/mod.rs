@@ -30,7 +30,7 @@ fn round_below(value: f64) -> f64 {
 }
 
 /// A length with its unit.
-fn length(value: f64) -> String {
+pub(crate) fn length(value: f64) -> String {
     match value {
         v if v >= 1000.0 => format!("{} km", (v / 100.0).round() / 10.0),
         v if v >= 10.0 => format!("{v:.0} m"),

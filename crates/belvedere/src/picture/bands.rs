@@ -83,6 +83,7 @@ pub(crate) fn later(
         stats: FrameStats::default(),
         furniture: FurnitureRecord::default(),
         render_ms: 0.0,
+        warnings: Vec::new(),
     };
     Ok(Some(Picture {
         frame: Frame { width, height, ..Frame::default() },
@@ -334,6 +335,7 @@ impl Bands<'_> {
             stats: front.stats(),
             furniture: self.furnished.record.clone(),
             render_ms: 0.0,
+            warnings: Vec::new(),
         };
         let sidecar = sidecar(session, request, (made, &rigid), inputs);
         let mut picture = Picture {

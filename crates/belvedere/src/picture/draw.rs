@@ -4,7 +4,7 @@ use super::displacement::{self, DisplacementReport};
 use super::options::{AuxBuffer, PictureOptions};
 use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, SeeThroughRecord, Sidecar, TerrainRecord};
 use super::volume_record::VolumeRecord;
-use super::{furniture, transparent, vectors};
+use super::{furniture, nothing_seen, transparent, vectors};
 use crate::bodies::RigidLayers;
 use crate::fallback::{self, FallbackPlan, FallbackRecord};
 use crate::guard::guarded;
@@ -15,7 +15,7 @@ use crate::scene_file::{Document, HighlightMark};
 use crate::vectors::{Furnish, VectorContent, VectorPicture};
 use crate::{BelvedereError, CameraPicture, Session, kept};
 use belvedere_composite::canvas::Canvas;
-use belvedere_core::View;
+use belvedere_core::{View, Warning};
 use belvedere_io::budget;
 use belvedere_scene::Instant;
 use belvedere_scene::{Aux, Frame, FrameStats, Progress, RenderJob, RenderOptions, Scene, Unit};
@@ -56,10 +56,11 @@ pub(crate) fn draw(
             }
         },
     };
-    let Drawn { view, frame, straight, overlay, furniture, displacement, fallback, vectors } = drawn;
+    let Drawn { view, frame, straight, overlay, furniture, displacement, fallback, vectors, warnings } = drawn;
     let rigid = RigidLayers::of(session.scene(), &view);
     let render_ms = started.elapsed().as_secs_f64() * 1e3;
-    let made = Made { view: &view, overlay, displacement, fallback, stats: frame.stats.clone(), furniture, render_ms };
+    let stats = frame.stats.clone();
+    let made = Made { view: &view, overlay, displacement, fallback, stats, furniture, render_ms, warnings };
     let sidecar = sidecar(session, request, (made, &rigid), inputs);
     let (aux, aux_format, crs) = (request.aux.clone(), request.aux_format, session.scene().crs);
     let unit = session.scene().unit;
@@ -75,6 +76,8 @@ pub(super) struct Made<'a> {
     pub(super) stats: FrameStats,
     pub(super) furniture: FurnitureRecord,
     pub(super) render_ms: f64,
+    /// Warnings about the picture.
+    pub(super) warnings: Vec<Warning>,
 }
 
 /// The record of a picture.
@@ -84,7 +87,7 @@ pub(super) fn sidecar(
     (made, rigid): (Made<'_>, &RigidLayers),
     inputs: Vec<InputFile>,
 ) -> Sidecar {
-    let Made { view, overlay, displacement, fallback, stats, furniture, render_ms } = made;
+    let Made { view, overlay, displacement, fallback, stats, furniture, render_ms, warnings: of_picture } = made;
     let names = session.public_names();
     let mut volumes = VolumeRecord::all(session.scene());
     volumes.iter_mut().for_each(|volume| volume.transfer = names.text(&volume.transfer));
@@ -117,7 +120,8 @@ pub(super) fn sidecar(
         }),
         title: session.scene().title.clone(),
         inputs,
-        warnings: session.warnings(),
+        warnings: [session.warnings(), of_picture.clone()].concat(),
+        of_picture,
         stats,
         render_ms,
     }
@@ -133,6 +137,7 @@ pub(crate) struct Drawn {
     pub(crate) displacement: Option<DisplacementReport>,
     fallback: Option<FallbackRecord>,
     vectors: Option<VectorPicture>,
+    warnings: Vec<Warning>,
 }
 
 /// Draws the view with all marks, and takes note of the memory that the renderer keeps.
@@ -173,6 +178,11 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
     options.density = request.density;
     let furnished = furniture::plan(session, (scene, &view), request, (!marks.is_empty(), heatmap));
     options.keep_clear.clone_from(&furnished.keep_clear);
+    let mut warnings = Vec::new();
+    if request.vectors == VectorContent::Alone {
+        let has_more = !options.overlay.under.is_empty() || !furnished.kinds.is_empty();
+        warnings.extend(vectors::left_out(session, has_more)?);
+    }
     let ticked = &session.resolved.furniture;
     // What becomes vectors is not drawn.
     let surfaces = RenderOptions { marks: !as_vectors, ..options.clone() };
@@ -183,6 +193,7 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
         Ok::<_, BelvedereError>(request.renderer.of(session).render(&job)?)
     };
     let mut frame = plan.as_ref().map_or_else(|| draw(scene, &view), |plan| plan.draw(&view, &draw))?;
+    let unseen = nothing_seen::warning(scene, &view, &frame);
     // Measured before further pictures are drawn over it.
     let fallback = plan.as_ref().map(|plan| plan.measured(&view, (session.scene(), &frame), &draw)).transpose()?;
     if let Some(covered) =
@@ -265,8 +276,11 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
             badge::draw(&mut canvas, words, request.density);
         }
     });
+    let seen = vectors.as_ref().is_some_and(|vectors| !vectors::is_empty(vectors));
+    warnings.extend(unseen.filter(|_| !seen));
     if let Some(vectors) = &mut vectors {
         vectors.furniture = shapes;
+        warnings.extend(vectors::blank(vectors));
     }
     let overlay = OverlayRecord {
         edges: (stylisation.edges > 0.0).then_some(stylisation.edges),
@@ -282,7 +296,7 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
     };
     let straight = straight.filter(|_| request.compare);
     let furniture = furnished.record;
-    Ok(Drawn { view, frame, straight, overlay, furniture, displacement, fallback, vectors })
+    Ok(Drawn { view, frame, straight, overlay, furniture, displacement, fallback, vectors, warnings })
 }
 
 /// Words of the mark of a bent picture, if it has one.
@@ -330,7 +344,8 @@ pub(crate) fn draw_camera(
         .transpose()?;
     let furniture = FurnitureRecord::default();
     let view = figure.view;
-    Ok(Drawn { view, frame, straight: None, overlay, furniture, displacement, fallback: None, vectors: None })
+    let (straight, fallback, vectors, warnings) = (None, None, None, Vec::new());
+    Ok(Drawn { view, frame, straight, overlay, furniture, displacement, fallback, vectors, warnings })
 }
 
 fn note(view: &View, d: &DisplacementReport, unit: Unit) -> String {

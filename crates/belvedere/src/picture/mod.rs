@@ -7,6 +7,7 @@ mod draw;
 pub(crate) mod film_names;
 mod furniture;
 mod mark_target;
+mod nothing_seen;
 mod options;
 mod sidecar;
 mod target_place;

@@ -193,6 +193,9 @@ pub struct Sidecar {
     pub inputs: Vec<InputFile>,
     /// Warnings.
     pub warnings: Vec<Warning>,
+    /// Those of them that are about this picture and not about the scene.
+    #[serde(skip)]
+    pub of_picture: Vec<Warning>,
     /// Counts of the renderer. Its time is not written.
     #[serde(serialize_with = "counts")]
     pub stats: FrameStats,

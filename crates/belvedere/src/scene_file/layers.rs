@@ -356,7 +356,7 @@ pub struct LineStyleDoc {
     pub hidden: Hidden,
     /// Height above ground at which the line is drawn and judged visible, metres, in [0, 1000].
     pub lift_m: f64,
-    /// Marks along each line at this distance over the ground, metres, > 0, or `auto`.
+    /// Marks along each line at this distance, measured in plan where there is ground, metres, > 0, or `auto`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub distance_markers_m: Option<AutoOrLength>,
     /// Whether names are written, each once, as far as they do not overlap.

@@ -9,7 +9,7 @@ use crate::print::Sheet;
 pub use area::AreaShape;
 pub(crate) use area::areas;
 use belvedere_composite::canvas::{Canvas, CanvasShape};
-use belvedere_composite::marks::Shapes;
+use belvedere_composite::marks::{LayerShapes, Shapes};
 pub(crate) use pdf::write as pdf;
 pub(crate) use svg::write as svg;
 
@@ -70,6 +70,42 @@ pub struct VectorPicture {
     pub layers: Vec<String>,
     /// Whether the raster of the surfaces lies below.
     pub over_raster: bool,
+}
+
+/// A part of a picture between its surfaces and its names.
+pub(crate) enum Piece<'a> {
+    /// Fills of the areas of a layer, by its index.
+    Fills(usize, Vec<&'a AreaShape>),
+    /// Marks of no layer below all lines.
+    Grid(&'a [LayerShapes]),
+    /// Outlines, lines or symbols of a layer, by its index.
+    Marks(usize, &'a [LayerShapes]),
+    /// Marks of no layer over all others.
+    Overlay(&'a [LayerShapes]),
+}
+
+impl VectorPicture {
+    /// What is drawn, in the order of pictures of pixels, where areas are a part of the ground: all fills lie below all lines.
+    pub(crate) fn pieces(&self) -> Vec<Piece<'_>> {
+        let areas = |layer: usize| self.areas.iter().filter(|area| area.layer == layer).collect::<Vec<_>>();
+        let fills = (0..self.layers.len()).map(|layer| (layer, areas(layer))).filter(|(_, areas)| !areas.is_empty());
+        let marks = self.marks.layers.chunk_by(|a, b| a.id == b.id).map(|sheets| match sheets[0].id as usize {
+            0 => Piece::Overlay(sheets),
+            id => Piece::Marks(id - 1, sheets),
+        });
+        let fills = fills.map(|(layer, areas)| Piece::Fills(layer, areas));
+        fills.chain([Piece::Grid(&self.marks.under)]).chain(marks).collect()
+    }
+
+    /// Whether a layer has outlines, lines or symbols.
+    pub(crate) fn has_marks(&self, layer: usize) -> bool {
+        self.marks.layers.iter().any(|sheet| sheet.id as usize == layer + 1)
+    }
+}
+
+/// Whether there is nothing to draw.
+pub(crate) fn is_blank(sheets: &[LayerShapes]) -> bool {
+    sheets.iter().all(|sheet| sheet.lines.is_empty() && sheet.symbols.is_empty())
 }
 
 /// What a file of vectors says beside its shapes.

@@ -1,7 +1,7 @@
 //! PDF with optional content by layer, live text in the embedded font, and the same shapes as the SVG.
 
 use super::pdf_letters::{self, DrawnLetters};
-use super::{AreaShape, Page, VectorPicture, tolerance_px};
+use super::{Page, Piece, VectorPicture, is_blank, tolerance_px};
 use crate::print::REFERENCE_DPI;
 use belvedere_composite::canvas::{CanvasShape, FONT_FILE, Fonts, Letter};
 use belvedere_composite::marks::{LayerShapes, LineShape, Paint, Role, SymbolShape, outline, simplified};
@@ -62,7 +62,7 @@ pub(crate) fn write(picture: &VectorPicture, page: &Page<'_>) -> Vec<u8> {
     out.content.rect(0.0, 0.0, w as f32, h as f32).clip_nonzero().end_path();
     out.content.set_line_cap(LineCapStyle::RoundCap).set_line_join(LineJoinStyle::RoundJoin);
     if page.raster.is_some() {
-        out.open("surfaces");
+        out.open(None, "surfaces");
         out.content.save_state().transform([w as f32, 0.0, 0.0, -(h as f32), 0.0, h as f32]);
         out.content.x_object(Name(b"Surfaces")).restore_state();
         out.close();
@@ -76,8 +76,8 @@ struct Drawing {
     /// Of simplified lines, pixels.
     tolerance: f64,
     alone: bool,
-    /// Names of the layers in the order of drawing.
-    layers: Vec<String>,
+    /// Layers in the order of drawing: index in the scene, and name.
+    layers: Vec<(Option<usize>, String)>,
     /// Opacities in use, thousandths.
     alphas: Vec<u16>,
     /// Glyphs in use: their widths in thousandths of an em, and their characters.
@@ -87,9 +87,14 @@ struct Drawing {
 }
 
 impl Drawing {
-    fn open(&mut self, label: &str) {
-        let name = format!("L{}", self.layers.len());
-        self.layers.push(label.to_owned());
+    /// Begins a part of a layer: fills and outlines of areas are one, which is shown or hidden as a whole.
+    fn open(&mut self, layer: Option<usize>, label: &str) {
+        let known = self.layers.iter().position(|(other, _)| layer.is_some() && *other == layer);
+        let number = known.unwrap_or(self.layers.len());
+        if known.is_none() {
+            self.layers.push((layer, label.to_owned()));
+        }
+        let name = format!("L{number}");
         self.content.begin_marked_content_with_properties(Name(b"OC")).properties_named(Name(name.as_bytes()));
     }
 
@@ -97,39 +102,37 @@ impl Drawing {
         self.content.end_marked_content();
     }
 
-    fn group(&mut self, label: &str, is_empty: bool, draw: impl FnOnce(&mut Self)) {
+    fn group(&mut self, layer: Option<usize>, label: &str, is_empty: bool, draw: impl FnOnce(&mut Self)) {
         if !is_empty {
-            self.open(label);
+            self.open(layer, label);
             draw(self);
             self.close();
         }
     }
 
     fn layers(&mut self, picture: &VectorPicture) {
-        let empty = |sheets: &[&LayerShapes]| sheets.iter().all(|l| l.lines.is_empty() && l.symbols.is_empty());
-        let of = |id: usize| -> Vec<&LayerShapes> {
-            picture.marks.layers.iter().filter(|sheet| sheet.id as usize == id).collect()
-        };
-        let under: Vec<&LayerShapes> = picture.marks.under.iter().collect();
-        self.group("grid", empty(&under), |out| under.iter().for_each(|sheet| out.sheet(sheet)));
-        for (index, label) in picture.layers.iter().enumerate() {
-            let sheets = of(index + 1);
-            let areas: Vec<&AreaShape> = picture.areas.iter().filter(|area| area.layer == index).collect();
-            let alone = self.alone;
-            self.group(label, empty(&sheets) && (areas.is_empty() || !alone), |out| {
+        let alone = self.alone;
+        for piece in picture.pieces() {
+            match piece {
                 // In the raster areas are coloured with the light and the relief of the ground.
-                areas.iter().filter(|_| alone).for_each(|area| out.polygon(&area.rings, area.fill));
-                sheets.iter().for_each(|sheet| out.sheet(sheet));
-            });
+                Piece::Fills(index, areas) => self.group(Some(index), &picture.layers[index], !alone, |out| {
+                    areas.iter().for_each(|area| out.polygon(&area.rings, area.fill));
+                }),
+                Piece::Grid(sheets) => self.sheets((None, "grid"), sheets),
+                Piece::Marks(index, sheets) => self.sheets((Some(index), &picture.layers[index]), sheets),
+                Piece::Overlay(sheets) => self.sheets((None, "overlay"), sheets),
+            }
         }
-        let over = of(0);
-        self.group("overlay", empty(&over), |out| over.iter().for_each(|sheet| out.sheet(sheet)));
         let names = &picture.marks.names;
-        self.group("names", names.is_empty(), |out| names.iter().for_each(|shape| out.shape(shape)));
+        self.group(None, "names", names.is_empty(), |out| names.iter().for_each(|shape| out.shape(shape)));
         for furniture in &picture.furniture {
             let shapes = &furniture.shapes;
-            self.group(furniture.name, shapes.is_empty(), |out| shapes.iter().for_each(|shape| out.shape(shape)));
+            self.group(None, furniture.name, shapes.is_empty(), |out| shapes.iter().for_each(|shape| out.shape(shape)));
         }
+    }
+
+    fn sheets(&mut self, (layer, label): (Option<usize>, &str), sheets: &[LayerShapes]) {
+        self.group(layer, label, is_blank(sheets), |out| sheets.iter().for_each(|sheet| out.sheet(sheet)));
     }
 
     /// Colour of strokes and fills, with an opacity in 0..=1.
@@ -406,7 +409,7 @@ impl Drawing {
         usual.finish();
         optional.finish();
         root.finish();
-        for (group, label) in groups.iter().zip(&self.layers) {
+        for (group, (_, label)) in groups.iter().zip(&self.layers) {
             let mut dict = pdf.indirect(*group).dict();
             dict.pair(Name(b"Type"), Name(b"OCG")).pair(Name(b"Name"), TextStr(label));
         }

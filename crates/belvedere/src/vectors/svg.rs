@@ -1,6 +1,6 @@
 //! SVG with layers of Inkscape and live text; its units are the pixels of the picture, its page is the paper.
 
-use super::{AreaShape, Page, VectorPicture, tolerance_px};
+use super::{AreaShape, Page, Piece, VectorPicture, is_blank, tolerance_px};
 use crate::print::REFERENCE_DPI;
 use belvedere_composite::canvas::CanvasShape;
 use belvedere_composite::marks::{LayerShapes, LineShape, Paint, Role, SymbolShape, outline, simplified};
@@ -94,32 +94,39 @@ impl Svg {
         self.line("</g>");
     }
 
-    /// The grid, the layers in the order of the scene, and marks of no layer over them.
+    /// Fills, grid, lines and symbols.
     fn layers(&mut self, picture: &VectorPicture) {
-        let drawn = |layers: &[LayerShapes]| layers.iter().any(|l| !l.lines.is_empty() || !l.symbols.is_empty());
-        if drawn(&picture.marks.under) {
-            self.open("grid", "grid");
-            picture.marks.under.iter().for_each(|sheet| self.sheet(sheet));
-            self.close();
-        }
-        for (index, label) in picture.layers.iter().enumerate() {
-            let of_layer = |sheet: &&LayerShapes| sheet.id as usize == index + 1;
-            let sheets: Vec<&LayerShapes> = picture.marks.layers.iter().filter(of_layer).collect();
-            let areas: Vec<&AreaShape> = picture.areas.iter().filter(|area| area.layer == index).collect();
-            if sheets.is_empty() && areas.is_empty() {
-                continue;
+        for piece in picture.pieces() {
+            match piece {
+                Piece::Fills(index, areas) => {
+                    let label = &picture.layers[index];
+                    match picture.has_marks(index) {
+                        // Its outlines are the layer.
+                        true => self.line(&format!(
+                            "<g id=\"layer{}-fill\" inkscape:label=\"{}\" clip-path=\"url(#frame)\">",
+                            index + 1,
+                            xml(label)
+                        )),
+                        false => self.open(&format!("layer{}", index + 1), label),
+                    }
+                    areas.into_iter().for_each(|area| self.area(area));
+                    self.close();
+                }
+                Piece::Grid(sheets) if is_blank(sheets) => {}
+                Piece::Overlay(sheets) if is_blank(sheets) => {}
+                Piece::Grid(sheets) => self.sheets(("grid", "grid"), sheets),
+                Piece::Overlay(sheets) => self.sheets(("overlay", "overlay"), sheets),
+                Piece::Marks(index, sheets) => {
+                    self.sheets((&format!("layer{}", index + 1), &picture.layers[index]), sheets);
+                }
             }
-            self.open(&format!("layer{}", index + 1), label);
-            areas.into_iter().for_each(|area| self.area(area));
-            sheets.into_iter().for_each(|sheet| self.sheet(sheet));
-            self.close();
         }
-        let over: Vec<&LayerShapes> = picture.marks.layers.iter().filter(|sheet| sheet.id == 0).collect();
-        if over.iter().any(|l| !l.lines.is_empty() || !l.symbols.is_empty()) {
-            self.open("overlay", "overlay");
-            over.into_iter().for_each(|sheet| self.sheet(sheet));
-            self.close();
-        }
+    }
+
+    fn sheets(&mut self, (id, label): (&str, &str), sheets: &[LayerShapes]) {
+        self.open(id, label);
+        sheets.iter().for_each(|sheet| self.sheet(sheet));
+        self.close();
     }
 
     /// Lines and symbols that are painted alike: hidden parts, rims, visible parts.

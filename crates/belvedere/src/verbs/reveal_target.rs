@@ -408,7 +408,9 @@ impl TargetAnswer {
 
     /// Warnings.
     pub fn warnings(&self) -> Vec<Warning> {
-        self.session.warnings().into_iter().chain(self.place.as_ref().and_then(TargetPlace::warning)).collect()
+        let of_picture = self.picture.sidecar.of_picture.iter().cloned();
+        let of_place = self.place.as_ref().and_then(TargetPlace::warning);
+        self.session.warnings().into_iter().chain(of_picture).chain(of_place).collect()
     }
 
     /// Goals that were missed, one sentence each.

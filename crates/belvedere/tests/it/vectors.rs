@@ -58,7 +58,7 @@ fn svg(session: &Session, vectors: VectorContent) -> String {
     picture.to_svg().expect("written").expect("vectors")
 }
 
-fn attribute(tag: &BytesStart<'_>, name: &str) -> Option<String> {
+pub(crate) fn attribute(tag: &BytesStart<'_>, name: &str) -> Option<String> {
     let found = tag.attributes().map(|a| a.expect("an attribute")).find(|a| a.key.as_ref() == name)?;
     Some(found.normalized_value(XmlVersion::Implicit1_0).expect("its value").into_owned())
 }
@@ -151,7 +151,7 @@ fn read(svg: &str) -> Document {
 }
 
 /// Polylines of path data of `M`, `l` and `Z`.
-fn lines(data: &str) -> Vec<Vec<DVec2>> {
+pub(crate) fn lines(data: &str) -> Vec<Vec<DVec2>> {
     let mut out: Vec<Vec<DVec2>> = Vec::new();
     let commands =
         ["M", "l", "Z"].iter().fold(data.replace('-', " -"), |text, sign| text.replace(sign, &format!("\n{sign}")));
