@@ -146,7 +146,10 @@ pub fn bend_around_by(
         let has_room = |s: &Sidestep| s.planes[2] <= last && s.planes[0] > 1.001 * pinhole.near;
         let possible: Vec<Sidestep> = sidesteps.filter(|s| has_room(s) && stands(s)).collect();
         report.tried += possible.len();
-        let found = possible.into_par_iter().filter_map(|s| candidate(base, s, center, options, sight, &rest));
+        // Those of one step are compared with the best of the steps before: the same on any number of threads.
+        let least = best.as_ref().map_or(straight, |b| b.score().max(straight));
+        let found =
+            possible.into_par_iter().filter_map(|s| candidate((base, s), center, options, sight, (&rest, least)));
         let found: Vec<Candidate> = found.collect();
         for next in found {
             report.light_best = report.light_best.max(next.light);
@@ -165,19 +168,19 @@ pub fn bend_around_by(
     Ok(BendFound { bent: bent.map(|b| (b.view, b.sidestep)), report })
 }
 
-/// A bend judged; `None` if it is not possible.
+/// A bend judged; `None` if it is not possible, or its score is not above `least`.
 fn candidate(
-    base: &View,
-    sidestep: Sidestep,
+    (base, sidestep): (&View, Sidestep),
     center: DVec3,
     options: &AroundOptions,
     sight: &TargetSight<'_>,
-    rest: &[DVec3],
+    (rest, least): (&[DVec3], f64),
 ) -> Option<Candidate> {
     let turned = if options.may_turn { turned(base, &sidestep, center)? } else { base.clone() };
     let view = sidestep.view(&turned).ok()?;
-    let Shown { share, light } = sight.shown(&view, options.grow_px);
-    Some(Candidate { motion: motion(base, &view, rest), view, sidestep, share, light })
+    let motion = motion(base, &view, rest);
+    let Shown { share, light } = sight.shown_over(&view, options.grow_px, least + PRICE_OF_MOTION * motion)?;
+    Some(Candidate { motion, view, sidestep, share, light })
 }
 
 /// `base` turned towards the point through which the ray to `center` leaves the bend.

@@ -1,9 +1,11 @@
 //! Targets: things that must be seen, and the share of them that a view shows.
 
 use super::surface_points;
+use crate::surface_samples::spread;
 use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::{LayerKind, Scene, Unit};
 use belvedere_sight::{Obstacles, SightOptions, Voxels};
+use std::sync::Arc;
 
 /// A thing that must be seen, as points.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,10 +21,17 @@ pub struct Target {
     pub own_parts: Option<(usize, Vec<u32>)>,
     /// The points are the middles of balls of these radii, scene units, and seen if the front of the ball is; empty for points of their own.
     pub radii: Vec<f64>,
+    /// The points lie on a surface with these outward unit normals: one counts where it faces the eye, by the area that its piece of the
+    /// surface fills in the picture. 0 or nothing for a point that counts from everywhere.
+    pub facing: Vec<DVec3>,
 }
 
 /// Most balls that are tested.
 const MOST_BALLS: usize = 64;
+/// Points on ribbons and smooth surfaces; about half of them face the eye.
+const ON_SURFACE: usize = 48;
+/// Distance of these points before their surface, share of its extent.
+const BEFORE: f64 = 1e-4;
 /// Share of light that volumes must let through for a point to be seen.
 const SEEN: f64 = 0.5;
 
@@ -56,11 +65,17 @@ impl Target {
                     Some(Self { own_layers: vec![index], points, ..Self::around(bounds) })
                 }
             },
+            LayerKind::Molecule(m) => {
+                let mesh = &m.surface.mesh;
+                let triangles: Vec<[DVec3; 3]> = (0..mesh.triangles().len()).map(|t| mesh.corners(t)).collect();
+                let mut target = Self { own_layers: vec![index], ..Self::points([]) };
+                target.add_surface(&triangles);
+                Some(target)
+            }
             LayerKind::Boxes(b) => {
                 let points = surface_points::on_boxes(&b.boxes);
                 Some(Self { own_layers: vec![index], points, ..Self::around(bounds) })
             }
-            _ => Some(Self { own_layers: vec![index], ..Self::around(bounds) }),
         }
     }
 
@@ -85,8 +100,8 @@ impl Target {
         (!bounds.is_empty()).then(|| Self { own_parts: Some((index, parts)), points, ..Self::around(bounds) })
     }
 
-    /// Atoms of a molecule, by their numbers, as balls; of ribbons those at which their residues stand. Those that are not drawn, or
-    /// buried under a smooth surface, are left out. `None` if none is drawn.
+    /// Atoms of a molecule, by their numbers: as balls, or where they are drawn as ribbons or smooth surfaces by points all over these. Those
+    /// that are not drawn, or buried under a smooth surface, are left out. `None` if none is drawn.
     pub fn atoms(scene: &Scene, index: usize, atoms: &[usize]) -> Option<Self> {
         let LayerKind::Molecule(layer) = &scene.layers.get(index)?.kind else { return None };
         let mesh = &layer.surface.mesh;
@@ -99,15 +114,47 @@ impl Target {
         let mut own: Vec<usize> = stand_ins.filter(|&i| drawn.get(i) == Some(&true)).collect();
         own.sort_unstable();
         own.dedup();
-        let balls = Self::balls(own.iter().map(|&i| (layer.center(i), layer.radius(i))));
+        let balls = own.iter().filter(|i| layer.is_ball(**i)).map(|&i| (layer.center(i), layer.radius(i)));
+        let mut target = Self::balls(balls);
+        let on_surface = |t: &usize| {
+            let part = mesh.part(*t).map(|part| part as usize);
+            part.is_some_and(|part| !layer.is_ball(part) && own.binary_search(&part).is_ok())
+        };
+        let surface: Vec<[DVec3; 3]> =
+            (0..mesh.triangles().len()).filter(on_surface).map(|t| mesh.corners(t)).collect();
+        target.add_surface(&surface);
         let numbers = own.iter().map(|&i| i as u32).collect();
-        (!own.is_empty()).then_some(Self { own_parts: Some((index, numbers)), ..balls })
+        (!own.is_empty()).then_some(Self { own_parts: Some((index, numbers)), ..target })
+    }
+
+    /// Adds points all over a surface.
+    fn add_surface(&mut self, triangles: &[[DVec3; 3]]) {
+        let bounds = Aabb::of(triangles.iter().flatten().copied());
+        let off = BEFORE * (bounds.max - bounds.min).length();
+        let samples = if bounds.is_empty() { Vec::new() } else { spread(triangles, ON_SURFACE, off) };
+        self.radii.resize(self.points.len(), 0.0);
+        self.facing.resize(self.points.len(), DVec3::ZERO);
+        for sample in samples {
+            self.points.push(sample.p_world);
+            self.radii.push(0.0);
+            self.facing.push(sample.surface.unwrap_or(DVec3::ZERO));
+        }
+        self.bounds = self.bounds.union(bounds);
+    }
+
+    /// The same with further points that must be seen.
+    pub fn with_points(&self, points: &[DVec3]) -> Self {
+        let mut more = self.clone();
+        more.radii.resize(self.points.len(), 0.0);
+        more.facing.resize(self.points.len(), DVec3::ZERO);
+        more.points.extend(points.iter().filter(|p| p.is_finite()));
+        more
     }
 
     /// The points of a box.
     pub fn around(bounds: Aabb) -> Self {
         let points = surface_points::on_bounds(bounds);
-        Self { points, bounds, own_layers: Vec::new(), own_parts: None, radii: Vec::new() }
+        Self { bounds, ..Self::points(points) }
     }
 
     /// Balls, such as atoms: middle and radius, scene units. Of many balls some are tested, evenly chosen.
@@ -122,7 +169,7 @@ impl Target {
     pub fn points(points: impl IntoIterator<Item = DVec3>) -> Self {
         let points: Vec<DVec3> = points.into_iter().filter(|p| p.is_finite()).collect();
         let bounds = Aabb::of(points.iter().copied());
-        Self { points, bounds, own_layers: Vec::new(), own_parts: None, radii: Vec::new() }
+        Self { points, bounds, own_layers: Vec::new(), own_parts: None, radii: Vec::new(), facing: Vec::new() }
     }
 
     /// Its middle.
@@ -157,8 +204,10 @@ pub struct TargetSight<'a> {
     /// Lowest height of the scene, where it has ground.
     lowest: Option<f64>,
     target: &'a Target,
-    obstacles: Obstacles<'a>,
-    voxels: Voxels<'a>,
+    obstacles: Arc<Obstacles<'a>>,
+    voxels: Arc<Voxels<'a>>,
+    /// Whether no volume takes light away.
+    is_clear: bool,
     sight: SightOptions,
 }
 
@@ -178,7 +227,14 @@ impl<'a> TargetSight<'a> {
         };
         // Molecules and volumes have no ground.
         let lowest = (scene.unit == Unit::Metre && !bounds.is_empty()).then_some(bounds.min.z);
-        Self { scene, lowest, target, obstacles, voxels, sight }
+        let is_clear = !scene.layers.iter().any(|layer| matches!(layer.kind, LayerKind::Volume(_)));
+        let (obstacles, voxels) = (Arc::new(obstacles), Arc::new(voxels));
+        Self { scene, lowest, target, obstacles, voxels, is_clear, sight }
+    }
+
+    /// The same lines of sight to other points of the target.
+    pub fn to_points(&self, target: &'a Target) -> Self {
+        Self { target, obstacles: self.obstacles.clone(), voxels: self.voxels.clone(), ..*self }
     }
 
     pub(super) fn scene(&self) -> &'a Scene {
@@ -205,16 +261,40 @@ impl<'a> TargetSight<'a> {
 
     /// What the view shows of the target; `grow_px` as in [`TargetSight::share`].
     pub fn shown(&self, view: &View, grow_px: f64) -> Shown {
+        self.shown_over(view, grow_px, f64::NEG_INFINITY).unwrap_or(Shown { share: 0.0, light: 0.0 })
+    }
+
+    /// The same; `None` as soon as it is certain that no larger share than `least` is seen, which saves the remaining lines of sight. Where
+    /// volumes let light through nothing is saved, for that counts as well.
+    pub(super) fn shown_over(&self, view: &View, grow_px: f64, least: f64) -> Option<Shown> {
         let points = &self.target.points;
-        let (mut seen, mut sum) = (0, 0.0);
-        for (k, p) in points.iter().enumerate() {
+        let weights: Vec<f64> = (0..points.len()).map(|k| self.weight(view, k)).collect();
+        let all = Some(weights.iter().sum::<f64>()).filter(|all| *all > 0.0).unwrap_or(1.0);
+        let (mut hidden, mut sum) = (0.0, 0.0);
+        for (k, (p, weight)) in points.iter().zip(&weights).enumerate().filter(|(_, (_, weight))| **weight > 0.0) {
             let radius = self.target.radii.get(k).copied().unwrap_or(0.0);
             let light = self.light(view, (*p, radius), grow_px);
-            seen += usize::from(light >= SEEN);
-            sum += light;
+            sum += weight * light;
+            hidden += if light >= SEEN { 0.0 } else { *weight };
+            if self.is_clear && (all - hidden) / all <= least {
+                return None;
+            }
         }
-        let count = points.len().max(1) as f64;
-        Shown { share: seen as f64 / count, light: sum / count }
+        let nothing = weights.iter().all(|weight| *weight == 0.0);
+        Some(Shown { share: if nothing { 0.0 } else { (all - hidden) / all }, light: sum / all })
+    }
+
+    /// How much a point counts, 0..=1: by the angle between the normal of its surface and the ray that comes to it.
+    fn weight(&self, view: &View, k: usize) -> f64 {
+        let (p, Some(normal)) = (self.target.points[k], self.target.facing.get(k).filter(|n| **n != DVec3::ZERO))
+        else {
+            return 1.0;
+        };
+        let before = view.project(p).ok().and_then(|image| {
+            let before = view.ray(image.pixel).at((1.0 - 1e-4) * image.depth).ok()?;
+            Some(before.point)
+        });
+        normal.dot((before.unwrap_or(view.pinhole().eye) - p).normalize_or_zero()).max(0.0)
     }
 
     /// Share of the target's points that are in the picture, hidden or not, 0..=1.

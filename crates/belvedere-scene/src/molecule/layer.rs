@@ -146,6 +146,11 @@ impl MoleculeLayer {
         }
     }
 
+    /// Whether an atom is drawn as a ball, alone or with rods; ribbons and smooth surfaces are none.
+    pub fn is_ball(&self, atom: usize) -> bool {
+        matches!(self.shown.get(atom), Some(Shown::Ball))
+    }
+
     /// Whether the triangles of each atom show one that a selection means.
     pub fn mask_of(&self, selection: &Selection) -> Vec<bool> {
         let mut out = vec![false; self.molecule.atoms().len()];

@@ -60,7 +60,7 @@ pub(super) fn quick(
     if quality.coarseness() >= UNSHADED && light.altitude > 0.0 && scene.layers.iter().any(casts) {
         light.shadows = false;
     }
-    let plan = if view.is_bent() { fallback::of_session(session, view)? } else { None };
+    let plan = if view.is_bent() { fallback::of_session(session, view, None)? } else { None };
     let scene = plan.as_ref().map_or(scene, |plan| plan.scene());
     let grid = grid::wanted(scene, grid::stated(&session.resolved.overlay));
     options.overlay.under.extend(grid.into_iter().map(|line| widths::line(line, quality.width() * density)));

@@ -1,12 +1,15 @@
 //! Visible share of a target in a picture, pixel by pixel.
 
-use super::{SAME_DEPTH, occluders};
+use super::{Draw, SAME_DEPTH, occluders};
 use crate::resolve::constructor;
 use crate::targets;
 use crate::{BelvedereError, Session};
 use belvedere_construct::rays::Target;
-use belvedere_core::View;
-use belvedere_scene::{Frame, Scene};
+use belvedere_core::{DVec2, DVec3, View};
+use belvedere_scene::{Frame, LayerKind, Scene};
+
+/// Number of the part of a city's mesh that is its level ground.
+const PLATE: u32 = 0;
 
 /// Whether an id of a picture is that of the target's layer.
 pub(super) fn is_target(target: &Target, id: u32) -> bool {
@@ -14,27 +17,9 @@ pub(super) fn is_target(target: &Target, id: u32) -> bool {
     target.own_layers.iter().any(|&layer| is(layer)) || target.own_parts.as_ref().is_some_and(|p| is(p.0))
 }
 
-/// Number of pixels of a target in a picture of it alone, and the share of them that a picture shows, 0..=1: by ids, and by depths where
-/// other parts of its layer may hide it.
-pub(super) fn share(target: &Target, frame: &Frame, alone: &Frame) -> (usize, f64) {
-    let own = (0..alone.id.len()).filter(|&i| is_target(target, alone.id[i]));
-    let is_seen = |i: usize| {
-        let (here, there) = (f64::from(frame.depth[i]), f64::from(alone.depth[i]));
-        let same_depth = target.own_parts.is_none() || (here - there).abs() <= SAME_DEPTH * there;
-        is_target(target, frame.id[i]) && same_depth
-    };
-    let (all, seen) = own.fold((0usize, 0usize), |(all, seen), i| (all + 1, seen + usize::from(is_seen(i))));
-    (all, seen as f64 / all.max(1) as f64)
-}
-
-/// The scene with the target alone; `None` for points and lines, which have no surface of their own.
-pub(crate) fn target_alone(scene: &Scene, target: &Target) -> Option<Scene> {
-    occluders::target_alone(scene, target)
-}
-
 /// The scene with its target opaque; `None` where it is. Ids and depths are those of what hides, so a target that something shines
 /// through is looked for in a picture of this scene.
-pub(crate) fn with_opaque_target(scene: &Scene, target: &Target) -> Option<Scene> {
+pub(super) fn with_opaque_target(scene: &Scene, target: &Target) -> Option<Scene> {
     let is_own = |i: usize| is_target(target, i as u32 + 1) && scene.layers[i].kind.is_see_through();
     let own: Vec<usize> = (0..scene.layers.len()).filter(|i| is_own(*i)).collect();
     if own.is_empty() {
@@ -45,12 +30,74 @@ pub(crate) fn with_opaque_target(scene: &Scene, target: &Target) -> Option<Scene
     Some(scene)
 }
 
+/// How much of a target pictures show: of the pixels that it fills where it is drawn alone, those that show it. The one judge of targets that
+/// have a surface: it decides whether a bend or a fallback is needed, and it is what reports say.
+pub(crate) struct Judge {
+    target: Target,
+    alone: Scene,
+    /// The target with the ground on which it stands, if that is drawn with it.
+    ground: Option<Scene>,
+    opaque: Option<Scene>,
+}
+
+impl Judge {
+    /// `None` for points and lines, which have no surface of their own.
+    ///
+    /// * `on_ground`: the target with the ground on which it stands, or the target again.
+    pub(crate) fn of(scene: &Scene, target: &Target, on_ground: &Target) -> Option<Self> {
+        let alone = occluders::target_alone(scene, target)?;
+        let ground = if on_ground == target { None } else { occluders::target_alone(scene, on_ground) };
+        Some(Self { target: target.clone(), alone, ground, opaque: with_opaque_target(scene, target) })
+    }
+
+    /// The same of a target by itself: parts of a mesh with a plate stand on it.
+    pub(crate) fn of_target(scene: &Scene, target: &Target) -> Option<Self> {
+        let mut on_ground = target.clone();
+        if let Some((layer, parts)) = &mut on_ground.own_parts
+            && matches!(&scene.layers[*layer].kind, LayerKind::Mesh(mesh) if mesh.has_plate)
+            && parts.first() != Some(&PLATE)
+        {
+            parts.insert(0, PLATE);
+        }
+        Self::of(scene, target, &on_ground)
+    }
+
+    /// Judges a picture in which the target is opaque.
+    ///
+    /// # Errors
+    /// Those of `draw`.
+    pub(super) fn opaque_in(&self, frame: &Frame, view: &View, draw: &Draw<'_>) -> Result<Mask, BelvedereError> {
+        let above = self.ground.as_ref().map(|scene| draw(scene, view)).transpose()?;
+        Ok(Mask::of(&self.target, frame, &draw(&self.alone, view)?, above.as_ref()))
+    }
+
+    /// Judges the picture of a scene through a view.
+    ///
+    /// * `frame`: that picture, where it is drawn already; `draw`: draws a scene in a view as that picture was drawn.
+    ///
+    /// # Errors
+    /// Those of `draw`.
+    pub(crate) fn mask(
+        &self,
+        (scene, frame): (&Scene, Option<&Frame>),
+        view: &View,
+        draw: &Draw<'_>,
+    ) -> Result<Mask, BelvedereError> {
+        match (&self.opaque, frame) {
+            (None, Some(frame)) => self.opaque_in(frame, view, draw),
+            (opaque, _) => self.opaque_in(&draw(opaque.as_ref().unwrap_or(scene), view)?, view, draw),
+        }
+    }
+}
+
 /// The pixels that a target fills where it is drawn alone, and those of them that a picture shows.
 pub(crate) struct Mask {
     /// Whether a pixel is one of the target's, row by row.
     pub(crate) own: Vec<bool>,
     /// Whether the picture shows the target there.
     pub(crate) seen: Vec<bool>,
+    /// Depths of the target alone.
+    depth: Vec<f32>,
     width: usize,
 }
 
@@ -62,7 +109,7 @@ impl Mask {
         let own: Vec<bool> = (0..alone.id.len()).map(|i| is_target(target, alone.id[i]) && above(i)).collect();
         let is_seen = |i: usize| own[i] && is_target(target, frame.id[i]) && same(frame.depth[i], alone.depth[i]);
         let seen = (0..own.len()).map(is_seen).collect();
-        Self { own, seen, width: frame.width }
+        Self { own, seen, depth: alone.depth.clone(), width: frame.width }
     }
 
     /// Whether the picture shows the target at a pixel or beside it: its rim shares pixels with what is behind.
@@ -71,11 +118,28 @@ impl Mask {
         beside.into_iter().flatten().any(|k| self.seen.get(k) == Some(&true))
     }
 
+    /// Number of the target's pixels.
+    pub(crate) fn pixels(&self) -> usize {
+        self.own.iter().filter(|own| **own).count()
+    }
+
     /// Share of the pixels that are seen, 0..=1; 0 without any.
     pub(crate) fn share(&self) -> f64 {
-        let own = (0..self.own.len()).filter(|&i| self.own[i]);
-        let (all, seen) = own.fold((0usize, 0usize), |(all, seen), i| (all + 1, seen + usize::from(self.is_seen(i))));
-        seen as f64 / all.max(1) as f64
+        let seen = (0..self.own.len()).filter(|&i| self.own[i] && self.is_seen(i)).count();
+        seen as f64 / self.pixels().max(1) as f64
+    }
+
+    /// Places on the target that the picture hides, evenly chosen.
+    ///
+    /// * `view`: that of the picture; `most`: their number, at most.
+    pub(crate) fn hidden(&self, view: &View, most: usize) -> Vec<DVec3> {
+        let hidden: Vec<usize> = (0..self.own.len()).filter(|&i| self.own[i] && !self.is_seen(i)).collect();
+        let every = hidden.len().div_ceil(most.max(1)).max(1);
+        let place = |&i: &usize| {
+            let pixel = DVec2::new((i % self.width) as f64 + 0.5, (i / self.width) as f64 + 0.5);
+            view.ray(pixel).at(f64::from(self.depth[i])).ok().map(|at| at.point)
+        };
+        hidden.iter().skip(every / 2).step_by(every).filter_map(place).collect()
     }
 }
 
@@ -95,7 +159,6 @@ pub(crate) fn of_session(
     let doc = source.document.constructor.as_ref().filter(|_| constructor::tracks_target(source));
     let Some(name) = doc.and_then(|doc| doc.target.as_deref()) else { return Ok(None) };
     let target = targets::target(session.scene(), name)?;
-    let Some(alone) = occluders::target_alone(session.scene(), &target) else { return Ok(None) };
-    let whole = with_opaque_target(session.scene(), &target).map(|scene| draw(&scene, view)).transpose()?;
-    Ok(Some(share(&target, whole.as_ref().unwrap_or(frame), &draw(&alone, view)?).1))
+    let Some(judge) = Judge::of(session.scene(), &target, &target) else { return Ok(None) };
+    Ok(Some(judge.mask((session.scene(), Some(frame)), view, draw)?.share()))
 }

@@ -13,13 +13,14 @@ mod tests;
 
 use crate::bodies::refusal;
 use crate::overlays::highlight::border;
-use crate::scene_file::{ConstructorKind, Fallback, FallbackKind};
+use crate::scene_file::{ConstructorDoc, ConstructorKind, Fallback, FallbackKind, SourceDocument};
 use crate::targets;
 use crate::{BelvedereError, Session};
 use belvedere_composite::canvas::Canvas;
 use belvedere_construct::rays::{Target, TargetSight};
 use belvedere_core::{DVec2, DVec3, Pinhole, View};
 use belvedere_scene::{Color, Frame, LayerKind, Scene};
+use in_sight::Judge;
 use occluders::{Extent, Part};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -31,6 +32,8 @@ const OPACITY: f32 = 0.3;
 const MARGIN_PX: f64 = 10.0;
 /// Visible share from which on a target needs no fallback.
 const ENOUGH: f64 = 0.99;
+/// Places that a picture hides, by which parts are found that hide them, at most.
+const HIDDEN_PLACES: usize = 100;
 /// Relative difference below which depths in two pictures count as the same.
 const SAME_DEPTH: f64 = 2e-4;
 const EDGE: [Color; 2] = [Color::rgb(255, 255, 255), Color::rgb(60, 60, 60)];
@@ -107,20 +110,54 @@ pub struct FallbackPlan {
     pub record: FallbackRecord,
 }
 
+/// Draws a scene in a view, with fixed quality and light.
+pub(crate) type Draw<'a> = dyn Fn(&Scene, &View) -> Result<Frame, BelvedereError> + 'a;
+
 /// The plan that a session's document asks for in `view`; `None` if it asks for none, or if the view shows the target anyway.
-pub(crate) fn of_session(session: &Session, view: &View) -> Result<Option<FallbackPlan>, BelvedereError> {
-    let Some(source) = session.resolved.description.as_ref().map(|d| &d.source) else { return Ok(None) };
-    let Some(doc) = source.document.constructor.as_ref().filter(|doc| !doc.fallback.is_empty()) else {
-        return Ok(None);
-    };
+///
+/// * `draw`: draws the pictures by which the target is judged; without it lines of sight judge it, which is faster while something moves.
+pub(crate) fn of_session(
+    session: &Session,
+    view: &View,
+    draw: Option<&Draw<'_>>,
+) -> Result<Option<FallbackPlan>, BelvedereError> {
+    let Some((source, doc)) = asked(session) else { return Ok(None) };
     let rules: Result<Vec<Fallback>, String> = doc.fallback.iter().map(|rule| rule.parse()).collect();
     let rules = rules.map_err(|reason| source.error(&["constructor", "fallback"], format!("constructor: {reason}")))?;
-    let name = doc.target.as_deref().unwrap_or_default();
-    let target = targets::target(session.scene(), name)
+    let (scene, name) = (session.scene(), doc.target.as_deref().unwrap_or_default());
+    let mut target = targets::target(scene, name)
         .map_err(|e| source.error(&["constructor", "target"], format!("constructor: {e}")))?;
-    let plan = plan(session.scene(), view, (name, &target), &rules)?;
+    let judge = match draw.filter(|_| !has_volumes(scene)) {
+        Some(draw) => {
+            Judge::of_target(scene, &target).map(|judge| judge.mask((scene, None), view, draw)).transpose()?
+        }
+        None => None,
+    };
     let always = doc.kind == ConstructorKind::Manual;
-    Ok(Some(plan).filter(|p| always || p.record.visible_before < ENOUGH))
+    if let Some(mask) = &judge {
+        if !always && mask.share() >= ENOUGH {
+            return Ok(None);
+        }
+        // What hides places between the points that stand for the target is found, too.
+        target = target.with_points(&mask.hidden(view, HIDDEN_PLACES));
+    }
+    let plan = plan(scene, view, (name, &target), &rules)?;
+    Ok(Some(plan).filter(|p| always || judge.is_some() || p.record.visible_before < ENOUGH))
+}
+
+/// Whether a session's document asks for a fallback.
+pub(crate) fn is_asked(session: &Session) -> bool {
+    asked(session).is_some()
+}
+
+fn asked(session: &Session) -> Option<(&SourceDocument, &ConstructorDoc)> {
+    let source = session.resolved.description.as_ref().map(|d| &d.source)?;
+    Some((source, source.document.constructor.as_ref().filter(|doc| !doc.fallback.is_empty())?))
+}
+
+/// Whether volumes let light through, which ids and depths of pictures do not tell.
+pub(crate) fn has_volumes(scene: &Scene) -> bool {
+    scene.layers.iter().any(|layer| matches!(layer.kind, LayerKind::Volume(_)))
 }
 
 /// Plans the fallbacks in `view` that show a target.
@@ -291,12 +328,11 @@ impl FallbackPlan {
         (before, frame): (&Scene, &Frame),
         draw: &dyn Fn(&Scene, &View) -> Result<Frame, BelvedereError>,
     ) -> Result<FallbackRecord, BelvedereError> {
-        let Some(alone) = occluders::target_alone(&self.scene, &self.target) else { return Ok(self.record.clone()) };
-        let alone = draw(&alone, view)?;
-        let whole = in_sight::with_opaque_target(before, &self.target);
-        let (_, visible_before) = in_sight::share(&self.target, &draw(whole.as_ref().unwrap_or(before), view)?, &alone);
-        let (pixels, visible) = in_sight::share(&self.target, frame, &alone);
-        let pixels_alone = Some(pixels);
+        let of = |scene: &Scene| Judge::of_target(scene, &self.target);
+        let (Some(judge), Some(now)) = (of(before), of(&self.scene)) else { return Ok(self.record.clone()) };
+        let mask = judge.mask((before, None), view, draw)?;
+        let now = now.opaque_in(frame, view, draw)?;
+        let (visible_before, visible, pixels_alone) = (mask.share(), now.share(), Some(now.pixels()));
         Ok(FallbackRecord { visible_before, visible, pixels_alone, ..self.record.clone() })
     }
 
@@ -312,7 +348,12 @@ impl FallbackPlan {
         draw: &dyn Fn(&Scene, &View) -> Result<Frame, BelvedereError>,
         size: [usize; 2],
     ) -> Result<Vec<bool>, BelvedereError> {
-        let alone = occluders::target_alone(&self.scene, &self.target).filter(|_| self.target.radius() > 0.0);
+        let is_molecule = self
+            .target
+            .own_parts
+            .as_ref()
+            .is_some_and(|(layer, _)| matches!(self.scene.layers[*layer].kind, LayerKind::Molecule(_)));
+        let alone = occluders::target_alone(&self.scene, &self.target).filter(|_| is_molecule);
         let Some(alone) = alone else { return Ok(region::mask(view, &self.target, self.margin_px, size)) };
         let image: Vec<bool> = draw(&alone, view)?.id.iter().map(|id| self.is_target(*id)).collect();
         Ok(region::around(&image, self.margin_px, size))

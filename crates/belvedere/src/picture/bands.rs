@@ -176,13 +176,9 @@ fn whole_only(session: &Session, request: &PictureOptions, out: &Path) -> Option
         (session.light().sky == Sky::Transparent, "its transparent sky"),
         (bent && (request.ghost || overlay.ghost), "the straight picture faintly over it"),
         (is_marked, "highlights or a heat map"),
-        (!request.straight && has_fallback(session), "a fallback for its target"),
+        (!request.straight && fallback::is_asked(session), "a fallback for its target"),
     ];
     reasons.into_iter().find(|(is, _)| *is).map(|(_, what)| what)
-}
-
-fn has_fallback(session: &Session) -> bool {
-    !matches!(fallback::of_session(session, session.view()), Ok(None))
 }
 
 /// Rows that a picture is drawn at a time; `None` in one piece.

@@ -1,6 +1,7 @@
 //! Draws the picture of a session: layers, marks over them, the straight picture beside the bent one.
 
 use super::displacement::{self, DisplacementReport};
+use super::mark_target::plain;
 use super::options::{AuxBuffer, PictureOptions};
 use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, SeeThroughRecord, Sidecar, TerrainRecord};
 use super::volume_record::VolumeRecord;
@@ -155,7 +156,8 @@ pub(crate) fn draw_view(
 
 fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress) -> Result<Drawn, BelvedereError> {
     let view = if request.straight { session.view().straightened() } else { session.view().clone() };
-    let plan = if request.straight { None } else { fallback::of_session(session, &view)? };
+    let judging = plain(session, request, progress);
+    let plan = if request.straight { None } else { fallback::of_session(session, &view, Some(&judging))? };
     let scene = plan.as_ref().map_or(session.scene(), FallbackPlan::scene);
     if plan.is_some() && request.vectors != VectorContent::Nothing {
         return Err(BelvedereError::NoVectors("pictures with a fallback for a target"));

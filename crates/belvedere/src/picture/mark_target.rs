@@ -1,12 +1,26 @@
 //! Marks of targets in pictures: a ring around points, an outline around everything that has a surface.
 
 use super::{Picture, PictureOptions, TargetPlace};
-use crate::fallback::in_sight::{Mask, target_alone, with_opaque_target};
+use crate::fallback::in_sight::Judge;
 use crate::overlays::{contour, ring};
 use crate::{BelvedereError, Session};
 use belvedere_construct::rays::{BendReport, Target};
 use belvedere_core::{DVec3, View};
-use belvedere_scene::{Light, RenderJob, RenderOptions, Scene};
+use belvedere_scene::{Frame, Light, Progress, RenderJob, RenderOptions, Scene};
+
+/// Draws scenes in the quality of a session's pictures without marks and shadows, to tell what is seen where.
+pub(crate) fn plain<'a>(
+    session: &'a Session,
+    options: &'a PictureOptions,
+    progress: &'a Progress,
+) -> impl Fn(&Scene, &View) -> Result<Frame, BelvedereError> + 'a {
+    let drawing = RenderOptions { marks: false, ..options.quality.clone() };
+    let light = Light { shadows: false, ..*session.light() };
+    move |scene, view| {
+        let job = RenderJob { scene, view, light: &light, options: &drawing, progress };
+        Ok(options.renderer.of(session).render(&job)?)
+    }
+}
 
 impl Picture {
     /// Marks a target point in both pictures, and records its position.
@@ -38,15 +52,8 @@ impl Picture {
         (target, on_ground): (&Target, &Target),
         options: &PictureOptions,
     ) -> Result<Option<[f64; 2]>, BelvedereError> {
-        let Some(alone) = target_alone(session.scene(), target) else { return Ok(None) };
-        let ground = if on_ground == target { None } else { target_alone(session.scene(), on_ground) };
-        let drawing = RenderOptions { marks: false, ..options.quality.clone() };
-        // These pictures tell what is seen where, for which shadows do not matter.
-        let light = Light { shadows: false, ..*session.light() };
-        let draw = |scene: &Scene, view: &View| {
-            let job = RenderJob { scene, view, light: &light, options: &drawing, progress: &options.progress };
-            options.renderer.of(session).render(&job)
-        };
+        let Some(judge) = Judge::of(session.scene(), target, on_ground) else { return Ok(None) };
+        let draw = plain(session, options, &options.progress);
         // Around everything in the picture an outline tells nothing.
         let is_own = |i: usize| target.own_layers.contains(&i);
         let has_others =
@@ -56,10 +63,7 @@ impl Picture {
         let frames = [(self.straight.as_mut(), &straight_view), (Some(&mut self.frame), &self.view)];
         for (share, (frame, view)) in shares.iter_mut().zip(frames) {
             let Some(frame) = frame else { continue };
-            let own = draw(&alone, view)?;
-            let above = ground.as_ref().map(|scene| draw(scene, view)).transpose()?;
-            let whole = with_opaque_target(session.scene(), target).map(|scene| draw(&scene, view)).transpose()?;
-            let mask = Mask::of(target, whole.as_ref().unwrap_or(frame), &own, above.as_ref());
+            let mask = judge.mask((session.scene(), Some(frame)), view, &draw)?;
             *share = mask.share();
             if has_others {
                 contour::draw(frame, &mask.own, &mask.seen);

@@ -19,6 +19,7 @@ mod write;
 pub(crate) use bands::{later, write_later, write_straight};
 pub use displacement::DisplacementReport;
 pub(crate) use draw::{draw, draw_camera, draw_view};
+pub(crate) use mark_target::plain;
 pub use options::{AuxBuffer, AuxFormat, PictureOptions, RendererChoice, THRESHOLDS};
 pub use sidecar::{MoleculeRecord, OverlayRecord, Picture, SeeThroughRecord, Sidecar, TerrainRecord};
 pub use target_place::{TargetPlace, VoxelPlace};

@@ -1,15 +1,16 @@
 //! The warning about a picture that shows nothing of any layer, as of an eye whose position is given in degrees.
 
+use crate::fallback::has_volumes;
 use crate::overlays::length;
 use belvedere_core::{DVec3, View, Warning, WarningKind};
-use belvedere_scene::{Crs, Frame, LayerKind, Scene, Unit};
+use belvedere_scene::{Crs, Frame, Scene, Unit};
 
 /// The warning; `None` where the picture shows something, and for volumes, through which one may see.
 ///
 /// * `frame`: the picture, with the ids of its layers.
 pub(super) fn warning(scene: &Scene, view: &View, frame: &Frame) -> Option<Warning> {
     let bounds = scene.bounds();
-    if bounds.is_empty() || scene.layers.iter().any(|layer| matches!(layer.kind, LayerKind::Volume(_))) || frame.id.iter().any(|id| *id != 0) {
+    if bounds.is_empty() || has_volumes(scene) || frame.id.iter().any(|id| *id != 0) {
         return None;
     }
     let eye = view.pinhole().eye;

@@ -54,22 +54,21 @@ pub(super) fn around(
             views.push((price, View::straight(fitted(&points, target, (forward, DVec3::Z), lens)?)));
         }
     }
-    let judged = views.into_par_iter().filter(|(_, view)| has_room(scene, view.pinhole().eye)).map(|(price, view)| {
-        let share = sight.share(&view, 0.0);
-        (share, share - price, view)
-    });
-    let mut judged: Vec<(f64, f64, View)> = judged.collect();
-    judged.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let judged = views
+        .into_par_iter()
+        .filter(|(_, view)| has_room(scene, view.pinhole().eye))
+        .map(|(price, view)| (sight.share(&view, 0.0) - price, view));
+    let mut judged: Vec<(f64, View)> = judged.collect();
+    judged.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut kept: Vec<View> = Vec::new();
-    let whole = judged.first().is_some_and(|best| best.0 >= 1.0) && most == KEPT;
-    for (.., view) in judged {
+    for (_, view) in judged {
         // Views from the same side are alike.
         let ahead = view.pinhole().forward;
         if kept.iter().all(|k| k.pinhole().forward.truncate().angle_to(ahead.truncate()).abs() > 0.4) {
             kept.push(view);
         }
     }
-    kept.truncate(if whole { 1 } else { most });
+    kept.truncate(most);
     match kept.is_empty() {
         true => {
             Err(BelvedereError::Target("no eye around the target is free of buildings; give --eye and --look".into()))

@@ -23,6 +23,7 @@ pub mod reveal;
 mod reveal_files;
 pub mod reveal_target;
 pub mod schemas;
+mod target_bend;
 pub mod target_drafts;
 mod target_names;
 mod target_request;

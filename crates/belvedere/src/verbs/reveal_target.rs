@@ -4,10 +4,11 @@
 use super::appearance::{Appearance, check_background};
 pub use super::refit::RefitRecord;
 use super::refit::{Content, Refit, refit as refit_to};
+use super::target_bend::PictureJudge;
 pub use super::target_request::TargetRequest;
 use super::target_scene::{self, Meant, Targets};
 use super::{city_views, target_views};
-use crate::fallback::FallbackRecord;
+use crate::fallback::{FallbackRecord, has_volumes};
 use crate::guard::guarded;
 use crate::picture::{Picture, PictureOptions, TargetPlace};
 use crate::places::{Place, PlaceHeight};
@@ -17,10 +18,10 @@ use crate::scene_file::{CameraDoc, ConstructorDoc, ConstructorKind, Document, Ea
 use crate::targets;
 use crate::verbs::reveal::{IMAGE, RevealFiles, Technique, spline_stage};
 use crate::{BelvedereError, OpenOptions, Session};
-use belvedere_construct::rays::{AroundOptions, BendReport, Sidestep, Target, TargetSight, bend_around_by};
+use belvedere_construct::rays::{BendReport, Sidestep, Target, TargetSight};
 use belvedere_construct::{ConstructError, RevealMemory, RevealOptions, Revealed};
 use belvedere_core::{DVec3, Pinhole, Projection, View, Warning};
-use belvedere_scene::{LayerKind, Unit};
+use belvedere_scene::Unit;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -175,15 +176,15 @@ fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnsw
         Some(view) => (vec![view], false),
         None => (opened.views(&searching, None)?, true),
     };
-    let around = AroundOptions::default();
+    let judge = PictureJudge::new(session, targets, (&request.picture, &options.progress));
     let mut best: Option<(View, Option<Sidestep>, BendReport)> = None;
     let (mut tried, mut light_best) = (0, 0.0f64);
     for (k, view) in views.into_iter().enumerate() {
-        let found = bend_around_by(&searching, &view, &around, &options.progress)?;
-        (tried, light_best) = (tried + found.report.tried, light_best.max(found.report.light_best));
+        let (sidestep, found) = judge.bend(&searching, &view, &options.progress)?;
+        (tried, light_best) = (tried + found.tried, light_best.max(found.light_best));
         let score = |r: &BendReport| r.visible - 0.1 * r.motion;
-        if best.as_ref().is_none_or(|(.., b)| score(&found.report) > score(b) + 0.02) {
-            best = Some((view, found.bent.map(|(_, sidestep)| sidestep), found.report));
+        if best.as_ref().is_none_or(|(.., b)| score(&found) > score(b) + 0.02) {
+            best = Some((view, sidestep, found));
         }
         // Where much is seen, later views, which show less without a bend, seldom show more with one.
         let enough = if k + 1 < VIEWS_AT_LEAST || opened.is_city() { ENOUGH } else { MUCH };
@@ -210,13 +211,18 @@ fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnsw
         Some(Bend::Rays(sidestep, root)) => sidestep.seen_by(root, &view)?,
         _ => view.clone(),
     };
-    let mut report = BendReport { tried, light_best, ..judged(sight, &view, &bent, report) };
+    // The finished pictures tell the shares of targets with a surface, unless a fallback has to be decided on before.
+    let report = match judge.is_by_pictures() && request.fallback.is_empty() {
+        true => BendReport { in_frame: sight.in_frame(&bent), in_frame_straight: sight.in_frame(&view), ..report },
+        false => judged((&judge, sight), &view, &bent, report)?,
+    };
+    let mut report = BendReport { tried, light_best, ..report };
     if meant.is_features()
         && request.technique != Some(Technique::CurvedRays)
         && (only_spline || report.visible < ENOUGH)
         && let Some(found) = opened.spline(&view, options)?
     {
-        let by_spline = judged(sight, &view, &found.view, report);
+        let by_spline = judged((&judge, sight), &view, &found.view, report)?;
         let gain = if only_spline { 0.0 } else { SPLINE_GAIN };
         if by_spline.visible > report.visible + gain {
             (report, bend, refit) = (by_spline, Some(Bend::Spline(Box::new(found))), None);
@@ -259,7 +265,7 @@ fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnsw
     } else if let Some(shares) = picture.mark_shape(&session, (&targets.shape, &targets.judge), &pair)? {
         mark = "an outline around it, of dashes where it is hidden";
         // Volumes let light through, which ids do not tell, and fallbacks have a report of their own.
-        if !has_volumes(&session) && picture.sidecar.fallback.is_none() {
+        if !has_volumes(session.scene()) && picture.sidecar.fallback.is_none() {
             let [straight, bent] = shares;
             report.visible_straight = straight * report.in_frame_straight;
             report.visible = bent * report.in_frame;
@@ -270,18 +276,16 @@ fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnsw
 }
 
 /// A report with the shares of a straight and of a bent view.
-fn judged(sight: &TargetSight<'_>, straight: &View, bent: &View, report: BendReport) -> BendReport {
-    BendReport {
-        visible: sight.share(bent, 0.0),
-        in_frame: sight.in_frame(bent),
-        visible_straight: sight.share(straight, 0.0),
-        in_frame_straight: sight.in_frame(straight),
-        ..report
-    }
-}
-
-fn has_volumes(session: &Session) -> bool {
-    session.scene().layers.iter().any(|l| matches!(l.kind, LayerKind::Volume(_)))
+fn judged(
+    (judge, sight): (&PictureJudge<'_>, &TargetSight<'_>),
+    straight: &View,
+    bent: &View,
+    report: BendReport,
+) -> Result<BendReport, BelvedereError> {
+    let visible_straight = judge.share(sight, straight)?;
+    let visible = if bent.is_bent() || straight.is_bent() { judge.share(sight, bent)? } else { visible_straight };
+    let (in_frame, in_frame_straight) = (sight.in_frame(bent), sight.in_frame(straight));
+    Ok(BendReport { visible, in_frame, visible_straight, in_frame_straight, ..report })
 }
 
 /// The view that is given by the request or the scene file.
@@ -390,7 +394,7 @@ impl TargetAnswer {
         let straight = of(visible_straight, self.report.in_frame_straight);
         if tried > 0 && visible < ENOUGH && visible <= visible_straight {
             let percent = |share: f64| format!("{:.0} %", 100.0 * share);
-            let light = match has_volumes(&self.session) {
+            let light = match has_volumes(self.session.scene()) {
                 true => format!(
                     "; {} of its light comes through straight, {} at best by a bend, half is needed",
                     percent(light_straight),

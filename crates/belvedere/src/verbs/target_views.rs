@@ -57,7 +57,7 @@ fn axes(up: DVec3) -> [DVec3; 3] {
     [right, up.cross(right), up]
 }
 
-/// The views from all around that are worth a search for bends, the best first; only one if it shows the whole target.
+/// The views from all around that are worth a search for bends, the best first.
 ///
 /// * `up`: unit vector; `image`, `fov_y`: size in pixels, and full vertical field of view, radians;
 /// * `most`: number of views at most, [`KEPT`] for the search of one.
@@ -82,18 +82,17 @@ pub(super) fn around(
             views.push(View::straight(fitted(&points, target, (forward, up), (image, fov_y))?));
         }
     }
-    let mut judged: Vec<(f64, f64, View)> = views
+    let mut judged: Vec<(f64, View)> = views
         .into_par_iter()
         .enumerate()
         .map(|(i, view)| {
             let shown = sight.shown(&view, 0.0);
-            (shown.share, shown.share + 0.1 * shown.light - WORTH * i as f64 / HEADINGS.len() as f64, view)
+            (shown.share + 0.1 * shown.light - WORTH * i as f64 / HEADINGS.len() as f64, view)
         })
         .collect();
-    judged.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let whole = judged.first().is_some_and(|best| best.0 >= 1.0) && most == KEPT;
-    judged.truncate(if whole { 1 } else { most });
-    Ok(judged.into_iter().map(|(.., view)| view).collect())
+    judged.sort_by(|a, b| b.0.total_cmp(&a.0));
+    judged.truncate(most);
+    Ok(judged.into_iter().map(|(_, view)| view).collect())
 }
 
 /// The camera in a direction from which the model fills the picture; nearer, at the target, where that is small.

@@ -14,6 +14,7 @@ mod moving_pictures;
 mod names;
 mod over_ground;
 mod parts;
+mod ribbon_targets;
 mod see_through;
 mod sessions;
 mod steep_ground;
