@@ -31,6 +31,7 @@ pub mod answers;
 mod bodies;
 mod camera_path;
 mod city_blocks;
+mod city_ground;
 pub mod city_map;
 mod data;
 pub mod editor;

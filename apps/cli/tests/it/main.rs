@@ -45,6 +45,7 @@ mod strip;
 mod stylisation;
 mod terrain;
 mod time_limit;
+mod town_heights;
 mod trusted;
 mod typed_warnings;
 mod volume_targets;

@@ -6,6 +6,7 @@ use super::report::{BlockReport, FailingCell, LevelReport};
 use super::settings::GeneraliseSettings;
 use super::shapes::{Land, area, polygons_of, triangles};
 use super::streets::Dividers;
+use super::volume::VOLUME_OFF;
 use belvedere_scene::city::{Building, City, CityArea, HeightSource, LandCover, Polygon, StructureKind};
 use geo::{Area, InteriorPoint, MultiPolygon};
 use rayon::prelude::*;
@@ -108,7 +109,8 @@ impl MadeBlock {
         (self.shape.covered_m2 / self.shape.built_m2.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
     }
 
-    fn volume_m3(&self) -> f64 {
+    /// Ground of its buildings, overlaps counted once, times its height.
+    fn covered_m3(&self) -> f64 {
         self.shape.covered_m2 * self.height_m
     }
 }
@@ -127,7 +129,7 @@ pub(super) struct Plan<'a> {
     pub grain: Grain,
 }
 
-/// The level, its figures, and its blocks and landmarks for the next. Landmarks are some of the finer level's.
+/// The level, its figures without volumes, and its blocks and landmarks for the next. Landmarks are some of the finer level's.
 pub(super) fn level(
     plan: &Plan<'_>,
     input: &Input<'_>,
@@ -215,9 +217,6 @@ fn figures(
     let sum = |of: fn(&MadeBlock) -> f64| blocks().map(of).sum::<f64>();
     let (built, covered) = (sum(|b| b.shape.built_m2), sum(|b| b.shape.covered_m2));
     let landmarks: Vec<usize> = made.iter().flat_map(|m| &m.landmarks).chain(homeless).copied().collect();
-    let all: Vec<usize> = (0..input.volumes.len()).collect();
-    let volume = sum(MadeBlock::volume_m3) + input.volume_of(&landmarks);
-    let share = volume / input.volume_of(&all).max(f64::MIN_POSITIVE);
     let numbered = || made.iter().enumerate();
     LevelReport {
         name,
@@ -234,22 +233,21 @@ fn figures(
         built_area_m2: built,
         covered_share: if built > 0.0 { covered / built } else { 1.0 },
         triangles: blocks().map(|b| triangles(&b.shape.land)).sum::<usize>() + input.triangles(&landmarks),
-        volume_m3: volume,
-        volume_share: share,
-        volume_kept: (0.9..=1.1).contains(&share),
+        volume_m3: 0.0,
+        volume_share: 0.0,
+        volume_kept: false,
         cells_failing: numbered().filter_map(|(number, m)| failing(input, cell_name(name, number), m)).collect(),
-        each_block: numbered().filter_map(|(number, m)| block_report(input, cell_name(name, number), m)).collect(),
+        each_block: numbered().filter_map(|(number, m)| block_report(cell_name(name, number), m)).collect(),
     }
 }
 
-/// Least share of the ground of a block's buildings that has to lie in it, and how far volumes may differ.
+/// Least share of the ground of a block's buildings that has to lie in it.
 const LEAST_COVERED: f64 = 0.9;
-const VOLUME_OFF: f64 = 0.1;
 
-/// Report of a cell whose block misses the required coverage or volume.
+/// Report of a cell whose block misses some of the ground of its buildings, or stands for several at one place; without volumes.
 fn failing(input: &Input<'_>, cell: String, m: &Made) -> Option<FailingCell> {
     let held = input.volume_of(&m.ordinary) + input.volume_of(&m.landmarks);
-    let shown = m.block.as_ref().map_or(0.0, MadeBlock::volume_m3) + input.volume_of(&m.landmarks);
+    let shown = m.block.as_ref().map_or(0.0, MadeBlock::covered_m3) + input.volume_of(&m.landmarks);
     let covered_share = m.block.as_ref().map_or(f64::from(m.ordinary.is_empty()), MadeBlock::covered_share);
     let reason = if m.block.is_none() && !m.ordinary.is_empty() {
         "no room for a block"
@@ -265,13 +263,13 @@ fn failing(input: &Input<'_>, cell: String, m: &Made) -> Option<FailingCell> {
         at: point_of(&m.land),
         reason,
         buildings: m.ordinary.len() + m.landmarks.len(),
-        volume_in_m3: held,
-        volume_out_m3: shown,
+        volume_in_m3: 0.0,
+        volume_out_m3: 0.0,
         covered_share,
     })
 }
 
-fn block_report(input: &Input<'_>, block: String, m: &Made) -> Option<BlockReport> {
+fn block_report(block: String, m: &Made) -> Option<BlockReport> {
     let made = m.block.as_ref()?;
     Some(BlockReport {
         block,
@@ -280,8 +278,8 @@ fn block_report(input: &Input<'_>, block: String, m: &Made) -> Option<BlockRepor
         height_m: made.height_m,
         covered_share: made.covered_share(),
         coverage: made.coverage(),
-        volume_in_m3: input.volume_of(&m.ordinary),
-        volume_out_m3: made.volume_m3(),
+        volume_in_m3: 0.0,
+        volume_out_m3: 0.0,
     })
 }
 

@@ -20,6 +20,7 @@ mod settings;
 mod shapes;
 mod streets;
 mod strokes;
+mod volume;
 
 pub use blocks::CellKind;
 pub use error::GeneraliseError;
@@ -27,6 +28,7 @@ pub use land_cover::{LandCoverMap, land_cover};
 pub use level::{Block, Cell, Level};
 pub use report::{BlockReport, FailingCell, GeneraliseReport, LevelReport};
 pub use settings::{GeneraliseSettings, half_width_m, is_main};
+pub use volume::volume_m3;
 
 use belvedere_core::DVec2;
 use belvedere_core::{Warning, WarningKind};
@@ -46,10 +48,19 @@ const WIDTHS_M: [f64; 2] = [10.0, 1e6];
 /// A city at its levels of abstraction.
 #[derive(Debug, Clone)]
 pub struct Generalised {
+    /// Indices of the buildings that have an area.
+    places: Vec<usize>,
     /// `loa1`, the blocks of all streets, and `loa2`, the blocks of main streets.
     pub levels: [Level; 2],
     /// Figures.
     pub report: GeneraliseReport,
+}
+
+impl Generalised {
+    /// Measures the volumes of the report again, after blocks were given another shape. `city` is that of [`generalise`].
+    pub fn measure(&mut self, city: &City) {
+        volume::measure(&mut self.report, city, &self.levels, &self.places);
+    }
 }
 
 /// The levels of abstraction of `city`, whose coordinates are metres.
@@ -87,13 +98,15 @@ pub fn generalise(
     let report = GeneraliseReport {
         buildings: city.buildings.len(),
         without_area: city.buildings.len() - input.lands.len(),
-        volume_m3: input.volume_of(&all),
+        volume_m3: 0.0,
         triangles: input.triangles(&all),
         levels: vec![report1, report2],
         notes: notes_of(notes, [&loa1, &loa2]),
         seconds: begun.elapsed().as_secs_f64(),
     };
-    Ok(Generalised { levels: [loa1, loa2], report })
+    let mut made = Generalised { places: input.places, levels: [loa1, loa2], report };
+    made.measure(city);
+    Ok(made)
 }
 
 /// Adds notes on levels whose buildings lie in one cell, or in green cells alone.
@@ -139,9 +152,8 @@ fn input<'a>(city: &'a City, notes: &mut Vec<Warning>) -> Result<Input<'a>, Gene
         if !(area_m2 > LEAST_AREA_M2) {
             continue;
         }
-        let usable = building.height_m.is_finite() && building.height_m > 0.0;
-        bad_heights += usize::from(!usable);
-        let height_m = if usable { building.height_m } else { 9.0 };
+        let height_m = volume::height_m(building);
+        bad_heights += usize::from(height_m != building.height_m);
         input.places.push(place);
         input.lands.push(land);
         input.volumes.push(Volume { area_m2, height_m, tagged: building.landmark });

@@ -11,7 +11,7 @@ pub struct GeneraliseReport {
     pub buildings: usize,
     /// Buildings without an outline that has an area, left out.
     pub without_area: usize,
-    /// Footprint area times height over all other buildings, m^3.
+    /// Volume of all other buildings, m^3: between their surfaces, or of the prism over the footprint.
     pub volume_m3: f64,
     /// Triangles of all other buildings as prisms.
     pub triangles: usize,
@@ -55,13 +55,13 @@ pub struct LevelReport {
     pub covered_share: f64,
     /// Triangles of blocks and landmarks on level ground.
     pub triangles: usize,
-    /// Area of the blocks over their buildings times height, and the volume of the landmarks, m^3.
+    /// Volume of its blocks and landmarks as they are drawn and written, m^3.
     pub volume_m3: f64,
     /// That volume as a share of the volume of all buildings that have an area.
     pub volume_share: f64,
     /// Whether that share lies in 0.9..=1.1.
     pub volume_kept: bool,
-    /// Cells whose own volume is not kept to 10 %, or whose block leaves a tenth of its buildings' ground out.
+    /// Cells whose own volume is not kept to 10 %, whose block leaves a tenth of its buildings' ground out, or whose buildings overlap.
     pub cells_failing: Vec<FailingCell>,
     /// Figures of every block, in the order of the level's buildings.
     pub each_block: Vec<BlockReport>,
@@ -71,9 +71,24 @@ pub struct LevelReport {
 const MOST_NAMES: usize = 5;
 
 impl LevelReport {
+    /// One sentence if the level does not keep the volume of the buildings.
+    pub fn missed(&self) -> Option<String> {
+        let built = self.built_area_m2 / self.block_area_m2.max(f64::MIN_POSITIVE);
+        (!self.volume_kept).then(|| {
+            format!(
+                "{} holds {:.0} % of the volume of the buildings, 90 to 110 are good; buildings cover {:.0} % of its blocks",
+                self.name,
+                100.0 * self.volume_share,
+                100.0 * built.min(1.0)
+            )
+        })
+    }
+
     /// Which cells fail, one sentence for each reason.
     pub fn failing(&self) -> Vec<Warning> {
-        let mut reasons: Vec<&str> = self.cells_failing.iter().map(|c| c.reason).collect();
+        // That blocks are larger or smaller is said once for the level.
+        let of_shape = |reason: &&str| *reason != FailingCell::GAPS && *reason != FailingCell::SMALL;
+        let mut reasons: Vec<&str> = self.cells_failing.iter().map(|c| c.reason).filter(of_shape).collect();
         reasons.sort_unstable();
         reasons.dedup();
         let text = |reason: &str| {
@@ -110,7 +125,7 @@ pub struct BlockReport {
     pub coverage: f64,
     /// Volume of its buildings, m^3.
     pub volume_in_m3: f64,
-    /// Footprint times coverage times height, m^3.
+    /// Its own volume, m^3.
     pub volume_out_m3: f64,
 }
 
@@ -132,4 +147,11 @@ pub struct FailingCell {
     pub volume_out_m3: f64,
     /// Share of its buildings' ground that lies in its block or in landmarks.
     pub covered_share: f64,
+}
+
+impl FailingCell {
+    /// Reasons of blocks that lie over their buildings as they should, and hold more or less.
+    pub const GAPS: &str = "the block fills the gaps between its buildings";
+    /// The same.
+    pub const SMALL: &str = "the block is smaller than its buildings";
 }

@@ -1,7 +1,7 @@
 //! Levels of abstraction of cities: laws, odd cities, real ones.
 
 use crate::generalise_towns::{building, read, rectangle, town, way};
-use belvedere_construct::generalise::{GeneraliseError, GeneraliseSettings, Generalised, Level, generalise};
+use belvedere_construct::generalise::{GeneraliseError, GeneraliseSettings, Generalised, Level, generalise, volume_m3};
 use belvedere_core::DVec2;
 use belvedere_io::{Limits, load_city};
 use belvedere_scene::Progress;
@@ -89,6 +89,16 @@ fn check_laws(city: &City, made: &Generalised) {
         let tagged = |b: &&Building| b.landmark;
         assert_eq!(landmarks.iter().copied().filter(tagged).count(), city.buildings.iter().filter(tagged).count());
     }
+    for (level, report) in made.levels.iter().zip(&made.report.levels) {
+        let shown: f64 = level.city.buildings.iter().map(volume_m3).sum();
+        let held: f64 = city.buildings.iter().map(volume_m3).sum();
+        assert!((report.volume_share / (shown / held) - 1.0).abs() < 1e-6, "{}: {}", level.name, report.volume_share);
+        assert_eq!(report.volume_kept, report.missed().is_none(), "{}", level.name);
+        for (block, shape) in report.each_block.iter().zip(&level.city.buildings) {
+            let prism = area(&shape.footprint) * shape.height_m;
+            assert!((block.volume_out_m3 / prism - 1.0).abs() < 1e-6, "{block:?} is a prism of {prism} m^3");
+        }
+    }
     let [fine, coarse] = &made.levels;
     let landmarks = |level: &Level| level.cells.iter().flat_map(|c| c.landmarks.clone()).collect::<Vec<_>>();
     assert!(landmarks(coarse).iter().all(|i| landmarks(fine).contains(i)), "no landmark comes anew");
@@ -104,7 +114,8 @@ fn a_town_of_blocks() {
     let [fine, coarse] = &made.report.levels[..] else { panic!("two levels") };
     assert_eq!([fine.cells - fine.green_cells, coarse.cells - coarse.green_cells], [64, 4]);
     assert_eq!([fine.landmarks, coarse.landmarks], [2, 2], "a tower and a tagged building");
-    assert!(fine.volume_kept && coarse.volume_kept && (fine.volume_share - 1.0).abs() < 0.01, "{}", fine.volume_share);
+    // Blocks fill the ground between the houses, which cover a quarter to a third of it.
+    assert!((2.0..4.5).contains(&fine.volume_share) && coarse.volume_share > fine.volume_share, "{}", fine.volume_share);
     assert_eq!(made.report.notes, []);
     let block = &made.levels[0].city.buildings[0];
     assert!((7.0..11.0).contains(&block.height_m), "the mean without the landmarks, not {}", block.height_m);
@@ -243,7 +254,7 @@ fn a_modelled_quarter() {
     check_laws(&city, &made);
     let [before, after] = [&plain, &made].map(|m| m.report.levels.iter().map(|l| l.landmarks).collect::<Vec<_>>());
     for (level, (before, after)) in made.report.levels.iter().zip(before.iter().zip(&after)) {
-        assert!(level.volume_kept, "{} keeps {}", level.name, level.volume_share);
+        assert!((1.5..3.5).contains(&level.volume_share), "{} holds {}", level.name, level.volume_share);
         assert!(level.blocks > 0 && level.blocks < 16, "{} blocks", level.blocks);
         assert!(after > before && *after >= 6, "{}: six more landmarks than {before}, not {after}", level.name);
     }
@@ -262,7 +273,7 @@ fn a_mapped_town_and_a_mapped_quarter() {
         let made = done(&city);
         check_laws(&city, &made);
         for level in &made.report.levels {
-            assert!(level.volume_kept, "{buildings}: {} keeps {}", level.name, level.volume_share);
+            assert!((1.5..4.5).contains(&level.volume_share), "{buildings}: {} holds {}", level.name, level.volume_share);
             assert!(level.blocks > 0 && level.blocks < count / 10, "{buildings}: {} blocks", level.blocks);
         }
     }

@@ -1,7 +1,7 @@
 //! Blocks cover their buildings: generated towns of many kinds, each building and each piece of a block looked at by points.
 
 use crate::generalise_towns::{building, rectangle, town, way};
-use belvedere_construct::generalise::{GeneraliseSettings, Level, generalise};
+use belvedere_construct::generalise::{FailingCell, GeneraliseSettings, Level, generalise};
 use belvedere_core::DVec2;
 use belvedere_scene::Progress;
 use belvedere_scene::city::{City, Polygon, WayClass};
@@ -169,12 +169,10 @@ fn buildings_over_each_other_are_told_by_name() {
     let twice: Vec<_> = city.buildings[..12].to_vec();
     city.buildings.extend(twice);
     let made = generalise(&city, &GeneraliseSettings::default(), &Progress::silent()).expect("a city");
-    let failing = &made.report.levels[0].cells_failing;
+    let overlaps = |c: &&FailingCell| c.reason == "buildings overlap each other";
+    let failing: Vec<_> = made.report.levels[0].cells_failing.iter().filter(overlaps).collect();
     assert_eq!(failing.len(), 1, "{failing:?}");
     let said = made.report.levels[0].failing();
-    assert!(
-        said.len() == 1 && said[0].text().contains(&failing[0].cell) && said[0].text().contains("50 % of the volume"),
-        "{said:?}"
-    );
-    assert!(failing[0].reason == "buildings overlap each other" && failing[0].cell.starts_with("loa1-"), "{failing:?}");
+    assert!(said.len() == 1 && said[0].text().contains(&failing[0].cell), "{said:?}");
+    assert!(failing[0].cell.starts_with("loa1-"), "{failing:?}");
 }

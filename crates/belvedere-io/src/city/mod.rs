@@ -6,6 +6,7 @@ mod attributes;
 mod citygml;
 mod cityjson;
 mod collect;
+mod draped;
 mod footprints;
 mod gml;
 mod looks;

@@ -7,6 +7,8 @@ use glam::{DVec2, DVec3};
 
 /// Largest valid coordinate, in the unit of the file: no coordinate system of the earth has larger ones.
 const FARTHEST: f64 = 1e8;
+/// Height of a storey, metres.
+const STOREY_M: f64 = 2.5;
 /// Buildings higher than this give a warning, metres: the file may have other units.
 const HIGHEST_M: f64 = 2000.0;
 
@@ -138,7 +140,7 @@ pub(super) fn of_solid(faces: &[CityFace], repairs: &mut Repairs) -> (Vec<Polygo
     let all: Vec<f64> = faces.iter().flat_map(z).collect();
     let lowest = all.iter().copied().fold(f64::INFINITY, f64::min);
     let grounds: Vec<&CityFace> = faces.iter().filter(|f| f.surface == Surface::Ground).collect();
-    let base = median(grounds.iter().flat_map(|f| z(f)).collect()).unwrap_or(lowest);
+    let base = median(floor(&grounds).into_iter().flat_map(z).collect()).unwrap_or(lowest);
     let roofs: Vec<f64> = faces.iter().filter(|f| f.surface == Surface::Roof).flat_map(z).collect();
     let top = median(roofs).unwrap_or_else(|| all.iter().copied().fold(f64::NEG_INFINITY, f64::max));
     // Without a floor the roofs give the footprint.
@@ -150,6 +152,14 @@ pub(super) fn of_solid(faces: &[CityFace], repairs: &mut Repairs) -> (Vec<Polygo
     let footprint = plan.iter().filter_map(flat).collect();
     repairs.tall += usize::from(top - base > HIGHEST_M);
     (footprint, base, top - base)
+}
+
+/// The faces that a solid stands on: the lowest of those that look down, and all within a storey of it. Eaves, passages and
+/// balconies lie higher.
+fn floor<'f>(grounds: &[&'f CityFace]) -> Vec<&'f CityFace> {
+    let height = |f: &CityFace| median(f.rings.iter().flatten().map(|p| p.z).collect()).unwrap_or(f64::INFINITY);
+    let lowest = grounds.iter().map(|f| height(f)).fold(f64::INFINITY, f64::min);
+    grounds.iter().copied().filter(|f| height(f) <= lowest + STOREY_M).collect()
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {

@@ -14,7 +14,7 @@ const CLEAR: f64 = 0.5;
 /// Area per triangle that a roof may have beyond those of its outline, m^2.
 const LEAST_TRIANGLE_M2: f64 = 250.0;
 
-/// A prism on ground that is not level, closed: its roof lies `height_m` over the ground, on one plane where that is near
+/// A prism on ground that is not level, closed: its roof lies `height_m` over the ground on average, on one plane where that is near
 /// enough, else in facets; its floor follows the ground `foot_m` or more below it.
 ///
 /// * `ground`: height of the ground at a position; where it is `None` the mean is taken.
@@ -85,15 +85,17 @@ fn part_on(
 ) -> Option<Vec<CityFace>> {
     let under = Under::of(&tin, ground)?;
     let tolerance = (OFF[0] * height_m).max(OFF[1]);
+    // Least, largest and mean height of the ground over a surface.
     let range = |tin: &Tin, surface: &dyn Fn(usize, [f64; 3], DVec2) -> f64| {
         let samples = (0..tin.triangles.len()).flat_map(|t| tin.samples(t, LOOK_EVERY_M));
-        samples.fold([0.0f64; 2], |[below, above], s| {
+        let ([below, above], [sum, area]) = samples.fold(([0.0f64; 2], [0.0; 2]), |([low, high], [sum, area]), s| {
             let off = ground(s.at).map_or(0.0, |z| z - surface(s.triangle, s.shares, s.at));
-            [below.min(off), above.max(off)]
-        })
+            ([low.min(off), high.max(off)], [sum + s.area_m2 * off, area + s.area_m2])
+        });
+        [below, above, sum / area.max(f64::MIN_POSITIVE)]
     };
-    let heights = |[below, above]: [f64; 2]| {
-        let roof = height_m + (above - (1.0 - CLEAR) * height_m).max(0.0);
+    let heights = |[below, above, mean]: [f64; 3]| {
+        let roof = (height_m + mean).max(above + CLEAR * height_m);
         [below - foot_m, roof]
     };
     let plane = range(&tin, &|_, _, at| under.plane_at(at));

@@ -1,10 +1,11 @@
 //! The surface of a city as triangles: roofs, walls, land cover and the ground that all stands on.
 
+use super::draped::draped;
 use super::plan::normal;
 use crate::MeshFile;
 use belvedere_core::polygon::is_inside;
 use belvedere_scene::{
-    Building, City, CityFace, Color, LandCover, MeshColors, Polygon, StructureKind, Surface, Texturing,
+    Building, City, CityFace, Color, Heightfield, LandCover, MeshColors, Polygon, StructureKind, Surface, Texturing,
 };
 use earcut::Earcut;
 use glam::{DVec2, DVec3, Vec2};
@@ -31,6 +32,8 @@ const MARGIN: f64 = 0.15;
 
 /// Least height of a roof over the highest ground under it, or the height of the building if that is less, metres.
 const CLEAR_M: f64 = 2.5;
+/// Floors higher than this over the base of their building stand on nothing, metres.
+const ON_FLOOR_M: f64 = 2.5;
 /// Spacing of the samples of the ground under a building, on its outline and (second) within wide outlines, metres.
 const LOOK_EVERY_M: f64 = 5.0;
 const WIDE_M: f64 = 15.0;
@@ -42,15 +45,25 @@ const MOST_PARTS: f64 = 40.0;
 pub enum CityGround<'a> {
     /// Terrain, as height at a position; land cover is not drawn.
     Terrain(&'a dyn Fn(DVec2) -> Option<f64>),
-    /// A level plate: the city's land cover, which must lie side by side, and these pieces between.
-    Plate(&'a [Polygon]),
+    /// A level plate at a height: the city's land cover, which must lie side by side, and these pieces between.
+    Plate(f64, &'a [Polygon]),
+    /// The same on a surface that is not level.
+    Draped(&'a Heightfield, &'a [Polygon]),
+}
+
+impl CityGround<'_> {
+    /// Height at a position, if it is known there.
+    fn at(&self, xy: DVec2) -> Option<f64> {
+        match self {
+            Self::Terrain(terrain) => terrain(xy),
+            Self::Plate(z, _) => Some(*z),
+            Self::Draped(field, _) => field.surface_at(xy),
+        }
+    }
 }
 
 /// Triangles of a city in parts: one per building and structure, named by its name or else its id, and one for all the rest.
-///
-/// On a plate, buildings without ground of their own stand at the median height of the others, or at 0.
 pub fn surface(city: &City, colors: &CityColors, ground: CityGround<'_>) -> MeshFile {
-    let plate = plate_height(city);
     let mut out = Builder {
         mesh: MeshFile { format: "city", ..MeshFile::default() },
         colors: Vec::new(),
@@ -58,21 +71,25 @@ pub fn surface(city: &City, colors: &CityColors, ground: CityGround<'_>) -> Mesh
         earcut: Earcut::new(),
     };
     out.part(String::new());
-    if let CityGround::Plate(bare) = ground {
-        bare.iter().for_each(|p| out.flat(p, plate, colors.ground));
+    if let CityGround::Plate(_, bare) | CityGround::Draped(_, bare) = ground {
+        bare.iter().for_each(|p| out.ground(p, ground, colors.ground));
         for area in &city.areas {
-            area.polygons.iter().for_each(|p| out.flat(p, plate, cover(area.cover)));
+            area.polygons.iter().for_each(|p| out.ground(p, ground, cover(area.cover)));
         }
     }
     for building in &city.buildings {
         out.part(if building.name.is_empty() { building.id.clone() } else { building.name.clone() });
         if building.faces.is_empty() {
-            let [base, top] = stands(building, ground, plate);
+            let [base, top] = stands(building, ground);
             out.extruded(building, base, top, colors);
         } else {
             // Without a base of its own, the heights of a building's surfaces are over the ground.
-            let base = if building.base_m.is_some() { 0.0 } else { stands(building, ground, plate)[0] };
+            let base = if building.base_m.is_some() { 0.0 } else { stands(building, ground)[0] };
             building.faces.iter().for_each(|face| out.face(face, base, color_of(face.surface, colors)));
+            if let (Some(base), CityGround::Draped(field, _)) = (building.base_m, ground) {
+                let floors = building.faces.iter().filter(|f| f.surface == Surface::Ground);
+                floors.for_each(|floor| out.down_to(floor, base, field, colors.wall));
+            }
         }
     }
     for structure in &city.structures {
@@ -114,25 +131,22 @@ pub fn plate_extent(city: &City) -> Option<[DVec2; 2]> {
     (low.is_finite() && high.is_finite()).then(|| [low - margin, high + margin])
 }
 
-/// Median base height of the buildings that state one; 0 if none does.
-fn plate_height(city: &City) -> f64 {
-    let mut bases: Vec<f64> = city.buildings.iter().filter_map(|b| b.base_m).collect();
-    let middle = bases.len() / 2;
-    if bases.is_empty() { 0.0 } else { *bases.select_nth_unstable_by(middle, f64::total_cmp).1 }
-}
-
 /// Heights of the foot of the walls and of the flat roof of a building. On a slope the roof lies over the highest ground, too.
-fn stands(building: &Building, ground: CityGround<'_>, plate: f64) -> [f64; 2] {
-    let (height, CityGround::Terrain(terrain)) = (building.height_m, ground) else {
-        let base = building.base_m.unwrap_or(plate);
-        return [base, base + building.height_m];
-    };
-    if let Some(base) = building.base_m {
+fn stands(building: &Building, ground: CityGround<'_>) -> [f64; 2] {
+    let height = building.height_m;
+    if let (CityGround::Plate(z, _), base) = (ground, building.base_m) {
+        let base = base.unwrap_or(z);
         return [base, base + height];
     }
-    let under = building.footprint.iter().flat_map(places_under).filter_map(terrain);
-    let [low, high] = under.fold([f64::MAX, f64::MIN], |[a, b], z| [a.min(z), b.max(z)]);
-    if low > high { [plate, plate + height] } else { [low, (low + height).max(high + height.min(CLEAR_M))] }
+    let under = || building.footprint.iter().flat_map(places_under).filter_map(|xy| ground.at(xy));
+    let [low, high] = under().fold([f64::MAX, f64::MIN], |[a, b], z| [a.min(z), b.max(z)]);
+    match (building.base_m, ground) {
+        // Walls of buildings with ground of their own go down to the surface that is drawn.
+        (Some(base), CityGround::Draped(..)) => [base.min(low), base + height],
+        (Some(base), _) => [base, base + height],
+        (None, _) if low > high => [0.0, height],
+        (None, _) => [low, (low + height).max(high + height.min(CLEAR_M))],
+    }
 }
 
 /// Samples of the ground under an outline: its corners, points along its edges and, if it is wide, points within.
@@ -214,6 +228,50 @@ impl Builder {
         }
     }
 
+    /// A piece of the ground.
+    fn ground(&mut self, polygon: &Polygon, ground: CityGround<'_>, color: Color) {
+        let z = if let CityGround::Plate(z, _) = ground { z } else { 0.0 };
+        let [vertex, triangle] = [self.mesh.positions.len(), self.mesh.triangles.len()];
+        self.flat(polygon, z, color);
+        let CityGround::Draped(field, _) = ground else { return };
+        let flat =
+            self.mesh.triangles[triangle..].iter().map(|t| t.map(|v| self.mesh.positions[v as usize].truncate()));
+        let pieces: Vec<Vec<DVec3>> = flat.flat_map(|t| draped(&t, field)).collect();
+        self.mesh.positions.truncate(vertex);
+        self.truncate_triangles(triangle);
+        for piece in pieces {
+            let first = self.mesh.positions.len() as u32;
+            (2..piece.len() as u32).for_each(|k| self.triangle([first, first + k - 1, first + k], color));
+            self.mesh.positions.extend(piece);
+        }
+    }
+
+    fn truncate_triangles(&mut self, to: usize) {
+        self.mesh.triangles.truncate(to);
+        self.mesh.parts.truncate(to);
+        self.colors.truncate(to);
+        self.worn.of_triangle.truncate(to);
+        self.worn.corners.truncate(to);
+    }
+
+    /// Walls from the floor of a building, near its base, down to the ground where that is lower.
+    fn down_to(&mut self, floor: &CityFace, base: f64, field: &Heightfield, color: Color) {
+        for ring in &floor.rings {
+            for (k, a) in ring.iter().enumerate() {
+                let b = ring[(k + 1) % ring.len()];
+                let low = [a, &b].map(|p| field.surface_at(p.truncate()).unwrap_or(p.z).min(p.z));
+                if a.z.max(b.z) > base + ON_FLOOR_M || (a.z - low[0]).max(b.z - low[1]) < 0.01 {
+                    continue;
+                }
+                // Floors are turned down: seen from outside their edges run the other way.
+                let first = self.mesh.positions.len() as u32;
+                self.mesh.positions.extend([b.with_z(low[1]), a.with_z(low[0]), *a, b]);
+                self.triangle([first, first + 1, first + 2], color);
+                self.triangle([first, first + 2, first + 3], color);
+            }
+        }
+    }
+
     fn flat(&mut self, polygon: &Polygon, z: f64, color: Color) {
         let rings = std::iter::once(&polygon.outer).chain(&polygon.holes);
         let rings: Vec<Vec<DVec3>> = rings.map(|ring| ring.iter().map(|p| p.extend(z)).collect()).collect();
@@ -267,7 +325,7 @@ mod tests {
             polygons: vec![Polygon { outer: square(20.0, 30.0), holes: vec![] }],
         }];
         let city = City { buildings: vec![building], areas, ..City::default() };
-        let mesh = surface(&city, &CityColors::default(), CityGround::Plate(&[]));
+        let mesh = surface(&city, &CityColors::default(), CityGround::Plate(0.0, &[]));
         let corners = |t: &[u32; 3]| t.map(|v| mesh.positions[v as usize]);
         let part =
             |p: u32| mesh.triangles.iter().zip(&mesh.parts).filter(move |(_, q)| **q == p).map(|(t, _)| corners(t));

@@ -83,7 +83,7 @@ fn load(name: &str, text: &str) -> Loaded<CityFile> {
 }
 
 fn mesh(city: &CityFile) -> Mesh {
-    let file = surface(&city.city, &CityColors::default(), CityGround::Plate(&[]));
+    let file = surface(&city.city, &CityColors::default(), CityGround::Plate(0.0, &[]));
     Mesh::textured(&file.positions, file.triangles, file.colors, file.parts, file.texturing).expect("a mesh")
 }
 

@@ -1,5 +1,7 @@
 //! Built-in scenes as sources: `builtin:massif?seed=7&size=513`, `builtin:street?layer=route`.
 
+use super::city_mesh::Stand;
+use crate::city_ground::OwnGround;
 use crate::scene_file::suggestion;
 use belvedere_builtin as builtin;
 use belvedere_core::DVec3;
@@ -96,7 +98,8 @@ fn town(request: &Request) -> Result<(Scene, builtin::SuggestedCamera), String> 
     let size = request.size as f64;
     let city = builtin::town(request.seed, size).map_err(|e| e.to_string())?;
     let extent = belvedere_io::city::plate_extent(&city);
-    let layer = super::city_mesh::mesh(city, &CityColors::default(), None, extent)?;
+    let stand = Stand::Own(&OwnGround::Level(0.0), extent);
+    let layer = super::city_mesh::mesh(city, &CityColors::default(), &stand)?;
     let title = format!("Town {}: its church between roofs", request.seed);
     let layers = vec![Layer { id: "town".into(), must_see: false, kind: LayerKind::Mesh(layer) }];
     let camera = builtin::SuggestedCamera {

@@ -1,14 +1,15 @@
 //! City layers: files placed in the scene, on its terrain where there is one.
 
 use super::builtin;
-use super::city_mesh::mesh;
+use super::city_mesh::{Stand, mesh};
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
 use super::mesh::{wanted, with_ambient_occlusion};
 use crate::BelvedereError;
 use crate::city_blocks;
+use crate::city_ground::{Bases, OwnGround};
 use crate::scene_file::{CityDoc, LayerDoc, Paths};
-use belvedere_construct::generalise::{GeneraliseSettings, generalise};
+use belvedere_construct::generalise::{GeneraliseSettings, LevelReport, generalise};
 use belvedere_core::DVec2;
 use belvedere_core::{Warning, WarningKind};
 use belvedere_io::city::{CityAbout, CityColors, plate_extent, reproject};
@@ -63,19 +64,24 @@ pub(super) fn crs(loader: &mut Loader<'_>, index: usize, doc: &CityDoc) -> Resul
     Ok(system.and_then(|s| s.epsg()).map(Crs::Epsg))
 }
 
-/// Median height of the ground under the buildings of all cities; `None` if the files give no such heights.
-pub(super) fn floor(loader: &mut Loader<'_>) -> Result<Option<f64>, BelvedereError> {
-    let mut bases = Vec::new();
+/// The ground of all cities, in a scene without terrain; `None` if the files give no such heights.
+pub(super) fn own_ground(loader: &mut Loader<'_>, crs: Crs) -> Result<Option<OwnGround>, BelvedereError> {
+    let mut bases = Bases::default();
     let docs = loader.layers;
     for (index, doc) in docs.iter().enumerate() {
         if let LayerDoc::City(doc) = doc {
-            let files = files(loader, index, doc)?;
-            let own = files.iter().flat_map(|f| &f.city.buildings).filter_map(|b| b.base_m);
-            bases.extend(own.map(|z| z + doc.height_offset_m));
+            let stated = stated(loader, index, doc)?;
+            for file in files(loader, index, doc)? {
+                let mut city = file.city;
+                if let (Some(from), Crs::Epsg(_)) = (stated.as_ref().or(file.crs.as_ref()), crs) {
+                    let to = CoordinateSystem::from_scene(crs).map_err(|e| loader.fail(index, "crs", e))?;
+                    reproject(&mut city, from, &to).map_err(|e| loader.fail(index, "crs", e))?;
+                }
+                bases.add(&city, doc.height_offset_m);
+            }
         }
     }
-    let middle = bases.len() / 2;
-    Ok((!bases.is_empty()).then(|| *bases.select_nth_unstable_by(middle, f64::total_cmp).1))
+    Ok(bases.ground())
 }
 
 /// The coordinate system that the document gives for the files.
@@ -125,22 +131,28 @@ pub(super) fn layer(
     }
     lift(&mut city, doc.height_offset_m);
     loader.note(index, without_height(&city));
-    // Levels of abstraction of one city end alike.
+    // Levels of abstraction of one city have one ground, and end alike.
     let extent = plate_extent(&city);
     let terrain = |xy: DVec2| ground.terrain.and_then(|t| t.surface_at(xy));
-    let terrain: Option<&dyn Fn(DVec2) -> Option<f64>> = if ground.terrain.is_some() { Some(&terrain) } else { None };
-    if doc.loa > 0 {
-        city = abstraction(loader, index, &city, doc.loa, terrain)?;
+    let own = loader.own_ground.clone().unwrap_or(OwnGround::Level(0.0));
+    let stand = if ground.terrain.is_some() { Stand::Terrain(&terrain) } else { Stand::Own(&own, extent) };
+    if let Stand::Terrain(terrain) = stand {
+        loader.note(index, datum(&city, terrain));
     }
-    if let Some(terrain) = terrain {
+    if doc.loa > 0 {
+        city = abstraction(loader, index, &city, doc.loa, &stand)?;
+    }
+    if let Stand::Terrain(terrain) = stand {
         let lost = leave_out_beyond(&mut city, terrain).map_err(|e| loader.fail(index, "source", e))?;
-        loader.note(index, lost.into_iter().chain(remarks(&city, terrain)));
+        let undrawn = "areas of land cover are not drawn on terrain; use layers of kind area";
+        let undrawn = Warning::counted(WarningKind::Ignored, city.areas.len(), undrawn);
+        loader.note(index, lost.into_iter().chain(undrawn));
     }
     compact(&city).map_err(|e| loader.fail(index, "source", e))?;
     // Part 0 is the space between buildings; bridges and trees follow the buildings.
     let buildings = (1..=city.buildings.len() as u32).collect();
     let chosen = doc.select.as_deref().map(|select| meant(&city, &about, select));
-    let mut layer = mesh(city, &colors, terrain, extent).map_err(|e| loader.fail(index, "source", e))?;
+    let mut layer = mesh(city, &colors, &stand).map_err(|e| loader.fail(index, "source", e))?;
     layer.mesh = with_ambient_occlusion(loader, index, layer.mesh, style.ambient_occlusion, ground)?;
     if doc.rigid {
         layer.rigid = RigidParts::Only(buildings);
@@ -171,14 +183,23 @@ fn abstraction(
     index: usize,
     city: &City,
     loa: u8,
-    terrain: Option<&dyn Fn(DVec2) -> Option<f64>>,
+    stand: &Stand<'_>,
 ) -> Result<City, BelvedereError> {
     let progress = &loader.options.progress;
-    let found = generalise(city, &GeneraliseSettings::default(), progress).map_err(|e| loader.fail(index, "loa", e))?;
+    let mut found =
+        generalise(city, &GeneraliseSettings::default(), progress).map_err(|e| loader.fail(index, "loa", e))?;
+    let chosen = usize::from(loa > 1);
+    let level = &mut found.levels[chosen];
+    match stand {
+        // Volumes are those over the ground: without the feet of the walls.
+        Stand::Terrain(terrain) => city_blocks::stand_on_terrain(level, city, terrain, 0.0),
+        Stand::Own(ground, _) => city_blocks::stand(level, ground),
+    }
+    found.measure(city);
     let [fine, coarse] = found.levels;
     let mut level = if loa == 1 { fine } else { coarse };
-    if terrain.is_some() {
-        city_blocks::stand(&mut level, city, terrain);
+    if let Stand::Terrain(terrain) = stand {
+        city_blocks::stand_on_terrain(&mut level, city, terrain, city_blocks::FOOT_M);
         // Floors are hidden in the ground, so they are removed.
         let blocks = level.city.buildings.iter_mut().take(level.blocks.len());
         blocks.for_each(|b| b.faces.retain(|f| f.surface != Surface::Ground));
@@ -189,13 +210,13 @@ fn abstraction(
         None => note.kind() == WarningKind::Repaired,
     };
     loader.note(index, found.report.notes.into_iter().filter(matters));
-    let failing = found.report.levels.iter().filter(|l| l.name == level.name).flat_map(|l| l.failing());
-    loader.note(index, failing);
-    let missed = found.report.levels.iter().find(|l| l.name == level.name && !l.volume_kept);
-    if let Some(missed) = missed {
-        let text = format!("{} keeps {:.0} % of the volume", missed.name, 100.0 * missed.volume_share);
-        loader.note(index, [Warning::new(WarningKind::Inexact, text).with("volume_share", missed.volume_share)]);
-    }
+    let report = found.report.levels.iter().find(|l| l.name == level.name);
+    loader.note(index, report.map(LevelReport::failing).unwrap_or_default());
+    let missed = report.and_then(|l| Some((l, l.missed()?)));
+    loader.note(
+        index,
+        missed.map(|(l, text)| Warning::new(WarningKind::Inexact, text).with("volume_share", l.volume_share)),
+    );
     // Areas of the city stay on the ground, with green cells over them.
     let areas = city.areas.iter().cloned().chain(level.city.areas).collect();
     Ok(City { areas, ..level.city })
@@ -254,29 +275,23 @@ fn compact(city: &City) -> Result<(), String> {
     ))
 }
 
-/// Warnings about differences from the terrain.
-fn remarks(city: &City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> Vec<Warning> {
+/// A warning where the ground of the buildings differs from the terrain.
+fn datum(city: &City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> Option<Warning> {
     let offset = |b: &belvedere_scene::Building| Some(b.base_m? - terrain(*b.footprint.first()?.outer.first()?)?);
     let mut offsets: Vec<f64> = city.buildings.iter().filter_map(offset).collect();
-    let mut out = Vec::new();
-    if !offsets.is_empty() {
-        let middle = offsets.len() / 2;
-        let median = *offsets.select_nth_unstable_by(middle, f64::total_cmp).1;
-        if median.abs() > NOTED_M {
-            let text = format!(
-                "its buildings stand {:.1} m {} the terrain (median of {}); set height_offset_m = {:.1} if the datums differ",
-                median.abs(),
-                if median > 0.0 { "above" } else { "below" },
-                offsets.len(),
-                -median
-            );
-            let warning = Warning::new(WarningKind::Suspect, text).with("median_m", median);
-            out.push(warning.with("count", offsets.len() as f64));
-        }
-    }
-    let undrawn = "areas of land cover are not drawn on terrain; use layers of kind area";
-    out.extend(Warning::counted(WarningKind::Ignored, city.areas.len(), undrawn));
-    out
+    let middle = offsets.len() / 2;
+    let median = if offsets.is_empty() { 0.0 } else { *offsets.select_nth_unstable_by(middle, f64::total_cmp).1 };
+    (median.abs() > NOTED_M).then(|| {
+        let text = format!(
+            "its buildings stand {:.1} m {} the terrain (median of {}); set height_offset_m = {:.1} if the datums differ",
+            median.abs(),
+            if median > 0.0 { "above" } else { "below" },
+            offsets.len(),
+            -median
+        );
+        let warning = Warning::new(WarningKind::Suspect, text).with("median_m", median);
+        warning.with("count", offsets.len() as f64)
+    })
 }
 
 /// Adds `by` to all heights, metres.

@@ -90,7 +90,7 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
         notes: LayerNotes::default(),
         vectors,
         cities: BTreeMap::new(),
-        floor: None,
+        own_ground: None,
         keep_original,
         original: None,
         drawings: Vec::new(),
@@ -111,7 +111,7 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
     }
     let crs = crs.or(fallback_crs).unwrap_or_default();
     if needs == Needs::Everything && first_terrain(&layers).is_none() {
-        loader.floor = city::floor(&mut loader)?;
+        loader.own_ground = city::own_ground(&mut loader, crs)?;
     }
     for (i, doc) in docs.iter().enumerate().filter(|_| needs == Needs::Everything) {
         let ground = Ground { crs, terrain: first_terrain(&layers) };

@@ -2,6 +2,7 @@
 
 use super::builtin;
 use super::color::{color, optional_color};
+use crate::city_ground::OwnGround;
 use crate::record::{AreaRecord, LayerNotes};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{LayerDoc, Origin, Paths};
@@ -32,8 +33,8 @@ pub(super) struct Loader<'a> {
     pub(super) vectors: BTreeMap<PathBuf, Loaded<Vectors>>,
     /// Cities that were read already, by the number of their layer.
     pub(super) cities: BTreeMap<usize, Vec<CityFile>>,
-    /// Height of the ground of cities, for features without heights where there is no terrain.
-    pub(super) floor: Option<f64>,
+    /// Ground of the cities where there is no terrain, which features without heights lie on, too.
+    pub(super) own_ground: Option<OwnGround>,
     /// Whether to keep the unchanged samples of the terrain's file, and these samples.
     pub(super) keep_original: bool,
     pub(super) original: Option<OriginalTerrain>,

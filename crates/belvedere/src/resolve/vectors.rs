@@ -4,12 +4,14 @@ use super::ground::Ground;
 use super::loader::Loader;
 use super::{by_property, named};
 use crate::BelvedereError;
+use crate::city_ground::OwnGround;
 use crate::scene_file::{LayerDoc, Paths};
-use belvedere_core::{Warning, WarningKind};
+use belvedere_core::{DVec2, Warning, WarningKind};
 use belvedere_io::city::is_meant;
+use belvedere_io::crs::{CoordinateSystem, Transform};
 use belvedere_io::load_vectors;
 use belvedere_io::vector::{
-    AreaKind, Geometry, Vectors, area_kind, areas_on_terrain, lines_on_terrain, points_on_terrain,
+    AreaKind, Geometry, Vectors, Vertex, area_kind, areas_on_terrain, lines_on_terrain, points_on_terrain,
 };
 use belvedere_io::{IoError, Loaded};
 use belvedere_scene::{AreaFeature, AreaSurface, Crs, Heightfield, LineFeature, PointFeature};
@@ -156,7 +158,7 @@ fn all<T>(
             let select = select.to_owned();
             kept(&mut vectors, &select).map_err(|reason| loader.fail(index, "select", reason))?;
         }
-        stand(loader, index, &mut vectors);
+        stand(loader, index, &mut vectors, ground.crs);
         read.push(vectors);
     }
     named::tell(loader, index, &mut read)?;
@@ -170,21 +172,54 @@ fn all<T>(
     Ok(features)
 }
 
-/// Places lines and points without heights on the ground of the cities if there is no terrain.
-fn stand(loader: &mut Loader<'_>, index: usize, vectors: &mut Vectors) {
-    let Some(floor) = loader.floor else { return };
-    let flat = |g: &&mut Geometry| !matches!(g, Geometry::Polygons(_));
-    let vertices = vectors.features.iter_mut().map(|f| &mut f.geometry).filter(flat).flat_map(Geometry::vertices_mut);
+/// Places lines and points without heights on the ground of the cities if there is no terrain. Lines follow a sloping ground.
+fn stand(loader: &mut Loader<'_>, index: usize, vectors: &mut Vectors, crs: Crs) {
+    let Some(ground) = loader.own_ground.clone() else { return };
+    // Files whose positions cannot be placed are refused later.
+    let to = CoordinateSystem::from_scene(crs);
+    let transform = to.and_then(|to| Transform::new(&vectors.crs, &to)).ok();
+    let metres = |xy: DVec2| transform.as_ref().map_or(Some(xy), |t| t.forward_one(xy));
     let mut count = 0;
-    for v in vertices.filter(|v| v.z.is_none()) {
-        (v.z, count) = (Some(floor), count + 1);
+    for geometry in vectors.features.iter_mut().map(|f| &mut f.geometry) {
+        if let (OwnGround::Sloping(field), Geometry::Lines(lines)) = (&ground, &mut *geometry) {
+            let step = field.spacing().x;
+            lines.iter_mut().for_each(|line| *line = divided(line, step, &metres));
+        }
+        if matches!(geometry, Geometry::Polygons(_)) {
+            continue;
+        }
+        for v in geometry.vertices_mut().filter(|v| v.z.is_none()) {
+            (v.z, count) = (metres(v.xy).map(|xy| ground.at(xy)), count + 1);
+        }
     }
     if count > 0 {
         let path = vectors.path.display();
-        let note = format!("{path}: {count} positions without height lie at {floor:.1} m, the ground of the city");
-        let warning = Warning::new(WarningKind::Assumed, note).with("count", f64::from(count));
-        loader.note(index, [warning.with("height_m", floor)]);
+        let warning = |at: &str| {
+            let note = format!("{path}: {count} positions without height lie {at}the ground of the city");
+            Warning::new(WarningKind::Assumed, note).with("count", f64::from(count))
+        };
+        let said = match ground {
+            OwnGround::Level(z) => warning(&format!("at {z:.1} m, ")).with("height_m", z),
+            OwnGround::Sloping(_) => warning("on "),
+        };
+        loader.note(index, [said]);
     }
+}
+
+/// A line whose stretches without heights are at most `step` metres long.
+fn divided(line: &[Vertex], step: f64, metres: &dyn Fn(DVec2) -> Option<DVec2>) -> Vec<Vertex> {
+    const MOST: f64 = 1000.0;
+    let mut out = Vec::with_capacity(line.len());
+    for pair in line.windows(2) {
+        let length = metres(pair[0].xy).zip(metres(pair[1].xy)).map_or(0.0, |(a, b)| a.distance(b));
+        let open = pair.iter().all(|v| v.z.is_none());
+        let parts = if open { (length / step).ceil().clamp(1.0, MOST) } else { 1.0 };
+        out.push(pair[0]);
+        let at = |k: usize| Vertex { xy: pair[0].xy.lerp(pair[1].xy, k as f64 / parts), z: None };
+        out.extend((1..parts as usize).map(at));
+    }
+    out.extend(line.last());
+    out
 }
 
 /// Lines of files, draped.

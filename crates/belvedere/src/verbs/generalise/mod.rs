@@ -4,6 +4,7 @@ mod read;
 
 use crate::answers;
 use crate::city_blocks;
+use crate::city_ground::Bases;
 use crate::city_map::overview::{Panel, overview};
 use crate::city_map::{MapPicture, bounds, map_picture};
 use crate::guard::guarded;
@@ -75,7 +76,12 @@ fn generalised(request: &GeneraliseRequest, progress: &Progress) -> Result<Gener
     progress.tick("read", 0.0)?;
     let read::Read { city, epsg, inputs, warnings } = read::read(&request.city, &request.roads)?;
     let mut generalised = belvedere_construct::generalise::generalise(&city, &request.settings, progress)?;
-    generalised.levels.iter_mut().for_each(|level| city_blocks::stand(level, &city, None));
+    let mut bases = Bases::default();
+    bases.add(&city, 0.0);
+    if let Some(ground) = bases.ground() {
+        generalised.levels.iter_mut().for_each(|level| city_blocks::stand(level, &ground));
+        generalised.measure(&city);
+    }
     Ok(GeneralisedCity { city, epsg, generalised, warnings, inputs: record::inputs(&inputs)? })
 }
 
@@ -103,16 +109,12 @@ impl GeneralisedCity {
         }
     }
 
-    /// Levels that do not preserve the volume, one sentence each.
+    /// Levels that do not keep the volume, one sentence each.
     pub fn missed(&self) -> Vec<String> {
-        let levels = self.generalised.report.levels.iter().filter(|l| !l.volume_kept);
-        let text = |l: &LevelReport| {
-            format!("{} keeps {:.0} % of the volume, 90 to 110 are good", l.name, 100.0 * l.volume_share)
-        };
-        levels.map(text).collect()
+        self.generalised.report.levels.iter().filter_map(LevelReport::missed).collect()
     }
 
-    /// Blocks that do not preserve the volume of their buildings or leave some of them out, one sentence for each reason.
+    /// Blocks that leave some of their buildings out or whose buildings overlap, one sentence for each reason.
     pub fn failing(&self) -> Vec<Warning> {
         self.generalised.report.levels.iter().flat_map(LevelReport::failing).collect()
     }
