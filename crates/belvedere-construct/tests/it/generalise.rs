@@ -115,7 +115,11 @@ fn a_town_of_blocks() {
     assert_eq!([fine.cells - fine.green_cells, coarse.cells - coarse.green_cells], [64, 4]);
     assert_eq!([fine.landmarks, coarse.landmarks], [2, 2], "a tower and a tagged building");
     // Blocks fill the ground between the houses, which cover a quarter to a third of it.
-    assert!((2.0..4.5).contains(&fine.volume_share) && coarse.volume_share > fine.volume_share, "{}", fine.volume_share);
+    assert!(
+        (2.0..4.5).contains(&fine.volume_share) && coarse.volume_share > fine.volume_share,
+        "{}",
+        fine.volume_share
+    );
     assert_eq!(made.report.notes, []);
     let block = &made.levels[0].city.buildings[0];
     assert!((7.0..11.0).contains(&block.height_m), "the mean without the landmarks, not {}", block.height_m);
@@ -273,7 +277,12 @@ fn a_mapped_town_and_a_mapped_quarter() {
         let made = done(&city);
         check_laws(&city, &made);
         for level in &made.report.levels {
-            assert!((1.5..4.5).contains(&level.volume_share), "{buildings}: {} holds {}", level.name, level.volume_share);
+            assert!(
+                (1.5..4.5).contains(&level.volume_share),
+                "{buildings}: {} holds {}",
+                level.name,
+                level.volume_share
+            );
             assert!(level.blocks > 0 && level.blocks < count / 10, "{buildings}: {} blocks", level.blocks);
         }
     }
