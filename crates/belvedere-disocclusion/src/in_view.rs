@@ -4,7 +4,7 @@ use crate::{Field, ReferencePoint};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection};
 
 /// Points nearer than this many guards to the eye are left out.
-const NEAREST_GUARDS: f64 = 3.0;
+pub(crate) const NEAREST_GUARDS: f64 = 3.0;
 
 /// An eye from which nothing can be solved.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -24,7 +24,9 @@ mod visibility_qp;
 
 pub use error::DisocclusionError;
 pub use settings::{Detail, SolverMode, TerrainSettings};
-pub use solve::{LiveFrame, LiveTerrain, Solved, TerrainMemory, TerrainReport, TerrainSolver};
+pub use solve::{
+    LiveFrame, LiveTerrain, Solved, TerrainMemory, TerrainReport, TerrainSolver, WrittenGround, WrittenShares,
+};
 pub use viewpoint::{AdjustedViewpoint, ViewpointOptions};
 
 use belvedere_sight::Field;

@@ -91,14 +91,23 @@ pub fn reference_points(
     settings: &TerrainSettings,
     spacing: f64,
 ) -> (Vec<ReferencePoint>, Vec<Unusable>) {
-    collect_points(PointCollector::new(field, false), scene, settings, spacing)
+    collect_points(PointCollector::new(field, false), &required_features(scene), settings, spacing)
+}
+
+/// As [`reference_points`], of features.
+pub(super) fn reference_points_of(
+    features: &[RequiredFeature],
+    field: &Field,
+    settings: &TerrainSettings,
+) -> Vec<ReferencePoint> {
+    collect_points(PointCollector::new(field, false), features, settings, settings.spacing).0
 }
 
 /// Candidate points of the quadratic program: as [`reference_points`] `settings.candidates` apart, but each on the nearest bend of
 /// the drawn line that is no farther than half of that: a corner of the line, or an edge of the ground's mesh. Between two bends line
 /// and ground are straight, so a line is hidden first at a bend.
 pub(super) fn candidate_points(scene: &Scene, field: &Field, settings: &TerrainSettings) -> Vec<ReferencePoint> {
-    collect_points(PointCollector::new(field, true), scene, settings, settings.candidates).0
+    collect_points(PointCollector::new(field, true), &required_features(scene), settings, settings.candidates).0
 }
 
 /// Points by which a result is judged: as [`reference_points`] `spacing` apart, but scattered evenly inside areas. Further points
@@ -106,13 +115,13 @@ pub(super) fn candidate_points(scene: &Scene, field: &Field, settings: &TerrainS
 /// edges. On a flat triangle a straight piece of a feature is hidden first at one of its ends, and an area first at the rim of the
 /// triangle or of the area. So if no edge is hidden, nothing between the edges is.
 pub(super) fn judged_points(
-    scene: &Scene,
+    features: &[RequiredFeature],
     field: &Field,
     settings: &TerrainSettings,
     spacing: f64,
 ) -> Vec<ReferencePoint> {
     let out = PointCollector { edges: true, ..PointCollector::new(field, false) };
-    collect_points(out, scene, settings, spacing).0
+    collect_points(out, features, settings, spacing).0
 }
 
 /// Number of kinds of features: lines, areas and points, whose shares are never added up.
@@ -172,15 +181,32 @@ pub(super) fn required_features(scene: &Scene) -> Vec<RequiredFeature> {
     scene.must_see().flat_map(of_layer).collect()
 }
 
+impl RequiredFeature {
+    /// The feature in other coordinates.
+    ///
+    /// * `line`: the image of a chain of positions.
+    pub(super) fn mapped(&self, line: &dyn Fn(&[DVec2]) -> Vec<DVec2>) -> Self {
+        let ring = |ring: &Vec<DVec2>| {
+            let end = ring.first().filter(|first| ring.last() != Some(first));
+            line(&ring.iter().chain(end).copied().collect::<Vec<_>>())
+        };
+        let shape = match &self.shape {
+            Shape::Line(points) => Shape::Line(line(points)),
+            Shape::Area(rings) => Shape::Area(rings.iter().map(ring).collect()),
+            Shape::Point(p) => line(&[*p]).first().map_or(Shape::Line(Vec::new()), |p| Shape::Point(*p)),
+        };
+        Self { shape, ..self.clone() }
+    }
+}
+
 fn collect_points(
     mut out: PointCollector<'_>,
-    scene: &Scene,
+    features: &[RequiredFeature],
     settings: &TerrainSettings,
     spacing: f64,
 ) -> (Vec<ReferencePoint>, Vec<Unusable>) {
     let field = out.field;
     let to_grid = |points: &Vec<DVec2>| points.iter().map(|p| field.grid_from_scene(*p)).collect::<Vec<_>>();
-    let features = required_features(scene);
     // Shares of short lines are to be as fine as those of long ones.
     let length = |f: &RequiredFeature| match &f.shape {
         Shape::Line(points) => to_grid(points).windows(2).map(|w| w[0].distance(w[1])).sum(),
@@ -189,7 +215,7 @@ fn collect_points(
     let lines: f64 = if out.edges { features.iter().map(length).sum() } else { f64::INFINITY };
     let along_lines = spacing.min((lines / LEAST_ON_LINES).max(FINEST));
     out.areas = features.iter().filter(|required| matches!(required.shape, Shape::Area(_))).count();
-    for required in &features {
+    for required in features {
         (out.layer, out.feature) = (required.layer, required.feature);
         out.lift = settings.lift_m.unwrap_or(required.lift_m);
         match &required.shape {

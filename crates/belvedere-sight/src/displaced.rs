@@ -10,10 +10,11 @@ use belvedere_scene::CellTriangle;
 const STEP: f64 = 0.5;
 
 /// Ground with a vertical displacement: two triangles per cell, whose nodes are displaced, as it is rasterised and written; or plus the
-/// bilinear displacement, as it is traced.
+/// bilinear displacement, as it is traced; or undisplaced.
 pub struct DisplacedGround<'a> {
     field: &'a Field,
-    delta: &'a Grid,
+    /// `None`: nothing is displaced.
+    delta: Option<&'a Grid>,
     faceted: bool,
     /// Upper bound of the height, scene units.
     highest: f64,
@@ -52,7 +53,12 @@ impl<'a> DisplacedGround<'a> {
     /// * `delta`: displacement upwards, scene units; 0 beside its grid.
     pub fn new(field: &'a Field, delta: &'a Grid) -> Self {
         let highest = field.datum() + field.relief() + delta.range()[1].max(0.0);
-        Self { field, delta, faceted: false, highest, table: None }
+        Self { field, delta: Some(delta), faceted: false, highest, table: None }
+    }
+
+    /// Undisplaced ground.
+    pub fn still(field: &'a Field) -> Self {
+        Self { field, delta: None, faceted: true, highest: field.datum() + field.relief(), table: None }
     }
 
     /// Ground of flat triangles between the displaced nodes, as it is rasterised.
@@ -64,7 +70,11 @@ impl<'a> DisplacedGround<'a> {
     pub fn prepared(mut self) -> Self {
         let [cols, rows] = self.field.nodes();
         let node = |i: usize| self.displacement(DVec2::new((i % cols) as f64, (i / cols) as f64));
-        let moved: Vec<f64> = (0..cols * rows).map(node).collect();
+        let moved: Vec<f64> = match self.delta {
+            Some(_) => (0..cols * rows).map(node).collect(),
+            None => Vec::new(),
+        };
+        let displaced = |i: usize| moved.get(i).copied().unwrap_or(0.0);
         let aligned = self.is_aligned();
         let blocks = [cols, rows].map(|n| (n - 1).div_ceil(BLOCK));
         let height = self.field.heights();
@@ -74,7 +84,7 @@ impl<'a> DisplacedGround<'a> {
             let nodes = down.clone().flat_map(|y| across.clone().map(move |x| y * cols + x));
             // Ground and displacement may be largest at different nodes.
             let [h, u, sum] = nodes.fold([f64::NEG_INFINITY; 3], |[h, u, sum], i| {
-                [h.max(height[i]), u.max(moved[i]), sum.max(height[i] + moved[i])]
+                [h.max(height[i]), u.max(displaced(i)), sum.max(height[i] + displaced(i))]
             });
             match (self.faceted, aligned) {
                 (true, _) => sum,
@@ -89,22 +99,24 @@ impl<'a> DisplacedGround<'a> {
 
     /// Whether all nodes of the displacement are nodes of the ground, but for rounding, and cover it.
     fn is_aligned(&self) -> bool {
+        let Some(delta) = self.delta else { return true };
         let [cols, rows] = self.field.nodes().map(|n| (n - 1) as f64);
-        let place = |g: DVec2| self.delta.grid_from_scene(self.field.scene_from_grid(g));
+        let place = |g: DVec2| delta.grid_from_scene(self.field.scene_from_grid(g));
         let (first, last) = (place(DVec2::ZERO), place(DVec2::new(cols, rows)));
         // Cells of the ground per cell of the displacement, and where its first node lies on the ground.
         let step = DVec2::new(cols, rows) / (last - first);
         let start = -first * step;
-        let end = start + step * DVec2::new((self.delta.cols() - 1) as f64, (self.delta.rows() - 1) as f64);
+        let end = start + step * DVec2::new((delta.cols() - 1) as f64, (delta.rows() - 1) as f64);
         let whole = |v: DVec2| (v - v.round()).abs().max_element() < 1e-6;
         let regular = whole(step) && step.min_element() > 0.5 && whole(start) && whole(end);
-        regular && self.delta.contains(first) && self.delta.contains(last)
+        regular && delta.contains(first) && delta.contains(last)
     }
 
     /// Upper bound of the displacement between two nodes of the ground, north-west and south-east.
     fn most_moved(&self, north_west: [usize; 2], south_east: [usize; 2]) -> f64 {
         let [a, b] = [north_west, south_east].map(|n| self.field.scene_from_grid(DVec2::new(n[0] as f64, n[1] as f64)));
-        self.delta.range_over(DVec2::new(a.x, b.y), DVec2::new(b.x, a.y)).map_or(0.0, |range| range[1].max(0.0))
+        let range = self.delta.and_then(|delta| delta.range_over(DVec2::new(a.x, b.y), DVec2::new(b.x, a.y)));
+        range.map_or(0.0, |range| range[1].max(0.0))
     }
 
     /// Columns and rows of its nodes.
@@ -113,7 +125,7 @@ impl<'a> DisplacedGround<'a> {
     }
 
     fn displacement(&self, g: DVec2) -> f64 {
-        self.delta.sample(self.field.scene_from_grid(g)).unwrap_or(0.0)
+        self.delta.and_then(|delta| delta.sample(self.field.scene_from_grid(g))).unwrap_or(0.0)
     }
 
     /// Height at grid coordinates; `None` beside the grid and in holes.
@@ -129,6 +141,9 @@ impl<'a> DisplacedGround<'a> {
 
     /// Displacement of the corners of a cell: north-west, north-east, south-west, south-east.
     fn at_corners(&self, [col, row]: [usize; 2]) -> [f64; 4] {
+        if self.delta.is_none() {
+            return [0.0; 4];
+        }
         if let Some(table) = &self.table {
             let (cols, nw) = (self.field.cols(), row * self.field.cols() + col);
             return [nw, nw + 1, nw + cols, nw + cols + 1].map(|i| table.moved[i]);
@@ -198,10 +213,11 @@ impl<'a> DisplacedGround<'a> {
         let low = (z + part[0] * dz).min(z + part[1] * dz);
         let most = |values: [f64; 4]| values.into_iter().fold(f64::NEG_INFINITY, f64::max);
         let moved = match &self.table {
+            _ if self.delta.is_none() => Some([0.0; 4]),
             Some(table) if table.aligned || self.faceted => Some(nodes.map(|i| table.moved[i])),
             _ => None,
         };
-        let rise = moved.map_or(self.delta.range()[1].max(0.0), most);
+        let rise = moved.map_or(self.delta.map_or(0.0, |delta| delta.range()[1].max(0.0)), most);
         if most(heights) + rise - low <= worst.over {
             return;
         }

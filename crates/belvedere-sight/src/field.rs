@@ -38,11 +38,30 @@ impl Field {
     /// # Errors
     /// [`FieldError::Empty`].
     pub fn new(hf: &Heightfield, drop: impl Fn(DVec2) -> f64) -> Result<Self, FieldError> {
-        let (cols, rows) = (hf.cols(), hf.rows());
-        let node = |i: usize| hf.node_xy(i % cols, i / cols);
+        let node = |i: usize| hf.node_xy(i % hf.cols(), i / hf.cols());
         let void: Vec<bool> = hf.states().iter().map(|s| *s == NodeState::Void).collect();
-        let mut heights: Vec<f64> =
-            hf.heights().iter().enumerate().map(|(i, h)| f64::from(*h) - drop(node(i))).collect();
+        let heights = hf.heights().iter().enumerate().map(|(i, h)| f64::from(*h) - drop(node(i))).collect();
+        Self::with([hf.cols(), hf.rows()], (hf.north_west(), hf.spacing()), heights, void)
+    }
+
+    /// The samples of a file in coordinates of its own grid: column times spacing, and minus row times spacing.
+    ///
+    /// * `nodes`: columns and rows, at least 2 each; `spacing`: scene units between them, about, both > 0;
+    /// * `heights`: row-major; a height that is not finite is a void.
+    ///
+    /// # Errors
+    /// [`FieldError::Empty`].
+    pub fn of_samples(nodes: [usize; 2], spacing: DVec2, heights: Vec<f64>) -> Result<Self, FieldError> {
+        let void = heights.iter().map(|h| !h.is_finite()).collect();
+        Self::with(nodes, (DVec2::ZERO, spacing), heights, void)
+    }
+
+    fn with(
+        [cols, rows]: [usize; 2],
+        (north_west, spacing): (DVec2, DVec2),
+        mut heights: Vec<f64>,
+        void: Vec<bool>,
+    ) -> Result<Self, FieldError> {
         let solid = heights.iter().zip(&void).filter(|(_, v)| !**v).map(|(h, _)| *h);
         let range = solid.fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], h| [lo.min(h), hi.max(h)]);
         if range[0] > range[1] {
@@ -53,7 +72,7 @@ impl Field {
                 *h = range[0];
             }
         }
-        Ok(Self { cols, rows, north_west: hf.north_west(), spacing: hf.spacing(), heights, void, range })
+        Ok(Self { cols, rows, north_west, spacing, heights, void, range })
     }
 
     /// Columns.

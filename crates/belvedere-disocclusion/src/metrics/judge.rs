@@ -3,7 +3,7 @@
 use super::super::visibility_qp::LinesOfSight;
 use super::super::{Field, KINDS, ReferencePoint};
 use belvedere_core::DVec2;
-use belvedere_core::grid::{Grid, GridError};
+use belvedere_core::grid::Grid;
 use belvedere_sight::{DisplacedGround, SightVertex};
 use rayon::prelude::*;
 
@@ -11,13 +11,6 @@ use rayon::prelude::*;
 const TOUCH: f64 = 1e-6;
 /// Cells that lines of sight cross, per node of the ground, from which on it is worth preparing the grounds.
 const MANY: usize = 2;
-
-/// A displacement of zero everywhere.
-pub(crate) fn still(field: &Field) -> Result<Grid, GridError> {
-    // One cell more on every side, so that rounding leaves nothing beside it.
-    let size = DVec2::new((field.cols() + 1) as f64, (field.rows() + 1) as f64) * field.spacing();
-    Grid::new(field.scene_from_grid(DVec2::NEG_ONE), size, 2, 2, vec![0.0; 4])
-}
 
 /// The kind of ground that hides a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -95,7 +88,7 @@ pub(crate) fn shares_of_whole(
 }
 
 /// See [`share_seen`]; also the share of the same kind that only ground inside the guard hides.
-pub(super) fn shares(points: &[ReferencePoint], verdicts: &[Verdict]) -> [f64; 2] {
+pub(crate) fn shares(points: &[ReferencePoint], verdicts: &[Verdict]) -> [f64; 2] {
     let mut sums = [[0.0; 3]; KINDS];
     for (point, verdict) in points.iter().zip(verdicts).filter(|(_, v)| **v != Verdict::NoGround) {
         let [all, hidden, in_guard] = &mut sums[point.kind.of_feature()];
@@ -119,6 +112,11 @@ impl<'a> Judge<'a> {
     /// Judge over facets between displaced nodes, as ground is rasterised and written.
     pub(crate) fn faceted(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
         Self { grounds: vec![DisplacedGround::faceted(field, delta)], sight }
+    }
+
+    /// Judge over undisplaced ground.
+    pub(crate) fn still(field: &'a Field, sight: &'a dyn LinesOfSight) -> Self {
+        Self { grounds: vec![DisplacedGround::still(field)], sight }
     }
 
     /// Judge over ground plus the bilinear displacement, as it is traced.

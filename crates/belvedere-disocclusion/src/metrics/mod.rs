@@ -3,9 +3,7 @@
 mod change;
 mod judge;
 
-pub(super) use judge::{Hides, Judge, Verdict, amounts, share_seen, shares_of_whole, still};
-
-use judge::shares;
+pub(super) use judge::{Hides, Judge, Verdict, amounts, share_seen, shares, shares_of_whole};
 
 use super::visibility_qp::LinesOfSight;
 use super::{Cells, Field, ReferencePoint};

@@ -179,7 +179,7 @@ impl Prepared {
         let (points, unusable) = reference_points(scene, &level, settings, settings.spacing);
         let with_qp = settings.mode != SolverMode::Paper;
         let dense = if with_qp { candidate_points(scene, &level, settings) } else { Vec::new() };
-        let check = judged_points(scene, &level, settings, CHECK_CELLS);
+        let check = judged_points(&features, &level, settings, CHECK_CELLS);
         let waters = Waters::new(&areas_of_water, &river_lines, heightfield, &level);
         let limited = (with_qp && settings.limits).then(|| Arc::new(LimitedTerrain::new(&level, &grid)));
         let cells = (settings.mode != SolverMode::Qp).then(|| {

@@ -18,6 +18,7 @@ mod reporting;
 mod runs;
 mod shown;
 mod waters;
+mod written;
 
 pub use fallback::Fallback;
 pub use lakes::{BANK_M, LakeReport};
@@ -25,6 +26,7 @@ pub use limits::LimitsReport;
 pub use live::{LiveFrame, LiveTerrain};
 pub use memory::TerrainMemory;
 pub use report::{Covered, FeatureCost, QpReport, Taken, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
+pub use written::{WrittenGround, WrittenShares};
 
 use super::visibility_qp::{SolvedRow, Unresolved};
 use super::{Detail, Field, Hierarchy, SolverMode, TerrainSettings, check_eye};

@@ -5,7 +5,7 @@
 //! smooth pass is made, which takes about as long as one round. The limits are applied to each ground, which is judged as the report
 //! judges it.
 
-use super::super::metrics::{Judge, share_seen, still};
+use super::super::metrics::{Judge, share_seen};
 use super::super::visibility_qp::{Candidate, QpProblem, QpSolver};
 use super::super::{BlockMaxima, Cells, Hierarchy, Naive, ReferencePoint, SmoothPass, SolverMode, TerrainSettings};
 use super::ground::Ground;
@@ -134,8 +134,7 @@ impl Passes<'_> {
     }
 
     fn share_unmoved(&self, in_view: &PointsInView<'_>, points: &[ReferencePoint]) -> Result<f64, DisocclusionError> {
-        let still = still(self.field)?;
-        let judge = Judge::faceted(self.field, &still, &*in_view.sight);
+        let judge = Judge::still(self.field, &*in_view.sight);
         Ok(share_seen(points, &judge.judge(points, self.settings.guard)))
     }
 

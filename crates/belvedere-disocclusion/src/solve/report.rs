@@ -67,6 +67,9 @@ pub struct TerrainReport {
     /// least 0.9999 is seen ([`TerrainMetrics::visible_dense`]); `hidden` names the rest. Where nothing is asked for nothing is
     /// guaranteed.
     pub guaranteed: bool,
+    /// Whether the solver shows all that is asked for and no river runs uphill: `guaranteed` without the judge.
+    #[serde(skip)]
+    pub(super) promised: bool,
     /// Whether the solver was out of time and ended with the best it had.
     pub out_of_time: bool,
     /// Which ground was taken when time was up: the one that shows most.
@@ -188,6 +191,11 @@ pub enum UnresolvedReason {
     /// The program counts it as seen, the judge as hidden.
     Judged {
         /// How far the ground rises over its line of sight.
+        over_m: f64,
+    },
+    /// The ground that was solved on shows it; the samples of the written file, which are others, hide it.
+    Written {
+        /// How far they rise over its line of sight.
         over_m: f64,
     },
     /// It lies between two points that are seen.

@@ -1,6 +1,6 @@
 //! Builds the report of an outcome.
 
-use super::super::metrics::{Hides, Judge, Judged, amounts, judged, share_seen, shares_of_whole, still};
+use super::super::metrics::{Hides, Judge, Judged, amounts, judged, share_seen, shares_of_whole};
 use super::super::visibility_qp::{Reason, SolvedRow, Unresolved};
 use super::super::{
     Deformation, Field, ReferencePoint, SolverMode, TerrainSettings, Unusable, UnusableReason, stated_spacing,
@@ -18,7 +18,7 @@ use belvedere_scene::{Instant, Progress};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Visible share from which on a guarantee counts as kept: the rest is left to rounding.
-const AGREES: f64 = 0.9999;
+pub(super) const AGREES: f64 = 0.9999;
 /// Dense points that are judged at most, about, in frames of films and where time was up.
 const MOST_SAMPLED: usize = 1000;
 
@@ -53,7 +53,7 @@ pub(super) fn sampled(all: Vec<ReferencePoint>, few: bool) -> (Vec<ReferencePoin
 }
 
 /// Whether judging all dense points would take more than half of the time left, extrapolated from a sample.
-fn too_many(progress: &Progress, judge: &Judge<'_>, all: &[ReferencePoint], guard: f64) -> bool {
+pub(super) fn too_many(progress: &Progress, judge: &Judge<'_>, all: &[ReferencePoint], guard: f64) -> bool {
     let Some(left) = progress.left() else { return false };
     let every = all.len().div_ceil(MOST_SAMPLED / 4).max(1);
     let few: Vec<ReferencePoint> = all.iter().step_by(every).copied().collect();
@@ -75,8 +75,7 @@ pub(super) fn report(
         in_view.points.iter().copied().filter(|&i| shown.holds(field, &prepared.points[i])).collect();
     let points: Vec<ReferencePoint> = asked.iter().map(|&i| prepared.points[i]).collect();
     let all = prepared.dense_in_view(in_view, c.in_plan);
-    let still = still(field)?;
-    let undisplaced = Judge::faceted(field, &still, &*in_view.sight);
+    let undisplaced = Judge::still(field, &*in_view.sight);
     let few = !c.traced || done.stopped || too_many(c.progress, &undisplaced, &all, guard);
     let in_view_amounts = amounts(&all);
     let (may_show, every) = sampled(all, few);
@@ -118,6 +117,7 @@ pub(super) fn report(
         rivers => rivers.report(&(0..field.heights().len()).map(moved).collect::<Vec<_>>()),
     };
     let downhill = rivers.iter().all(|river| river.excess_m <= RIVER_TOLERANCE_M);
+    let promised = guards && !in_view.candidates.is_empty() && named.program_met && !done.stopped && downhill;
     let mut out = TerrainReport {
         parameters: TerrainSettings { w: Some(w), detail: Some(c.settings.detail()), ..c.settings.clone() },
         w,
@@ -140,15 +140,12 @@ pub(super) fn report(
         spikes: prepared.spikes.clone(),
         lakes: prepared.waters.lakes.report(moved),
         rivers,
-        guaranteed: guards
-            && !in_view.candidates.is_empty()
-            && named.program_met
-            && !done.stopped
+        guaranteed: promised
             && metrics.visible_dense >= AGREES
             && judgement.dense.len() as f64 <= (1.0 - AGREES) * dense.len() as f64
-            && downhill
             && (every == 1 || judgement.points.is_empty() && judgement.dense.is_empty())
             && (done.limited.is_none() || hidden.is_empty()),
+        promised,
         out_of_time: done.stopped,
         taken: done.taken,
         unresolved: named.runs,

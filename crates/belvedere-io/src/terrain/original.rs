@@ -43,6 +43,11 @@ impl OriginalTerrain {
         [self.source.cols, self.source.rows]
     }
 
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.source.path
+    }
+
     /// Heights in metres, row-major; `None` where there is no data.
     pub fn heights(&self) -> impl Iterator<Item = Option<f32>> + '_ {
         self.source.heights.iter().map(|h| h.is_finite().then_some(*h))
@@ -142,6 +147,20 @@ impl OriginalTerrain {
             }
             _ => model.is_finite().then_some(model),
         }
+    }
+
+    /// From columns and rows of the file's samples, the first at 0, to scene x, y; `None` where a system has no such transform.
+    pub fn scene_from_index(&self, scene: Crs) -> Option<impl Fn(DVec2) -> Option<DVec2> + '_> {
+        let transform = match (&self.source.system, scene) {
+            (Some(system), Crs::Epsg(_)) => {
+                Some(Transform::new(system, &CoordinateSystem::from_scene(scene).ok()?).ok()?)
+            }
+            _ => None,
+        };
+        Some(move |index: DVec2| {
+            let model = DVec2::from(self.source.model_from_index.apply(index.x, index.y));
+            transform.as_ref().map_or(Some(model), |t| t.forward_one(model)).filter(|p| p.is_finite())
+        })
     }
 
     /// From scene x, y to columns and rows of the file's samples, the first at 0; `None` where a system has no such transform.

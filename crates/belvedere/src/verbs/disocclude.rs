@@ -1,8 +1,8 @@
 //! `disocclude`: writes an elevation model on which features are visible from an eye.
 
-use super::in_time;
 use super::level_lakes::LevelLakes;
 use super::moved::MovedFeatures;
+use super::written_ground::FileGrid;
 use super::written_rivers::run_downhill;
 use crate::answers;
 use crate::data::DataFiles;
@@ -22,16 +22,14 @@ use belvedere_core::{Warning, WarningKind};
 use belvedere_disocclusion::report::RiverReport;
 use belvedere_disocclusion::{Solved, TerrainMemory, TerrainReport, TerrainSolver, ViewpointOptions};
 use belvedere_io::IoError;
-use belvedere_io::TerrainRequest;
 use belvedere_io::geotiff::write_cloud_geotiff;
 use belvedere_io::raster::Raster;
-use belvedere_io::terrain::{CrsChoice, OriginalTerrain, moved_terrain};
-use belvedere_scene::{Crs, LayerKind, Progress, Scene};
+use belvedere_io::terrain::{OriginalTerrain, moved_terrain};
+use belvedere_scene::{Progress, Scene};
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// Size of the picture to which the field of view refers, pixels.
 const IMAGE: [u32; 2] = [1280, 720];
@@ -41,8 +39,6 @@ const KEPT_SHARE: f64 = 0.9999;
 const ADJUSTING: f64 = 0.4;
 /// Time for judging and writing the ground, as a multiple of the time for reading it.
 const WRITING: f64 = 1.5;
-/// Height in pictures of the taller view, which contains nearly all ground above and below the picture.
-const TALLER: u32 = 8;
 /// Visible share of the features in view that is the goal.
 const VISIBLE_LENGTH: f64 = 0.995;
 
@@ -172,13 +168,9 @@ struct Record {
     /// Visible share of the features in view on the written heights, if they are resampled.
     #[serde(skip_serializing_if = "Option::is_none")]
     visible_written: Option<f64>,
-    /// The report's visible share of the whole features, on the heights as they are written.
-    visible_whole: f64,
     /// Reports of rivers on the written heights, if they are resampled.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     rivers_written: Vec<RiverReport>,
-    /// The report's guarantee, if it holds for the written heights.
-    guaranteed: bool,
     layers: Vec<String>,
     inputs: Vec<InputFile>,
     warnings: Vec<Warning>,
@@ -238,13 +230,14 @@ fn disoccluded(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Dis
     let view = camera.view(camera.target.extend(camera.eye.z), None)?;
     let solving = options.progress.before(WRITING);
     crate::resolve::terrain::ask(&data.scene)?;
-    let solved = solver.solve(&data.scene, &view, &mut TerrainMemory::default(), &solving)?;
-    data.warnings.extend(intent::remarks(&solved, &data.scene));
+    let mut solved = solver.solve(&data.scene, &view, &mut TerrainMemory::default(), &solving)?;
     let lakes = LevelLakes::new(&solved.stage, &solved.report, &data.scene);
     let delta = |p: DVec2| lakes.at(p);
     let mut rivers_written = Vec::new();
-    let (rasters, visible_written) = match (request.grid, data.scene.terrain()) {
-        (WrittenGrid::Scene, Some(terrain)) => (moved_terrain(terrain, data.scene.crs, delta), None),
+    let (rasters, grid) = match (request.grid, data.scene.terrain()) {
+        (WrittenGrid::Scene, Some(terrain)) => {
+            (moved_terrain(terrain, data.scene.crs, delta), FileGrid::of_terrain(terrain))
+        }
         _ => {
             let surface = |p: DVec2| data.scene.terrain().filter(|_| request.fill_voids)?.surface_at(p);
             let mut rasters = original.moved_and_filled(data.scene.crs, delta, surface)?;
@@ -253,11 +246,15 @@ fn disoccluded(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Dis
                 let ids = &solver.settings().rivers[..];
                 rivers_written = run_downhill(&mut rasters, &original, (&data.scene, ids), &lakes)?;
             }
-            let share =
-                if resampled { written_share(&data.scene, &view, &original, &rasters[0], options)? } else { None };
-            (rasters, share)
+            (rasters, FileGrid::of_file(&original, data.scene.crs, !resampled)?)
         }
     };
+    let seen_by = (&*data.scene, &view);
+    let [straight, written] = grid.judged(&solver, seen_by, &rasters, &solved.report, &options.progress)?;
+    let visible_written = (!grid.solved_on).then_some(written.visible_dense);
+    written.put(&straight, grid.solved_on, &mut solved.report);
+    drop(grid);
+    data.warnings.extend(intent::remarks(&solved, &data.scene));
     data.warnings.extend(visible_written.and_then(|share| resampled_away(share, &solved)));
     let ground = data.scene.terrain().and_then(|t| t.surface_at(camera.target));
     let look_at = camera.target.extend(ground.unwrap_or(camera.eye.z));
@@ -268,10 +265,9 @@ fn disoccluded(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Dis
     let mut session = data.session(view, camera, vec![stage], earth);
     session.resolved.terrain = Some(solved.report.clone());
     let names = session.public_names();
-    let visible = visible_whole(&solved.report, visible_written);
     let record = Record {
         visible_straight: solved.report.visible_whole_before,
-        visible_bent: visible,
+        visible_bent: solved.report.visible_whole,
         in_frame_straight: solved.report.in_view,
         in_frame_bent: solved.report.in_view,
         program: format!("belvedere {}", crate::VERSION),
@@ -284,57 +280,12 @@ fn disoccluded(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Dis
         earth: if request.curved_earth { "curved" } else { "flat" },
         grid: request.grid,
         visible_written,
-        visible_whole: visible,
         rivers_written,
-        guaranteed: solved.report.guaranteed && visible_written.is_none_or(|share| share >= KEPT_SHARE),
         layers: session.scene().layers.iter().map(|l| l.id.clone()).collect(),
         inputs: names.inputs(&record::inputs(&session.inputs())?),
         warnings: session.warnings(),
     };
     Ok(Disoccluded { session, solved, rasters, record })
-}
-
-/// Visible share of the features on the written heights, read back like any file.
-fn written_share(
-    scene: &Scene,
-    straight: &View,
-    original: &OriginalTerrain,
-    heights: &Raster,
-    options: &OpenOptions,
-) -> Result<Option<f64>, BelvedereError> {
-    let crs = match scene.crs {
-        Crs::Epsg(code) => CrsChoice::Epsg(code),
-        Crs::Local => CrsChoice::Local,
-    };
-    let request = TerrainRequest { crs, sea: false, limits: options.limits(), ..TerrainRequest::default() };
-    let read = original.with_heights(heights).in_scene(&request, &options.progress)?.value;
-    let mut scene = scene.clone();
-    for layer in &mut scene.layers {
-        if let LayerKind::Terrain(terrain) = &mut layer.kind {
-            terrain.heightfield = Arc::new(read.heightfield.clone());
-        }
-    }
-    let measures = in_time::judged(&scene, &taller(straight)?, &options.progress)?.measures;
-    let kinds = [measures.lines.as_ref(), measures.areas.as_ref(), measures.points.as_ref()];
-    let shares = kinds.into_iter().flatten().filter_map(|kind| kind.straight.sight.share);
-    Ok(shares.min_by(f64::total_cmp))
-}
-
-/// The view extended above and below its picture, as the solver judges it.
-fn taller(view: &View) -> Result<View, BelvedereError> {
-    let pinhole = view.pinhole();
-    let Projection::Perspective { fov_y } = pinhole.projection else { return Ok(view.clone()) };
-    let [width, height] = pinhole.image;
-    let projection = Projection::Perspective { fov_y: 2.0 * (f64::from(TALLER) * (0.5 * fov_y).tan()).atan() };
-    let taller = Pinhole { image: [width, TALLER * height], projection, ..pinhole.clone() };
-    Ok(View::new(taller, view.stages().to_vec())?)
-}
-
-/// Visible share of the whole features on written heights, which show `written` of what is in view.
-fn visible_whole(report: &TerrainReport, written: Option<f64>) -> f64 {
-    let solved = report.metrics.visible_dense;
-    let kept = written.map_or(1.0, |written| (written / solved.max(f64::MIN_POSITIVE)).min(1.0));
-    report.visible_whole * kept
 }
 
 /// Warning that resampling hides features that the solution shows.
@@ -458,7 +409,7 @@ impl Disoccluded {
     /// Shares of the whole features before, and after on the heights as they are written.
     pub fn shares(&self) -> [Shares; 2] {
         let r = self.report();
-        [r.visible_whole_before, self.record.visible_whole].map(|visible| Shares { visible, in_frame: r.in_view })
+        [r.visible_whole_before, r.visible_whole].map(|visible| Shares { visible, in_frame: r.in_view })
     }
 
     /// One sentence: visible shares of the whole features before and after, the share in view, and the displacement.

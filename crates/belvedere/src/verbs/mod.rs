@@ -29,6 +29,7 @@ mod target_names;
 mod target_request;
 mod target_scene;
 pub(crate) mod target_views;
+mod written_ground;
 mod written_rivers;
 
 pub use target_names::CitySee;
