@@ -36,7 +36,7 @@ fn measure(name: &str, frames: usize) -> Result<()> {
     let scene = sized(name)?;
     let [.., (_, view)] = sized_views(IMAGE)?;
     let clock = Stopwatch::start();
-    let (for_view, shortest) = split(&scene, &|a, b| (TOLERANCE_PX..AS_IT_IS_PX).contains(&view.edge_error_px(a, b)))?;
+    let (for_view, shortest) = split(&scene, &|a, b| (TOLERANCE_PX..AS_IT_IS_PX).contains(&view.edge_error(a, b).px))?;
     let split_ms = clock.cpu_ms().unwrap_or_else(|| clock.wall_ms());
     // For any view: splits all edges longer than 1.5 times the shortest half that this view needs.
     let (for_any, _) = split(&scene, &|a, b| a.distance(b) > 1.5 * shortest)?;

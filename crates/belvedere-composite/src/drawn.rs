@@ -2,7 +2,7 @@
 
 use crate::depths::Depths;
 use crate::screen::Screen;
-use belvedere_core::{Aabb, DVec2, DVec3};
+use belvedere_core::{Aabb, DVec2, DVec3, EdgeError};
 
 /// One drawing of the scene: where it places points. Views draw each image of every point once, by one pass per record of their rays
 /// and, where the records leave something out, by one per segment; most views need one pass.
@@ -11,9 +11,9 @@ pub trait Pass: std::fmt::Debug + Sync {
     fn displace(&self, p: DVec3) -> Option<DVec3>;
     /// Signed distances that must be positive for the point to belong to this pass; infinite in a pass that draws everything.
     fn margins(&self, p: DVec3) -> [f64; 2];
-    /// Distance of the image of an edge from the straight line between the images of its ends, pixels; see
-    /// [`belvedere_core::View::edge_error_px`].
-    fn edge_error_px(&self, a: DVec3, b: DVec3) -> f64;
+    /// Bound on the distance of the displaced edge from the straight line between its displaced ends, see
+    /// [`belvedere_core::View::edge_error`].
+    fn edge_error(&self, a: DVec3, b: DVec3) -> EdgeError;
     /// Whether nothing is displaced.
     fn is_straight(&self) -> bool;
     /// Whether the records leave out part of a box that this pass, of a segment, may show.

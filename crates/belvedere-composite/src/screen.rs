@@ -106,6 +106,25 @@ impl Screen {
         tests.iter().enumerate().fold(0, |code, (i, &out)| code | (u8::from(out) << i))
     }
 
+    /// [`Screen::outcode`] of a ball around the point: bit set of the image borders beyond which all of it lies.
+    #[inline]
+    pub fn outcode_around(&self, v: DVec3, radius: f64) -> u8 {
+        let slope = if self.ortho { DVec2::ZERO } else { self.center / self.scale };
+        let at = if self.ortho { self.center / self.scale } else { slope * v.z };
+        let (x, y) = (radius * slope.x.hypot(1.0), radius * slope.y.hypot(1.0));
+        let planes = [self.near - v.z - radius, v.z - self.far - radius];
+        let sides = [v.x - at.x - x, -v.x - at.x - x, v.y - at.y - y, -v.y - at.y - y];
+        planes.into_iter().chain(sides).enumerate().fold(0, |code, (i, off)| code | (u8::from(off > 0.0) << i))
+    }
+
+    /// Bound on the pixels that an edge fills, in whatever direction from the eye.
+    ///
+    /// * `length`: of the edge, scene units; `distance`: of the nearer of its ends from the eye.
+    pub fn length_px(&self, length: f64, distance: f64) -> f64 {
+        let per_unit = if self.ortho { self.scale } else { self.scale / (distance - 0.5 * length).max(self.near) };
+        length * per_unit
+    }
+
     /// Scene units across one pixel at `depth`.
     #[inline]
     pub fn footprint(&self, depth: f64) -> f64 {

@@ -37,5 +37,5 @@ pub use map::strip::Strip;
 pub use map::terrain::TerrainDisocclusion;
 pub use map::{Displaced, SpaceMap, Stage};
 pub use miss::Miss;
-pub use view::{EdgePoint, Edges, Projected, RayPath, RayPoint, View, ViewError};
+pub use view::{EdgeError, EdgePoint, Edges, Projected, RayPath, RayPoint, View, ViewError};
 pub use warning::{Warning, WarningKind};

@@ -7,7 +7,7 @@ use belvedere_composite::drawn::{self, Drawn, Sight};
 use belvedere_composite::marks::{Marks, NameMemory, Patience, Shapes};
 use belvedere_composite::screen::{COARSE_PX, Screen};
 use belvedere_composite::sections::{Exposure, Sections};
-use belvedere_core::{Aabb, DVec2, DVec3};
+use belvedere_core::{Aabb, DVec2, DVec3, EdgeError};
 use belvedere_scene::{LayerKind, RenderJob};
 use belvedere_sight::Solids;
 use std::sync::OnceLock;
@@ -109,8 +109,8 @@ impl drawn::Pass for Pass<'_> {
         Pass::margins(self, p)
     }
 
-    fn edge_error_px(&self, a: DVec3, b: DVec3) -> f64 {
-        Pass::edge_error_px(self, a, b)
+    fn edge_error(&self, a: DVec3, b: DVec3) -> EdgeError {
+        Pass::edge_error(self, a, b)
     }
 
     fn is_straight(&self) -> bool {

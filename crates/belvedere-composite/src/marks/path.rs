@@ -8,8 +8,12 @@ use belvedere_scene::{Heightfield, Scene};
 
 /// Largest distance of the vertices from the ground up to which a line counts as lying on it, scene units.
 const ON_GROUND: f64 = 1.0;
-/// Largest number of halvings of a piece of line under the bend.
+/// A piece of line under the bend is halved at most this often, and at most [`MOST_HALVINGS`] times while its image is longer than the
+/// tolerance.
 const MAX_HALVINGS: u32 = 8;
+const MOST_HALVINGS: u32 = 40;
+/// Distance beyond the image up to which lines are drawn, pixels.
+const BESIDE_PX: f64 = 64.0;
 
 /// A point of a line on the image.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -163,7 +167,7 @@ pub(crate) fn project(
     for &p in points {
         let next = tracer.vertex(p);
         if let Some(from) = last {
-            tracer.segment(from, next, if pass.is_straight() { 0 } else { MAX_HALVINGS });
+            tracer.segment(from, next, if pass.is_straight() { MOST_HALVINGS } else { 0 });
         }
         last = Some(next);
     }
@@ -186,22 +190,13 @@ impl Tracer<'_> {
         Vertex { on_line, v, margins: self.pass.margins(p) }
     }
 
+    /// * `halvings`: how often the piece of line was halved.
     fn segment(&mut self, a: Vertex, b: Vertex, halvings: u32) {
-        let off = |v: Option<DVec3>| v.map_or(0, |v| self.screen.outcode(v, 64.0));
-        let split = halvings > 0
-            && match (a.v, b.v) {
-                (None, None) => false,
-                (Some(_), Some(_)) => {
-                    off(a.v) & off(b.v) == 0
-                        && !self.is_short(a.v, b.v)
-                        && self.pass.edge_error_px(a.on_line.p, b.on_line.p) > self.tolerance_px
-                }
-                _ => true,
-            };
-        if split {
+        let may_split = halvings < MAX_HALVINGS || (halvings < MOST_HALVINGS && self.is_long(&a, &b));
+        if may_split && self.bends(&a, &b) {
             let m = self.vertex(a.on_line.lerp(b.on_line, 0.5));
-            self.segment(a, m, halvings - 1);
-            self.segment(m, b, halvings - 1);
+            self.segment(a, m, halvings + 1);
+            self.segment(m, b, halvings + 1);
             return;
         }
         let (Some(va), Some(vb)) = (a.v, b.v) else {
@@ -220,6 +215,26 @@ impl Tracer<'_> {
             piece.push(end);
         }
         self.open = t == 1.0;
+    }
+
+    /// Whether a part of the edge in the picture would be drawn wrong if the edge was drawn straight.
+    fn bends(&self, a: &Vertex, b: &Vertex) -> bool {
+        let (Some(va), Some(vb)) = (a.v, b.v) else { return a.v.is_some() || b.v.is_some() };
+        if self.is_short(a.v, b.v) {
+            return false;
+        }
+        let error = self.pass.edge_error(a.on_line.p, b.on_line.p);
+        let beside = |v: DVec3| self.screen.outcode(v, BESIDE_PX);
+        let around = |v: DVec3| self.screen.outcode_around(v, error.length);
+        let may_enter = || error.length.is_finite() && around(va) & around(vb) == 0;
+        error.px > self.tolerance_px && (beside(va) & beside(vb) == 0 || may_enter())
+    }
+
+    /// Whether the image of an edge is longer than the tolerance.
+    fn is_long(&self, a: &Vertex, b: &Vertex) -> bool {
+        let distance = |c: &Vertex| c.v.unwrap_or_else(|| self.screen.view_from(c.on_line.p)).length();
+        let length = a.on_line.p.distance(b.on_line.p);
+        self.screen.length_px(length, distance(a).min(distance(b))) > self.tolerance_px
     }
 
     /// Whether a segment of a coarse picture is shorter than its tolerance, so that its bend does not matter.

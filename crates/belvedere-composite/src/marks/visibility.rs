@@ -314,7 +314,7 @@ mod tests {
     use super::*;
     use crate::drawn::Sight;
     use crate::marks::path;
-    use belvedere_core::{Aabb, DVec3, Pinhole, Projection};
+    use belvedere_core::{Aabb, DVec3, EdgeError, Pinhole, Projection};
     use belvedere_scene::Scene;
 
     /// Nothing is displaced, and there is no surface.
@@ -330,8 +330,8 @@ mod tests {
             [f64::INFINITY; 2]
         }
 
-        fn edge_error_px(&self, _: DVec3, _: DVec3) -> f64 {
-            0.0
+        fn edge_error(&self, _: DVec3, _: DVec3) -> EdgeError {
+            EdgeError::NONE
         }
 
         fn is_straight(&self) -> bool {

@@ -7,7 +7,7 @@ use belvedere_composite::finish::{buffers, finish};
 use belvedere_composite::marks::Marks;
 use belvedere_composite::screen::Screen;
 use belvedere_composite::{branches, layers};
-use belvedere_core::{Aabb, DVec2, DVec3, Pinhole, Projection, View};
+use belvedere_core::{Aabb, DVec2, DVec3, EdgeError, Pinhole, Projection, View};
 use belvedere_scene::{
     Color, Frame, Hidden, Layer, LayerKind, Light, LineFeature, LineLayer, PointFeature, PointLayer, PointStyle,
     Progress, RenderError, RenderJob, RenderOptions, Renderer, Scene, Stylisation, Symbol,
@@ -35,8 +35,8 @@ impl Pass for Unbent {
         [f64::INFINITY; 2]
     }
 
-    fn edge_error_px(&self, _: DVec3, _: DVec3) -> f64 {
-        0.0
+    fn edge_error(&self, _: DVec3, _: DVec3) -> EdgeError {
+        EdgeError::NONE
     }
 
     fn is_straight(&self) -> bool {

@@ -7,6 +7,23 @@ use crate::map::earth::EarthCurvature;
 use crate::map::spline::{self, SplineBend};
 use crate::{Aabb, DVec2, DVec3, Pinhole, Stage};
 
+/// Bound on the error of an edge that bends and is drawn straight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EdgeError {
+    /// The larger of the errors across the image and in depth, both in pixels: in depth a pixel is what it is across the image there.
+    /// Infinite if no bound is known, or if an end of an edge that bends lies behind the eye.
+    pub px: f64,
+    /// The distance in displaced space, scene units; infinite if no bound is known.
+    pub length: f64,
+}
+
+impl EdgeError {
+    /// Of an edge that does not bend.
+    pub const NONE: Self = Self { px: 0.0, length: 0.0 };
+    /// Where no bound is known.
+    pub const UNKNOWN: Self = Self { px: f64::INFINITY, length: f64::INFINITY };
+}
+
 /// Bounds on the error of edges in a view that bends by one turn of curved rays alone, or by one spline bend, over flat or curved earth.
 #[derive(Debug)]
 pub struct Edges<'a> {
@@ -80,7 +97,7 @@ impl Edges<'_> {
         (depth > 0.0 && off.is_finite()).then_some(EdgePoint { p, end, off, depth })
     }
 
-    /// [`View::edge_error_px_in`] of an edge.
+    /// [`EdgeError::px`] of an edge, as by [`View::edge_error_in`].
     pub fn error_px(&self, p0: &EdgePoint, p1: &EdgePoint) -> f64 {
         let (offs, depth) = ([p0.off, p1.off], p0.depth.min(p1.depth));
         match (&self.bend, &p0.end, &p1.end) {
@@ -119,14 +136,14 @@ impl Edges<'_> {
         }
     }
 
-    /// Bound in pixels on a move by `across` (pixels at depth 1) and `along` the axis, of images in the hull of `offs` (pixels from the
+    /// [`EdgeError::px`] of a move by `across` (pixels at depth 1) and `along` the axis, of images in the hull of `offs` (pixels from the
     /// centre), `depth` or farther.
     fn moved_px(&self, across: DVec2, along: f64, offs: &[DVec2], depth: f64) -> f64 {
         if self.pinhole.is_orthographic() {
             return across.length();
         }
         let px = offs.iter().map(|off| (across - along * *off).length_squared()).fold(0.0, f64::max).sqrt();
-        seen_from(px, depth - along.abs())
+        seen_from(px.max(along.abs() * self.scale_px), depth - along.abs())
     }
 
     /// The same for a move by at most `error` scene units to any side.

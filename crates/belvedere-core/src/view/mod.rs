@@ -4,7 +4,7 @@ mod edges;
 mod ray_path;
 mod rigid;
 
-pub use edges::{EdgePoint, Edges};
+pub use edges::{EdgeError, EdgePoint, Edges};
 pub use ray_path::{RayPath, RayPoint};
 
 use crate::map::split_rays::{Branch, SplitRays};
@@ -301,55 +301,54 @@ impl View {
         if rows.iter().all(|r| r.is_finite()) { Ok(rows) } else { Err(Miss::OutsideDomain) }
     }
 
-    /// Bound in pixels on the error of drawing the edge `p0 p1` as a straight image edge between its projected ends.
-    /// Infinite if no bound is known, or if an end of an edge that bends lies behind the eye.
-    pub fn edge_error_px(&self, p0: DVec3, p1: DVec3) -> f64 {
-        self.edge_error(p0, p1, None)
+    /// Bound on the error of drawing the edge `p0 p1` as a straight image edge between its projected ends.
+    pub fn edge_error(&self, p0: DVec3, p1: DVec3) -> EdgeError {
+        self.error_of_edge(p0, p1, None)
     }
 
     /// The same bound when curved rays displace by the record of one turn alone, see [`View::displace_in`].
-    pub fn edge_error_px_in(&self, record: usize, p0: DVec3, p1: DVec3) -> f64 {
-        self.edge_error(p0, p1, Some(record))
+    pub fn edge_error_in(&self, record: usize, p0: DVec3, p1: DVec3) -> EdgeError {
+        self.error_of_edge(p0, p1, Some(record))
     }
 
     /// The same bound where records displace as one map ([`CurvedRays::is_continuous`]), each end by the record it belongs to.
-    pub fn edge_error_px_between(&self, records: RangeInclusive<usize>, p0: DVec3, p1: DVec3) -> f64 {
+    pub fn edge_error_between(&self, records: RangeInclusive<usize>, p0: DVec3, p1: DVec3) -> EdgeError {
         let (Some((a, b, mut error)), Some(rays)) = (self.earlier_error(p0, p1), self.curved_rays()) else {
-            return f64::INFINITY;
+            return EdgeError::UNKNOWN;
         };
         if error > 0.0 {
             error *= stretch(rays, a, b);
         }
         let ends = [a, b].map(|p| rays.record_of(records.clone(), p));
         let (Ok(a1), Ok(b1)) = (rays.displace_in(ends[0], a), rays.displace_in(ends[1], b)) else {
-            return f64::INFINITY;
+            return EdgeError::UNKNOWN;
         };
         // Turns that both ends are before, or past, do not bend the edge.
         let shifts = (ends[0].min(ends[1])..=ends[0].max(ends[1])).map(|record| rays.record_edge_shift(record, a, b));
         let shifts: Option<Vec<DVec3>> = shifts.collect();
-        shifts.map_or(f64::INFINITY, |shifts| self.image_error([a1.point, b1.point], error, &shifts))
+        shifts.map_or(EdgeError::UNKNOWN, |shifts| self.image_error([a1.point, b1.point], error, &shifts))
     }
 
     /// The same bound for one segment alone, see [`View::displace_along`].
-    pub fn edge_error_px_along(&self, segment: u32, p0: DVec3, p1: DVec3) -> f64 {
+    pub fn edge_error_along(&self, segment: u32, p0: DVec3, p1: DVec3) -> EdgeError {
         let Some(map) = self.curved_rays().and_then(|rays| rays.straight_map(segment)) else {
-            return self.edge_error_px_in(segment as usize / 2, p0, p1);
+            return self.edge_error_in(segment as usize / 2, p0, p1);
         };
-        let Some((a, b, error)) = self.earlier_error(p0, p1) else { return f64::INFINITY };
+        let Some((a, b, error)) = self.earlier_error(p0, p1) else { return EdgeError::UNKNOWN };
         if error == 0.0 {
-            return 0.0;
+            return EdgeError::NONE;
         }
         let stretch = map.linear.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
         let ends = [a, b].map(|p| self.pinhole.eye + map.linear * (p - map.viewpoint));
         self.image_error(ends, error * stretch, &[])
     }
 
-    fn edge_error(&self, p0: DVec3, p1: DVec3, record: Option<usize>) -> f64 {
-        let Some((a, b, mut error)) = self.earlier_error(p0, p1) else { return f64::INFINITY };
+    fn error_of_edge(&self, p0: DVec3, p1: DVec3, record: Option<usize>) -> EdgeError {
+        let Some((a, b, mut error)) = self.earlier_error(p0, p1) else { return EdgeError::UNKNOWN };
         if let Some(split) = self.split_rays() {
             return match split.branch_of_edge(a, b) {
-                Some(branch) if record.is_none() => self.along(branch).edge_error(p0, p1, None),
-                _ => f64::INFINITY,
+                Some(branch) if record.is_none() => self.along(branch).error_of_edge(p0, p1, None),
+                _ => EdgeError::UNKNOWN,
             };
         }
         let Some(rays) = self.curved_rays() else { return self.image_error([a, b], error, &[]) };
@@ -360,17 +359,17 @@ impl View {
             Some(record) => rays.displace_in(record, p),
             None => rays.displace(p),
         };
-        let (Ok(a1), Ok(b1)) = (displaced(a), displaced(b)) else { return f64::INFINITY };
+        let (Ok(a1), Ok(b1)) = (displaced(a), displaced(b)) else { return EdgeError::UNKNOWN };
         let ends = [a1.point, b1.point];
         match record {
             Some(record) => match rays.record_edge_shift(record, a, b) {
                 Some(shift) => self.image_error(ends, error, &[shift]),
-                None => f64::INFINITY,
+                None => EdgeError::UNKNOWN,
             },
             None => {
                 let mut shifts = Vec::new();
                 if !rays.edge_shifts(a, b, |shift| shifts.push(shift)) {
-                    return f64::INFINITY;
+                    return EdgeError::UNKNOWN;
                 }
                 self.image_error(ends, error, &shifts)
             }
@@ -393,18 +392,19 @@ impl View {
     ///
     /// A shift by -d moves a pixel by at most |d_xy - pixel d_w| / (depth - |d_w|), in pixels and from the image centre;
     /// the numerator is convex in the pixel, so the ends decide.
-    fn image_error(&self, ends: [DVec3; 2], error: f64, shifts: &[DVec3]) -> f64 {
+    fn image_error(&self, ends: [DVec3; 2], error: f64, shifts: &[DVec3]) -> EdgeError {
         if error == 0.0 && shifts.iter().all(|d| *d == DVec3::ZERO) {
-            return 0.0;
+            return EdgeError::NONE;
         }
         let ph = &self.pinhole;
+        let length = error + shifts.iter().map(|d| d.length()).sum::<f64>();
         let (Ok((pixel0, depth0)), Ok((pixel1, depth1))) = (ph.project(ends[0]), ph.project(ends[1])) else {
-            return f64::INFINITY;
+            return EdgeError { px: f64::INFINITY, length };
         };
         let scale = ph.scale_px();
         let lateral = |d: DVec3| DVec2::new(d.dot(ph.right), d.dot(ph.down)) * scale;
         if ph.is_orthographic() {
-            return error * scale + shifts.iter().map(|&d| lateral(d).length()).sum::<f64>();
+            return EdgeError { px: error * scale + shifts.iter().map(|&d| lateral(d).length()).sum::<f64>(), length };
         }
         let offsets = [pixel0, pixel1].map(|px| px - ph.center_px());
         let across = |d: DVec3| {
@@ -412,9 +412,10 @@ impl View {
         };
         let ball =
             error * offsets.map(|off| (scale * scale + off.length_squared()).sqrt()).into_iter().fold(0.0, f64::max);
-        let nearer = error + shifts.iter().map(|d| d.dot(ph.forward).abs()).sum::<f64>();
-        let depth = depth0.min(depth1) - nearer;
-        edges::seen_from(ball + shifts.iter().map(|&d| across(d)).sum::<f64>(), depth)
+        let along = shifts.iter().map(|d| d.dot(ph.forward).abs()).sum::<f64>();
+        let depth = depth0.min(depth1) - (error + along);
+        let off = shifts.iter().map(|&d| across(d)).sum::<f64>().max(along * scale);
+        EdgeError { px: edges::seen_from(ball + off, depth), length }
     }
 
     /// Conservative image of a box, or `None` if part of it has no image or lies nearer than `near`.

@@ -75,7 +75,7 @@ fn edges_with_known_ends_have_the_same_bound() {
                 let start = DVec3::new(ground[0], ground[1], random.range(-20.0, 120.0));
                 let end = start + random.direction() * 10f64.powf(random.range(-1.0, 2.0));
                 let (Some(a), Some(b)) = (edges.point(start), edges.point(end)) else { continue };
-                let (found, want) = (edges.error_px(&a, &b), view.edge_error_px(start, end));
+                let (found, want) = (edges.error_px(&a, &b), view.edge_error(start, end).px);
                 let same = found == want || (found - want).abs() <= 1e-9 * want.abs().max(1e-3);
                 assert!(same, "{name}, earth {curved}, edge {start} {end}: {found} px, not {want}");
                 compared += u32::from(want > 0.0 && want.is_finite());

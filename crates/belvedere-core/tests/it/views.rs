@@ -121,7 +121,7 @@ fn edge_error_of_two_stages_covers_both() {
         let pixel = DVec2::new(random.range(0.0, 1280.0), random.range(0.0, 720.0));
         let p0 = view.ray(pixel).at(random.range(300.0, 6000.0)).unwrap().point;
         let p1 = p0 + random.range(1.0, 600.0) * random.direction();
-        let bound = view.edge_error_px(p0, p1);
+        let bound = view.edge_error(p0, p1).px;
         let (Ok(d0), Ok(d1)) = (view.displace(p0), view.displace(p1)) else { continue };
         for i in 1..32 {
             let t = f64::from(i) / 32.0;
@@ -172,7 +172,7 @@ fn views_without_curved_rays_have_one_record() {
     assert_eq!(view.displace_in(0, p).unwrap().point, p);
     assert_eq!(view.displace_in(1, p), Err(Miss::OutsideDomain));
     assert_eq!(view.record_margins(0, p), [f64::INFINITY; 2]);
-    assert_eq!(view.edge_error_px(p, p + 100.0), 0.0);
+    assert_eq!(view.edge_error(p, p + 100.0).px, 0.0);
 }
 
 #[test]

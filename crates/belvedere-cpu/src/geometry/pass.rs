@@ -8,7 +8,7 @@ use crate::geometry::way::Way;
 use crate::points::Points;
 use crate::raster::cells::NODES;
 use crate::screen::{Row, Screen, ScreenVertex, Snap};
-use belvedere_core::{Aabb, CurvedRays, DMat3, DVec2, DVec3, EdgePoint, Edges, Stage, View};
+use belvedere_core::{Aabb, CurvedRays, DMat3, DVec2, DVec3, EdgeError, EdgePoint, Edges, Stage, View};
 use belvedere_scene::Heightfield;
 use belvedere_sight::Carried;
 
@@ -215,14 +215,14 @@ impl<'a> Pass<'a> {
         self.edges.as_ref()?.point(p)
     }
 
-    /// [`Pass::edge_error_px`] from precomputed ends; `None` where it must be computed from their positions.
+    /// [`EdgeError::px`] of [`Pass::edge_error`] from precomputed ends; `None` where it must be computed from their positions.
     pub(crate) fn edge_error_between(&self, a: Option<&EdgePoint>, b: Option<&EdgePoint>) -> Option<f64> {
         Some(self.edges.as_ref()?.error_px(a?, b?))
     }
 
-    /// See [`View::edge_error_px`].
-    pub(crate) fn edge_error_px(&self, a: DVec3, b: DVec3) -> f64 {
-        edge_error_px(self.view, self.way, a, b)
+    /// See [`View::edge_error`].
+    pub(crate) fn edge_error(&self, a: DVec3, b: DVec3) -> EdgeError {
+        edge_error(self.view, self.way, a, b)
     }
 
     /// Whether an edge may have an image between its ends where neither end has one.
@@ -310,12 +310,12 @@ impl<'a> Pass<'a> {
     }
 }
 
-/// See [`View::edge_error_px`].
-pub(crate) fn edge_error_px(view: &View, way: Way, a: DVec3, b: DVec3) -> f64 {
+/// See [`View::edge_error`].
+pub(crate) fn edge_error(view: &View, way: Way, a: DVec3, b: DVec3) -> EdgeError {
     match way {
-        Way::Records([first, last]) if first == last => view.edge_error_px_in(first, a, b),
-        Way::Records([first, last]) => view.edge_error_px_between(first..=last, a, b),
-        Way::Segment(number) => view.edge_error_px_along(number, a, b),
+        Way::Records([first, last]) if first == last => view.edge_error_in(first, a, b),
+        Way::Records([first, last]) => view.edge_error_between(first..=last, a, b),
+        Way::Segment(number) => view.edge_error_along(number, a, b),
     }
 }
 

@@ -4,12 +4,14 @@ use crate::geometry::block::{SoupTriangle, SoupVertex};
 use crate::geometry::pass::Pass;
 use crate::screen::{PLANES, SUB, Screen, ScreenVertex, Snap};
 use belvedere_composite::screen::COARSE_PX;
-use belvedere_core::DVec3;
+use belvedere_core::{DVec3, EdgeError};
 
-/// An edge is halved at most this often.
+/// An edge is halved at most this often, and at most [`MOST_HALVINGS`] times while its image is longer than the tolerance: of an edge of
+/// 10^8 m a tenth of a millimetre is left.
 const MAX_HALVINGS: u8 = 10;
-/// The same where the error has no bound: beside the near plane, where images are large, and at the borders of a strip, which are
-/// long.
+const MOST_HALVINGS: u8 = 40;
+/// The same where the error in pixels has no bound: beside the near plane, where images are large, and at the borders of a strip, which
+/// are long.
 const MAX_BLIND_HALVINGS: u8 = 9;
 const MAX_BLIND_HALVINGS_BESIDE_STRIPS: u8 = 6;
 /// Fewest of them in a coarse picture.
@@ -19,7 +21,9 @@ const BORDER_STRETCH: f64 = 2.0;
 /// Tolerance of a picture that is not coarse, pixels; each doubling saves a halving.
 const FINE_PX: f64 = 0.5;
 /// Distance beyond the image up to which triangles whose bend is unknown are refined.
-const MAX_MARGIN_PX: f64 = 4096.0;
+const MARGIN_PX: f64 = 4096.0;
+/// A triangle bends inside by at most this factor more than along its edges: a paraboloid does.
+const INSIDE: f64 = 4.0 / 3.0;
 /// Level of an edge that must not be split.
 const FROZEN: u8 = u8::MAX;
 
@@ -91,18 +95,19 @@ impl<'a> Refiner<'a> {
         if (0..2).any(|m| c.iter().all(|c| !(c.margins[m] > 0.0))) {
             return;
         }
-        let errors: [f64; 3] =
-            std::array::from_fn(|i| if levels[i] == FROZEN { 0.0 } else { self.edge_error(&c[i], &c[(i + 1) % 3]) });
-        if c.iter().all(|c| c.v.is_none()) && errors == [0.0; 3] {
+        let errors: [EdgeError; 3] = std::array::from_fn(|i| {
+            if levels[i] == FROZEN { EdgeError::NONE } else { self.edge_error(&c[i], &c[(i + 1) % 3]) }
+        });
+        if c.iter().all(|c| c.v.is_none()) && errors == [EdgeError::NONE; 3] {
             return;
         }
-        let worst = errors.iter().fold(0.0f64, |a, &b| a.max(b));
-        if self.is_off_image(&c, worst.min(MAX_MARGIN_PX)) {
+        if self.is_off_image(&c, &errors) {
             return;
         }
         let split: [bool; 3] = std::array::from_fn(|i| {
-            let limit = if errors[i].is_finite() { MAX_HALVINGS } else { self.blind_halvings };
-            levels[i] < limit && errors[i] > self.tolerance_px
+            let limit = if errors[i].px.is_finite() { MAX_HALVINGS } else { self.blind_halvings };
+            let is_long = || levels[i] < MOST_HALVINGS && self.is_long(&c[i], &c[(i + 1) % 3]);
+            errors[i].px > self.tolerance_px && (levels[i] < limit || is_long())
         });
         if split == [false; 3] {
             return self.emit(&c, parent);
@@ -110,51 +115,62 @@ impl<'a> Refiner<'a> {
         self.split(c, levels, split, parent);
     }
 
-    /// Error in pixels of drawing the edge straight; infinite where unknown, 0 where it does not matter.
-    fn edge_error(&self, a: &Corner, b: &Corner) -> f64 {
-        let missing = [a.is_missing(), b.is_missing()];
-        if missing == [true; 2] && self.pass.crosses(a.p, b.p) {
+    /// Error of drawing the edge straight; none where it does not matter.
+    fn edge_error(&self, a: &Corner, b: &Corner) -> EdgeError {
+        if a.is_missing() && b.is_missing() && self.pass.crosses(a.p, b.p) {
             return self.border_error(a, b);
         }
         // An edge without images matters only beside an edge with one.
         if a.v.is_none() && b.v.is_none() {
-            return 0.0;
+            return EdgeError::NONE;
         }
         let image = |c: &Corner| c.v.filter(|v| self.screen.is_drawable(*v)).map(|v| self.screen.snap(v));
         if self.tolerance_px >= COARSE_PX
             && let (Some(from), Some(to)) = (image(a), image(b))
             && is_short(from, to, self.tolerance_px)
         {
-            return 0.0;
+            return EdgeError::NONE;
+        }
+        if a.v.is_none() || b.v.is_none() {
+            return self.border_error(a, b);
         }
         // Always in the same direction: two triangles must judge their common edge alike to the last bit.
         let swap = a.p.to_array().partial_cmp(&b.p.to_array()) == Some(std::cmp::Ordering::Greater);
         let (from, to) = if swap { (b, a) } else { (a, b) };
-        let error = self.pass.edge_error_px(from.p, to.p);
-        if error == 0.0 || missing == [false; 2] {
-            return error;
-        }
-        self.border_error(a, b)
+        self.pass.edge_error(from.p, to.p)
     }
 
     /// Error of an edge that crosses the border of the domain: it is halved towards the border until it is too short to be seen.
     /// How long it is in the image is judged by the least depth of its ends, with and without stages.
-    fn border_error(&self, a: &Corner, b: &Corner) -> f64 {
+    fn border_error(&self, a: &Corner, b: &Corner) -> EdgeError {
         let beside_border = [a, b].iter().any(|c| c.v.is_none());
         let depth = |c: &Corner| c.v.map_or(f64::INFINITY, |v| v.z).min(self.screen.view_from(c.p).z);
         let depth = depth(a).min(depth(b));
         let per_unit = if self.screen.ortho { self.screen.scale } else { self.screen.scale / depth };
         let length_px = (a.p - b.p).length() * per_unit;
         if beside_border && per_unit > 0.0 && BORDER_STRETCH * length_px <= self.tolerance_px {
-            0.0
+            EdgeError::NONE
         } else {
-            f64::INFINITY
+            EdgeError::UNKNOWN
         }
     }
 
-    fn is_off_image(&self, c: &[Corner; 3], margin_px: f64) -> bool {
-        let code = |c: &Corner| c.v.map_or(0, |v| self.screen.outcode(v, margin_px));
-        c.iter().fold(u8::MAX, |all, c| all & code(c)) != 0
+    /// Whether the image of an edge is longer than the tolerance.
+    fn is_long(&self, a: &Corner, b: &Corner) -> bool {
+        let distance = |c: &Corner| c.v.unwrap_or_else(|| self.screen.view_from(c.p)).length();
+        self.screen.length_px(a.p.distance(b.p), distance(a).min(distance(b))) > self.tolerance_px
+    }
+
+    /// Whether no point of the triangle is in the picture, however it bends within the errors of its edges.
+    fn is_off_image(&self, c: &[Corner; 3], errors: &[EdgeError; 3]) -> bool {
+        let all = |code: &dyn Fn(DVec3) -> u8| c.iter().fold(u8::MAX, |all, c| all & c.v.map_or(0, code));
+        let error = errors.iter().fold(0.0f64, |most, error| most.max(error.length));
+        if error.is_finite() {
+            return all(&|v| self.screen.outcode_around(v, INSIDE * error)) != 0;
+        }
+        let longest = (0..3).map(|i| c[i].p.distance(c[(i + 1) % 3].p)).fold(0.0, f64::max);
+        let is_far = || all(&|v| self.screen.outcode_around(v, BORDER_STRETCH * longest)) != 0;
+        all(&|v| self.screen.outcode(v, MARGIN_PX)) != 0 && is_far()
     }
 
     fn split(&mut self, c: [Corner; 3], levels: [u8; 3], split: [bool; 3], parent: u32) {

@@ -3,7 +3,7 @@
 use crate::geometry::locate::{Held, Locator};
 use crate::geometry::lod::Tree;
 use crate::geometry::part::Part;
-use crate::geometry::pass::edge_error_px;
+use crate::geometry::pass::edge_error;
 use crate::geometry::way::Way;
 use belvedere_composite::screen::COARSE_PX;
 use belvedere_core::{Aabb, View};
@@ -174,7 +174,7 @@ impl DetailSelector<'_> {
         let (mut worst, mut known) = (0.0f64, false);
         for &way in ways {
             for &(a, b) in pairs {
-                let error = edge_error_px(self.view, way, c[a], c[b]) * 2.0 / n as f64;
+                let error = edge_error(self.view, way, c[a], c[b]).px * 2.0 / n as f64;
                 if behind && error == f64::INFINITY {
                     continue;
                 }

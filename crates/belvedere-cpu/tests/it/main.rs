@@ -4,6 +4,7 @@ mod areas;
 mod branches;
 mod cache;
 mod exact;
+mod huge_triangles;
 mod lines;
 mod lod;
 mod marks;

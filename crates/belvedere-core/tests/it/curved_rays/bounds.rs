@@ -12,16 +12,16 @@ fn specs() -> [Spec; 4] {
     [cameras::street_corner(), cameras::sideways(), cameras::zigzag(), cameras::long_bend()]
 }
 
-/// Largest distance in pixels between the bent image of an edge, drawn with one record, and its straight image.
+/// Largest distance in pixels between the bent image of an edge, drawn with one record, and its straight image, or between their depths.
 fn true_error(view: &View, record: usize, p0: DVec3, p1: DVec3) -> Option<f64> {
     let displaced = |p| view.displace_in(record, p).ok().map(|d| d.point);
     let (d0, d1) = (displaced(p0)?, displaced(p1)?);
     let mut worst = 0.0f64;
     for i in 1..64 {
         let t = f64::from(i) / 64.0;
-        let chord = view.pinhole().project(d0.lerp(d1, t)).ok()?.0;
-        let bent = view.pinhole().project(displaced(p0.lerp(p1, t))?).ok()?.0;
-        worst = worst.max((chord - bent).length());
+        let (chord, z) = view.pinhole().project(d0.lerp(d1, t)).ok()?;
+        let (bent, depth) = view.pinhole().project(displaced(p0.lerp(p1, t))?).ok()?;
+        worst = worst.max((chord - bent).length()).max((z - depth).abs() * view.pinhole().scale_px() / depth);
     }
     Some(worst)
 }
@@ -44,7 +44,7 @@ fn edge_error_is_never_below_the_truth_and_not_far_above() {
             for i in 0..3000 {
                 let (p0, p1) = edge(&view, &mut random, 60.0);
                 let record = i % view.records();
-                let bound = view.edge_error_px_in(record, p0, p1);
+                let bound = view.edge_error_in(record, p0, p1).px;
                 let Some(truth) = true_error(&view, record, p0, p1).filter(|_| bound.is_finite()) else { continue };
                 assert!(
                     truth <= bound * (1.0 + 1e-9) + 1e-8,
@@ -74,7 +74,7 @@ fn edges_with_known_ends_have_the_same_bound() {
                 let edges = view.edges(record).unwrap();
                 let (p0, p1) = edge(&view, &mut random, 40.0);
                 let (Some(a), Some(b)) = (edges.point(p0), edges.point(p1)) else { continue };
-                let (found, want) = (edges.error_px(&a, &b), view.edge_error_px_in(record, p0, p1));
+                let (found, want) = (edges.error_px(&a, &b), view.edge_error_in(record, p0, p1).px);
                 let same = found == want || (found - want).abs() <= 1e-9 * want.abs().max(1e-3);
                 assert!(same, "{model:?} record {record}, edge {p0} {p1}: {found} px, not {want}");
                 compared += u32::from(want > 0.0 && want.is_finite());
@@ -99,7 +99,7 @@ fn edges_across_turns_are_bounded_by_the_sum() {
     let mut checked = 0;
     for _ in 0..4000 {
         let (p0, p1) = edge(&view, &mut random, 150.0);
-        let bound = view.edge_error_px(p0, p1);
+        let bound = view.edge_error(p0, p1).px;
         let (Ok(d0), Ok(d1)) = (view.displace(p0), view.displace(p1)) else { continue };
         if !bound.is_finite() || d0.segment.abs_diff(d1.segment) < 2 {
             continue;
@@ -204,7 +204,7 @@ fn boxes_and_edges_around_the_common_line_are_bounded_too() {
         }
     }
     let (a, b) = (DVec3::new(-80.0, 60.0, 0.0), DVec3::new(-90.0, 130.0, 0.0));
-    let (truth, bound) = (true_error(&view, 0, a, b).unwrap(), view.edge_error_px_in(0, a, b));
+    let (truth, bound) = (true_error(&view, 0, a, b).unwrap(), view.edge_error_in(0, a, b).px);
     assert!(truth > 1.0 && truth <= bound && bound < 3.0 * truth, "{truth} {bound}");
 }
 

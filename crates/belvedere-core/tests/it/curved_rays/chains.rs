@@ -92,7 +92,7 @@ fn no_turn_is_the_pinhole() {
     let p = DVec3::new(3.0, 70.0, -9.0);
     assert_eq!(view.project(p).unwrap().pixel, root.project(p).unwrap().0);
     assert_eq!(view.displace_in(0, p).unwrap().point, p);
-    assert_eq!((view.records(), view.edge_error_px(p, -p + 100.0)), (1, 0.0));
+    assert_eq!((view.records(), view.edge_error(p, -p + 100.0).px), (1, 0.0));
 }
 
 /// Four narrow turns to the left by 30 to 70 degrees each; the far part may look across the near one.
