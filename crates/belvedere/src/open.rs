@@ -132,7 +132,7 @@ const NO_VIEW: &str = "no scene says how to look at this: all of it is shown, fr
 const ALL_SEEN_FROM: [f64; 2] = [20.0, 30.0];
 /// Share of the width or height of the picture that it fills.
 const FILLED: f64 = 0.92;
-/// Triangles or voxels of a layer by which it is framed, at most about.
+/// Triangles of a layer by which it is framed, at most about.
 const OUTLINE: usize = 50_000;
 
 /// Sets the camera of a document so that the whole scene is in its picture.

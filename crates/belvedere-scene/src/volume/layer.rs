@@ -1,7 +1,8 @@
 //! A volume and how it is drawn.
 
 use super::{BRICK, TransferFunction, Volume};
-use belvedere_core::{Aabb, DVec3};
+use belvedere_core::{Aabb, DVec2, DVec3};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -77,6 +78,34 @@ impl VolumeLayer {
         visible.iter().step_by(every).filter_map(voxel).collect()
     }
 
+    /// Positions of visible voxels, scene units, whose convex hull holds every voxel of an opacity above 0; empty if there is none.
+    ///
+    /// Of each row of a slice the first and the last visible voxel, and of these the corners of the hull of the slice.
+    pub fn outline(&self) -> Vec<DVec3> {
+        let (dims, bricks) = (self.volume.dims(), self.volume.bricks().dims());
+        let number = |brick: [usize; 3]| (brick[2] * bricks[1] + brick[1]) * bricks[0] + brick[0];
+        let mut holds_any = vec![false; bricks.iter().product()];
+        self.visible_bricks().into_iter().for_each(|brick| holds_any[number(brick)] = true);
+        let is_seen = |at: [usize; 3]| {
+            let brick = std::array::from_fn(|a| (at[a] / BRICK).min(bricks[a] - 1));
+            let value = self.volume.values().at((at[2] * dims[1] + at[1]) * dims[0] + at[0]);
+            holds_any[number(brick)] && self.transfer.opacity(f64::from(value)) > 0.0
+        };
+        let of_slice = |z: usize| {
+            let ends = |y: usize| {
+                let first = (0..dims[0]).find(|&x| is_seen([x, y, z]))?;
+                let last = (first..dims[0]).rev().find(|&x| is_seen([x, y, z]))?;
+                Some([y, first, last].map(|n| n as f64))
+            };
+            let rows: Vec<[f64; 3]> = (0..dims[1]).filter_map(ends).collect();
+            let low = lower_hull(rows.iter().map(|[y, first, _]| DVec2::new(*y, *first)));
+            let high = lower_hull(rows.iter().map(|[y, _, last]| DVec2::new(*y, -last)));
+            let all = low.into_iter().chain(high.into_iter().map(|p| DVec2::new(p.x, -p.y)));
+            all.map(|p| self.volume.scene_from_lattice(DVec3::new(p.y, p.x, z as f64))).collect::<Vec<_>>()
+        };
+        (0..dims[2]).into_par_iter().flat_map_iter(of_slice).collect()
+    }
+
     /// Smallest box around the bricks in which anything is visible, scene coordinates; empty where nothing is.
     pub fn visible_bounds(&self) -> Aabb {
         let most = DVec3::from_array(self.volume.dims().map(|n| (n - 1) as f64));
@@ -97,11 +126,52 @@ impl VolumeLayer {
     }
 }
 
+/// The corners of the hull of points with rising x that face towards lower y (Andrew 1979).
+fn lower_hull(points: impl Iterator<Item = DVec2>) -> Vec<DVec2> {
+    let mut out: Vec<DVec2> = Vec::new();
+    for p in points {
+        while let [.., before, last] = out[..]
+            && (last - before).perp_dot(p - last) <= 0.0
+        {
+            out.pop();
+        }
+        out.push(p);
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{Color, TransferPoint, VoxelValues};
     use belvedere_core::DMat3;
+    use belvedere_core::random::Random;
+
+    #[test]
+    fn the_outline_holds_every_voxel_that_is_not_transparent_and_reaches_no_farther() {
+        let mut random = Random::new(12);
+        for _ in 0..40 {
+            let dims = std::array::from_fn(|_| 2 + random.below(30));
+            let places: Vec<[usize; 3]> = (0..1 + random.below(40)).map(|_| dims.map(|n| random.below(n))).collect();
+            let number = |[x, y, z]: [usize; 3]| (z * dims[1] + y) * dims[0] + x;
+            let mut values = vec![0u8; dims.iter().product()];
+            places.iter().for_each(|at| values[number(*at)] = 30);
+            let axes = DMat3::from_cols(DVec3::X, DVec3::new(0.3, 1.1, 0.0), DVec3::new(0.0, -0.2, 4.0));
+            let volume = Volume::new(dims, axes, DVec3::ONE, VoxelValues::U8(values)).unwrap();
+            let point = |value, opacity| TransferPoint { value, color: Color::rgb(0, 0, 0), opacity };
+            let transfer = TransferFunction::new("test", vec![point(20.0, 0.0), point(255.0, 0.1)], 1.0).unwrap();
+            let layer = VolumeLayer::new(volume, transfer);
+            let all = places.iter().map(|at| layer.volume.scene_from_lattice(DVec3::from_array(at.map(|n| n as f64))));
+            let (all, outline) = (all.collect::<Vec<_>>(), layer.outline());
+            // In every direction the farthest of the outline is the farthest of the voxels.
+            for _ in 0..60 {
+                let towards = random.direction();
+                let farthest =
+                    |points: &[DVec3]| points.iter().map(|p| p.dot(towards)).fold(f64::NEG_INFINITY, f64::max);
+                assert!((farthest(&all) - farthest(&outline)).abs() < 1e-9, "{dims:?} {places:?}");
+            }
+        }
+    }
 
     #[test]
     fn what_is_visible_is_known_by_box_and_by_voxels() {

@@ -3,7 +3,7 @@
 use crate::BelvedereError;
 use belvedere_construct::rays::{Target, TargetSight};
 use belvedere_core::{Aabb, DVec2, DVec3, Pinhole, Projection, View};
-use belvedere_scene::{Layer, LayerKind, Scene, Unit};
+use belvedere_scene::{Layer, LayerKind, Mesh, Scene, Unit};
 use rayon::prelude::*;
 
 /// Headings of the views that are tried, degrees clockwise, those from the front first; and their pitches, degrees: of things that stand
@@ -18,36 +18,50 @@ const WORTH: f64 = 0.03;
 const FITTED: f64 = 0.92;
 /// Share of the picture's height that the target takes up at least.
 const LEAST_TARGET: f64 = 0.22;
-/// Triangles or voxels by which a layer is framed, at most about: when many views are tried, and when the one that was chosen is refitted.
+/// Triangles by which a layer is framed, at most about: when many views are tried, and when the one that was chosen is refitted.
 const FEW: usize = 3000;
 pub(super) const MANY: usize = 200_000;
 
 /// Points that show how far the visible layers reach.
-/// * `most`: triangles or voxels of a layer by which that is told, at most about;
+/// * `most`: triangles of a layer by which that is told, at most about;
 /// * `cities`: ids of layers that stand on a plate, whose margin around them does not count.
 pub(crate) fn outline(scene: &Scene, most: usize, cities: &[&str]) -> Vec<DVec3> {
     let of = |layer: &Layer| -> Vec<DVec3> {
-        let thin = |count: usize| count.div_ceil(most).max(1);
         match &layer.kind {
-            LayerKind::Volume(v) => v.visible_voxels(most),
+            LayerKind::Volume(v) => v.outline(),
             LayerKind::Mesh(m) => {
-                let count = m.mesh.triangles().len();
                 let Aabb { min, max } = layer.bounds();
                 let is_inside = |p: &DVec3| p.cmpgt(min).all() && p.cmplt(max).all();
                 let on_plate = cities.contains(&layer.id.as_str());
-                let corners = (0..count).step_by(thin(count)).flat_map(|t| m.mesh.corners(t));
-                corners.filter(|p| !on_plate || is_inside(&p.with_z(0.5 * (min.z + max.z)))).collect()
+                reach(&m.mesh, most, &|p| !on_plate || is_inside(&p.with_z(0.5 * (min.z + max.z))))
             }
-            LayerKind::Molecule(m) => {
-                let mesh = &m.surface.mesh;
-                let count = mesh.triangles().len();
-                (0..count).step_by(thin(count)).flat_map(|t| mesh.corners(t)).collect()
-            }
+            LayerKind::Molecule(m) => reach(&m.surface.mesh, most, &|_| true),
             _ => Target::around(layer.bounds()).points,
         }
     };
     let solid = scene.layers.iter().filter(|layer| !layer.bounds().is_empty());
     solid.flat_map(of).filter(|p| p.is_finite()).collect()
+}
+
+/// Corners of triangles that tell how far a mesh reaches: of at most `most` triangles all, of more, where many views are tried, those of some.
+/// Else the first and the last along x in every cell of a lattice over y and z: no other lies farther out than a cell is wide.
+fn reach(mesh: &Mesh, most: usize, counts: &dyn Fn(&DVec3) -> bool) -> Vec<DVec3> {
+    let count = mesh.triangles().len();
+    let all = || (0..count).flat_map(|t| mesh.corners(t)).filter(counts);
+    if count <= most {
+        return all().collect();
+    }
+    if most <= FEW {
+        return (0..count).step_by(count.div_ceil(most)).flat_map(|t| mesh.corners(t)).filter(counts).collect();
+    }
+    let (side, bounds) = ((most as f64 / 2.0).sqrt().floor(), mesh.bounds());
+    let mut ends: Vec<Option<[DVec3; 2]>> = vec![None; (side * side) as usize];
+    for p in all() {
+        let at = (side * (p - bounds.min) / (bounds.max - bounds.min)).clamp(DVec3::ZERO, DVec3::splat(side - 1.0));
+        let [first, last] = ends[at.y as usize * side as usize + at.z as usize].get_or_insert([p; 2]);
+        (*first, *last) = (if p.x < first.x { p } else { *first }, if p.x > last.x { p } else { *last });
+    }
+    ends.into_iter().flatten().flatten().collect()
 }
 
 /// Axes to the right, ahead and up of a model whose up is `up`.

@@ -1,10 +1,14 @@
-//! Pictures of targets: all that is drawn lies inside, and cameras that are given stay.
+//! Pictures of targets and of data alone: all that is drawn lies inside, and cameras that are given stay.
 
+use belvedere::core::DVec3;
+use belvedere::scene::LayerKind;
 use belvedere::scene_file::LightDoc;
 use belvedere::verbs::appearance::Appearance;
+use belvedere::verbs::open_files::scene_of_data;
 use belvedere::verbs::reveal::Viewpoint;
 use belvedere::verbs::reveal_target::{TargetAnswer, TargetRequest, reveal_target};
-use belvedere::{OpenOptions, PictureOptions};
+use belvedere::{OpenOptions, PictureOptions, Session};
+use belvedere_testkit::Random;
 
 fn request(file: &str, see: &str, image: [u32; 2]) -> TargetRequest {
     let light = LightDoc { sky: Some("white".into()), ..LightDoc::default() };
@@ -80,4 +84,74 @@ fn a_camera_that_is_given_stays_and_a_field_of_view_that_is_given_too() {
     let narrow = revealed(&TargetRequest { fov_y_deg: Some(36.0), ..free });
     let [before, after] = narrow.refit.expect("turned").fov_y_deg;
     assert!((before - 36.0).abs() < 1e-9 && (after - 36.0).abs() < 1e-9, "{before} {after}");
+}
+
+/// How far outside its picture, in shares of half of it, the farthest point lies of those that must be in it, seen alone from a file.
+fn farthest(file: &std::path::Path, wanted: &dyn Fn(&Session) -> Vec<DVec3>) -> f64 {
+    let source = scene_of_data(file).expect("read").expect("a scene");
+    let session = Session::from_document(source, &OpenOptions::default()).expect("opened");
+    let pinhole = session.view().pinhole();
+    let half = pinhole.center_px();
+    let off = |p: DVec3| match pinhole.project(p) {
+        Ok((pixel, depth)) if depth > pinhole.near => ((pixel - half) / half).abs().max_element(),
+        _ => f64::INFINITY,
+    };
+    wanted(&session).into_iter().map(off).fold(0.0, f64::max)
+}
+
+#[test]
+fn every_visible_voxel_of_a_small_or_thickly_sliced_volume_is_in_its_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut random = Random::new(711);
+    for k in 0..24 {
+        let dims: [usize; 3] = std::array::from_fn(|_| 3 + random.below(if k % 2 == 0 { 14 } else { 44 }));
+        let low: [usize; 3] = dims.map(|n| random.below(n / 2));
+        let high: [usize; 3] = std::array::from_fn(|a| low[a] + 1 + random.below(dims[a] - low[a]));
+        let spacing: [f64; 3] = std::array::from_fn(|_| 10f64.powf(random.range(-0.5, 0.8)));
+        // Denser towards the middle of the body, so that the most opaque voxels lie far from its surface.
+        let value = |i: usize| {
+            let at = [i % dims[0], i / dims[0] % dims[1], i / dims[0] / dims[1]];
+            let beside = (0..3).map(|a| at[a].abs_diff((low[a] + high[a]) / 2)).max().unwrap_or(0);
+            if (0..3).all(|a| (low[a]..high[a]).contains(&at[a])) { 250 - 4 * beside.min(25) } else { 0 }
+        };
+        let values: Vec<String> = (0..dims.iter().product()).map(|i| value(i).to_string()).collect();
+        let header = |key: &str, of: [String; 3]| format!("{key}: {}\n", of.join(" "));
+        let text = "NRRD0004\ntype: uchar\ndimension: 3\n".to_owned()
+            + &header("sizes", dims.map(|n| n.to_string()))
+            + &header("spacings", spacing.map(|s| s.to_string()))
+            + "encoding: ascii\n\n"
+            + &values.join(" ");
+        let file = folder.path().join(format!("body{k}.nrrd"));
+        std::fs::write(&file, text).unwrap();
+        let off = farthest(&file, &|session| {
+            let LayerKind::Volume(layer) = &session.scene().layers[0].kind else { panic!("a volume") };
+            let all = (0..dims.iter().product())
+                .filter(|&i: &usize| layer.transfer.opacity(f64::from(layer.volume.values().at(i))) > 0.0);
+            let place = |i: usize| [i % dims[0], i / dims[0] % dims[1], i / dims[0] / dims[1]].map(|n| n as f64);
+            all.map(|i| layer.volume.scene_from_lattice(DVec3::from_array(place(i)))).collect()
+        });
+        assert!(off < 1.0, "{dims:?}, {spacing:?}, {low:?} to {high:?}: {off}");
+        assert!(off > 0.8, "{dims:?}, {spacing:?}, {low:?} to {high:?} fills its picture: {off}");
+    }
+}
+
+#[test]
+fn a_single_far_triangle_of_a_large_mesh_is_in_its_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    // A sheet of more triangles than are looked at one by one, and a spike beside it.
+    let n = 180;
+    let mut text: String = (0..n * n).map(|i| format!("v {} {} 0\n", i % n, i / n)).collect();
+    for i in (0..(n - 1) * (n - 1)).map(|i| i / (n - 1) * n + i % (n - 1) + 1) {
+        text += &format!("f {} {} {}\nf {} {} {}\n", i, i + 1, i + n + 1, i, i + n + 1, i + n);
+        if i == n * n / 2 {
+            text += &format!("v 0 0 0\nv 1 0 0\nv 40 60 900\nf {} {} {}\n", n * n + 1, n * n + 2, n * n + 3);
+        }
+    }
+    let file = folder.path().join("sheet.obj");
+    std::fs::write(&file, text).unwrap();
+    let off = farthest(&file, &|session| {
+        let LayerKind::Mesh(layer) = &session.scene().layers[0].kind else { panic!("a mesh") };
+        (0..layer.mesh.vertex_count() as u32).map(|v| layer.mesh.vertex(v)).collect()
+    });
+    assert!((0.8..1.0).contains(&off), "{off}");
 }
