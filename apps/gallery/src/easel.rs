@@ -81,7 +81,8 @@ impl Easel<'_> {
             Ok(session.render(&self.request())?.frame)
         };
         let plan = fallback::plan(scene, view, (layer, &target), &[])?;
-        let share = plan.measured(view, (scene, &frame), &draw)?.visible;
+        let picture = fallback::FallbackPicture { frame: frame.clone(), pixels_opened: None };
+        let share = plan.measured(view, (scene, &picture), &draw)?.visible;
         Ok(Shown { share, frame })
     }
 }

@@ -88,9 +88,66 @@ fn what_no_bend_reaches_is_said_with_the_best_share_that_was_found() {
     assert!(place_beside.as_array().is_some_and(|p| p.len() == 3), "{found}");
     let said = place.ok(&[&args[..], &["--overwrite"]].concat());
     assert!(said.contains("no bend of") && said.contains("% at best by a bend, half is needed"), "{said}");
-    // A point beside everything.
-    let out = place.run(&["reveal", "builtin:engine", "--see", "900,0,0", "--size", "96x54", "-o", "o.png"]);
-    assert!(String::from_utf8_lossy(&out.stderr).contains("outside everything"), "{out:?}");
+}
+
+#[test]
+fn a_point_outside_a_volume_is_refused_with_the_range_of_the_scene() {
+    let place = Place::new();
+    for see in ["900,0,0", "80,92,-0.5"] {
+        let line = place.fails(&["reveal", "builtin:engine", "--see", see, "--size", "96x54", "-o", "o.png"]);
+        assert!(line.contains("--see: ") && line.contains("outside everything") && line.contains("x 0 to "), "{line}");
+        assert!(!place.path("o.png").exists());
+    }
+}
+
+#[test]
+fn a_cutaway_says_how_many_pixels_show_the_target_and_warns_of_few() {
+    let place = Place::new();
+    place.write("wall.nrrd", &wall());
+    place.write("s.toml", SCENE);
+    // A point in the middle of the wall, and a block behind it, small and large in the picture.
+    let args = ["reveal", "wall.nrrd", "--see", "22,3,9", "--transfer", "solid", "--fallback", "cutaway"];
+    for (size, is_small) in [("96x54", true), ("960x540", false)] {
+        let out =
+            place.run(&[&args[..], &["--size", size, "-o", "p.png", "--report", "p.json", "--overwrite"]].concat());
+        let said = String::from_utf8_lossy(&out.stdout).into_owned();
+        let found = report(&place, "p.json");
+        let pixels = found["fallback"]["pixels_opened"].as_u64().expect("a number of pixels");
+        assert!(said.contains(&format!("now 100 %, through an opening of {pixels} pixels")), "{said}");
+        assert_eq!(pixels < 100, is_small, "{found}");
+        let warned = found["warnings"]
+            .as_array()
+            .expect("warnings")
+            .iter()
+            .any(|w| w["figures"]["pixels"].as_f64() == Some(pixels as f64));
+        assert_eq!(warned, is_small, "{found}");
+    }
+    let block = ["render", "c.toml", "-o", "b.png", "--overwrite"];
+    for (size, is_small) in [("image = [96, 54]", true), ("image = [960, 540]", false)] {
+        let fallback = "[constructor]\nkind = 'manual'\ntarget = 'block'\nfallback = ['cutaway']\n";
+        place.write("c.toml", &(SCENE.replace("image = [96, 54]", size) + fallback));
+        let out = place.run(&block);
+        let (said, warned) = (String::from_utf8_lossy(&out.stdout), String::from_utf8_lossy(&out.stderr));
+        let found = report(&place, "b.png.json")["fallback"].clone();
+        let pixels = found["pixels_alone"].as_u64().expect("a number of pixels");
+        assert!(said.contains(&format!("now 100 % of the {pixels} pixels that it fills")), "{said}");
+        assert_eq!(warned.contains("are easily missed"), is_small, "{pixels} pixels: {warned}");
+    }
+}
+
+#[test]
+fn points_of_a_line_behind_one_another_in_a_volume_are_judged_where_the_picture_cuts_it() {
+    let place = Place::new();
+    place.write("wall.nrrd", &wall());
+    let line = "[[layer]]\nid = 'drill'\nkind = 'line'\nsource = 'drill.csv'\n";
+    place.write("drill.csv", "x,y,z\n0,61.9,3\n1,64.1,3\n");
+    let fallback = "[constructor]\nkind = 'manual'\ntarget = 'drill'\nfallback = ['cutaway']\n";
+    let camera = SCENE.find("[camera]").expect("a camera");
+    place.write("s.toml", &format!("{}{line}{}{fallback}", &SCENE[..camera], &SCENE[camera..]));
+    place.ok(&["render", "s.toml", "-o", "d.png"]);
+    let found = report(&place, "d.png.json")["fallback"].clone();
+    // The wall is cut at the near end: matter still hides the far one.
+    assert_eq!(found["visible"], 0.5, "{found}");
 }
 
 #[test]

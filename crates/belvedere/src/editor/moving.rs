@@ -72,7 +72,7 @@ pub(super) fn quick(
         Ok::<_, BelvedereError>(frame)
     };
     match &plan {
-        Some(plan) => plan.draw(view, &draw),
+        Some(plan) => plan.draw(view, &draw).map(|picture| picture.frame),
         None => draw(scene, view),
     }
 }

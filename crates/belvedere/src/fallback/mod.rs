@@ -18,7 +18,7 @@ use crate::targets;
 use crate::{BelvedereError, Session};
 use belvedere_composite::canvas::Canvas;
 use belvedere_construct::rays::{Target, TargetSight};
-use belvedere_core::{DVec2, DVec3, Pinhole, View};
+use belvedere_core::{DVec2, DVec3, Pinhole, View, Warning, WarningKind};
 use belvedere_scene::{Color, Frame, LayerKind, Scene};
 use in_sight::Judge;
 use occluders::{Extent, Part};
@@ -34,6 +34,8 @@ const MARGIN_PX: f64 = 10.0;
 const ENOUGH: f64 = 0.99;
 /// Places that a picture hides, by which parts are found that hide them, at most.
 const HIDDEN_PLACES: usize = 100;
+/// A target, or an opening, of fewer pixels than this is easily missed.
+const LEAST_PX: usize = 100;
 /// Relative difference below which depths in two pictures count as the same.
 const SAME_DEPTH: f64 = 2e-4;
 const EDGE: [Color; 2] = [Color::rgb(255, 255, 255), Color::rgb(60, 60, 60)];
@@ -51,6 +53,9 @@ pub struct FallbackRecord {
     /// Pixels that the target fills where it is drawn alone; left out for points and lines.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pixels_alone: Option<usize>,
+    /// Pixels in which a cutaway shows something else than the picture without it; left out where nothing is cut.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pixels_opened: Option<usize>,
     /// Changes by layer.
     pub changed: Vec<FallbackChange>,
 }
@@ -91,9 +96,33 @@ impl fmt::Display for FallbackRecord {
         };
         let what: Vec<String> = self.changed.iter().map(of).collect();
         let what = if what.is_empty() { "nothing had to give way".into() } else { what.join(", ") };
-        let percent = |share: f64| (100.0 * share).round();
+        // Less than everything is not 100 %.
+        let percent = |share: f64| (100.0 * share).round().min(if share < 1.0 { 99.0 } else { 100.0 });
         write!(f, "fallback for {}: {what}; ", self.target)?;
-        write!(f, "visible before {} %, now {} %", percent(self.visible_before), percent(self.visible))
+        write!(f, "visible before {} %, now {} %", percent(self.visible_before), percent(self.visible))?;
+        match (self.pixels_alone, self.pixels_opened) {
+            (Some(pixels), _) => write!(f, " of the {pixels} pixels that it fills"),
+            (None, Some(pixels)) => write!(f, ", through an opening of {pixels} pixels"),
+            (None, None) => Ok(()),
+        }
+    }
+}
+
+impl FallbackRecord {
+    /// Warning about a target, or an opening onto a point or line, that is too small to be noticed.
+    pub fn warning(&self) -> Option<Warning> {
+        let (what, pixels) = match (self.pixels_alone, self.pixels_opened) {
+            (Some(pixels), _) => ("the target fills", pixels),
+            (None, Some(pixels)) => ("the cutaway opens", pixels),
+            (None, None) => return None,
+        };
+        (pixels < LEAST_PX).then(|| {
+            let remedy = "look from nearer, with a narrower field of view, or draw a larger picture";
+            let text =
+                format!("{}: {what} {pixels} pixels, fewer than {LEAST_PX} are easily missed; {remedy}", self.target);
+            let warning = Warning::new(WarningKind::Hidden, text).about(self.target.clone());
+            warning.with("pixels", pixels as f64).with("limit_pixels", LEAST_PX as f64)
+        })
     }
 }
 
@@ -227,10 +256,13 @@ pub fn plan(
     // Pictures that find their target by its pixels draw it opaque.
     let whole = in_sight::with_opaque_target(scene, target);
     let scene = explode::moved(whole.as_ref().unwrap_or(scene), &by);
-    let open = occluders::without(&scene, &transparent.iter().chain(&cut).collect::<Vec<_>>());
-    let visible = TargetSight::new(&open, target).share(view, 0.0);
-    let record = FallbackRecord { target: name.into(), visible_before: before, visible, pixels_alone: None, changed };
-    Ok(FallbackPlan { scene, target: target.clone(), transparent, cut, moves, margin_px, record })
+    let (pixels_alone, pixels_opened) = (None, None);
+    let (target_name, visible) = (name.into(), before);
+    let record =
+        FallbackRecord { target: target_name, visible_before: before, visible, pixels_alone, pixels_opened, changed };
+    let mut plan = FallbackPlan { scene, target: target.clone(), transparent, cut, moves, margin_px, record };
+    plan.record.visible = plan.planned_share(view)?;
+    Ok(plan)
 }
 
 /// Whether a layer supports a fallback; if not, why, and what to do.
@@ -249,7 +281,36 @@ fn possible(kind: &LayerKind, how: FallbackKind) -> Result<(), &'static str> {
     }
 }
 
+/// A picture with fallbacks.
+pub struct FallbackPicture {
+    /// The picture.
+    pub frame: Frame,
+    /// Pixels in which a cutaway shows something else than the picture without it; `None` where nothing is cut.
+    pub pixels_opened: Option<usize>,
+}
+
 impl FallbackPlan {
+    /// Share of the target's points that lines of sight reach, 0..=1: past what is cut away, and into volumes from where the picture cuts
+    /// them.
+    fn planned_share(&self, view: &View) -> Result<f64, BelvedereError> {
+        let closer = self.into_volumes(view)?;
+        let gone = self.transparent.iter().chain(&self.cut).filter(|part| closer.is_none() || !self.is_volume(part));
+        let open = occluders::without(&self.scene, &gone.collect::<Vec<_>>());
+        Ok(TargetSight::new(&open, &self.target).share(closer.as_ref().unwrap_or(view), 0.0))
+    }
+
+    fn is_volume(&self, part: &Part) -> bool {
+        matches!(self.scene.layers[part.layer].kind, LayerKind::Volume(_))
+    }
+
+    /// The view that begins at the nearest depth of the target, where volumes are cut; `None` if none is, or if it cannot be.
+    fn into_volumes(&self, view: &View) -> Result<Option<View>, BelvedereError> {
+        let extent = Extent::of(view, &self.target.points).filter(|_| self.cut.iter().any(|part| self.is_volume(part)));
+        let Some(extent) = extent else { return Ok(None) };
+        let pinhole = Pinhole { near: extent.depth[0], ..view.pinhole().clone() };
+        Ok(Some(View::new(pinhole, view.stages().to_vec())?))
+    }
+
     /// The scene with parts moved.
     pub fn scene(&self) -> &Scene {
         &self.scene
@@ -264,14 +325,16 @@ impl FallbackPlan {
         &self,
         view: &View,
         draw: &dyn Fn(&Scene, &View) -> Result<Frame, BelvedereError>,
-    ) -> Result<Frame, BelvedereError> {
+    ) -> Result<FallbackPicture, BelvedereError> {
         let mut frame = self.blended(&[], view, draw)?;
+        let mut pixels_opened = None;
         if !self.cut.is_empty() {
             let cut: Vec<&Part> = self.cut.iter().collect();
             let mut open = self.blended(&cut, view, draw)?;
             self.look_into_volumes(&mut open, view, draw)?;
             let region = self.region(view, draw, [frame.width, frame.height])?;
             let gone: Vec<bool> = (0..region.len()).map(|i| region[i] && open.color[i] != frame.color[i]).collect();
+            pixels_opened = Some(gone.iter().filter(|gone| **gone).count());
             for i in (0..region.len()).filter(|i| region[*i]) {
                 copy(&mut frame, &open, i);
                 frame.color[i] = open.color[i];
@@ -288,7 +351,7 @@ impl FallbackPlan {
         if !self.moves.is_empty() {
             self.draw_leaders(&mut frame, view, draw)?;
         }
-        Ok(frame)
+        Ok(FallbackPicture { frame, pixels_opened })
     }
 
     /// Draws lines from the old to the new positions of parts, behind the target.
@@ -317,23 +380,29 @@ impl FallbackPlan {
         Ok(())
     }
 
-    /// Measures the visibility of the target, by ids, and by depths where other parts of its layer may hide it.
-    /// * `before`: the unchanged scene; `frame`: the picture drawn by [`FallbackPlan::draw`].
+    /// Measures the visibility of the target, by ids, and by depths where other parts of its layer may hide it; of points and lines by lines
+    /// of sight, unless the picture opens nothing.
+    /// * `before`: the unchanged scene; `picture`: as drawn by [`FallbackPlan::draw`].
     ///
     /// # Errors
     /// Those of `draw`.
     pub fn measured(
         &self,
         view: &View,
-        (before, frame): (&Scene, &Frame),
+        (before, picture): (&Scene, &FallbackPicture),
         draw: &dyn Fn(&Scene, &View) -> Result<Frame, BelvedereError>,
     ) -> Result<FallbackRecord, BelvedereError> {
+        let &FallbackPicture { ref frame, pixels_opened } = picture;
         let of = |scene: &Scene| Judge::of_target(scene, &self.target);
-        let (Some(judge), Some(now)) = (of(before), of(&self.scene)) else { return Ok(self.record.clone()) };
+        let (Some(judge), Some(now)) = (of(before), of(&self.scene)) else {
+            let shut = pixels_opened == Some(0) && self.transparent.is_empty() && self.moves.is_empty();
+            let visible = if shut { self.record.visible_before } else { self.record.visible };
+            return Ok(FallbackRecord { visible, pixels_opened, ..self.record.clone() });
+        };
         let mask = judge.mask((before, None), view, draw)?;
         let now = now.opaque_in(frame, view, draw)?;
         let (visible_before, visible, pixels_alone) = (mask.share(), now.share(), Some(now.pixels()));
-        Ok(FallbackRecord { visible_before, visible, pixels_alone, ..self.record.clone() })
+        Ok(FallbackRecord { visible_before, visible, pixels_alone, pixels_opened, ..self.record.clone() })
     }
 
     /// Whether an id of a picture is that of the target's layer.
@@ -391,14 +460,9 @@ impl FallbackPlan {
         view: &View,
         draw: &dyn Fn(&Scene, &View) -> Result<Frame, BelvedereError>,
     ) -> Result<(), BelvedereError> {
-        let is_volume = |p: &&Part| matches!(self.scene.layers[p.layer].kind, LayerKind::Volume(_));
-        let (Some(extent), true) = (Extent::of(view, &self.target.points), self.cut.iter().any(|p| is_volume(&p)))
-        else {
-            return Ok(());
-        };
-        let gone: Vec<&Part> = self.cut.iter().filter(|p| !is_volume(p)).chain(&self.transparent).collect();
-        let near = extent.depth[0];
-        let closer = View::new(Pinhole { near, ..view.pinhole().clone() }, view.stages().to_vec())?;
+        let Some(closer) = self.into_volumes(view)? else { return Ok(()) };
+        let near = closer.pinhole().near;
+        let gone: Vec<&Part> = self.cut.iter().filter(|p| !self.is_volume(p)).chain(&self.transparent).collect();
         let inner = draw(&occluders::without(&self.scene, &gone), &closer)?;
         for i in (0..open.color.len()).filter(|i| f64::from(inner.depth[*i]) < f64::INFINITY) {
             if f64::from(open.depth[i]) >= near {

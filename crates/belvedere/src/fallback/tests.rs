@@ -46,7 +46,7 @@ fn by(renderer: &dyn Renderer, scene: &Scene, view: &View) -> Result<Frame, Belv
 
 fn pictures(plan: &FallbackPlan) -> [Frame; 2] {
     let (cpu, view) = (CpuRenderer::default(), view());
-    [&cpu as &dyn Renderer, &ExactRenderer].map(|r| plan.draw(&view, &|scene, view| by(r, scene, view)).unwrap())
+    [&cpu as &dyn Renderer, &ExactRenderer].map(|r| plan.draw(&view, &|scene, view| by(r, scene, view)).unwrap().frame)
 }
 
 const RULES: [&str; 4] = ["transparency", "cutaway", "explosion", "wall:cutaway"];
@@ -169,15 +169,16 @@ fn atoms_of_a_molecule_are_spared_by_what_shows_them_and_measured_in_the_picture
         assert_eq!(plan.record.changed.len(), 1, "{rule}: {:?}", plan.record);
         for renderer in [&CpuRenderer::default() as &dyn Renderer, &ExactRenderer] {
             let draw = |scene: &Scene, view: &View| by(renderer, scene, view);
-            let frame = plan.draw(&view(), &draw).unwrap();
-            let record = plan.measured(&view(), (&scene, &frame), &draw).unwrap();
+            let picture = plan.draw(&view(), &draw).unwrap();
+            let record = plan.measured(&view(), (&scene, &picture), &draw).unwrap();
+            let frame = &picture.frame;
             assert!(record.pixels_alone > Some(50), "{rule}: {record:?}");
             assert!(record.visible_before == 0.0 && record.visible >= 0.99, "{rule}: {record:?}");
             // Oxygen is red and carbon grey, so the colour confirms the result.
             let [r, g, _] = frame.color[60 * 180 + 90];
             assert!(r > g + 40, "{rule}: {r} {g}");
             // For a picture that does not show the target, no visible part is reported.
-            let full = by(renderer, &scene, &view()).unwrap();
+            let full = FallbackPicture { frame: by(renderer, &scene, &view()).unwrap(), pixels_opened: None };
             assert_eq!(plan.measured(&view(), (&scene, &full), &draw).unwrap().visible, 0.0, "{rule}");
         }
     }

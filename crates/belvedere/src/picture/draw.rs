@@ -7,7 +7,7 @@ use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, SeeThroughRecord, S
 use super::volume_record::VolumeRecord;
 use super::{furniture, nothing_seen, transparent, vectors};
 use crate::bodies::RigidLayers;
-use crate::fallback::{self, FallbackPlan, FallbackRecord};
+use crate::fallback::{self, FallbackPicture, FallbackPlan, FallbackRecord};
 use crate::guard::guarded;
 use crate::overlays::furniture::{FurnitureRecord, with_distances};
 use crate::overlays::{badge, camera, curve_inset, ghost, grid, heat, highlight, thin, widths};
@@ -194,10 +194,13 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
         let job = RenderJob { scene, view, light: session.light(), options: &surfaces, progress };
         Ok::<_, BelvedereError>(request.renderer.of(session).render(&job)?)
     };
-    let mut frame = plan.as_ref().map_or_else(|| draw(scene, &view), |plan| plan.draw(&view, &draw))?;
-    let unseen = nothing_seen::warning(scene, &view, &frame);
+    let bare = || Ok(FallbackPicture { frame: draw(scene, &view)?, pixels_opened: None });
+    let picture = plan.as_ref().map_or_else(bare, |plan| plan.draw(&view, &draw))?;
+    let unseen = nothing_seen::warning(scene, &view, &picture.frame);
     // Measured before further pictures are drawn over it.
-    let fallback = plan.as_ref().map(|plan| plan.measured(&view, (session.scene(), &frame), &draw)).transpose()?;
+    let fallback = plan.as_ref().map(|plan| plan.measured(&view, (session.scene(), &picture), &draw)).transpose()?;
+    warnings.extend(fallback.iter().filter_map(FallbackRecord::warning));
+    let mut frame = picture.frame;
     if let Some(covered) =
         session.terrain_report().map(|r| &r.covered[..]).filter(|c| !c.is_empty() && !request.straight)
         && let Some(cut) = thin::cut(scene, &view, covered)?

@@ -1,5 +1,6 @@
 //! A target point: its position in the scene and in the voxels of volumes.
 
+use crate::BelvedereError;
 use belvedere_core::DVec3;
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{LayerKind, Scene, Unit, VolumeLayer};
@@ -45,6 +46,28 @@ const OPAQUE: f64 = 0.5;
 const AROUND: i32 = 12;
 
 impl TargetPlace {
+    /// Refuses a point outside everything in a scene with volumes, which have nothing around them.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Position`].
+    pub(crate) fn check(scene: &Scene, p: DVec3) -> Result<(), BelvedereError> {
+        let bounds = scene.bounds();
+        let holds_volumes = scene.layers.iter().any(|l| matches!(l.kind, LayerKind::Volume(_)));
+        if !holds_volumes || bounds.is_empty() || (p.cmpge(bounds.min) & p.cmple(bounds.max)).all() {
+            return Ok(());
+        }
+        let range =
+            |axis: usize| format!("{} {:.6} to {:.6}", ["x", "y", "z"][axis], bounds.min[axis], bounds.max[axis]);
+        let reason = format!(
+            "the point {}, {}, {} lies outside everything in the scene ({}); give a point inside",
+            p.x,
+            p.y,
+            p.z,
+            [0, 1, 2].map(range).join(", ")
+        );
+        Err(BelvedereError::Position { what: "see", reason })
+    }
+
     pub(crate) fn of(scene: &Scene, p: DVec3) -> Self {
         let voxels = scene.layers.iter().filter_map(|l| match &l.kind {
             LayerKind::Volume(v) => {

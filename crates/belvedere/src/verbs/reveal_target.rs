@@ -96,7 +96,8 @@ impl Opened {
         check_background(&session, &request.appearance)?;
         let (see, said) = written_point(&session, &request.see)?;
         session.loaded.warnings.extend(said);
-        if targets::point(&see).is_some() {
+        if let Some(p) = targets::point(&see) {
+            TargetPlace::check(session.scene(), p)?;
             meant = Meant::Named(see.clone());
         }
         let targets = meant.targets(session.scene())?;
