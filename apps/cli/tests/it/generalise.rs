@@ -170,7 +170,7 @@ fn blocks_on_slopes_are_seen_from_above_as_their_buildings_are() {
 /// A building that crosses itself at nearly every pair of its edges, beside a house.
 fn tangle(place: &Place, corners: usize) {
     let mut random = belvedere_testkit::Random::new(5);
-    let mut at = |x: f64, y: f64| json!([20.0 + x / 92_000.0, -34.0 + y / 111_000.0]);
+    let at = |x: f64, y: f64| json!([20.0 + x / 92_000.0, -34.0 + y / 111_000.0]);
     let mut ring: Vec<Value> = (0..corners).map(|_| at(random.range(0.0, 200.0), random.range(0.0, 200.0))).collect();
     ring.push(ring[0].clone());
     let house = [[300.0, 0.0], [320.0, 0.0], [320.0, 20.0], [300.0, 0.0]].map(|[x, y]| at(x, y)).to_vec();
