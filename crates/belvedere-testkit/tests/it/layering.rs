@@ -95,6 +95,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
             "strsim",
             "thiserror",
             "toml",
+            "toml_edit",
             "tracing",
         ],
     ),

@@ -18,6 +18,7 @@ mod painter;
 mod place;
 mod rate;
 mod rays;
+mod recovery;
 mod residues;
 mod sections;
 mod steps;
@@ -34,9 +35,10 @@ pub use lengths::{Lengths, ground_way, lengths, lengths_geojson};
 pub use live::{Judged, LiveSession, Order, Pace, Shown, Sides};
 pub use object::object_at;
 pub use painter::{Answer, Painter};
-pub use place::{Place, Recovered, Recovery};
+pub use place::{FileChange, Place};
 pub use rate::{Quality, Rate};
 pub use rays::{next_turn, sharpness_at, sharpness_knob, with_parallel_planes, with_pivot_line};
+pub use recovery::{Recovered, Recovery};
 pub use residues::{NamedResidue, read_residues, residues};
 pub use sections::{with_levels, with_own_style};
 pub use steps::step_name;
@@ -56,6 +58,8 @@ pub struct Editor {
     future: Vec<Arc<Document>>,
     /// Document in the file; `None` if that is not known.
     saved: Option<Arc<Document>>,
+    /// Text of the scene file as it was read or written last; `None` without a file.
+    text: Option<Arc<str>>,
     /// The gesture that the last edit belongs to.
     gesture: Option<u64>,
 }
@@ -68,12 +72,17 @@ impl Editor {
     pub fn new(document: Document, place: Place) -> Self {
         let present = Arc::new(document);
         let saved = Some(present.clone());
-        Self { place, saved, present, past: Vec::new(), future: Vec::new(), gesture: None }
+        Self { place, saved, text: None, present, past: Vec::new(), future: Vec::new(), gesture: None }
     }
 
     /// A document with changes that are not saved.
-    pub(crate) fn unsaved(document: Document, place: Place) -> Self {
+    pub fn unsaved(document: Document, place: Place) -> Self {
         Self { saved: None, ..Self::new(document, place) }
+    }
+
+    /// Another document of the same file, without history and without changes.
+    pub fn with_document(&self, document: Document) -> Self {
+        Self { text: self.text.clone(), ..Self::new(document, self.place.clone()) }
     }
 
     /// Adds layers whose files lie in the given folders; one step of undo.
@@ -173,9 +182,10 @@ impl Editor {
         steps.for_each(|step| *step = Arc::new(step.seen_from(folder, roots)));
     }
 
-    /// Marks the current document as saved.
+    /// Marks the current document as saved. The next edit begins a step, so that undo leads back to what was saved.
     pub(crate) fn mark_saved(&mut self) {
         self.saved = Some(self.present.clone());
+        self.gesture = None;
     }
 }
 
@@ -209,5 +219,66 @@ mod tests {
         let mut editor = editor();
         editor.edit(|d| d.title = String::new());
         assert!(!editor.can_undo() && !editor.is_changed());
+    }
+
+    /// A small generator of numbers (Knuth's MMIX constants).
+    fn throw(dice: &mut u64, sides: u64) -> u64 {
+        *dice = dice.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (*dice >> 33) % sides
+    }
+
+    #[test]
+    fn gestures_are_steps_and_undo_restores_the_document_before_each() {
+        for seed in 0..200 {
+            let (mut editor, mut dice) = (editor(), seed);
+            // Documents before each step that is not undone.
+            let mut before: Vec<Document> = Vec::new();
+            let mut undone: Vec<Document> = Vec::new();
+            for gesture in 0..40 {
+                let present = (**editor.document()).clone();
+                match throw(&mut dice, 6) {
+                    0 => {
+                        assert_eq!(editor.undo(), !before.is_empty());
+                        if let Some(last) = before.pop() {
+                            assert_eq!(**editor.document(), last, "seed {seed}, gesture {gesture}");
+                            undone.push(present);
+                        }
+                    }
+                    1 => {
+                        assert_eq!(editor.redo(), !undone.is_empty());
+                        if let Some(next) = undone.pop() {
+                            assert_eq!(**editor.document(), next);
+                            before.push(present);
+                        }
+                    }
+                    2 => editor.mark_saved(),
+                    what => {
+                        let mut moved = false;
+                        for _ in 0..=throw(&mut dice, 4) {
+                            let value = 20.0 + throw(&mut dice, 60) as f64;
+                            let change = |d: &mut Document| match what {
+                                3 => d.camera.fov_y_deg = value,
+                                4 => d.title = value.to_string(),
+                                _ => d.camera.near = value,
+                            };
+                            editor.edit_within(gesture, change);
+                            moved |= **editor.document() != present;
+                        }
+                        if moved {
+                            undone.clear();
+                        }
+                        if **editor.document() != present {
+                            before.push(present);
+                        }
+                    }
+                }
+                let steps = before.len();
+                assert!((steps..=steps + 1).contains(&editor.history().1), "seed {seed}: {steps} steps");
+            }
+            while let Some(last) = before.pop() {
+                assert!(editor.undo() && **editor.document() == last, "seed {seed}");
+            }
+            assert!(!editor.undo());
+        }
     }
 }

@@ -1,13 +1,12 @@
-//! Files of a document: opening, saving, and recovery after a crash.
+//! Files of a document: opening and saving.
 
 use super::Editor;
 use crate::scene_file::paths::{Roots, folder_of};
 use crate::scene_file::{self, Document, SourceDocument};
 use crate::{BelvedereError, OpenOptions, Session, Trust, output};
-use belvedere_io::split_table;
+use belvedere_io::{fs, split_table};
 use belvedere_scene::Progress;
-use serde::{Deserialize, Serialize};
-use std::fs::{File, TryLockError};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Paths of a document and its files.
@@ -36,6 +35,22 @@ impl Place {
     }
 }
 
+/// What another program did to a scene file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FileChange {
+    /// It holds another text.
+    Edited,
+    /// It was removed, or cannot be read any more.
+    Gone,
+}
+
+/// The bytes of a file; `None` if it cannot be read.
+fn text_on_disk(path: &Path) -> Option<Vec<u8>> {
+    let mut bytes = Vec::new();
+    fs::File::open(path).ok()?.take(scene_file::MAX_BYTES + 1).read_to_end(&mut bytes).ok()?;
+    Some(bytes)
+}
+
 impl Editor {
     /// Opens a scene file.
     ///
@@ -52,21 +67,63 @@ impl Editor {
     /// # Errors
     /// As [`Editor::open`].
     pub fn open_trusted(path: &Path, allowed: Vec<PathBuf>, trust: &Trust) -> Result<Self, BelvedereError> {
-        let source = scene_file::read(path)?;
+        let (source, text) = scene_file::read_with_text(path)?;
         let roots = Roots { scene_dir: folder_of(path), allowed, files: trust.files_of(path) };
-        Ok(Self::new(source.document, Place { scene: Some(path.to_owned()), roots }))
+        let editor = Self::new(source.document, Place { scene: Some(path.to_owned()), roots });
+        Ok(Self { text: Some(text.into()), ..editor })
     }
 
-    /// Writes the scene file. Names of its files are adapted: relative to the folder of the scene wherever that is possible.
+    /// How the scene file has changed since it was read or written here; `None` if it has not, and without a file.
+    pub fn file_change(&self) -> Option<FileChange> {
+        let (path, known) = (self.place.scene.as_ref()?, self.text.as_ref()?);
+        match text_on_disk(path) {
+            None => Some(FileChange::Gone),
+            Some(bytes) => (bytes != known.as_bytes()).then_some(FileChange::Edited),
+        }
+    }
+
+    /// Takes the document that the scene file holds now; one step of undo, so that the present one can come back.
     ///
     /// # Errors
-    /// [`BelvedereError::Output`] if `path` is one of the scene's own files; [`BelvedereError::Io`].
+    /// As [`scene_file::read`].
+    pub fn reload(&mut self) -> Result<(), BelvedereError> {
+        let Some(path) = self.place.scene.clone() else { return Ok(()) };
+        let (source, text) = scene_file::read_with_text(&path)?;
+        self.edit(|document| *document = source.document);
+        self.text = Some(text.into());
+        self.mark_saved();
+        Ok(())
+    }
+
+    /// Writes the scene file: of a file that was read or written here, only the values that were edited; comments, order and all else stay as
+    /// they are. Names of its files are adapted: relative to the folder of the scene wherever that is possible.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Output`] if `path` is one of the scene's own files, or its scene file and [`Editor::file_change`] is some;
+    /// [`BelvedereError::Io`].
     pub fn save(&mut self, path: &Path) -> Result<(), BelvedereError> {
+        if let Some(change) = self.file_change().filter(|_| self.is_own(path)) {
+            let reason = match change {
+                FileChange::Edited => "was changed by another program since it was read",
+                FileChange::Gone => "is not there any more",
+            };
+            let reason = format!("{reason}; reload it, save under another name, or overwrite it");
+            return Err(BelvedereError::Output { path: path.to_owned(), reason });
+        }
+        self.save_over(path)
+    }
+
+    /// As [`Editor::save`], whatever the file holds now.
+    ///
+    /// # Errors
+    /// As [`Editor::save`], except for the change of the file.
+    pub fn save_over(&mut self, path: &Path) -> Result<(), BelvedereError> {
         let folder = folder_of(path);
         let document = self.document().seen_from(&folder, &self.place.roots);
         let files = self.files();
         output::check(path, &files, true)?;
-        output::write_text(path, &output::document_toml(&document)?, true)?;
+        let text = self.text_for(path, &document)?;
+        output::write_text(path, &text, true)?;
         if folder != self.place.roots.scene_dir {
             // In the new folder a name may lead to another file.
             self.name_from(&folder);
@@ -76,8 +133,30 @@ impl Editor {
             }
         }
         self.place.scene = Some(path.to_owned());
+        self.text = Some(text.into());
         self.mark_saved();
         Ok(())
+    }
+
+    /// Whether a path leads to the scene file.
+    pub fn is_own(&self, path: &Path) -> bool {
+        let place = |path: &Path| path.file_name().map(|name| folder_of(path).join(name));
+        let real = |path: &Path| fs::canonicalize(path).ok().or_else(|| place(path));
+        self.place.scene.as_deref().is_some_and(|scene| real(scene) == real(path))
+    }
+
+    /// The text of a scene file: that of the present file with other values, or a new one where there is none in the format of `path`.
+    fn text_for(&self, path: &Path, document: &Document) -> Result<String, BelvedereError> {
+        let is_json = match &self.text {
+            Some(text) if self.is_own(path) => scene_file::is_json(text),
+            _ => path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")),
+        };
+        let known = self.text.as_deref().filter(|text| scene_file::is_json(text) == is_json);
+        match known.and_then(|text| scene_file::rewritten(text, document)) {
+            Some(text) => Ok(text),
+            None if is_json => output::document_json(document),
+            None => output::document_toml(document),
+        }
     }
 
     /// The files that the document names, canonical paths.
@@ -97,216 +176,16 @@ impl Editor {
     }
 }
 
-/// Recovery file of an instance of an application: written while it runs and removed when it ends.
-#[derive(Debug)]
-pub struct Recovery {
-    file: PathBuf,
-    /// Lock on the instance's number; the system releases it when the application is killed.
-    _lock: File,
-    lock: PathBuf,
-}
-
-/// State left by an instance that did not end properly.
-#[derive(Debug, Clone)]
-pub struct Recovered {
-    /// The document with its unsaved changes.
-    pub editor: Editor,
-    /// Further state that the application wrote.
-    pub extra: serde_json::Value,
-}
-
-impl Recovered {
-    /// The state of an application as text, where it has no recovery file, as in a browser.
-    ///
-    /// # Errors
-    /// [`BelvedereError::Text`] if the document or the further state cannot be written.
-    pub fn text_of(editor: &Editor, extra: serde_json::Value) -> Result<String, BelvedereError> {
-        output::pretty(&Left::of(editor, extra)?)
-    }
-
-    /// The state that [`Recovered::text_of`] wrote; `None` for other text. Its document comes back even if its file holds another.
-    pub fn of_text(text: &str) -> Option<Self> {
-        recovered(text, false)
-    }
-}
-
-#[derive(Serialize, Deserialize)]
-struct Left {
-    scene: Option<PathBuf>,
-    scene_dir: PathBuf,
-    allowed: Vec<PathBuf>,
-    #[serde(default)]
-    files: Vec<PathBuf>,
-    changed: bool,
-    document: serde_json::Value,
-    #[serde(default)]
-    extra: serde_json::Value,
-}
-
-impl Left {
-    fn of(editor: &Editor, extra: serde_json::Value) -> Result<Self, BelvedereError> {
-        let document = serde_json::to_value(&**editor.document());
-        Ok(Self {
-            scene: editor.place.scene.clone(),
-            scene_dir: editor.place.roots.scene_dir.clone(),
-            allowed: editor.place.roots.allowed.clone(),
-            files: editor.place.roots.files.clone(),
-            changed: editor.is_changed(),
-            document: document.map_err(|e| BelvedereError::Text { what: "the document", reason: e.to_string() })?,
-            extra,
-        })
-    }
-}
-
-impl Recovery {
-    /// Largest number of instances that run at once.
-    const MOST: usize = 64;
-
-    /// Claims a recovery file in `folder` (made if it does not exist), and returns the state that an ended instance left in it.
-    ///
-    /// # Errors
-    /// [`BelvedereError::Io`] if nothing can be written there.
-    pub fn claim(folder: &Path) -> Result<(Self, Option<Recovered>), BelvedereError> {
-        let os = |path: &Path| {
-            let path = path.to_owned();
-            move |e| BelvedereError::from(belvedere_io::IoError::os(&path, e))
-        };
-        std::fs::create_dir_all(folder).map_err(os(folder))?;
-        for n in 0..Self::MOST {
-            let (file, lock) = (folder.join(format!("state-{n}.json")), folder.join(format!("state-{n}.lock")));
-            let held = File::create(&lock).map_err(os(&lock))?;
-            match held.try_lock() {
-                Ok(()) => {
-                    let left = std::fs::read_to_string(&file).ok().and_then(|text| recovered(&text, true));
-                    return Ok((Self { file, _lock: held, lock }, left));
-                }
-                Err(TryLockError::WouldBlock) => {}
-                Err(TryLockError::Error(e)) => return Err(os(&lock)(e)),
-            }
-        }
-        Err(BelvedereError::Output {
-            path: folder.to_owned(),
-            reason: format!("{} instances are running already; end one", Self::MOST),
-        })
-    }
-
-    /// Writes the state of the application atomically.
-    ///
-    /// # Errors
-    /// [`BelvedereError::Io`].
-    pub fn write(&self, editor: &Editor, extra: serde_json::Value) -> Result<(), BelvedereError> {
-        output::write_text(&self.file, &output::pretty(&Left::of(editor, extra)?)?, true)
-    }
-
-    /// Removes the recovery file at the proper end of the application.
-    pub fn end(self) {
-        let _ = std::fs::remove_file(&self.file);
-        let _ = std::fs::remove_file(&self.lock);
-    }
-}
-
-/// * `file_counts`: whether a scene without changes is what its file holds now. On a page it does not: the page brings the scene file as it was
-///   packed, whatever was saved since.
-fn recovered(text: &str, file_counts: bool) -> Option<Recovered> {
-    let left: Left = serde_json::from_str(text).ok()?;
-    let parsed: Document = scene_file::parse(Path::new("state.json"), &left.document.to_string()).ok()?.document;
-    let roots = Roots { scene_dir: left.scene_dir, allowed: left.allowed, files: left.files };
-    let saved = left.scene.as_deref().and_then(|path| scene_file::read(path).ok()).map(|source| source.document);
-    let place = Place { scene: left.scene, roots };
-    let editor = match (left.changed, saved) {
-        (true, Some(saved)) if file_counts || saved != parsed => {
-            let mut editor = Editor::new(saved, place);
-            editor.edit(|document| *document = parsed);
-            editor
-        }
-        // The document was never saved, its file is gone, or something else was saved since: this is the only copy.
-        (true, _) => Editor::unsaved(parsed, place),
-        (false, saved) => Editor::new(saved.filter(|_| file_counts).unwrap_or(parsed), place),
-    };
-    Some(Recovered { editor, extra: left.extra })
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
-    fn scene(dir: &Path) -> PathBuf {
+    pub(in crate::editor) fn scene(dir: &Path) -> PathBuf {
         let path = dir.join("s.toml");
         let text = "format = 1\n[camera]\neye = [0, 0, 10]\nlook_at = [0, 1, 0]\n[[layer]]\nid = 'a'\nkind = 'mesh'\nsource = 'a.obj'\n";
         std::fs::write(&path, text).expect("scene");
         std::fs::write(dir.join("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("mesh");
         path
-    }
-
-    #[test]
-    fn what_a_killed_instance_was_doing_comes_back() {
-        let dir = tempfile::tempdir().expect("folder");
-        let state = dir.path().join("state");
-        let mut editor = Editor::open(&scene(dir.path()), Vec::new()).expect("scene");
-        editor.edit(|d| d.title = "changed".into());
-        let (recovery, left) = Recovery::claim(&state).expect("place");
-        assert!(left.is_none());
-        recovery.write(&editor, serde_json::json!({ "tool": 3 })).expect("written");
-        let (other, left) = Recovery::claim(&state).expect("a second instance");
-        assert!(left.is_none(), "what a living instance does is its own");
-        other.end();
-        drop(recovery); // Dropped as the system does for a killed process.
-        let (recovery, left) = Recovery::claim(&state).expect("place");
-        let left = left.expect("left behind");
-        assert!(left.editor.document().title == "changed" && left.editor.is_changed() && left.extra["tool"] == 3);
-        assert_eq!(left.editor.place.scene, editor.place.scene);
-        recovery.end();
-        assert!(Recovery::claim(&state).expect("place").1.is_none(), "an instance that ended left something");
-    }
-
-    #[test]
-    fn a_scene_that_was_never_saved_comes_back_changed() {
-        let dir = tempfile::tempdir().expect("folder");
-        let path = scene(dir.path());
-        let source = scene_file::read(&path).expect("scene");
-        let mut editor = Editor::new(source.document, Place::default());
-        editor.edit(|d| d.title = "changed".into());
-        let (recovery, _) = Recovery::claim(&dir.path().join("state")).expect("place");
-        recovery.write(&editor, serde_json::Value::Null).expect("written");
-        drop(recovery);
-        let mut left = Recovery::claim(&dir.path().join("state")).expect("place").1.expect("left behind").editor;
-        assert!(left.is_changed() && left.document().title == "changed");
-        left.save(&dir.path().join("t.toml")).expect("saved");
-        assert!(left.is_saved() && !left.is_changed());
-    }
-
-    #[test]
-    fn the_state_comes_back_from_text_with_its_changes_and_without_its_file() {
-        let dir = tempfile::tempdir().expect("folder");
-        let mut editor = Editor::open(&scene(dir.path()), vec!["elsewhere".into()]).expect("scene");
-        for changed in [false, true] {
-            let text = Recovered::text_of(&editor, serde_json::json!({ "tool": 3 })).expect("text");
-            let left = Recovered::of_text(&text).expect("state");
-            assert_eq!(left.editor.document(), editor.document());
-            assert_eq!((left.editor.is_changed(), &left.extra["tool"]), (changed, &3.into()));
-            assert_eq!(left.editor.place.roots.allowed, editor.place.roots.allowed);
-            editor.edit(|d| d.title = "changed".into());
-        }
-        editor.mark_saved();
-        let text = Recovered::text_of(&editor, serde_json::Value::Null).expect("text");
-        let left = Recovered::of_text(&text).expect("state").editor;
-        assert!(left.document().title == "changed" && !left.is_changed(), "the file holds an older document");
-        assert!(Recovered::of_text("no state").is_none());
-    }
-
-    #[test]
-    fn a_scene_that_was_undone_to_what_the_page_brings_after_a_save_is_changed() {
-        let dir = tempfile::tempdir().expect("folder");
-        let path = scene(dir.path());
-        let packed = std::fs::read(&path).expect("scene");
-        let mut editor = Editor::open(&path, Vec::new()).expect("scene");
-        editor.edit(|d| d.title = "changed".into());
-        editor.save(&path).expect("saved");
-        assert!(editor.undo() && editor.is_changed());
-        let text = Recovered::text_of(&editor, serde_json::Value::Null).expect("text");
-        std::fs::write(&path, packed).expect("the page is loaded again");
-        let left = Recovered::of_text(&text).expect("state").editor;
-        assert!(left.is_changed() && left.document() == editor.document());
     }
 
     #[test]
@@ -326,5 +205,86 @@ mod tests {
         assert!(there.place.roots.resolve(&names[0]).is_ok());
         let refused = editor.save(&dir.path().join("a.obj")).expect_err("one of its own files");
         assert!(refused.to_string().contains("input"), "{refused}");
+    }
+
+    /// A scene as a user writes it, opened.
+    fn written(dir: &Path, name: &str, text: &str) -> (PathBuf, Editor) {
+        scene(dir);
+        let path = dir.join(name);
+        std::fs::write(&path, text).expect("scene");
+        let editor = Editor::open(&path, Vec::new()).expect("scene");
+        (path, editor)
+    }
+
+    const WRITTEN: &str = "# mine\nformat = 1\ntitle = 'Hill' # and this\n[camera]\neye = [0, 0, 10]\nlook_at = [0, 1, 0]\n\
+        # a mesh\n[[layer]]\nsource = 'a.obj'\nid = 'a'\nkind = 'mesh'\n";
+
+    fn text(path: &Path) -> String {
+        std::fs::read_to_string(path).expect("a file")
+    }
+
+    #[test]
+    fn a_save_writes_only_what_was_edited() {
+        let dir = tempfile::tempdir().expect("folder");
+        let (path, mut editor) = written(dir.path(), "s.toml", WRITTEN);
+        editor.edit(|d| d.camera.fov_y_deg = 30.0);
+        editor.save(&path).expect("saved");
+        let once = WRITTEN.replace("look_at = [0, 1, 0]\n", "look_at = [0, 1, 0]\nfov_y_deg = 30.0\n");
+        assert_eq!(text(&path), once);
+        editor.edit(|d| d.title = "Berg".into());
+        editor.save(&path).expect("saved again");
+        assert_eq!(text(&path), once.replace("'Hill'", "\"Berg\""));
+        let below = dir.path().join("below");
+        std::fs::create_dir(&below).expect("folder");
+        editor.save(&below.join("t.toml")).expect("saved elsewhere");
+        let moved = once.replace("'Hill'", "\"Berg\"").replace("'a.obj'", "\"../a.obj\"");
+        assert_eq!(text(&below.join("t.toml")), moved, "names of files are adapted");
+    }
+
+    #[test]
+    fn a_json_scene_stays_json_and_one_saved_under_another_ending_is_of_its_kind() {
+        let dir = tempfile::tempdir().expect("folder");
+        let json = "{\"title\": \"H\", \"camera\": {\"look_at\": [0, 1, 0], \"eye\": [0, 0, 10]}}\n";
+        let (path, mut editor) = written(dir.path(), "s.json", json);
+        editor.edit(|d| d.title = "B".into());
+        editor.save(&path).expect("saved");
+        assert_eq!(text(&path), json.replace("\"H\"", "\"B\""));
+        for name in ["t.toml", "u.json"] {
+            let path = dir.path().join(name);
+            editor.save(&path).expect("saved");
+            assert_eq!(text(&path).starts_with('{'), name == "u.json");
+            assert_eq!(scene_file::read(&path).expect("a scene").document, **editor.document());
+        }
+    }
+
+    #[test]
+    fn a_file_that_another_program_changed_is_not_overwritten_without_consent() {
+        let dir = tempfile::tempdir().expect("folder");
+        let (path, mut editor) = written(dir.path(), "s.toml", WRITTEN);
+        assert_eq!(editor.file_change(), None);
+        editor.edit(|d| d.camera.fov_y_deg = 30.0);
+        let other = WRITTEN.replace("Hill", "Mountain");
+        std::fs::write(&path, &other).expect("another program");
+        assert_eq!(editor.file_change(), Some(FileChange::Edited));
+        let refused = editor.save(&path).expect_err("changed").to_string();
+        assert!(refused.contains("changed by another program") && text(&path) == other, "{refused}");
+        assert!(editor.save(&dir.path().join(".").join("s.toml")).is_err(), "the same file by another path");
+        editor.save(&dir.path().join("copy.toml")).expect("another file");
+        assert_eq!(text(&path), other);
+
+        let (path, mut editor) = written(dir.path(), "s.toml", WRITTEN);
+        editor.edit(|d| d.camera.fov_y_deg = 30.0);
+        std::fs::write(&path, &other).expect("another program");
+        editor.reload().expect("reloaded");
+        assert!(editor.document().title == "Mountain" && !editor.is_changed() && editor.file_change().is_none());
+        assert!(editor.undo() && editor.document().title == "Hill" && editor.document().camera.fov_y_deg == 30.0);
+        std::fs::remove_file(&path).expect("removed");
+        assert_eq!(editor.file_change(), Some(FileChange::Gone));
+        assert!(editor.save(&path).is_err() && editor.reload().is_err() && editor.document().title == "Hill");
+        editor.save_over(&path).expect("written again");
+        assert!(text(&path).starts_with("# mine\n") && text(&path).contains("# and this"), "{}", text(&path));
+        assert_eq!(editor.file_change(), None);
+        std::fs::write(&path, text(&path)).expect("touched");
+        assert_eq!(editor.file_change(), None, "the same text is no change");
     }
 }

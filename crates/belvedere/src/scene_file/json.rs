@@ -36,7 +36,7 @@ fn reason(e: &serde_json::Error) -> String {
 }
 
 /// Keys and values of an object in order, duplicates included.
-struct Pairs<'a>(Vec<(String, &'a RawValue)>);
+pub(super) struct Pairs<'a>(pub(super) Vec<(String, &'a RawValue)>);
 
 impl<'de> Deserialize<'de> for Pairs<'de> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -64,7 +64,7 @@ struct Source<'a> {
 impl<'a> Source<'a> {
     /// `raw` is a slice of the text that holds one valid value.
     fn node(&self, raw: &'a str, depth: usize) -> Result<Node, DocError> {
-        let line = self.lines.line(self.offset(raw));
+        let line = self.lines.line(offset(self.text, raw));
         if depth > MAX_DEPTH {
             return Err(DocError::at(line, format!("the document is nested more than {MAX_DEPTH} deep; flatten it")));
         }
@@ -98,7 +98,7 @@ impl<'a> Source<'a> {
         let mut seen = std::collections::HashSet::new();
         for (key, raw) in pairs.0 {
             // the key ends before the colon in front of the value, possibly on an earlier line
-            let before = self.text[..self.offset(raw.get())].trim_end().trim_end_matches(':').trim_end();
+            let before = self.text[..offset(self.text, raw.get())].trim_end().trim_end_matches(':').trim_end();
             let line = self.lines.line(before.len().saturating_sub(1));
             if !seen.insert(key.clone()) {
                 return Err(DocError::at(line, format!("key \"{key}\" is given twice; keep one")));
@@ -107,11 +107,11 @@ impl<'a> Source<'a> {
         }
         Ok(Value::Table(entries))
     }
+}
 
-    /// Where a slice of the text starts, bytes.
-    fn offset(&self, slice: &str) -> usize {
-        slice.as_ptr().addr() - self.text.as_ptr().addr()
-    }
+/// Where a slice of a text starts, bytes.
+pub(super) fn offset(text: &str, slice: &str) -> usize {
+    slice.as_ptr().addr() - text.as_ptr().addr()
 }
 
 #[cfg(test)]

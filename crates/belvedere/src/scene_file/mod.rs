@@ -24,6 +24,7 @@ pub mod paths;
 mod points;
 mod print;
 mod relief;
+mod rewritten;
 mod stages;
 mod strip;
 mod stylisation;
@@ -55,6 +56,7 @@ pub use palette::{PaletteDoc, PaletteName};
 pub use points::{PointLayerDoc, PointStyleDoc};
 pub use print::PrintDoc;
 pub use relief::{OneOrTwo, ReliefStageDoc};
+pub(crate) use rewritten::{is_json, rewritten};
 pub use stages::{
     AxisDoc, DetailDoc, MergeDoc, PresetsDoc, RaysStageDoc, SolverMode, SplineStageDoc, SplitDoc, StageDoc,
     TerrainStageDoc, TurnDoc, WayDoc,
@@ -165,7 +167,12 @@ impl SourceDocument {
 /// # Errors
 /// [`BelvedereError::Scene`] with the line of the mistake; [`BelvedereError::Io`] if the file cannot be read.
 pub fn read(path: &Path) -> Result<SourceDocument, BelvedereError> {
-    let read = read_text(path).and_then(|(text, file)| parse_as(file, &text));
+    read_with_text(path).map(|(source, _)| source)
+}
+
+/// The same, and the text of the file with its byte order mark, if it has one.
+pub(crate) fn read_with_text(path: &Path) -> Result<(SourceDocument, String), BelvedereError> {
+    let read = read_raw(path).and_then(|(text, file)| Ok((parse_as(file, plain(&text))?, text)));
     read.map_err(|e| other_kind::explained(path, "a scene document", e))
 }
 
@@ -212,6 +219,16 @@ pub(crate) fn names_a_preset_file(name: &str) -> bool {
 /// # Errors
 /// [`BelvedereError::Scene`] if it is too large or not UTF-8, [`BelvedereError::Io`] if it cannot be read.
 pub(crate) fn read_text(path: &Path) -> Result<(String, InputFile), BelvedereError> {
+    read_raw(path).map(|(text, file)| (plain(&text).to_owned(), file))
+}
+
+/// A text without its byte order mark.
+fn plain(text: &str) -> &str {
+    text.strip_prefix('\u{feff}').unwrap_or(text)
+}
+
+/// As [`read_text`], with the byte order mark.
+fn read_raw(path: &Path) -> Result<(String, InputFile), BelvedereError> {
     use std::io::Read;
     let os = |e| belvedere_io::IoError::os(path, e);
     let refuse = |reason: String| DocError::whole(reason).in_file(path);
@@ -239,7 +256,7 @@ pub(crate) fn read_text(path: &Path) -> Result<(String, InputFile), BelvedereErr
     let text = String::from_utf8(bytes).map_err(|e| {
         refuse(format!("byte {} is not UTF-8 text; save the document as UTF-8", e.utf8_error().valid_up_to()))
     })?;
-    Ok((text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text), file))
+    Ok((text, file))
 }
 
 /// Parses TOML or JSON into a tree.

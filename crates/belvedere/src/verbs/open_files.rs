@@ -82,7 +82,8 @@ pub fn open_trusted(
         _ => return Err(BelvedereError::Target(format!("these files make no scene together; {REMEDY}"))),
     };
     document.title = title.unwrap_or(document.title);
-    Ok(Editor::new(document, place))
+    // The scene is in no file.
+    Ok(Editor::unsaved(document, place))
 }
 
 /// Result of opening files beside an open scene.

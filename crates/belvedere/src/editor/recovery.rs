@@ -1,0 +1,245 @@
+//! Recovery of a document after a crash.
+
+use super::{Editor, Place};
+use crate::scene_file::paths::Roots;
+use crate::scene_file::{self, Document};
+use crate::{BelvedereError, output};
+use serde::{Deserialize, Serialize};
+use std::fs::{File, TryLockError};
+use std::path::{Path, PathBuf};
+
+/// Recovery file of an instance of an application: written while it runs and removed when it ends.
+#[derive(Debug)]
+pub struct Recovery {
+    file: PathBuf,
+    /// Lock on the instance's number; the system releases it when the application is killed.
+    _lock: File,
+    lock: PathBuf,
+}
+
+/// State left by an instance that did not end properly.
+#[derive(Debug, Clone)]
+pub struct Recovered {
+    /// The document with its unsaved changes.
+    pub editor: Editor,
+    /// Further state that the application wrote.
+    pub extra: serde_json::Value,
+}
+
+impl Recovered {
+    /// The state of an application as text, where it has no recovery file, as in a browser.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Text`] if the document or the further state cannot be written.
+    pub fn text_of(editor: &Editor, extra: serde_json::Value) -> Result<String, BelvedereError> {
+        output::pretty(&Left::of(editor, extra)?)
+    }
+
+    /// The state that [`Recovered::text_of`] wrote; `None` for other text. Its document comes back even if its file holds another.
+    pub fn of_text(text: &str) -> Option<Self> {
+        recovered(text, false)
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+struct Left {
+    scene: Option<PathBuf>,
+    scene_dir: PathBuf,
+    allowed: Vec<PathBuf>,
+    #[serde(default)]
+    files: Vec<PathBuf>,
+    /// Text of the scene file as it was read or written last.
+    #[serde(default)]
+    text: Option<String>,
+    changed: bool,
+    document: serde_json::Value,
+    #[serde(default)]
+    extra: serde_json::Value,
+}
+
+impl Left {
+    fn of(editor: &Editor, extra: serde_json::Value) -> Result<Self, BelvedereError> {
+        let document = serde_json::to_value(&**editor.document());
+        Ok(Self {
+            scene: editor.place.scene.clone(),
+            scene_dir: editor.place.roots.scene_dir.clone(),
+            allowed: editor.place.roots.allowed.clone(),
+            files: editor.place.roots.files.clone(),
+            text: editor.text.as_deref().map(str::to_owned),
+            changed: editor.is_changed(),
+            document: document.map_err(|e| BelvedereError::Text { what: "the document", reason: e.to_string() })?,
+            extra,
+        })
+    }
+}
+
+impl Recovery {
+    /// Largest number of instances that run at once.
+    const MOST: usize = 64;
+
+    /// Claims a recovery file in `folder` (made if it does not exist), and returns the state that an ended instance left in it.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Io`] if nothing can be written there.
+    pub fn claim(folder: &Path) -> Result<(Self, Option<Recovered>), BelvedereError> {
+        let os = |path: &Path| {
+            let path = path.to_owned();
+            move |e| BelvedereError::from(belvedere_io::IoError::os(&path, e))
+        };
+        std::fs::create_dir_all(folder).map_err(os(folder))?;
+        for n in 0..Self::MOST {
+            let (file, lock) = (folder.join(format!("state-{n}.json")), folder.join(format!("state-{n}.lock")));
+            let held = File::create(&lock).map_err(os(&lock))?;
+            match held.try_lock() {
+                Ok(()) => {
+                    let left = std::fs::read_to_string(&file).ok().and_then(|text| recovered(&text, true));
+                    return Ok((Self { file, _lock: held, lock }, left));
+                }
+                Err(TryLockError::WouldBlock) => {}
+                Err(TryLockError::Error(e)) => return Err(os(&lock)(e)),
+            }
+        }
+        Err(BelvedereError::Output {
+            path: folder.to_owned(),
+            reason: format!("{} instances are running already; end one", Self::MOST),
+        })
+    }
+
+    /// Writes the state of the application atomically.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Io`].
+    pub fn write(&self, editor: &Editor, extra: serde_json::Value) -> Result<(), BelvedereError> {
+        output::write_text(&self.file, &output::pretty(&Left::of(editor, extra)?)?, true)
+    }
+
+    /// Removes the recovery file at the proper end of the application.
+    pub fn end(self) {
+        let _ = std::fs::remove_file(&self.file);
+        let _ = std::fs::remove_file(&self.lock);
+    }
+}
+
+/// * `file_counts`: whether a scene without changes is what its file holds now. On a page it does not: the page brings the scene file as it was
+///   packed, whatever was saved since.
+fn recovered(text: &str, file_counts: bool) -> Option<Recovered> {
+    let left: Left = serde_json::from_str(text).ok()?;
+    let parsed: Document = scene_file::parse(Path::new("state.json"), &left.document.to_string()).ok()?.document;
+    let roots = Roots { scene_dir: left.scene_dir, allowed: left.allowed, files: left.files };
+    let on_disk = left.scene.as_deref().and_then(|path| scene_file::read_with_text(path).ok());
+    let (saved, now) = on_disk.map(|(source, text)| (source.document, text)).unzip();
+    let place = Place { scene: left.scene, roots };
+    let editor = match (left.changed, saved) {
+        (true, Some(saved)) if file_counts || saved != parsed => {
+            let mut editor = Editor::new(saved, place);
+            editor.edit(|document| *document = parsed);
+            editor
+        }
+        // The document was never saved, its file is gone, or something else was saved since: this is the only copy.
+        (true, _) => Editor::unsaved(parsed, place),
+        (false, saved) => Editor::new(saved.filter(|_| file_counts).unwrap_or(parsed), place),
+    };
+    // Changes were made to the text of then: another program may have written the file since.
+    let text = left.text.filter(|_| left.changed && file_counts).or(now);
+    let editor = Editor { text: text.map(Into::into), ..editor };
+    Some(Recovered { editor, extra: left.extra })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::FileChange;
+    use super::super::place::tests::scene;
+    use super::*;
+
+    #[test]
+    fn what_a_killed_instance_was_doing_comes_back() {
+        let dir = tempfile::tempdir().expect("folder");
+        let state = dir.path().join("state");
+        let mut editor = Editor::open(&scene(dir.path()), Vec::new()).expect("scene");
+        editor.edit(|d| d.title = "changed".into());
+        let (recovery, left) = Recovery::claim(&state).expect("place");
+        assert!(left.is_none());
+        recovery.write(&editor, serde_json::json!({ "tool": 3 })).expect("written");
+        let (other, left) = Recovery::claim(&state).expect("a second instance");
+        assert!(left.is_none(), "what a living instance does is its own");
+        other.end();
+        drop(recovery); // Dropped as the system does for a killed process.
+        let (recovery, left) = Recovery::claim(&state).expect("place");
+        let left = left.expect("left behind");
+        assert!(left.editor.document().title == "changed" && left.editor.is_changed() && left.extra["tool"] == 3);
+        assert_eq!(left.editor.place.scene, editor.place.scene);
+        recovery.end();
+        assert!(Recovery::claim(&state).expect("place").1.is_none(), "an instance that ended left something");
+    }
+
+    #[test]
+    fn a_scene_that_was_never_saved_comes_back_changed() {
+        let dir = tempfile::tempdir().expect("folder");
+        let path = scene(dir.path());
+        let source = scene_file::read(&path).expect("scene");
+        let mut editor = Editor::new(source.document, Place::default());
+        editor.edit(|d| d.title = "changed".into());
+        let (recovery, _) = Recovery::claim(&dir.path().join("state")).expect("place");
+        recovery.write(&editor, serde_json::Value::Null).expect("written");
+        drop(recovery);
+        let mut left = Recovery::claim(&dir.path().join("state")).expect("place").1.expect("left behind").editor;
+        assert!(left.is_changed() && left.document().title == "changed");
+        left.save(&dir.path().join("t.toml")).expect("saved");
+        assert!(left.is_saved() && !left.is_changed());
+    }
+
+    #[test]
+    fn the_state_comes_back_from_text_with_its_changes_and_without_its_file() {
+        let dir = tempfile::tempdir().expect("folder");
+        let mut editor = Editor::open(&scene(dir.path()), vec!["elsewhere".into()]).expect("scene");
+        for changed in [false, true] {
+            let text = Recovered::text_of(&editor, serde_json::json!({ "tool": 3 })).expect("text");
+            let left = Recovered::of_text(&text).expect("state");
+            assert_eq!(left.editor.document(), editor.document());
+            assert_eq!((left.editor.is_changed(), &left.extra["tool"]), (changed, &3.into()));
+            assert_eq!(left.editor.place.roots.allowed, editor.place.roots.allowed);
+            editor.edit(|d| d.title = "changed".into());
+        }
+        editor.mark_saved();
+        let text = Recovered::text_of(&editor, serde_json::Value::Null).expect("text");
+        let left = Recovered::of_text(&text).expect("state").editor;
+        assert!(left.document().title == "changed" && !left.is_changed(), "the file holds an older document");
+        assert!(Recovered::of_text("no state").is_none());
+    }
+
+    #[test]
+    fn a_scene_that_was_undone_to_what_the_page_brings_after_a_save_is_changed() {
+        let dir = tempfile::tempdir().expect("folder");
+        let path = scene(dir.path());
+        let packed = std::fs::read(&path).expect("scene");
+        let mut editor = Editor::open(&path, Vec::new()).expect("scene");
+        editor.edit(|d| d.title = "changed".into());
+        editor.save(&path).expect("saved");
+        assert!(editor.undo() && editor.is_changed());
+        let text = Recovered::text_of(&editor, serde_json::Value::Null).expect("text");
+        std::fs::write(&path, packed).expect("the page is loaded again");
+        let left = Recovered::of_text(&text).expect("state").editor;
+        assert!(left.is_changed() && left.document() == editor.document());
+    }
+
+    #[test]
+    fn what_another_program_wrote_after_a_crash_is_noticed() {
+        let dir = tempfile::tempdir().expect("folder");
+        let path = scene(dir.path());
+        let before = std::fs::read_to_string(&path).expect("text");
+        for (now, change) in [(before.clone(), None), (format!("title = 'x'\n{before}"), Some(FileChange::Edited))] {
+            std::fs::write(&path, &before).expect("written");
+            let mut editor = Editor::open(&path, Vec::new()).expect("scene");
+            editor.edit(|d| d.camera.fov_y_deg = 30.0);
+            let (recovery, _) = Recovery::claim(&dir.path().join("state")).expect("place");
+            recovery.write(&editor, serde_json::Value::Null).expect("written");
+            drop(recovery);
+            std::fs::write(&path, now).expect("another program");
+            let (recovery, left) = Recovery::claim(&dir.path().join("state")).expect("place");
+            let mut left = left.expect("left behind").editor;
+            assert_eq!(left.file_change(), change);
+            assert_eq!(left.save(&path).is_ok(), change.is_none());
+            recovery.end();
+        }
+    }
+}
