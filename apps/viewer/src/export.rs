@@ -79,15 +79,18 @@ struct Job {
 impl Exporter {
     /// Shows the panel.
     pub(crate) fn show(&mut self, ui: &mut Ui, model: &mut Model, bookmarks: &[Bookmark]) {
-        let mut image = model.document().camera.image;
+        let (mut image, mut by) = (model.document().camera.image, None);
         ui.horizontal_wrapped(|ui| {
-            let label = ui.label(tr("Width, pixels"));
-            ui.add(DragValue::new(&mut image[0]).range(16..=16384)).labelled_by(label.id);
-            let label = ui.label(tr("Height, pixels"));
-            ui.add(DragValue::new(&mut image[1]).range(16..=16384)).labelled_by(label.id);
+            for (pixels, name) in image.iter_mut().zip([tr("Width, pixels"), tr("Height, pixels")]) {
+                let label = ui.label(name);
+                let field = ui
+                    .add(DragValue::new(pixels).range(16..=16384).clamp_existing_to_range(false))
+                    .labelled_by(label.id);
+                by = by.or(model.changed(&field));
+            }
         });
-        if image != model.document().camera.image {
-            model.edit_on(|document| document.camera.image = image);
+        if let Some(by) = by {
+            model.edit_on(by, |document| document.camera.image = image);
         }
         let idle = self.job.is_none() && self.chosen.is_none();
         // What stands below keeps its identity when the window gets another shape.

@@ -5,7 +5,7 @@ use crate::model::Model;
 use belvedere::core::{Aabb, Navigation, Pinhole, Projection};
 use belvedere::editor::{Flight, navigation, shown_whole};
 use belvedere::scene_file::{CameraDoc, ConstructorKind};
-use eframe::egui::{Context, Event, TouchPhase};
+use eframe::egui::{Context, Event, Id, TouchPhase};
 
 /// Duration of a flight, seconds.
 const SECONDS: f64 = 0.8;
@@ -17,7 +17,7 @@ impl Model {
     pub(crate) fn frame(&mut self, bounds: &Aabb) {
         let Some(camera) = self.frame_camera() else { return };
         self.begin_gesture();
-        self.move_camera(|_| camera.framing(bounds));
+        self.move_camera(Id::unique("framing"), |_| camera.framing(bounds));
     }
 
     /// Flies to where a thing is seen whole, in the middle of the picture and from the present direction, and marks it.
@@ -98,11 +98,12 @@ impl Model {
     fn step_flight(&mut self, share: f64) {
         let Some(flying) = self.flying.take() else { return };
         let camera = flying.flight.at(share);
-        self.move_camera(|_| Ok::<_, ()>(camera));
+        let by = Id::unique("flight");
+        self.move_camera(by, |_| Ok::<_, ()>(camera));
         if share < 1.0 {
             self.flying = Some(flying);
         } else if let Some(end) = flying.end {
-            self.edit_on(|document| document.camera = *end);
+            self.edit_on(by, |document| document.camera = *end);
         }
     }
 

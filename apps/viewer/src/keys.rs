@@ -3,7 +3,7 @@
 use crate::language::{later, tr};
 use crate::model::Model;
 use belvedere::core::{DVec3, Navigation};
-use eframe::egui::{Context, Key, KeyboardShortcut, Modifiers};
+use eframe::egui::{Context, Event, Id, Key, KeyboardShortcut, Modifiers};
 
 /// A command of the application.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -150,7 +150,7 @@ pub(crate) fn read(ctx: &Context, model: &mut Model) -> Option<Command> {
 
 fn steer(ctx: &Context, model: &mut Model) {
     let (mut moved, mut turned, mut zoom) = ([0.0f64; 2], [0.0f64; 2], 1.0);
-    ctx.input(|input| {
+    let is_repeated = ctx.input(|input| {
         let arrows = [
             (Key::ArrowLeft, [-1.0, 0.0]),
             (Key::ArrowRight, [1.0, 0.0]),
@@ -167,12 +167,16 @@ fn steer(ctx: &Context, model: &mut Model) {
         if input.key_pressed(Key::Minus) {
             zoom /= ZOOM;
         }
+        !input.events.iter().any(|event| matches!(event, Event::Key { pressed: true, repeat: false, .. }))
     });
     if moved == [0.0; 2] && turned == [0.0; 2] && zoom == 1.0 {
         return;
     }
-    model.begin_gesture();
-    model.move_camera(|camera: &Navigation| {
+    // A key that is held is one gesture.
+    if !is_repeated {
+        model.begin_gesture();
+    }
+    model.move_camera(Id::unique("keys"), |camera: &Navigation| {
         let reach = STEP * camera.target.distance(camera.pinhole.eye);
         let ahead = camera.pinhole.forward.truncate().extend(0.0);
         let ahead = if ahead.length() > 0.05 { ahead.normalize() } else { -camera.pinhole.down };

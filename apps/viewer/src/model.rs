@@ -1,5 +1,7 @@
 //! State of the application without its window: the document, the last pictures, and how they are viewed.
 
+mod gestures;
+
 use crate::flight::{Flying, Ring};
 use crate::handles::Handles;
 use crate::language::tr;
@@ -13,6 +15,7 @@ use belvedere::editor::{
 use belvedere::scene::Frame;
 use belvedere::scene::Instant as Clock;
 use belvedere::scene_file::{CameraDoc, Document, LayerDoc, StageDoc};
+use eframe::egui::Id;
 use std::sync::Arc;
 
 /// Number of kept times.
@@ -85,7 +88,11 @@ pub(crate) struct Model {
     moved_on_at: f64,
     /// Quality of moving pictures; `None` = as good as is drawn in time.
     pub(crate) quality: Option<Quality>,
+    /// Number of the gesture under way, and what edits in its course.
     gesture: u64,
+    by: Option<Id>,
+    /// The control that had the keyboard in the last frame.
+    focus: Option<Id>,
     /// Pixels of the picture per point of the window: lines, marks and names are that many times as large.
     pub(crate) density: f64,
     /// Whether files are chosen in windows of the system.
@@ -130,6 +137,8 @@ impl Model {
             moved_on_at: f64::NEG_INFINITY,
             quality: None,
             gesture: 0,
+            by: None,
+            focus: None,
             density: 1.0,
             system_dialogs: false,
             opening: None,
@@ -145,21 +154,6 @@ impl Model {
     /// The document.
     pub(crate) fn document(&self) -> &Arc<Document> {
         self.editor.document()
-    }
-
-    /// Edits the document; one step of undo.
-    pub(crate) fn edit(&mut self, change: impl FnOnce(&mut Document)) {
-        self.editor.edit(change);
-    }
-
-    /// A new gesture: edits within it are one step of undo.
-    pub(crate) fn begin_gesture(&mut self) {
-        self.gesture += 1;
-    }
-
-    /// Edits the document in the course of the gesture.
-    pub(crate) fn edit_on(&mut self, change: impl FnOnce(&mut Document)) {
-        self.editor.edit_within(self.gesture, change);
     }
 
     /// Another document in place of this one, which comes back if the other cannot be drawn.
@@ -229,8 +223,8 @@ impl Model {
         self.ordered.as_ref().map(|ordered| ordered.image)
     }
 
-    /// Moves the camera within the gesture, never below the ground; a move that fails is ignored.
-    pub(crate) fn move_camera<E>(&mut self, change: impl FnOnce(&Navigation) -> Result<Navigation, E>) {
+    /// Moves the camera within a gesture of `by`, never below the ground; a move that fails is ignored.
+    pub(crate) fn move_camera<E>(&mut self, by: Id, change: impl FnOnce(&Navigation) -> Result<Navigation, E>) {
         if self.has_own_camera() {
             self.notices.note(
                 tr("The preview along a path has a camera of its own; bend rays by hand to move it."),
@@ -242,7 +236,7 @@ impl Model {
         let scene = self.shown.as_ref().map(|shown| shown.session.scene());
         if let (Some(next), Some(scene)) = (next, scene) {
             let next = above_ground(next, scene);
-            self.edit_on(|document| set_camera(document, &next));
+            self.edit_on(by, |document| set_camera(document, &next));
         }
     }
 

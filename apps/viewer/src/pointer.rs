@@ -2,7 +2,7 @@
 
 use crate::model::{Model, Tool};
 use belvedere::core::{DVec2, DVec3, Navigation, Pinhole, PinholeError};
-use eframe::egui::{MultiTouchInfo, PointerButton, Rect, Response, Ui};
+use eframe::egui::{Id, MultiTouchInfo, PointerButton, Rect, Response, Ui};
 
 /// Turn of the camera for a drag across the whole picture, radians.
 const TURN: f64 = 3.0;
@@ -69,7 +69,10 @@ impl Hand {
         }
         self.fingers = None;
         self.drag(response, rect, model);
-        self.wheel(ui, response, rect, model);
+        // A drag places the camera by its beginning, so the wheel has no effect meanwhile.
+        if self.held.is_none() {
+            self.wheel(ui, response, rect, model);
+        }
     }
 
     fn drag(&mut self, response: &Response, rect: Rect, model: &mut Model) {
@@ -89,7 +92,7 @@ impl Hand {
         {
             let to = share(rect, at);
             let held = held.clone();
-            model.move_camera(|_| {
+            model.move_camera(Id::unique("drag"), |_| {
                 if held.turns {
                     let by = TURN * (to - held.from);
                     return held.camera.orbited(-by.x, by.y);
@@ -116,7 +119,7 @@ impl Hand {
         }
         self.wheeled_at = now;
         let about = model.world_at(share(rect, at));
-        model.move_camera(|camera| camera.zoomed(about.unwrap_or(camera.target), factor));
+        model.move_camera(Id::unique("wheel"), |camera| camera.zoomed(about.unwrap_or(camera.target), factor));
     }
 
     /// Two fingers: pinched they go nearer or farther, turned they turn, up or down together they tilt.
@@ -147,15 +150,15 @@ impl Hand {
             by = fingers.so_far;
         }
         let [along, apart, turned] = by.map(f64::from);
-        let about = fingers.about;
+        let (about, by) = (fingers.about, Id::unique("fingers"));
         match fingers.does {
             None => {}
             Some(TwoFingers::Tilt) => {
                 let pitch = TURN * along / f64::from(rect.height());
-                model.move_camera(|camera| camera.orbited(0.0, pitch));
+                model.move_camera(by, |camera| camera.orbited(0.0, pitch));
             }
             Some(TwoFingers::Grasp) => {
-                model.move_camera(|camera| turned_about(camera, about, turned)?.zoomed(about, apart.exp()));
+                model.move_camera(by, |camera| turned_about(camera, about, turned)?.zoomed(about, apart.exp()));
             }
         }
     }

@@ -2,6 +2,7 @@
 
 mod at_work;
 mod bookmarks;
+mod file_change;
 mod from_above;
 mod layout;
 mod opening;
@@ -128,6 +129,8 @@ pub struct Viewer {
     chosen_output: Option<files::Choosing>,
     /// The question about unsaved changes, and what is done once they are saved.
     unsaved: Option<Unsaved>,
+    /// The question about a scene file that another program changed.
+    file_change: Option<file_change::Question>,
     after_saving: Option<Next>,
     /// The document with which the window may close, whatever is not saved of it.
     may_close: Option<Arc<scene_file::Document>>,
@@ -185,6 +188,7 @@ impl Viewer {
             chosen_input: None,
             chosen_output: None,
             unsaved: None,
+            file_change: None,
             after_saving: None,
             may_close: None,
             bookmarks_before: Vec::new(),
@@ -269,11 +273,10 @@ impl Viewer {
     pub(crate) fn go(&mut self, address: &str) {
         let mut document = (**self.model.document()).clone();
         if crate::address::put(address, &mut document.camera) {
-            let place = self.model.editor.place.clone();
             if self.model.editor.is_changed() {
                 self.model.edit(|present| *present = document);
             } else {
-                self.model.editor = Editor::new(document, place);
+                self.model.editor = self.model.editor.with_document(document);
             }
             self.wake.call();
         }
@@ -322,18 +325,12 @@ impl Viewer {
         match command {
             Command::Open => self.chosen_input = Some(files::choose_input(self.model.system_dialogs)),
             Command::Save => match self.model.editor.place.scene.clone() {
-                Some(path) => {
-                    self.save(ctx, &path);
-                }
+                Some(path) => self.save(ctx, &path, None),
                 None => self.choose_output(),
             },
             Command::SaveAs => self.choose_output(),
-            Command::Undo => {
-                self.model.editor.undo();
-            }
-            Command::Redo => {
-                self.model.editor.redo();
-            }
+            Command::Undo => self.model.step(true),
+            Command::Redo => self.model.step(false),
             // A page is closed by its browser.
             Command::Quit if cfg!(target_family = "wasm") => {}
             Command::Quit => self.go_on_to(ctx, Next::Quit),
@@ -389,7 +386,7 @@ impl Viewer {
             Choice::Forget(i) => self.forget_bookmark(i),
             Choice::Return(i) => self.call_waiting(ctx, i),
             Choice::GiveUp(i) => self.give_up(i),
-            Choice::Step(steps) => self.model.editor.go_to(steps),
+            Choice::Step(steps) => self.model.go_to(steps),
             #[cfg(target_family = "wasm")]
             Choice::ForgetFiles => self.forget_files(ctx),
         }
@@ -446,6 +443,7 @@ impl eframe::App for Viewer {
         if std::mem::take(&mut self.model.came_back) {
             self.bookmarks = std::mem::take(&mut self.bookmarks_before);
         }
+        self.model.follow_focus(&ctx);
         self.model.fly_on(&ctx);
         self.closing(&ctx);
         self.arrivals(&ctx);
@@ -470,6 +468,7 @@ impl eframe::App for Viewer {
         self.ask_for_consent(&ctx);
         self.model.notices.show(&ctx);
         self.question(&ctx);
+        self.ask_about_file(&ctx);
         self.write_down(&ctx);
         self.times.note(&self.model);
     }

@@ -25,8 +25,9 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
     let mut title = document.title.clone();
     ui.horizontal(|ui| {
         let label = ui.label(tr("Title"));
-        if ui.text_edit_singleline(&mut title).labelled_by(label.id).changed() {
-            model.edit_on(|document| document.title = title);
+        let field = ui.text_edit_singleline(&mut title).labelled_by(label.id);
+        if let Some(by) = model.changed(&field) {
+            model.edit_on(by, |document| document.title = title);
         }
     });
     if document.layer.is_empty() {

@@ -36,8 +36,9 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
     light(ui, model);
     ui.separator();
     let fov = model.document().camera.fov_y_deg;
-    if let Some(fov) = slider(ui, model, tr("field of view, degrees"), fov, 5.0..=120.0, tr("from top to bottom")) {
-        model.edit_on(|document| document.camera.fov_y_deg = fov);
+    let words = [tr("field of view, degrees"), tr("from top to bottom")];
+    if let Some((by, fov)) = slider(ui, model, words[0], fov, 5.0..=120.0, words[1]) {
+        model.edit_on(by, |document| document.camera.fov_y_deg = fov);
     }
 }
 
@@ -114,11 +115,11 @@ fn sky_name(name: &str) -> &str {
 fn light(ui: &mut Ui, model: &mut Model) {
     let light = model.document().light.clone().unwrap_or_default();
     let mut set = |ui: &mut Ui, name: &str, value: f64, range, help: &str, put: fn(&mut LightDoc, f64)| {
-        if let Some(value) = slider(ui, model, name, value, range, help) {
+        if let Some((by, value)) = slider(ui, model, name, value, range, help) {
             let mut light = light.clone();
             light.time = None;
             put(&mut light, value);
-            model.edit_on(|document| document.light = Some(light));
+            model.edit_on(by, |document| document.light = Some(light));
         }
     };
     let azimuth = light.azimuth_deg.unwrap_or(315.0);

@@ -13,7 +13,7 @@ use crate::language::{later, tr};
 use crate::menu::Bookmark;
 use crate::model::Model;
 use belvedere::scene_file::{Document, StageDoc};
-use eframe::egui::{DragValue, ScrollArea, Slider, Ui};
+use eframe::egui::{DragValue, Id, ScrollArea, Slider, Ui};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
@@ -101,7 +101,7 @@ const BESIDE_SLIDER: f32 = 190.0;
 /// Least width of the value of a slider, points.
 const VALUE: f32 = 54.0;
 
-/// A slider with its name after it; its drag is one step of undo. Returns the new value.
+/// A slider with its name after it; its drag is one step of undo. Returns the new value, and the control that edits.
 pub(crate) fn slider(
     ui: &mut Ui,
     model: &mut Model,
@@ -109,7 +109,7 @@ pub(crate) fn slider(
     value: f64,
     range: RangeInclusive<f64>,
     help: &str,
-) -> Option<f64> {
+) -> Option<(Id, f64)> {
     let mut now = value;
     let slider = ui.scope(|ui| {
         // The name stays where it is whatever number of digits the value has.
@@ -120,11 +120,18 @@ pub(crate) fn slider(
         ui.add(Slider::new(&mut now, range).text(name))
     });
     let response = slider.inner.on_hover_text(help);
-    changed(model, &response, now)
+    model.changed(&response).map(|by| (by, now))
 }
 
-/// A number with its name before it; its drag is one step of undo. Returns the new value.
-pub(crate) fn number(ui: &mut Ui, model: &mut Model, name: &str, value: f64, speed: f64, help: &str) -> Option<f64> {
+/// A number with its name before it; its drag is one step of undo. Returns the new value, and the control that edits.
+pub(crate) fn number(
+    ui: &mut Ui,
+    model: &mut Model,
+    name: &str,
+    value: f64,
+    speed: f64,
+    help: &str,
+) -> Option<(Id, f64)> {
     let mut now = value;
     let response = ui
         .horizontal(|ui| {
@@ -133,20 +140,7 @@ pub(crate) fn number(ui: &mut Ui, model: &mut Model, name: &str, value: f64, spe
         })
         .inner
         .on_hover_text(help);
-    changed(model, &response, now)
-}
-
-fn changed(model: &mut Model, response: &eframe::egui::Response, now: f64) -> Option<f64> {
-    if response.drag_started() || response.gained_focus() {
-        model.begin_gesture();
-    }
-    if !response.changed() {
-        return None;
-    }
-    if !response.dragged() && !response.has_focus() {
-        model.begin_gesture();
-    }
-    Some(now)
+    model.changed(&response).map(|by| (by, now))
 }
 
 /// A share in percent, or a dash.

@@ -8,7 +8,7 @@ use belvedere::core::DVec3;
 use belvedere::core::map::curved_rays::{Model as RayModel, Sharpness};
 use belvedere::editor::{next_turn, with_parallel_planes, with_pivot_line};
 use belvedere::scene_file::{ConstructorDoc, ConstructorKind, LayerDoc, RaysStageDoc, StageDoc, TurnDoc};
-use eframe::egui::{CollapsingHeader, ComboBox, Context, Ui};
+use eframe::egui::{CollapsingHeader, ComboBox, Context, Id, Ui};
 
 const KIND: &str = "curved_rays";
 /// Speed of a played preview, share of the previewed length per second.
@@ -66,18 +66,18 @@ impl RaysPanel {
     /// Position and length of a preview.
     fn preview(&mut self, ui: &mut Ui, model: &mut Model, constructor: &ConstructorDoc) {
         let length = path_length(model, constructor).unwrap_or(1000.0);
-        let put = |model: &mut Model, change: &dyn Fn(&mut ConstructorDoc)| {
+        let put = |model: &mut Model, by: Id, change: &dyn Fn(&mut ConstructorDoc)| {
             let mut next = constructor.clone();
             change(&mut next);
-            model.edit_on(|document| document.constructor = Some(next));
+            model.edit_on(by, |document| document.constructor = Some(next));
         };
         paths(ui, model, constructor);
         let position = constructor.position_m.unwrap_or(0.0);
-        if let Some(value) = slider(ui, model, tr("position"), position, 0.0..=length, tr("along the path")) {
-            put(model, &|doc| doc.position_m = Some(value));
+        if let Some((by, value)) = slider(ui, model, tr("position"), position, 0.0..=length, tr("along the path")) {
+            put(model, by, &|doc| doc.position_m = Some(value));
         }
         let ahead = constructor.preview_m.unwrap_or(0.25 * length);
-        if let Some(value) = slider(
+        if let Some((by, value)) = slider(
             ui,
             model,
             tr("preview"),
@@ -85,16 +85,16 @@ impl RaysPanel {
             0.01 * length..=length,
             tr("length of the path ahead that is shown"),
         ) {
-            put(model, &|doc| doc.preview_m = Some(value));
+            put(model, by, &|doc| doc.preview_m = Some(value));
         }
         let name = tr(if self.playing { "Pause preview" } else { "Play preview" });
         if ui.button(name).clicked() {
             self.playing = !self.playing;
             self.played_at = ui.input(|input| input.time);
-            model.begin_gesture();
+            model.begin_gesture_of(playing());
             // At the end it begins again.
             if self.playing && position >= length - AHEAD * ahead.min(length) {
-                put(model, &|doc| doc.position_m = Some(0.0));
+                put(model, playing(), &|doc| doc.position_m = Some(0.0));
             }
         }
         ui.weak(tr("The preview has a camera of its own."));
@@ -103,6 +103,8 @@ impl RaysPanel {
     /// Advances the played preview along the path.
     pub(crate) fn play(&mut self, ctx: &Context, model: &mut Model) {
         let constructor = model.document().constructor.clone();
+        // It ends where something else edits.
+        self.playing &= model.was_edited_by(playing());
         let Some(mut doc) = constructor.filter(|doc| self.playing && doc.kind == ConstructorKind::PathPreview) else {
             self.playing = false;
             return;
@@ -115,9 +117,14 @@ impl RaysPanel {
         self.played_at = now;
         self.playing = next < end;
         doc.position_m = Some(next.min(end.max(doc.position_m.unwrap_or(0.0))));
-        model.edit_on(|document| document.constructor = Some(doc));
+        model.edit_on(playing(), |document| document.constructor = Some(doc));
         ctx.request_repaint();
     }
+}
+
+/// What edits while a preview is played.
+fn playing() -> Id {
+    Id::unique("played preview")
 }
 
 /// Text on the visibility of a target.
@@ -263,7 +270,7 @@ fn turns(ui: &mut Ui, model: &mut Model) {
     let Some(stage) = stage else { return };
     ray_model(ui, model, &stage);
     let mut next = stage.clone();
-    let mut removed = None;
+    let (mut removed, mut by) = (None, None);
     let eye = model.camera().map(|camera| camera.pinhole.eye);
     for (index, turn) in stage.turn.iter().enumerate() {
         let before = match index.checked_sub(1) {
@@ -271,8 +278,8 @@ fn turns(ui: &mut Ui, model: &mut Model) {
             None => eye,
         };
         CollapsingHeader::new(fill(tr("Turn {0}"), &[&(index + 1)])).default_open(index == 0).show(ui, |ui| {
-            one(ui, model, index + 1, turn, &mut next.turn[index]);
-            planes(ui, model, (index + 1, before), turn, &mut next.turn[index]);
+            by = by.or(one(ui, model, index + 1, turn, &mut next.turn[index]));
+            by = by.or(planes(ui, model, (index + 1, before), turn, &mut next.turn[index]));
             if ui.button(fill(tr("Remove turn {0}"), &[&(index + 1)])).clicked() {
                 removed = Some(index);
             }
@@ -280,13 +287,12 @@ fn turns(ui: &mut Ui, model: &mut Model) {
     }
     if let Some(index) = removed {
         next.turn.remove(index);
-        model.begin_gesture();
-        model.edit_on(|document| match next.turn.is_empty() && next.split.is_none() {
+        model.edit(|document| match next.turn.is_empty() && next.split.is_none() {
             true => document.stage.retain(|stage| stage.kind() != KIND),
             false => set_stage(document, StageDoc::CurvedRays(next)),
         });
-    } else if next != stage {
-        model.edit_on(|document| set_stage(document, StageDoc::CurvedRays(next)));
+    } else if let Some(by) = by {
+        model.edit_on(by, |document| set_stage(document, StageDoc::CurvedRays(next)));
     }
 }
 
@@ -310,8 +316,9 @@ fn ray_model(ui: &mut Ui, model: &mut Model, stage: &RaysStageDoc) {
     }
 }
 
-/// The numbers of a turn.
-fn one(ui: &mut Ui, model: &mut Model, n: usize, turn: &TurnDoc, next: &mut TurnDoc) {
+/// The numbers of a turn. Returns the control that edits.
+fn one(ui: &mut Ui, model: &mut Model, n: usize, turn: &TurnDoc, next: &mut TurnDoc) -> Option<Id> {
+    let mut by = None;
     let reach = DVec3::from_array(turn.viewpoint).distance(DVec3::from_array(turn.t1));
     let speed = 0.004 * reach;
     type Part = fn(&mut TurnDoc) -> &mut [f64; 3];
@@ -333,23 +340,33 @@ fn one(ui: &mut Ui, model: &mut Model, n: usize, turn: &TurnDoc, next: &mut Turn
                     eframe::egui::DragValue::new(&mut value).speed(speed).max_decimals(2).prefix(format!("{letter} "));
                 let whole = format!("{name} {n}, {letter}");
                 let response = ui.add_sized(size, field).accessible_name(whole.as_str()).on_hover_text(whole);
-                if let Some(value) = super::changed(model, &response, value) {
+                if let Some(field) = model.changed(&response) {
+                    by = Some(field);
                     part(next)[axis] = value;
                 }
             }
         });
     }
+    by
 }
 
-/// Whether the planes of a turn share a line, and how sharp it is.
+/// Whether the planes of a turn share a line, and how sharp it is. Returns the control that edits.
 ///
 /// * `before`: the viewpoint before it.
-fn planes(ui: &mut Ui, model: &mut Model, (n, before): (usize, Option<DVec3>), turn: &TurnDoc, next: &mut TurnDoc) {
+fn planes(
+    ui: &mut Ui,
+    model: &mut Model,
+    (n, before): (usize, Option<DVec3>),
+    turn: &TurnDoc,
+    next: &mut TurnDoc,
+) -> Option<Id> {
+    let mut by = None;
     let mut pivots = turn.line.is_some();
     let help = tr("planes that share a line turn the picture about it; else they are parallel");
     let pivot = ui.checkbox(&mut pivots, fill(tr("pivot line of turn {0}"), &[&n])).on_hover_text(help);
     if pivot.changed() {
         model.begin_gesture();
+        by = Some(pivot.id);
         let before = before.unwrap_or(DVec3::from_array(turn.viewpoint));
         *next = if pivots { with_pivot_line(next, before) } else { with_parallel_planes(next) };
         model.look.overhead |= pivots;
@@ -359,16 +376,20 @@ fn planes(ui: &mut Ui, model: &mut Model, (n, before): (usize, Option<DVec3>), t
         _ => 1.0,
     };
     let mut own = !matches!(turn.m, Sharpness::Value(_));
-    if ui.checkbox(&mut own, fill(tr("sharpness of turn {0} by its bend point"), &[&n])).changed() {
+    let bend = ui.checkbox(&mut own, fill(tr("sharpness of turn {0} by its bend point"), &[&n]));
+    if bend.changed() {
         model.begin_gesture();
+        by = Some(bend.id);
         next.m = if own { Sharpness::Bend } else { Sharpness::Value(value) };
     }
     if !own
-        && let Some(value) =
+        && let Some((field, value)) =
             number(ui, model, &fill(tr("sharpness {0}"), &[&n]), value, 0.02, tr("0.2 to 20; larger is sharper"))
     {
+        by = Some(field);
         next.m = Sharpness::Value(value.clamp(0.2, 20.0));
     }
+    by
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use belvedere::core::presets::PresetDocument;
 use belvedere::core::presets::edit::{PresetChange, PresetOperation};
 use belvedere::scene_file::{PresetsDoc, SplineStageDoc, StageDoc};
 use belvedere::verbs::preset::{sketch, viewing_angle};
-use eframe::egui::{CollapsingHeader, Context, Ui};
+use eframe::egui::{CollapsingHeader, Context, Id, Ui};
 
 const KIND: &str = "spline_bend";
 /// Speed of a played sweep, degrees per second.
@@ -74,7 +74,7 @@ impl SplinePanel {
             if edit.begins {
                 model.begin_gesture();
             }
-            self.change(model, &presets, edit.change);
+            self.change(model, Id::unique("curve"), &presets, edit.change);
         }
         self.sections(ui, model, &presets);
         self.numbers(ui, model, &presets);
@@ -112,7 +112,7 @@ impl SplinePanel {
                     model.begin_gesture();
                 }
                 let to = self.within(tr("the viewing angle"), to, RANGE);
-                self.change(model, presets, PresetChange::Phi(to));
+                self.change(model, Id::unique("ruler"), presets, PresetChange::Phi(to));
             }
             None => {}
         }
@@ -145,7 +145,7 @@ impl SplinePanel {
             if ui.button(name).on_hover_text(tr("the camera tilts through the viewing angles")).clicked() {
                 self.playing = !self.playing;
                 self.played_at = ui.input(|input| input.time);
-                model.begin_gesture();
+                model.begin_gesture_of(sweep());
             }
         });
     }
@@ -159,7 +159,7 @@ impl SplinePanel {
                 }
                 let mut presets = presets.clone();
                 for change in changes {
-                    self.change(model, &presets, change);
+                    self.change(model, Id::unique("sections"), &presets, change);
                     if let Some(StageDoc::SplineBend(stage)) = model.stage(KIND) {
                         presets = presets_of(model, stage).unwrap_or(presets);
                     }
@@ -172,11 +172,11 @@ impl SplinePanel {
 
     fn numbers(&mut self, ui: &mut Ui, model: &mut Model, presets: &PresetDocument) {
         let preset = presets.presets[self.chosen].clone();
-        if let Some(tau) =
+        if let Some((by, tau)) =
             number(ui, model, tr("holds within ± degrees"), preset.tau, 0.1, tr("half width of the range of angles"))
         {
             let tau = self.within(tr("the range of angles"), tau, [0.0, 90.0]);
-            self.change(model, presets, PresetChange::Tau(tau));
+            self.change(model, by, presets, PresetChange::Tau(tau));
         }
         let own = preset.fov_y_deg;
         let mut has = own.is_some();
@@ -184,18 +184,18 @@ impl SplinePanel {
             self.step(model, presets, PresetChange::FieldOfView(has.then_some(45.0)));
         }
         if let Some(fov) = own
-            && let Some(fov) = number(ui, model, tr("field of view"), fov, 0.2, tr("degrees"))
+            && let Some((by, fov)) = number(ui, model, tr("field of view"), fov, 0.2, tr("degrees"))
         {
             let fov = self.within(tr("the field of view"), fov, [0.05, 170.0]);
-            self.change(model, presets, PresetChange::FieldOfView(Some(fov)));
+            self.change(model, by, presets, PresetChange::FieldOfView(Some(fov)));
         }
         for (i, tag) in preset.tags.iter().enumerate() {
             let name = fill(tr("transition of tag {0}"), &[&(i + 1)]);
-            if let Some(delta) =
+            if let Some((by, delta)) =
                 number(ui, model, &name, tag.delta, 0.002, tr("half width, share of the curve's length"))
             {
                 let delta = self.within(tr("the half width of a transition"), delta, [0.0, 0.5]);
-                self.change(model, presets, PresetChange::TagWidth(i + 1, delta));
+                self.change(model, by, presets, PresetChange::TagWidth(i + 1, delta));
             }
         }
     }
@@ -203,17 +203,17 @@ impl SplinePanel {
     /// Makes a change that is one step of undo.
     fn step(&mut self, model: &mut Model, presets: &PresetDocument, change: PresetChange) {
         model.begin_gesture();
-        self.change(model, presets, change);
+        self.change(model, Id::unique("presets"), presets, change);
     }
 
-    /// Changes the chosen preset within the gesture; an error is shown.
-    fn change(&mut self, model: &mut Model, presets: &PresetDocument, change: PresetChange) {
+    /// Changes the chosen preset within a gesture of `by`; an error is shown.
+    fn change(&mut self, model: &mut Model, by: Id, presets: &PresetDocument, change: PresetChange) {
         let preset = (self.chosen + 1).to_string();
         let stopped = self.stopped.take();
         match presets.edited_saying(&PresetOperation::Preset { preset, change }) {
             Ok((next, clamped)) => {
                 self.clamped = stopped.or_else(|| clamped.first().map(ToString::to_string));
-                model.edit_on(|document| {
+                model.edit_on(by, |document| {
                     let stages = document.stage.iter_mut();
                     for stage in stages {
                         if let StageDoc::SplineBend(stage) = stage {
@@ -237,6 +237,8 @@ impl SplinePanel {
     /// Draws missing pictures of presets, and advances the sweep: up and down through the viewing angles.
     pub(crate) fn play(&mut self, ctx: &Context, model: &mut Model) {
         self.galleries.draw(ctx, model);
+        // It ends where something else edits.
+        self.playing &= model.was_edited_by(sweep());
         if !self.playing {
             return;
         }
@@ -254,9 +256,14 @@ impl SplinePanel {
             self.downwards = false;
         }
         let by = if self.downwards { -by } else { by };
-        model.move_camera(|camera| camera.orbited(0.0, by));
+        model.move_camera(sweep(), |camera| camera.orbited(0.0, by));
         ctx.request_repaint();
     }
+}
+
+/// What edits while a sweep is played.
+fn sweep() -> Id {
+    Id::unique("played sweep")
 }
 
 /// The presets of a stage, as the picture shows them.

@@ -6,7 +6,7 @@ use crate::model::Model;
 use belvedere::core::DVec3;
 use belvedere::editor::Judged;
 use belvedere::scene_file::{LayerDoc, SolverMode, StageDoc, TerrainStageDoc};
-use eframe::egui::{ComboBox, Ui};
+use eframe::egui::{ComboBox, Id, Ui};
 use std::sync::Arc;
 
 const KIND: &str = "terrain_disocclusion";
@@ -52,10 +52,10 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
 }
 
 fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {
-    let put = |model: &mut Model, change: &dyn Fn(&mut TerrainStageDoc)| {
+    let put = |model: &mut Model, by: Id, change: &dyn Fn(&mut TerrainStageDoc)| {
         let mut next = stage.clone();
         change(&mut next);
-        model.edit_on(|document| set_stage(document, StageDoc::TerrainDisocclusion(next)));
+        model.edit_on(by, |document| set_stage(document, StageDoc::TerrainDisocclusion(next)));
     };
     if stage.delta.is_some() {
         ui.label(tr("The ground was solved before and comes from a file; uncheck and check to solve it here."));
@@ -74,7 +74,7 @@ fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {
     });
     if mode != stage.mode.unwrap_or(SolverMode::Qp) {
         model.begin_gesture();
-        put(model, &|stage| stage.mode = Some(mode));
+        put(model, Id::unique("solver"), &|stage| stage.mode = Some(mode));
     }
     // Values that the document does not give are those that the last picture was solved with.
     let resolved = model.shown.as_ref().and_then(|shown| shown.session.resolved()).and_then(|document| {
@@ -86,32 +86,32 @@ fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {
     let usual = resolved.unwrap_or_default();
     let moved = stage.adjust_viewpoint.unwrap_or(1.0);
     let help = tr("left: the camera moves a little where that saves ground; right: only the ground moves");
-    if let Some(value) = slider(ui, model, tr("camera or ground"), moved, 0.0..=1.0, help) {
-        put(model, &|stage| stage.adjust_viewpoint = (value < 1.0).then_some(value));
+    if let Some((by, value)) = slider(ui, model, tr("camera or ground"), moved, 0.0..=1.0, help) {
+        put(model, by, &|stage| stage.adjust_viewpoint = (value < 1.0).then_some(value));
     }
     let w = stage.w.or(usual.w).unwrap_or_default();
-    if let Some(value) = slider(ui, model, tr("smoothness w"), w, 0.02..=2.0, tr("smaller: wider and gentler")) {
-        put(model, &|stage| stage.w = Some(value));
+    if let Some((by, value)) = slider(ui, model, tr("smoothness w"), w, 0.02..=2.0, tr("smaller: wider and gentler")) {
+        put(model, by, &|stage| stage.w = Some(value));
     }
     let eta = stage.eta.or(usual.eta).unwrap_or_default();
-    if let Some(value) =
+    if let Some((by, value)) =
         slider(ui, model, tr("weight eta"), eta, 0.0..=1.0, tr("mountains that are kept, against those that are moved"))
     {
-        put(model, &|stage| stage.eta = Some(value));
+        put(model, by, &|stage| stage.eta = Some(value));
     }
     let rise = stage.rise_limit_m.or(usual.rise_limit_m).unwrap_or_default();
-    if let Some(value) =
+    if let Some((by, value)) =
         slider(ui, model, tr("rise at most, m"), rise, 0.0..=2000.0, tr("most that the ground may rise"))
     {
-        put(model, &|stage| stage.rise_limit_m = Some(value));
+        put(model, by, &|stage| stage.rise_limit_m = Some(value));
     }
     let margin = stage.margin_m.or(usual.margin_m).unwrap_or_default();
-    if let Some(value) = slider(ui, model, tr("clearance, m"), margin, 0.0..=50.0, tr("of the lines of sight")) {
-        put(model, &|stage| stage.margin_m = Some(value));
+    if let Some((by, value)) = slider(ui, model, tr("clearance, m"), margin, 0.0..=50.0, tr("of the lines of sight")) {
+        put(model, by, &|stage| stage.margin_m = Some(value));
     }
     if ui.button(tr("Usual values")).clicked() {
         model.begin_gesture();
-        put(model, &|stage| *stage = TerrainStageDoc::default());
+        put(model, Id::unique("usual values"), &|stage| *stage = TerrainStageDoc::default());
     }
 }
 
@@ -142,7 +142,7 @@ fn shares(ui: &mut Ui, model: &mut Model) {
         let height = model.shown.as_ref().and_then(|shown| shown.session.scene().terrain()?.surface_at([x, y].into()));
         let point = DVec3::new(x, y, height.unwrap_or(0.0));
         model.begin_gesture();
-        model.move_camera(|camera| {
+        model.move_camera(Id::unique("hidden"), |camera| {
             let by = 0.5 * (point - camera.target);
             camera.moved(by.truncate().extend(0.0))?.zoomed(point, 1.6)
         });

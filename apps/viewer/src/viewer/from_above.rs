@@ -7,7 +7,7 @@ use crate::picture::image_of_frame;
 use crate::theme;
 use crate::widgets::overhead::overhead;
 use belvedere::scene_file::StageDoc;
-use eframe::egui::{self, Context, TextureOptions, Window};
+use eframe::egui::{self, Context, Id, TextureOptions, Window};
 
 impl Viewer {
     /// Shows the camera from above in a window of its own.
@@ -43,7 +43,7 @@ impl Viewer {
         if edit.begins {
             self.model.begin_gesture();
         }
-        self.model.edit_on(|document| {
+        self.model.edit_on(Id::unique("camera from above"), |document| {
             let stage = document.stage.iter().find_map(|stage| match stage {
                 StageDoc::CurvedRays(stage) => Some(stage.clone()),
                 _ => None,

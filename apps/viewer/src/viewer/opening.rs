@@ -1,5 +1,6 @@
 //! Opening and saving: files arrive in the background.
 
+use super::file_change::Question;
 use super::unsaved::Next;
 use super::{Refusal, Viewer};
 use crate::consent::{self, Consent, Decision};
@@ -130,18 +131,11 @@ impl Viewer {
         }
         if let Some(answer) = self.chosen_output.as_mut().and_then(|choosing| choosing.answer(ctx)) {
             self.chosen_output = None;
-            let saved = match answer {
-                Ok(paths) => paths.first().is_some_and(|path| self.save(ctx, path)),
-                Err(reason) => {
-                    self.model.notices.error(reason);
-                    false
-                }
-            };
-            // What waited for it is given up if nothing was saved.
-            if let Some(next) = self.after_saving.take()
-                && saved
-            {
-                self.go_on(ctx, next);
+            // What waited for it is given up if nothing is saved.
+            let mut next = self.after_saving.take();
+            match answer {
+                Ok(paths) => paths.iter().take(1).for_each(|path| self.save(ctx, path, next.take())),
+                Err(reason) => self.model.notices.error(reason),
             }
         }
         if self.dropped.is_some() {
@@ -159,31 +153,35 @@ impl Viewer {
         self.open(vec![consent.scene]);
     }
 
-    /// Writes the scene to a file; whether it was written.
-    pub(super) fn save(&mut self, ctx: &Context, path: &Path) -> bool {
-        match self.model.editor.save(path) {
-            Ok(()) => {
-                self.remember(path);
-                self.remember_bookmarks();
-                // The recovery file is written anew, since it says whether the scene is saved.
-                self.written = None;
-                let mut said = fill(tr("Saved: {0}"), &[&path.display()]);
-                match consent::remember(&mut self.trust, path, &self.model.editor.outside()) {
-                    Ok(is_remembered) if is_remembered || self.model.editor.outside().is_empty() => {}
-                    Ok(_) => said += tr("; it names files outside its folder: the command line needs --allow-root DIR"),
-                    Err(reason) => self.model.notices.error(reason),
-                }
-                self.model.notices.say(said, ctx.input(|input| input.time));
-                if let Err(reason) = files::hand_over(path) {
-                    self.model.notices.error(reason);
-                    return false;
-                }
-                true
+    /// Writes the scene to a file, and does what waited for it; asks first if it is its own file and another program changed it.
+    pub(super) fn save(&mut self, ctx: &Context, path: &Path, next: Option<Next>) {
+        match self.model.editor.file_change().filter(|_| self.model.editor.is_own(path)) {
+            Some(change) => self.file_change = Some(Question::new(change, next)),
+            None => self.save_over(ctx, path, next),
+        }
+    }
+
+    /// Writes the scene to a file, whatever it holds now, and does what waited for it.
+    pub(super) fn save_over(&mut self, ctx: &Context, path: &Path, next: Option<Next>) {
+        let saved = self.model.editor.save_over(path).map_err(|e| e.to_string());
+        let saved = saved.and_then(|()| {
+            self.remember(path);
+            self.remember_bookmarks();
+            // The recovery file is written anew, since it says whether the scene is saved.
+            self.written = None;
+            let mut said = fill(tr("Saved: {0}"), &[&path.display()]);
+            match consent::remember(&mut self.trust, path, &self.model.editor.outside()) {
+                Ok(is_remembered) if is_remembered || self.model.editor.outside().is_empty() => {}
+                Ok(_) => said += tr("; it names files outside its folder: the command line needs --allow-root DIR"),
+                Err(reason) => self.model.notices.error(reason),
             }
-            Err(e) => {
-                self.model.notices.error(e.to_string());
-                false
-            }
+            self.model.notices.say(said, ctx.input(|input| input.time));
+            files::hand_over(path)
+        });
+        match (saved, next) {
+            (Ok(()), Some(next)) => self.go_on(ctx, next),
+            (Ok(()), None) => {}
+            (Err(reason), _) => self.model.notices.error(reason),
         }
     }
 

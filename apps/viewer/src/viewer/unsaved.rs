@@ -46,7 +46,8 @@ impl Viewer {
 
     /// Whether a question waits for its answer.
     pub(super) fn asks(&self) -> bool {
-        self.unsaved.is_some() || self.chosen_input.is_some() || self.chosen_output.is_some()
+        let asks = self.unsaved.is_some() || self.file_change.is_some();
+        asks || self.chosen_input.is_some() || self.chosen_output.is_some()
     }
 
     /// Does what takes the scene away; asks first if it has changes that are not saved.
@@ -77,6 +78,7 @@ impl Viewer {
         let may_close = self.may_close.as_ref().is_some_and(|document| Arc::ptr_eq(document, self.document()));
         if is_asked && self.is_changed() && !may_close {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.file_change = None;
             self.go_on_to(ctx, Next::Quit);
         }
     }
@@ -125,11 +127,7 @@ impl Viewer {
         match (answer, self.model.editor.place.scene.clone()) {
             (Answer::Cancel, _) => {}
             (Answer::Discard, _) => self.go_on(ctx, next),
-            (Answer::Save, Some(path)) => {
-                if self.save(ctx, &path) {
-                    self.go_on(ctx, next);
-                }
-            }
+            (Answer::Save, Some(path)) => self.save(ctx, &path, Some(next)),
             (Answer::Save, None) => {
                 self.after_saving = Some(next);
                 self.choose_output();

@@ -21,12 +21,14 @@ mod moving;
 mod narrow;
 mod presets;
 mod rest;
+mod saving;
 mod screen;
 mod snapshots;
 mod sources;
 mod steady;
 mod styles;
 mod tasks;
+mod undoing;
 mod unsaved;
 mod welcome;
 #[cfg(target_os = "linux")]

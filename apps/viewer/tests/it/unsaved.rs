@@ -24,7 +24,7 @@ impl DroppedFile for Dropped {
     }
 }
 
-fn drop_file(harness: &mut Window, path: &Path) {
+pub(crate) fn drop_file(harness: &mut Window, path: &Path) {
     harness.input_mut().dropped_files.push(Arc::new(Dropped(path.to_owned())));
     harness.step();
     wait(harness);
@@ -44,12 +44,12 @@ fn wait(harness: &mut Window) {
     harness.step();
 }
 
-fn asked(harness: &Window) -> bool {
+pub(crate) fn asked(harness: &Window) -> bool {
     harness.query_by_label("Save the changes?").is_some()
 }
 
 /// Presses the cross of the window. Whether the window closes.
-fn close(harness: &mut Window) -> bool {
+pub(crate) fn close(harness: &mut Window) -> bool {
     let viewport = harness.input_mut().viewports.entry(ViewportId::ROOT).or_default();
     viewport.events.push(ViewportEvent::Close);
     harness.step();
@@ -64,7 +64,7 @@ fn commands(harness: &Window) -> Vec<ViewportCommand> {
 }
 
 /// Presses a button. Whether the window was told to close.
-fn press_and_look(harness: &mut Window, name: &str) -> bool {
+pub(crate) fn press_and_look(harness: &mut Window, name: &str) -> bool {
     find(harness, name).click();
     let mut closes = false;
     for _ in 0..3 {

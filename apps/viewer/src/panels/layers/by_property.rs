@@ -237,7 +237,8 @@ pub(super) fn sizes(ui: &mut Ui, words: [String; 2], reading: &Reading, by: &mut
             let ends = [tr("pixels of the lowest number"), tr("of the highest")];
             for (px, words) in doc.px.iter_mut().zip(ends) {
                 let label = ui.label(words);
-                ui.add(DragValue::new(px).speed(0.05).range(0.2..=100.0)).labelled_by(label.id);
+                ui.add(DragValue::new(px).speed(0.05).range(0.2..=100.0).clamp_existing_to_range(false))
+                    .labelled_by(label.id);
             }
         });
     }

@@ -42,7 +42,8 @@ pub(super) fn distances(ui: &mut Ui, id: &str, marks: &mut Option<AutoOrLength>)
         });
         if let Some(AutoOrLength::Length(every)) = marks {
             let label = ui.label(tr("metres"));
-            ui.add(DragValue::new(every).speed(10.0).range(1.0..=1e6)).labelled_by(label.id);
+            ui.add(DragValue::new(every).speed(10.0).range(1.0..=1e6).clamp_existing_to_range(false))
+                .labelled_by(label.id);
         }
     });
 }

@@ -89,7 +89,12 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDo
         ui.data_mut(|data| data.insert_temp(key, Pending(next)));
     } else {
         ui.data_mut(|data| data.remove::<Pending>(key));
-        model.edit(|document| document.layer[index] = next);
+        // What is typed in a field is one gesture.
+        let field = ui.memory(|memory| memory.focused()).filter(|_| ui.ctx().text_edit_focused());
+        if field.is_none() {
+            model.begin_gesture();
+        }
+        model.edit_on(field.unwrap_or(key), |document| document.layer[index] = next);
     }
 }
 
@@ -100,7 +105,8 @@ struct Pending(LayerDoc);
 fn width(ui: &mut Ui, name: &str, value: &mut f64) {
     ui.horizontal(|ui| {
         let label = ui.label(name);
-        ui.add(DragValue::new(value).speed(0.05).range(0.2..=40.0)).labelled_by(label.id);
+        ui.add(DragValue::new(value).speed(0.05).range(0.2..=40.0).clamp_existing_to_range(false))
+            .labelled_by(label.id);
     });
 }
 
@@ -115,7 +121,8 @@ fn occlusion(ui: &mut Ui, id: &str, value: &mut Option<f64>) {
         }
         if let Some(reach) = value {
             let label = ui.label(tr("within"));
-            ui.add(DragValue::new(reach).speed(0.5).range(0.01..=1e4)).labelled_by(label.id);
+            ui.add(DragValue::new(reach).speed(0.5).range(0.01..=1e4).clamp_existing_to_range(false))
+                .labelled_by(label.id);
         }
     });
 }
@@ -126,7 +133,8 @@ fn labels(ui: &mut Ui, id: &str, (on, size): (&mut bool, &mut f64)) {
         ui.checkbox(on, fill(tr("names of {0}"), &[&id]));
         if *on {
             let label = ui.label(tr("letters, pixels"));
-            ui.add(DragValue::new(size).speed(0.1).range(6.0..=60.0)).labelled_by(label.id);
+            ui.add(DragValue::new(size).speed(0.1).range(6.0..=60.0).clamp_existing_to_range(false))
+                .labelled_by(label.id);
         }
     });
 }

@@ -73,7 +73,7 @@ pub(super) fn show(
     }
     let preset = (chosen + 1).to_string();
     match presets.edited(&PresetOperation::Preset { preset, change }) {
-        Ok(next) => model.edit_on(|document| {
+        Ok(next) => model.edit_on(Id::unique("curve in the picture"), |document| {
             for stage in &mut document.stage {
                 if let StageDoc::SplineBend(stage) = stage {
                     stage.presets = PresetsDoc::Inline(Box::new(next.clone()));

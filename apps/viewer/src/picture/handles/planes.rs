@@ -44,7 +44,7 @@ pub(super) fn show(ui: &mut Ui, (id, rect): (Id, Rect), view: &View, model: &mut
         model.begin_gesture();
     }
     if next != stage {
-        model.edit_on(|document| set_stage(document, StageDoc::CurvedRays(next)));
+        model.edit_on(Id::unique("planes in the picture"), |document| set_stage(document, StageDoc::CurvedRays(next)));
     }
 }
 
