@@ -193,7 +193,7 @@ fn ready_scenes_keep_all_that_the_window_does_not_edit() {
 
 #[test]
 fn points_and_stages_change_their_form() {
-    let text = "format = 1\n[camera]\neye = { x = 1, y = 2, above_ground_m = 3 } # a rule\nlook_at = [0, 1, 0]\n[[stage]]\nkind = 'spline_bend'\npresets = 'progressive' # to be changed\n";
+    let text = "format = 1\n[camera]\neye = { x = 1, y = 2, above_ground_m = 3 } # a rule\nlook_at = [0, 1, 0]\n[[stage]]\nkind = 'spline_bend'\n# above\npresets = 'progressive' # to be changed\n";
     let moved = edited(text, drag);
     assert!(moved.contains("eye = [10.5, -5200.0, 3600.0] # a rule\n"), "{moved}");
     let inline = |document: &mut Document| {
@@ -202,7 +202,7 @@ fn points_and_stages_change_their_form() {
         stage.presets = crate::scene_file::PresetsDoc::Inline(Box::new(presets));
     };
     let new = edited(text, inline);
-    assert!(new.contains("# to be changed\n[stage.presets"), "{new}");
+    assert!(new.contains("\n# above\n# to be changed\n[stage.presets]\n"), "{new}");
     let table = "format = 1\n[camera]\nlook_at = [0, 1, 0]\n[camera.eye] # a rule\nx = 1\ny = 2\nabove_ground_m = 3\n";
     edited(table, drag);
     let dotted = "format = 1\ncamera.eye = [0, 0, 1] # here\ncamera.look_at = [0, 1, 0]\n";

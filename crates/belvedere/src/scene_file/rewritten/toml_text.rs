@@ -35,9 +35,19 @@ fn entries(into: &mut dyn TableLike, before: &[Entry], after: &[Entry], inline: 
         if was == Some(value) {
             continue;
         }
+        let comments = comments(into, key);
+        let was_value = into.get(key).is_some_and(Item::is_value);
         match into.get_mut(key) {
             Some(item) => change(item, was, value, inline),
             None => drop(into.insert(key, new(value, inline))),
+        }
+        // What stood above and beside a value stands above the table that comes in its place.
+        if was_value && let Some(table) = into.get_mut(key).and_then(Item::as_table_mut) {
+            let comments = comments.map_or_else(String::new, |comments| format!("{comments}\n"));
+            table.decor_mut().set_prefix(format!("\n{comments}"));
+            if let Some(mut key) = into.key_mut(key) {
+                key.leaf_decor_mut().clear();
+            }
         }
     }
 }
@@ -56,17 +66,10 @@ fn change(item: &mut Item, before: Option<&Node>, after: &Node, inline: bool) {
             tables(list, before, after);
         }
         (Item::Value(text), _, _) => {
-            let mut fresh = new(after, inline);
-            match &mut fresh {
-                // What stood beside a text stands above the table that comes in its place.
-                Item::Table(table) if !text.is_inline_table() => {
-                    let beside = text_of(text.decor().suffix()).trim().to_owned();
-                    if !beside.is_empty() {
-                        table.decor_mut().set_prefix(format!("\n{beside}\n"));
-                    }
-                    *item = fresh;
-                }
-                _ => value(text, before, after),
+            let fresh = new(after, inline);
+            match fresh.is_table() && !text.is_inline_table() {
+                true => *item = fresh,
+                false => value(text, before, after),
             }
         }
         _ => *item = new(after, inline),
@@ -149,7 +152,7 @@ fn each_place(table: &mut Table, each: &mut dyn FnMut(&mut isize)) {
 }
 
 /// The comments of an entry; `None` without any.
-fn comments(table: &Table, key: &str) -> Option<String> {
+fn comments(table: &dyn TableLike, key: &str) -> Option<String> {
     let (key, item) = table.get_key_value(key)?;
     let above = text_of(key.leaf_decor().prefix()).lines();
     let beside = item.as_value().map_or("", |value| text_of(value.decor().suffix()));
