@@ -2,8 +2,8 @@
 
 use super::level::Level;
 use super::report::{FailingCell, GeneraliseReport, LevelReport};
-use belvedere_core::DVec2;
-use belvedere_scene::city::{Building, City, Polygon};
+use super::shapes::{area, land_of};
+use belvedere_scene::city::{Building, City};
 
 /// How far the volume of a level, or of a cell, may differ from that of its buildings, as a share of it.
 pub(super) const VOLUME_OFF: f64 = 0.1;
@@ -25,22 +25,13 @@ pub fn volume_m3(building: &Building) -> f64 {
     };
     // Solids whose surfaces all look inwards have a negative volume.
     let within = rings.map(under).sum::<f64>().abs();
-    if within.is_finite() && within > 0.0 { within } else { area_m2(&building.footprint) * height_m(building) }
+    if within.is_finite() && within > 0.0 { within } else { area(&land_of(&building.footprint)) * height_m(building) }
 }
 
 /// Height of a building, 9 m where it has none that is usable, metres.
 pub(super) fn height_m(building: &Building) -> f64 {
     let usable = building.height_m.is_finite() && building.height_m > 0.0;
     if usable { building.height_m } else { 9.0 }
-}
-
-fn area_m2(footprint: &[Polygon]) -> f64 {
-    let doubled = |ring: &Vec<DVec2>| {
-        let at = |k: usize| ring[k % ring.len()] - ring[0];
-        (1..ring.len()).map(|k| at(k).perp_dot(at(k + 1))).sum::<f64>().abs()
-    };
-    let of = |p: &Polygon| doubled(&p.outer) - p.holes.iter().map(doubled).sum::<f64>();
-    footprint.iter().map(|p| 0.5 * of(p)).sum()
 }
 
 /// Writes into a report the volumes that the blocks and landmarks of `levels` have, beside those of the buildings of `city`.
@@ -90,7 +81,7 @@ fn measure_cells(figures: &mut LevelReport, city: &City, level: &Level) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere_scene::city::{CityFace, HeightSource, Surface};
+    use belvedere_scene::city::{CityFace, HeightSource, Polygon, Surface};
     use glam::DVec3;
 
     /// A wedge of 10 m by 20 m, 6 m high at the sides and 10 m at the ridge, on a floor at 500 m.
