@@ -15,4 +15,3 @@ mod smoothing;
 mod time_limit;
 mod trends;
 mod viewpoint;
-mod written;
