@@ -15,3 +15,4 @@ mod smoothing;
 mod time_limit;
 mod trends;
 mod viewpoint;
+mod written;
