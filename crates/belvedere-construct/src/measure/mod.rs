@@ -6,6 +6,7 @@ mod buffer;
 mod displaced;
 mod hidden;
 mod image;
+mod path;
 mod pinpoint;
 mod report;
 mod shares;
@@ -13,6 +14,7 @@ mod surface;
 
 pub use bend::BendMeasure;
 pub use hidden::{HiddenReason, HiddenRun, hidden};
+pub use path::length_seen;
 pub use report::{Clearance, FeatureMeasure, Measures, MethodShare, Visibility};
 pub use shares::{Shares, percent};
 

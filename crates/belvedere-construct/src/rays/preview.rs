@@ -145,6 +145,11 @@ impl PathPreview {
         self.lens
     }
 
+    /// Point of the path at a length along it, scene units.
+    pub fn point_at(&self, along_m: f64) -> DVec3 {
+        self.path.at(along_m)
+    }
+
     /// Points of the path that a preview from `position_m` shows, as far as `reach_m`, `spacing` apart.
     pub fn samples(&self, position_m: f64, reach_m: f64, spacing: f64) -> Vec<DVec3> {
         let count = (reach_m / spacing).floor().clamp(0.0, 1e6) as usize;

@@ -10,6 +10,7 @@ use crate::scene_file::{ConstructorDoc, ConstructorKind, SourceDocument, StageDo
 use crate::targets;
 use belvedere_construct::ConstructError;
 use belvedere_construct::centreline::CentrelineReport;
+use belvedere_construct::measure::length_seen;
 use belvedere_construct::rays::{
     FilmPlanner, Lens, PathPreview, PreviewReport, ProbeOptions, ProbeReport, Target, TrackingOptions, TrackingReport,
     auto_probe, track_target,
@@ -38,26 +39,54 @@ pub enum ConstructorReport {
 /// Share of the length asked for below which a preview gets a warning.
 const SHORT: f64 = 0.95;
 
-/// Warning about a preview that follows less of the path than asked for.
+/// Warning about a preview that shows or follows less of the path than asked for.
 pub(super) fn remark(report: Option<&ConstructorReport>) -> Option<Warning> {
-    let Some(ConstructorReport::PathPreview(PathReport { preview, .. })) = report else { return None };
-    let PreviewReport { position_m, reach_m, wanted_m, .. } = *preview;
+    let Some(ConstructorReport::PathPreview(PathReport { preview, followed_m, .. })) = report else { return None };
+    let PreviewReport { position_m, reach_m, wanted_m, turns, .. } = *preview;
+    let followed_m = followed_m.unwrap_or(reach_m);
     (reach_m < SHORT * wanted_m).then(|| {
+        let why = if followed_m < SHORT * wanted_m {
+            format!("rays follow {followed_m:.1} of it round {turns} turns, for no more fit into the picture")
+        } else {
+            format!("rays follow all of it round {turns} turns, but ground or what stands on it hides the rest, or it lies beside the picture")
+        };
         let text = format!(
-            "constructor: from {position_m:.1} the preview follows {reach_m:.1} of the {wanted_m:.1} asked for: no more turns fit into \
-             the picture; give a shorter preview_m or a narrower lens"
+            "constructor: from {position_m:.1} the preview shows {reach_m:.1} of the {wanted_m:.1} asked for: {why}; give a shorter \
+             preview_m or a narrower lens"
         );
         let warning = Warning::new(WarningKind::Limited, text).about("constructor").with("position_m", position_m);
-        warning.with("reach_m", reach_m).with("wanted_m", wanted_m)
+        warning.with("reach_m", reach_m).with("wanted_m", wanted_m).with("followed_m", followed_m)
     })
+}
+
+/// Measures how much of the path the picture shows over terrain: the record says what is seen.
+fn judge(report: &mut PathReport, scene: &Scene, view: &View, (preview, layer): (&PathPreview, Option<&str>)) {
+    if scene.terrain().is_none() {
+        return;
+    }
+    let lift = scene.layers.iter().find(|l| Some(l.id.as_str()) == layer).map_or(0.0, |l| match &l.kind {
+        LayerKind::Line(line) => line.lift_m,
+        _ => 0.0,
+    });
+    let PreviewReport { position_m, wanted_m, reach_m, .. } = report.preview;
+    let path: (&dyn Fn(f64) -> _, f64) = (&|s| preview.point_at(s), preview.length());
+    let [ahead, all] = length_seen(scene, view, path, [position_m, position_m + wanted_m], lift);
+    (report.preview.reach_m, report.followed_m, report.seen_m) = (ahead, Some(reach_m), Some(all));
 }
 
 /// Report of a path preview, and the path that was traced for it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PathReport {
-    /// The preview.
+    /// The preview. `reach_m` is the length ahead that the picture shows, by lines of sight over the drawn ground; in scenes without
+    /// terrain the length that rays follow.
     #[serde(flatten)]
     pub preview: PreviewReport,
+    /// Length ahead that rays follow round the turns, whether or not something hides it, scene units; `None` where `reach_m` is that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub followed_m: Option<f64>,
+    /// Length of the whole path that the picture shows, before and beyond the preview too, as `measure` finds it, scene units.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seen_m: Option<f64>,
     /// The centreline, if one was traced.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub centreline: Option<CentrelineReport>,
@@ -135,6 +164,16 @@ pub(super) fn check_stages(source: &SourceDocument) -> Result<(), BelvedereError
     }
 }
 
+/// Reads the path of a preview, without previewing it.
+///
+/// # Errors
+/// Those of [`path::read`].
+pub(super) fn check_path(source: &SourceDocument, roots: &Roots, scene: &Scene) -> Result<(), BelvedereError> {
+    let doc = stated(source).filter(|doc| doc.kind == ConstructorKind::PathPreview);
+    let Some(name) = doc.and_then(|doc| doc.path.as_deref()) else { return Ok(()) };
+    path::read(source, roots, scene, name).map(drop)
+}
+
 /// The view `base` with the turns of the document's constructor.
 pub(super) fn construct(
     source: &SourceDocument,
@@ -149,7 +188,8 @@ pub(super) fn construct(
         let prepared = prepared(source, roots, scene, base.pinhole().image, &mut solving.memory.preview)?;
         inputs.extend(prepared.file.clone());
         warnings.extend(prepared.warnings.iter().cloned());
-        let (view, report) = preview(source, &base, prepared)?;
+        let (view, mut report) = preview(source, &base, prepared)?;
+        judge(&mut report, scene, &view, (&prepared.preview, doc.path.as_deref()));
         return Ok((view, Some(ConstructorReport::PathPreview(report))));
     }
     if let Some(reason) = refusal("the constructor", scene, &base) {
@@ -236,7 +276,8 @@ fn preview(source: &SourceDocument, base: &View, prepared: &Prepared) -> Result<
     let stages = earlier.chain(seen.view.stages().iter().cloned()).collect();
     let view = View::new(root, stages).map_err(|e| source.error(&["constructor", "kind"], e))?;
     let Prepared { centreline, walls, .. } = prepared;
-    Ok((view, PathReport { preview: seen.report, centreline: *centreline, walls: walls.clone() }))
+    let (centreline, walls) = (*centreline, walls.clone());
+    Ok((view, PathReport { preview: seen.report, followed_m: None, seen_m: None, centreline, walls }))
 }
 
 /// Width of the picture at the position in a channel, in clearances of the path.
@@ -321,7 +362,8 @@ mod tests {
     fn previews_shorter_than_asked_are_said() {
         let report = |reach_m: f64| {
             let preview = PreviewReport { position_m: 10.0, reach_m, wanted_m: 200.0, turns: 1, tolerance_m: 1.0 };
-            ConstructorReport::PathPreview(PathReport { preview, centreline: None, walls: Vec::new() })
+            let (followed_m, seen_m, centreline, walls) = (None, None, None, Vec::new());
+            ConstructorReport::PathPreview(PathReport { preview, followed_m, seen_m, centreline, walls })
         };
         let said = remark(Some(&report(120.0))).expect("a warning");
         assert!(said.text().contains("120.0 of the 200.0"), "{said}");

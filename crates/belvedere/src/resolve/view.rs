@@ -56,7 +56,10 @@ pub(crate) fn resolve(
     let view = View::new(resolved.pinhole, chain).map_err(|e| source.error(&["stage"], e))?;
     let (view, constructor) = match solving {
         Some(solving) => constructor::construct(source, roots, scene, view, solving, (&mut inputs, &mut warnings))?,
-        None => (view, None),
+        None => {
+            constructor::check_path(source, roots, scene)?;
+            (view, None)
+        }
     };
     warnings.extend(constructor::remark(constructor.as_ref()));
     let light = light::resolve(source, &ground, view.pinhole().eye, &mut warnings)?;
