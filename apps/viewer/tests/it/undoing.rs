@@ -7,6 +7,7 @@ use eframe::egui::{
     Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, TouchPhase, Vec2, vec2,
 };
 use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
 use std::sync::Arc;
 
 type Window = Harness<'static, Viewer>;
