@@ -33,7 +33,8 @@ fn lengths_of_vectors_and_distance_marks_on_steep_ground_are_those_of_measure() 
     let options = PictureOptions { vectors: VectorContent::Alone, ..PictureOptions::default() };
     let svg = session.render(&options).expect("a picture").to_svg().expect("written").expect("vectors");
     let stated = |name: &str| {
-        let lengths = svg.split(&format!("{name}=\"")).skip(1).filter_map(|rest| rest.split('"').next());
+        let key = format!("{name}=\"");
+        let lengths = svg.split(&key).skip(1).filter_map(|rest| rest.split('"').next());
         lengths.map(|v| v.parse::<f64>().expect("a number")).sum::<f64>()
     };
     let written = [stated("data-visible-length"), stated("data-hidden-length")];
