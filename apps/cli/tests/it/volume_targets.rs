@@ -139,11 +139,15 @@ fn a_cutaway_says_how_many_pixels_show_the_target_and_warns_of_few() {
 fn points_of_a_line_behind_one_another_in_a_volume_are_judged_where_the_picture_cuts_it() {
     let place = Place::new();
     place.write("wall.nrrd", &wall());
-    let line = "[[layer]]\nid = 'drill'\nkind = 'line'\nsource = 'drill.csv'\n";
-    place.write("drill.csv", "x,y,z\n0,61.9,3\n1,64.1,3\n");
+    let line = "[[layer]]\nid = 'drill'\nkind = 'line'\nsource = 'drill.geojson'\n";
+    place.write("drill.geojson", "{\"type\":\"LineString\",\"coordinates\":[[500,61.9,3],[501,64.1,3]]}");
     let fallback = "[constructor]\nkind = 'manual'\ntarget = 'drill'\nfallback = ['cutaway']\n";
-    let camera = SCENE.find("[camera]").expect("a camera");
-    place.write("s.toml", &format!("{}{line}{}{fallback}", &SCENE[..camera], &SCENE[camera..]));
+    // Away from the origin, where positions could be degrees.
+    let moved =
+        [("[-22.5, 60, -6]", "[477.5, 60, -6]"), ("[0, 0, 3]", "[500, 0, 3]"), ("[0, 100, 3]", "[500, 100, 3]")];
+    let scene = moved.iter().fold(SCENE.to_owned(), |scene, (from, to)| scene.replace(from, to));
+    let camera = scene.find("[camera]").expect("a camera");
+    place.write("s.toml", &format!("{}{line}{}{fallback}", &scene[..camera], &scene[camera..]));
     place.ok(&["render", "s.toml", "-o", "d.png"]);
     let found = report(&place, "d.png.json")["fallback"].clone();
     // The wall is cut at the near end: matter still hides the far one.

@@ -135,8 +135,9 @@ fn notes_of(mut notes: Vec<Warning>, levels: [&Level; 2]) -> Vec<Warning> {
 
 /// Warning about outlines that are taken as their convex hulls.
 fn tangled(city: &City) -> Option<Warning> {
-    let footprints = city.buildings.par_iter().map(|b| &b.footprint);
-    let count = footprints.chain(city.areas.par_iter().map(|a| &a.polygons)).filter(|p| shapes::is_tangled(p)).count();
+    let footprints = city.buildings.par_iter().flat_map(|b| &b.footprint);
+    let count =
+        footprints.chain(city.areas.par_iter().flat_map(|a| &a.polygons)).filter(|p| shapes::is_tangled(p)).count();
     let most = shapes::MOST_CROSSINGS;
     let what =
         format!("outlines cross themselves more than {most} times and are taken as their convex hulls; draw them anew");

@@ -26,26 +26,31 @@ fn ring(points: &[DVec2]) -> Option<LineString<f64>> {
         .then(|| LineString::from(points.iter().map(|p| (p.x, p.y)).collect::<Vec<_>>()))
 }
 
-/// Crossings of the rings of an outline up to which they are repaired: what repair costs grows with the crossings, which may be as many
+/// Crossings of the rings of a polygon up to which they are repaired: what repair costs grows with the crossings, which may be as many
 /// as pairs of edges.
 pub(super) const MOST_CROSSINGS: usize = 1000;
 
-/// Whether the rings of an outline cross themselves or each other so often that [`land_of`] is their convex hull.
-pub(super) fn is_tangled(polygons: &[Polygon]) -> bool {
-    crossings::exceed(polygons, MOST_CROSSINGS)
+/// Whether the rings of a polygon cross themselves or each other so often that [`land_of`] takes its convex hull. Polygons of one outline,
+/// such as streets, may cross each other.
+pub(super) fn is_tangled(polygon: &Polygon) -> bool {
+    crossings::exceed(polygon, MOST_CROSSINGS)
+}
+
+fn hull(polygon: &Polygon) -> Land {
+    let points = polygon.outer.iter().filter(|p| p.is_finite());
+    let points: LineString<f64> = points.map(|p| (p.x, p.y)).collect::<Vec<_>>().into();
+    one(points.convex_hull())
 }
 
 /// The land of an outline; rings that cross themselves or each other are repaired, or replaced by their convex hull where they are tangled
 /// ([`is_tangled`]); rings that are not finite are left out.
 pub(super) fn land_of(polygons: &[Polygon]) -> Land {
-    if is_tangled(polygons) {
-        let points = polygons.iter().flat_map(|p| &p.outer).filter(|p| p.is_finite());
-        let points: LineString<f64> = points.map(|p| (p.x, p.y)).collect::<Vec<_>>().into();
-        return one(points.convex_hull());
-    }
     let parts: Vec<Land> = polygons
         .iter()
         .filter_map(|p| {
+            if is_tangled(p) {
+                return Some(hull(p));
+            }
             let holes = p.holes.iter().filter_map(|h| ring(h)).collect();
             let polygon = geo::Polygon::new(ring(&p.outer)?, holes);
             // The rule of odd and even crossings needs no orientation of rings.

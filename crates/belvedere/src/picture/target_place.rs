@@ -56,8 +56,10 @@ impl TargetPlace {
         if !holds_volumes || bounds.is_empty() || (p.cmpge(bounds.min) & p.cmple(bounds.max)).all() {
             return Ok(());
         }
-        let range =
-            |axis: usize| format!("{} {:.6} to {:.6}", ["x", "y", "z"][axis], bounds.min[axis], bounds.max[axis]);
+        let range = |axis: usize| {
+            let [low, high] = [bounds.min, bounds.max].map(|corner| (corner[axis] * 1e6).round() / 1e6);
+            format!("{} {low} to {high}", ["x", "y", "z"][axis])
+        };
         let reason = format!(
             "the point {}, {}, {} lies outside everything in the scene ({}); give a point inside",
             p.x,

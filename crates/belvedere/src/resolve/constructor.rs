@@ -44,11 +44,12 @@ pub(super) fn remark(report: Option<&ConstructorReport>) -> Option<Warning> {
     let Some(ConstructorReport::PathPreview(PathReport { preview, followed_m, .. })) = report else { return None };
     let PreviewReport { position_m, reach_m, wanted_m, turns, .. } = *preview;
     let followed_m = followed_m.unwrap_or(reach_m);
+    let turns = if turns == 1 { "1 turn".to_owned() } else { format!("{turns} turns") };
     (reach_m < SHORT * wanted_m).then(|| {
         let why = if followed_m < SHORT * wanted_m {
-            format!("rays follow {followed_m:.1} of it round {turns} turns, for no more fit into the picture")
+            format!("rays follow {followed_m:.1} of it round {turns}, for no more fit into the picture")
         } else {
-            format!("rays follow all of it round {turns} turns, but ground or what stands on it hides the rest, or it lies beside the picture")
+            format!("rays follow all of it round {turns}, but ground or what stands on it hides the rest, or it lies beside the picture")
         };
         let text = format!(
             "constructor: from {position_m:.1} the preview shows {reach_m:.1} of the {wanted_m:.1} asked for: {why}; give a shorter \

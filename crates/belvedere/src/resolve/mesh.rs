@@ -69,10 +69,16 @@ pub(super) fn with_ambient_occlusion(
     let Occluded { mesh, step, left_out } =
         belvedere_sight::with_ambient_occlusion(mesh, ground, &settings, &loader.options.progress)?;
     if step > settings.step {
+        // Two digits, whatever the unit.
+        let short = |v: f64| {
+            let scale = 10f64.powf(1.0 - v.log10().floor());
+            (v * scale).round() / scale
+        };
         let text = format!(
-            "ambient_occlusion = {reach} asks for points {:.2e} apart, which are too many for {triangles} triangles; they lie {step:.2e} apart, so \
+            "ambient_occlusion = {reach} asks for points {} apart, which are too many for {triangles} triangles; they lie {} apart, so \
              that shade of that reach is coarse: a greater distance shows more",
-            settings.step
+            short(settings.step),
+            short(step)
         );
         let warning = Warning::new(WarningKind::Reduced, text);
         loader.note(index, [warning.with("asked", settings.step).with("step", step)]);

@@ -208,10 +208,14 @@ fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnsw
     }
     let other = (targets.judge != targets.search).then(|| TargetSight::new(scene, &targets.judge));
     let sight = other.as_ref().unwrap_or(&searching);
-    let bent = match &bend {
+    let mut bent = match &bend {
         Some(Bend::Rays(sidestep, root)) => sidestep.seen_by(root, &view)?,
         _ => view.clone(),
     };
+    // The refitted view may show as much without a bend.
+    if refit.is_some() && bend.is_some() && !judge.gains(sight, &view, &bent)? {
+        (bend, bent) = (None, view.clone());
+    }
     // The finished pictures tell the shares of targets with a surface, unless a fallback has to be decided on before.
     let report = match judge.is_by_pictures() && request.fallback.is_empty() {
         true => BendReport { in_frame: sight.in_frame(&bent), in_frame_straight: sight.in_frame(&view), ..report },

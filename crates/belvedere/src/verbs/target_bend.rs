@@ -59,6 +59,11 @@ impl<'a> PictureJudge<'a> {
         Ok(mask.map_or_else(|| sight.share(view, 0.0), |(mask, _)| mask.share() * sight.in_frame(view)))
     }
 
+    /// Whether pictures show more of the target bent than straight; `true` where they cannot tell.
+    pub(super) fn gains(&self, sight: &TargetSight<'_>, straight: &View, bent: &View) -> Result<bool, BelvedereError> {
+        Ok(!self.is_by_pictures() || self.share(sight, bent)? >= self.share(sight, straight)? + LEAST_GAIN)
+    }
+
     /// The bend of a view that shows most of the target, if one shows more than straight rays. Where the straight picture shows all of it
     /// none is tried.
     pub(super) fn bend(

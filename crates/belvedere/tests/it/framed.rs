@@ -106,7 +106,7 @@ fn every_visible_voxel_of_a_small_or_thickly_sliced_volume_is_in_its_picture() {
     for k in 0..24 {
         let dims: [usize; 3] = std::array::from_fn(|_| 3 + random.below(if k % 2 == 0 { 14 } else { 44 }));
         let low: [usize; 3] = dims.map(|n| random.below(n / 2));
-        let high: [usize; 3] = std::array::from_fn(|a| low[a] + 1 + random.below(dims[a] - low[a]));
+        let high: [usize; 3] = std::array::from_fn(|a| low[a] + 2 + random.below(dims[a] - low[a] - 1));
         let spacing: [f64; 3] = std::array::from_fn(|_| 10f64.powf(random.range(-0.5, 0.8)));
         // Denser towards the middle of the body, so that the most opaque voxels lie far from its surface.
         let value = |i: usize| {

@@ -95,8 +95,8 @@ fn a_residue_drawn_as_a_ribbon_is_judged_bent_and_cut_free_by_its_pixels() {
             [straight * report.in_frame_straight - report.visible_straight, shown * report.in_frame - report.visible];
         assert!(off.iter().all(|off| off.abs() < 0.02), "{see}: {straight} and {shown} in the picture, {report:?}");
         assert!((report.light_straight - straight).abs() < 0.15, "{see}: {straight}, {report:?}");
-        // Where all is seen nothing is bent; where something is hidden bends are tried, and none is taken that shows less.
-        assert_eq!(report.tried == 0, straight >= 1.0 - 1e-9, "{see}: {straight}, {report:?}");
+        // Where something is hidden bends are tried; where all is seen nothing is bent, and no bend is taken that shows less.
+        assert!(report.tried > 0 || straight >= 1.0 - 1e-9, "{see}: {straight}, {report:?}");
         assert!(shown >= straight && (shown > straight) == bent.is_bent(), "{see}: {straight} and {shown}");
         assert_eq!(found.missed().is_empty(), report.visible >= 0.99, "{see}: {report:?}");
         hidden += usize::from(report.visible < 0.99);

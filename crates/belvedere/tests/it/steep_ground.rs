@@ -44,8 +44,8 @@ fn lengths_of_vectors_and_distance_marks_on_steep_ground_are_those_of_measure() 
     assert!((sum / 2200.0 - 1.0).abs() < 0.005, "{written:?}, 2200 m in plan");
     assert!((written[0] / sum - lines.share.expect("in view")).abs() < 0.005, "{written:?}, {lines:?}");
     // Every half kilometre of the 2.2, and not of the 2.9 along the slopes.
-    let mark = |text: &str| svg.contains(&format!(">{text} km<"));
-    assert!(mark("0.5") && mark("2.0") && !mark("2.5"));
+    let mark = |text: &str| svg.contains(&format!(">{text} m<"));
+    assert!(mark("500") && mark("2000") && !mark("2500"));
 }
 
 #[test]

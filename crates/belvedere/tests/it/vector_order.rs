@@ -129,7 +129,8 @@ impl Shape {
     }
 }
 
-/// Colour of vectors at a pixel; `None` where the border of a shape runs through it, or where they do not cover what lies below.
+/// Colour of vectors at a pixel; `None` where they do not cover what lies below, or where the border of a shape runs through it and nothing
+/// covers that.
 fn painted(shapes: &[Shape], p: DVec2) -> Option<[u8; 3]> {
     let mut color: Option<[f64; 3]> = None;
     for shape in shapes {
@@ -137,9 +138,8 @@ fn painted(shapes: &[Shape], p: DVec2) -> Option<[u8; 3]> {
         for (paint, off) in [(shape.fill, fill), (shape.stroke, stroke)] {
             let Some((rgb, alpha)) = paint else { continue };
             if off.abs() < 1.2 || shape.dashed && off < 0.0 {
-                return None;
-            }
-            if off < 0.0 && alpha >= 1.0 {
+                color = None;
+            } else if off < 0.0 && alpha >= 1.0 {
                 color = Some(rgb.map(f64::from));
             } else if off < 0.0 {
                 color = color.map(|below| std::array::from_fn(|k| below[k] + alpha * (f64::from(rgb[k]) - below[k])));
