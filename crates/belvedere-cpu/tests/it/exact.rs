@@ -39,7 +39,7 @@ pub(crate) struct Difference {
     /// Number of pixels away from the silhouettes.
     pub(crate) judged: usize,
     /// How many of those pixels have another id, and how many have the same id and another depth.
-    ids: usize,
+    pub(crate) ids: usize,
     depths: usize,
 }
 

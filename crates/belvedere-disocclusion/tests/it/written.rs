@@ -114,7 +114,7 @@ fn a_guarantee_is_one_of_every_sample_of_the_written_file() {
         let (moved, solved, after) = judged(noise_m, seed);
         let report = &solved.report;
         assert!(report.metrics.visible_dense >= 0.9999, "the ground that was solved on shows all: {report:?}");
-        assert!(report.visible_whole_before < 0.9, "{report:?}");
+        assert!(report.visible_whole_before < 0.95, "{report:?}");
         let seen = marched(&moved);
         assert!((after.visible_dense - seen).abs() < 0.005, "said {}, the file shows {seen}", after.visible_dense);
         assert!((report.visible_whole - seen).abs() < 0.005, "{report:?}: {seen}");
