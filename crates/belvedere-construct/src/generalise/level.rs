@@ -2,11 +2,10 @@
 
 use super::blocks::{CellKind, Footprint, Grain, Site, footprint, kind};
 use super::landmarks::{Volume, landmarks, mean_height};
-use super::report::{BlockReport, FailingCell, LevelReport};
+use super::report::{BlockReport, FailingCell, LevelReport, VOLUME_OFF};
 use super::settings::GeneraliseSettings;
 use super::shapes::{Land, area, polygons_of, triangles};
 use super::streets::Dividers;
-use super::volume::VOLUME_OFF;
 use belvedere_scene::city::{Building, City, CityArea, HeightSource, LandCover, Polygon, StructureKind};
 use geo::{Area, InteriorPoint, MultiPolygon};
 use rayon::prelude::*;

@@ -69,6 +69,8 @@ pub struct LevelReport {
 
 /// Most names of one sentence.
 const MOST_NAMES: usize = 5;
+/// How far the volume of a level, or of a cell, may differ from that of its buildings, as a share of it.
+pub(super) const VOLUME_OFF: f64 = 0.1;
 
 impl LevelReport {
     /// One sentence if the level does not keep the volume of the buildings.

@@ -1,12 +1,9 @@
 //! Volumes of buildings as they are drawn and written, and what levels of abstraction keep of them.
 
 use super::level::Level;
-use super::report::{FailingCell, GeneraliseReport, LevelReport};
+use super::report::{FailingCell, GeneraliseReport, LevelReport, VOLUME_OFF};
 use super::shapes::{area, land_of};
 use belvedere_scene::city::{Building, City};
-
-/// How far the volume of a level, or of a cell, may differ from that of its buildings, as a share of it.
-pub(super) const VOLUME_OFF: f64 = 0.1;
 
 /// Volume of a building, m^3: that between its surfaces, which stand on its base where they are open below; without surfaces its
 /// footprint times its height.
