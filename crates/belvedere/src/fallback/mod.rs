@@ -293,7 +293,7 @@ impl FallbackPlan {
     /// Share of the target's points that lines of sight reach, 0..=1: past what is cut away, and into volumes from where the picture cuts
     /// them.
     fn planned_share(&self, view: &View) -> Result<f64, BelvedereError> {
-        let closer = self.into_volumes(view)?;
+        let closer = self.past_volumes(view)?;
         let gone = self.transparent.iter().chain(&self.cut).filter(|part| closer.is_none() || !self.is_volume(part));
         let open = occluders::without(&self.scene, &gone.collect::<Vec<_>>());
         Ok(TargetSight::new(&open, &self.target).share(closer.as_ref().unwrap_or(view), 0.0))
@@ -304,7 +304,7 @@ impl FallbackPlan {
     }
 
     /// The view that begins at the nearest depth of the target, where volumes are cut; `None` if none is, or if it cannot be.
-    fn into_volumes(&self, view: &View) -> Result<Option<View>, BelvedereError> {
+    fn past_volumes(&self, view: &View) -> Result<Option<View>, BelvedereError> {
         let extent = Extent::of(view, &self.target.points).filter(|_| self.cut.iter().any(|part| self.is_volume(part)));
         let Some(extent) = extent else { return Ok(None) };
         let pinhole = Pinhole { near: extent.depth[0], ..view.pinhole().clone() };
@@ -331,7 +331,7 @@ impl FallbackPlan {
         if !self.cut.is_empty() {
             let cut: Vec<&Part> = self.cut.iter().collect();
             let mut open = self.blended(&cut, view, draw)?;
-            self.look_into_volumes(&mut open, view, draw)?;
+            self.look_past_volumes(&mut open, view, draw)?;
             let region = self.region(view, draw, [frame.width, frame.height])?;
             let gone: Vec<bool> = (0..region.len()).map(|i| region[i] && open.color[i] != frame.color[i]).collect();
             pixels_opened = Some(gone.iter().filter(|gone| **gone).count());
@@ -454,13 +454,13 @@ impl FallbackPlan {
     }
 
     /// Cuts volumes at the nearest depth of the target and shows their inside behind the cut.
-    fn look_into_volumes(
+    fn look_past_volumes(
         &self,
         open: &mut Frame,
         view: &View,
         draw: &dyn Fn(&Scene, &View) -> Result<Frame, BelvedereError>,
     ) -> Result<(), BelvedereError> {
-        let Some(closer) = self.into_volumes(view)? else { return Ok(()) };
+        let Some(closer) = self.past_volumes(view)? else { return Ok(()) };
         let near = closer.pinhole().near;
         let gone: Vec<&Part> = self.cut.iter().filter(|p| !self.is_volume(p)).chain(&self.transparent).collect();
         let inner = draw(&occluders::without(&self.scene, &gone), &closer)?;
