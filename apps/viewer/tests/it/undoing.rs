@@ -148,10 +148,6 @@ fn the_wheel_does_not_join_a_drag_that_comes_between_its_turns() {
         undo(&mut harness, Modifiers::NONE);
         assert_eq!(*now(&harness), **before);
     }
-    // Turns that follow each other soon are one gesture.
-    (0..3).for_each(|_| wheel(&mut harness, 12));
-    undo(&mut harness, Modifiers::NONE);
-    assert_eq!(*now(&harness), *states[0]);
 }
 
 #[test]
