@@ -91,7 +91,7 @@ fn what_stands_on_ground_of_few_triangles_is_seen_along_curved_rays_whatever_the
         }
         found.push((size, all));
     }
-    // What is left lies along the turns of grounds of ten kilometres and more (docs/unsupported.md).
+    // 1.3 % differed at most when this was written: a limit (docs/unsupported.md).
     assert!(found.iter().all(|(size, all)| ids_agree(all, if *size > 1e3 { 0.02 } else { 1e-3 })), "{found:?}");
 }
 
