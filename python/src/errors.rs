@@ -1,7 +1,7 @@
 //! Errors of the facade as exceptions of `belvedere.errors`.
 
-use belvedere::BelvedereError;
 use belvedere::scene::RenderError;
+use belvedere::{BelvedereError, DocumentError};
 use pyo3::prelude::*;
 
 /// The exception of an error.
@@ -30,7 +30,7 @@ fn class_of(error: &BelvedereError) -> &'static str {
         BelvedereError::Memory(_) | BelvedereError::Render(RenderError::TooLarge { .. }) => "MemoryLimitError",
         BelvedereError::Internal { .. } => "InternalError",
         BelvedereError::Io(_)
-        | BelvedereError::Path { .. }
+        | BelvedereError::Document(DocumentError::Path { .. })
         | BelvedereError::Output { .. }
         | BelvedereError::FramesThere { .. } => "FileError",
         _ => "InputError",

@@ -5,9 +5,10 @@ use crate::stdin::Stdin;
 use crate::timings::Timings;
 use belvedere::answers::{self, Content, Written};
 use belvedere::core::{PinholeError, plain};
+use belvedere::io::IoError;
 use belvedere::scene::Progress;
 use belvedere::verbs::open_files::scene_of_data;
-use belvedere::{BelvedereError, Needs, OpenOptions, Session, Trust, Warning};
+use belvedere::{BelvedereError, DocumentError, Needs, OpenOptions, Session, Trust, Warning};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex};
@@ -98,11 +99,13 @@ fn in_options(error: &BelvedereError) -> String {
         }
         BelvedereError::NoSweepRange => format!("{error}; add one, or give --sweep phi=FIRST:LAST"),
         BelvedereError::Target(reason) if reason.starts_with("palette ") => format!("--palette: {reason}"),
-        BelvedereError::Scene { path: None, reason, .. } => match named_by(reason) {
+        BelvedereError::Document(DocumentError::Scene { path: None, reason, .. }) => match named_by(reason) {
             Some(option) => format!("{option}: {error}"),
             None => error.to_string(),
         },
-        BelvedereError::Scene { path: Some(path), reason, .. } if reason.ends_with("not a scene document") => {
+        BelvedereError::Document(DocumentError::Scene { path: Some(path), reason, .. })
+            if reason.ends_with("not a scene document") =>
+        {
             let file = path.display();
             match scene_of_data(path) {
                 Ok(Some(source)) => {
@@ -133,19 +136,13 @@ fn named_by(reason: &str) -> Option<&'static str> {
 /// End of the message: the options that lift an error; `None` if no option does.
 fn option_for(error: &BelvedereError) -> Option<&'static str> {
     Some(match error {
-        BelvedereError::Path { root_missing: true, .. } => {
-            " with --allow-root DIR, or for good with: belvedere trust SCENE"
-        }
-        BelvedereError::Scene { source: Some(source), .. } | BelvedereError::Frame { source, .. } => {
-            return option_for(source);
-        }
-        BelvedereError::Io(belvedere::io::IoError::Exists { .. }) => "; give --overwrite to replace it",
+        BelvedereError::Document(error) => return option_for_document(error),
+        BelvedereError::Frame { source, .. } => return option_for(source),
+        BelvedereError::Io(error) => return option_for_io(error),
         BelvedereError::Render(belvedere::scene::RenderError::TooLarge { .. }) | BelvedereError::OnePiece { .. } => {
             " (--size, --samples, --max-mem)"
         }
-        BelvedereError::Io(_) | BelvedereError::Memory(_) if belvedere::io::budget::is_refusal(&error.to_string()) => {
-            " (--max-mem)"
-        }
+        BelvedereError::Memory(_) if belvedere::io::budget::is_refusal(&error.to_string()) => " (--max-mem)",
         BelvedereError::Paper { key: "paper", .. } => " (--paper)",
         BelvedereError::Paper { key: "margin_mm", .. } => " (--margin-mm)",
         BelvedereError::Paper { .. } => " (--dpi)",
@@ -158,6 +155,27 @@ fn option_for(error: &BelvedereError) -> Option<&'static str> {
         BelvedereError::Interrupted { .. } => "; the same command with --resume goes on from there",
         _ => return None,
     })
+}
+
+/// The same for errors of documents.
+fn option_for_document(error: &DocumentError) -> Option<&'static str> {
+    match error {
+        DocumentError::Path { root_missing: true, .. } => {
+            Some(" with --allow-root DIR, or for good with: belvedere trust SCENE")
+        }
+        DocumentError::Scene { source: Some(source), .. } => option_for_document(source),
+        DocumentError::Io(error) => option_for_io(error),
+        _ => None,
+    }
+}
+
+/// The same for errors of files.
+fn option_for_io(error: &IoError) -> Option<&'static str> {
+    match error {
+        IoError::Exists { .. } => Some("; give --overwrite to replace it"),
+        _ if belvedere::io::budget::is_refusal(&error.to_string()) => Some(" (--max-mem)"),
+        _ => None,
+    }
 }
 
 /// Options, progress and cancellation of one run.

@@ -1,34 +1,16 @@
 //! Errors of the library. Texts name the given value and the possible ones in the words of the library; an application
 //! adds the names of its own options.
 
+use belvedere_document::DocumentError;
 use std::path::PathBuf;
 
 /// Anything that ends a call without a result.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum BelvedereError {
-    /// A mistake in a scene, preset or other text document.
-    #[error("{}{}{reason}", path.as_ref().map(|p| p.display().to_string()).unwrap_or_default(), at_line(path.is_some(), *line))]
-    Scene {
-        /// The document; `None` for one that was made in memory.
-        path: Option<PathBuf>,
-        /// Line of the mistake, 1-based.
-        line: Option<usize>,
-        /// What is wrong: the measured value, the limit, and what to do.
-        reason: String,
-        /// The refusal of a file that the document names.
-        source: Option<Box<BelvedereError>>,
-    },
-    /// A file name that a scene may not use.
-    #[error("path \"{name}\" {reason}")]
-    Path {
-        /// The name as given.
-        name: String,
-        /// Why it is refused and what to do.
-        reason: String,
-        /// Whether another allowed folder (`OpenOptions::allow_roots`) can lift the refusal.
-        root_missing: bool,
-    },
+    /// A mistake in a scene or preset document, or a file that it may not use.
+    #[error(transparent)]
+    Document(DocumentError),
     /// Points or pixels that cannot be read.
     #[error("{}: {reason}", path.display())]
     Points {
@@ -240,18 +222,9 @@ pub enum BelvedereError {
     Cancelled(#[from] belvedere_scene::Cancelled),
 }
 
-/// `:12: ` after the name of a document; empty for a document without a name.
-fn at_line(named: bool, line: Option<usize>) -> String {
-    match (named, line) {
-        (true, Some(line)) => format!(":{line}: "),
-        (true, None) => ": ".into(),
-        (false, _) => String::new(),
-    }
-}
-
 impl BelvedereError {
     pub(crate) fn not_utf8(name: &str) -> Self {
-        Self::Path { name: name.to_owned(), reason: "is not UTF-8; rename it".into(), root_missing: false }
+        DocumentError::not_utf8(name).into()
     }
 
     /// Whether the work was cancelled rather than failed.
@@ -265,5 +238,14 @@ impl BelvedereError {
                 | Self::Io(belvedere_io::IoError::Cancelled(_))
                 | Self::Render(belvedere_scene::RenderError::Cancelled(_))
         )
+    }
+}
+
+impl From<DocumentError> for BelvedereError {
+    fn from(error: DocumentError) -> Self {
+        match error {
+            DocumentError::Io(error) => Self::Io(error),
+            error => Self::Document(error),
+        }
     }
 }

@@ -57,6 +57,11 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
         &["glam", "pulp", "rayon", "rsparse", "rustfft", "schemars", "serde", "thiserror", "tracing"],
     ),
     (
+        "belvedere-document",
+        &["belvedere-core", "belvedere-io", "belvedere-scene"],
+        &["schemars", "serde", "serde_json", "strsim", "thiserror", "toml", "toml_edit"],
+    ),
+    (
         "belvedere-construct",
         &["belvedere-core", "belvedere-scene", "belvedere-sight"],
         &["geo", "glam", "rayon", "schemars", "serde", "thiserror"],
@@ -80,6 +85,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
             "belvedere-core",
             "belvedere-cpu",
             "belvedere-disocclusion",
+            "belvedere-document",
             "belvedere-io",
             "belvedere-scene",
             "belvedere-sight",

@@ -32,20 +32,22 @@ pub(crate) fn resolve(
         (None, Some(_), Some(_)) => None,
         (Some(_), _, _) => {
             let key = if doc.heading_deg.is_some() { "heading_deg" } else { "pitch_deg" };
-            return Err(source.error(
-                &["camera", key],
-                "camera has look_at and heading_deg/pitch_deg; give either look_at or both angles",
-            ));
+            return Err(source
+                .error(
+                    &["camera", key],
+                    "camera has look_at and heading_deg/pitch_deg; give either look_at or both angles",
+                )
+                .into());
         }
         (None, None, None) => {
-            return Err(
-                source.error(&["camera"], "camera has no direction; give look_at, or heading_deg and pitch_deg")
-            );
+            return Err(source
+                .error(&["camera"], "camera has no direction; give look_at, or heading_deg and pitch_deg")
+                .into());
         }
         (None, given, _) => {
             let (has, lacks) =
                 if given.is_some() { ("heading_deg", "pitch_deg") } else { ("pitch_deg", "heading_deg") };
-            return Err(source.error(&["camera", has], format!("camera has {has} but no {lacks}; add it")));
+            return Err(source.error(&["camera", has], format!("camera has {has} but no {lacks}; add it")).into());
         }
     };
     let heading = doc.heading_deg.unwrap_or(0.0).to_radians();
@@ -74,10 +76,12 @@ pub(crate) fn resolve(
 
 fn direction(source: &SourceDocument, heading: f64, pitch_deg: f64) -> Result<DVec3, BelvedereError> {
     if !(-90.0..=90.0).contains(&pitch_deg) {
-        return Err(source.error(
-            &["camera", "pitch_deg"],
-            format!("camera pitch_deg is {pitch_deg}, it must lie in -90..=90 (down is positive)"),
-        ));
+        return Err(source
+            .error(
+                &["camera", "pitch_deg"],
+                format!("camera pitch_deg is {pitch_deg}, it must lie in -90..=90 (down is positive)"),
+            )
+            .into());
     }
     let pitch = pitch_deg.to_radians();
     Ok(DVec3::new(heading.sin() * pitch.cos(), heading.cos() * pitch.cos(), -pitch.sin()))
@@ -90,10 +94,10 @@ fn projection(source: &SourceDocument) -> Result<Projection, BelvedereError> {
         (ProjectionDoc::Perspective, Some(_)) => Err(source.error(
             &["camera", "ortho_height_m"],
             "camera has ortho_height_m but projection is \"perspective\"; set projection = \"orthographic\" or remove it",
-        )),
+        ).into()),
         (ProjectionDoc::Orthographic, Some(height)) => Ok(Projection::Orthographic { height }),
         (ProjectionDoc::Orthographic, None) => {
-            Err(source.error(&["camera", "projection"], "an orthographic camera needs ortho_height_m; add it"))
+            Err(source.error(&["camera", "projection"], "an orthographic camera needs ortho_height_m; add it").into())
         }
     }
 }
@@ -131,7 +135,7 @@ fn position(
         _ => {
             return Err(fail(format!(
                 "camera {key} needs [x, y, z], or lon and lat with height_m or above_ground_m, or x and y with above_ground_m"
-            )));
+            )).into());
         }
     };
     let z = match (map.height_m, map.above_ground_m) {
@@ -141,7 +145,7 @@ fn position(
             let wrong = |e: String| fail(format!("camera {key}: {}", degrees.unwrap_or(e)));
             above + ground.height_at(xy).map_err(wrong)?
         }
-        _ => return Err(fail(format!("camera {key} needs exactly one of height_m and above_ground_m"))),
+        _ => return Err(fail(format!("camera {key} needs exactly one of height_m and above_ground_m")).into()),
     };
     Ok(xy.extend(z))
 }

@@ -16,11 +16,11 @@ pub(super) fn read(source: &SourceDocument, scene: &Scene, doc: &CentrelineDoc) 
     let layer = scene.layers.iter().find(|l| l.id == doc.volume);
     let volume = match layer.map(|l| &l.kind) {
         Some(LayerKind::Volume(layer)) => &*layer.volume,
-        Some(_) => return Err(fail("volume", format!("layer \"{}\" is no volume; name one", doc.volume))),
+        Some(_) => return Err(fail("volume", format!("layer \"{}\" is no volume; name one", doc.volume)).into()),
         None => {
             let ids: Vec<&str> = scene.layers.iter().map(|l| l.id.as_str()).collect();
             let hint = scene_file::suggestion(&doc.volume, &ids);
-            return Err(fail("volume", format!("volume \"{}\" is no layer of the scene; {hint}", doc.volume)));
+            return Err(fail("volume", format!("volume \"{}\" is no layer of the scene; {hint}", doc.volume)).into());
         }
     };
     let [from, to] = [doc.from, doc.to].map(DVec3::from_array);
@@ -28,7 +28,7 @@ pub(super) fn read(source: &SourceDocument, scene: &Scene, doc: &CentrelineDoc) 
         Some(values) => values,
         None => same_side(volume, [from, to]).map_err(|reason| fail("from", reason))?,
     };
-    centreline(volume, from, to, values).map_err(|e| fail("from", e.to_string()))
+    Ok(centreline(volume, from, to, values).map_err(|e| fail("from", e.to_string()))?)
 }
 
 /// The values on the side of the histogram's threshold on which both points are.

@@ -160,7 +160,7 @@ pub(super) fn check_stages(source: &SourceDocument) -> Result<(), BelvedereError
         _ => None,
     });
     match reason {
-        Some(reason) => Err(source.error(&["constructor", "kind"], format!("constructor: {reason}"))),
+        Some(reason) => Err(source.error(&["constructor", "kind"], format!("constructor: {reason}")).into()),
         None => Ok(()),
     }
 }
@@ -194,7 +194,7 @@ pub(super) fn construct(
         return Ok((view, Some(ConstructorReport::PathPreview(report))));
     }
     if let Some(reason) = refusal("the constructor", scene, &base) {
-        return Err(source.error(&["constructor", "kind"], format!("constructor: {reason}")));
+        return Err(source.error(&["constructor", "kind"], format!("constructor: {reason}")).into());
     }
     if doc.kind == ConstructorKind::AutoProbe {
         let memory = &mut solving.memory.probe;
@@ -259,7 +259,7 @@ pub(crate) fn tracks_target(source: &SourceDocument) -> bool {
 fn fail(source: &SourceDocument, e: ConstructError) -> BelvedereError {
     match e {
         ConstructError::Cancelled(c) => c.into(),
-        e => source.error(&["constructor", "kind"], format!("constructor: {e}")),
+        e => source.error(&["constructor", "kind"], format!("constructor: {e}")).into(),
     }
 }
 
@@ -329,7 +329,7 @@ fn prepared<'m>(
         let preview = preview.map_err(|e| fail(source, e))?;
         *memory = Some(Prepared { made_from, file, centreline, walls, warnings, preview });
     }
-    memory.as_ref().ok_or_else(|| source.error(&["constructor"], "there is no path"))
+    Ok(memory.as_ref().ok_or_else(|| source.error(&["constructor"], "there is no path"))?)
 }
 
 /// Length of the path of a document's preview, scene units; `None` if it has none.
@@ -349,10 +349,10 @@ pub(crate) fn path_length(
 
 /// The target to keep in view: a layer, a part or box of one, atoms, or a point.
 fn target(source: &SourceDocument, scene: &Scene, id: &str) -> Result<Target, BelvedereError> {
-    targets::target(scene, id).map_err(|e| {
+    Ok(targets::target(scene, id).map_err(|e| {
         let hint = if scene.layers.iter().any(|l| l.id == id) { "; name something that stands on it" } else { "" };
         source.error(&["constructor", "target"], format!("constructor: target: {e}{hint}"))
-    })
+    })?)
 }
 
 #[cfg(test)]

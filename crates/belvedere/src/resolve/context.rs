@@ -54,7 +54,7 @@ fn plane_point(context: &StageContext<'_>, at: Table<'_>) -> Result<DVec3, Belve
         let over = look_at.unwrap_or(context.camera.pinhole.eye);
         return Ok(over.truncate().extend(terrain.median_height()));
     }
-    look_at.ok_or_else(|| {
+    Ok(look_at.ok_or_else(|| {
         at.error(&["plane"], "nothing says where the reference plane lies: there is no terrain and no look_at; give plane = { height_m = ... }")
-    })
+    })?)
 }

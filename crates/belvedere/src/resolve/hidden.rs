@@ -19,7 +19,7 @@ pub(crate) fn check(source: &SourceDocument) -> Result<(), BelvedereError> {
         None => Ok(()),
         Some(unknown) => {
             let hint = suggestion(unknown, &layers);
-            Err(source.error(&["hidden"], format!("hidden: there is no layer \"{unknown}\"; {hint}")))
+            Err(source.error(&["hidden"], format!("hidden: there is no layer \"{unknown}\"; {hint}")).into())
         }
     }
 }

@@ -185,13 +185,13 @@ pub(super) fn stated_crs(origin: &Origin, text: &str) -> Result<Option<Crs>, Bel
     }
     let fail = |reason: String| origin.error(&["crs"], reason);
     let Some(code) = epsg(text) else {
-        return Err(fail(format!("crs \"{text}\" is not known; give \"auto\", \"local\" or \"EPSG:n\"")));
+        return Err(fail(format!("crs \"{text}\" is not known; give \"auto\", \"local\" or \"EPSG:n\"")).into());
     };
     let system = CoordinateSystem::from_epsg(code).map_err(|e| fail(format!("crs {e}")))?;
     if !system.suits_scenes() {
         return Err(fail(format!(
             "crs EPSG:{code} is not projected in metres with x east and y north; give a UTM zone or another metric system, or \"auto\""
-        )));
+        )).into());
     }
     Ok(Some(Crs::Epsg(code)))
 }

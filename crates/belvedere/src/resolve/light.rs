@@ -32,10 +32,12 @@ pub(crate) fn resolve(
     };
     let altitude_deg = light.altitude.to_degrees();
     if doc.time.is_none() && !(altitude_deg > 0.0 && altitude_deg <= 90.0) {
-        return Err(source.error(
-            &["light", "altitude_deg"],
-            format!("light altitude_deg is {altitude_deg}, it must lie above 0 and up to 90"),
-        ));
+        return Err(source
+            .error(
+                &["light", "altitude_deg"],
+                format!("light altitude_deg is {altitude_deg}, it must lie above 0 and up to 90"),
+            )
+            .into());
     }
     let air = |(key, reason): Complaint| source.error(&["light", key], reason);
     Ok(Light { sky: sky(doc).map_err(air)?, haze: haze(doc).map_err(air)?, ..light })
@@ -110,7 +112,9 @@ fn from_time(
 ) -> Result<Light, BelvedereError> {
     let fail = |reason: String| source.error(&["light", "time"], reason);
     if doc.azimuth_deg.is_some() || doc.altitude_deg.is_some() {
-        return Err(fail("light has a time and a direction; give either time, or azimuth_deg and altitude_deg".into()));
+        return Err(
+            fail("light has a time and a direction; give either time, or azimuth_deg and altitude_deg".into()).into()
+        );
     }
     check_time(time).map_err(fail)?;
     let days = days_since_j2000(time).unwrap_or_default();

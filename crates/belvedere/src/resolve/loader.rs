@@ -47,13 +47,13 @@ pub(super) struct Loader<'a> {
 impl Loader<'_> {
     /// An error at a key of layer `index`.
     pub(super) fn fail(&self, index: usize, key: &str, reason: impl std::fmt::Display) -> BelvedereError {
-        self.origin.error(&["layer", &index.to_string(), key], format!("layer \"{}\": {reason}", self.id(index)))
+        self.origin.error(&["layer", &index.to_string(), key], format!("layer \"{}\": {reason}", self.id(index))).into()
     }
 
     /// The path of a file that a key names.
     pub(super) fn file(&self, index: usize, key: &str, name: &str) -> Result<PathBuf, BelvedereError> {
         let about = format!("layer \"{}\": ", self.id(index));
-        self.roots.resolve(name).map_err(|e| self.origin.refusal(&["layer", &index.to_string(), key], &about, e))
+        Ok(self.roots.resolve(name).map_err(|e| self.origin.refusal(&["layer", &index.to_string(), key], &about, e))?)
     }
 
     /// An error in words, in which files of the scene's folder are named relative to it.
@@ -71,14 +71,12 @@ impl Loader<'_> {
 
     /// The error of a file of a layer, with the line of the document that names the file.
     pub(super) fn in_layer(&self, index: usize, error: BelvedereError) -> BelvedereError {
-        let BelvedereError::Io(IoError::Format { .. } | IoError::Os { .. }) = &error else { return error };
-        let reason = format!("layer \"{}\": {}", self.id(index), self.shown(&error));
-        match self.origin.error(&["layer", &index.to_string(), "source"], reason) {
-            BelvedereError::Scene { path: Some(path), line, reason, .. } => {
-                BelvedereError::Scene { path: Some(path), line, reason, source: Some(Box::new(error)) }
-            }
-            _ => error,
+        let BelvedereError::Io(io @ (IoError::Format { .. } | IoError::Os { .. })) = error else { return error };
+        if self.origin.is_memory() {
+            return io.into();
         }
+        let about = format!("layer \"{}\": {}", self.id(index), self.shown(&io));
+        self.origin.caused(&["layer", &index.to_string(), "source"], about, io.into()).into()
     }
 
     pub(super) fn id(&self, index: usize) -> &str {

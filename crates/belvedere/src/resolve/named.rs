@@ -48,7 +48,7 @@ pub(super) fn tell(loader: &Loader<'_>, index: usize, files: &mut [Vectors]) -> 
         let named: Vec<Result<(), String>> = files.iter_mut().map(|file| file.name_where(field)).collect();
         if !named.iter().any(Result::is_ok) {
             let reason = named.into_iter().find_map(Result::err).unwrap_or_else(|| "there are no features".into());
-            return Err(fail("label", reason));
+            return Err(fail("label", reason).into());
         }
     }
     if let LayerDoc::Point(point) = layer {
@@ -56,7 +56,7 @@ pub(super) fn tell(loader: &Loader<'_>, index: usize, files: &mut [Vectors]) -> 
     }
     let property = rank(layer).filter(|rank| !RANKS.contains(rank) || (*rank == "population" && has(files, rank)));
     match property {
-        Some(property) => rank_by(property, files).map_err(|reason| fail("rank", reason)),
+        Some(property) => Ok(rank_by(property, files).map_err(|reason| fail("rank", reason))?),
         None => Ok(()),
     }
 }

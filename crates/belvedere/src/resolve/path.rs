@@ -32,7 +32,7 @@ pub(super) fn read(
         let reason = format!(
             "constructor: layer \"{name}\" is no line and does not move; name a line layer, a layer with motion, or a file"
         );
-        return Err(source.error(&keys, reason));
+        return Err(source.error(&keys, reason).into());
     }
     let path = roots.resolve(name).map_err(|e| {
         let ids: Vec<&str> = scene.layers.iter().map(|l| l.id.as_str()).collect();

@@ -1,7 +1,7 @@
 //! Resolves the turns of a document to curved rays.
 
-use crate::BelvedereError;
 use crate::scene_file::{AxisDoc, MergeDoc, RaysStageDoc, SplitDoc, StageDoc, Table, TurnDoc, WayDoc};
+use crate::{BelvedereError, DocumentError};
 use belvedere_construct::rays::Sidestep;
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::map::split_rays::{Fork, Merge, Seam, SplitSpec};
@@ -13,7 +13,7 @@ pub(super) fn resolve(root: &Pinhole, doc: &RaysStageDoc, at: Table<'_>) -> Resu
         return parting(root, doc, split, at);
     }
     if doc.turn.is_empty() {
-        return Err(at.error(&["turn"], "curved_rays has no turn; give at least one [[stage.turn]]"));
+        return Err(at.error(&["turn"], "curved_rays has no turn; give at least one [[stage.turn]]").into());
     }
     let specs = turn_specs(&doc.turn, &[], at)?;
     let rays = CurvedRays::new(root, doc.model, &specs).map_err(|e| at.error(&["turn"], e))?;
@@ -68,7 +68,7 @@ fn way_doc(spec: &SplitSpec) -> WayDoc {
 }
 
 /// * `path`: path of the table with the turns, within the stage.
-fn turn_specs(docs: &[TurnDoc], path: &[&str], at: Table<'_>) -> Result<Vec<TurnSpec>, BelvedereError> {
+fn turn_specs(docs: &[TurnDoc], path: &[&str], at: Table<'_>) -> Result<Vec<TurnSpec>, DocumentError> {
     let way = if path.is_empty() { String::new() } else { format!("{}, ", path.join(".")) };
     let spec = |(j, turn): (usize, &TurnDoc)| {
         let number = j.to_string();

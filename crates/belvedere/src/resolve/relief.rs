@@ -25,9 +25,9 @@ pub(super) fn resolve(
     let (plane, height) = plane(context, doc.plane.as_ref(), at)?;
     let range = match (doc.range_m, doc.range_tag) {
         (Some(_), Some(_)) => {
-            return Err(
-                at.error(&["range_tag"], "range_m and range_tag both say where the background begins; leave one out")
-            );
+            return Err(at
+                .error(&["range_tag"], "range_m and range_tag both say where the background begins; leave one out")
+                .into());
         }
         (Some(range), None) => range,
         (None, Some(tag)) => transition(context, &plane, tag).map_err(|reason| at.error(&["range_tag"], reason))?,
@@ -45,9 +45,9 @@ pub(super) fn resolve(
     };
     let scale = doc.levelling_scale_m.unwrap_or(LARGE * (range[1] - range[0]));
     if shape.levelling > 0.0 && !(scale > 0.0 && scale.is_finite()) {
-        return Err(
-            at.error(&["levelling_scale_m"], format!("levelling_scale_m is {scale}, it must be greater than 0"))
-        );
+        return Err(at
+            .error(&["levelling_scale_m"], format!("levelling_scale_m is {scale}, it must be greater than 0"))
+            .into());
     }
     let terrain = context.ground.terrain.filter(|_| shape.levelling > 0.0);
     let base = terrain.and_then(|terrain| large_forms(terrain, scale)).map(Arc::new);

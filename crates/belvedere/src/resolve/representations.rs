@@ -21,7 +21,7 @@ pub(crate) fn of(source: &SourceDocument, roots: &Roots) -> Result<Vec<Represent
         if let Some(unknown) = members.iter().find(|layer| !layers.contains(&layer.as_str())) {
             let hint = suggestion(unknown, &layers);
             let reason = format!("representation \"{id}\": there is no layer \"{unknown}\"; {hint}");
-            return Err(source.error(&["representations", id], reason));
+            return Err(source.error(&["representations", id], reason).into());
         }
         all.push(Representation { id: id.clone(), layers: members.clone() });
     }
@@ -42,7 +42,7 @@ pub(crate) fn of(source: &SourceDocument, roots: &Roots) -> Result<Vec<Represent
                     "section \"{id}\" is neither a representation nor a layer of the scene; {}, or name its layers under [representations]",
                     suggestion(id, &known)
                 );
-                return Err(at.error(&["presets"], reason));
+                return Err(at.error(&["presets"], reason).into());
             }
         }
         // Pictures without the bend show the first representation: that of the nearest section.

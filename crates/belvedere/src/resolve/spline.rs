@@ -75,10 +75,10 @@ pub(super) fn presets(
         PresetsDoc::Inline(document) => (**document).clone(),
         PresetsDoc::Named(name) => {
             if !scene_file::names_a_preset_file(name) {
-                return PresetDocument::builtin(name).map_err(|e| match e {
+                return Ok(PresetDocument::builtin(name).map_err(|e| match e {
                     PresetError::UnknownName { name } => at.error(&["presets"], scene_file::no_preset(&name)),
                     e => at.error(&["presets"], e),
-                });
+                })?);
             }
             let path = roots.resolve(name).map_err(|e| at.refusal(&["presets"], e))?;
             let (text, file) = scene_file::read_text(&path)?;

@@ -100,7 +100,7 @@ fn solved_terrain(
                 format!(
                     "delta {name} has sha256 {found}, the scene says {expected}; solve it again, or correct the scene"
                 ),
-            ));
+            ).into());
         }
     }
     let grid = super::delta::read(&path, bytes, context.ground.crs).map_err(|reason| at.error(&["delta"], reason))?;

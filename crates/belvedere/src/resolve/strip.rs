@@ -86,19 +86,19 @@ fn route(
         (None, Some(path)) => return Ok((path.iter().copied().map(DVec2::from_array).collect(), "path")),
         (along, _) => {
             let given = if along.is_some() { "both are given" } else { "neither is given" };
-            return Err(at.error(&["along"], format!("a strip needs along or path, {given}; give exactly one")));
+            return Err(at.error(&["along"], format!("a strip needs along or path, {given}; give exactly one")).into());
         }
     };
     let layers = &context.source.document.layer;
     let Some(layer) = context.scene.layers.iter().find(|l| l.id == *id) else {
         let ids: Vec<&str> = layers.iter().map(|l| l.id()).collect();
         let hint = scene_file::suggestion(id, &ids);
-        return Err(at.error(&["along"], format!("a strip along \"{id}\": there is no such layer ({hint})")));
+        return Err(at.error(&["along"], format!("a strip along \"{id}\": there is no such layer ({hint})")).into());
     };
     let LayerKind::Line(line) = &layer.kind else {
-        return Err(
-            at.error(&["along"], format!("a strip along \"{id}\": the layer is no line; name a layer of kind line"))
-        );
+        return Err(at
+            .error(&["along"], format!("a strip along \"{id}\": the layer is no line; name a layer of kind line"))
+            .into());
     };
     let gap = context.ground.terrain.map_or(1.0, |t| 20.0 * t.spacing().max_element());
     Ok((line.longest_chain(gap).iter().map(|p| p.truncate()).collect(), "along"))

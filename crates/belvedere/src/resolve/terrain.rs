@@ -159,7 +159,7 @@ pub(super) fn adjust(
     let Some(target) = camera.look_at else {
         let reason =
             "adjust_viewpoint needs a point that the camera keeps looking at; give look_at in place of the angles";
-        return Err(fail("adjust_viewpoint", reason.into()));
+        return Err(fail("adjust_viewpoint", reason.into()).into());
     };
     let settings = settings(doc).map_err(|(key, reason)| fail(key, reason))?;
     let solver = TerrainSolver::new(settings)?;

@@ -20,14 +20,14 @@ pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
         let at = i.to_string();
         let fail = |key: &str, reason: String| source.error(&["layer", &at, key], reason);
         if layer.id().trim().is_empty() {
-            return Err(fail("id", "the id is empty; give the layer a name of its own".into()));
+            return Err(fail("id", "the id is empty; give the layer a name of its own".into()).into());
         }
         if !ids.insert(layer.id()) {
-            return Err(fail("id", format!("two layers have the id \"{}\"; give each its own", layer.id())));
+            return Err(fail("id", format!("two layers have the id \"{}\"; give each its own", layer.id())).into());
         }
         if matches!(layer, LayerDoc::Molecule(_)) && source.document.unit != Unit::Angstrom {
             let reason = "molecules are measured in angstrom; write unit = \"angstrom\" at the top of the scene";
-            return Err(fail("kind", format!("layer \"{}\": {reason}", layer.id())));
+            return Err(fail("kind", format!("layer \"{}\": {reason}", layer.id())).into());
         }
         layer_sources(layer).map_err(|(key, reason)| fail(key, format!("layer \"{}\": {reason}", layer.id())))?;
         by_property(layer).map_err(|(keys, reason)| {
@@ -45,7 +45,7 @@ pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
     }
     if let Some(doc) = &source.document.print {
         Sheet::of(doc, None, source.document.camera.image).map_err(|e| match e {
-            BelvedereError::Paper { key, reason } => source.error(&["print", key], reason),
+            BelvedereError::Paper { key, reason } => source.error(&["print", key], reason).into(),
             other => other,
         })?;
     }
@@ -59,7 +59,7 @@ pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
         within("highlight_px", doc.highlight_px, 0.0, 1e6)
             .map_err(|(key, reason)| source.error(&["overlay", key], reason))?;
         if let Some(reason) = highlight::conflict(&doc.highlight, doc.heatmap) {
-            return Err(source.error(&["overlay", "highlight"], reason));
+            return Err(source.error(&["overlay", "highlight"], reason).into());
         }
     }
     super::wall::check(source, super::constructor::previews(source))?;
@@ -117,19 +117,21 @@ fn terrain_intent(source: &SourceDocument) -> Result<(), BelvedereError> {
             return Err(fail(
                 &["kind"],
                 "terrain_disocclusion needs a layer of kind terrain; add one, or remove the stage",
-            ));
+            )
+            .into());
         }
         if !layers.iter().any(LayerDoc::must_see) {
             return Err(fail(
                 &["kind"],
                 "terrain_disocclusion needs features that must be seen; set must_see = true for at least one layer",
-            ));
+            )
+            .into());
         }
         let is_line = |id: &str| layers.iter().any(|l| matches!(l, LayerDoc::Line(line) if line.id == id));
         if let Some(id) = doc.rivers.iter().find(|id| !is_line(id)) {
             let lines: Vec<&str> = layers.iter().filter(|l| matches!(l, LayerDoc::Line(_))).map(LayerDoc::id).collect();
             let hint = suggestion(id, &lines);
-            return Err(fail(&["rivers"], &format!("rivers: \"{id}\" is no line layer of the scene; {hint}")));
+            return Err(fail(&["rivers"], &format!("rivers: \"{id}\" is no line layer of the scene; {hint}")).into());
         }
         super::terrain::check(doc).map_err(|(key, reason)| fail(&[key], &reason))?;
     }
@@ -267,7 +269,7 @@ fn stage_order(source: &SourceDocument) -> Result<(), BelvedereError> {
     for (i, pair) in source.document.stage.windows(2).enumerate() {
         if rank(&pair[0]) >= rank(&pair[1]) {
             let error = belvedere_core::ViewError::Order { first: pair[0].kind(), second: pair[1].kind() };
-            return Err(source.error(&["stage", &(i + 1).to_string(), "kind"], error));
+            return Err(source.error(&["stage", &(i + 1).to_string(), "kind"], error).into());
         }
     }
     Ok(())

@@ -101,5 +101,5 @@ fn volumes(source: &SourceDocument) -> impl Iterator<Item = (usize, &VolumeDoc)>
 
 fn fail(source: &SourceDocument, index: usize, reason: &str) -> BelvedereError {
     let id = source.document.layer[index].id();
-    source.error(&["layer", &index.to_string(), "transfer"], format!("layer \"{id}\": {reason}"))
+    source.error(&["layer", &index.to_string(), "transfer"], format!("layer \"{id}\": {reason}")).into()
 }

@@ -6,9 +6,8 @@ use super::reveal::{RevealRequest, reveal};
 use crate::data::{features_of, ground_files, locate};
 use crate::editor::{Editor, Place};
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{self, CameraDoc, Document, LayerDoc, Paths, SourceDocument, TerrainDoc, TerrainStyleDoc};
+use crate::scene_file::{self, Document, LayerDoc, Paths, SourceDocument, TerrainDoc, TerrainStyleDoc};
 use crate::{BelvedereError, DataFiles, OpenOptions, Session, Trust};
-use belvedere_core::DVec3;
 use belvedere_io::formats::Reader;
 use belvedere_io::{GeoTiff, Limits, fs, join_table, split_table};
 use belvedere_scene::Progress;
@@ -155,7 +154,7 @@ fn whole(layers: Vec<LayerDoc>, folders: Vec<PathBuf>) -> SourceDocument {
     // Models have no place on the earth; ground and cities may, in degrees too.
     let is_placed = layers.iter().any(|layer| matches!(layer, LayerDoc::Terrain(_) | LayerDoc::City(_)));
     let crs = if is_placed { "auto" } else { "local" };
-    let provisional = CameraDoc::looking(DVec3::new(0.0, -1.0, 0.0), DVec3::ZERO);
+    let provisional = super::reveal_target::provisional_camera();
     let unit = unit_of(&layers);
     let document = Document { crs: crs.into(), unit, layer: layers, ..Document::seen_by(provisional) };
     SourceDocument::of_files(document, folders)
@@ -167,8 +166,8 @@ fn whole(layers: Vec<LayerDoc>, folders: Vec<PathBuf>) -> SourceDocument {
 /// As [`scene_file::read`] and [`scene_of_data`].
 pub fn scene_or_data(path: &Path) -> Result<SourceDocument, BelvedereError> {
     match scene_file::read(path) {
-        Err(error) => scene_of_data(path)?.ok_or(error),
-        read => read,
+        Err(error) => scene_of_data(path)?.ok_or(error.into()),
+        read => Ok(read?),
     }
 }
 

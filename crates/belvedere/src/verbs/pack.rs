@@ -3,7 +3,7 @@
 use super::open_files::open_trusted;
 use crate::editor::{Editor, Place};
 use crate::guard::guarded;
-use crate::{BelvedereError, Trust, output};
+use crate::{BelvedereError, DocumentError, Trust, output};
 use belvedere_io::{InputFile, IoError, atomic, fs, split_table};
 use belvedere_scene::Progress;
 use schemars::JsonSchema;
@@ -187,14 +187,14 @@ fn scene_files(request: &PackRequest, progress: &Progress) -> Result<(Bundle, Ve
     let mut document = (**editor.document()).clone();
     let mut failed = None;
     document.for_each_path(&mut |name| {
-        let packed = editor.place.roots.resolve(name).and_then(|file| layout.place(&file));
+        let packed = editor.place.roots.resolve(name).map_err(Into::into).and_then(|file| layout.place(&file));
         match packed {
             Ok(packed) => *name = packed,
             Err(e) => failed = Some(e),
         }
     });
     if let Some(e) = failed {
-        return Err(e);
+        return Err(e.into());
     }
     // Files that the named files refer to, such as materials and tables.
     for input in session.input_paths() {
@@ -262,7 +262,7 @@ impl Layout {
         let below = self.folders.iter().enumerate().find_map(|(i, folder)| Some((i, real.strip_prefix(folder).ok()?)));
         let Some((i, below)) = below else {
             let reason = "lies in no folder of the scene".into();
-            return Err(BelvedereError::Path { name: real.display().to_string(), reason, root_missing: true });
+            return Err(DocumentError::Path { name: real.display().to_string(), reason, root_missing: true }.into());
         };
         let parts = below.components().filter_map(|part| match part {
             Component::Normal(part) => {

@@ -214,7 +214,11 @@ impl Session {
 /// Reads a JSON list of elements of a `shape`.
 fn read_list<T>(path: &Path, shape: &str, read: &dyn Fn(&Node) -> Result<T, String>) -> Result<Vec<T>, BelvedereError> {
     let what = if shape.contains('z') { "points" } else { "pixels" };
-    list(path, shape, read).map_err(|e| other_kind::explained(path, &format!("a list of {what} [{shape}, ...]"), e))
+    let instead = || other_kind::instead(path, &format!("a list of {what} [{shape}, ...]"));
+    list(path, shape, read).map_err(|e| match e {
+        BelvedereError::Points { .. } => instead().map_or(e, Into::into),
+        _ => e,
+    })
 }
 
 fn list<T>(path: &Path, shape: &str, read: &dyn Fn(&Node) -> Result<T, String>) -> Result<Vec<T>, BelvedereError> {

@@ -464,13 +464,11 @@ impl TargetAnswer {
     }
 }
 
-impl CameraDoc {
-    /// A camera at `eye` that looks at `look_at`.
-    pub(crate) fn looking(eye: DVec3, look_at: DVec3) -> Self {
-        let lens = Projection::Perspective { fov_y: FOV_Y_DEG.to_radians() };
-        let axes = (DVec3::X, -DVec3::Z, DVec3::Y);
-        let (right, down, forward) = axes;
-        let pinhole = Pinhole { eye, right, down, forward, projection: lens, image: IMAGE, near: 1e-3, far: None };
-        Self { look_at: Some(PointDoc::Scene(look_at.to_array())), ..Self::of(&pinhole, look_at) }
-    }
+/// A camera to the north, for documents whose camera is found later.
+pub(crate) fn provisional_camera() -> CameraDoc {
+    let (eye, look_at) = (DVec3::NEG_Y, DVec3::ZERO);
+    let (right, down, forward) = (DVec3::X, -DVec3::Z, DVec3::Y);
+    let projection = Projection::Perspective { fov_y: FOV_Y_DEG.to_radians() };
+    let pinhole = Pinhole { eye, right, down, forward, projection, image: IMAGE, near: 1e-3, far: None };
+    CameraDoc { look_at: Some(PointDoc::Scene(look_at.to_array())), ..CameraDoc::of(&pinhole, look_at) }
 }

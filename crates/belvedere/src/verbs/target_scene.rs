@@ -7,7 +7,7 @@ use super::target_request::TargetRequest;
 use crate::data::{features_of, text_of};
 use crate::places::Place;
 use crate::resolve::vectors::{FeatureKind, kinds_of};
-use crate::scene_file::{CameraDoc, CityDoc, Document, LayerDoc, LineDoc, LineStyleDoc, Paths, SourceDocument};
+use crate::scene_file::{CityDoc, Document, LayerDoc, LineDoc, LineStyleDoc, Paths, SourceDocument};
 use crate::targets;
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::rays::Target;
@@ -175,7 +175,7 @@ pub(super) fn open(request: &TargetRequest, options: &OpenOptions) -> Result<(Se
         set_transfer(&mut layers, transfer, &mut options)?;
     }
     let unit = unit_of(&layers);
-    let camera = CameraDoc::looking(DVec3::new(0.0, -1.0, 0.0), DVec3::ZERO);
+    let camera = super::reveal_target::provisional_camera();
     let title = match shown_name(&request.see) {
         "" => "Revealed".into(),
         see => format!("{see} revealed"),

@@ -61,7 +61,7 @@ pub struct Shape {
 /// A built-in name means the built-in document, even if a file or folder has the same name; `./demo` means the file.
 ///
 /// # Errors
-/// [`BelvedereError::Scene`], [`BelvedereError::Io`], [`BelvedereError::Preset`].
+/// [`BelvedereError::Document`], [`BelvedereError::Io`], [`BelvedereError::Preset`].
 pub fn load(source: &str) -> Result<PresetDocument, BelvedereError> {
     let path = Path::new(source);
     if !scene_file::names_a_preset_file(source) {

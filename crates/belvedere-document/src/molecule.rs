@@ -42,7 +42,7 @@ pub struct MoleculeDoc {
 
 impl MoleculeDoc {
     /// A file in the usual style.
-    pub(crate) fn of(id: String, source: &str) -> Self {
+    pub fn of(id: String, source: &str) -> Self {
         let source = source.to_owned();
         let style = MoleculeStyleDoc::default();
         let (must_see, models_per_s) = (false, None);

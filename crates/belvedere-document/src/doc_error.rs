@@ -1,14 +1,14 @@
 //! Mistakes in documents: the line, the keys that lead there, and words that need no knowledge of the program's types.
 
-use crate::BelvedereError;
+use crate::DocumentError;
 use serde::de::{self, Expected, Unexpected};
 use std::path::Path;
 
 /// A mistake in a document: where and what.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct DocError {
+pub struct DocError {
     /// Line, 1-based, if known.
-    pub(crate) line: Option<usize>,
+    pub line: Option<usize>,
     /// Keys from the outside in, innermost first while the error travels outwards.
     path: Vec<String>,
     /// What is wrong and what to do.
@@ -17,22 +17,22 @@ pub(crate) struct DocError {
 
 impl DocError {
     /// A mistake on a line.
-    pub(crate) fn at(line: usize, message: impl Into<String>) -> Self {
+    pub fn at(line: usize, message: impl Into<String>) -> Self {
         Self { line: Some(line), path: Vec::new(), message: message.into() }
     }
 
     /// A mistake of the whole document.
-    pub(crate) fn whole(message: impl Into<String>) -> Self {
+    pub fn whole(message: impl Into<String>) -> Self {
         Self { line: None, path: Vec::new(), message: message.into() }
     }
 
     /// The error of the file that holds the document.
-    pub(crate) fn in_file(&self, path: &Path) -> BelvedereError {
-        BelvedereError::Scene { path: Some(path.to_owned()), line: self.line, reason: self.to_string(), source: None }
+    pub fn in_file(&self, path: &Path) -> DocumentError {
+        DocumentError::Scene { path: Some(path.to_owned()), line: self.line, reason: self.to_string(), source: None }
     }
 
     /// This error one key further out.
-    pub(crate) fn inside(mut self, key: impl Into<String>) -> Self {
+    pub fn inside(mut self, key: impl Into<String>) -> Self {
         self.path.push(key.into());
         self
     }
@@ -124,7 +124,7 @@ fn words(found: Unexpected<'_>) -> String {
 const MOST_NAMED: usize = 40;
 
 /// "did you mean ...?" with the nearest of `valid`, or the list of them.
-pub(crate) fn suggestion(given: &str, valid: &[&str]) -> String {
+pub fn suggestion(given: &str, valid: &[&str]) -> String {
     let given = given.to_lowercase();
     let best = valid
         .iter()

@@ -1,6 +1,6 @@
 //! Tints of terrain.
 
-use crate::BelvedereError;
+use crate::DocumentError;
 pub use belvedere_scene::PaletteName;
 use schemars::JsonSchema;
 use serde::de::Deserializer;
@@ -25,7 +25,7 @@ impl Default for PaletteDoc {
 
 impl PaletteDoc {
     /// Why a name means no palette, and what to give.
-    pub(crate) fn unknown(name: &str) -> String {
+    pub fn unknown(name: &str) -> String {
         let names = PaletteName::ALL.map(|(name, _)| name);
         format!(
             "palette \"{}\" is neither the name of a palette nor a file of colours by height; {}",
@@ -43,11 +43,11 @@ impl PaletteDoc {
 
 impl PaletteDoc {
     /// The palette with the full path of its file, whose folder is allowed from now on.
-    pub(crate) fn located(&self, allowed: &mut Vec<PathBuf>) -> Result<Self, BelvedereError> {
+    pub fn located(&self, allowed: &mut Vec<PathBuf>) -> Result<Self, DocumentError> {
         let Self::File(name) = self else { return Ok(self.clone()) };
-        let path = belvedere_io::fs::canonicalize(name).map_err(|_| BelvedereError::Target(Self::unknown(name)))?;
+        let path = belvedere_io::fs::canonicalize(name).map_err(|_| DocumentError::Palette(Self::unknown(name)))?;
         allowed.extend(path.parent().map(Path::to_owned));
-        path.to_str().map(|path| Self::File(path.to_owned())).ok_or_else(|| BelvedereError::not_utf8(name))
+        path.to_str().map(|path| Self::File(path.to_owned())).ok_or_else(|| DocumentError::not_utf8(name))
     }
 }
 

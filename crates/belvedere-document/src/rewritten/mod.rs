@@ -7,13 +7,13 @@ use super::Document;
 use super::node::{Entry, Node, Value};
 
 /// Whether the text of a scene file is JSON.
-pub(crate) fn is_json(text: &str) -> bool {
+pub fn is_json(text: &str) -> bool {
     super::plain(text).trim_start().starts_with('{')
 }
 
 /// The text of a scene file that states `wanted`, with as little changed as that needs; `None` if the text is no scene file, or if no such text
 /// was found.
-pub(crate) fn rewritten(text: &str, wanted: &Document) -> Option<String> {
+pub fn rewritten(text: &str, wanted: &Document) -> Option<String> {
     let plain = super::plain(text);
     let stated = |text: &str| super::parse("scene".as_ref(), text).ok().map(|source| source.document);
     let present = stated(plain)?;

@@ -1,9 +1,9 @@
 use super::{is_json, rewritten};
-use crate::scene_file::{CameraDoc, ConstructorDoc, ConstructorKind, Document, LayerDoc, LightDoc, PointDoc, StageDoc};
+use crate::{CameraDoc, ConstructorDoc, ConstructorKind, Document, LayerDoc, LightDoc, PointDoc, StageDoc};
 use std::path::Path;
 
 fn read(text: &str) -> Document {
-    crate::scene_file::parse(Path::new("scene"), text).expect("a scene").document
+    crate::parse(Path::new("scene"), text).expect("a scene").document
 }
 
 /// The text after an edit; it states the edited document.
@@ -167,7 +167,7 @@ fn ready_scenes_keep_all_that_the_window_does_not_edit() {
     let mut count = 0;
     for entry in std::fs::read_dir(folder).expect("scenes").flatten() {
         let text = std::fs::read_to_string(entry.path()).expect("text");
-        let json = crate::output::document_json(&read(&text)).expect("JSON");
+        let json = serde_json::to_string_pretty(&read(&text)).expect("JSON");
         for (name, change, keys) in EDITS {
             let what = format!("{name} of {}", entry.path().display());
             for text in [&text, &json] {
@@ -199,7 +199,7 @@ fn points_and_stages_change_their_form() {
     let inline = |document: &mut Document| {
         let StageDoc::SplineBend(stage) = &mut document.stage[0] else { panic!("a spline") };
         let presets = belvedere_core::presets::PresetDocument::builtin("progressive").expect("built in");
-        stage.presets = crate::scene_file::PresetsDoc::Inline(Box::new(presets));
+        stage.presets = crate::PresetsDoc::Inline(Box::new(presets));
     };
     let new = edited(text, inline);
     assert!(new.contains("\n# above\n# to be changed\n[stage.presets]\n"), "{new}");

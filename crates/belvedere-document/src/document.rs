@@ -72,7 +72,7 @@ pub struct Document {
 
 impl Document {
     /// An empty scene in a system of its own, in metres.
-    pub(crate) fn seen_by(camera: CameraDoc) -> Self {
+    pub fn seen_by(camera: CameraDoc) -> Self {
         Self {
             format: one(),
             title: String::new(),
@@ -328,7 +328,7 @@ impl LightDoc {
     /// Names of skies.
     pub const SKIES: [&'static str; 5] = ["auto", "day", "dusk", "night", "white"];
     /// This light where it states something, `below` elsewhere: a direction takes the place of a time, and the other way round.
-    pub(crate) fn over(self, below: Self) -> Self {
+    pub fn over(self, below: Self) -> Self {
         let states_sun = self.azimuth_deg.is_some() || self.altitude_deg.is_some() || self.time.is_some();
         let sun = if states_sun { &self } else { &below };
         Self {

@@ -7,12 +7,12 @@ use serde_json::Value;
 const KEYS: [&str; 7] = ["along", "fallback", "layer", "path", "rivers", "target", "volume"];
 
 /// What follows the id where a text names a layer: nothing, `/PART` or `:KIND`; `None` if it names none of that id.
-pub(crate) fn rest<'a>(text: &'a str, id: &str) -> Option<&'a str> {
+pub fn rest<'a>(text: &'a str, id: &str) -> Option<&'a str> {
     text.strip_prefix(id).filter(|rest| rest.is_empty() || rest.starts_with(['/', ':']))
 }
 
 /// Calls `visit` with every text of a part of a document that may name a layer.
-pub(crate) fn each(part: &mut Value, visit: &mut dyn FnMut(&mut String)) {
+pub fn each(part: &mut Value, visit: &mut dyn FnMut(&mut String)) {
     match part {
         Value::Object(map) => {
             for (key, value) in map {
@@ -33,7 +33,7 @@ fn texts(value: &mut Value, visit: &mut dyn FnMut(&mut String)) {
 }
 
 /// Whether a part of a document names a layer.
-pub(crate) fn is_named_by(part: &impl Serialize, id: &str) -> bool {
+pub fn is_named_by(part: &impl Serialize, id: &str) -> bool {
     let mut found = false;
     if let Ok(mut value) = serde_json::to_value(part) {
         each(&mut value, &mut |text| found |= rest(text, id).is_some());

@@ -7,17 +7,18 @@ mod common;
 mod de;
 mod doc_error;
 mod document;
+mod error;
 mod fallback;
 mod furniture;
 mod intent;
 mod json;
-pub(crate) mod layer_names;
+pub mod layer_names;
 mod layers;
 mod mesh;
 mod molecule;
 mod node;
 mod opacity;
-pub(crate) mod other_kind;
+pub mod other_kind;
 mod overlay;
 mod palette;
 pub mod paths;
@@ -37,8 +38,9 @@ pub use by_property::{ColorByDoc, ScaleName, SizeByDoc, StepsDoc};
 pub use choices::choices;
 pub use city::{CityDoc, CityStyleDoc};
 pub use common::{Paths, PlaneDoc, TransformDoc};
-pub(crate) use doc_error::{DocError, suggestion};
+pub use doc_error::{DocError, suggestion};
 pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDoc, ProjectionDoc, SwitchOrVisibility};
+pub use error::DocumentError;
 pub use fallback::{Fallback, FallbackKind};
 pub use furniture::{
     CompassDoc, CompassPlace, Corner, FurnitureDoc, FurnitureItem, FurnitureWish, ScaleDoc, SwitchOrText,
@@ -50,13 +52,13 @@ pub use layers::{
 };
 pub use mesh::{MeshDoc, MeshStyleDoc};
 pub use molecule::{MoleculeDoc, MoleculeStyleDoc, PaintDoc};
-pub(crate) use node::{Node, Value};
+pub use node::{Node, Value};
 pub use overlay::{AutoOrLength, AutoWord, HighlightMark, Inset, OverlayDoc, SwitchOrLength};
 pub use palette::{PaletteDoc, PaletteName};
 pub use points::{PointLayerDoc, PointStyleDoc};
 pub use print::PrintDoc;
 pub use relief::{OneOrTwo, ReliefStageDoc};
-pub(crate) use rewritten::{is_json, rewritten};
+pub use rewritten::{is_json, rewritten};
 pub use stages::{
     AxisDoc, DetailDoc, MergeDoc, PresetsDoc, RaysStageDoc, SolverMode, SplineStageDoc, SplitDoc, StageDoc,
     TerrainStageDoc, TurnDoc, WayDoc,
@@ -67,7 +69,6 @@ pub use symbol::SymbolDoc;
 pub use text::{HeightUnit, TextDoc};
 pub use volume::VolumeDoc;
 
-use crate::BelvedereError;
 use belvedere_core::presets::PresetDocument;
 use belvedere_io::InputFile;
 use std::path::{Path, PathBuf};
@@ -78,36 +79,48 @@ pub const MAX_BYTES: u64 = 16 << 20;
 
 /// Where a document was written: its file and the lines of its keys, for messages about what they mean.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Origin(Option<Arc<(InputFile, Node)>>);
+pub struct Origin(Option<Arc<(InputFile, Node)>>);
 
 impl Origin {
     /// A document that was made in memory: its mistakes have no line.
-    pub(crate) const MEMORY: Self = Self(None);
+    pub const MEMORY: Self = Self(None);
 
     /// An error at the line of the key that `keys` leads to.
-    pub(crate) fn error(&self, keys: &[&str], reason: impl std::fmt::Display) -> BelvedereError {
-        let (path, line) = self.0.as_ref().map(|o| (o.0.path.clone(), o.1.line_of(keys))).unzip();
-        BelvedereError::Scene { path, line, reason: reason.to_string(), source: None }
+    pub fn error(&self, keys: &[&str], reason: impl std::fmt::Display) -> DocumentError {
+        let (path, line) = self.place(keys);
+        DocumentError::Scene { path, line, reason: reason.to_string(), source: None }
     }
 
     /// The same for a refused file, which stays the source of the error.
-    pub(crate) fn refusal(&self, keys: &[&str], about: &str, refused: BelvedereError) -> BelvedereError {
-        match self.error(keys, format!("{about}{refused}")) {
-            BelvedereError::Scene { path, line, reason, .. } => {
-                BelvedereError::Scene { path, line, reason, source: Some(Box::new(refused)) }
-            }
-            other => other,
-        }
+    pub fn refusal(&self, keys: &[&str], about: &str, refused: DocumentError) -> DocumentError {
+        self.caused(keys, format!("{about}{refused}"), refused)
+    }
+
+    /// An error at a key, and the error that caused it.
+    pub fn caused(&self, keys: &[&str], reason: String, source: DocumentError) -> DocumentError {
+        let (path, line) = self.place(keys);
+        DocumentError::Scene { path, line, reason, source: Some(Box::new(source)) }
+    }
+
+    /// Whether the document was made in memory.
+    pub fn is_memory(&self) -> bool {
+        self.0.is_none()
+    }
+
+    fn place(&self, keys: &[&str]) -> (Option<PathBuf>, Option<usize>) {
+        self.0.as_ref().map(|o| (o.0.path.clone(), o.1.line_of(keys))).unzip()
     }
 }
 
 /// A table of a document, such as a stage: makes errors at its keys.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Table<'a> {
-    pub(crate) origin: &'a Origin,
+pub struct Table<'a> {
+    /// Of the document.
+    pub origin: &'a Origin,
     /// Key of the list that holds it.
-    pub(crate) list: &'a str,
-    pub(crate) index: usize,
+    pub list: &'a str,
+    /// Place in the list, from 0.
+    pub index: usize,
 }
 
 impl Table<'_> {
@@ -116,12 +129,12 @@ impl Table<'_> {
     }
 
     /// An error at a key of the table.
-    pub(crate) fn error(&self, keys: &[&str], reason: impl std::fmt::Display) -> BelvedereError {
+    pub fn error(&self, keys: &[&str], reason: impl std::fmt::Display) -> DocumentError {
         self.path(keys, |path| self.origin.error(path, reason))
     }
 
     /// The same for a refused file.
-    pub(crate) fn refusal(&self, keys: &[&str], refused: BelvedereError) -> BelvedereError {
+    pub fn refusal(&self, keys: &[&str], refused: DocumentError) -> DocumentError {
         self.path(keys, |path| self.origin.refusal(path, "", refused))
     }
 }
@@ -129,11 +142,12 @@ impl Table<'_> {
 /// A document and where it was written.
 #[derive(Debug, Clone)]
 pub struct SourceDocument {
-    pub(crate) origin: Origin,
+    /// Where its keys were written.
+    pub origin: Origin,
     /// The document.
     pub document: Document,
     /// Folders of the files that it was made of; its camera is to show all of them. `None` for a document that states its camera.
-    pub(crate) of_files: Option<Vec<PathBuf>>,
+    pub of_files: Option<Vec<PathBuf>>,
 }
 
 impl SourceDocument {
@@ -143,7 +157,7 @@ impl SourceDocument {
     }
 
     /// A document of files that the user named, whose camera is found when they are read: it shows all of them.
-    pub(crate) fn of_files(document: Document, folders: Vec<PathBuf>) -> Self {
+    pub fn of_files(document: Document, folders: Vec<PathBuf>) -> Self {
         Self { of_files: Some(folders), ..Self::new(document) }
     }
 
@@ -153,11 +167,12 @@ impl SourceDocument {
     }
 
     /// The same with the hash of its text.
-    pub(crate) fn input(&self) -> Option<&InputFile> {
+    pub fn input(&self) -> Option<&InputFile> {
         self.origin.0.as_ref().map(|o| &o.0)
     }
 
-    pub(crate) fn error(&self, keys: &[&str], reason: impl std::fmt::Display) -> BelvedereError {
+    /// An error at the line of the key that `keys` leads to.
+    pub fn error(&self, keys: &[&str], reason: impl std::fmt::Display) -> DocumentError {
         self.origin.error(keys, reason)
     }
 }
@@ -165,13 +180,13 @@ impl SourceDocument {
 /// Reads a scene file; JSON if its name ends in `.json` or its text starts with `{`, else TOML.
 ///
 /// # Errors
-/// [`BelvedereError::Scene`] with the line of the mistake; [`BelvedereError::Io`] if the file cannot be read.
-pub fn read(path: &Path) -> Result<SourceDocument, BelvedereError> {
+/// [`DocumentError::Scene`] with the line of the mistake; [`DocumentError::Io`] if the file cannot be read.
+pub fn read(path: &Path) -> Result<SourceDocument, DocumentError> {
     read_with_text(path).map(|(source, _)| source)
 }
 
 /// The same, and the text of the file with its byte order mark, if it has one.
-pub(crate) fn read_with_text(path: &Path) -> Result<(SourceDocument, String), BelvedereError> {
+pub fn read_with_text(path: &Path) -> Result<(SourceDocument, String), DocumentError> {
     let read = read_raw(path).and_then(|(text, file)| Ok((parse_as(file, plain(&text))?, text)));
     read.map_err(|e| other_kind::explained(path, "a scene document", e))
 }
@@ -180,11 +195,11 @@ pub(crate) fn read_with_text(path: &Path) -> Result<(SourceDocument, String), Be
 ///
 /// # Errors
 /// As [`read`].
-pub fn parse(path: &Path, text: &str) -> Result<SourceDocument, BelvedereError> {
+pub fn parse(path: &Path, text: &str) -> Result<SourceDocument, DocumentError> {
     parse_as(InputFile::of(path, text.as_bytes()), text)
 }
 
-fn parse_as(file: InputFile, text: &str) -> Result<SourceDocument, BelvedereError> {
+fn parse_as(file: InputFile, text: &str) -> Result<SourceDocument, DocumentError> {
     let root = tree(&file.path, text).map_err(|e| e.in_file(&file.path))?;
     let document = document(&root).map_err(|e| e.in_file(&file.path))?;
     Ok(SourceDocument { origin: Origin(Some(Arc::new((file, root)))), ..SourceDocument::new(document) })
@@ -194,7 +209,7 @@ fn parse_as(file: InputFile, text: &str) -> Result<SourceDocument, BelvedereErro
 ///
 /// # Errors
 /// As [`read`].
-pub fn parse_presets(path: &Path, text: &str) -> Result<PresetDocument, BelvedereError> {
+pub fn parse_presets(path: &Path, text: &str) -> Result<PresetDocument, DocumentError> {
     let root = tree(path, text).map_err(|e| e.in_file(path))?;
     if root.get("camera").is_some() && root.get("presets").is_none() {
         return Err(DocError::whole("is a scene document, not a preset document").in_file(path));
@@ -203,13 +218,13 @@ pub fn parse_presets(path: &Path, text: &str) -> Result<PresetDocument, Belveder
 }
 
 /// That there is no built-in preset of a name, and which are near.
-pub(crate) fn no_preset(name: &str) -> String {
+pub fn no_preset(name: &str) -> String {
     let names = &belvedere_core::presets::BUILTIN_NAMES;
     format!("there is no built-in preset \"{}\"; {}", doc_error::shorten(name), suggestion(name, names))
 }
 
 /// Whether a text means the file of a preset document, not a built-in one.
-pub(crate) fn names_a_preset_file(name: &str) -> bool {
+pub fn names_a_preset_file(name: &str) -> bool {
     let small = name.to_lowercase();
     name.contains(['/', '\\']) || small.ends_with(".toml") || small.ends_with(".json")
 }
@@ -217,8 +232,8 @@ pub(crate) fn names_a_preset_file(name: &str) -> bool {
 /// Reads a text file of at most [`MAX_BYTES`].
 ///
 /// # Errors
-/// [`BelvedereError::Scene`] if it is too large or not UTF-8, [`BelvedereError::Io`] if it cannot be read.
-pub(crate) fn read_text(path: &Path) -> Result<(String, InputFile), BelvedereError> {
+/// [`DocumentError::Scene`] if it is too large or not UTF-8, [`DocumentError::Io`] if it cannot be read.
+pub fn read_text(path: &Path) -> Result<(String, InputFile), DocumentError> {
     read_raw(path).map(|(text, file)| (plain(&text).to_owned(), file))
 }
 
@@ -228,7 +243,7 @@ fn plain(text: &str) -> &str {
 }
 
 /// As [`read_text`], with the byte order mark.
-fn read_raw(path: &Path) -> Result<(String, InputFile), BelvedereError> {
+fn read_raw(path: &Path) -> Result<(String, InputFile), DocumentError> {
     use std::io::Read;
     let os = |e| belvedere_io::IoError::os(path, e);
     let refuse = |reason: String| DocError::whole(reason).in_file(path);
@@ -260,7 +275,7 @@ fn read_raw(path: &Path) -> Result<(String, InputFile), BelvedereError> {
 }
 
 /// Parses TOML or JSON into a tree.
-pub(crate) fn tree(path: &Path, text: &str) -> Result<Node, DocError> {
+pub fn tree(path: &Path, text: &str) -> Result<Node, DocError> {
     let named_json = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
     let root =
         if named_json || text.trim_start().starts_with('{') { json::parse(text)? } else { toml_tree::parse(text)? };
@@ -269,12 +284,12 @@ pub(crate) fn tree(path: &Path, text: &str) -> Result<Node, DocError> {
 }
 
 /// Parses the JSON of a list of points: as many values as the file holds.
-pub(crate) fn json_points(text: &str) -> Result<Node, DocError> {
+pub fn json_points(text: &str) -> Result<Node, DocError> {
     json::parse(text)
 }
 
 /// Reads a `T` out of a tree.
-pub(crate) fn decode<'a, T: serde::Deserialize<'a>>(node: &'a Node) -> Result<T, DocError> {
+pub fn decode<'a, T: serde::Deserialize<'a>>(node: &'a Node) -> Result<T, DocError> {
     de::from_node(node)
 }
 

@@ -50,7 +50,7 @@ fn is_none(loa: &u8) -> bool {
 
 impl CityDoc {
     /// A file in the usual style.
-    pub(crate) fn of(id: String, source: &str) -> Self {
+    pub fn of(id: String, source: &str) -> Self {
         Self {
             id,
             source: Paths::One(source.to_owned()),

@@ -1,13 +1,13 @@
 //! Which files a scene may name: those in its own folder or below, unless the user allows more.
 
 use super::{Document, LayerDoc, PaletteDoc, Paths, PresetsDoc, StageDoc, SymbolDoc, names_a_preset_file};
-use crate::BelvedereError;
+use crate::DocumentError;
 use belvedere_io::{fs, join_table, split_table};
 use std::path::{Component, Path, PathBuf};
 
 impl LayerDoc {
     /// Files and built-in names that the layer's data come from.
-    pub(crate) fn files(&self) -> Vec<&str> {
+    pub fn files(&self) -> Vec<&str> {
         fn of(paths: &Paths) -> Vec<&str> {
             paths.as_slice().iter().map(String::as_str).collect()
         }
@@ -105,9 +105,9 @@ impl Roots {
     /// GeoPackage stays behind it.
     ///
     /// # Errors
-    /// [`BelvedereError::Path`] if the name is refused or nothing is found.
-    pub fn resolve(&self, name: &str) -> Result<PathBuf, BelvedereError> {
-        let refused = |reason: String, root_missing: bool| BelvedereError::Path {
+    /// [`DocumentError::Path`] if the name is refused or nothing is found.
+    pub fn resolve(&self, name: &str) -> Result<PathBuf, DocumentError> {
+        let refused = |reason: String, root_missing: bool| DocumentError::Path {
             name: super::doc_error::shorten(name),
             reason,
             root_missing,
@@ -150,14 +150,14 @@ impl Roots {
 
     /// The file that a scene means by `name`, wherever it lies, as a canonical path without its table: to ask the user whether it may be
     /// read. `None` if it is not there, or if its name is one that nothing allows.
-    pub(crate) fn locate(&self, name: &str) -> Option<PathBuf> {
+    pub fn locate(&self, name: &str) -> Option<PathBuf> {
         check_name(name).ok()?;
         let real = fs::canonicalize(self.find(split_table(Path::new(name)).0)?).ok()?;
         fs::metadata(&real).is_ok_and(|meta| meta.is_file()).then_some(real)
     }
 
     /// Whether a canonical path lies in the folder of the scene.
-    pub(crate) fn is_beside(&self, real: &Path) -> bool {
+    pub fn is_beside(&self, real: &Path) -> bool {
         fs::canonicalize(or_here(&self.scene_dir)).is_ok_and(|folder| real.starts_with(folder))
     }
 
@@ -187,7 +187,7 @@ fn leaves(path: &Path, name: &str) -> bool {
 }
 
 /// Whether a name stays below the folder that it is relative to.
-pub(crate) fn stays_below(name: &str) -> bool {
+pub fn stays_below(name: &str) -> bool {
     !leaves(split_table(Path::new(name)).0, name)
 }
 
@@ -238,7 +238,7 @@ impl Document {
 }
 
 /// The folder of a file, as an absolute path if possible.
-pub(crate) fn folder_of(path: &Path) -> PathBuf {
+pub fn folder_of(path: &Path) -> PathBuf {
     let folder = or_here(path.parent().unwrap_or(Path::new("")));
     fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned())
 }
@@ -300,7 +300,7 @@ mod tests {
         let roots = Roots { scene_dir: env!("CARGO_MANIFEST_DIR").into(), ..Roots::default() };
         for name in ["../belvedere-core/Cargo.toml", "src/../../x", "/etc/passwd", "C:\\x", "\\\\host\\x", "..\\x"] {
             let refused = roots.resolve(name).expect_err(name);
-            assert!(matches!(refused, BelvedereError::Path { root_missing: true, .. }), "{name}: {refused}");
+            assert!(matches!(refused, DocumentError::Path { root_missing: true, .. }), "{name}: {refused}");
         }
         assert!(roots.resolve("Cargo.toml").is_ok());
         assert!(roots.resolve("src/lib.rs").is_ok());

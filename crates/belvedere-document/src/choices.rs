@@ -15,7 +15,7 @@ pub fn choices<T: JsonSchema>() -> Vec<(String, String)> {
 #[cfg(test)]
 mod tests {
     use super::choices;
-    use crate::scene_file::SurfaceDoc;
+    use crate::SurfaceDoc;
 
     #[test]
     fn every_choice_has_its_name_and_description_and_can_be_read() {

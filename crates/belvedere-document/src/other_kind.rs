@@ -1,7 +1,7 @@
 //! Files that were given as documents and hold something else.
 
 use super::DocError;
-use crate::BelvedereError;
+use crate::DocumentError;
 use belvedere_io::formats;
 use std::io::Read;
 use std::path::Path;
@@ -12,14 +12,16 @@ const HEAD: u64 = 64 << 10;
 /// The error of a document, or that its file is of another kind.
 ///
 /// * `wanted`: the kind of document.
-pub(crate) fn explained(path: &Path, wanted: &str, error: BelvedereError) -> BelvedereError {
-    if !matches!(error, BelvedereError::Scene { .. } | BelvedereError::Points { .. }) {
+pub fn explained(path: &Path, wanted: &str, error: DocumentError) -> DocumentError {
+    if !matches!(error, DocumentError::Scene { .. }) {
         return error;
     }
-    match held(path) {
-        Some(kind) => DocError::whole(format!("is {kind}, not {wanted}")).in_file(path),
-        None => error,
-    }
+    instead(path, wanted).unwrap_or(error)
+}
+
+/// That a file is of another kind than a wanted document, if its name or its first bytes tell so.
+pub fn instead(path: &Path, wanted: &str) -> Option<DocumentError> {
+    Some(DocError::whole(format!("is {}, not {wanted}", held(path)?)).in_file(path))
 }
 
 /// Format and content of a file that is no document, in words.

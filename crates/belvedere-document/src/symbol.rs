@@ -37,7 +37,7 @@ impl SymbolDoc {
     }
 
     /// Why a name means no symbol, and what to give.
-    pub(crate) fn unknown(name: &str) -> String {
+    pub fn unknown(name: &str) -> String {
         let names: Vec<&str> = std::iter::once("auto").chain(Symbol::NAMED.map(|(name, _)| name)).collect();
         format!(
             "symbol \"{}\" is neither the name of a symbol nor an SVG file; {}",

@@ -9,39 +9,46 @@ pub(crate) const MAX_NODES: usize = 1_000_000;
 
 /// A value and the line it starts on.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Node {
+pub struct Node {
     /// Line, 1-based.
-    pub(crate) line: usize,
+    pub line: usize,
     /// The value.
-    pub(crate) value: Value,
+    pub value: Value,
 }
 
 /// What a node holds.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Value {
+pub enum Value {
+    /// Nothing.
     Null,
+    /// True or false.
     Bool(bool),
+    /// A whole number.
     Int(i64),
+    /// A number.
     Float(f64),
+    /// A text.
     Text(String),
+    /// Values in order.
     List(Vec<Node>),
+    /// Keys and their values.
     Table(Vec<Entry>),
 }
 
 /// One key of a table.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Entry {
+pub struct Entry {
     /// Line of the key, 1-based.
-    pub(crate) line: usize,
+    pub line: usize,
     /// The key.
-    pub(crate) key: String,
+    pub key: String,
     /// Its value.
-    pub(crate) value: Node,
+    pub value: Node,
 }
 
 impl Node {
     /// Value of `key`, if this is a table that has it.
-    pub(crate) fn get(&self, key: &str) -> Option<&Node> {
+    pub fn get(&self, key: &str) -> Option<&Node> {
         match &self.value {
             Value::Table(entries) => entries.iter().find(|e| e.key == key).map(|e| &e.value),
             _ => None,
@@ -49,7 +56,7 @@ impl Node {
     }
 
     /// Elements, if this is a list.
-    pub(crate) fn list(&self) -> Option<&[Node]> {
+    pub fn list(&self) -> Option<&[Node]> {
         match &self.value {
             Value::List(items) => Some(items),
             _ => None,
@@ -57,7 +64,7 @@ impl Node {
     }
 
     /// This table without `key`.
-    pub(crate) fn without(&self, key: &str) -> Node {
+    pub fn without(&self, key: &str) -> Node {
         let value = match &self.value {
             Value::Table(entries) => Value::Table(entries.iter().filter(|e| e.key != key).cloned().collect()),
             other => other.clone(),
@@ -66,7 +73,7 @@ impl Node {
     }
 
     /// Line of the deepest existing node along `path` (`["layer", "0", "style"]`).
-    pub(crate) fn line_of(&self, path: &[&str]) -> usize {
+    pub fn line_of(&self, path: &[&str]) -> usize {
         let Some((first, rest)) = path.split_first() else { return self.line };
         match &self.value {
             Value::Table(entries) => entries
@@ -81,7 +88,7 @@ impl Node {
     }
 
     /// What the node is, in words.
-    pub(crate) fn describe(&self) -> String {
+    pub fn describe(&self) -> String {
         match &self.value {
             Value::Null => "null".into(),
             Value::Bool(b) => format!("{b}"),
@@ -94,7 +101,7 @@ impl Node {
     }
 
     /// Checks depth and number of values.
-    pub(crate) fn check_limits(&self) -> Result<(), DocError> {
+    pub fn check_limits(&self) -> Result<(), DocError> {
         let mut stack = vec![(self, 1usize)];
         let mut count = 0usize;
         while let Some((node, depth)) = stack.pop() {

@@ -50,7 +50,7 @@ pub struct VolumeDoc {
 
 impl VolumeDoc {
     /// A file in the usual style.
-    pub(crate) fn of(id: String, source: &str) -> Self {
+    pub fn of(id: String, source: &str) -> Self {
         Self {
             id,
             source: source.to_owned(),

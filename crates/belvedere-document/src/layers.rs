@@ -129,7 +129,7 @@ impl LayerDoc {
     }
 
     /// File of the layer's movement.
-    pub(crate) fn motion(&self) -> Option<&str> {
+    pub fn motion(&self) -> Option<&str> {
         match self {
             Self::Boxes(l) => l.motion.as_deref(),
             Self::Mesh(l) => l.motion.as_deref(),

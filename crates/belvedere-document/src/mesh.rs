@@ -38,7 +38,7 @@ pub struct MeshDoc {
 
 impl MeshDoc {
     /// A file in the usual style.
-    pub(crate) fn of(id: String, source: &str) -> Self {
+    pub fn of(id: String, source: &str) -> Self {
         Self {
             id,
             source: Paths::One(source.to_owned()),

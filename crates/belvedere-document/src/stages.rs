@@ -42,7 +42,7 @@ impl StageDoc {
     }
 
     /// Whether the stage has to be solved before anything can be drawn.
-    pub(crate) fn is_terrain_intent(&self) -> bool {
+    pub fn is_terrain_intent(&self) -> bool {
         matches!(self, Self::TerrainDisocclusion(doc) if doc.delta.is_none())
     }
 }
