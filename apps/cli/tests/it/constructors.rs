@@ -132,6 +132,59 @@ fn a_path_is_previewed_round_its_turns_and_filmed_along_it() {
     assert!(place.fails(&["check", "bad.toml"]).contains("width_m is 0"));
 }
 
+/// Ground 6 km wide with a gorge that winds through it eastwards, and the river at its bottom.
+fn meanders(place: &Place, seed: f64) {
+    const CELLS: usize = 150;
+    let cell = 6000.0 / CELLS as f64;
+    let course =
+        |x: f64| 3000.0 + 700.0 * (x / (560.0 + 60.0 * seed) + seed).sin() + 200.0 * (x / 240.0 + 2.0 * seed).sin();
+    let mut grid = format!("ncols {CELLS}\nnrows {CELLS}\nxllcorner 0\nyllcorner 0\ncellsize {cell}\n");
+    for row in 0..CELLS {
+        let y = 6000.0 - cell * (row as f64 + 0.5);
+        let height = |column: usize| {
+            let x = cell * (column as f64 + 0.5);
+            800.0 - 0.01 * x + (1.1 * ((y - course(x)).abs() - 60.0).max(0.0)).min(500.0)
+        };
+        let row: Vec<String> = (0..CELLS).map(|column| format!("{:.1}", height(column))).collect();
+        grid += &(row.join(" ") + "\n");
+    }
+    place.write("ground.asc", &grid);
+    let river: Vec<[f64; 2]> = (10..=140).map(|k| 40.0 * f64::from(k)).map(|x| [x, course(x)]).collect();
+    let line = serde_json::json!({ "type": "LineString", "coordinates": river });
+    place.write(
+        "river.geojson",
+        &serde_json::json!({ "type": "Feature", "properties": {}, "geometry": line }).to_string(),
+    );
+    place.write(
+        "river.toml",
+        "format = 1\ncrs = 'local'\n[[layer]]\nid = 'ground'\nkind = 'terrain'\nsource = 'ground.asc'\n\
+         [[layer]]\nid = 'river'\nkind = 'line'\nsource = 'river.geojson'\nmust_see = true\n\
+         [camera]\neye = [0, 3000, 3000]\nlook_at = [3000, 3000, 800]\nimage = [320, 180]\n\
+         [constructor]\nkind = 'path_preview'\npath = 'river'\nposition_m = 900\npreview_m = 3000\n",
+    );
+}
+
+#[test]
+fn a_preview_tells_the_length_of_the_path_that_measure_finds_in_its_picture() {
+    for seed in [0.0, 1.3, 2.9] {
+        let place = Place::new();
+        meanders(&place, seed);
+        let said = place.json(&["render", "river.toml", "-o", "river.png"])["warnings"].to_string();
+        let record: serde_json::Value = serde_json::from_slice(&read(&place.path("river.png.json"))).expect("JSON");
+        let measured = place.json(&["measure", "river.toml"]);
+        let number =
+            |value: &serde_json::Value| value.as_f64().unwrap_or_else(|| panic!("seed {seed}: no figure in {record}"));
+        let preview = &record["constructor"];
+        let [reach, followed, seen, wanted] =
+            ["reach_m", "followed_m", "seen_m", "wanted_m"].map(|key| number(&preview[key]));
+        let shown = number(&measured["features"][0]["bent"]["sight"]["visible"]);
+        assert!((seen - shown).abs() < 0.02 * wanted, "seed {seed}: {seen} m in the record, {shown} m measured");
+        assert!(reach <= seen + 1.0 && reach <= followed + 1.0 && followed <= wanted + 1.0, "seed {seed}: {preview}");
+        // A reach that falls short is said.
+        assert_eq!(said.contains("the preview shows"), reach < 0.95 * wanted, "seed {seed}: {reach} of {wanted} m");
+    }
+}
+
 #[test]
 fn a_probe_looks_behind_a_row_of_houses_in_stills_and_films() {
     let place = Place::new();
