@@ -169,7 +169,7 @@ fn a_preview_tells_the_length_of_the_path_that_measure_finds_in_its_picture() {
     for seed in [0.0, 1.3, 2.9] {
         let place = Place::new();
         meanders(&place, seed);
-        let said = place.json(&["render", "river.toml", "-o", "river.png"])["warnings"].to_string();
+        let said = place.json(&["render", "river.toml", "-o", "river.png", "--json"])["warnings"].to_string();
         let record: serde_json::Value = serde_json::from_slice(&read(&place.path("river.png.json"))).expect("JSON");
         let measured = place.json(&["measure", "river.toml"]);
         let number =
