@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from . import presets, reports
 from ._native import version as _version
+from ._requests import RevealOptions
 from .camera import Camera
 from .drafting import Draft, Drafts, drafts
 from .errors import Cancelled, Error, FileError, InputError, InternalError, MemoryLimitError
@@ -39,6 +40,7 @@ __all__ = [
     "Picture",
     "Projected",
     "Rays",
+    "RevealOptions",
     "Revealed",
     "Scene",
     "View",

@@ -29,13 +29,6 @@ def drawing(
     buffers: bool = False,
 ) -> dict[str, Any]:
     """How a picture is drawn, as the engine takes it."""
-    if stylise is True:
-        strengths: dict[str, Any] | None = {"edges": True, "unsharp": True}
-    elif stylise is False:
-        strengths = None
-    else:
-        edges, unsharp = stylise
-        strengths = {"edges": number("stylise", edges), "unsharp": number("stylise", unsharp)}
     spacing = None if grid is False else 0.0 if grid is True else number("grid", grid)
     if spacing is not None and spacing < 0:
         raise InputError(f"grid={grid} is not a spacing; give scene units above 0, or True")
@@ -46,13 +39,13 @@ def drawing(
         "samples": samples,
         "lod_px": None if lod_px is None else number("lod_px", lod_px),
         "compositing": compositing,
-        "stylise": strengths,
+        "stylise": strengths_of(stylise),
         "grid": spacing,
         "heatmap": bool(heatmap),
         "ghost": bool(ghost),
         "highlight": [highlight] if isinstance(highlight, str) else list(highlight),
         "no_mark": not mark,
-        "furniture": _furniture(furniture),
+        "furniture": furniture_of(furniture),
         "title": None if title is None else str(title),
         "overhead": bool(overhead),
         "from_outside": outside is not False,
@@ -61,10 +54,20 @@ def drawing(
     }
 
 
-def _furniture(wanted: bool | str | Sequence[str] | None) -> list[str] | None:
+def furniture_of(wanted: bool | str | Sequence[str] | None) -> list[str] | None:
     """Names of furniture; ``None``: as the scene says."""
     if wanted is None:
         return None
     if isinstance(wanted, bool):
         return ["all" if wanted else "none"]
     return wanted.split(",") if isinstance(wanted, str) else [str(name) for name in wanted]
+
+
+def strengths_of(stylise: bool | tuple[float, float]) -> dict[str, Any] | None:
+    """Strengths of edges and of depth unsharp masking; ``None``: as the scene says."""
+    if stylise is False:
+        return None
+    if stylise is True:
+        return {"edges": True, "unsharp": True}
+    edges, unsharp = stylise
+    return {"edges": number("stylise", edges), "unsharp": number("stylise", unsharp)}

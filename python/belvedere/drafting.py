@@ -17,7 +17,7 @@ from ._folder import Folder, Named
 from ._json import text
 from .errors import InputError
 from .reports import Note, Shares, notes_of
-from .revealing import _request
+from .revealing import _request, opening
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ def drafts(
     folder = Folder()
     request = text("drafts", _request(dem, routes, folder, **options))
     with asked(threads, progress, time_limit_s) as ask, Named(os.fspath(folder.path)):
-        numbers, width, colors = _native.drafts(request, int(count), ask)
+        numbers, width, colors = _native.drafts(request, opening(), int(count), ask)
     found = json.loads(numbers)
     return Drafts(tuple(map(_draft, found["drafts"])), np.frombuffer(colors, np.uint8).reshape(-1, width, 3), tuple(notes_of(found["warnings"])))
 

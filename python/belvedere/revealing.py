@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Mapping, Sequence
 from . import _native
 from ._ask import Progress, asked, number
 from ._data import files_of
-from ._drawing import drawing
+from ._drawing import furniture_of, strengths_of
 from ._folder import Folder, Named
 from ._json import place, text
 from ._json import size as size_of
@@ -22,16 +22,19 @@ from .scene import Scene
 from .viewing import View
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
     from ._native import NativeReveal
+    from ._requests import RevealOptions
 
 
 class Revealed:
     """A picture in which something is visible, and how it was found. In a notebook it shows the picture."""
 
-    def __init__(self, native: NativeReveal, folder: Folder, drawn: Mapping[str, Any]) -> None:
+    def __init__(self, native: NativeReveal, folder: Folder, samples: int | None) -> None:
         self._native = native
         self._folder = folder
-        self._drawn = drawn
+        self._drawn = {"samples": samples, "print": json.loads(native.paper()) or {}}
 
     @cached_property
     def picture(self) -> Picture:
@@ -107,29 +110,22 @@ def reveal(
     look_at: object = None,
     fov_y_deg: float | None = None,
     size: tuple[int, int] | None = None,
-    technique: str | None = None,
+    scene_crs: str | None = None,
     see: str | None = None,
     fallback: Sequence[str] = (),
-    transfer: str | None = None,
-    curved_earth: bool = False,
-    no_limits: bool = False,
-    labels: bool = False,
-    hidden: str | None = None,
-    palette: str | None = None,
-    relief: str | None = None,
-    light: Mapping[str, Any] | None = None,
+    light: Mapping[str, Any] | tuple[float, float] | None = None,
     stylise: bool | tuple[float, float] = False,
-    exaggeration: float | None = None,
     mark: bool = True,
     furniture: bool | str | Sequence[str] | None = None,
-    title: str | None = None,
     sea: bool = True,
     rivers: object = None,
     drape: object = None,
-    samples: int | None = None,
+    fonts: Sequence[str | os.PathLike[str]] = (),
+    seed: int | None = None,
     threads: int | None = None,
     progress: Progress = None,
     time_limit_s: float | None = None,
+    **options: Unpack[RevealOptions],
 ) -> Revealed:
     """Draws terrain so that routes can be seen: chooses a view, unless one is given, and bends it as little as is needed.
 
@@ -141,15 +137,19 @@ def reveal(
     * ``fill_voids``: ``True`` fills all holes, ``False`` none; ``None``: those of files up to 3 % of the ground, as the command line does, none of arrays.
     * ``eye``, ``look_at``: ``(x, y[, z])`` in scene coordinates or degrees, or texts such as ``"46.5N,11.3E,+20"`` (20 m above the ground).
     * ``fov_y_deg``: full vertical field of view, degrees; 45 by default. ``size``: pixels; 1280 x 720 by default.
-    * ``technique``: ``spline`` (default), ``terrain``, ``both``, ``curved_rays``, or ``auto``, which tries them.
-    * ``see``: a target in models or a city: id of a layer, atoms, a building, or x,y,z. ``fallback``, ``transfer``: see ``belvedere reveal --help``.
-    * ``hidden``: ``show``, ``fade``, ``dash`` or ``cut``. ``palette``, ``relief``, ``light``, ``stylise``, ``exaggeration``: how it looks.
-    * ``furniture``, ``title``: legend, compass and more, see :meth:`belvedere.Scene.render`.
+    * ``scene_crs``: coordinate system of the scene: ``auto``, ``EPSG:n`` or ``local``.
+    * ``see``: a target in models or a city: id of a layer, atoms, a building, or x,y,z. ``fallback``: see ``belvedere reveal --help``.
+    * ``light``: azimuth and altitude in degrees, or the keys of ``[light]`` in scene files. ``stylise``: ``True``, or strengths of edges and of
+      depth unsharp masking.
+    * ``furniture``: legend, compass and more, see :meth:`belvedere.Scene.render`.
     * ``rivers``: lines, given as ``routes`` are, that do not run uphill where the ground makes way (``technique`` ``terrain``, ``both`` or ``auto``).
     * ``drape``: a georeferenced picture that is laid over the ground, such as an aerial photograph, or several, later ones on top: paths.
+    * ``fonts``: files of fonts for letters that the program's own lacks. ``seed``: of generated data.
     * ``threads``: number of threads; ``None``: one per core. The picture does not depend on it.
     * ``progress``: a callable of (name of the work, share done), ``True`` for a bar of tqdm, or a bar of tqdm. What it raises ends the work.
     * ``time_limit_s``: limit for solving, seconds; then the best so far is taken.
+    * All other options of the command line by their names (``light_time``, ``palette``, ``technique``, ``paper`` ...):
+      :class:`belvedere.RevealOptions` lists them, ``belvedere reveal --help`` says what they do.
 
     Raises :class:`belvedere.InputError`, :class:`belvedere.FileError`, :class:`belvedere.MemoryLimitError`. Ctrl-C ends the work within a second.
 
@@ -162,23 +162,24 @@ def reveal(
     folder = Folder()
     request = _request(
         dem, routes, folder, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata, features_crs=features_crs,
-        fill_voids=fill_voids, size=size, technique=technique, curved_earth=curved_earth, no_limits=no_limits, labels=labels, hidden=hidden,
-        palette=palette, relief=relief, light=light, stylise=stylise, exaggeration=exaggeration, mark=mark, furniture=furniture,
-        title=title, sea=sea, rivers=rivers, drape=drape, samples=samples,
+        fill_voids=fill_voids, size=size, light=light, stylise=stylise, mark=mark, furniture=furniture, sea=sea, rivers=rivers, drape=drape,
+        scene_crs=scene_crs, **options,
     )  # fmt: skip
-    if see is not None and (request["files"]["rivers"] or request["files"]["drape"]):
-        raise InputError("rivers and drape are of terrain with routes; leave them out with see")
     request.update(
         see=see,
         fallback=[fallback] if isinstance(fallback, str) else list(fallback),
-        transfer=transfer,
         eye=place("eye", eye),
-        look_at=place("look_at", look_at),
-        fov_y_deg=None if fov_y_deg is None else number("fov_y_deg", fov_y_deg),
-        open={} if see is None else {"size": request["size"]},
+        look=place("look_at", look_at),
+        fov=None if fov_y_deg is None else number("fov_y_deg", fov_y_deg),
     )
     with asked(threads, progress, time_limit_s) as ask, Named(os.fspath(folder.path)):
-        return Revealed(_native.reveal(text("reveal", request), ask), folder, request["draw"])
+        native = _native.reveal(text("reveal", request), opening(fonts, seed), ask)
+        return Revealed(native, folder, request.get("samples"))
+
+
+def opening(fonts: Sequence[str | os.PathLike[str]] = (), seed: int | None = None) -> str:
+    """How scenes are opened, as the engine takes it."""
+    return text("options", {"fonts": [os.fspath(font) for font in fonts], "seed": seed})
 
 
 def _request(
@@ -194,50 +195,47 @@ def _request(
     features_crs: object = None,
     fill_voids: bool | None = None,
     size: tuple[int, int] | None = None,
-    technique: str | None = None,
-    curved_earth: bool = False,
-    no_limits: bool = False,
-    labels: bool = False,
-    hidden: str | None = None,
-    palette: str | None = None,
-    relief: str | None = None,
-    light: Mapping[str, Any] | None = None,
+    light: Mapping[str, Any] | tuple[float, float] | None = None,
     stylise: bool | tuple[float, float] = False,
-    exaggeration: float | None = None,
     mark: bool = True,
     furniture: bool | str | Sequence[str] | None = None,
-    title: str | None = None,
     sea: bool = True,
     rivers: object = None,
     drape: object = None,
-    samples: int | None = None,
+    scene_crs: str | None = None,
+    **options: Any,
 ) -> dict[str, Any]:
     """The request as the engine takes it, but for the view and a target."""
     if routes is None and not isinstance(dem, (str, os.PathLike)):
         raise InputError("routes are missing: nothing says what must be seen; give routes, areas or points")
-    if rivers is not None and technique not in ("terrain", "both", "auto"):
-        raise InputError("rivers are kept from running uphill where the ground moves; give technique='terrain', 'both' or 'auto'")
     files = files_of(
         dem, routes, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata, features_crs=features_crs,
         fill_voids=fill_voids, folder=folder, rivers=rivers, drape=drape,
     )  # fmt: skip
-    files.update(labels=bool(labels), hidden=hidden, palette=palette, no_sea=not sea)
-    drawn = drawing(stylise=stylise, mark=mark, furniture=furniture, title=title, samples=samples)
-    look = {
-        "light": None if light is None else dict(light),
-        "relief": relief,
-        "stylise": drawn.pop("stylise"),
-        "no_mark": drawn.pop("no_mark"),
-        "furniture": drawn.pop("furniture"),
-        "title": drawn.pop("title"),
-        "exaggeration": None if exaggeration is None else number("exaggeration", exaggeration),
-    }
     return {
-        "files": files,
-        "look": look,
+        "data": files.pop("dem"),
+        **({} if scene_crs is None else {"crs": scene_crs}),
+        **files,
+        **options,
+        **_light_of(light),
+        "stylise": strengths_of(stylise),
+        "no_mark": not mark,
+        "furniture": furniture_of(furniture),
+        "no_sea": not sea,
         "size": size_of(size),
-        "curved_earth": bool(curved_earth),
-        "technique": technique,
-        "no_limits": bool(no_limits),
-        "draw": drawn,
     }
+
+
+def _light_of(light: Mapping[str, Any] | tuple[float, float] | None) -> dict[str, Any]:
+    """A light, as options have it: a direction, or the keys of ``[light]``."""
+    if light is None:
+        return {}
+    if not isinstance(light, Mapping):
+        return {"light": light}
+    keys = dict(light)
+    options = {"light_time" if key == "time" else key: keys.pop(key) for key in ("time", "shadows", "sky", "haze") if key in keys}
+    if "azimuth_deg" in keys or "altitude_deg" in keys:
+        options["light"] = [keys.pop("azimuth_deg", 315.0), keys.pop("altitude_deg", 45.0)]
+    if keys:
+        raise InputError(f"light: unknown keys {', '.join(keys)}; give azimuth_deg, altitude_deg, time, shadows, sky or haze")
+    return options

@@ -30,6 +30,6 @@ pub(crate) fn builtin_scene(name: &str) -> PyResult<String> {
     let Some((_, text)) = SCENES.iter().find(|(other, _)| *other == name) else {
         return Err(wrong(&format!("there is no built-in scene {name:?}; possible: {}", builtin_names().join(", "))));
     };
-    let source = scene_file::parse(Path::new(name), text).map_err(|e| raised(&e))?;
+    let source = scene_file::parse(Path::new(name), text).map_err(|e| raised(&e.into()))?;
     output::document_json(&source.document).map_err(|e| raised(&e))
 }

@@ -35,7 +35,7 @@ mod native {
     #[pymodule_export]
     use super::presets::{preset_check, preset_list, preset_plot, preset_set, preset_text};
     #[pymodule_export]
-    use super::reveal::{NativeReveal, drafts, reveal};
+    use super::reveal::{NativeReveal, drafts, request_schema, reveal};
     #[pymodule_export]
     use super::scene::{NativeScene, schema, sheet};
     #[pymodule_export]

@@ -44,6 +44,7 @@ pub(crate) struct Opening {
     allow_roots: Vec<PathBuf>,
     size: Option<[u32; 2]>,
     seed: Option<u64>,
+    fonts: Vec<PathBuf>,
     unsolved: bool,
 }
 
@@ -54,6 +55,7 @@ impl Opening {
             allow_roots: self.allow_roots,
             image: self.size,
             seed: self.seed,
+            fonts: self.fonts,
             unsolved: self.unsolved,
             max_bytes: Some(belvedere::io::budget::bytes()),
             progress,

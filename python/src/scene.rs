@@ -29,7 +29,7 @@ pub(crate) fn sheet(
     size: Option<[u32; 2]>,
 ) -> PyResult<Option<(String, [u32; 2])>> {
     let asked: PrintDoc = request::read("paper", asked)?;
-    let source = text.map_or_else(|| scene_or_data(&path), |text| scene_file::parse(&path, text));
+    let source = text.map_or_else(|| scene_or_data(&path), |text| Ok(scene_file::parse(&path, text)?));
     let document = source.map_err(|e| raised(&e))?.document;
     let sheet = Sheet::asked(&asked, document.print.as_ref(), size, document.camera.image).map_err(|e| raised(&e))?;
     sheet.map(|s| Ok((output::json(&s.document()).map_err(|e| raised(&e))?, s.pixels()))).transpose()

@@ -3,19 +3,56 @@
 use crate::errors::{raised, wrong};
 use crate::picture::filled;
 use crate::request::{self, Opening};
-use crate::reveal::Files;
 use crate::scene::NativeScene;
 use crate::work::{Ask, run};
+use belvedere::DataFiles;
 use belvedere::answers;
 use belvedere::io::raster::Raster;
 use belvedere::output;
-use belvedere::scene_file::TerrainStageDoc;
+use belvedere::scene_file::{SurfaceDoc, TerrainStageDoc, VerticalUnit};
 use belvedere::verbs::disocclude::{self as verb, DisoccludeFiles, DisoccludeRequest, Disoccluded, WrittenGrid};
 use pyo3::prelude::*;
 use pyo3::types::PyByteArray;
 use serde::Deserialize;
 use std::path::PathBuf;
 use std::sync::Arc;
+
+/// Files of terrain and features, and what they do not say themselves.
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct Files {
+    dem: String,
+    features: Vec<String>,
+    rivers: Vec<String>,
+    crs: Option<String>,
+    keep_voids: bool,
+    fill_voids: bool,
+    area_style: Option<SurfaceDoc>,
+    source_crs: Option<String>,
+    nodata: Option<f64>,
+    vertical_unit: Option<VerticalUnit>,
+    name_field: Option<String>,
+}
+
+impl Files {
+    /// The files as the facade takes them.
+    fn data(self) -> DataFiles {
+        DataFiles {
+            dem: self.dem,
+            features: self.features,
+            rivers: self.rivers,
+            crs: self.crs,
+            keep_voids: self.keep_voids,
+            fill_all_voids: self.fill_voids,
+            area_style: self.area_style,
+            source_crs: self.source_crs,
+            nodata: self.nodata,
+            vertical_unit: self.vertical_unit,
+            name_field: self.name_field,
+            ..DataFiles::default()
+        }
+    }
+}
 
 /// What is asked for.
 #[derive(Debug, Clone, Deserialize)]

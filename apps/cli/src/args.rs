@@ -5,13 +5,11 @@ use crate::city::GeneraliseArgs;
 use crate::common_args::Common;
 use crate::draw_args::DrawArgs;
 use crate::export::ExportArgs;
-use crate::ground_args::{GroundArgs, InfoArgs};
-use crate::kinds::{self, RendererKind, TechniqueKind};
-use crate::look_args::{AirArgs, LookArgs};
+use crate::info_args::InfoArgs;
+use crate::kinds::RendererKind;
 use crate::pack::PackArgs;
 use crate::parse::{
-    Outside, parse_drafts, parse_eye, parse_fallback, parse_highlight, parse_number, parse_outside, parse_part,
-    parse_position, parse_scale, parse_size, parse_spacing, parse_sweep,
+    Outside, parse_drafts, parse_highlight, parse_outside, parse_part, parse_position, parse_scale, parse_sweep,
 };
 use crate::point_args::{DisplaceArgs, PICK_HELP, PickArgs, ProjectArgs, RaysArgs};
 use crate::preset::PresetArgs;
@@ -20,6 +18,8 @@ use crate::shell_args::{CompletionsArgs, ManArgs};
 use crate::trust::TrustArgs;
 use belvedere::RendererChoice;
 use belvedere::places::Place;
+use belvedere::request::parse::{number, size, spacing, with_height};
+use belvedere::request::{Air, Molecules, Reveal, Stated, one_of};
 use belvedere::scene_file::{HighlightMark, SurfaceDoc};
 use belvedere::verbs::animate;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -194,95 +194,26 @@ pub(crate) struct DemoArgs {
     #[arg(short, long, value_name = "DIR", default_value = "belvedere-demo")]
     pub(crate) out: PathBuf,
     /// Size of each picture instead of the scenes' own
-    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = parse_size)]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = size)]
     pub(crate) size: Option<[u32; 2]>,
 }
 
-/// Terrain and features.
+/// What must be seen, and the files of the answer.
 #[derive(Debug, Args)]
 pub(crate) struct RevealArgs {
-    /// Terrain: GeoTIFF, .hgt, ESRI ASCII, a folder of tiles, or builtin:massif?seed=7; or a city: CityJSON, CityGML, OSM PBF or XML; with --see
-    /// also a model: OBJ, PLY, STL, glTF, PDB, mmCIF, VTI, VTK, NRRD, MetaImage, NIfTI, raw voxels, footprints, or a scene file
-    #[arg(value_name = "DATA")]
-    pub(crate) dem: String,
-    /// Routes, areas or points: GPX, GeoJSON, shapefiles, GeoPackages where they are built in, or builtin:massif?seed=7; elevation models
-    /// among them are further tiles of the terrain; with --see more models; - = standard input (one of all data)
-    pub(crate) features: Vec<String>,
-    /// Part of a model or city that must be seen: a file (by its name without ending) or layer, a named part of a mesh, atoms such as
-    /// "chain B", a building, street or area by name, id or key=value (`info` lists them), a file of routes, or a point x,y,z in scene
-    /// coordinates or as 46.5N,11.3E,+2; rays bend around what hides it
-    #[arg(long, value_name = "WHAT", allow_hyphen_values = true)]
-    pub(crate) see: Option<String>,
-    /// Means that show it where no bend does: transparency, cutaway or explosion of everything that hides it, or LAYER:KIND for one
-    /// layer; several separated by commas
-    #[arg(long, value_delimiter = ',', value_name = "LIST", requires = "see", value_parser = parse_fallback)]
-    pub(crate) fallback: Vec<String>,
-    /// Colours and opacities of volumes with --see: auto, solid, engine, ct-bone, ct-soft, vessels, grey, or a file
-    #[arg(long, value_name = "NAME|FILE", requires = "see")]
-    pub(crate) transfer: Option<String>,
+    #[command(flatten)]
+    pub(crate) asked: Reveal,
     /// Picture to write: PNG, TIFF, JPEG, WebP, SVG or PDF, as its name ends; its record goes to OUT.png.json, and if it is bent, the straight beside the bent picture to OUT.pair.png (not of SVG and PDF, nor with a transparent sky); - =
     /// standard output, and the picture alone
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
-    /// Eye: x,y of the scene, lon,lat in degrees, or 46.5N,11.3E; and height in metres, or +20 for 20 m above the ground. Chosen
-    /// automatically if left out
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = parse_eye)]
-    pub(crate) eye: Option<Place>,
-    /// Point to look at, written as the eye; without Z it lies on the ground
-    #[arg(long, value_name = "X,Y[,Z]", allow_hyphen_values = true)]
-    pub(crate) look: Option<Place>,
-    /// Full vertical field of view, degrees
-    #[arg(long, value_name = "DEG", allow_negative_numbers = true, value_parser = parse_number)]
-    pub(crate) fov: Option<f64>,
-    /// Size of the picture, such as 1920x1080
-    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = parse_size)]
-    pub(crate) size: Option<[u32; 2]>,
-    #[command(flatten)]
-    pub(crate) print: PrintArgs,
-    /// Lower the ground with the distance, as on a sphere, with refraction
+    /// Leave the raster of the surfaces out of an SVG or PDF
     #[arg(long)]
-    pub(crate) curved_earth: bool,
-    /// Leave holes of the terrain open instead of filling them
-    #[arg(long)]
-    pub(crate) keep_voids: bool,
-    /// Tint of the terrain: auto (the default: meadows, forest, rock and snow as the climate of the place has them), swiss, winter, autumn,
-    /// alpine, desert, glacial, atlas, clear, plain, night, or a file of colours by height (GDAL colour-relief text, GMT .cpt)
-    #[arg(long, value_name = "NAME|FILE")]
-    pub(crate) palette: Option<String>,
-    /// Georeferenced picture laid over the ground, such as a map or an aerial photograph; may be given several times, later ones on top
-    #[arg(long, value_name = "FILE", conflicts_with = "see")]
-    pub(crate) drape: Vec<PathBuf>,
-    /// Write the names of lines, areas and points
-    #[arg(long, conflicts_with = "see")]
-    pub(crate) labels: bool,
-    /// Draw the sea as ordinary ground
-    #[arg(long)]
-    pub(crate) no_sea: bool,
-    /// Rivers that do not run uphill where the ground makes way: a file of lines, GPX, GeoJSON, shapefile; may be given several times
-    #[arg(long, value_name = "FILE", conflicts_with = "see")]
-    pub(crate) rivers: Vec<PathBuf>,
-    /// Style of areas, instead of the one that their properties and names give
-    #[arg(long, value_parser = kinds::surface(), value_name = "STYLE")]
-    pub(crate) area_style: Option<SurfaceDoc>,
+    pub(crate) vectors_only: bool,
     /// Write a sheet of up to N pictures from different sides to OUT.png instead of one, with the shares of each and the command that
     /// makes it
     #[arg(long, value_name = "N", conflicts_with_all = ["eye", "look"], allow_negative_numbers = true, value_parser = parse_drafts)]
     pub(crate) drafts: Option<usize>,
-    /// Axis that points upwards in the picture, with --see: x, y, z, -x, -y or -z
-    #[arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = crate::parse::axis, requires = "see")]
-    pub(crate) up: Option<[f64; 3]>,
-    /// Technique that bends the picture; by default a spline, with --see curved rays
-    #[arg(long, value_enum)]
-    pub(crate) technique: Option<TechniqueKind>,
-    /// Lift the limits of plausible ground: no lower than a fifth of the relief below the lowest point, no steeper than twice the 99.9th
-    /// percentile of the terrain's slopes
-    #[arg(long)]
-    pub(crate) no_limits: bool,
-    /// Coordinate system of the scene: auto, EPSG:n or local
-    #[arg(long, value_name = "CRS")]
-    pub(crate) crs: Option<String>,
-    #[command(flatten)]
-    pub(crate) ground: GroundArgs,
     /// Write the straight picture to this file
     #[arg(long, value_name = "OUT.png")]
     pub(crate) before: Option<PathBuf>,
@@ -292,8 +223,6 @@ pub(crate) struct RevealArgs {
     /// Write a scene file that draws the same picture
     #[arg(long, value_name = "OUT.toml")]
     pub(crate) scene: Option<PathBuf>,
-    #[command(flatten, next_help_heading = "Look of the picture")]
-    pub(crate) look_args: LookArgs,
 }
 
 /// Terrain, features and an eye.
@@ -309,13 +238,13 @@ pub(crate) struct DisoccludeArgs {
     pub(crate) rivers: Vec<PathBuf>,
     /// Eye: x,y in the system of the elevation model, lon,lat in degrees, or 46.5N,11.3E; and height in metres over its datum, or +20
     /// for 20 m above the ground
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = parse_eye)]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = with_height)]
     pub(crate) eye: Place,
     /// Point to look at, written as the eye, without a height
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = parse_position)]
     pub(crate) look: Place,
     /// Full horizontal field of view, degrees
-    #[arg(long, value_name = "DEG", default_value = "70", allow_negative_numbers = true, value_parser = parse_number)]
+    #[arg(long, value_name = "DEG", default_value = "70", allow_negative_numbers = true, value_parser = number)]
     pub(crate) fov: f64,
     /// Passes of the solver: paper as published; qp guarantees visibility by a quadratic program; paper+qp both
     #[arg(long, value_name = "MODE", value_parser = ["paper", "paper+qp", "qp"])]
@@ -349,7 +278,7 @@ pub(crate) struct DisoccludeArgs {
     #[arg(long)]
     pub(crate) fill_voids: bool,
     /// Style of areas in the picture, instead of the one that their properties and names give
-    #[arg(long, value_parser = kinds::surface(), value_name = "STYLE")]
+    #[arg(long, value_parser = one_of::<SurfaceDoc>(), value_name = "STYLE")]
     pub(crate) area_style: Option<SurfaceDoc>,
     /// Lower the ground with the distance, as on a sphere, with refraction
     #[arg(long)]
@@ -358,7 +287,7 @@ pub(crate) struct DisoccludeArgs {
     #[arg(long, value_name = "CRS")]
     pub(crate) crs: Option<String>,
     #[command(flatten)]
-    pub(crate) ground: GroundArgs,
+    pub(crate) ground: Stated,
 }
 
 /// A scene to measure.
@@ -407,7 +336,7 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_enum, default_value = "npy")]
     pub(crate) aux_format: AuxFormatKind,
     /// Draw lines of the coordinate system on the ground, every M metres; by default at a round spacing
-    #[arg(long, value_name = "M", num_args = 0..=1, require_equals = true, value_parser = parse_spacing)]
+    #[arg(long, value_name = "M", num_args = 0..=1, require_equals = true, value_parser = spacing)]
     pub(crate) grid: Option<Option<f64>>,
     /// Colour the picture by how far the bend moves what it shows
     #[arg(long, conflicts_with = "straight")]
@@ -433,14 +362,14 @@ pub(crate) struct RenderArgs {
     #[arg(long, value_name = "NAME|FILE")]
     pub(crate) palette: Option<String>,
     #[command(flatten)]
-    pub(crate) air: AirArgs,
+    pub(crate) air: Air,
     #[command(flatten)]
-    pub(crate) molecules: crate::molecule_args::MoleculeArgs,
+    pub(crate) molecules: Molecules,
     /// Draw the sea as ordinary ground
     #[arg(long)]
     pub(crate) no_sea: bool,
     /// Style of the areas of all layers, instead of the scene's; auto = the one that properties and names give
-    #[arg(long, value_parser = kinds::surface(), value_name = "STYLE")]
+    #[arg(long, value_parser = one_of::<SurfaceDoc>(), value_name = "STYLE")]
     pub(crate) area_style: Option<SurfaceDoc>,
 }
 
@@ -468,13 +397,13 @@ pub(crate) struct AnimateArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(crate) frames: Option<u32>,
     /// Frames per second; by default the scene's, else 25
-    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = parse_number)]
+    #[arg(long, value_name = "F", allow_negative_numbers = true, value_parser = number)]
     pub(crate) fps: Option<f64>,
     /// Follow the route of this line layer, behind and above a walker; the eye stays above the drawn ground
     #[arg(long, value_name = "LAYER", group = "way")]
     pub(crate) along: Option<String>,
     /// Ground speed along the route, metres per second of film; by default the whole route in all frames
-    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = parse_number)]
+    #[arg(long, value_name = "M", allow_negative_numbers = true, value_parser = number)]
     pub(crate) speed: Option<f64>,
     /// Tilt through the viewing angles of the spline's presets: phi, or phi=FIRST:LAST[:STEP] in degrees
     #[arg(long, value_name = "phi[=A:B]", group = "way", value_parser = parse_sweep)]
@@ -530,6 +459,9 @@ pub(crate) struct SchemaArgs {
     /// Document: scene (a scene file), keys (its keys as a page in Markdown), or a verb, for what it prints with --json
     #[arg(value_name = "VERB", default_value = "scene", value_parser = crate::schemas::names())]
     pub(crate) of: String,
+    /// The schema of what the verb is asked, its options as JSON, instead of that of its answers: reveal
+    #[arg(long)]
+    pub(crate) request: bool,
     /// Output; standard output if left out
     #[arg(short, long, value_name = "OUT.json")]
     pub(crate) out: Option<PathBuf>,

@@ -1,6 +1,6 @@
 //! Arguments of `bench`.
 
-use crate::parse::parse_size;
+use belvedere::request::parse::size;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ pub(crate) struct BenchArgs {
     #[arg(long, default_value_t = 1025, value_name = "N", allow_negative_numbers = true)]
     pub(crate) nodes: usize,
     /// Size of the picture
-    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = parse_size)]
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
     pub(crate) size: [u32; 2],
     /// Measure twelve scenes of the data collection in this folder instead: straight, bent, moving
     #[arg(long, value_name = "FOLDER", conflicts_with = "nodes")]

@@ -21,7 +21,7 @@ pub(crate) struct GeneraliseArgs {
     #[arg(short, long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     /// Distance from buildings up to which ground counts as built-up, metres
-    #[arg(long, value_name = "METRES", default_value_t = GeneraliseSettings::default().margin_m, allow_negative_numbers = true, value_parser = crate::parse::parse_number)]
+    #[arg(long, value_name = "METRES", default_value_t = GeneraliseSettings::default().margin_m, allow_negative_numbers = true, value_parser = belvedere::request::parse::number)]
     pub(crate) margin: f64,
 }
 

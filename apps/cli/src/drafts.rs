@@ -2,39 +2,15 @@
 
 use crate::goal::Goal;
 use crate::report::{Context, print};
-use belvedere::OpenOptions;
-use belvedere::verbs::drafts::{self, Draft, DraftsAnswer};
-use belvedere::verbs::reveal::RevealRequest;
-use belvedere::verbs::reveal_target::TargetRequest;
+use belvedere::verbs::drafts::{Draft, DraftsAnswer};
 use belvedere::verbs::schemas::{DraftWithCommand, Drafts};
-use belvedere::verbs::target_drafts::target_drafts;
 use std::path::{Path, PathBuf};
 
 /// Options of the sheet that its commands leave out, with a value of their own.
 const LEFT_OUT: [&str; 7] = ["--drafts", "--out", "-o", "--report", "--before", "--scene", "--fov"];
 
-/// Draws the drafts.
-pub(crate) fn drafts(
-    (request, options): (&RevealRequest, &OpenOptions),
-    count: usize,
-    out: &Path,
-    context: &Context,
-) -> anyhow::Result<Goal> {
-    sheet(&drafts::drafts(request, count, options)?, out, context)
-}
-
-/// Draws the drafts of a target in models or in a city.
-pub(crate) fn of_target(
-    (request, options): (&TargetRequest, &OpenOptions),
-    count: usize,
-    out: &Path,
-    context: &Context,
-) -> anyhow::Result<Goal> {
-    sheet(&target_drafts(request, count, options)?, out, context)
-}
-
 /// Writes the sheet and prints the commands.
-fn sheet(found: &DraftsAnswer, out: &Path, context: &Context) -> anyhow::Result<Goal> {
+pub(crate) fn sheet(found: &DraftsAnswer, out: &Path, context: &Context) -> anyhow::Result<Goal> {
     found.write(out, context.common.overwrite)?;
     context.finish();
     let commands: Vec<String> = found.drafts.iter().enumerate().map(|(i, draft)| command(draft, i, out)).collect();

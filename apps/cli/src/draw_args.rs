@@ -1,8 +1,9 @@
 //! Arguments that all pictures and frames have in common.
 
 use crate::kinds::RendererKind;
-use crate::parse::{parse_lod, parse_samples, parse_size};
+use crate::parse::parse_lod;
 use belvedere::picture::THRESHOLDS;
+use belvedere::request::parse::{samples, size};
 use clap::{Args, ValueEnum};
 
 /// How representations of styling sections are put together.
@@ -20,7 +21,7 @@ pub(crate) enum CompositingKind {
 #[derive(Debug, Args)]
 pub(crate) struct DrawArgs {
     /// Size in pixels instead of the scene's, such as 1920x1080
-    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = parse_size)]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = size)]
     pub(crate) size: Option<[u32; 2]>,
     /// Renderer
     #[arg(long, value_enum, default_value = "auto")]
@@ -32,7 +33,7 @@ pub(crate) struct DrawArgs {
     #[arg(long, conflicts_with = "straight")]
     pub(crate) compare: bool,
     /// Coverage samples per pixel: 1, 4 or 16
-    #[arg(long, default_value_t = 4, value_name = "N", allow_negative_numbers = true, value_parser = parse_samples)]
+    #[arg(long, default_value_t = 4, value_name = "N", allow_negative_numbers = true, value_parser = samples)]
     pub(crate) samples: u32,
     /// Thresholds per pixel in transitions between styling sections; 1 is a dither
     #[arg(long, default_value_t = THRESHOLDS, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=4096))]

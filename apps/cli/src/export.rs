@@ -2,10 +2,10 @@
 
 use crate::goal::Goal;
 use crate::outputs;
-use crate::parse::parse_size;
 use crate::report::{Context, is_stdout};
 use belvedere::export::{self, ExportOptions, GROUND_NODES};
 use belvedere::io::atomic;
+use belvedere::request::parse::size;
 use belvedere::{Needs, OpenOptions};
 use clap::Args;
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ pub(crate) struct ExportArgs {
     #[arg(short, long, value_name = "OUT.glb")]
     out: PathBuf,
     /// Size of the picture that the camera is for, instead of the scene's
-    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = parse_size)]
+    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = size)]
     size: Option<[u32; 2]>,
     /// The scene without its bends
     #[arg(long)]

@@ -1,13 +1,11 @@
 //! Values of arguments.
 
 use belvedere::places::Place;
-use belvedere::scene_file::{HighlightMark, StylisationDoc, SwitchOrStrength, SwitchOrVisibility};
+use belvedere::request::parse::with_height;
+use belvedere::scene_file::HighlightMark;
 use belvedere::verbs::animate::Part;
-use belvedere::verbs::appearance::EXAGGERATION;
 use belvedere::verbs::drafts::MOST_DRAFTS;
 
-/// Most pixels along a side of a picture.
-const MAX_SIDE: u32 = 65535;
 /// Most worker threads: far above what helps, far below what a system refuses to start.
 const MAX_THREADS: usize = 1024;
 
@@ -31,11 +29,6 @@ pub(crate) fn parse_lod(text: &str) -> Result<f64, String> {
     px.ok_or_else(|| "give an error in pixels in 0..=64; 0 draws every cell".into())
 }
 
-/// Checks the name of a fallback for a target that no bend shows; returns the text unchanged.
-pub(crate) fn parse_fallback(text: &str) -> Result<String, String> {
-    text.parse::<belvedere::scene_file::Fallback>().map(|_| text.to_owned())
-}
-
 /// Parses the name of a mark that shows the displacement.
 pub(crate) fn parse_highlight(text: &str) -> Result<HighlightMark, String> {
     match text.trim() {
@@ -45,26 +38,6 @@ pub(crate) fn parse_highlight(text: &str) -> Result<HighlightMark, String> {
         "ghost-box" | "ghost_box" => Ok(HighlightMark::GhostBox),
         _ => Err("possible: shift or stages, revealed, ghost-box, separated by commas".into()),
     }
-}
-
-/// Parses width and height in pixels, such as `1280x720`.
-pub(crate) fn parse_size(text: &str) -> Result<[u32; 2], String> {
-    let sides = text.split_once(['x', 'X']).map(|(w, h)| [w.trim().parse(), h.trim().parse()]);
-    match sides {
-        Some([Ok(w), Ok(h)]) if [w, h].iter().all(|side| (1..=MAX_SIDE).contains(side)) => Ok([w, h]),
-        Some([Ok(_), Ok(_)]) => Err(format!("each side must have 1 to {MAX_SIDE} pixels, such as 1280x720")),
-        _ => Err("give width and height in pixels, such as 1280x720".into()),
-    }
-}
-
-/// Parses a number that is finite.
-pub(crate) fn parse_number(text: &str) -> Result<f64, String> {
-    text.trim().parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(|| "give a number".into())
-}
-
-/// Parses a number of coverage samples: 1, 4 or 16.
-pub(crate) fn parse_samples(text: &str) -> Result<u32, String> {
-    text.trim().parse().ok().filter(|n| matches!(n, 1 | 4 | 16)).ok_or_else(|| "give 1, 4 or 16".into())
 }
 
 /// Parses a number of drafts.
@@ -98,18 +71,6 @@ pub(crate) fn parse_part(text: &str) -> Result<Part, String> {
     }
 }
 
-/// Parses a place with a height, such as `1.5,42.5,2400` or `42.5N,1.5E,+20`.
-pub(crate) fn parse_eye(text: &str) -> Result<Place, String> {
-    let place: Place = text.parse()?;
-    let without = "an eye needs a height: give X,Y,Z, Z in metres, or +20 for 20 m above the ground";
-    if place.has_height() { Ok(place) } else { Err(without.into()) }
-}
-
-/// Parses a length in scene units, > 0.
-pub(crate) fn parse_spacing(text: &str) -> Result<f64, String> {
-    text.trim().parse().ok().filter(|v: &f64| *v > 0.0 && v.is_finite()).ok_or("give a length greater than 0".into())
-}
-
 /// Parses a factor in 0.1..=1.
 pub(crate) fn parse_scale(text: &str) -> Result<f64, String> {
     text.trim().parse().ok().filter(|v| (0.1..=1.0).contains(v)).ok_or("give a factor in 0.1..=1, such as 0.5".into())
@@ -122,7 +83,7 @@ pub(crate) fn parse_outside(text: &str) -> Result<Outside, String> {
     }
     let at = text.match_indices(',').nth(2).map(|(at, _)| at);
     let (eye, target) = at.map(|at| (&text[..at], &text[at + 1..])).unwrap_or((text, ""));
-    match [eye, target].map(parse_eye) {
+    match [eye, target].map(with_height) {
         [Ok(eye), Ok(target)] => Ok(Some([eye, target])),
         _ => Err("give auto, or eye and target as X,Y,Z,X,Y,Z".into()),
     }
@@ -132,58 +93,6 @@ pub(crate) fn parse_outside(text: &str) -> Result<Outside, String> {
 pub(crate) fn parse_position(text: &str) -> Result<Place, String> {
     let place: Place = text.parse()?;
     if place.has_height() { Err("give X,Y without a height".into()) } else { Ok(place) }
-}
-
-/// Parses a time of the sun; returns the text unchanged.
-pub(crate) fn parse_time(text: &str) -> Result<String, String> {
-    belvedere::sun::check_time(text).map(|()| text.trim().to_owned())
-}
-
-/// Parses the direction of light: azimuth and altitude in degrees, such as `250,12`.
-pub(crate) fn parse_light(text: &str) -> Result<[f64; 2], String> {
-    let angles = numbers(text).and_then(|v| <[f64; 2]>::try_from(v).ok());
-    let fits = |[azimuth, altitude]: &[f64; 2]| azimuth.abs() <= 360.0 && *altitude > 0.0 && *altitude <= 90.0;
-    angles.filter(fits).ok_or_else(|| {
-        "give the azimuth, degrees clockwise from north, and the altitude above 0 and up to 90, such as 250,12".into()
-    })
-}
-
-/// Parses haze: a switch, or the visibility in kilometres.
-pub(crate) fn parse_haze(text: &str) -> Result<SwitchOrVisibility, String> {
-    match text.trim() {
-        "on" => Ok(SwitchOrVisibility::Switch(true)),
-        "off" => Ok(SwitchOrVisibility::Switch(false)),
-        text => {
-            let km = text.parse().ok().filter(|km| (1e-6..=1e6).contains(km));
-            km.map(SwitchOrVisibility::Kilometres)
-                .ok_or_else(|| "give on, off, or a visibility in kilometres, such as 40".into())
-        }
-    }
-}
-
-/// Parses a factor of heights.
-pub(crate) fn parse_exaggeration(text: &str) -> Result<f64, String> {
-    let [least, most] = EXAGGERATION;
-    let factor = text.trim().parse().ok().filter(|v| (least..=most).contains(v));
-    factor.ok_or_else(|| format!("give a factor in {least}..={most}, such as 1.5"))
-}
-
-/// Parses the strengths of edges and, if given, of depth unsharp masking, such as `0.7,4`; 0 leaves one out.
-pub(crate) fn parse_stylise(text: &str) -> Result<StylisationDoc, String> {
-    let strengths = numbers(text).ok_or("give strengths, such as 0.7,4")?;
-    let strength = |value: f64| Some(SwitchOrStrength::Strength(value));
-    let document = match strengths[..] {
-        [edges] => StylisationDoc { edges: strength(edges), unsharp: None },
-        [edges, unsharp] => StylisationDoc { edges: strength(edges), unsharp: strength(unsharp) },
-        _ => return Err("give one strength or two, such as 0.7,4".into()),
-    };
-    document.strengths().map_err(|(_, reason)| reason)?;
-    Ok(document)
-}
-
-/// Finite numbers between commas.
-fn numbers(text: &str) -> Option<Vec<f64>> {
-    text.split(',').map(|t| t.trim().parse().ok().filter(|v: &f64| v.is_finite())).collect()
 }
 
 /// Parses a size in bytes, at least 1 MiB, such as `512MiB`, `2GB` or `100000`.
@@ -204,14 +113,4 @@ pub(crate) fn parse_bytes(text: &str) -> Result<u64, String> {
         Ok(n) if n * scale >= 1024.0 * 1024.0 && n * scale <= 1e15 => Ok((n * scale) as u64),
         _ => Err("give a size of at least 1MiB, such as 800MiB or 2GiB".into()),
     }
-}
-
-/// An axis such as `-y` as a unit vector.
-pub(crate) fn axis(text: &str) -> Result<[f64; 3], String> {
-    let (sign, name) = text.strip_prefix('-').map_or((1.0, text.trim_start_matches('+')), |name| (-1.0, name));
-    let index = ["x", "y", "z"].iter().position(|axis| name.eq_ignore_ascii_case(axis));
-    let index = index.ok_or_else(|| format!("{text:?} is no axis; give x, y, z, -x, -y or -z"))?;
-    let mut out = [0.0; 3];
-    out[index] = sign;
-    Ok(out)
 }

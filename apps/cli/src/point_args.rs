@@ -1,6 +1,6 @@
 //! Arguments of verbs about single points and pixels: `project`, `displace`, `rays`, `pick`.
 
-use crate::parse::parse_number;
+use belvedere::request::parse::number;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -43,7 +43,7 @@ pub(crate) struct RaysArgs {
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) samples: usize,
     /// Depth of the last sample; by default the camera's far, else the scene's largest depth
-    #[arg(long, value_name = "W", allow_negative_numbers = true, value_parser = parse_number)]
+    #[arg(long, value_name = "W", allow_negative_numbers = true, value_parser = number)]
     pub(crate) far: Option<f64>,
     /// Output; standard output if left out
     #[arg(short, long, value_name = "OUT.json")]

@@ -71,7 +71,7 @@ pub(crate) enum PresetWork {
         #[arg(short, long, value_name = "OUT.png")]
         out: PathBuf,
         /// Draw the preset that is interpolated for this viewing angle, degrees
-        #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = crate::parse::parse_number)]
+        #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = belvedere::request::parse::number)]
         phi: Option<f64>,
     },
 }

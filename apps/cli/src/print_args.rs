@@ -1,34 +1,22 @@
-//! Arguments of pictures on paper.
+//! Pictures on paper and as vectors.
 
 use crate::outputs::named;
-use crate::parse::parse_number;
 use belvedere::picture::PictureOptions;
-use belvedere::print::{Sheet, parse_paper};
+use belvedere::print::Sheet;
+use belvedere::request::Paper;
 use belvedere::scene_file::PrintDoc;
 use belvedere::vectors::VectorContent;
 use clap::Args;
 use std::path::Path;
 
-/// Paper of a picture.
+/// Paper of a picture of a scene.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct PrintArgs {
-    /// Paper: A0 to A6 (landscape where the picture is wider than high), A3-portrait, A3-landscape, or a size such as 420x297mm; pixels,
-    /// widths of lines and heights of letters follow from it
-    #[arg(long, value_name = "PAPER", value_parser = paper)]
-    pub(crate) paper: Option<String>,
-    /// Pixels per inch, 300 with --paper unless --size is given; lengths that the scene states in pixels are 1/96 inch each
-    #[arg(long, value_name = "DPI", allow_negative_numbers = true, value_parser = parse_number)]
-    pub(crate) dpi: Option<f64>,
-    /// White margin of the paper on every side, millimetres; PNG, TIFF, JPEG and WebP leave it out
-    #[arg(long, value_name = "MM", allow_negative_numbers = true, value_parser = parse_number)]
-    pub(crate) margin_mm: Option<f64>,
+    #[command(flatten)]
+    pub(crate) paper: Paper,
     /// Leave the raster of the surfaces out of an SVG or PDF
     #[arg(long)]
     pub(crate) vectors_only: bool,
-}
-
-fn paper(text: &str) -> Result<String, String> {
-    parse_paper(text, [1, 1]).map(|_| text.to_owned())
 }
 
 impl PrintArgs {
@@ -45,30 +33,33 @@ impl PrintArgs {
             // Opening the scene tells the line of the mistake.
             return Ok(None);
         }
-        let asked = PrintDoc { paper: self.paper.clone(), dpi: self.dpi, margin_mm: self.margin_mm };
-        Ok(Sheet::asked(&asked, scene, size, shape)?)
-    }
-
-    /// Refuses names of pictures with the ending of a format that is not written.
-    pub(crate) fn check_name(&self, out: &Path) -> anyhow::Result<()> {
-        let what = "pictures are written as PNG, TIFF, JPEG, WebP, SVG or PDF";
-        named(out, &["png", "tif", "tiff", "jpg", "jpeg", "webp", "svg", "pdf"], what)?;
-        anyhow::ensure!(!self.vectors_only || is_vectors(out), "--vectors-only needs an output named .svg or .pdf");
-        Ok(())
+        Ok(Sheet::asked(&self.paper.document(), scene, size, shape)?)
     }
 
     /// Options of a picture in the format of its name, on its paper.
     pub(crate) fn apply(&self, request: PictureOptions, out: &Path, sheet: Option<Sheet>) -> PictureOptions {
-        let vectors = match (is_vectors(out), self.vectors_only) {
-            (false, _) => VectorContent::Nothing,
-            (true, false) => VectorContent::OverRaster,
-            (true, true) => VectorContent::Alone,
-        };
-        let request = PictureOptions { vectors, ..request };
+        let request = PictureOptions { vectors: vectors(out, self.vectors_only), ..request };
         match sheet {
             Some(sheet) => request.on(sheet),
             None => request,
         }
+    }
+}
+
+/// Refuses names of pictures with the ending of a format that is not written.
+pub(crate) fn check_name(out: &Path, vectors_only: bool) -> anyhow::Result<()> {
+    let what = "pictures are written as PNG, TIFF, JPEG, WebP, SVG or PDF";
+    named(out, &["png", "tif", "tiff", "jpg", "jpeg", "webp", "svg", "pdf"], what)?;
+    anyhow::ensure!(!vectors_only || is_vectors(out), "--vectors-only needs an output named .svg or .pdf");
+    Ok(())
+}
+
+/// What of a picture of this name becomes shapes.
+pub(crate) fn vectors(out: &Path, alone: bool) -> VectorContent {
+    match (is_vectors(out), alone) {
+        (false, _) => VectorContent::Nothing,
+        (true, false) => VectorContent::OverRaster,
+        (true, true) => VectorContent::Alone,
     }
 }
 

@@ -73,12 +73,25 @@ pub(crate) fn relative(text: &str) -> String {
     }
 }
 
+/// The option of the command line of a name in requests.
+fn flag(name: &str) -> String {
+    format!("--{}", name.replace('_', "-"))
+}
+
 /// An error of the library as a message for the command line, which names the options that lift it.
 fn in_options(error: &BelvedereError) -> String {
     match error {
         BelvedereError::FieldOfView { .. } => format!("--fov: {error}"),
         BelvedereError::Highlight(_) => format!("--highlight: {error}"),
         BelvedereError::Appearance { option, .. } => format!("--{option}: {error}"),
+        BelvedereError::Options { options, what } => {
+            let options = options.iter().map(|name| flag(name)).collect();
+            BelvedereError::Options { options, what }.to_string()
+        }
+        BelvedereError::Option { option, reason } => format!("{} {reason}", flag(option)),
+        BelvedereError::Alone { option, without } => {
+            format!("{} is given without {}; give both, or neither", flag(option), flag(without))
+        }
         BelvedereError::Setting(_) => format!("--set: {error}"),
         BelvedereError::Position { what, reason } => {
             let option = match *what {

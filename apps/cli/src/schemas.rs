@@ -18,8 +18,12 @@ pub(crate) fn names() -> PossibleValuesParser {
     PossibleValuesParser::new([SCENE, KEYS, BENCH].into_iter().chain(schemas::VERBS))
 }
 
-/// The schema of scene files, or of the answers of a verb.
-pub(crate) fn text(of: &str) -> anyhow::Result<String> {
+/// The schema of scene files, or of the answers or the request of a verb.
+pub(crate) fn text(of: &str, request: bool) -> anyhow::Result<String> {
+    if request {
+        return belvedere::request::schema(of)
+            .ok_or_else(|| anyhow::anyhow!("--request: the request of {of} has no schema; possible: reveal"));
+    }
     if of == BENCH {
         return Ok(schemas::schema_of(
             BENCH,

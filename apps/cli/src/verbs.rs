@@ -6,18 +6,18 @@ use crate::args::{
 };
 use crate::draw_args::{CompositingKind, DrawArgs};
 use crate::goal::Goal;
-use crate::ground_args::InfoArgs;
+use crate::info_args::InfoArgs;
 use crate::inputs::as_text;
-use crate::look_args::AirArgs;
 use crate::outputs::{self, named, png_named};
 use crate::point_args::{DisplaceArgs, PickArgs, ProjectArgs, RaysArgs};
-use crate::print_args::is_vectors;
+use crate::print_args::{self, is_vectors};
 use crate::report::{Context, is_stdout, print};
 use anyhow::Context as _;
 use belvedere::answers::{self, Content, Warned, Written};
 use belvedere::core::{Warning, WarningKind};
 use belvedere::pick;
 use belvedere::picture::{self, AuxBuffer, AuxFormat, PictureOptions};
+use belvedere::request::Air;
 use belvedere::scene::{Compositing, Sky};
 use belvedere::scene_file::{AnimationDoc, PaletteDoc, StylisationDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{self, AnimateRequest, Film};
@@ -123,7 +123,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     request.highlight = args.highlight.clone();
     request.camera =
         args.overhead.then_some(CameraPicture::Overhead).or(args.outside.map(|_| CameraPicture::Outside(None)));
-    args.print.check_name(&args.out)?;
+    print_args::check_name(&args.out, args.print.vectors_only)?;
     let source = context.stdin.drawable(&args.scene)?;
     let document = &source.document;
     let sheet = args.print.sheet(document.print.as_ref(), args.draw.size, document.camera.image)?;
@@ -148,8 +148,8 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     // A straight picture does not need the ground solved.
     let unsolved = request.straight;
     let (area_style, sea) = (args.area_style, args.no_sea.then_some(false));
-    let AirArgs { sky, haze, furniture, .. } = args.air.clone();
-    let furniture = Some(furniture.wish());
+    let Air { sky, haze, furnishing, .. } = args.air.clone();
+    let furniture = Some(furnishing.wish());
     let options = OpenOptions {
         palette,
         sky,
@@ -158,10 +158,10 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
         area_style,
         sea,
         unsolved,
-        molecule: args.molecules.options(),
+        molecule: args.molecules.clone(),
         ..context.options(Needs::Everything, size)
     };
-    let session = Session::from_document(source, &args.air.apply(options))?;
+    let session = Session::from_document(source, &options.airy(&args.air))?;
     outputs::check(&files, &session.input_paths(), context)?;
     let mut warnings = session.warnings();
     if let Some(Some(places)) = &args.outside {
@@ -234,9 +234,9 @@ fn disocclude_terrain(mut args: DisoccludeArgs, context: &Context) -> anyhow::Re
             rivers: args.rivers.iter().map(|path| as_text(path)).collect(),
             crs: args.crs,
             area_style: args.area_style,
-            source_crs: args.ground.source_crs,
-            nodata: args.ground.nodata,
-            vertical_unit: args.ground.vertical_unit.map(Into::into),
+            source_crs: args.ground.raster.source_crs,
+            nodata: args.ground.raster.nodata,
+            vertical_unit: args.ground.raster.vertical_unit,
             name_field: args.ground.name_field,
             ..DataFiles::default()
         },
@@ -369,9 +369,9 @@ fn describe(args: &InfoArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(None, &[], context)?;
     let machine = args.adapters.then(info::machine);
     let request = info::InfoRequest {
-        source_crs: args.ground.source_crs.clone(),
-        nodata: args.ground.nodata,
-        vertical_unit: args.ground.vertical_unit.map(Into::into),
+        source_crs: args.ground.raster.source_crs.clone(),
+        nodata: args.ground.raster.nodata,
+        vertical_unit: args.ground.raster.vertical_unit,
         name_field: args.ground.name_field.clone(),
         max_bytes: context.common.budget(),
     };
@@ -510,6 +510,6 @@ fn show(args: &ShowArgs, context: &Context) -> anyhow::Result<Goal> {
 
 fn schema(args: &SchemaArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[], context)?;
-    context.deliver("schema", args.out.as_deref(), &crate::schemas::text(&args.of)?, &[])?;
+    context.deliver("schema", args.out.as_deref(), &crate::schemas::text(&args.of, args.request)?, &[])?;
     Ok(Goal::Reached)
 }

@@ -128,8 +128,9 @@ pub enum ScaleDoc {
     At(Vec<[f64; 2]>),
 }
 
-/// A piece of furniture, by the name that the command line gives it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// A piece of furniture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum FurnitureItem {
     /// The title.
     Title,

@@ -69,6 +69,30 @@ pub enum BelvedereError {
         /// Height of the ground there, metres.
         ground_m: f64,
     },
+    /// Options that say something of what is not there.
+    #[error("{} {}; leave {} out", options.join(", "), are_for(options, what), if options.len() == 1 { "it" } else { "them" })]
+    Options {
+        /// Their names, as [`crate::request`] has them.
+        options: Vec<String>,
+        /// What they are for, and what there is.
+        what: &'static str,
+    },
+    /// An option with a value that goes against others.
+    #[error("{option} {reason}")]
+    Option {
+        /// Its name, as [`crate::request`] has it.
+        option: &'static str,
+        /// What is wrong, and what to do.
+        reason: String,
+    },
+    /// An option that belongs to another one, which is not given.
+    #[error("{option} is given without {without}; give both, or neither")]
+    Alone {
+        /// Its name, as [`crate::request`] has it.
+        option: &'static str,
+        /// Name of the other one.
+        without: &'static str,
+    },
     /// No file of routes, areas or points was given.
     #[error("no features are given; name at least one file of routes, areas or points")]
     NoFeatures,
@@ -239,6 +263,10 @@ impl BelvedereError {
                 | Self::Render(belvedere_scene::RenderError::Cancelled(_))
         )
     }
+}
+
+fn are_for(options: &[String], what: &str) -> String {
+    format!("{} {what}", if options.len() == 1 { "is" } else { "are" })
 }
 
 impl From<DocumentError> for BelvedereError {

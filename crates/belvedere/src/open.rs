@@ -2,6 +2,7 @@
 
 use crate::editor::{framed, set_camera};
 use crate::guard::guarded;
+use crate::options::show_molecules;
 use crate::resolve::constructor;
 use crate::resolve::motion::Motions;
 use crate::resolve::solving::Memory;
@@ -68,7 +69,7 @@ impl Session {
                 }
             }
         }
-        options.molecule.apply(&mut document.layer)?;
+        show_molecules(&options.molecule, &mut document.layer)?;
         for layer in &mut document.layer {
             match (layer, options) {
                 (LayerDoc::Area(area), OpenOptions { area_style: Some(kind), .. }) => {

@@ -1,10 +1,10 @@
 //! Options for opening a scene.
 
 use crate::BelvedereError;
+use crate::scene_file::request::{Air, Molecules, given};
 use crate::scene_file::{FurnitureWish, LayerDoc, PaletteDoc, SurfaceDoc, SwitchOrLength, SwitchOrVisibility};
 use crate::trust::Trust;
 use belvedere_io::Limits;
-use belvedere_scene::molecule::Representation;
 use belvedere_scene::{Edge, Progress};
 use std::path::PathBuf;
 
@@ -52,7 +52,7 @@ pub struct OpenOptions {
     /// Surface of the areas of all layers, instead of the scene's settings; `Some(Auto)`: as the files say.
     pub area_style: Option<SurfaceDoc>,
     /// What molecules are shown as, instead of the scene's settings.
-    pub molecule: MoleculeOptions,
+    pub molecule: Molecules,
     /// Leaves stages that need a solver out of the view, for callers that need the document alone.
     pub unsolved: bool,
     /// Leaves out what only pictures need, such as ambient occlusion, for callers that draw none.
@@ -67,52 +67,35 @@ pub struct OpenOptions {
     pub progress: Progress,
 }
 
-/// What all molecules of a scene are shown as; what is left out stays as the scene has it.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct MoleculeOptions {
-    /// Balls, rods, ribbons or surfaces.
-    pub representation: Option<Representation>,
-    /// Source of colours, see [`crate::scene_file::MoleculeStyleDoc::color`].
-    pub color: Option<String>,
-    /// Biological assembly, see [`crate::scene_file::MoleculeDoc::assembly`].
-    pub assembly: Option<String>,
-    /// Model of the file, from 1.
-    pub model: Option<usize>,
-}
-
-impl MoleculeOptions {
-    /// Puts them into the layers that are molecules.
-    ///
-    /// # Errors
-    /// [`BelvedereError::Target`] if something is asked for and no layer is a molecule.
-    pub(crate) fn apply(&self, layers: &mut [LayerDoc]) -> Result<(), BelvedereError> {
-        let mut any = false;
-        for layer in layers {
-            let LayerDoc::Molecule(molecule) = layer else { continue };
-            any = true;
-            molecule.style.representation = self.representation.unwrap_or(molecule.style.representation);
-            molecule.style.color = self.color.clone().unwrap_or_else(|| std::mem::take(&mut molecule.style.color));
-            molecule.assembly = self.assembly.clone().or(molecule.assembly.take());
-            molecule.model = self.model.or(molecule.model);
-        }
-        if any || *self == Self::default() {
-            return Ok(());
-        }
-        let given = [
-            ("--representation", self.representation.is_some()),
-            ("--color-by", self.color.is_some()),
-            ("--assembly", self.assembly.is_some()),
-            ("--model", self.model.is_some()),
-        ];
-        let given: Vec<&str> = given.into_iter().filter_map(|(name, given)| given.then_some(name)).collect();
-        let reason = format!("{} is for molecules, and there is none; leave it out", given.join(", "));
-        Err(BelvedereError::Target(reason))
+/// Puts what is asked of molecules into the layers that are some.
+///
+/// # Errors
+/// [`BelvedereError::Options`] if something is asked for and no layer is a molecule.
+pub(crate) fn show_molecules(asked: &Molecules, layers: &mut [LayerDoc]) -> Result<(), BelvedereError> {
+    let mut any = false;
+    for layer in layers {
+        let LayerDoc::Molecule(molecule) = layer else { continue };
+        any = true;
+        molecule.style.representation = asked.representation.unwrap_or(molecule.style.representation);
+        molecule.style.color = asked.color_by.clone().unwrap_or_else(|| std::mem::take(&mut molecule.style.color));
+        molecule.assembly = asked.assembly.clone().or(molecule.assembly.take());
+        molecule.model = asked.model.or(molecule.model);
     }
+    let options = given(asked);
+    if any || options.is_empty() {
+        return Ok(());
+    }
+    Err(BelvedereError::Options { options, what: "for molecules, and there is none" })
 }
 
 impl OpenOptions {
     /// Limits for reading files.
     pub(crate) fn limits(&self) -> Limits {
         self.max_bytes.map_or_else(Limits::default, |max_bytes| Limits { max_bytes })
+    }
+
+    /// The options with what is asked of contours and the end of the ground.
+    pub fn airy(self, air: &Air) -> Self {
+        Self { contours: air.contours.or(self.contours), edge: air.edge.or(self.edge), ..self }
     }
 }

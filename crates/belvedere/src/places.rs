@@ -8,12 +8,12 @@
 //! ground or near it, the exchanged place is taken, and a warning says so.
 
 use crate::resolve::ground::Ground;
+pub use crate::scene_file::place::{Place, PlaceHeight, PlacePosition};
 use crate::{BelvedereError, Session};
 use belvedere_core::{DVec2, DVec3, Warning, WarningKind};
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_scene::{Crs, Scene};
 use std::fmt;
-use std::str::FromStr;
 
 /// Distance from the ground from which on a place is doubted, and up to which another reading is taken, as shares of the diagonal of
 /// the ground.
@@ -21,120 +21,6 @@ const FAR: f64 = 1.0;
 const NEAR: f64 = 0.25;
 /// Width of the border around the ground in which small numbers are scene coordinates, as a share of its diagonal.
 const BORDER: f64 = 0.1;
-
-/// A place as it is written.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
-    /// Position on the map.
-    pub position: PlacePosition,
-    /// Height.
-    pub height: PlaceHeight,
-}
-
-/// A position on the map as it is written.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum PlacePosition {
-    /// Scene x and y, or longitude and latitude.
-    Numbers([f64; 2]),
-    /// Longitude and latitude, WGS84 degrees, told by letters.
-    LonLat([f64; 2]),
-}
-
-/// A height as it is written.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum PlaceHeight {
-    /// None: that of the ground.
-    OnGround,
-    /// Metres over the datum of the data.
-    Metres(f64),
-    /// Metres above the ground.
-    AboveGround(f64),
-}
-
-impl Place {
-    /// The place of two or three numbers.
-    pub fn of(position: [f64; 2], height: Option<f64>) -> Self {
-        let height = height.map_or(PlaceHeight::OnGround, PlaceHeight::Metres);
-        Self { position: PlacePosition::Numbers(position), height }
-    }
-
-    /// Whether a height is written.
-    pub fn has_height(&self) -> bool {
-        self.height != PlaceHeight::OnGround
-    }
-
-    /// The two numbers as written; of letters longitude and latitude.
-    pub fn numbers(&self) -> [f64; 2] {
-        match self.position {
-            PlacePosition::Numbers(p) | PlacePosition::LonLat(p) => p,
-        }
-    }
-}
-
-/// The message about a text that is no place.
-const FORM: &str = "give X,Y or X,Y,Z: scene coordinates, lon,lat in degrees, or with letters as 46.5N,11.3E; Z in metres, or +20 for \
-                    20 m above the ground";
-
-impl FromStr for Place {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let parts: Vec<&str> = text.split(',').map(str::trim).collect();
-        let (xy, z) = match parts[..] {
-            [x, y] => ([x, y], None),
-            [x, y, z] => ([x, y], Some(z)),
-            _ => return Err(format!("it has {} parts between commas; {FORM}", parts.len())),
-        };
-        let height = match z {
-            None => PlaceHeight::OnGround,
-            Some(z) => {
-                let height = number(z).ok_or_else(|| format!("\"{z}\" is not a height; {FORM}"))?;
-                if z.starts_with('+') { PlaceHeight::AboveGround(height) } else { PlaceHeight::Metres(height) }
-            }
-        };
-        let position = match xy.map(angle) {
-            [None, None] => {
-                let [x, y] = xy.map(|t| number(t).ok_or_else(|| format!("\"{t}\" is not a number; {FORM}")));
-                PlacePosition::Numbers([x?, y?])
-            }
-            [Some(a), Some(b)] => {
-                let (lat, lon) = match (a, b) {
-                    (Angle::Lat(lat), Angle::Lon(lon)) | (Angle::Lon(lon), Angle::Lat(lat)) => (lat, lon),
-                    _ => return Err(format!("one of N, S and one of E, W belong together; {FORM}")),
-                };
-                if !(lat.abs() <= 90.0 && lon.abs() <= 180.0) {
-                    return Err("latitudes reach from 90S to 90N, longitudes from 180W to 180E".into());
-                }
-                PlacePosition::LonLat([lon, lat])
-            }
-            _ => return Err(format!("only one of the two has a letter; {FORM}")),
-        };
-        Ok(Self { position, height })
-    }
-}
-
-fn number(text: &str) -> Option<f64> {
-    text.parse().ok().filter(|v: &f64| v.is_finite())
-}
-
-enum Angle {
-    Lat(f64),
-    Lon(f64),
-}
-
-/// Degrees with a letter, such as `46.5N` or `11.3° e`.
-fn angle(text: &str) -> Option<Angle> {
-    let letter = text.chars().next_back()?.to_ascii_uppercase();
-    let degrees = text[..text.len() - letter.len_utf8()].trim().trim_end_matches('°').trim_end();
-    let value = number(degrees).filter(|v| *v >= 0.0)?;
-    match letter {
-        'N' => Some(Angle::Lat(value)),
-        'S' => Some(Angle::Lat(-value)),
-        'E' => Some(Angle::Lon(value)),
-        'W' => Some(Angle::Lon(-value)),
-        _ => None,
-    }
-}
 
 /// A way to read two numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

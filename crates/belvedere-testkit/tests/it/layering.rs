@@ -59,7 +59,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     (
         "belvedere-document",
         &["belvedere-core", "belvedere-io", "belvedere-scene"],
-        &["schemars", "serde", "serde_json", "strsim", "thiserror", "toml", "toml_edit"],
+        &["clap", "schemars", "serde", "serde_json", "strsim", "thiserror", "toml", "toml_edit"],
     ),
     (
         "belvedere-construct",

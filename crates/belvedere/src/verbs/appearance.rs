@@ -1,5 +1,7 @@
 //! How the pictures of `reveal` are drawn: light, stylisation, mark, exaggeration. It is written into their scene files.
 
+pub use crate::scene_file::request::EXAGGERATION;
+use crate::scene_file::request::Look;
 use crate::scene_file::{
     Document, FurnitureWish, LayerDoc, LightDoc, OneOrTwo, OverlayDoc, PlaneDoc, ReliefStageDoc, StageDoc,
     StylisationDoc,
@@ -7,9 +9,6 @@ use crate::scene_file::{
 use crate::{BelvedereError, OpenOptions, Session, resolve};
 use belvedere_scene::{Crs, Edge, Heightfield, LayerKind, Relief, Scene, Sky};
 use std::sync::Arc;
-
-/// Limits of [`Appearance::exaggeration`].
-pub const EXAGGERATION: [f64; 2] = [0.01, 100.0];
 
 /// How a picture is drawn; what is left out stays as it is.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -28,6 +27,20 @@ pub struct Appearance {
     pub furniture: FurnitureWish,
     /// Factor of heights over the median height of the terrain, in [`EXAGGERATION`]. The straight picture keeps the true heights.
     pub exaggeration: Option<f64>,
+}
+
+impl From<&Look> for Appearance {
+    fn from(look: &Look) -> Self {
+        Self {
+            light: look.light(),
+            relief: look.relief,
+            stylisation: look.stylise,
+            no_shadows: look.no_shadows,
+            no_mark: look.no_mark,
+            furniture: look.air.furnishing.wish(),
+            exaggeration: look.exaggeration,
+        }
+    }
 }
 
 impl Appearance {

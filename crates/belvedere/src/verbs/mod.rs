@@ -2,6 +2,7 @@
 
 pub mod animate;
 pub mod appearance;
+pub mod asked;
 pub mod check;
 mod city_views;
 pub mod disocclude;

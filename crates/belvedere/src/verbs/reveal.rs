@@ -11,6 +11,7 @@ use crate::resolve::ground::{earth_radius, unbent};
 use crate::resolve::rays::sidestep_stage;
 use crate::resolve::solving::Memory;
 use crate::resolve::solving::Solving;
+pub use crate::scene_file::request::Technique;
 use crate::scene_file::{CameraDoc, EarthDoc, PlaneDoc, PresetsDoc, SplineStageDoc, StageDoc, TerrainStageDoc};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_construct::measure::{HiddenRun, Shares};
@@ -82,24 +83,6 @@ impl From<Viewpoint> for [Place; 2] {
     fn from(Viewpoint { eye: [x, y, z], target, target_height }: Viewpoint) -> Self {
         [Place::of([x, y], Some(z)), Place::of(target, target_height)]
     }
-}
-
-/// Technique that bends the picture.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, JsonSchema, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Technique {
-    /// The technique that shows most: a spline is tried first, then both if something stays hidden, then terrain disocclusion alone if
-    /// something still does.
-    Auto,
-    /// A spline bend.
-    #[default]
-    Spline,
-    /// Terrain disocclusion.
-    Terrain,
-    /// Both together.
-    Both,
-    /// Rays with a single turn around the main occluder.
-    CurvedRays,
 }
 
 /// Visible share from which on the ground is not moved.
@@ -232,9 +215,9 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
 
 fn revealed(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAnswer, BelvedereError> {
     if !request.data.rivers.is_empty() && matches!(request.technique, Technique::Spline | Technique::CurvedRays) {
-        let reason = "rivers are kept from running uphill where the ground moves, which this technique does not do; \
+        let reason = "are kept from running uphill where the ground moves, which this technique does not do; \
                       ask for technique terrain, both or auto";
-        return Err(BelvedereError::Target(reason.into()));
+        return Err(BelvedereError::Option { option: "rivers", reason: reason.into() });
     }
     check_fov(request)?;
     let mut data = request.data.load(false, &softly_ended(options))?;

@@ -6,7 +6,7 @@ const AROUND_DAYS: f64 = 1.0;
 /// Days from 0000-03-01 to 2000-01-01.
 const J2000_DAY: i64 = 730_425;
 
-/// Whether a text is a time that [`crate::scene_file::LightDoc::time`] takes.
+/// Whether a text is a time that [`crate::LightDoc::time`] takes.
 ///
 /// # Errors
 /// A sentence with the form of a time.
@@ -20,7 +20,7 @@ pub fn check_time(text: &str) -> Result<(), String> {
 /// Within 0.02 degrees from 1950 to 2050.
 ///
 /// Source: low-precision formulas of the Astronomical Almanac (mean longitude, equation of centre with two terms).
-pub(crate) fn sun_position_deg(days: f64, lon_deg: f64, lat_deg: f64) -> [f64; 2] {
+pub fn sun_position_deg(days: f64, lon_deg: f64, lat_deg: f64) -> [f64; 2] {
     let mean_longitude = 280.460 + 0.985_647_4 * days;
     let anomaly = (357.528 + 0.985_600_3 * days).to_radians();
     let longitude = (mean_longitude + 1.915 * anomaly.sin() + 0.020 * (2.0 * anomaly).sin()).to_radians();
@@ -39,7 +39,7 @@ pub(crate) fn sun_position_deg(days: f64, lon_deg: f64, lat_deg: f64) -> [f64; 2
 
 /// The nearest time within a day of `days` at which the sun stands at least `altitude_deg` high, days after J2000.0 to five minutes;
 /// `None` if it does not rise so high.
-pub(crate) fn nearest_day_time(days: f64, [lon_deg, lat_deg]: [f64; 2], altitude_deg: f64) -> Option<f64> {
+pub fn nearest_day_time(days: f64, [lon_deg, lat_deg]: [f64; 2], altitude_deg: f64) -> Option<f64> {
     let steps = (AROUND_DAYS / STEP_DAYS) as i64;
     let is_up = |t: &f64| sun_position_deg(*t, lon_deg, lat_deg)[1] >= altitude_deg;
     let at = |k: i64| days + k as f64 * STEP_DAYS;
@@ -47,7 +47,7 @@ pub(crate) fn nearest_day_time(days: f64, [lon_deg, lat_deg]: [f64; 2], altitude
 }
 
 /// Days since 2000-01-01T12:00Z of an RFC 3339 time; `None` if it is malformed.
-pub(crate) fn days_since_j2000(time: &str) -> Option<f64> {
+pub fn days_since_j2000(time: &str) -> Option<f64> {
     let (date, rest) = time.trim().split_once(['T', 't', ' '])?;
     let (clock, offset_minutes) = split_offset(rest)?;
     let [year, month, day] = numbers::<3>(date, '-')?;
@@ -78,7 +78,7 @@ fn days_of(year: i64, month: usize) -> i64 {
 }
 
 /// The time `days` after J2000.0 to the minute, such as `2026-07-01T15:00Z`.
-pub(crate) fn written_time(days: f64) -> String {
+pub fn written_time(days: f64) -> String {
     let minutes = (days * 1440.0).round() as i64 + 720;
     let (day_number, minute) = (minutes.div_euclid(1440) + J2000_DAY, minutes.rem_euclid(1440));
     // The inverse of the day number above: 400 years have 146 097 days, the year starts in March.

@@ -1,0 +1,37 @@
+//! What callers say of files that the files do not say themselves.
+
+#[cfg(feature = "clap")]
+use super::args::one_of;
+use crate::VerticalUnit;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// What files do not say.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default)]
+pub struct Stated {
+    /// The terrain's file.
+    #[cfg_attr(feature = "clap", command(flatten))]
+    #[serde(flatten)]
+    pub raster: StatedRaster,
+    /// Property that holds the names of features, instead of the one that looks most like a name
+    #[cfg_attr(feature = "clap", arg(long, value_name = "PROPERTY"))]
+    pub name_field: Option<String>,
+}
+
+/// What the file of a terrain does not say.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default)]
+pub struct StatedRaster {
+    /// Coordinate system of the terrain's file, instead of the stated one
+    #[cfg_attr(feature = "clap", arg(long, value_name = "EPSG:n"))]
+    pub source_crs: Option<String>,
+    /// Stored value of the terrain that means "no data", instead of the stated one
+    #[cfg_attr(feature = "clap", arg(long, value_name = "VALUE", allow_negative_numbers = true))]
+    pub nodata: Option<f64>,
+    /// Unit of the terrain's heights, instead of the stated one
+    #[cfg_attr(feature = "clap", arg(long, value_parser = one_of::<VerticalUnit>(), value_name = "UNIT"))]
+    pub vertical_unit: Option<VerticalUnit>,
+}

@@ -1,0 +1,31 @@
+//! Requests of verbs as data: each option is written once, as a field with its help.
+//!
+//! A field of a request is the key of its JSON form, the option of the command line (feature `clap`), an argument in Python, and a line of
+//! the schema. Doors add only what is theirs, such as names of outputs.
+
+#[cfg(feature = "clap")]
+mod args;
+mod ground;
+mod look;
+mod molecule;
+mod options;
+mod paper;
+mod reveal;
+#[cfg_attr(not(feature = "clap"), allow(dead_code))]
+mod value;
+
+#[cfg(feature = "clap")]
+pub use args::one_of;
+pub use ground::{Stated, StatedRaster};
+pub use look::{Air, Furnishing, FurnitureItems, Look};
+pub use molecule::Molecules;
+pub use options::{given, options, read, schema};
+pub use paper::Paper;
+pub use reveal::{Reveal, Technique};
+pub use value::EXAGGERATION;
+
+/// Parsers of values of options that requests and doors have in common.
+#[cfg(feature = "clap")]
+pub mod parse {
+    pub use super::value::{number, samples, size, spacing, with_height};
+}

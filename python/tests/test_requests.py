@@ -1,0 +1,52 @@
+"""Every option of a request is an option in Python."""
+
+import inspect
+
+import belvedere
+import pytest
+import request_options
+from belvedere import _native, _requests
+
+
+def test_the_options_are_those_of_the_schema() -> None:
+    assert request_options.FILE.read_text(encoding="utf-8") == request_options.text(), "python python/tests/request_options.py writes them anew"
+    named = set(inspect.signature(belvedere.reveal).parameters)
+    for option in request_options.schema("reveal")["properties"]:
+        own = request_options.OWN.get(option)
+        assert own in named if own else option in _requests.RevealOptions.__annotations__, option
+    with pytest.raises(belvedere.InputError, match="no request"):
+        _native.request_schema("nothing")
+
+
+def test_an_unknown_option_is_told_with_the_nearest_one() -> None:
+    with pytest.raises(belvedere.InputError, match='unknown option "palete"; did you mean "palette"'):
+        belvedere.reveal("builtin:massif", "builtin:massif", palete="swiss")  # type: ignore[call-arg]
+    with pytest.raises(belvedere.InputError, match="relief: "):
+        belvedere.reveal("builtin:massif", "builtin:massif", relief="moon")  # type: ignore[arg-type]
+
+
+def test_options_of_the_command_line_change_the_picture() -> None:
+    view = {"eye": (7972, -7337, 3780), "look_at": (-952, 1587, 221), "size": (96, 54), "threads": 2}
+    usual = belvedere.reveal("builtin:massif?size=65", "builtin:massif?size=65", **view)
+    changes = {
+        "light_time": "2026-07-01T06:00:00Z",
+        "shadows": True,
+        "sky": "white",
+        "haze": 5.0,
+        "contours": 50.0,
+        "edge": "plain",
+        "area_style": "forest",
+        "title": "Massif",
+    }
+    for name, value in changes.items():
+        if name in ("light_time", "area_style"):  # the massif is local and has an area of its own style
+            continue
+        changed = belvedere.reveal("builtin:massif?size=65", "builtin:massif?size=65", **view, **{name: value})
+        assert (changed.picture.color != usual.picture.color).any(), name
+    for name, value in {"transfer": "solid", "up": (0, 0, 1)}.items():
+        with pytest.raises(belvedere.InputError, match=f"{name} is for a part of a model or city"):
+            belvedere.reveal("builtin:massif?size=65", "builtin:massif?size=65", **view, **{name: value})
+    with pytest.raises(belvedere.InputError, match="no molecule|there is none"):
+        belvedere.reveal("builtin:massif?size=65", "builtin:massif?size=65", **view, representation="ribbon")
+    paper = belvedere.reveal("builtin:massif?size=65", "builtin:massif?size=65", eye=view["eye"], look_at=view["look_at"], paper="60x40mm", dpi=50)
+    assert paper.picture.color.shape[:2] == (79, 118)
