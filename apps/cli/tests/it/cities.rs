@@ -33,7 +33,7 @@ fn cities_of_every_format_fill_their_picture() {
         ("city_delft/delft.city.json", [84880.0, 447300.0, 180.0], [84960.0, 447550.0, 0.0]),
         ("city_berlin/berlin_lod2_citygml1.gml", [390500.0, 5819100.0, 250.0], [390590.0, 5819380.0, 35.0]),
     ] {
-        let Some(path) = data(file) else { return };
+        let Some(path) = data(file) else { continue };
         let root = path.parent().and_then(|p| p.to_str()).expect("folder");
         let place = Place::new();
         let scene = format!(

@@ -107,7 +107,7 @@ fn straight_ground_has_no_cracks() {
 }
 
 /// Sky pixels with ground on all four sides within three pixels.
-fn cracks(frame: &Frame) -> usize {
+pub(crate) fn cracks(frame: &Frame) -> usize {
     let (w, h) = (frame.width, frame.height);
     let ground = |x: usize, y: usize| frame.id[y * w + x] != 0;
     let mut n = 0;

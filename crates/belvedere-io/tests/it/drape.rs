@@ -40,7 +40,7 @@ fn reprojected_drapes_keep_their_places() {
         ("swellendam/srtm_41_19_utm33s.tif", "swellendam/aerial_3320D_2010_315_RGB.tif"),
         ("rmnp/rmnp_dem.tif", "rmnp/rmnp_rgb.tif"),
     ] {
-        let (Some((crs, h)), Some(path)) = (terrain(dem), data(picture)) else { return };
+        let (Some((crs, h)), Some(path)) = (terrain(dem), data(picture)) else { continue };
         let Crs::Epsg(code) = crs else { panic!("{crs}") };
         let start = Instant::now();
         let (d, warnings) = drape(&path, crs, &h, &DrapeRequest::default()).unwrap();

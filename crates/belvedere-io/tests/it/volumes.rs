@@ -24,7 +24,7 @@ fn real_volumes_hold_what_a_script_reads() {
         ("aneurism.vti", [256, 256, 256], 17_938_365, [1.0; 3]),
         ("LIDC2.vti", [256, 256, 133], 61_489_178, [1.40625, 1.40625, 2.5]),
     ] {
-        let Some(path) = data(&format!("volumes/{name}")) else { return };
+        let Some(path) = data(&format!("volumes/{name}")) else { continue };
         let file = load(&path).expect("it is read");
         let VoxelValues::U8(values) = &file.values else { panic!("{name}: {:?}", file.stored) };
         assert_eq!((file.dims, file.stored), (dims, Number::UInt8), "{name}");
