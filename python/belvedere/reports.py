@@ -22,6 +22,8 @@ class Note:
     subject: str = ""
     #: Figures by name; units stand at the end of the names, shares are in 0..=1.
     figures: Mapping[str, float] = field(default_factory=dict)
+    #: Key of a layer, a scene or a call that settles it, such as ``"source_crs"``, or an empty text.
+    key: str = ""
 
     def __str__(self) -> str:
         return self.text
@@ -29,7 +31,7 @@ class Note:
 
 def notes_of(raw: list[Any]) -> list[Note]:
     """Warnings of the engine."""
-    return [Note(n["kind"], n["text"], n.get("subject") or "", n.get("figures") or {}) for n in raw]
+    return [Note(n["kind"], n["text"], n.get("subject") or "", n.get("figures") or {}, n.get("key") or "") for n in raw]
 
 
 @dataclass(frozen=True)

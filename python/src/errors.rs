@@ -37,9 +37,17 @@ fn class_of(error: &BelvedereError) -> &'static str {
     }
 }
 
+/// The name of an argument in Python.
+fn argument(name: &'static str) -> &'static str {
+    if name == "look" { "look_at" } else { name }
+}
+
 /// An error with its causes as one line.
 fn one_line(error: &BelvedereError) -> String {
-    let mut text = error.to_string();
+    let mut text = match error {
+        BelvedereError::Argument(advice) => advice.naming(|name| format!("`{}`", argument(name))),
+        _ => error.to_string(),
+    };
     let mut cause = std::error::Error::source(error);
     while let Some(next) = cause {
         let words = next.to_string();

@@ -16,6 +16,7 @@ mod inputs;
 mod interrupt;
 mod kinds;
 mod memory;
+mod options_of_keys;
 mod outputs;
 mod pack;
 mod parse;

@@ -1,6 +1,7 @@
 //! Output for the user: one line per failure, warnings, progress, results.
 
 use crate::common_args::Common;
+use crate::options_of_keys::{Told, lifting, of_argument, of_data};
 use crate::stdin::Stdin;
 use crate::timings::Timings;
 use belvedere::answers::{self, Content, Written};
@@ -8,6 +9,7 @@ use belvedere::core::{PinholeError, plain};
 use belvedere::io::IoError;
 use belvedere::scene::Progress;
 use belvedere::verbs::open_files::scene_of_data;
+use belvedere::scene_file::DocumentKind;
 use belvedere::{BelvedereError, DocumentError, Needs, OpenOptions, Session, Trust, Warning};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -40,7 +42,8 @@ pub(crate) fn is_stdout(path: &Path) -> bool {
 /// An error as one line.
 pub(crate) fn one_line(error: &anyhow::Error) -> String {
     let mut text = error.to_string();
-    if let Some(library) = error.downcast_ref::<BelvedereError>().filter(|e| e.to_string() == text) {
+    // Not where the command says more before it.
+    if let Some(library) = error.chain().next().and_then(|e| e.downcast_ref::<BelvedereError>()) {
         text = in_options(library);
     }
     let words = |cause: &(dyn std::error::Error + 'static)| match cause.downcast_ref::<std::io::Error>() {
@@ -73,25 +76,12 @@ pub(crate) fn relative(text: &str) -> String {
     }
 }
 
-/// The option of the command line of a name in requests.
-fn flag(name: &str) -> String {
-    format!("--{}", name.replace('_', "-"))
-}
-
 /// An error of the library as a message for the command line, which names the options that lift it.
 fn in_options(error: &BelvedereError) -> String {
     match error {
         BelvedereError::FieldOfView { .. } => format!("--fov: {error}"),
         BelvedereError::Highlight(_) => format!("--highlight: {error}"),
         BelvedereError::Appearance { option, .. } => format!("--{option}: {error}"),
-        BelvedereError::Options { options, what } => {
-            let options = options.iter().map(|name| flag(name)).collect();
-            BelvedereError::Options { options, what }.to_string()
-        }
-        BelvedereError::Option { option, reason } => format!("{} {reason}", flag(option)),
-        BelvedereError::Alone { option, without } => {
-            format!("{} is given without {}; give both, or neither", flag(option), flag(without))
-        }
         BelvedereError::Setting(_) => format!("--set: {error}"),
         BelvedereError::Position { what, reason } => {
             let option = match *what {
@@ -111,14 +101,14 @@ fn in_options(error: &BelvedereError) -> String {
             format!("{error}, or give --along LAYER, --sweep phi or --turntable")
         }
         BelvedereError::NoSweepRange => format!("{error}; add one, or give --sweep phi=FIRST:LAST"),
-        BelvedereError::Target(reason) if reason.starts_with("palette ") => format!("--palette: {reason}"),
-        BelvedereError::Document(DocumentError::Scene { path: None, reason, .. }) => match named_by(reason) {
-            Some(option) => format!("{option}: {error}"),
-            None => error.to_string(),
-        },
-        BelvedereError::Document(DocumentError::Scene { path: Some(path), reason, .. })
-            if reason.ends_with("not a scene document") =>
-        {
+        BelvedereError::Argument(advice) => advice.naming(of_argument),
+        BelvedereError::Document(DocumentError::Scene { path: None, key, .. }) => {
+            match key.as_deref().and_then(of_data) {
+                Some(option) => format!("{option}: {error}"),
+                None => error.to_string(),
+            }
+        }
+        BelvedereError::Document(DocumentError::OtherKind { path, wanted: DocumentKind::Scene, .. }) => {
             let file = path.display();
             match scene_of_data(path) {
                 Ok(Some(source)) => {
@@ -131,21 +121,6 @@ fn in_options(error: &BelvedereError) -> String {
     }
 }
 
-/// The option that a mistake in data without a scene file comes from.
-fn named_by(reason: &str) -> Option<&'static str> {
-    let options = [
-        ("source_crs", "--source-crs"),
-        ("no feature has the property", "--name-field"),
-        ("palette", "--palette"),
-        ("picture with a georeference", "--drape"),
-        ("the picture has no georeference", "--drape"),
-    ];
-    if reason.starts_with("crs ") {
-        return Some("--crs");
-    }
-    options.into_iter().find(|(part, _)| reason.contains(part)).map(|(_, option)| option)
-}
-
 /// End of the message: the options that lift an error; `None` if no option does.
 fn option_for(error: &BelvedereError) -> Option<&'static str> {
     Some(match error {
@@ -155,7 +130,6 @@ fn option_for(error: &BelvedereError) -> Option<&'static str> {
         BelvedereError::Render(belvedere::scene::RenderError::TooLarge { .. }) | BelvedereError::OnePiece { .. } => {
             " (--size, --samples, --max-mem)"
         }
-        BelvedereError::Memory(_) if belvedere::io::budget::is_refusal(&error.to_string()) => " (--max-mem)",
         BelvedereError::Paper { key: "paper", .. } => " (--paper)",
         BelvedereError::Paper { key: "margin_mm", .. } => " (--margin-mm)",
         BelvedereError::Paper { .. } => " (--dpi)",
@@ -166,7 +140,7 @@ fn option_for(error: &BelvedereError) -> Option<&'static str> {
         }
         BelvedereError::FramesThere { .. } => "; start anew with --overwrite, or choose another output",
         BelvedereError::Interrupted { .. } => "; the same command with --resume goes on from there",
-        _ => return None,
+        _ => return lifting(error.lifted_by()),
     })
 }
 
@@ -186,8 +160,7 @@ fn option_for_document(error: &DocumentError) -> Option<&'static str> {
 fn option_for_io(error: &IoError) -> Option<&'static str> {
     match error {
         IoError::Exists { .. } => Some("; give --overwrite to replace it"),
-        _ if belvedere::io::budget::is_refusal(&error.to_string()) => Some(" (--max-mem)"),
-        _ => None,
+        _ => lifting(error.lifted_by()),
     }
 }
 
@@ -281,11 +254,11 @@ impl Context {
     }
 
     /// Prints the text of each warning or missed goal on standard error.
-    pub(crate) fn warn(&self, warnings: &[impl std::fmt::Display]) {
+    pub(crate) fn warn(&self, warnings: &[impl Told]) {
         self.finish();
         if !self.common.quiet {
             for warning in warnings {
-                complain(&format!("warning: {warning}"));
+                complain(&format!("warning: {}", warning.told()));
             }
         }
     }

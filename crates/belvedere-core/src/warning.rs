@@ -56,7 +56,8 @@ impl fmt::Display for WarningKind {
     }
 }
 
-/// An oddity that does not stop the work: its kind, the thing it is about, its figures, and one sentence that says all of it.
+/// An oddity that does not stop the work: its kind, the thing it is about, its figures, the key that settles it, and one sentence that says
+/// all of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Warning {
@@ -65,6 +66,8 @@ pub struct Warning {
     subject: Option<String>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     figures: BTreeMap<String, f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    key: Option<String>,
     text: String,
 }
 
@@ -73,7 +76,7 @@ impl Warning {
     ///
     /// * `text`: one sentence: the oddity, its measured value, and how it was handled or what to do.
     pub fn new(kind: WarningKind, text: impl Into<String>) -> Self {
-        Self { kind, subject: None, figures: BTreeMap::new(), text: text.into() }
+        Self { kind, subject: None, figures: BTreeMap::new(), key: None, text: text.into() }
     }
 
     /// The warning "`count` `what`" with the figure `count`; `None` if nothing was counted.
@@ -94,6 +97,12 @@ impl Warning {
         if value.is_finite() {
             self.figures.insert(name.to_owned(), value);
         }
+        self
+    }
+
+    /// The same, settled by a key of a layer, a scene or a request, whose option an application may name.
+    pub fn settled_by(mut self, key: &str) -> Self {
+        self.key = Some(key.to_owned());
         self
     }
 
@@ -125,6 +134,11 @@ impl Warning {
     /// One figure.
     pub fn figure(&self, name: &str) -> Option<f64> {
         self.figures.get(name).copied()
+    }
+
+    /// Key of a layer, a scene or a request that settles it.
+    pub fn key(&self) -> Option<&str> {
+        self.key.as_deref()
     }
 
     /// One sentence.
@@ -162,9 +176,10 @@ mod tests {
         assert_eq!(serde_json::to_string(&bare).unwrap(), r#"{"kind":"assumed","text":"metres are assumed"}"#);
         let full = Warning::counted(WarningKind::Ignored, 3, "points were dropped").unwrap();
         let full = full.in_file(std::path::Path::new("a.gpx")).with("share", 0.25).with("odd", f64::NAN);
+        let full = full.settled_by("nodata");
         let json = serde_json::to_value(&full).unwrap();
         let expected = serde_json::json!({ "kind": "ignored", "subject": "a.gpx",
-            "figures": { "count": 3.0, "share": 0.25 }, "text": "a.gpx: 3 points were dropped" });
+            "figures": { "count": 3.0, "share": 0.25 }, "key": "nodata", "text": "a.gpx: 3 points were dropped" });
         assert_eq!(json, expected);
         for warning in [bare, full] {
             let text = serde_json::to_string(&warning).unwrap();

@@ -28,7 +28,8 @@ impl DocError {
 
     /// The error of the file that holds the document.
     pub fn in_file(&self, path: &Path) -> DocumentError {
-        DocumentError::Scene { path: Some(path.to_owned()), line: self.line, reason: self.to_string(), source: None }
+        let (path, key) = (Some(path.to_owned()), self.path.first().cloned());
+        DocumentError::Scene { path, line: self.line, reason: self.to_string(), key, source: None }
     }
 
     /// This error one key further out.

@@ -44,7 +44,7 @@ pub use city::{CityDoc, CityStyleDoc};
 pub use common::{Paths, PlaneDoc, TransformDoc};
 pub use doc_error::{DocError, suggestion};
 pub use document::{CameraDoc, Document, EarthDoc, LightDoc, MapPointDoc, PointDoc, ProjectionDoc, SwitchOrVisibility};
-pub use error::DocumentError;
+pub use error::{DocumentError, DocumentKind};
 pub use fallback::{Fallback, FallbackKind};
 pub use furniture::{
     CompassDoc, CompassPlace, Corner, FurnitureDoc, FurnitureItem, FurnitureWish, ScaleDoc, SwitchOrText,
@@ -92,7 +92,7 @@ impl Origin {
     /// An error at the line of the key that `keys` leads to.
     pub fn error(&self, keys: &[&str], reason: impl std::fmt::Display) -> DocumentError {
         let (path, line) = self.place(keys);
-        DocumentError::Scene { path, line, reason: reason.to_string(), source: None }
+        DocumentError::Scene { path, line, reason: reason.to_string(), key: innermost(keys), source: None }
     }
 
     /// The same for a refused file, which stays the source of the error.
@@ -103,7 +103,7 @@ impl Origin {
     /// An error at a key, and the error that caused it.
     pub fn caused(&self, keys: &[&str], reason: String, source: DocumentError) -> DocumentError {
         let (path, line) = self.place(keys);
-        DocumentError::Scene { path, line, reason, source: Some(Box::new(source)) }
+        DocumentError::Scene { path, line, reason, key: innermost(keys), source: Some(Box::new(source)) }
     }
 
     /// Whether the document was made in memory.
@@ -114,6 +114,11 @@ impl Origin {
     fn place(&self, keys: &[&str]) -> (Option<PathBuf>, Option<usize>) {
         self.0.as_ref().map(|o| (o.0.path.clone(), o.1.line_of(keys))).unzip()
     }
+}
+
+/// The last of some keys that is no number of an element.
+fn innermost(keys: &[&str]) -> Option<String> {
+    keys.iter().rev().find(|key| key.parse::<usize>().is_err()).map(|key| (*key).to_owned())
 }
 
 /// A table of a document, such as a stage: makes errors at its keys.
@@ -192,7 +197,7 @@ pub fn read(path: &Path) -> Result<SourceDocument, DocumentError> {
 /// The same, and the text of the file with its byte order mark, if it has one.
 pub fn read_with_text(path: &Path) -> Result<(SourceDocument, String), DocumentError> {
     let read = read_raw(path).and_then(|(text, file)| Ok((parse_as(file, plain(&text))?, text)));
-    read.map_err(|e| other_kind::explained(path, "a scene document", e))
+    read.map_err(|e| other_kind::explained(path, DocumentKind::Scene, e))
 }
 
 /// Parses the text of a scene file; `path` serves messages only.

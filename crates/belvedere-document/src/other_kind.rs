@@ -1,7 +1,6 @@
 //! Files that were given as documents and hold something else.
 
-use super::DocError;
-use crate::DocumentError;
+use crate::{DocumentError, DocumentKind};
 use belvedere_io::formats;
 use std::io::Read;
 use std::path::Path;
@@ -10,18 +9,16 @@ use std::path::Path;
 const HEAD: u64 = 64 << 10;
 
 /// The error of a document, or that its file is of another kind.
-///
-/// * `wanted`: the kind of document.
-pub fn explained(path: &Path, wanted: &str, error: DocumentError) -> DocumentError {
-    if !matches!(error, DocumentError::Scene { .. }) {
-        return error;
+pub fn explained(path: &Path, wanted: DocumentKind, error: DocumentError) -> DocumentError {
+    match error {
+        DocumentError::Scene { .. } => instead(path, wanted).unwrap_or(error),
+        _ => error,
     }
-    instead(path, wanted).unwrap_or(error)
 }
 
 /// That a file is of another kind than a wanted document, if its name or its first bytes tell so.
-pub fn instead(path: &Path, wanted: &str) -> Option<DocumentError> {
-    Some(DocError::whole(format!("is {}, not {wanted}", held(path)?)).in_file(path))
+pub fn instead(path: &Path, wanted: DocumentKind) -> Option<DocumentError> {
+    Some(DocumentError::OtherKind { path: path.to_owned(), held: held(path)?, wanted })
 }
 
 /// Format and content of a file that is no document, in words.

@@ -206,9 +206,9 @@ impl Source {
 impl Picture {
     fn of(raster: &Raster) -> Result<Self, IoError> {
         let info = &raster.info;
-        let failed = |reason| IoError::format(&info.path, reason);
-        budget::ask("the picture", 4 * info.width as u64 * info.height as u64).map_err(failed)?;
-        let pixels = raster.to_rgba().map_err(failed)?;
+        let most = 4 * info.width as u64 * info.height as u64;
+        budget::ask("the picture", most).map_err(|e| IoError::format(&info.path, e))?;
+        let pixels = raster.to_rgba().map_err(|reason| IoError::format(&info.path, reason))?;
         let model_from_pixel = info.pixel_to_model.unwrap_or(Affine([1.0, 0.0, 0.0, 0.0, -1.0, 0.0]));
         Ok(Self { pixels, width: info.width, height: info.height, model_from_pixel })
     }

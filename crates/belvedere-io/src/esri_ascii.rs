@@ -42,7 +42,7 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     let _work = budget::work_on(path);
     // The text, and of at least two bytes each the values.
-    limits.check(length.saturating_mul(3)).map_err(bad)?;
+    limits.check(length.saturating_mul(3)).map_err(|e| IoError::format(path, e))?;
     let (bytes, file) = InputFile::read(path)?;
     let (text, odd_numbers) = numbers::plain(&bytes);
     let mut words = text.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty()).peekable();
@@ -59,7 +59,7 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
     if expected > bytes.len() {
         return Err(bad(too_few(cols, rows, bytes.len() / 2)));
     }
-    let mut values = budget::room("the raster", expected).map_err(bad)?;
+    let mut values = budget::room("the raster", expected).map_err(|e| IoError::format(path, e))?;
     for word in words.by_ref().take(expected) {
         let is_void = header.nodata_word.as_deref() == Some(word) || numbers::is_no_number(word);
         let parsed = if is_void { Some(f32::NAN) } else { numbers::parse(word) };

@@ -34,7 +34,7 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
             bytes.len()
         ))
     })?;
-    limits.check(bytes.len() as u64).map_err(bad)?;
+    limits.check(bytes.len() as u64).map_err(|e| IoError::format(path, e))?;
     let samples = bytes.par_chunks_exact(2).map(|b| i16::from_be_bytes([b[0], b[1]])).collect();
     let mut info = RasterInfo::new(path, side, side, SampleType::I16);
     let step = 1.0 / (side - 1) as f64;

@@ -36,7 +36,7 @@ pub mod volume;
 
 pub use city::{CityFile, load_city};
 pub use drape::{DrapeRequest, load_drape};
-pub use error::{IoError, json_fault, said};
+pub use error::{Fault, IoError, LiftedBy, json_fault, said};
 pub use features::load_vectors;
 pub use fonts::system_fonts;
 pub use geotiff::GeoTiff;

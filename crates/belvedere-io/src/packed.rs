@@ -28,10 +28,7 @@ pub(crate) fn content(path: &Path, most: u64, reads: &dyn Fn(&Path) -> bool) -> 
         let Some(names) = names_in(&path).map_err(|e| IoError::os(&path, e))? else { return Ok(path) };
         let name = one_of(&path, names, reads)?;
         if unpacked_size(&path, &name, most).map_err(|e| IoError::os(&path, e))? > most {
-            let mib = most >> 20;
-            let reason =
-                format!("{name} in the archive has more than {mib} MiB; allow more memory, or take a part of it");
-            return Err(IoError::format(path, reason));
+            return Err(IoError::format(path, budget::too_large(&name, "", most, "")));
         }
         path = path.join(name);
     }

@@ -463,13 +463,13 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// One sentence if a raster whose reading takes `bytes` is more than allowed.
-    pub fn check(&self, bytes: u64) -> Result<(), String> {
+    /// A refusal if a raster whose reading takes `bytes` is more than allowed.
+    pub fn check(&self, bytes: u64) -> Result<(), budget::Refusal> {
         self.ask("the raster", bytes)
     }
 
-    /// One sentence if work on `what` that takes `bytes` is more than allowed.
-    pub fn ask(&self, what: &str, bytes: u64) -> Result<(), String> {
+    /// A refusal if work on `what` that takes `bytes` is more than allowed.
+    pub fn ask(&self, what: &str, bytes: u64) -> Result<(), budget::Refusal> {
         budget::ask_of(self.max_bytes, what, bytes)
     }
 }

@@ -20,7 +20,7 @@ mod survey;
 mod thin;
 
 use crate::crs::{CoordinateSystem, Transform, utm_epsg};
-use crate::{IoError, Limits, Loaded};
+use crate::{Fault, IoError, Limits, Loaded};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Crs, Heightfield, HeightfieldError, NodeState, Progress};
 use glam::DVec2;
@@ -305,12 +305,14 @@ fn choose_target(
     }
     if let Some(source) = unknown {
         if sources.iter().any(|s| s.system.is_some()) || request.crs != CrsChoice::Auto {
-            let reason = "the file states no CRS that is understood; set its EPSG code (source_crs of its layer, or --source-crs)";
-            return Err(IoError::format(&source.path, reason));
+            let reason = "the file states no CRS that is understood; set its EPSG code as source_crs of its layer";
+            return Err(IoError::format(&source.path, Fault::lifted_by(reason, &["source_crs"])));
         }
         if !source.is_elsewhere {
-            let text = "no coordinate system is known, so the scene is local; source_crs of its layer, or --source-crs, places it on the earth";
-            warnings.push(Warning::new(WarningKind::Assumed, text).in_file(&source.path));
+            let text =
+                "no coordinate system is known, so the scene is local; source_crs of its layer places it on the earth";
+            let warning = Warning::new(WarningKind::Assumed, text).settled_by("source_crs");
+            warnings.push(warning.in_file(&source.path));
         }
         return Ok(local);
     }
@@ -349,10 +351,8 @@ fn auto_target(sources: &[SourceGrid]) -> Result<Target, IoError> {
         return Ok(Target { crs: Crs::Epsg(code), system: Some(system.clone()) });
     }
     let off_earth = || {
-        IoError::format(
-            &first.path,
-            "no part of it lies on the earth; check its georeference, or set source_crs of its layer (--source-crs)",
-        )
+        let reason = "no part of it lies on the earth; check its georeference, or set source_crs of its layer";
+        IoError::format(&first.path, Fault::lifted_by(reason, &["source_crs"]))
     };
     let Extent { bounds: [west, south, east, north], .. } = extent(sources).ok_or_else(off_earth)?;
     let centre = DVec2::new(0.5 * (west + east), 0.5 * (south + north));

@@ -1,7 +1,9 @@
 //! Errors of the library. Texts name the given value and the possible ones in the words of the library; an application
 //! adds the names of its own options.
 
+use crate::advice::Advice;
 use belvedere_document::DocumentError;
+use belvedere_io::LiftedBy;
 use std::path::PathBuf;
 
 /// Anything that ends a call without a result.
@@ -69,43 +71,22 @@ pub enum BelvedereError {
         /// Height of the ground there, metres.
         ground_m: f64,
     },
-    /// Options that say something of what is not there.
-    #[error("{} {}; leave {} out", options.join(", "), are_for(options, what), if options.len() == 1 { "it" } else { "them" })]
-    Options {
-        /// Their names, as [`crate::request`] has them.
-        options: Vec<String>,
-        /// What they are for, and what there is.
-        what: &'static str,
-    },
-    /// An option with a value that goes against others.
-    #[error("{option} {reason}")]
-    Option {
-        /// Its name, as [`crate::request`] has it.
-        option: &'static str,
-        /// What is wrong, and what to do.
-        reason: String,
-    },
-    /// An option that belongs to another one, which is not given.
-    #[error("{option} is given without {without}; give both, or neither")]
-    Alone {
-        /// Its name, as [`crate::request`] has it.
-        option: &'static str,
-        /// Name of the other one.
-        without: &'static str,
-    },
     /// No file of routes, areas or points was given.
     #[error("no features are given; name at least one file of routes, areas or points")]
     NoFeatures,
     /// A target that does not exist.
     #[error("{0}")]
     Target(String),
+    /// An argument of a call that is missing, or does not go with the others or with the scene.
+    #[error("{0}")]
+    Argument(Advice),
     /// A parameter of the terrain solver that does not exist or is out of range.
     #[error("{0}")]
     Setting(String),
     /// A light, stylisation or exaggeration that a picture cannot have.
     #[error("{reason}")]
     Appearance {
-        /// What is asked for: `light-time`, `stylise`, `exaggeration`.
+        /// What is asked for: `light-time`, `stylise`, `exaggeration`, `palette`.
         option: &'static str,
         /// The measured value, the limit, and what to do.
         reason: String,
@@ -240,7 +221,7 @@ pub enum BelvedereError {
     },
     /// Work that needs more memory than the budget has left, see [`belvedere_io::budget`].
     #[error("{0}")]
-    Memory(String),
+    Memory(belvedere_io::budget::Refusal),
     /// Cancelled.
     #[error(transparent)]
     Cancelled(#[from] belvedere_scene::Cancelled),
@@ -249,6 +230,17 @@ pub enum BelvedereError {
 impl BelvedereError {
     pub(crate) fn not_utf8(name: &str) -> Self {
         DocumentError::not_utf8(name).into()
+    }
+
+    /// What lifts it, where a file or the memory is at fault.
+    pub fn lifted_by(&self) -> LiftedBy {
+        match self {
+            Self::Memory(_) => LiftedBy::Memory,
+            Self::Io(error) => error.lifted_by(),
+            Self::Document(error) => error.lifted_by(),
+            Self::Frame { source, .. } => source.lifted_by(),
+            _ => LiftedBy::default(),
+        }
     }
 
     /// Whether the work was cancelled rather than failed.
@@ -265,14 +257,11 @@ impl BelvedereError {
     }
 }
 
-fn are_for(options: &[String], what: &str) -> String {
-    format!("{} {what}", if options.len() == 1 { "is" } else { "are" })
-}
-
 impl From<DocumentError> for BelvedereError {
     fn from(error: DocumentError) -> Self {
         match error {
             DocumentError::Io(error) => Self::Io(error),
+            DocumentError::Palette(reason) => Self::Appearance { option: "palette", reason },
             error => Self::Document(error),
         }
     }

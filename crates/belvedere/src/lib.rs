@@ -27,6 +27,7 @@
 //! in this crate: [`core`] (views and stages), [`scene`] (layers, frames), [`io`] (loaders), [`construct`], [`disocclusion`],
 //! [`cpu`] (renderers), [`builtin`] (generated scenes).
 
+mod advice;
 pub mod answers;
 mod bodies;
 mod camera_path;
@@ -59,6 +60,7 @@ pub mod trust;
 pub mod vectors;
 pub mod verbs;
 
+pub use advice::Advice;
 pub use belvedere_builtin as builtin;
 pub use belvedere_composite as composite;
 pub use belvedere_construct as construct;

@@ -1,9 +1,9 @@
 //! Options for opening a scene.
 
-use crate::BelvedereError;
 use crate::scene_file::request::{Air, Molecules, given};
 use crate::scene_file::{FurnitureWish, LayerDoc, PaletteDoc, SurfaceDoc, SwitchOrLength, SwitchOrVisibility};
 use crate::trust::Trust;
+use crate::{Advice, BelvedereError};
 use belvedere_io::Limits;
 use belvedere_scene::{Edge, Progress};
 use std::path::PathBuf;
@@ -70,7 +70,7 @@ pub struct OpenOptions {
 /// Puts what is asked of molecules into the layers that are some.
 ///
 /// # Errors
-/// [`BelvedereError::Options`] if something is asked for and no layer is a molecule.
+/// [`BelvedereError::Argument`] if something is asked for and no layer is a molecule.
 pub(crate) fn show_molecules(asked: &Molecules, layers: &mut [LayerDoc]) -> Result<(), BelvedereError> {
     let mut any = false;
     for layer in layers {
@@ -81,11 +81,13 @@ pub(crate) fn show_molecules(asked: &Molecules, layers: &mut [LayerDoc]) -> Resu
         molecule.assembly = asked.assembly.clone().or(molecule.assembly.take());
         molecule.model = asked.model.or(molecule.model);
     }
-    let options = given(asked);
-    if any || options.is_empty() {
+    let given = given(asked);
+    if any || given.is_empty() {
         return Ok(());
     }
-    Err(BelvedereError::Options { options, what: "for molecules, and there is none" })
+    let options = Molecules::OPTIONS.map(|name| given.iter().any(|given| given == name).then_some(name));
+    let options: Vec<&'static str> = options.into_iter().flatten().collect();
+    Err(BelvedereError::Argument(Advice::of_options(&options, "for molecules, and there is none")))
 }
 
 impl OpenOptions {

@@ -25,3 +25,8 @@ pub struct Molecules {
     #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
     pub model: Option<usize>,
 }
+
+impl Molecules {
+    /// Names of the options.
+    pub const OPTIONS: [&'static str; 4] = ["representation", "color_by", "assembly", "model"];
+}

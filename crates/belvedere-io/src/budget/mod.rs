@@ -13,13 +13,22 @@ use std::sync::{Mutex, OnceLock, PoisonError, TryLockError};
 
 /// Requests from this size on are tried before they are granted, bytes.
 const TRIED: u64 = 16 << 20;
-/// Words of every refusal; what can be done follows.
-const REMEDY: &str = "allow more memory";
 
 /// The budget that was set, bytes; 0 = none was.
 static SET: AtomicU64 = AtomicU64::new(0);
 static METER: OnceLock<fn() -> u64> = OnceLock::new();
 static IN_WORK: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Why work is not begun: it needs more memory than there is.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct Refusal(String);
+
+impl From<Refusal> for std::io::Error {
+    fn from(refusal: Refusal) -> Self {
+        Self::new(std::io::ErrorKind::OutOfMemory, refusal)
+    }
+}
 
 /// Sets the budget of the process, bytes, but no more than its limit of address space leaves; 0 = that of the machine.
 pub fn set(bytes: u64) {
@@ -73,29 +82,24 @@ pub fn left_beside(budget: u64, others: u64) -> u64 {
 /// * `peak`: bytes beside those that are held.
 ///
 /// # Errors
-/// A sentence, if the budget has not so much left.
-pub fn ask(what: &str, peak: u64) -> Result<(), String> {
+/// A [`Refusal`], if the budget has not so much left.
+pub fn ask(what: &str, peak: u64) -> Result<(), Refusal> {
     ask_of(bytes(), what, peak)
 }
 
 /// As [`ask`], of another budget.
-pub(crate) fn ask_of(budget: u64, what: &str, peak: u64) -> Result<(), String> {
+pub(crate) fn ask_of(budget: u64, what: &str, peak: u64) -> Result<(), Refusal> {
     let held = held();
     if held.saturating_add(peak) <= budget {
         return if is_given(peak) { Ok(()) } else { Err(not_given(what, peak)) };
     }
     let mib = |b: u64| b.div_ceil(1 << 20);
     let beside = if held > 0 { format!(" beside {} MiB in use", mib(held)) } else { String::new() };
-    Err(format!(
-        "{what} needs {} MiB{beside}, more than {} MiB; {REMEDY}, or use a smaller level, window or file",
+    Err(Refusal(format!(
+        "{what} needs {} MiB{beside}, more than {} MiB; allow more memory, or use a smaller level, window or file",
         mib(peak),
         budget >> 20
-    ))
-}
-
-/// Whether a sentence is a refusal for want of memory.
-pub fn is_refusal(reason: &str) -> bool {
-    reason.contains(REMEDY)
+    )))
 }
 
 /// Room for `count` values, empty.
@@ -103,8 +107,8 @@ pub fn is_refusal(reason: &str) -> bool {
 /// * `what`: as in [`ask`].
 ///
 /// # Errors
-/// A sentence, if the budget or the machine has not so much left.
-pub fn room<T>(what: &str, count: usize) -> Result<Vec<T>, String> {
+/// A [`Refusal`], if the budget or the machine has not so much left.
+pub fn room<T>(what: &str, count: usize) -> Result<Vec<T>, Refusal> {
     let peak = (count as u64).saturating_mul(size_of::<T>() as u64);
     ask(what, peak)?;
     let mut out = Vec::new();
@@ -114,8 +118,17 @@ pub fn room<T>(what: &str, count: usize) -> Result<Vec<T>, String> {
     }
 }
 
-fn not_given(what: &str, peak: u64) -> String {
-    format!("{what} needs {} MiB, which the system does not give; {REMEDY}", peak.div_ceil(1 << 20))
+/// The refusal of more than the system gives.
+fn not_given(what: &str, peak: u64) -> Refusal {
+    Refusal(format!("{what} needs {} MiB, which the system does not give; allow more memory", peak.div_ceil(1 << 20)))
+}
+
+/// The refusal of an entry of an archive that has more than `most` bytes.
+pub(crate) fn too_large(entry: &str, archive: &str, most: u64, unpacked: &str) -> Refusal {
+    let mib = most >> 20;
+    Refusal(format!(
+        "{entry} in the archive{archive} has more than {mib} MiB{unpacked}; allow more memory, or take a part of it"
+    ))
 }
 
 /// Whether the system gives so much at once. A limit of address space (`ulimit -v`) counts what was reserved and is not used, too, so that
@@ -167,21 +180,20 @@ mod tests {
     #[test]
     fn what_just_fits_is_allowed() {
         assert_eq!(ask_of(3 << 20, "the raster", 3 << 20), Ok(()));
-        let text = ask_of(3 << 20, "the raster", (3 << 20) + 1).unwrap_err();
+        let text = ask_of(3 << 20, "the raster", (3 << 20) + 1).unwrap_err().to_string();
         assert!(text.contains("the raster needs 4 MiB") && text.contains("more than 3 MiB"), "{text}");
-        assert!(is_refusal(&text), "{text}");
     }
 
     #[test]
     fn room_beyond_the_machine_is_an_error() {
-        assert!(room::<u64>("the raster", usize::MAX).is_err_and(|e| is_refusal(&e)));
+        assert!(room::<u64>("the raster", usize::MAX).is_err());
         assert!(room::<u64>("the raster", 100).is_ok_and(|room| room.capacity() >= 100));
     }
 
     #[test]
     fn what_the_system_does_not_give_is_refused() {
-        let text = ask_of(u64::MAX, "the raster", 1 << 62).unwrap_err();
-        assert!(text.contains("which the system does not give") && is_refusal(&text), "{text}");
+        let text = ask_of(u64::MAX, "the raster", 1 << 62).unwrap_err().to_string();
+        assert!(text.contains("which the system does not give"), "{text}");
         assert_eq!(ask_of(u64::MAX, "the raster", 2 * TRIED), Ok(()));
         assert!(left_beside(5, 7) == 0 && left_beside(7 << 20, 5 << 20) == 2 << 20);
     }

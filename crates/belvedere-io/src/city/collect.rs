@@ -108,7 +108,7 @@ impl<'l> Collector<'l> {
             let count = left_out.values().sum::<usize>() as f64;
             warnings.push(Warning::new(WarningKind::Ignored, text).with("count", count));
         }
-        let (files, said) = pictures.load(&mut city, path, limits).map_err(fail)?;
+        let (files, said) = pictures.load(&mut city, path, limits).map_err(|e| IoError::format(path, e))?;
         warnings.extend(said);
         let warnings = warnings.into_iter().map(|w| w.in_file(path)).collect();
         let (crs, reference) = (reference.crs, reference.said);

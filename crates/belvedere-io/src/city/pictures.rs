@@ -1,7 +1,7 @@
 //! Pictures on the faces of city models: PNG and JPEG beside the model or below its folder.
 
 use crate::mesh::{neighbour, picture};
-use crate::{InputFile, Limits, budget};
+use crate::{Fault, InputFile, Limits};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{City, CityFace, FacePicture, Texture, Wrap};
 use glam::Vec2;
@@ -57,15 +57,15 @@ impl PictureList {
     /// and warnings about missing ones.
     ///
     /// # Errors
-    /// A sentence, if a picture needs more memory than `limits` leave.
+    /// If a picture needs more memory than `limits` leave.
     pub(super) fn load(
         self,
         city: &mut City,
         path: &Path,
         limits: &Limits,
-    ) -> Result<(Vec<InputFile>, Vec<Warning>), String> {
+    ) -> Result<(Vec<InputFile>, Vec<Warning>), Fault> {
         let (mut files, mut warnings) = (Vec::new(), Vec::new());
-        let mut refused: Option<String> = None;
+        let mut refused: Option<Fault> = None;
         let (mut read, mut missing) = (HashMap::<u32, Option<u32>>::new(), BTreeMap::<String, (String, usize)>::new());
         let mut bare = 0;
         let faces = city.buildings.iter_mut().flat_map(|b| &mut b.faces);
@@ -80,8 +80,9 @@ impl PictureList {
                         Some(city.pictures.len() as u32 - 1)
                     }
                     Err(e) => {
-                        refused = refused.take().or(budget::is_refusal(&e).then(|| format!("picture {name:?}: {e}")));
-                        missing.insert(name.clone(), (e, 0));
+                        missing.insert(name.clone(), (e.to_string(), 0));
+                        let refusal = Some(e).filter(Fault::is_of_memory);
+                        refused = refused.take().or(refusal.map(|e| e.placed(format_args!("picture {name:?}"))));
                         None
                     }
                 }
@@ -116,7 +117,7 @@ impl PictureList {
     }
 }
 
-fn decoded(path: &Path, name: &str, wrap: [Wrap; 2], limits: &Limits) -> Result<(Texture, InputFile), String> {
+fn decoded(path: &Path, name: &str, wrap: [Wrap; 2], limits: &Limits) -> Result<(Texture, InputFile), Fault> {
     let (bytes, file) = neighbour(path, name, limits)?;
     Ok((picture::read(&bytes, wrap, limits)?, file))
 }

@@ -1,7 +1,7 @@
 //! Reading of what may be longer than memory allows: streams are decoded as far as the bound, never beyond.
 
 use crate::budget;
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, Read};
 use std::path::Path;
 
 /// Bytes read at a time.
@@ -29,11 +29,7 @@ pub(super) fn read_up_to(reader: impl Read, most: u64, archive: &Path, entry: &s
 /// The refusal of an entry that has more than `most` bytes.
 pub(super) fn too_large(archive: &Path, entry: &str, most: u64) -> io::Error {
     let name = archive.file_name().unwrap_or_default().to_string_lossy();
-    let text = format!(
-        "{entry} in the archive {name} has more than {} MiB unpacked; allow more memory, or take a part of it",
-        most >> 20
-    );
-    io::Error::new(ErrorKind::OutOfMemory, text)
+    budget::too_large(entry, &format!(" {name}"), most, " unpacked").into()
 }
 
 #[cfg(test)]

@@ -253,9 +253,8 @@ fn unpacked(archive: &Path, entry: &str) -> io::Result<Arc<[u8]>> {
 
 /// The bytes of an archive, for which the budget is asked before they are read.
 fn packed_bytes(archive: &Path) -> io::Result<Vec<u8>> {
-    let refused = |text: String| io::Error::new(io::ErrorKind::OutOfMemory, text);
     if within(archive).is_none() {
-        budget::ask("the packed file", plain::metadata(archive)?.len()).map_err(refused)?;
+        budget::ask("the packed file", plain::metadata(archive)?.len())?;
     }
     read(archive)
 }

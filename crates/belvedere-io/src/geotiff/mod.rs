@@ -19,7 +19,7 @@ pub use cloud::write_cloud_geotiff;
 pub use write::write_geotiff;
 
 use crate::raster::{Limits, Raster, RasterInfo, SampleType, Samples};
-use crate::{InputFile, IoError, Loaded};
+use crate::{Fault, InputFile, IoError, Loaded};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Progress;
 use ifd::{Container, Ifd, tag};
@@ -174,20 +174,19 @@ impl GeoTiff {
         rows: Range<usize>,
         progress: &Progress,
     ) -> Result<Raster, IoError> {
-        let fail = |reason: String| {
+        let fail = |fault: Fault| {
             if progress.is_cancelled() {
                 return IoError::Cancelled(belvedere_scene::Cancelled);
             }
-            IoError::format(&self.info.path, reason)
+            IoError::format(&self.info.path, fault)
         };
         let (Some(found), Some(mut info)) = (self.levels.get(level), self.level_info(level)) else {
-            return Err(fail(format!("has {} levels, level {level} was asked for", self.levels.len())));
+            return Err(fail(format!("has {} levels, level {level} was asked for", self.levels.len()).into()));
         };
         if cols.is_empty() || rows.is_empty() || cols.end > info.width || rows.end > info.height {
-            return Err(fail(format!(
-                "columns {cols:?}, rows {rows:?} are not a part of {} x {} pixels",
-                info.width, info.height
-            )));
+            let (width, height) = (info.width, info.height);
+            let reason = format!("columns {cols:?}, rows {rows:?} are not a part of {width} x {height} pixels");
+            return Err(fail(reason.into()));
         }
         let read = |layout, fill| {
             let (cols, rows) = (cols.clone(), rows.clone());
@@ -197,7 +196,7 @@ impl GeoTiff {
         let samples = read(&found.layout, info.nodata.unwrap_or(0.0)).map_err(fail)?;
         let mask = match &found.mask {
             None => None,
-            Some(layout) => match read(layout, 0.0).map_err(|e| fail(format!("mask: {e}")))? {
+            Some(layout) => match read(layout, 0.0).map_err(|e| fail(e.placed("mask")))? {
                 Samples::U8(bytes) => Some(bytes.iter().map(|&b| b != 0).collect()),
                 _ => None,
             },

@@ -4,6 +4,7 @@ use super::codec::Scratch;
 use super::ifd::Container;
 use super::layout::Layout;
 use super::shared::Shared;
+use crate::Fault;
 use crate::raster::{Limits, SampleType, Samples};
 use belvedere_scene::Progress;
 use rayon::prelude::*;
@@ -82,7 +83,7 @@ pub(super) struct Window<'a> {
 
 impl Window<'_> {
     /// The samples, interleaved by pixel. Fails with a sentence, also if `progress` is cancelled.
-    pub(super) fn read(&self) -> Result<Samples, String> {
+    pub(super) fn read(&self) -> Result<Samples, Fault> {
         Ok(match self.layout.stored.sample_type() {
             SampleType::I8 => Samples::I8(self.typed()?),
             SampleType::U8 => Samples::U8(self.typed()?),
@@ -97,7 +98,7 @@ impl Window<'_> {
         })
     }
 
-    fn typed<T: Cell>(&self) -> Result<Vec<T>, String> {
+    fn typed<T: Cell>(&self) -> Result<Vec<T>, Fault> {
         let layout = self.layout;
         let samples = self.allowed_samples()?;
         let mut out: Vec<T> = Vec::new();
@@ -123,7 +124,7 @@ impl Window<'_> {
     }
 
     /// Checks the memory for samples and working buffers; returns the number of samples.
-    fn allowed_samples(&self) -> Result<usize, String> {
+    fn allowed_samples(&self) -> Result<usize, Fault> {
         let layout = self.layout;
         let out = layout.decoded_bytes(self.cols.len(), self.rows.len())?;
         let chunk = layout.chunk_bytes(layout.chunk_height)?;
@@ -136,7 +137,7 @@ impl Window<'_> {
             chunk.saturating_mul(at_once).saturating_mul(1 + expansion).saturating_add(Shared::MOST_BYTES.min(out));
         self.limits.check(out.saturating_add(buffers))?;
         let size = layout.stored.sample_type().size() as u64;
-        usize::try_from(out / size).map_err(|_| "is too large for this machine".to_owned())
+        usize::try_from(out / size).map_err(|_| "is too large for this machine".into())
     }
 
     /// Chunks of a row that are decoded before they are copied: few, so that wide images do not need twice their memory.

@@ -35,7 +35,7 @@ impl Source {
         if meta.len() > WHOLE {
             return Ok(Self { len: meta.len(), inner: Inner::File(Mutex::new(file)) });
         }
-        let mut bytes = budget::room("the file", meta.len() as usize).map_err(std::io::Error::other)?;
+        let mut bytes = budget::room("the file", meta.len() as usize)?;
         file.take(meta.len()).read_to_end(&mut bytes)?;
         Ok(Self::bytes(bytes))
     }

@@ -45,8 +45,8 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
     for node in nodes {
         builder.node(&node, DMat4::IDENTITY, "", 0).map_err(bad)?;
     }
-    if let Some(reason) = builder.pictures.refused.take() {
-        return Err(bad(reason));
+    if let Some(refused) = builder.pictures.refused.take() {
+        return Err(IoError::format(path, refused));
     }
     let Builder {
         mut out,

@@ -3,7 +3,7 @@
 use super::{neighbour, picture};
 use crate::base64;
 use crate::fs::percent_decoded;
-use crate::{InputFile, Limits, budget};
+use crate::{Fault, InputFile, Limits};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Texture, Wrap};
 use gltf::image::Source;
@@ -38,7 +38,7 @@ pub(super) struct Pictures<'p> {
     pub(super) textures: Vec<Arc<Texture>>,
     pub(super) files: Vec<InputFile>,
     /// Why a picture was refused for want of memory.
-    pub(super) refused: Option<String>,
+    pub(super) refused: Option<Fault>,
     /// One sentence each.
     pub(super) warnings: Vec<Warning>,
 }
@@ -63,10 +63,9 @@ impl<'p> Pictures<'p> {
             }
             Err(e) => {
                 let path = self.path.unwrap_or(Path::new(""));
-                let text = format!("picture {}: {e}; it is left out", texture.index());
-                self.refused =
-                    self.refused.take().or(budget::is_refusal(&e).then(|| format!("picture {}: {e}", texture.index())));
-                self.warnings.push(Warning::new(WarningKind::Ignored, text).in_file(path));
+                let e = e.placed(format_args!("picture {}", texture.index()));
+                self.warnings.push(Warning::new(WarningKind::Ignored, format!("{e}; it is left out")).in_file(path));
+                self.refused = self.refused.take().or(Some(e).filter(Fault::is_of_memory));
                 None
             }
         };
@@ -74,7 +73,7 @@ impl<'p> Pictures<'p> {
         number
     }
 
-    fn read(&self, texture: &gltf::Texture<'_>, buffers: &[Vec<u8>]) -> Result<(Texture, Option<InputFile>), String> {
+    fn read(&self, texture: &gltf::Texture<'_>, buffers: &[Vec<u8>]) -> Result<(Texture, Option<InputFile>), Fault> {
         let sampler = texture.sampler();
         let wrap = [sampler.wrap_s(), sampler.wrap_t()].map(|mode| match mode {
             WrappingMode::Repeat => Wrap::Repeat,

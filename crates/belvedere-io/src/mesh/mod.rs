@@ -13,7 +13,7 @@ use crate::formats::Reader;
 use crate::fs::{beside, spellings};
 use crate::packed::content;
 use crate::recognise::{explain, not_a};
-use crate::{InputFile, IoError, Limits, Loaded, budget, fs};
+use crate::{Fault, InputFile, IoError, Limits, Loaded, budget, fs};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Color, MeshColors, Texturing};
 use glam::DVec3;
@@ -83,10 +83,10 @@ fn read_bytes(path: &Path, limits: &Limits) -> Result<Vec<u8>, IoError> {
 }
 
 /// A picture or a file of materials beside `path`, if it can be read, under its name or in another spelling of it.
-pub(crate) fn neighbour(path: &Path, name: &str, limits: &Limits) -> Result<(Vec<u8>, InputFile), String> {
+pub(crate) fn neighbour(path: &Path, name: &str, limits: &Limits) -> Result<(Vec<u8>, InputFile), Fault> {
     let read = |name: &str| {
         let file = beside(path, name)?;
-        let bytes = read_bytes(&file, limits).map_err(|e| e.to_string())?;
+        let bytes = read_bytes(&file, limits)?;
         let record = InputFile::of(&file, &bytes);
         Ok((bytes, record))
     };

@@ -1,7 +1,7 @@
 //! Wavefront OBJ, with the diffuse colours and pictures of its MTL file, its objects and groups as parts.
 
 use super::{MeshFile, color, neighbour, obj_text, picture};
-use crate::{InputFile, IoError, Limits, Loaded, budget};
+use crate::{Fault, InputFile, IoError, Limits, Loaded};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Color, MeshColors, Texture, Texturing};
 use glam::{DVec3, Vec2};
@@ -85,7 +85,7 @@ struct Materials<'p> {
     files: Vec<InputFile>,
     warnings: Vec<Warning>,
     /// Why a picture was refused for want of memory.
-    refused: Option<String>,
+    refused: Option<Fault>,
 }
 
 impl<'p> Materials<'p> {
@@ -126,9 +126,10 @@ impl<'p> Materials<'p> {
                 Some(self.textures.len() as u32 - 1)
             }
             Err(e) => {
-                self.refused = self.refused.take().or(budget::is_refusal(&e).then(|| format!("picture {name:?}: {e}")));
-                let text = format!("picture {name:?}: {e}; it is left out");
-                self.warnings.push(Warning::new(WarningKind::Ignored, text).in_file(self.path));
+                let e = e.placed(format_args!("picture {name:?}"));
+                self.warnings
+                    .push(Warning::new(WarningKind::Ignored, format!("{e}; it is left out")).in_file(self.path));
+                self.refused = self.refused.take().or(Some(e).filter(Fault::is_of_memory));
                 None
             }
         }

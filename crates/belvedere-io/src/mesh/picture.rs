@@ -1,6 +1,6 @@
 //! Pictures on meshes: PNG and JPEG.
 
-use crate::{Limits, budget};
+use crate::{Fault, Limits, budget};
 use belvedere_scene::{Texture, Wrap};
 use std::io::Cursor;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ const LARGEST: usize = 16_384;
 const PEAK: u64 = 12;
 
 /// Decodes a picture; an error states what is wrong and what to do.
-pub(crate) fn read(bytes: &[u8], wrap: [Wrap; 2], limits: &Limits) -> Result<Texture, String> {
+pub(crate) fn read(bytes: &[u8], wrap: [Wrap; 2], limits: &Limits) -> Result<Texture, Fault> {
     let (width, height, pixels) = if bytes.starts_with(b"\x89PNG") {
         png(bytes, limits)?
     } else if bytes.starts_with(b"\xff\xd8") {
@@ -35,15 +35,16 @@ pub(crate) fn beside(limits: &Limits, read: &[Arc<Texture>]) -> Limits {
 
 type Pixels = (usize, usize, Vec<[u8; 4]>);
 
-fn fits(width: usize, height: usize, limits: &Limits) -> Result<(), String> {
+fn fits(width: usize, height: usize, limits: &Limits) -> Result<(), Fault> {
     if width > LARGEST || height > LARGEST {
-        return Err(format!("has {width} x {height} pixels, at most {LARGEST} a side are read; make it smaller"));
+        return Err(format!("has {width} x {height} pixels, at most {LARGEST} a side are read; make it smaller").into());
     }
     // Samples as decoded, pixels, and the mip pyramid.
-    limits.ask("a picture", PEAK * width as u64 * height as u64).map_err(|reason| format!("is too large: {reason}"))
+    let asked = limits.ask("a picture", PEAK * width as u64 * height as u64);
+    asked.map_err(|refusal| Fault::from(refusal).placed("is too large"))
 }
 
-fn png(bytes: &[u8], limits: &Limits) -> Result<Pixels, String> {
+fn png(bytes: &[u8], limits: &Limits) -> Result<Pixels, Fault> {
     let bad = |e: png::DecodingError| format!("is a PNG that cannot be read ({e}); it is damaged, get it again");
     let bytes_allowed = usize::try_from(limits.max_bytes).unwrap_or(usize::MAX);
     let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), png::Limits { bytes: bytes_allowed });
@@ -63,7 +64,7 @@ fn png(bytes: &[u8], limits: &Limits) -> Result<Pixels, String> {
     Ok((width, height, pixels))
 }
 
-fn jpeg(bytes: &[u8], limits: &Limits) -> Result<Pixels, String> {
+fn jpeg(bytes: &[u8], limits: &Limits) -> Result<Pixels, Fault> {
     let bad = |e: String| format!("is a JPEG that cannot be read ({e}); it is damaged, get it again");
     let options = DecoderOptions::default().set_max_width(LARGEST).set_max_height(LARGEST);
     let options = options.jpeg_set_out_colorspace(ColorSpace::RGB);

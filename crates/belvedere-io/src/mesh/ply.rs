@@ -103,7 +103,7 @@ fn list(value: Property) -> Option<Vec<i64>> {
     })
 }
 
-/// The message of the parser without its inner workings.
+/// The message of the parser without its inner workings; it gives texts alone, which its kinds of errors do not tell.
 fn words(said: &str) -> String {
     let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
     let said = said.split(" Error: ").next().unwrap_or_default().trim_end_matches('.');

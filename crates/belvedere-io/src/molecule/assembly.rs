@@ -221,7 +221,7 @@ impl Assemblies {
         let assembly = self.find(id)?;
         if assembly.atoms <= Molecule::MAX as u64 && assembly.copies <= MOST_COPIES {
             let what = format!("the {} copies of assembly {id}", assembly.copies);
-            limits.ask(&what, assembly.atoms.saturating_mul(PER_ATOM))?;
+            limits.ask(&what, assembly.atoms.saturating_mul(PER_ATOM)).map_err(|e| e.to_string())?;
         }
         molecule.assembled(&self.copies(id)?).map_err(|e| format!("assembly {id}: {e}"))
     }

@@ -70,7 +70,7 @@ fn load(path: &Path, model: Option<usize>, frames: bool, limits: &Limits) -> Res
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     let _work = budget::work_on(path);
     // The text, and atoms, residues and bonds, which take some ten times the bytes of their lines.
-    limits.ask("the molecule", length.saturating_mul(PEAK)).map_err(bad)?;
+    limits.ask("the molecule", length.saturating_mul(PEAK)).map_err(|e| IoError::format(path, e))?;
     let (bytes, file) = InputFile::read(path)?;
     let text = String::from_utf8_lossy(&bytes);
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();

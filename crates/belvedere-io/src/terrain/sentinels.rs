@@ -54,9 +54,9 @@ pub(super) fn said_of(stored: &[f32], count: usize) -> Option<Warning> {
     let said: Vec<String> = stored.iter().map(f32::to_string).collect();
     let values = said.join(" and ");
     let what = format!(
-        "samples of {values}, far from all other heights, are taken as voids though the file does not declare them; nodata of its layer, or --nodata, says otherwise"
+        "samples of {values}, far from all other heights, are taken as voids though the file does not declare them; nodata of its layer says otherwise"
     );
-    Warning::counted(WarningKind::Assumed, count, &what)
+    Warning::counted(WarningKind::Assumed, count, &what).map(|said| said.settled_by("nodata"))
 }
 
 /// The lowest or the highest height, if it is a customary value far from the next one; in metres and as stored.

@@ -96,9 +96,10 @@ fn read_one(
         warnings.push(Warning::new(WarningKind::Ignored, text).with("bands", bands as f64).in_file(path));
     }
     let beyond = format!(
-        "samples beyond +-{MAX_HEIGHT_M:.0} m are taken as voids; nodata of its layer, or --nodata, says what they are if the file does not"
+        "samples beyond +-{MAX_HEIGHT_M:.0} m are taken as voids; nodata of its layer says what they are if the file does not"
     );
-    warnings.extend(Warning::counted(WarningKind::Repaired, read.absurd, &beyond).map(|w| w.in_file(path)));
+    let absurd = Warning::counted(WarningKind::Repaired, read.absurd, &beyond);
+    warnings.extend(absurd.map(|w| w.settled_by("nodata").in_file(path)));
     warnings.extend(read.customary.map(|said| said.in_file(path)));
     let system = stated_system(&info, request.source_crs, request.crs == CrsChoice::Local, &mut warnings)?;
     if request.vertical_unit_m.is_none() {
@@ -248,9 +249,9 @@ fn unit_unsaid(info: &RasterInfo, system: Option<&CoordinateSystem>) -> Option<W
         u => (format!("units of {u} m"), "ft"),
     };
     let text = format!(
-        "its plane counts in {unit} and nothing says in which unit heights are, so they count as metres; if they are feet the relief is 3.28 times too high: vertical_unit = \"{option}\" of its layer, or --vertical-unit {option}, settles it (\"m\" confirms metres)"
+        "its plane counts in {unit} and nothing says in which unit heights are, so they count as metres; if they are feet the relief is 3.28 times too high: vertical_unit = \"{option}\" of its layer settles it (\"m\" confirms metres)"
     );
-    Some(Warning::new(WarningKind::Assumed, text).with("plane_unit_m", plane))
+    Some(Warning::new(WarningKind::Assumed, text).with("plane_unit_m", plane).settled_by("vertical_unit"))
 }
 
 /// Warns about a frame of one value around the data: it may be voids that the file does not declare, or sea, so the heights stay.
@@ -269,10 +270,11 @@ fn warn_about_frame(path: &Path, heights: &[f32], cols: usize, rows: usize, warn
     let share = count as f64 / heights.len() as f64;
     if share >= FRAME_SHARE && count < heights.len() {
         let text = format!(
-            "{count} samples ({:.1} %) at the edge are all exactly {value}: sea, or voids that the file does not declare; nodata = {value} of its layer, or --nodata {value}, makes them voids",
+            "{count} samples ({:.1} %) at the edge are all exactly {value}: sea, or voids that the file does not declare; nodata = {value} of its layer makes them voids",
             100.0 * share
         );
         let warning = Warning::new(WarningKind::Suspect, text).with("count", count as f64).with("share", share);
+        let warning = warning.settled_by("nodata");
         warnings.push(warning.with("height_m", f64::from(value)).in_file(path));
     }
 }

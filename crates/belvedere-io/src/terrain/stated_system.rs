@@ -1,7 +1,7 @@
 //! The coordinate system of a raster.
 
 use crate::crs::CoordinateSystem;
-use crate::{Affine, IoError, RasterInfo, SourceCrs};
+use crate::{Affine, Fault, IoError, RasterInfo, SourceCrs};
 use belvedere_core::{Warning, WarningKind};
 use std::path::Path;
 
@@ -14,10 +14,8 @@ pub(crate) fn stated_system(
     warnings: &mut Vec<Warning>,
 ) -> Result<Option<CoordinateSystem>, IoError> {
     let failed = |e: crate::crs::CrsError| {
-        IoError::format(
-            &info.path,
-            format!("its coordinate system cannot be used: {e}; or set source_crs of its layer (--source-crs)"),
-        )
+        let reason = format!("its coordinate system cannot be used: {e}; or set source_crs of its layer");
+        IoError::format(&info.path, Fault::lifted_by(reason, &["source_crs"]))
     };
     let Some(to_model) = info.pixel_to_model else {
         return Ok(None);
@@ -43,13 +41,13 @@ pub(crate) fn stated_system(
         SourceCrs::UserDefined(_) if local => Ok(None),
         SourceCrs::UserDefined(text) => {
             let reason = format!(
-                "its coordinate system cannot be used ({text}); set its EPSG code (source_crs of its layer, or --source-crs), or crs = \"local\" (--crs local) to draw it without georeference"
+                "its coordinate system cannot be used ({text}); set its EPSG code as source_crs of its layer, or crs = \"local\" to draw it without georeference"
             );
-            Err(IoError::format(&info.path, reason))
+            Err(IoError::format(&info.path, Fault::lifted_by(reason, &["source_crs", "crs"])))
         }
         SourceCrs::Unknown if !local && looks_geographic(info, &to_model) => {
-            let text = "no coordinate system is stated and the coordinates look like degrees, so EPSG:4326 is assumed; source_crs of its layer, or --source-crs, says otherwise";
-            warnings.push(Warning::new(WarningKind::Assumed, text).in_file(&info.path));
+            let text = "no coordinate system is stated and the coordinates look like degrees, so EPSG:4326 is assumed; source_crs of its layer says otherwise";
+            warnings.push(Warning::new(WarningKind::Assumed, text).settled_by("source_crs").in_file(&info.path));
             CoordinateSystem::from_epsg(4326).map(Some).map_err(failed)
         }
         SourceCrs::Unknown => Ok(None),

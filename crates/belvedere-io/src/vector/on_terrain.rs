@@ -2,7 +2,7 @@
 
 use super::{Geometry, VectorFeature, Vectors, Vertex};
 use crate::crs::{CoordinateSystem, CrsError, Transform};
-use crate::{IoError, Loaded};
+use crate::{Fault, IoError, Loaded};
 use belvedere_core::polygon::doubled_area;
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{AreaFeature, Crs, Heightfield, LineFeature, PointFeature, drape_polyline};
@@ -259,7 +259,11 @@ impl<'a> Reprojection<'a> {
                 reprojection.warn(Warning::new(WarningKind::Assumed, text));
             }
             Err(CrsError::Local) => {
-                return Err(vectors.fail("is in longitude and latitude, but the scene has no coordinate system; state that of the terrain: source_crs of its layer, or --source-crs"));
+                let reason = format!(
+                    "{} is in longitude and latitude, but the scene has no coordinate system; state that of the terrain as source_crs of its layer",
+                    vectors.format
+                );
+                return Err(IoError::format(&vectors.path, Fault::lifted_by(reason, &["source_crs"])));
             }
             Err(e) => return Err(fail(e)),
             Ok(system) => reprojection.transform = Some(Transform::new(&vectors.crs, &system).map_err(fail)?),

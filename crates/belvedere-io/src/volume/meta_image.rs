@@ -2,7 +2,7 @@
 
 use super::{ByteOrder, Number, Source, VolumeFile, inflate, odd_values};
 use crate::fs::beside;
-use crate::{InputFile, IoError, Loaded, fs};
+use crate::{Fault, InputFile, IoError, Loaded, fs};
 use glam::{DMat3, DVec3};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -33,9 +33,9 @@ struct Header {
 }
 
 pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, IoError> {
-    let bad = |reason: String| IoError::format(source.path, reason);
-    let header = Header::parse(source.bytes).map_err(bad)?;
-    let name = header.need("ElementDataFile").map_err(bad)?;
+    let bad = |fault: Fault| IoError::format(source.path, fault);
+    let header = Header::parse(source.bytes).map_err(|e| bad(e.into()))?;
+    let name = header.need("ElementDataFile").map_err(|e| bad(e.into()))?;
     let mut files = Vec::new();
     let data: Cow<'_, [u8]> = if name.eq_ignore_ascii_case("LOCAL") {
         Cow::Borrowed(&source.bytes[header.end..])
@@ -43,9 +43,9 @@ pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, IoError> {
         let reason = "its samples are spread over several files, which this version does not read; write it as one, as with SimpleITK";
         return Err(bad(reason.into()));
     } else {
-        let path = beside(source.path, name).map_err(bad)?;
+        let path = beside(source.path, name).map_err(|e| bad(e.into()))?;
         let length = fs::metadata(&path).map_err(|e| IoError::os(&path, e))?.len();
-        source.request.limits.ask("the volume", length).map_err(bad)?;
+        source.request.limits.ask("the volume", length).map_err(|e| bad(e.into()))?;
         let (bytes, file) = InputFile::read(&path)?;
         files.push(file);
         Cow::Owned(bytes)
@@ -103,7 +103,7 @@ impl Header {
         list.map(Some).ok_or_else(|| format!("its {} {shown:?} is no list of {count} finite numbers", keys[0]))
     }
 
-    fn volume(&self, source: &Source<'_>, data: &[u8]) -> Result<Loaded<VolumeFile>, String> {
+    fn volume(&self, source: &Source<'_>, data: &[u8]) -> Result<Loaded<VolumeFile>, Fault> {
         let all: usize = self.need("NDims")?.parse().ok().filter(|n| (1..=10).contains(n)).ok_or_else(|| {
             format!("its NDims is {:.20?}, 1 to 10 are possible; it is damaged", self.get(&["NDims"]))
         })?;
@@ -116,13 +116,16 @@ impl Header {
         if let Some(channels) = self.get(&["ElementNumberOfChannels"]).filter(|c| *c != "1") {
             return Err(format!(
                 "it has {channels:.20} values in each voxel, single values are needed; write one of them, as with SimpleITK"
-            ));
+            )
+            .into());
         }
         let data = self.skipped(data, dims, number)?;
         let (values, changed) = if self.get(&["BinaryData"]).is_some_and(|v| v.eq_ignore_ascii_case("false")) {
             let count = source.expected(dims, number, data.len(), true)? / number.bytes();
             if count > data.len() {
-                return Err(format!("it declares {count} values and has {} bytes of text; it is cut off", data.len()));
+                return Err(
+                    format!("it declares {count} values and has {} bytes of text; it is cut off", data.len()).into()
+                );
             }
             let text = std::str::from_utf8(data)
                 .map_err(|e| format!("byte {} of its text is no text; it is damaged", e.valid_up_to()))?;

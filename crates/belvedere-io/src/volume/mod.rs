@@ -16,7 +16,7 @@ pub use raw::RawLayout;
 use crate::formats::Reader;
 use crate::packed::content;
 use crate::recognise::explain;
-use crate::{InputFile, IoError, Limits, Loaded, budget, fs};
+use crate::{Fault, InputFile, IoError, Limits, Loaded, budget, fs};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::VoxelValues;
 use flate2::read::{MultiGzDecoder, ZlibDecoder};
@@ -70,10 +70,10 @@ pub fn load_volume(path: &Path, request: &VolumeRequest) -> Result<Loaded<Volume
     let path = &content(path, request.limits.max_bytes, &|p| Reader::Volume.reads(p))?;
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
     let is_nrrd = crate::recognise::ending(path) == "nrrd";
-    let format = |reason: String| IoError::format(path, reason);
+    let format = |fault: Fault| IoError::format(path, fault);
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     let _work = budget::work_on(path);
-    request.limits.ask("the volume", length).map_err(format)?;
+    request.limits.ask("the volume", length).map_err(|e| IoError::format(path, e))?;
     let (bytes, file) = InputFile::read(path)?;
     let source = Source { path, bytes: &bytes, request };
     let loaded = match () {
@@ -102,7 +102,7 @@ struct Source<'a> {
 
 impl Source<'_> {
     /// Bytes of the samples of these dimensions; an error if a file of `stored` bytes cannot hold them.
-    fn expected(&self, dims: [usize; 3], number: Number, stored: usize, packed: bool) -> Result<usize, String> {
+    fn expected(&self, dims: [usize; 3], number: Number, stored: usize, packed: bool) -> Result<usize, Fault> {
         let [x, y, z] = dims.map(|n| n as u128);
         // Each below 2^64, so that three would overflow.
         let bytes = x.checked_mul(y).and_then(|n| n.checked_mul(z)).and_then(|n| n.checked_mul(number.bytes() as u128));
@@ -116,11 +116,12 @@ impl Source<'_> {
                 dims[1],
                 dims[2],
                 if packed { " compressed ones, which cannot be as many" } else { "" }
-            ));
+            )
+            .into());
         }
         let peak = (bytes / number.bytes() as u64).saturating_mul(number.peak_bytes());
         self.request.limits.ask("the volume", peak)?;
-        usize::try_from(bytes).map_err(|_| format!("its {bytes} bytes are more than this machine can address"))
+        usize::try_from(bytes).map_err(|_| format!("its {bytes} bytes are more than this machine can address").into())
     }
 }
 
@@ -128,12 +129,12 @@ impl Source<'_> {
 const GZIP: [u8; 2] = [0x1f, 0x8b];
 
 /// Exactly `expected` bytes out of a gzip stream.
-fn gunzip(packed: &[u8], expected: usize) -> Result<Vec<u8>, String> {
+fn gunzip(packed: &[u8], expected: usize) -> Result<Vec<u8>, Fault> {
     exactly(MultiGzDecoder::new(packed), "gzip", expected)
 }
 
 /// Exactly `expected` bytes out of a zlib or gzip stream.
-fn inflate(packed: &[u8], expected: usize) -> Result<Vec<u8>, String> {
+fn inflate(packed: &[u8], expected: usize) -> Result<Vec<u8>, Fault> {
     if packed.starts_with(&GZIP) {
         gunzip(packed, expected)
     } else {
@@ -141,7 +142,7 @@ fn inflate(packed: &[u8], expected: usize) -> Result<Vec<u8>, String> {
     }
 }
 
-fn exactly(stream: impl Read, kind: &str, expected: usize) -> Result<Vec<u8>, String> {
+fn exactly(stream: impl Read, kind: &str, expected: usize) -> Result<Vec<u8>, Fault> {
     let mut out = budget::room("the volume", expected.saturating_add(64))?;
     let limit = expected as u64 + 1;
     stream.take(limit).read_to_end(&mut out).map_err(|e| {
@@ -150,9 +151,11 @@ fn exactly(stream: impl Read, kind: &str, expected: usize) -> Result<Vec<u8>, St
     match out.len() {
         n if n < expected => Err(format!(
             "its {kind} data ends after {n} of {expected} bytes; it is cut off, or the dimensions are wrong"
-        )),
+        )
+        .into()),
         n if n > expected => {
-            Err(format!("its {kind} data is longer than the {expected} bytes declared; check dimensions and type"))
+            Err(format!("its {kind} data is longer than the {expected} bytes declared; check dimensions and type")
+                .into())
         }
         _ => Ok(out),
     }

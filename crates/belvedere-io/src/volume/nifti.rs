@@ -1,7 +1,7 @@
 //! NIfTI-1 and NIfTI-2 (.nii, alone or packed by gzip). Source: the headers nifti1.h and nifti2.h of the NIfTI Data Format Working Group.
 
 use super::{ByteOrder, Number, Source, VolumeFile, odd_values};
-use crate::Loaded;
+use crate::{Fault, Loaded};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::VoxelValues;
 use glam::{DMat3, DQuat, DVec3};
@@ -58,7 +58,7 @@ struct Header<'b> {
     order: ByteOrder,
 }
 
-pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, String> {
+pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, Fault> {
     let header = Header::of(source.bytes)?;
     let (dims, number) = (header.dims()?, header.number()?);
     let offset = header.real(header.fields.vox_offset, 0);

@@ -2,7 +2,7 @@
 
 use super::{ByteOrder, Number, Source, VolumeFile, gunzip, odd_values};
 use crate::fs::beside;
-use crate::{InputFile, IoError, Loaded, fs};
+use crate::{Fault, InputFile, IoError, Loaded, fs};
 use belvedere_core::{Warning, WarningKind};
 use glam::{DMat3, DVec3};
 use std::borrow::Cow;
@@ -19,15 +19,15 @@ struct Header {
 }
 
 pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, IoError> {
-    let bad = |reason: String| IoError::format(source.path, reason);
-    let header = Header::parse(source.bytes).map_err(bad)?;
+    let bad = |fault: Fault| IoError::format(source.path, fault);
+    let header = Header::parse(source.bytes).map_err(|e| bad(e.into()))?;
     let mut files = Vec::new();
     let data: Cow<'_, [u8]> = match header.get("datafile") {
         None => Cow::Borrowed(&source.bytes[header.end..]),
         Some(name) => {
-            let path = detached(source, name).map_err(bad)?;
+            let path = detached(source, name).map_err(|e| bad(e.into()))?;
             let length = fs::metadata(&path).map_err(|e| IoError::os(&path, e))?.len();
-            source.request.limits.ask("the volume", length).map_err(bad)?;
+            source.request.limits.ask("the volume", length).map_err(|e| bad(e.into()))?;
             let (bytes, file) = InputFile::read(&path)?;
             files.push(file);
             Cow::Owned(bytes)
@@ -93,7 +93,7 @@ impl Header {
         self.get(key).ok_or_else(|| format!("its header has no field {key:?}; it is damaged"))
     }
 
-    fn volume(&self, source: &Source<'_>, data: &[u8]) -> Result<Loaded<VolumeFile>, String> {
+    fn volume(&self, source: &Source<'_>, data: &[u8]) -> Result<Loaded<VolumeFile>, Fault> {
         let number = self.need("type")?;
         let number = Number::named(number).ok_or_else(|| {
             format!("samples of type {number:?} are not read; convert them to a number type with unu")
@@ -124,7 +124,8 @@ impl Header {
                     return Err(format!(
                         "it declares {count} values and has {} bytes of text; it is cut off",
                         data.len()
-                    ));
+                    )
+                    .into());
                 }
                 let text = std::str::from_utf8(data)
                     .map_err(|e| format!("byte {} of its text is no text; it is damaged", e.valid_up_to()))?;
@@ -134,7 +135,8 @@ impl Header {
                 let other: String = other.chars().take(30).collect();
                 return Err(format!(
                     "its encoding {other:?} is not read; raw, gzip and ascii are: convert it with unu save -e gzip"
-                ));
+                )
+                .into());
             }
         };
         let file = VolumeFile { format: "NRRD", array: None, stored: number, dims, axes, origin, values };

@@ -1,7 +1,7 @@
 //! Raw samples without a header: file name and scene state their layout.
 
 use super::{ByteOrder, Number, Source, VolumeFile, gunzip, odd_values};
-use crate::Loaded;
+use crate::{Fault, Loaded};
 use glam::{DMat3, DVec3};
 
 /// Layout of raw samples in a file; missing values are taken from a name such as `engine_256x256x128_uint8.raw.gz`.
@@ -17,7 +17,7 @@ pub struct RawLayout {
     pub order: Option<ByteOrder>,
 }
 
-pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, String> {
+pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, Fault> {
     let name = source.path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
     let (named_dims, named_number) = told_by(&name);
     let layout = &source.request.raw;
@@ -40,7 +40,8 @@ pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, String> {
             dims[1],
             dims[2],
             source.bytes.len()
-        ));
+        )
+        .into());
     };
     let (values, changed) = number.decode(bytes, layout.order.unwrap_or_default());
     let axes = DMat3::from_diagonal(DVec3::from_array(layout.spacing.unwrap_or([1.0; 3])));

@@ -3,18 +3,18 @@
 use super::vti_header::{Array, Encoding, Header};
 use super::vti_stream::Stream;
 use super::{Source, VolumeFile, odd_values};
-use crate::Loaded;
 use crate::base64::Base64;
+use crate::{Fault, Loaded};
 use glam::{DMat3, DVec3};
 
-pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, String> {
+pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, Fault> {
     let (xml, appended) = parts(source.bytes)?;
     let header = Header::parse(xml)?;
     let extent = header.extent.ok_or("it has no WholeExtent; it is damaged")?;
     match header.pieces {
         1 => {}
         0 => return Err("it has no piece; it is damaged".into()),
-        n => return Err(format!("it has {n} pieces, one is read; write it from ParaView as a single piece")),
+        n => return Err(format!("it has {n} pieces, one is read; write it from ParaView as a single piece").into()),
     }
     let piece = header.piece.unwrap_or(extent);
     let array = header.choose(source.request.array.as_deref())?;
@@ -33,7 +33,8 @@ pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, String> {
             let other: String = other.chars().take(40).collect();
             return Err(format!(
                 "its data are compressed by {other}, only vtkZLibDataCompressor is read; write it again with zlib"
-            ));
+            )
+            .into());
         }
     };
     let stored = match array.encoding {

@@ -2,7 +2,7 @@
 
 use super::ByteOrder;
 use crate::base64::Base64;
-use crate::budget;
+use crate::{Fault, budget};
 use flate2::{Decompress, FlushDecompress, Status};
 
 /// Source of the bytes.
@@ -55,7 +55,7 @@ impl Stream<'_> {
         packed: bool,
         wide: bool,
         order: ByteOrder,
-    ) -> Result<Vec<u8>, String> {
+    ) -> Result<Vec<u8>, Fault> {
         if packed {
             return self.unpacked(expected, wide, order);
         }
@@ -63,13 +63,14 @@ impl Stream<'_> {
         if declared != expected as u64 {
             return Err(format!(
                 "its array has {declared} bytes, its extent and type need {expected}; it is damaged, or its header_type is wrong"
-            ));
+            )
+            .into());
         }
-        self.take(expected)
+        Ok(self.take(expected)?)
     }
 
     /// Number of blocks, size of a block, size of the last if it is smaller, compressed sizes; then the blocks.
-    fn unpacked(&mut self, expected: usize, wide: bool, order: ByteOrder) -> Result<Vec<u8>, String> {
+    fn unpacked(&mut self, expected: usize, wide: bool, order: ByteOrder) -> Result<Vec<u8>, Fault> {
         let head = self.lengths(3, wide, order)?;
         let [count, size, last] = [head[0], head[1], head[2]];
         let whole = if last == 0 { count } else { count.saturating_sub(1) };
@@ -78,7 +79,8 @@ impl Stream<'_> {
         if total != Some(expected as u64) || count > self.at_most() as u64 {
             return Err(format!(
                 "its array is {count} blocks of {size} bytes and a last one of {last}, its extent and type need {expected}; it is damaged, or its header_type is wrong"
-            ));
+            )
+            .into());
         }
         let sizes = self.lengths(count as usize, wide, order)?;
         let mut out = budget::room("the volume", expected)?;

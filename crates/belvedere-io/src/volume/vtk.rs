@@ -1,7 +1,7 @@
 //! Legacy VTK files of structured points (.vtk). Source: "VTK File Formats", Kitware, section on simple legacy formats.
 
 use super::{ByteOrder, Number, Source, VolumeFile, odd_values};
-use crate::Loaded;
+use crate::{Fault, Loaded};
 use glam::{DMat3, DVec3};
 
 /// Most arrays.
@@ -17,7 +17,7 @@ struct Array<'b> {
     data: &'b [u8],
 }
 
-pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, String> {
+pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, Fault> {
     let mut text = Cursor { bytes: source.bytes, at: 0 };
     if !text.line().starts_with("# vtk DataFile") {
         return Err("it does not begin with \"# vtk DataFile\"; it is no legacy VTK file".into());
@@ -26,7 +26,9 @@ pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, String> {
     let binary = match text.word()?.to_ascii_uppercase().as_str() {
         "BINARY" => true,
         "ASCII" => false,
-        other => return Err(format!("its third line is {other:.20?}, it must be ASCII or BINARY; it is damaged")),
+        other => {
+            return Err(format!("its third line is {other:.20?}, it must be ASCII or BINARY; it is damaged").into());
+        }
     };
     let mut file = Parts { binary, ..Parts::default() };
     file.read(&mut text)?;
@@ -46,7 +48,8 @@ pub(super) fn read(source: &Source<'_>) -> Result<Loaded<VolumeFile>, String> {
             return Err(format!(
                 "it declares {count} values and has {} bytes of text; it is cut off",
                 array.data.len()
-            ));
+            )
+            .into());
         }
         let text = std::str::from_utf8(array.data)
             .map_err(|e| format!("byte {} of its text is no text; it is damaged", e.valid_up_to()))?;

@@ -335,7 +335,8 @@ fn grids_with_commas_customary_voids_and_feet() {
     let path = grid(&folder, "f.asc", point, "");
     let silent = load(&path, &usual);
     let said = silent.warnings.iter().find(|w| w.text().contains("US survey feet")).expect("said");
-    assert!(said.text().contains("3.28 times") && said.text().contains("--vertical-unit us-ft"), "{said}");
+    assert!(said.text().contains("3.28 times") && said.text().contains("vertical_unit = \"us-ft\""), "{said}");
+    assert_eq!(said.key(), Some("vertical_unit"));
     let settled = load(&path, &TerrainRequest { vertical_unit_m: Some(0.3048), ..usual });
     assert!(!settled.warnings.iter().any(|w| w.text().contains("feet")), "{:?}", settled.warnings);
     let top = |t: &belvedere_io::LoadedTerrain| t.heightfield.z_range()[1];
@@ -359,6 +360,7 @@ fn features_without_a_system_lie_on_ground_without_one() {
     let stated =
         r#"{"type":"LineString","crs":{"properties":{"name":"EPSG:4326"}},"coordinates":[[120.0,85.0],[121.0,86.0]]}"#;
     let vectors = load_vectors(&folder.file("s.geojson", stated.as_bytes())).unwrap().value;
-    let error = lines_on_terrain(&vectors, Crs::Local, Some(&ground)).unwrap_err().to_string();
-    assert!(error.contains("longitude and latitude") && error.contains("--source-crs"), "{error}");
+    let error = lines_on_terrain(&vectors, Crs::Local, Some(&ground)).unwrap_err();
+    assert_eq!(error.lifted_by(), belvedere_io::LiftedBy::Keys(&["source_crs"]));
+    assert!(error.to_string().contains("longitude and latitude"), "{error}");
 }

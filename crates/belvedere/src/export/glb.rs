@@ -2,7 +2,7 @@
 
 use super::ExportReport;
 use super::sheet::Sheet;
-use crate::BelvedereError;
+use crate::{Advice, BelvedereError};
 use belvedere_core::{DMat3, DQuat, DVec3, Pinhole, Projection};
 use serde_json::{Value, json};
 
@@ -65,10 +65,9 @@ pub(super) fn bytes(content: &Content<'_>) -> Result<Vec<u8>, BelvedereError> {
     }
     let bin = std::mem::take(&mut file.bin);
     if bin.len() > MOST_BYTES {
-        return Err(BelvedereError::Target(format!(
-            "the file would have {} MiB, at most 4095 are possible; give a smaller --nodes",
-            bin.len() >> 20
-        )));
+        let large = format!("the file would have {} MiB, at most 4095 are possible; ", bin.len() >> 20);
+        let advice = Advice::new("give a smaller {}", &["ground_nodes"]).before(large);
+        return Err(BelvedereError::Argument(advice));
     }
     let whole = json!({
         "asset": { "version": "2.0", "generator": format!("belvedere {}", crate::VERSION) },

@@ -22,10 +22,12 @@ pub(super) fn sheet(
     if step > 1 {
         let text = format!(
             "layer \"{id}\": one of {step} nodes of the ground is exported in each direction, so that there are at most {}; lines near \
-             it may sink in; --nodes N takes more",
+             it may sink in; raise the number of nodes to take more",
             options.ground_nodes
         );
-        warnings.push(Warning::new(WarningKind::Reduced, text).about(id).with("step", step as f64));
+        warnings.push(
+            Warning::new(WarningKind::Reduced, text).about(id).with("step", step as f64).settled_by("ground_nodes"),
+        );
     }
     let (cols, rows) = (taken(hf.cols(), step), taken(hf.rows(), step));
     let mut colors = tints(terrain, &cols, &rows);

@@ -11,7 +11,7 @@ mod solids;
 
 use crate::guard::guarded;
 use crate::record::ViewRecord;
-use crate::{BelvedereError, Session};
+use crate::{Advice, BelvedereError, Session};
 use belvedere_core::{Aabb, DVec3, View, Warning, WarningKind};
 use belvedere_scene::{LayerKind, Progress, Unit};
 use glb::{Ball, Content};
@@ -106,8 +106,8 @@ impl Carrier<'_> {
 /// The displaced scene as a GLB file.
 ///
 /// # Errors
-/// [`BelvedereError::Target`] for a view that no straight camera can show (rays that part along a seam), for too many triangles, and for a
-/// scene of which nothing can be written; [`BelvedereError::UnderGround`], [`BelvedereError::Cancelled`].
+/// [`BelvedereError::Argument`] for a view that no straight camera can show (rays that part along a seam) and for too many triangles;
+/// [`BelvedereError::Target`] for a scene of which nothing can be written; [`BelvedereError::UnderGround`], [`BelvedereError::Cancelled`].
 pub fn export(session: &Session, options: &ExportOptions) -> Result<Exported, BelvedereError> {
     guarded(|| exported(session, options))
 }
@@ -115,11 +115,9 @@ pub fn export(session: &Session, options: &ExportOptions) -> Result<Exported, Be
 fn exported(session: &Session, options: &ExportOptions) -> Result<Exported, BelvedereError> {
     let view = if options.straight { session.view().straightened() } else { session.view().clone() };
     if view.split_rays().is_some() {
-        return Err(BelvedereError::Target(
-            "rays that part along a seam show some points twice, which no straight camera does; export with --straight, or remove `split` \
-             from the scene"
-                .into(),
-        ));
+        let text = "rays that part along a seam show some points twice, which no straight camera does; export with {}, or remove `split` \
+                    from the scene";
+        return Err(BelvedereError::Argument(Advice::new(text, &["straight"])));
     }
     session.check_drawable()?;
     let (scene, carrier) = (session.scene(), Carrier { view: &view });
@@ -159,9 +157,9 @@ fn exported(session: &Session, options: &ExportOptions) -> Result<Exported, Belv
     }
     let triangles: usize = layers.iter().map(|layer| layer.triangles).sum();
     if triangles > MOST_TRIANGLES {
-        return Err(BelvedereError::Target(format!(
-            "the scene has {triangles} triangles, a file at most {MOST_TRIANGLES}; give a smaller --nodes, or leave layers out"
-        )));
+        let many = format!("the scene has {triangles} triangles, a file at most {MOST_TRIANGLES}; ");
+        let advice = Advice::new("give a smaller {}, or leave layers out", &["ground_nodes"]).before(many);
+        return Err(BelvedereError::Argument(advice));
     }
     let origin = origin(&sheets, &balls).ok_or_else(|| {
         BelvedereError::Target(

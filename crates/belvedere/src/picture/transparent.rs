@@ -2,21 +2,22 @@
 
 use super::options::PictureOptions;
 use crate::scene_file::LightDoc;
-use crate::{BelvedereError, Session};
+use crate::{Advice, BelvedereError, Session};
 use belvedere_scene::{Color, Frame, Light, Sky};
 
 /// The session before white and before black, where its sky is transparent.
 ///
 /// # Errors
-/// [`BelvedereError::Appearance`] for a pair of pictures.
+/// [`BelvedereError::Argument`] for a pair of pictures.
 pub(super) fn backgrounds(session: &Session, request: &PictureOptions) -> Result<Option<[Session; 2]>, BelvedereError> {
     if session.light().sky != Sky::Transparent {
         return Ok(None);
     }
     if request.compare {
-        let name = LightDoc::TRANSPARENT;
-        let reason = format!("a pair of pictures has a background; leave out --compare or the sky \"{name}\"");
-        return Err(BelvedereError::Appearance { option: "sky", reason });
+        let sky = format!(" or the sky \"{}\"", LightDoc::TRANSPARENT);
+        let advice =
+            Advice::new("{}: a pair of pictures has a background; leave out {}", &["sky", "compare"]).then(sky);
+        return Err(BelvedereError::Argument(advice));
     }
     Ok(Some([255, 0].map(|shade| {
         let light = Light { sky: Sky::Plain(Color::rgb(shade, shade, shade)), ..*session.light() };

@@ -127,9 +127,9 @@ fn unset(lacking: &BTreeSet<char>, names: &[&str]) -> Option<Warning> {
     let letters: String = first.chars().filter(|c| lacking.contains(c)).take(8).collect();
     let first: String = first.chars().take(40).collect();
     let what = format!(
-        "names have letters that no font here sets, the first is \"{first}\" ({letters}); they stand as empty boxes; give a font with these letters: --font FILE, or fonts under [text]"
+        "names have letters that no font here sets, the first is \"{first}\" ({letters}); they stand as empty boxes; give a font with these letters: fonts under [text]"
     );
-    Warning::counted(WarningKind::Ignored, unset.len(), &what)
+    Warning::counted(WarningKind::Ignored, unset.len(), &what).map(|said| said.settled_by("fonts"))
 }
 
 #[cfg(test)]

@@ -126,15 +126,15 @@ fn source(
         None => {
             if let Some(other) = file.assemblies.list().iter().find(|a| a.copies > 1) {
                 let note = format!(
-                    "the file describes assembly {} of {} copies ({} atoms), and the {} atoms of the file are drawn; assembly = \"{}\" (or --assembly {}) draws the copies, \"{ASYMMETRIC}\" says that this is meant",
+                    "the file describes assembly {} of {} copies ({} atoms), and the {} atoms of the file are drawn; assembly = \"{}\" draws the copies, \"{ASYMMETRIC}\" says that this is meant",
                     other.id,
                     other.copies,
                     other.atoms,
                     file.molecule.atoms().len(),
-                    other.id,
                     other.id
                 );
-                loader.note(index, [Warning::new(WarningKind::Ignored, note).with("copies", other.copies as f64)]);
+                let note = Warning::new(WarningKind::Ignored, note).with("copies", other.copies as f64);
+                loader.note(index, [note.settled_by("assembly")]);
             }
             Ok(file.molecule)
         }

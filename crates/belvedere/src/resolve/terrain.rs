@@ -280,12 +280,12 @@ fn held(report: &TerrainReport) -> Option<Warning> {
         let text = format!(
             "terrain_disocclusion: not all can be shown on ground that looks like ground, no lower than {:.0} m and no steeper than {:.0} \
              degrees: {:.2} % of what is in view stays hidden, which the report names; look from higher up or elsewhere, or lift the \
-             limits (--no-limits, limits = false)",
+             limits (limits = false)",
             limits.floor_m,
             limits.steepest_deg,
             100.0 * hidden
         );
-        let warning = of_solver(WarningKind::Limited, text).with("hidden_share", hidden);
+        let warning = of_solver(WarningKind::Limited, text).with("hidden_share", hidden).settled_by("limits");
         warning.with("floor_m", limits.floor_m).with("steepest_deg", limits.steepest_deg)
     })
 }

@@ -11,7 +11,7 @@ use crate::places::Place;
 use crate::print::Sheet;
 use crate::request::{Reveal, given};
 use crate::scene_file::{self, PaletteDoc};
-use crate::{BelvedereError, DataFiles, OpenOptions, Session, Warning};
+use crate::{Advice, BelvedereError, DataFiles, OpenOptions, Session, Warning};
 use belvedere_core::DVec3;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -49,7 +49,7 @@ pub enum RevealedDocument<'a> {
 /// Shows what is asked for.
 ///
 /// # Errors
-/// [`BelvedereError::Options`], [`BelvedereError::Option`] and [`BelvedereError::Alone`] for options that do not go together, else as
+/// [`BelvedereError::Argument`] for options that do not go together, else as
 /// [`reveal::reveal`] and [`reveal_target::reveal_target`].
 pub fn reveal(asked: &Reveal, setting: &Setting) -> Result<Revealed, BelvedereError> {
     let open = opened(asked, setting);
@@ -156,22 +156,25 @@ impl Request {
 
 /// Refuses options that do not go together.
 fn check(asked: &Reveal, models: bool) -> Result<(), BelvedereError> {
-    let (none, what): (&[&str], _) = match models {
+    let (none, what): (&[&'static str], _) = match models {
         true => (&Reveal::OF_TERRAIN, "for terrain with features, not for models and cities"),
         false => (&Reveal::OF_MODELS, "for a part of a model or city, and none is asked for"),
     };
-    let options: Vec<String> = given(asked).into_iter().filter(|name| none.contains(&name.as_str())).collect();
-    if !options.is_empty() {
-        return Err(BelvedereError::Options { options, what });
+    let given = given(asked);
+    let wrong: Vec<&'static str> = none.iter().copied().filter(|name| given.iter().any(|g| g == name)).collect();
+    let refused = |advice| Err(BelvedereError::Argument(advice));
+    if !wrong.is_empty() {
+        return refused(Advice::of_options(&wrong, what));
     }
+    let alone = |names| refused(Advice::new("{} is given without {}; give both, or neither", names));
     match (asked.eye, asked.look) {
-        (Some(_), None) => return Err(BelvedereError::Alone { option: "eye", without: "look" }),
-        (None, Some(_)) => return Err(BelvedereError::Alone { option: "look", without: "eye" }),
+        (Some(_), None) => return alone(&["eye", "look"]),
+        (None, Some(_)) => return alone(&["look", "eye"]),
         _ => {}
     }
     if models && matches!(asked.technique, Some(Technique::Terrain | Technique::Both)) {
-        let reason = "of a part of a model or city is curved_rays or spline; give one of them, or leave it out".into();
-        return Err(BelvedereError::Option { option: "technique", reason });
+        let text = "{} of a part of a model or city is curved_rays or spline; give one of them, or leave it out";
+        return refused(Advice::new(text, &["technique"]));
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Views of something in a city: oblique, filling the frame, from outside of all buildings.
 
 use super::target_views::fitted;
-use crate::BelvedereError;
+use crate::{Advice, BelvedereError};
 use belvedere_construct::rays::{Target, TargetSight};
 use belvedere_core::{Aabb, DVec3, View};
 use belvedere_scene::{LayerKind, Scene};
@@ -37,7 +37,7 @@ pub(super) fn region(target: &Target) -> Vec<DVec3> {
 /// The views that are worth a search for bends, the best first; only one if it shows the whole target.
 ///
 /// # Errors
-/// [`BelvedereError::Target`] if no eye has room.
+/// [`BelvedereError::Argument`] if no eye has room.
 pub(super) fn around(
     (scene, sight): (&Scene, &TargetSight<'_>),
     target: &Target,
@@ -71,7 +71,8 @@ pub(super) fn around(
     kept.truncate(most);
     match kept.is_empty() {
         true => {
-            Err(BelvedereError::Target("no eye around the target is free of buildings; give --eye and --look".into()))
+            let text = "no eye around the target is free of buildings; give {} and {}";
+            Err(BelvedereError::Argument(Advice::new(text, &["eye", "look"])))
         }
         false => Ok(kept),
     }

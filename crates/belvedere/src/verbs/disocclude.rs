@@ -294,12 +294,12 @@ fn resampled_away(share: f64, solved: &Solved) -> Option<Warning> {
     (lost > 1.0 - KEPT_SHARE).then(|| {
         let text = format!(
             "written on the grid of the input, the heights show {:.2} % of what is in view, {:.2} % less than the ground that was solved \
-             on, for its samples are others; --grid scene writes the latter",
+             on, for its samples are others; the grid of the scene writes the latter",
             100.0 * share,
             100.0 * lost
         );
         let warning = Warning::new(WarningKind::Hidden, text).about("terrain_disocclusion");
-        warning.with("visible_share", share).with("lost_share", lost)
+        warning.with("visible_share", share).with("lost_share", lost).settled_by("grid")
     })
 }
 

@@ -14,10 +14,10 @@ use crate::scene_file::VerticalUnit;
 use belvedere_core::DVec2;
 use belvedere_core::{Warning, WarningKind};
 use belvedere_io::formats::{self, Reader};
-use belvedere_io::load_vectors;
 use belvedere_io::terrain::{TerrainRequest, survey};
 use belvedere_io::vector::{Geometry, Vectors};
 use belvedere_io::{GeoTiff, Limits, Loaded};
+use belvedere_io::{LiftedBy, load_vectors};
 use belvedere_io::{join_table, split_table};
 use belvedere_scene::Progress;
 use schemars::JsonSchema;
@@ -348,7 +348,7 @@ fn geotiff(path: &Path, name: &str, request: &TerrainRequest, progress: &Progres
         return Ok(FileInfo::Picture(picture));
     }
     match terrain(path, request, progress) {
-        Err(reason) if belvedere_io::budget::is_refusal(&reason.to_string()) => Err(reason),
+        Err(reason) if reason.lifted_by() == LiftedBy::Memory => Err(reason),
         // Readable, but not usable as ground of a scene.
         Err(reason) if !reason.is_cancelled() && file.read(0, progress).is_ok() => {
             let unusable = Warning::new(WarningKind::Fallback, reason.to_string()).about(name);

@@ -1,7 +1,7 @@
 //! Layers from model files.
 
 use crate::scene_file::{CityDoc, LayerDoc, MeshDoc, MoleculeDoc, VolumeDoc};
-use crate::{BelvedereError, OpenOptions};
+use crate::{Advice, BelvedereError, OpenOptions};
 use belvedere_io::formats::{self, Reader};
 use belvedere_scene::Unit;
 use belvedere_scene::molecule::Representation;
@@ -47,9 +47,10 @@ pub(super) fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, Belved
         Some(Reader::Mesh) => Ok(LayerDoc::Mesh(MeshDoc::of(id, name))),
         Some(Reader::City) => Ok(LayerDoc::City(CityDoc::of(id, name))),
         Some(Reader::Volume) => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
-        _ => Err(BelvedereError::Target(format!(
-            "{name} is no model that can be looked into; give meshes (OBJ, PLY, STL, glTF), cities (CityJSON, CityGML, OSM PBF), molecules (PDB, mmCIF), volumes (VTI, VTK, NRRD, MetaImage, NIfTI, raw) or a scene file; for an elevation model give its features instead of --see"
-        ))),
+        _ => {
+            let text = " is no model that can be looked into; give meshes (OBJ, PLY, STL, glTF), cities (CityJSON, CityGML, OSM PBF), molecules (PDB, mmCIF), volumes (VTI, VTK, NRRD, MetaImage, NIfTI, raw) or a scene file; for an elevation model give its features instead of {}";
+            Err(BelvedereError::Argument(Advice::new(text, &["see"]).before(name)))
+        }
     }
 }
 
@@ -72,7 +73,8 @@ pub(super) fn set_transfer(
         _ => None,
     });
     let Some(first) = volumes.next() else {
-        return Err(BelvedereError::Target("--transfer is for volumes, and none is given; leave it out".into()));
+        let text = "{} is for volumes, and none is given; leave it out";
+        return Err(BelvedereError::Argument(Advice::new(text, &["transfer"])));
     };
     first.transfer.clone_from(&name);
     volumes.for_each(|v| v.transfer.clone_from(&name));

@@ -1,6 +1,6 @@
 //! Lines, areas and points where a view moves them, for other programs: GeoJSON and GeoPackage.
 
-use crate::{BelvedereError, Session, output};
+use crate::{Advice, BelvedereError, Session, output};
 use belvedere_core::{DVec2, DVec3, Warning, WarningKind};
 use belvedere_io::crs::{CoordinateSystem, Transform};
 use belvedere_scene::{Crs, Layer, LayerKind, Scene};
@@ -60,14 +60,14 @@ impl MovedFeatures {
     /// All lines, areas and points of a session, displaced by all stages of its view. Segments that a stage curves are divided.
     ///
     /// # Errors
-    /// [`BelvedereError::Setting`] for a scene without such features.
+    /// [`BelvedereError::Argument`] for a scene without such features.
     pub fn of_session(session: &Session) -> Result<Self, BelvedereError> {
         let view = session.view();
         let moved = |p: DVec3| view.displace(p).ok().map(|d| d.point).filter(|p| p.is_finite());
         let out = Self::new(session.scene(), &|_| true, &moved, true);
         if out.layers.is_empty() {
-            let reason = "the scene has no lines, areas or points to displace; add such a layer, or give --points";
-            return Err(BelvedereError::Setting(reason.into()));
+            let text = "the scene has no lines, areas or points to displace; add such a layer, or give {}";
+            return Err(BelvedereError::Argument(Advice::new(text, &["points"])));
         }
         Ok(out)
     }

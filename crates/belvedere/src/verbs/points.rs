@@ -2,6 +2,7 @@
 
 use crate::places::Place;
 use crate::scene_file::{Node, Value, json_points, other_kind};
+use crate::scene_file::DocumentKind;
 use crate::{BelvedereError, Session};
 use belvedere_core::{DVec2, DVec3, Miss, View, Warning};
 use schemars::JsonSchema;
@@ -214,9 +215,9 @@ impl Session {
 /// Reads a JSON list of elements of a `shape`.
 fn read_list<T>(path: &Path, shape: &str, read: &dyn Fn(&Node) -> Result<T, String>) -> Result<Vec<T>, BelvedereError> {
     let what = if shape.contains('z') { "points" } else { "pixels" };
-    let instead = || other_kind::instead(path, &format!("a list of {what} [{shape}, ...]"));
+    let wanted = || DocumentKind::List(format!("a list of {what} [{shape}, ...]"));
     list(path, shape, read).map_err(|e| match e {
-        BelvedereError::Points { .. } => instead().map_or(e, Into::into),
+        BelvedereError::Points { .. } => other_kind::instead(path, wanted()).map_or(e, Into::into),
         _ => e,
     })
 }

@@ -17,7 +17,7 @@ use crate::resolve::rays::sidestep_stage;
 use crate::scene_file::{CameraDoc, ConstructorDoc, ConstructorKind, Document, EarthDoc, PointDoc, StageDoc};
 use crate::targets;
 use crate::verbs::reveal::{IMAGE, RevealFiles, Technique, spline_stage};
-use crate::{BelvedereError, OpenOptions, Session};
+use crate::{Advice, BelvedereError, OpenOptions, Session};
 use belvedere_construct::rays::{BendReport, Sidestep, Target, TargetSight};
 use belvedere_construct::{ConstructError, RevealMemory, RevealOptions, Revealed};
 use belvedere_core::{DVec3, Pinhole, Projection, View, Warning};
@@ -102,8 +102,8 @@ impl Opened {
         }
         let targets = meant.targets(session.scene())?;
         if request.technique == Some(Technique::Spline) && !meant.is_features() {
-            let reason = "a spline bends the ground under routes, streets and areas; for this target give --technique curved_rays";
-            return Err(BelvedereError::Target(reason.into()));
+            let text = "a spline bends the ground under routes, streets and areas; for this target give {} curved_rays";
+            return Err(BelvedereError::Argument(Advice::new(text, &["technique"])));
         }
         let lens = (request.image.unwrap_or(IMAGE), fov_y_deg.to_radians());
         let (up, states_fov) = (request.up.unwrap_or(DVec3::Z), request.fov_y_deg.is_some());
@@ -236,9 +236,8 @@ fn revealed(request: &TargetRequest, options: &OpenOptions) -> Result<TargetAnsw
     let mut document = document(session, &view, bend.as_ref(), target)?;
     if report.visible < ENOUGH && !request.fallback.is_empty() {
         let Some(name) = meant.name() else {
-            return Err(BelvedereError::Target(
-                "--fallback is for buildings and models, not for features on the ground".into(),
-            ));
+            let text = "{} is for buildings and models, not for features on the ground";
+            return Err(BelvedereError::Argument(Advice::new(text, &["fallback"])));
         };
         let (target, fallback) = (Some(name.to_owned()), request.fallback.clone());
         document.constructor = Some(ConstructorDoc { target, fallback, ..ConstructorDoc::of(ConstructorKind::Manual) });
@@ -315,7 +314,8 @@ fn given(
         return Ok((Some(view), said));
     }
     if is_scene_file && request.up.is_some() {
-        return Err(BelvedereError::Target("a scene file states what is up in camera.up; leave --up out".into()));
+        let text = "a scene file states what is up in camera.up; leave {} out";
+        return Err(BelvedereError::Argument(Advice::new(text, &["up"])));
     }
     Ok((is_scene_file.then(|| session.view().straightened()), Vec::new()))
 }

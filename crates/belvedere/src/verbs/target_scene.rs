@@ -9,7 +9,7 @@ use crate::places::Place;
 use crate::resolve::vectors::{FeatureKind, kinds_of};
 use crate::scene_file::{CityDoc, Document, LayerDoc, LineDoc, LineStyleDoc, Paths, SourceDocument};
 use crate::targets;
-use crate::{BelvedereError, OpenOptions, Session};
+use crate::{Advice, BelvedereError, OpenOptions, Session};
 use belvedere_construct::rays::Target;
 use belvedere_construct::sample_features;
 use belvedere_core::{DVec2, DVec3};
@@ -116,9 +116,8 @@ pub(super) fn open(request: &TargetRequest, options: &OpenOptions) -> Result<(Se
         && is_scene(file)?
     {
         if request.transfer.is_some() {
-            return Err(BelvedereError::Target(
-                "a scene file states its transfer functions itself; leave --transfer out".into(),
-            ));
+            let text = "a scene file states its transfer functions itself; leave {} out";
+            return Err(BelvedereError::Argument(Advice::new(text, &["transfer"])));
         }
         let options = OpenOptions { image: request.image.or(options.image), ..options.clone() };
         return Ok((Session::open(file, &options)?, named()));
@@ -329,10 +328,11 @@ impl Map {
         if see.is_empty() {
             return match layers.len() > first {
                 true => Ok(Meant::Features),
-                false => Err(BelvedereError::Target(format!(
-                    "nothing is named that must be seen; give --see WHAT or a file of routes: {}",
-                    known_names(&self.cities, "")?
-                ))),
+                false => {
+                    let text = "nothing is named that must be seen; give {} WHAT or a file of routes: ";
+                    let advice = Advice::new(text, &["see"]).then(known_names(&self.cities, "")?);
+                    Err(BelvedereError::Argument(advice))
+                }
             };
         }
         if see.parse::<Place>().is_ok_and(|place| place.has_height()) {

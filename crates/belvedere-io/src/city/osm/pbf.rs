@@ -2,7 +2,7 @@
 //! fileformat.proto and osmformat.proto, of which only what is used is named here.
 
 use super::Tags;
-use crate::budget;
+use crate::budget::{self, Refusal};
 use glam::DVec2;
 use prost::Message;
 use prost::bytes::Bytes;
@@ -15,10 +15,34 @@ const MAX_HEADER: usize = 64 << 10;
 const MAX_BLOB: usize = 32 << 20;
 /// Blocks that are unpacked at once.
 const AT_ONCE: usize = 8;
-/// Beginning of errors that tell of sound files.
-pub(super) const UNKNOWN: &str = "unknown: ";
 /// What a file may require of its reader.
 const FEATURES: [&str; 3] = ["OsmSchema-V0.6", "DenseNodes", "HistoricalInformation"];
+
+/// Why a file gives no objects.
+pub(super) enum Broken {
+    /// It is sound, and of a kind that is not understood.
+    Unknown(String),
+    Memory(Refusal),
+    Damaged(String),
+}
+
+impl From<Refusal> for Broken {
+    fn from(refusal: Refusal) -> Self {
+        Self::Memory(refusal)
+    }
+}
+
+impl From<String> for Broken {
+    fn from(why: String) -> Self {
+        Self::Damaged(why)
+    }
+}
+
+impl From<&str> for Broken {
+    fn from(why: &str) -> Self {
+        why.to_owned().into()
+    }
+}
 
 #[derive(Clone, PartialEq, Message)]
 struct BlobHeader {
@@ -196,12 +220,12 @@ pub(super) struct Blobs<'f>(Vec<&'f [u8]>);
 
 impl<'f> Blobs<'f> {
     /// Finds the blobs, and asks whether the file requires what is not understood.
-    pub(super) fn of_file(file: &'f [u8]) -> Result<Self, String> {
+    pub(super) fn of_file(file: &'f [u8]) -> Result<Self, Broken> {
         let (mut rest, mut blobs) = (file, Vec::new());
         while !rest.is_empty() {
             let length = rest.split_first_chunk().map(|(length, _)| u32::from_be_bytes(*length) as usize);
             let Some(length) = length.filter(|length| *length <= MAX_HEADER) else {
-                return Err(format!("no blob at byte {}", file.len() - rest.len()));
+                return Err(format!("no blob at byte {}", file.len() - rest.len()).into());
             };
             let (head, after) = rest[4..].split_at_checked(length).ok_or("it ends within the header of a blob")?;
             let header = BlobHeader::decode(head).map_err(|e| e.to_string())?;
@@ -213,7 +237,7 @@ impl<'f> Blobs<'f> {
                 "OSMHeader" => {
                     let required = unpacked::<HeaderBlock>(blob)?.required;
                     if let Some(unknown) = required.iter().find(|f| !FEATURES.contains(&f.as_str())) {
-                        return Err(format!("{UNKNOWN}it requires {unknown}"));
+                        return Err(Broken::Unknown(format!("it requires {unknown}")));
                     }
                 }
                 _ => {}
@@ -228,19 +252,19 @@ impl<'f> Blobs<'f> {
         &self,
         find: impl Fn(&Block) -> T + Sync,
         mut take: impl FnMut(T),
-    ) -> Result<(), String> {
+    ) -> Result<(), Broken> {
         for some in self.0.chunks(AT_ONCE) {
             let found = some.par_iter().map(|blob| {
                 let block: Block = unpacked(blob)?;
-                if block.agrees() { Ok(find(&block)) } else { Err("its blocks contradict themselves".to_owned()) }
+                if block.agrees() { Ok(find(&block)) } else { Err("its blocks contradict themselves".into()) }
             });
-            found.collect::<Result<Vec<T>, String>>()?.into_iter().for_each(&mut take);
+            found.collect::<Result<Vec<T>, Broken>>()?.into_iter().for_each(&mut take);
         }
         Ok(())
     }
 }
 
-fn unpacked<M: Message + Default>(blob: &[u8]) -> Result<M, String> {
+fn unpacked<M: Message + Default>(blob: &[u8]) -> Result<M, Broken> {
     let blob = Blob::decode(Bytes::copy_from_slice(blob)).map_err(|e| e.to_string())?;
     let bytes = match (blob.raw, blob.zlib) {
         (Some(raw), _) => raw,
@@ -251,14 +275,14 @@ fn unpacked<M: Message + Default>(blob: &[u8]) -> Result<M, String> {
             let stream = flate2::read::ZlibDecoder::new(&packed[..]);
             stream.take(MAX_BLOB as u64 + 1).read_to_end(&mut bytes).map_err(|e| e.to_string())?;
             if bytes.len() != size {
-                return Err(format!("a blob says that it unpacks to {size} bytes and does not"));
+                return Err(format!("a blob says that it unpacks to {size} bytes and does not").into());
             }
             bytes.into()
         }
-        (None, None) => return Err(format!("{UNKNOWN}its blobs are neither plain nor packed by zlib")),
+        (None, None) => return Err(Broken::Unknown("its blobs are neither plain nor packed by zlib".into())),
     };
     budget::ask("a block", decoded_bytes(&bytes))?;
-    M::decode(bytes).map_err(|e| e.to_string())
+    Ok(M::decode(bytes).map_err(|e| e.to_string())?)
 }
 
 /// Bytes that a block takes at most when it is decoded: of the numbers in it, and of its groups, objects and texts, each of which may be

@@ -1,9 +1,9 @@
 //! Reading of OpenStreetMap's files: PBF, XML and the JSON of Overpass.
 
-use super::pbf::{self, Blobs};
+use super::pbf::{Blobs, Broken};
 use super::{Line, Map, Relation, Tags, is_wanted};
+use crate::IoError;
 use crate::text::text_of;
-use crate::{IoError, budget};
 use glam::DVec2;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -19,21 +19,22 @@ impl Map {
     pub(super) fn of_file(path: &Path, bytes: &[u8], format: &str) -> Result<Self, IoError> {
         let read = match format {
             "OSM PBF" => Self::of_pbf(bytes),
-            "OSM XML" => Objects::of_xml(&text_of(bytes, &mut Vec::new())).map(Objects::map),
-            _ => Objects::of_json(bytes).map(Objects::map),
+            "OSM XML" => Objects::of_xml(&text_of(bytes, &mut Vec::new())).map(Objects::map).map_err(Broken::Damaged),
+            _ => Objects::of_json(bytes).map(Objects::map).map_err(Broken::Damaged),
         };
-        read.map_err(|e| {
-            let reason = match e.strip_prefix(pbf::UNKNOWN) {
-                _ if budget::is_refusal(&e) => e,
-                Some(what) => format!("{format} cannot be read: {what}; write it anew (osmium cat, with zlib)"),
-                None => format!("{format} is damaged or cut off ({e}); fetch it again"),
-            };
-            IoError::format(path, reason)
+        read.map_err(|broken| match broken {
+            Broken::Memory(refusal) => IoError::format(path, refusal),
+            Broken::Unknown(what) => {
+                IoError::format(path, format!("{format} cannot be read: {what}; write it anew (osmium cat, with zlib)"))
+            }
+            Broken::Damaged(why) => {
+                IoError::format(path, format!("{format} is damaged or cut off ({why}); fetch it again"))
+            }
         })
     }
 
     /// Relations come after ways and ways after nodes, so the file is read three times and only what is used is kept.
-    fn of_pbf(bytes: &[u8]) -> Result<Self, String> {
+    fn of_pbf(bytes: &[u8]) -> Result<Self, Broken> {
         let blobs = Blobs::of_file(bytes)?;
         let mut map = Self::default();
         let take = |found: Vec<Relation>| found.into_iter().for_each(|relation| map.relation(relation));

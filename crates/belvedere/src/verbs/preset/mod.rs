@@ -9,6 +9,7 @@ pub use plot::{Plot, plot};
 pub use sketch::{Sketch, SketchPoint, SketchTag, sketch};
 
 use crate::scene_file;
+use crate::scene_file::DocumentKind;
 use crate::{BelvedereError, output};
 use belvedere_core::map::spline::{ReferencePlane, SplineBend};
 use belvedere_core::presets::edit::{Clamped, PresetOperation};
@@ -75,7 +76,7 @@ pub fn load(source: &str) -> Result<PresetDocument, BelvedereError> {
         }
     }
     let read = scene_file::read_text(path).and_then(|(text, _)| scene_file::parse_presets(path, &text));
-    let document = read.map_err(|e| scene_file::other_kind::explained(path, "a preset document", e))?;
+    let document = read.map_err(|e| scene_file::other_kind::explained(path, DocumentKind::Presets, e))?;
     document.validate().map_err(|e| scene_file::DocError::whole(e.to_string()).in_file(path))?;
     Ok(document)
 }
