@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use syn::visit::{self, Visit};
 
 type Module = Vec<String>;
@@ -77,6 +77,12 @@ impl Tree {
         Self { said, known }
     }
 
+    fn in_folder(source: &Path) -> Self {
+        let mut files = Vec::new();
+        files_of(source, &Module::new(), &mut files);
+        Self::of(&files)
+    }
+
     /// A path from the root of the crate; `None` for paths of other crates and for names of the file itself.
     fn absolute(&self, module: &Module, path: &[String]) -> Option<Vec<String>> {
         let supers = path.iter().take_while(|name| *name == "super").count();
@@ -109,18 +115,25 @@ impl Tree {
         at
     }
 
+    /// Which module uses which, with a path as evidence.
+    fn uses(&self) -> impl Iterator<Item = (&Module, Module, String)> {
+        self.said.iter().flat_map(move |(module, said)| {
+            let paths = said.paths.iter().filter_map(move |path| self.absolute(module, path));
+            paths.map(move |path| {
+                let why = format!("{} uses {}", module.join("::"), path.join("::"));
+                (module, self.module_of(&path, 0), why)
+            })
+        })
+    }
+
     /// For each floor, which module imports which, with a path as evidence.
     fn floors(&self) -> BTreeMap<Module, BTreeMap<String, BTreeMap<String, String>>> {
         let mut floors: BTreeMap<_, BTreeMap<_, BTreeMap<_, _>>> = BTreeMap::new();
-        for (module, said) in &self.said {
-            for path in said.paths.iter().filter_map(|path| self.absolute(module, path)) {
-                let target = self.module_of(&path, 0);
-                let common = module.iter().zip(&target).take_while(|(a, b)| a == b).count();
-                if let (Some(from), Some(to)) = (module.get(common), target.get(common)) {
-                    let floor = floors.entry(module[..common].to_vec()).or_default();
-                    let why = format!("{} uses {}", module.join("::"), path.join("::"));
-                    floor.entry(from.clone()).or_default().insert(to.clone(), why);
-                }
+        for (module, target, why) in self.uses() {
+            let common = module.iter().zip(&target).take_while(|(a, b)| a == b).count();
+            if let (Some(from), Some(to)) = (module.get(common), target.get(common)) {
+                let floor = floors.entry(module[..common].to_vec()).or_default();
+                floor.entry(from.clone()).or_default().insert(to.clone(), why);
             }
         }
         floors
@@ -163,20 +176,85 @@ fn files_of(folder: &Path, module: &Module, out: &mut Vec<(Module, String)>) {
     }
 }
 
+/// Sources of all crates of the workspace.
+fn sources() -> Vec<PathBuf> {
+    let root = belvedere_testkit::workspace_root();
+    let grouped =
+        ["crates", "apps", "tools"].into_iter().flat_map(|group| fs::read_dir(root.join(group)).expect("folder"));
+    let crates = grouped.map(|entry| entry.expect("entry").path()).chain([root.join("python")]);
+    crates.map(|folder| folder.join("src")).filter(|source| source.is_dir()).collect()
+}
+
 #[test]
 fn modules_import_each_other_in_one_direction() {
     let mut found = Vec::new();
-    for group in ["crates", "apps", "tools"] {
-        for entry in fs::read_dir(belvedere_testkit::workspace_root().join(group)).expect("folder") {
-            let source = entry.expect("entry").path().join("src");
-            if source.is_dir() {
-                let mut files = Vec::new();
-                files_of(&source, &Module::new(), &mut files);
-                found.extend(Tree::of(&files).circles().into_iter().map(|c| format!("{}: {c}", source.display())));
-            }
-        }
+    for source in sources() {
+        found.extend(Tree::in_folder(&source).circles().into_iter().map(|c| format!("{}: {c}", source.display())));
     }
     assert_eq!(found, Vec::<String>::new());
+}
+
+/// Verbs of the library that use another verb or the editor, and why they still do.
+const ABOVE_OTHERS: [(&str, &str); 9] = [
+    // They call `reveal` once for each view that they offer.
+    ("drafts", "reveal"),
+    ("target_drafts", "drafts"),
+    ("target_drafts", "reveal"),
+    ("target_drafts", "reveal_target"),
+    // What is opened is told by its kind, shown by `reveal`, and goes into the editor; a page holds what the editor would show.
+    ("open_files", "editor"),
+    ("open_files", "info"),
+    ("open_files", "reveal"),
+    ("pack", "editor"),
+    ("pack", "open_files"),
+];
+
+/// Public modules beside the verbs that are none themselves: what several of them share, and the schemas of all answers.
+const NO_VERBS: [&str; 3] = ["appearance", "moved", "schemas"];
+
+/// Which module of the folder of verbs uses which verb other than itself, or the editor.
+fn above_others(tree: &Tree, verbs: &BTreeSet<String>) -> BTreeSet<(String, String)> {
+    let pairs = tree.uses().filter_map(|(module, target, _)| {
+        let ([folder, from, ..], [first, rest @ ..]) = (&module[..], &target[..]) else { return None };
+        let to = match rest {
+            _ if first == "editor" => first,
+            [verb, ..] if first == "verbs" && verbs.contains(verb) => verb,
+            _ => return None,
+        };
+        (folder == "verbs" && from != to && from != "schemas").then(|| (from.clone(), to.clone()))
+    });
+    pairs.collect()
+}
+
+#[test]
+fn verbs_use_no_other_verb_and_no_editor() {
+    let source = belvedere_testkit::workspace_root().join("crates/belvedere/src");
+    let list = syn::parse_file(&fs::read_to_string(source.join("verbs/mod.rs")).expect("source")).expect("source");
+    let public = list.items.iter().filter_map(|item| match item {
+        syn::Item::Mod(module) if matches!(module.vis, syn::Visibility::Public(_)) => Some(module.ident.to_string()),
+        _ => None,
+    });
+    let verbs: BTreeSet<String> = public.filter(|name| !NO_VERBS.contains(&name.as_str())).collect();
+    assert!(verbs.len() > 10, "{verbs:?}");
+    let allowed = ABOVE_OTHERS.map(|(from, to)| (from.to_owned(), to.to_owned()));
+    assert_eq!(above_others(&Tree::in_folder(&source), &verbs), BTreeSet::from(allowed));
+}
+
+#[test]
+fn a_verb_above_another_is_found() {
+    let files = [
+        ("", "mod editor; mod verbs;"),
+        ("editor", "pub struct Editor;"),
+        ("verbs", "pub mod a; pub mod b; mod shared;"),
+        ("verbs::a", "use super::shared::Part; pub fn a(_: Part) {}"),
+        ("verbs::b", "pub use super::a::a; fn b(_: crate::editor::Editor) {}"),
+        ("verbs::shared", "pub struct Part; fn f() { crate::verbs::b::a(Part) }"),
+    ];
+    let module = |way: &str| way.split("::").filter(|name| !name.is_empty()).map(str::to_owned).collect();
+    let tree = Tree::of(&files.map(|(way, text)| (module(way), text.to_owned())));
+    let verbs = BTreeSet::from(["a".to_owned(), "b".to_owned()]);
+    let found = [("b", "a"), ("b", "editor"), ("shared", "a")];
+    assert_eq!(above_others(&tree, &verbs), BTreeSet::from(found.map(|(from, to)| (from.to_owned(), to.to_owned()))));
 }
 
 #[test]

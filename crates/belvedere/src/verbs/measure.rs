@@ -1,10 +1,10 @@
 //! `measure`: visibility of the required features in a scene's picture.
 
+use super::shares::shares;
 use crate::guard::guarded;
 use crate::{BelvedereError, RendererChoice, Session};
 pub use belvedere_construct::MeasureOptions;
 use belvedere_construct::Measures;
-use belvedere_construct::measure::Shares;
 use belvedere_core::Warning;
 use belvedere_disocclusion::TerrainReport;
 use belvedere_scene::Progress;
@@ -44,22 +44,6 @@ pub struct MeasureReport {
     pub measures: Measures,
     /// Warnings of opening the scene.
     pub scene_warnings: Vec<Warning>,
-}
-
-/// Largest difference between two measures of one picture of ground for which the judge's figure is reported.
-const ONE_FIGURE: f64 = 0.005;
-
-/// Shares of the whole features straight and bent: one figure for each picture, see [`MeasureReport::visible`].
-pub(super) fn shares(measures: &Measures, terrain: Option<&TerrainReport>) -> Option<[Shares; 2]> {
-    let [straight, mut bent] = measures.shares()?;
-    let judged = terrain.filter(|t| t.judged_every == 1).map(|t| t.metrics.visible_dense);
-    // The judge knows the ground alone: where other layers hide, or a surface is required, lines of sight give less.
-    if let (Some(share), Some(judged)) = (bent.visible_in_frame(), judged)
-        && (judged - share).abs() <= ONE_FIGURE
-    {
-        bent.visible = judged * bent.in_frame;
-    }
-    Some([straight, bent])
 }
 
 /// Visible share of every required feature, straight and bent, by lines of sight and by depth buffers drawn by `renderer`.

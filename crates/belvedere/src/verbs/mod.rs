@@ -24,12 +24,14 @@ pub mod reveal;
 mod reveal_files;
 pub mod reveal_target;
 pub mod schemas;
+mod shares;
 mod target_bend;
 pub mod target_drafts;
 mod target_names;
 mod target_request;
 mod target_scene;
 pub(crate) mod target_views;
+mod view_request;
 mod written_ground;
 mod written_rivers;
 

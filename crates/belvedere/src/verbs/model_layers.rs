@@ -1,6 +1,6 @@
-//! Layers from model files.
+//! Layers of files.
 
-use crate::scene_file::{CityDoc, LayerDoc, MeshDoc, MoleculeDoc, VolumeDoc};
+use crate::scene_file::{CityDoc, LayerDoc, MeshDoc, MoleculeDoc, Paths, TerrainDoc, TerrainStyleDoc, VolumeDoc};
 use crate::{Advice, BelvedereError, OpenOptions};
 use belvedere_io::formats::{self, Reader};
 use belvedere_scene::Unit;
@@ -52,6 +52,22 @@ pub(super) fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, Belved
             Err(BelvedereError::Argument(Advice::new(text, &["see"]).before(name)))
         }
     }
+}
+
+/// The layer of elevation models.
+pub(super) fn ground(mut files: Vec<String>) -> LayerDoc {
+    let source = if files.len() == 1 { Paths::One(files.remove(0)) } else { Paths::Many(files) };
+    LayerDoc::Terrain(TerrainDoc {
+        id: "ground".into(),
+        source,
+        fill_voids: true,
+        largest_hole: Some(crate::LARGEST_HOLE),
+        source_crs: None,
+        nodata: None,
+        vertical_unit: None,
+        drape: None,
+        style: TerrainStyleDoc::default(),
+    })
 }
 
 /// Sets the transfer function of all volumes; its file may lie in any folder.

@@ -1,12 +1,12 @@
 //! Opens files of any kind as one scene.
 
 use super::info::{self, FileInfo};
-use super::model_layers::{layer, unit_of};
+use super::model_layers::{ground, layer, unit_of};
 use super::reveal::{RevealRequest, reveal};
 use crate::data::{features_of, ground_files, locate};
 use crate::editor::{Editor, Place};
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{self, Document, LayerDoc, Paths, SourceDocument, TerrainDoc, TerrainStyleDoc};
+use crate::scene_file::{self, Document, LayerDoc, SourceDocument};
 use crate::{BelvedereError, DataFiles, OpenOptions, Session, Trust};
 use belvedere_io::formats::Reader;
 use belvedere_io::{GeoTiff, Limits, fs, join_table, split_table};
@@ -126,21 +126,6 @@ pub fn open_beside(
 
 fn is_json_scene(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")) && scene_file::read(path).is_ok()
-}
-
-pub(super) fn ground(mut files: Vec<String>) -> LayerDoc {
-    let source = if files.len() == 1 { Paths::One(files.remove(0)) } else { Paths::Many(files) };
-    LayerDoc::Terrain(TerrainDoc {
-        id: "ground".into(),
-        source,
-        fill_voids: true,
-        largest_hole: Some(crate::LARGEST_HOLE),
-        source_crs: None,
-        nodata: None,
-        vertical_unit: None,
-        drape: None,
-        style: TerrainStyleDoc::default(),
-    })
 }
 
 /// A document of layers with a camera that shows all of them.

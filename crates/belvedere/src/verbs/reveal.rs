@@ -3,6 +3,9 @@
 use super::appearance::{Appearance, Taller, is_exaggeration, softly_ended};
 use super::in_time;
 pub use super::reveal_files::RevealFiles;
+use super::shares::shares as shares_of;
+use super::view_request::spline_stage;
+pub use super::view_request::{IMAGE, Technique, Viewpoint};
 use crate::data::{Data, DataFiles};
 use crate::guard::guarded;
 use crate::picture::{self, DisplacementReport, Picture, PictureOptions, TerrainRecord};
@@ -11,14 +14,11 @@ use crate::resolve::ground::{earth_radius, unbent};
 use crate::resolve::rays::sidestep_stage;
 use crate::resolve::solving::Memory;
 use crate::resolve::solving::Solving;
-pub use crate::scene_file::request::Technique;
-use crate::scene_file::{CameraDoc, EarthDoc, PlaneDoc, PresetsDoc, SplineStageDoc, StageDoc, TerrainStageDoc};
-use crate::{BelvedereError, OpenOptions, Session};
+use crate::scene_file::{CameraDoc, EarthDoc, StageDoc, TerrainStageDoc};
+use crate::{Advice, BelvedereError, OpenOptions, Session};
 use belvedere_construct::measure::{HiddenRun, Shares};
 use belvedere_construct::rays::{AroundOptions, Target, bend_around};
-use belvedere_construct::{
-    Goal, RevealMemory, RevealOptions, RevealReport, Revealed, default_spacing, sample_features,
-};
+use belvedere_construct::{Goal, RevealMemory, RevealOptions, RevealReport, default_spacing, sample_features};
 use belvedere_core::{DVec3, Pinhole, Projection, View};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_disocclusion::TerrainReport;
@@ -29,8 +29,6 @@ use serde::Serialize;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Size of the picture unless given, pixels.
-pub const IMAGE: [u32; 2] = [1280, 720];
 /// Full vertical field of view unless given, degrees.
 const FOV_Y_DEG: f64 = 45.0;
 
@@ -62,26 +60,9 @@ pub struct RevealRequest {
     pub appearance: Appearance,
 }
 
-/// An eye and its target: x, y as [`crate::places`] reads them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Viewpoint {
-    /// x, y, and z in metres.
-    pub eye: [f64; 3],
-    /// x, y of the target.
-    pub target: [f64; 2],
-    /// Height of the target, metres; that of the ground if left out.
-    pub target_height: Option<f64>,
-}
-
 impl RevealRequest {
     fn earth(&self) -> EarthDoc {
         if self.curved_earth { EarthDoc::Curved } else { EarthDoc::Flat }
-    }
-}
-
-impl From<Viewpoint> for [Place; 2] {
-    fn from(Viewpoint { eye: [x, y, z], target, target_height }: Viewpoint) -> Self {
-        [Place::of([x, y], Some(z)), Place::of(target, target_height)]
     }
 }
 
@@ -215,9 +196,9 @@ pub fn reveal(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAn
 
 fn revealed(request: &RevealRequest, options: &OpenOptions) -> Result<RevealAnswer, BelvedereError> {
     if !request.data.rivers.is_empty() && matches!(request.technique, Technique::Spline | Technique::CurvedRays) {
-        let reason = "are kept from running uphill where the ground moves, which this technique does not do; \
-                      ask for technique terrain, both or auto";
-        return Err(BelvedereError::Option { option: "rivers", reason: reason.into() });
+        let text = "{} are kept from running uphill where the ground moves, which this technique does not do; ask for {} \
+                    terrain, both or auto";
+        return Err(BelvedereError::Argument(Advice::new(text, &["rivers", "technique"])));
     }
     check_fov(request)?;
     let mut data = request.data.load(false, &softly_ended(options))?;
@@ -416,7 +397,7 @@ impl Answer {
     /// Measures the whole chain of stages.
     fn of(session: Session, technique: Option<Technique>, progress: &Progress) -> Result<Self, BelvedereError> {
         let in_time::Judged { measures, hidden, every } = in_time::judged(session.scene(), session.view(), progress)?;
-        let shares = super::measure::shares(&measures, session.terrain_report()).unwrap_or_default();
+        let shares = shares_of(&measures, session.terrain_report()).unwrap_or_default();
         let technique = technique.filter(|_| session.view().is_bent());
         Ok(Self { session, shares: FinalShares::of(technique, shares), hidden, every, warnings: measures.warnings })
     }
@@ -480,16 +461,6 @@ impl RevealAnswer {
     pub fn write(&self, files: &RevealFiles, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
         files.write(&self.picture, &self.session, &|| self.document(), overwrite)
     }
-}
-
-/// The found spline as a stage of a document; `None` if the picture is straight.
-pub(super) fn spline_stage(found: &Revealed) -> Option<StageDoc> {
-    let bend = found.bend.as_ref()?;
-    Some(StageDoc::SplineBend(SplineStageDoc {
-        presets: PresetsDoc::Inline(Box::new(bend.document.clone())),
-        pivot: Some(bend.pivot.to_array()),
-        plane: Some(PlaneDoc { normal: [0.0, 0.0, 1.0], height_m: Some(found.plane_height) }),
-    }))
 }
 
 /// The scene with exaggerated heights, if that is asked for.

@@ -1,8 +1,9 @@
 //! `reveal --see --drafts`: several views of the same target on one sheet.
 
 use super::drafts::{Draft, DraftsAnswer, MOST_DRAFTS};
-use super::reveal::{FinalShares, Viewpoint};
+use super::reveal::FinalShares;
 use super::reveal_target::{Opened, TargetRequest, reveal_target};
+use super::view_request::Viewpoint;
 use crate::guard::guarded;
 use crate::{BelvedereError, OpenOptions};
 use belvedere_construct::rays::{AroundOptions, bend_around_by};

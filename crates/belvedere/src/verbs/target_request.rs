@@ -1,7 +1,7 @@
 //! `reveal --see`: what is asked for.
 
 use super::appearance::Appearance;
-use super::reveal::{Technique, Viewpoint};
+use super::view_request::{Technique, Viewpoint};
 use crate::picture::PictureOptions;
 use crate::places::Place;
 use belvedere_core::DVec3;

@@ -1,7 +1,6 @@
 //! `reveal --see`: the files of a request as one scene, and what is meant in it.
 
-use super::model_layers::{layer, set_transfer, unit_of};
-use super::open_files::ground;
+use super::model_layers::{ground, layer, set_transfer, unit_of};
 use super::target_names::{is_building, known_names};
 use super::target_request::TargetRequest;
 use crate::data::{features_of, text_of};
