@@ -5,5 +5,6 @@ mod dependencies;
 mod layering;
 mod links;
 mod papers;
+mod prose;
 mod publishing;
 mod sources;
