@@ -1,8 +1,8 @@
 //! Points to pixels and back: `project`, `rays`, `displace`.
 
 use crate::places::Place;
-use crate::scene_file::{Node, Value, json_points, other_kind};
 use crate::scene_file::DocumentKind;
+use crate::scene_file::{Node, Value, json_points, other_kind};
 use crate::{BelvedereError, Session};
 use belvedere_core::{DVec2, DVec3, Miss, View, Warning};
 use schemars::JsonSchema;
