@@ -1,6 +1,7 @@
 //! Inputs named `-`: standard input, kept in a temporary file where a loader needs one.
 
 use anyhow::{Context as _, ensure};
+use belvedere::BelvedereError;
 use belvedere::scene_file::{self, SourceDocument};
 use belvedere::verbs::open_files::scene_or_data;
 use std::io::{IsTerminal, Read};
@@ -23,10 +24,10 @@ impl Stdin {
     /// A scene: a file, or standard input, whose files lie below the current folder.
     pub(crate) fn scene(&self, path: &Path) -> anyhow::Result<SourceDocument> {
         if !is_stdin(path) {
-            return Ok(scene_file::read(path)?);
+            return Ok(scene_file::read(path).map_err(BelvedereError::from)?);
         }
         let text = String::from_utf8(self.read()?).context("standard input is no text in UTF-8")?;
-        Ok(scene_file::parse(path, &text)?)
+        Ok(scene_file::parse(path, &text).map_err(BelvedereError::from)?)
     }
 
     /// A scene, or data that can be drawn without one.

@@ -18,7 +18,7 @@ fn ground(slope: f64, waves: f64, [x, y]: [f64; 2]) -> f64 {
 /// Longitude and latitude of the town's corner, and lengths of a degree of each on the map there (UTM zone 32 on its central meridian,
 /// WGS 84), metres.
 const LON_LAT: [f64; 2] = [9.0, 45.153477183281];
-const DEGREE_M: [f64; 2] = [78_604.5999, 111_090.3228];
+const DEGREE_M: [f64; 2] = [78_604.6, 111_090.32];
 
 /// The houses and streets as OpenStreetMap has them.
 fn mapped_town(place: &Place) {

@@ -104,8 +104,8 @@ fn opened(asked: &Reveal, setting: &Setting) -> OpenOptions {
 
 /// A request of one of the two searches.
 enum Request {
-    Features(RevealRequest),
-    Target(TargetRequest),
+    Features(Box<RevealRequest>),
+    Target(Box<TargetRequest>),
 }
 
 impl Request {
@@ -123,7 +123,7 @@ impl Request {
         let places: Option<[Place; 2]> = asked.eye.zip(asked.look).map(|(eye, look)| [eye, look]);
         let appearance = Appearance::from(&asked.appearance);
         if models {
-            return Ok(Self::Target(TargetRequest {
+            return Ok(Self::Target(Box::new(TargetRequest {
                 files: files(asked),
                 see: asked.see.clone().unwrap_or_default(),
                 fallback: asked.fallback.clone(),
@@ -136,9 +136,9 @@ impl Request {
                 image,
                 picture,
                 appearance,
-            }));
+            })));
         }
-        Ok(Self::Features(RevealRequest {
+        Ok(Self::Features(Box::new(RevealRequest {
             data: data(asked),
             curved_earth: asked.curved_earth,
             technique: asked.technique.unwrap_or_default(),
@@ -150,7 +150,7 @@ impl Request {
             image,
             picture,
             appearance,
-        }))
+        })))
     }
 }
 

@@ -194,7 +194,7 @@ fn scene_files(request: &PackRequest, progress: &Progress) -> Result<(Bundle, Ve
         }
     });
     if let Some(e) = failed {
-        return Err(e.into());
+        return Err(e);
     }
     // Files that the named files refer to, such as materials and tables.
     for input in session.input_paths() {
