@@ -39,6 +39,7 @@ pub enum Revealed {
 /// The figures of an answer, as JSON has them.
 #[derive(Serialize)]
 #[serde(untagged)]
+#[allow(clippy::large_enum_variant)] // one at a time, to be written
 pub enum RevealedDocument<'a> {
     /// Of features.
     Features(RevealDocument<'a>),
