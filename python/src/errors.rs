@@ -39,7 +39,15 @@ fn class_of(error: &BelvedereError) -> &'static str {
 
 /// The name of an argument in Python.
 fn argument(name: &'static str) -> &'static str {
-    if name == "look" { "look_at" } else { name }
+    match name {
+        "look" => "look_at",
+        "fov" => "fov_y_deg",
+        "no_sea" => "sea",
+        "no_mark" => "mark",
+        "keep_voids" => "fill_voids",
+        "crs" => "scene_crs",
+        name => name,
+    }
 }
 
 /// An error with its causes as one line.

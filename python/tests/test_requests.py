@@ -44,9 +44,9 @@ def test_options_of_the_command_line_change_the_picture() -> None:
         changed = belvedere.reveal("builtin:massif?size=65", "builtin:massif?size=65", **view, **{name: value})
         assert (changed.picture.color != usual.picture.color).any(), name
     for name, value in {"transfer": "solid", "up": (0, 0, 1)}.items():
-        with pytest.raises(belvedere.InputError, match=f"{name} is for a part of a model or city"):
+        with pytest.raises(belvedere.InputError, match=f"`{name}` is for a part of a model or city"):
             belvedere.reveal("builtin:massif?size=65", "builtin:massif?size=65", **view, **{name: value})
-    with pytest.raises(belvedere.InputError, match="no molecule|there is none"):
+    with pytest.raises(belvedere.InputError, match="`representation` is for molecules, and there is none"):
         belvedere.reveal("builtin:massif?size=65", "builtin:massif?size=65", **view, representation="ribbon")
     paper = belvedere.reveal("builtin:massif?size=65", "builtin:massif?size=65", eye=view["eye"], look_at=view["look_at"], paper="60x40mm", dpi=50)
     assert paper.picture.color.shape[:2] == (79, 118)
