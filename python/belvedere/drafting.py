@@ -68,7 +68,7 @@ class Drafts:
 
 def drafts(
     dem: object,
-    routes: object,
+    routes: object = None,
     *,
     count: int = 6,
     threads: int | None = None,
@@ -76,10 +76,13 @@ def drafts(
     time_limit_s: float | None = None,
     **options: Any,
 ) -> Drafts:
-    """Reveals routes from up to ``count`` sides, 1 to 24.
+    """Reveals routes, or a target (``see``), from up to ``count`` sides, 1 to 24.
 
-    * ``options``: those of :func:`belvedere.reveal`, but for a view (``eye``, ``look_at``, ``fov_y_deg``) and a target (``see``).
+    * ``options``: those of :func:`belvedere.reveal`, but for a view (``eye``, ``look_at``, ``fov_y_deg``).
     """
+    for name in ("eye", "look_at", "fov_y_deg"):
+        if name in options:
+            raise TypeError(f"drafts() chooses views and takes no {name}")
     if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or not 1 <= count <= 24:
         raise InputError(f"count={count!r} is not a number of drafts; give 1 to 24")
     folder = Folder()

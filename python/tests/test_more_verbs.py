@@ -79,7 +79,7 @@ def test_rivers_do_not_run_uphill_where_the_ground_moves() -> None:
     without, with_river = (belvedere.disocclude(ground, [ROUTE], rivers=rivers, **asked) for rivers in (None, [river]))
     rises = [np.diff(g.heights[16, 2:38]).max() for g in (without, with_river)]
     assert rises[0] > 1.0 and rises[1] < 0.1, rises
-    with pytest.raises(belvedere.InputError, match="technique='terrain'"):
+    with pytest.raises(belvedere.InputError, match="`technique` terrain"):
         belvedere.reveal(ground, [ROUTE], spacing=60.0, rivers=[river], **VIEW)
     shown = belvedere.reveal(ground, [ROUTE], spacing=60.0, rivers=[river], technique="terrain", size=(96, 54), **VIEW)
     assert shown.report.bent.visible >= shown.report.straight.visible
