@@ -111,6 +111,8 @@ class Scene(Layers):
         self._folder: Folder | None = None
         self._roots: list[str] = []
         self._seed: int | None = None
+        #: What is said of data that are opened without a scene file.
+        self._said: dict[str, Any] = {}
         self._array_crs: Crs | None = None
         self._natives: dict[tuple[int, int] | None, NativeScene] = {}
 
@@ -123,6 +125,11 @@ class Scene(Layers):
         *,
         allow_roots: Sequence[str | os.PathLike[str]] = (),
         seed: int | None = None,
+        crs: str | None = None,
+        curved_earth: bool = False,
+        source_crs: object = None,
+        nodata: float | None = None,
+        vertical_unit: str | None = None,
         threads: int | None = None,
         progress: Progress = None,
         time_limit_s: float | None = None,
@@ -133,6 +140,8 @@ class Scene(Layers):
 
         * ``allow_roots``: folders beside its own from which the scene may read files.
         * ``seed``: seed of generated data instead of the scene's.
+        * ``crs``, ``curved_earth``: of the picture of data alone. ``source_crs``, ``nodata``, ``vertical_unit`` (``m``, ``ft``, ``us-ft``): what
+          their file does not say. Scene files say these themselves.
         * ``threads``, ``progress``, ``time_limit_s``: see :func:`belvedere.reveal`.
 
         Raises :class:`belvedere.InputError` with the line of a mistake, :class:`belvedere.FileError`.
@@ -140,6 +149,13 @@ class Scene(Layers):
         scene = cls()
         scene._file = Path(os.fspath(path))
         scene._roots, scene._seed = [os.fspath(root) for root in allow_roots], seed
+        scene._said = {
+            "crs": crs,
+            "curved_earth": bool(curved_earth),
+            "source_crs": None if source_crs is None else str(crs_of(source_crs)),
+            "nodata": nodata,
+            "vertical_unit": vertical_unit,
+        }
         with asked(threads, progress, time_limit_s) as ask:
             scene._opened(ask)
         return scene
@@ -495,7 +511,7 @@ class Scene(Layers):
         return os.fspath(base / "scene.json"), _text("the scene", document)
 
     def _native_of(self, path: str, text: str | None, options: Mapping[str, Any], ask: Ask) -> NativeScene:
-        opening = _text("options", {**options, "allow_roots": self._roots, "seed": self._seed})
+        opening = _text("options", {**options, "allow_roots": self._roots, "seed": self._seed, "data": self._said})
         with self._named():
             if text is None:
                 return _native.NativeScene.open(path, opening, ask)

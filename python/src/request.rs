@@ -4,6 +4,7 @@ use crate::errors::{raised, wrong};
 use belvedere::picture::{AuxBuffer, PictureOptions, RendererChoice};
 use belvedere::places::Place;
 use belvedere::print::Sheet;
+use belvedere::request::OfData;
 use belvedere::scene::{Compositing, Progress};
 use belvedere::scene_file::{FurnitureItem, FurnitureWish, HighlightMark, PrintDoc, StylisationDoc};
 use belvedere::vectors::VectorContent;
@@ -45,6 +46,8 @@ pub(crate) struct Opening {
     size: Option<[u32; 2]>,
     seed: Option<u64>,
     fonts: Vec<PathBuf>,
+    /// What data without a scene file do not say.
+    pub(crate) data: OfData,
     unsolved: bool,
 }
 

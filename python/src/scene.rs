@@ -29,7 +29,8 @@ pub(crate) fn sheet(
     size: Option<[u32; 2]>,
 ) -> PyResult<Option<(String, [u32; 2])>> {
     let asked: PrintDoc = request::read("paper", asked)?;
-    let source = text.map_or_else(|| scene_or_data(&path), |text| Ok(scene_file::parse(&path, text)?));
+    let source =
+        text.map_or_else(|| scene_or_data(&path, &Default::default()), |text| Ok(scene_file::parse(&path, text)?));
     let document = source.map_err(|e| raised(&e))?.document;
     let sheet = Sheet::asked(&asked, document.print.as_ref(), size, document.camera.image).map_err(|e| raised(&e))?;
     sheet.map(|s| Ok((output::json(&s.document()).map_err(|e| raised(&e))?, s.pixels()))).transpose()
@@ -46,9 +47,11 @@ impl NativeScene {
     /// Opens a scene file, or data that can be drawn without one.
     #[staticmethod]
     fn open(py: Python<'_>, path: PathBuf, options: &str, ask: Ask) -> PyResult<Self> {
-        let opening: Opening = request::read("options", options)?;
-        let session =
-            run(py, &ask, move |progress| Session::from_document(scene_or_data(&path)?, &opening.options(progress)))?;
+        let mut opening: Opening = request::read("options", options)?;
+        let said = std::mem::take(&mut opening.data);
+        let session = run(py, &ask, move |progress| {
+            Session::from_document(scene_or_data(&path, &said)?, &opening.options(progress))
+        })?;
         Ok(Self { session })
     }
 

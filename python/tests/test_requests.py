@@ -1,6 +1,7 @@
 """Every option of a request is an option in Python."""
 
 import inspect
+from pathlib import Path
 
 import belvedere
 import pytest
@@ -50,3 +51,14 @@ def test_options_of_the_command_line_change_the_picture() -> None:
         belvedere.reveal("builtin:massif?size=65", "builtin:massif?size=65", **view, representation="ribbon")
     paper = belvedere.reveal("builtin:massif?size=65", "builtin:massif?size=65", eye=view["eye"], look_at=view["look_at"], paper="60x40mm", dpi=50)
     assert paper.picture.color.shape[:2] == (79, 118)
+
+
+def test_what_data_alone_do_not_say_is_said(tmp_path: Path) -> None:
+    rows = "\n".join(" ".join(str(100 + 9 * (i % 7) * (j % 5)) for i in range(20)) for j in range(15))
+    (tmp_path / "hills.asc").write_text("ncols 20\nnrows 15\nxllcorner 0\nyllcorner 0\ncellsize 30\n" + rows + "\n")
+    said = belvedere.Scene.open(tmp_path / "hills.asc", crs="local", vertical_unit="ft", nodata=-1.0).document
+    terrain = said["layer"][0]
+    assert (said["crs"], terrain["vertical_unit"], terrain["nodata"]) == ("local", "ft", -1.0)
+    with pytest.raises(belvedere.InputError, match="for data alone, and a scene file says it itself"):
+        scene = belvedere.Scene.builtin("massif").save(tmp_path / "s.json")
+        belvedere.Scene.open(scene, nodata=0.0).document

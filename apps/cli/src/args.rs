@@ -19,7 +19,7 @@ use crate::trust::TrustArgs;
 use belvedere::RendererChoice;
 use belvedere::places::Place;
 use belvedere::request::parse::{number, size, spacing, with_height};
-use belvedere::request::{Air, Molecules, Reveal, Stated, one_of};
+use belvedere::request::{Air, Molecules, OfData, Reveal, Stated, one_of};
 use belvedere::scene_file::{HighlightMark, SurfaceDoc};
 use belvedere::verbs::animate;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -371,6 +371,8 @@ pub(crate) struct RenderArgs {
     /// Style of the areas of all layers, instead of the scene's; auto = the one that properties and names give
     #[arg(long, value_parser = one_of::<SurfaceDoc>(), value_name = "STYLE")]
     pub(crate) area_style: Option<SurfaceDoc>,
+    #[command(flatten, next_help_heading = "Data without a scene file")]
+    pub(crate) data: OfData,
 }
 
 /// What makes no sense for pictures of the camera.
@@ -428,6 +430,8 @@ pub(crate) struct AnimateArgs {
     pub(crate) part: Option<animate::Part>,
     #[command(flatten)]
     pub(crate) draw: DrawArgs,
+    #[command(flatten, next_help_heading = "Data without a scene file")]
+    pub(crate) data: OfData,
 }
 
 /// Buffers beside a picture.
@@ -451,6 +455,8 @@ pub(crate) struct ShowArgs {
     /// Output (TOML, or JSON if named so); standard output if left out
     #[arg(short, long, value_name = "OUT")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten, next_help_heading = "Data without a scene file")]
+    pub(crate) data: OfData,
 }
 
 /// The schema.

@@ -5,6 +5,7 @@ use crate::outputs;
 use crate::report::{Context, is_stdout};
 use belvedere::export::{self, ExportOptions, GROUND_NODES};
 use belvedere::io::atomic;
+use belvedere::request::OfData;
 use belvedere::request::parse::size;
 use belvedere::{Needs, OpenOptions};
 use clap::Args;
@@ -27,6 +28,8 @@ pub(crate) struct ExportArgs {
     /// Most nodes of the ground, 4 to 4,000,000; of finer ground every second, third ... node is taken
     #[arg(long, value_name = "N", default_value_t = GROUND_NODES as u32, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(4..=4_000_000))]
     nodes: u32,
+    #[command(flatten)]
+    data: OfData,
 }
 
 pub(crate) fn export_scene(args: &ExportArgs, context: &Context) -> anyhow::Result<Goal> {
@@ -37,7 +40,7 @@ pub(crate) fn export_scene(args: &ExportArgs, context: &Context) -> anyhow::Resu
     }
     outputs::check(&files, std::slice::from_ref(&args.scene), context)?;
     let options = OpenOptions { unsolved: args.straight, ..context.options(Needs::Everything, args.size) };
-    let session = context.open_drawable(&args.scene, &options)?;
+    let session = context.open_drawable(&args.scene, &args.data, &options)?;
     outputs::check(&files, &session.input_paths(), context)?;
     let options = ExportOptions {
         ground_nodes: args.nodes as usize,

@@ -7,6 +7,7 @@ use crate::timings::Timings;
 use belvedere::answers::{self, Content, Written};
 use belvedere::core::{PinholeError, plain};
 use belvedere::io::IoError;
+use belvedere::request::OfData;
 use belvedere::scene::Progress;
 use belvedere::scene_file::DocumentKind;
 use belvedere::verbs::open_files::scene_of_data;
@@ -215,8 +216,8 @@ impl Context {
     }
 
     /// Opens a scene, or data that can be drawn without one.
-    pub(crate) fn open_drawable(&self, input: &Path, options: &OpenOptions) -> anyhow::Result<Session> {
-        Ok(Session::from_document(self.stdin.drawable(input)?, options)?)
+    pub(crate) fn open_drawable(&self, input: &Path, said: &OfData, options: &OpenOptions) -> anyhow::Result<Session> {
+        Ok(Session::from_document(self.stdin.drawable(input, said)?, options)?)
     }
 
     /// The options of the run.

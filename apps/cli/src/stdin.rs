@@ -2,6 +2,7 @@
 
 use anyhow::{Context as _, ensure};
 use belvedere::BelvedereError;
+use belvedere::request::OfData;
 use belvedere::scene_file::{self, SourceDocument};
 use belvedere::verbs::open_files::scene_or_data;
 use std::io::{IsTerminal, Read};
@@ -30,9 +31,9 @@ impl Stdin {
         Ok(scene_file::parse(path, &text).map_err(BelvedereError::from)?)
     }
 
-    /// A scene, or data that can be drawn without one.
-    pub(crate) fn drawable(&self, path: &Path) -> anyhow::Result<SourceDocument> {
-        if is_stdin(path) { self.scene(path) } else { Ok(scene_or_data(path)?) }
+    /// A scene, or data that can be drawn without one, of which something is said.
+    pub(crate) fn drawable(&self, path: &Path, said: &OfData) -> anyhow::Result<SourceDocument> {
+        if is_stdin(path) { self.scene(path) } else { Ok(scene_or_data(path, said)?) }
     }
 
     /// A file of data: itself, or one that holds standard input.

@@ -124,7 +124,7 @@ fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goal> {
     request.camera =
         args.overhead.then_some(CameraPicture::Overhead).or(args.outside.map(|_| CameraPicture::Outside(None)));
     print_args::check_name(&args.out, args.print.vectors_only)?;
-    let source = context.stdin.drawable(&args.scene)?;
+    let source = context.stdin.drawable(&args.scene, &args.data)?;
     let document = &source.document;
     let sheet = args.print.sheet(document.print.as_ref(), args.draw.size, document.camera.image)?;
     let size = sheet.map(|sheet| sheet.pixels()).or(args.draw.size);
@@ -286,7 +286,7 @@ fn animate_scene(args: AnimateArgs, context: &Context) -> anyhow::Result<Goal> {
     let request = AnimateRequest { animation, picture, out: args.out, resume, overwrite, part: args.part };
     // The ground is solved for every frame, not on opening.
     let options = OpenOptions { unsolved: true, ..context.options(Needs::Everything, args.draw.size) };
-    let session = context.open_drawable(&args.scene, &options)?;
+    let session = context.open_drawable(&args.scene, &args.data, &options)?;
     let made = animate::animate(&session, &request, &context.progress)?;
     context.finish();
     let warnings = [session.warnings(), made.warnings.clone()].concat();
@@ -489,7 +489,7 @@ fn check_scene(args: &SceneArgs, context: &Context) -> anyhow::Result<Goal> {
 fn show(args: &ShowArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[&args.scene], context)?;
     let options = OpenOptions { unsolved: true, ..context.options(Needs::Ground, None) };
-    let session = context.open_drawable(&args.scene, &options)?;
+    let session = context.open_drawable(&args.scene, &args.data, &options)?;
     let out = outputs::file(args.out.as_ref());
     let named_json = out.is_some_and(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("json")));
     let json = if out.is_some() { named_json } else { context.common.json };

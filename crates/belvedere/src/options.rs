@@ -1,6 +1,6 @@
 //! Options for opening a scene.
 
-use crate::scene_file::request::{Air, Molecules, given};
+use crate::scene_file::request::{Air, Molecules, given_of};
 use crate::scene_file::{FurnitureWish, LayerDoc, PaletteDoc, SurfaceDoc, SwitchOrLength, SwitchOrVisibility};
 use crate::trust::Trust;
 use crate::{Advice, BelvedereError};
@@ -81,12 +81,10 @@ pub(crate) fn show_molecules(asked: &Molecules, layers: &mut [LayerDoc]) -> Resu
         molecule.assembly = asked.assembly.clone().or(molecule.assembly.take());
         molecule.model = asked.model.or(molecule.model);
     }
-    let given = given(asked);
-    if any || given.is_empty() {
+    let options = given_of(asked, &Molecules::OPTIONS);
+    if any || options.is_empty() {
         return Ok(());
     }
-    let options = Molecules::OPTIONS.map(|name| given.iter().any(|given| given == name).then_some(name));
-    let options: Vec<&'static str> = options.into_iter().flatten().collect();
     Err(BelvedereError::Argument(Advice::of_options(&options, "for molecules, and there is none")))
 }
 

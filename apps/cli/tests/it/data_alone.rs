@@ -115,3 +115,29 @@ fn what_makes_no_picture_alone_is_an_error_that_helps() {
     let error = place.fails(&["render", "empty", "-o", "x.png"]);
     assert!(error.contains("without elevation models"), "{error}");
 }
+
+#[test]
+fn what_data_alone_do_not_say_is_said_by_options_and_refused_where_it_says_nothing() {
+    let place = Place::new();
+    hills("hills.asc", 500_000.0, &place);
+    let document = |args: &[&str]| place.ok(&[&["show", "hills.asc"], args].concat());
+    let said = document(&["--source-crs", "EPSG:32632", "--nodata", "-1", "--vertical-unit", "ft", "--curved-earth"]);
+    for key in ["source_crs = \"EPSG:32632\"", "nodata = -1.0", "vertical_unit = \"ft\"", "earth = \"curved\""] {
+        assert!(said.contains(key), "{key}: {said}");
+    }
+    assert!(document(&["--crs", "local"]).contains("crs = \"local\""));
+    place.ok(&["render", "hills.asc", "--vertical-unit", "ft", "-o", "feet.png"]);
+    place.ok(&["render", "hills.asc", "-o", "metres.png"]);
+    assert_ne!(read(&place.path("feet.png")), read(&place.path("metres.png")));
+    place.write("s.toml", super::BARE);
+    let refused = place.fails(&["render", "s.toml", "--nodata", "0", "--crs", "local", "-o", "s.png"]);
+    assert!(refused.contains("--crs, --nodata are for data alone, and a scene file says it itself"), "{refused}");
+    place.write("box.obj", CUBE);
+    for (option, value, what) in [
+        ("--nodata", "0", "for an elevation model, and this is none"),
+        ("--source-crs", "EPSG:32632", "for elevation models and cities, and this is neither"),
+    ] {
+        let refused = place.fails(&["render", "box.obj", option, value, "-o", "box.png"]);
+        assert!(refused.contains(&format!("{option} is {what}")), "{refused}");
+    }
+}

@@ -35,3 +35,27 @@ pub struct StatedRaster {
     #[cfg_attr(feature = "clap", arg(long, value_parser = one_of::<VerticalUnit>(), value_name = "UNIT"))]
     pub vertical_unit: Option<VerticalUnit>,
 }
+
+/// What data without a scene file do not say.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[cfg_attr(feature = "clap", derive(clap::Args))]
+#[serde(default)]
+pub struct OfData {
+    /// Coordinate system of the picture of data alone: auto, EPSG:n or local
+    #[cfg_attr(feature = "clap", arg(long, value_name = "CRS"))]
+    pub crs: Option<String>,
+    /// Lower the ground of data alone with the distance, as on a sphere, with refraction
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub curved_earth: bool,
+    /// The file.
+    #[cfg_attr(feature = "clap", command(flatten))]
+    #[serde(flatten)]
+    pub raster: StatedRaster,
+}
+
+impl OfData {
+    /// Names of the options.
+    pub const OPTIONS: [&'static str; 5] = ["crs", "curved_earth", "source_crs", "nodata", "vertical_unit"];
+    /// Those of them that say something of a terrain alone.
+    pub const OF_TERRAIN: [&'static str; 3] = ["curved_earth", "nodata", "vertical_unit"];
+}

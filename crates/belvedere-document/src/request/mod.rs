@@ -16,10 +16,10 @@ mod value;
 
 #[cfg(feature = "clap")]
 pub use args::one_of;
-pub use ground::{Stated, StatedRaster};
+pub use ground::{OfData, Stated, StatedRaster};
 pub use look::{Air, Furnishing, FurnitureItems, Look};
 pub use molecule::Molecules;
-pub use options::{given, options, read, schema};
+pub use options::{given_of, options, read, schema};
 pub use paper::Paper;
 pub use reveal::{Reveal, Technique};
 pub use value::EXAGGERATION;

@@ -24,11 +24,17 @@ pub fn schema(verb: &str) -> Option<String> {
 }
 
 /// Names of the options of a request that are not as they are by default.
-pub fn given<T: Serialize + Default>(request: &T) -> Vec<String> {
+fn given<T: Serialize + Default>(request: &T) -> Vec<String> {
     let keys = |request: &T| serde_json::to_value(request).unwrap_or_default();
     let (asked, usual) = (keys(request), keys(&T::default()));
     let differs = |(key, value): (&String, &Value)| (usual.get(key) != Some(value)).then(|| key.clone());
     asked.as_object().into_iter().flatten().filter_map(differs).collect()
+}
+
+/// Those of `names` that are not as they are by default.
+pub fn given_of<T: Serialize + Default>(request: &T, names: &[&'static str]) -> Vec<&'static str> {
+    let given = given(request);
+    names.iter().copied().filter(|name| given.iter().any(|given| given == name)).collect()
 }
 
 /// A request from JSON: an object of its options.

@@ -9,7 +9,7 @@ use super::target_drafts::target_drafts;
 use crate::picture::{Picture, PictureOptions};
 use crate::places::Place;
 use crate::print::Sheet;
-use crate::request::{Reveal, given};
+use crate::request::{Reveal, given_of};
 use crate::scene_file::{self, PaletteDoc};
 use crate::{Advice, BelvedereError, DataFiles, OpenOptions, Session, Warning};
 use belvedere_core::DVec3;
@@ -161,8 +161,7 @@ fn check(asked: &Reveal, models: bool) -> Result<(), BelvedereError> {
         true => (&Reveal::OF_TERRAIN, "for terrain with features, not for models and cities"),
         false => (&Reveal::OF_MODELS, "for a part of a model or city, and none is asked for"),
     };
-    let given = given(asked);
-    let wrong: Vec<&'static str> = none.iter().copied().filter(|name| given.iter().any(|g| g == name)).collect();
+    let wrong = given_of(asked, none);
     let refused = |advice| Err(BelvedereError::Argument(advice));
     if !wrong.is_empty() {
         return refused(Advice::of_options(&wrong, what));

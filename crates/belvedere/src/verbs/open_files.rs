@@ -5,9 +5,10 @@ use super::model_layers::{ground, layer, unit_of};
 use super::reveal::{RevealRequest, reveal};
 use crate::data::{features_of, ground_files, locate};
 use crate::editor::{Editor, Place};
+use crate::request::{OfData, given_of};
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{self, Document, LayerDoc, SourceDocument};
-use crate::{BelvedereError, DataFiles, OpenOptions, Session, Trust};
+use crate::scene_file::{self, Document, EarthDoc, LayerDoc, SourceDocument};
+use crate::{Advice, BelvedereError, DataFiles, OpenOptions, Session, Trust};
 use belvedere_io::formats::Reader;
 use belvedere_io::{GeoTiff, Limits, fs, join_table, split_table};
 use belvedere_scene::Progress;
@@ -145,15 +146,56 @@ fn whole(layers: Vec<LayerDoc>, folders: Vec<PathBuf>) -> SourceDocument {
     SourceDocument::of_files(document, folders)
 }
 
-/// A scene file, whatever its name, or the [scene of data](scene_of_data).
+/// A scene file, whatever its name, or the [scene of data](scene_of_data) with what is said of them.
 ///
 /// # Errors
-/// As [`scene_file::read`] and [`scene_of_data`].
-pub fn scene_or_data(path: &Path) -> Result<SourceDocument, BelvedereError> {
+/// As [`scene_file::read`] and [`scene_of_data`]; [`BelvedereError::Argument`] where something is said of a scene file, which says it itself,
+/// or of data that have no such thing.
+pub fn scene_or_data(path: &Path, said: &OfData) -> Result<SourceDocument, BelvedereError> {
     match scene_file::read(path) {
-        Err(error) => scene_of_data(path)?.ok_or(error.into()),
-        read => Ok(read?),
+        Err(error) => {
+            let mut source = scene_of_data(path)?.ok_or(error)?;
+            say_of_data(&mut source.document, said)?;
+            Ok(source)
+        }
+        Ok(source) => match given_of(said, &OfData::OPTIONS)[..] {
+            [] => Ok(source),
+            ref options => Err(not_said(options, "for data alone, and a scene file says it itself")),
+        },
     }
+}
+
+fn not_said(options: &[&'static str], what: &str) -> BelvedereError {
+    BelvedereError::Argument(Advice::of_options(options, what))
+}
+
+/// Puts what is said of data into their document.
+fn say_of_data(document: &mut Document, said: &OfData) -> Result<(), BelvedereError> {
+    let raster = &said.raster;
+    let has_terrain = document.layer.iter().any(|layer| matches!(layer, LayerDoc::Terrain(_)));
+    let wrong = given_of(said, &OfData::OF_TERRAIN);
+    if !has_terrain && !wrong.is_empty() {
+        return Err(not_said(&wrong, "for an elevation model, and this is none"));
+    }
+    for layer in &mut document.layer {
+        match layer {
+            LayerDoc::Terrain(terrain) => {
+                terrain.source_crs = raster.source_crs.clone();
+                (terrain.nodata, terrain.vertical_unit) = (raster.nodata, raster.vertical_unit);
+            }
+            LayerDoc::City(city) => city.crs = raster.source_crs.clone(),
+            _ if raster.source_crs.is_some() || said.crs.is_some() => {
+                let wrong = given_of(said, &["crs", "source_crs"]);
+                return Err(not_said(&wrong, "for elevation models and cities, and this is neither"));
+            }
+            _ => {}
+        }
+    }
+    document.crs = said.crs.clone().unwrap_or_else(|| std::mem::take(&mut document.crs));
+    if said.curved_earth {
+        document.earth = EarthDoc::Curved;
+    }
+    Ok(())
 }
 
 /// The scene of one file of data that can be drawn without others, seen from the south: an elevation model, a folder of its tiles, a city, a
