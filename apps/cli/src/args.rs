@@ -201,12 +201,12 @@ pub(crate) struct DemoArgs {
 /// What must be seen, and the files of the answer.
 #[derive(Debug, Args)]
 pub(crate) struct RevealArgs {
-    #[command(flatten)]
-    pub(crate) asked: Reveal,
     /// Picture to write: PNG, TIFF, JPEG, WebP, SVG or PDF, as its name ends; its record goes to OUT.png.json, and if it is bent, the straight beside the bent picture to OUT.pair.png (not of SVG and PDF, nor with a transparent sky); - =
     /// standard output, and the picture alone
     #[arg(short, long, value_name = "OUT.png")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) asked: Reveal,
     /// Leave the raster of the surfaces out of an SVG or PDF
     #[arg(long)]
     pub(crate) vectors_only: bool,
