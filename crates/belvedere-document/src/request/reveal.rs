@@ -129,7 +129,7 @@ impl Reveal {
         "rivers",
     ];
     /// Options that say something of a part of a model, and nothing of terrain with features.
-    pub const OF_MODELS: [&'static str; 3] = ["fallback", "transfer", "up"];
+    pub const OF_MODELS: [&'static str; 4] = ["fallback", "transfer", "up", "no_shadows"];
 }
 
 /// Technique that bends the picture.
