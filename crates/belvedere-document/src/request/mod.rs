@@ -11,7 +11,7 @@ mod molecule;
 mod options;
 mod paper;
 mod reveal;
-#[cfg_attr(not(feature = "clap"), allow(dead_code))]
+#[cfg_attr(not(feature = "clap"), allow(dead_code, unreachable_pub))]
 mod value;
 
 #[cfg(feature = "clap")]

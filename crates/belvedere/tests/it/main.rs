@@ -12,6 +12,7 @@ mod letters;
 mod memory;
 mod moving_pictures;
 mod names;
+mod options_of_reveal;
 mod over_ground;
 mod parts;
 mod ribbon_targets;
