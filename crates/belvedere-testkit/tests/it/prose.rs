@@ -18,7 +18,7 @@ const OPTIONS: [&str; 2] = [
 
 /// Decisions on a text, by file and part, that are right: the texts are contents of files or come from elsewhere without a kind.
 const DECISIONS: [(&str, &str); 12] = [
-    ("belvedere/src/scene_file/rewritten/toml_text.rs", "\r\n"),
+    ("belvedere-document/src/rewritten/toml_text.rs", "\r\n"),
     // Whether paths are to be shortened in the texts of warnings.
     ("belvedere/src/session.rs", "MAIN_SEPARATOR"),
     ("belvedere-io/src/city/citygml.rs", "opengis.net/citygml/2.0"),

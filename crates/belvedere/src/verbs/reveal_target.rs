@@ -8,7 +8,7 @@ use super::reveal_files::RevealFiles;
 use super::target_bend::PictureJudge;
 pub use super::target_request::TargetRequest;
 use super::target_scene::{self, Meant, Targets};
-use super::view_request::{IMAGE, Technique, spline_stage};
+use super::view_request::{IMAGE, MODELS_FOV_Y_DEG, Technique, spline_stage};
 use super::{city_views, target_views};
 use crate::fallback::{FallbackRecord, has_volumes};
 use crate::guard::guarded;
@@ -16,7 +16,7 @@ use crate::picture::{Picture, PictureOptions, TargetPlace};
 use crate::places::{Place, PlaceHeight};
 use crate::resolve::ground::unbent;
 use crate::resolve::rays::sidestep_stage;
-use crate::scene_file::{CameraDoc, ConstructorDoc, ConstructorKind, Document, EarthDoc, PointDoc, StageDoc};
+use crate::scene_file::{CameraDoc, ConstructorDoc, ConstructorKind, Document, EarthDoc, StageDoc};
 use crate::targets;
 use crate::{Advice, BelvedereError, OpenOptions, Session};
 use belvedere_construct::rays::{BendReport, Sidestep, Target, TargetSight};
@@ -27,8 +27,6 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Full vertical field of view unless given, degrees.
-const FOV_Y_DEG: f64 = 30.0;
 /// Visible share from which on a view is good enough; and after so many views.
 const ENOUGH: f64 = 0.99;
 const VIEWS_AT_LEAST: usize = 3;
@@ -88,7 +86,7 @@ pub(super) struct Opened {
 
 impl Opened {
     pub(super) fn of(request: &TargetRequest, options: &OpenOptions) -> Result<Self, BelvedereError> {
-        let fov_y_deg = request.fov_y_deg.unwrap_or(FOV_Y_DEG);
+        let fov_y_deg = request.fov_y_deg.unwrap_or(MODELS_FOV_Y_DEG);
         if !(fov_y_deg > 0.0 && fov_y_deg < 180.0) {
             return Err(BelvedereError::FieldOfView { deg: fov_y_deg });
         }
@@ -463,13 +461,4 @@ impl TargetAnswer {
     pub fn write(&self, files: &RevealFiles, overwrite: bool) -> Result<Vec<PathBuf>, BelvedereError> {
         files.write(&self.picture, &self.session, &|| self.document(), overwrite)
     }
-}
-
-/// A camera to the north, for documents whose camera is found later.
-pub(crate) fn provisional_camera() -> CameraDoc {
-    let (eye, look_at) = (DVec3::NEG_Y, DVec3::ZERO);
-    let (right, down, forward) = (DVec3::X, -DVec3::Z, DVec3::Y);
-    let projection = Projection::Perspective { fov_y: FOV_Y_DEG.to_radians() };
-    let pinhole = Pinhole { eye, right, down, forward, projection, image: IMAGE, near: 1e-3, far: None };
-    CameraDoc { look_at: Some(PointDoc::Scene(look_at.to_array())), ..CameraDoc::of(&pinhole, look_at) }
 }

@@ -173,7 +173,7 @@ pub(super) fn open(request: &TargetRequest, options: &OpenOptions) -> Result<(Se
         set_transfer(&mut layers, transfer, &mut options)?;
     }
     let unit = unit_of(&layers);
-    let camera = super::reveal_target::provisional_camera();
+    let camera = super::view_request::provisional_camera();
     let title = match shown_name(&request.see) {
         "" => "Revealed".into(),
         see => format!("{see} revealed"),
