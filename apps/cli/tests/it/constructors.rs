@@ -275,7 +275,7 @@ fn reveal_looks_round_what_hides_a_layer_atoms_or_a_point() {
     assert!(
         place
             .fails(&["reveal", "s.toml", "--see", "van", "--technique", "terrain", "-o", "x.png"])
-            .contains("bends rays")
+            .contains("--technique of a part of a model or city is curved_rays or spline")
     );
 }
 
