@@ -9,7 +9,7 @@ use super::target_drafts::target_drafts;
 use crate::picture::{Picture, PictureOptions};
 use crate::places::Place;
 use crate::print::Sheet;
-use crate::request::{Reveal, given_of};
+use crate::request::{Molecules, Reveal, given_of};
 use crate::scene_file::{self, PaletteDoc};
 use crate::{Advice, BelvedereError, DataFiles, OpenOptions, Session, Warning};
 use belvedere_core::DVec3;
@@ -157,14 +157,19 @@ impl Request {
 
 /// Refuses options that do not go together.
 fn check(asked: &Reveal, models: bool) -> Result<(), BelvedereError> {
-    let (none, what): (&[&'static str], _) = match models {
-        true => (&Reveal::OF_TERRAIN, "for terrain with features, not for models and cities"),
-        false => (&Reveal::OF_MODELS, "for a part of a model or city, and none is asked for"),
-    };
-    let wrong = given_of(asked, none);
     let refused = |advice| Err(BelvedereError::Argument(advice));
-    if !wrong.is_empty() {
-        return refused(Advice::of_options(&wrong, what));
+    let not_here: &[(&[&'static str], &str)] = match models {
+        true => &[(&Reveal::OF_TERRAIN, "for terrain with features, not for models and cities")],
+        false => &[
+            (&Reveal::OF_MODELS, "for a part of a model or city, and none is asked for"),
+            (&Molecules::OPTIONS, "for molecules, and there is none"),
+        ],
+    };
+    for (options, what) in not_here {
+        let given = given_of(asked, options);
+        if !given.is_empty() {
+            return refused(Advice::of_options(&given, what));
+        }
     }
     let alone = |names| refused(Advice::new("{} is given without {}; give both, or neither", names));
     match (asked.eye, asked.look) {
