@@ -51,7 +51,8 @@ def files_of(
     files["keep_voids"], files["fill_voids"] = fill_voids is False, fill_voids is True
     files["features"] = [_file_of("features", i, source, features_crs, terrain_crs, folder) for i, source in enumerate(_several(routes))]
     files["rivers"] = [_file_of("rivers", i, source, features_crs, terrain_crs, folder) for i, source in enumerate(_several(rivers))]
-    files["drape"] = [_path("drape", picture) for picture in _several(drape)]
+    if drape is not None:
+        files["drape"] = [_path("drape", picture) for picture in _several(drape)]
     return files
 
 

@@ -27,6 +27,7 @@ __all__ = [
     "preset_text",
     "project",
     "rays",
+    "request_schema",
     "reveal",
     "schema",
     "set_memory_limit",

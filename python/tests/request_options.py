@@ -58,7 +58,8 @@ def text() -> str:
     for name, rule in found["properties"].items():
         if name not in OWN:
             says = " ".join(rule.get("description", "").split())
-            lines += ["", f"    #: {says}", f"    {name}: {kind(rule, found.get('$defs', {}))} | None"]
+            none = " | None" if "null" in json.dumps(rule.get("type", rule.get("anyOf", ""))) else ""
+            lines += ["", f"    #: {says}", f"    {name}: {kind(rule, found.get('$defs', {}))}{none}"]
     return "\n".join(lines) + "\n"
 
 

@@ -49,7 +49,7 @@ def test_reveal_refuses_in_words() -> None:
     for call, words in (
         (lambda: belvedere.reveal(hills(), spacing=CELL), "routes"),
         (lambda: belvedere.reveal(hills(), ROUTE), "transform="),
-        (lambda: belvedere.reveal(hills(), ROUTE, spacing=CELL, eye=EYE), "together"),
+        (lambda: belvedere.reveal(hills(), ROUTE, spacing=CELL, eye=EYE), "given without `look_at`"),
         (lambda: belvedere.reveal(hills(), ROUTE, spacing=CELL, technique="lens"), "lens"),
         (lambda: belvedere.reveal(hills(), ROUTE, spacing=CELL, fov_y_deg=400.0), "400"),
         (lambda: belvedere.reveal(hills(), ROUTE, spacing=CELL, size=(0, 9)), "(0, 9)"),

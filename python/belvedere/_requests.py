@@ -1,0 +1,99 @@
+"""Options of requests, made from their schema by python/tests/request_options.py."""
+
+from __future__ import annotations
+
+from typing import Any, Literal, Mapping, Sequence, TypedDict
+
+
+class RevealOptions(TypedDict, total=False):
+    """Options of :func:`belvedere.reveal` beside those of its signature; each is that of the command line of this name."""
+
+    #: Style of areas, instead of the one that their properties and names give
+    area_style: Literal["auto", "outline", "plain", "water", "forest", "glacier", "park"] | None
+
+    #: Biological assembly of molecules, such as 1: draws the copies that the file describes (`info` lists them); asymmetric = the atoms of the file alone
+    assembly: str | None
+
+    #: Colours of molecules: auto (by element; ribbons and surfaces by chain), element, chain, residue, structure, or one colour #rrggbb
+    color_by: str | None
+
+    #: Draw lines of equal height on the ground, every M metres of true height; by default at an interval that fits the scale
+    contours: bool | float | None
+
+    #: Lower the ground with the distance, as on a sphere, with refraction
+    curved_earth: bool
+
+    #: Pixels per inch, 300 with --paper unless --size is given; lengths that the scene states in pixels are 1/96 inch each
+    dpi: float | None
+
+    #: How the ground ends where its data end: soft (it fades), block (it is cut, with sides), mat (it stands on a plain surface), plain
+    edge: Literal["plain", "soft", "mat", "block"] | None
+
+    #: Multiply heights over the median height of the terrain by F, 0.01 to 100; the straight picture keeps the true heights
+    exaggeration: float | None
+
+    #: Haze: on (the default: dims the farther part of the view), off, or the visibility in kilometres
+    haze: bool | float | None
+
+    #: Style of hidden parts of features; by default lines are dashed, outlines of areas cut, points faint
+    hidden: Literal["show", "fade", "dash", "cut"] | None
+
+    #: Write the names of lines, areas and points
+    labels: bool
+
+    #: Light the scene as the sun does over the eye at this time, such as 2026-07-01T15:00:00Z or 2026-07-01T17:00+02:00: shading by the sun alone while it is up (unless --relief says otherwise), with cast shadows
+    light_time: str | None
+
+    #: White margin of the paper on every side, millimetres; PNG, TIFF, JPEG and WebP leave it out
+    margin_mm: float | None
+
+    #: Model of a file of molecules that holds several, from 1
+    model: int | None
+
+    #: Property that holds the names of features, instead of the one that looks most like a name
+    name_field: str | None
+
+    #: Lift the limits of plausible ground: no lower than a fifth of the relief below the lowest point, no steeper than twice the 99.9th percentile of the terrain's slopes
+    no_limits: bool
+
+    #: Draw no shadows on molecules, which have them without --shadows
+    no_shadows: bool
+
+    #: Tint of the terrain: auto (the default: meadows, forest, rock and snow as the climate of the place has them), swiss, winter, autumn, alpine, desert, glacial, atlas, clear, plain, night, or a file of colours by height (GDAL colour-relief text, GMT .cpt)
+    palette: str | None
+
+    #: Paper: A0 to A6 (landscape where the picture is wider than high), A3-portrait, A3-landscape, or a size such as 420x297mm; pixels, widths of lines and heights of letters follow from it
+    paper: str | None
+
+    #: Shading of the terrain; swiss by default, sun with --light-time
+    relief: Literal["swiss", "sun", "none"] | None
+
+    #: What molecules are shown as, instead of what the scene says; without a scene auto
+    representation: Literal["ball_and_stick", "space_filling", "sticks", "ribbon", "surface", "auto"] | None
+
+    #: Coverage samples per pixel: 1, 4 or 16; 4 by default
+    samples: int | None
+
+    #: Draw cast shadows
+    shadows: bool
+
+    #: Sky: auto (by the height of the sun), day, dusk, night, white, a colour #rrggbb, or transparent (PNG and SVG)
+    sky: str | None
+
+    #: Coordinate system of the terrain's file, instead of the stated one
+    source_crs: str | None
+
+    #: Technique that bends the picture; by default a spline, with --see curved rays
+    technique: Literal["auto", "spline", "terrain", "both", "curved_rays"] | None
+
+    #: Title in the picture
+    title: str | None
+
+    #: Colours and opacities of volumes with --see: auto, solid, engine, ct-bone, ct-soft, vessels, grey, or a file
+    transfer: str | None
+
+    #: Axis that points upwards in the picture, with --see: x, y, z, -x, -y or -z
+    up: Sequence[Any] | None
+
+    #: Unit of the terrain's heights, instead of the stated one
+    vertical_unit: Literal["m", "ft", "us-ft"] | None
