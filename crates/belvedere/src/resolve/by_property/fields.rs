@@ -26,7 +26,7 @@ pub struct Field {
 /// Properties of the features that a layer draws, by name; none for kinds of layers without properties and for built-in sources.
 ///
 /// # Errors
-/// As reading the layer: [`BelvedereError::Path`], [`BelvedereError::Io`].
+/// As reading the layer: [`BelvedereError::Document`], [`BelvedereError::Io`].
 pub fn fields(layer: &LayerDoc, roots: &Roots) -> Result<Vec<Field>, BelvedereError> {
     let (Some(draws), Some(paths)) = (draws(layer), source(layer)) else { return Ok(Vec::new()) };
     let select = match layer {
