@@ -3,7 +3,8 @@
 use crate::flight::{Flying, Ring};
 use crate::model::Model;
 use belvedere::core::{Aabb, Navigation, Pinhole, Projection};
-use belvedere::editor::{Flight, navigation, shown_whole};
+use belvedere::editor::{Flight, shown_whole};
+use belvedere::scene_file::camera::navigation;
 use belvedere::scene_file::{CameraDoc, ConstructorKind};
 use eframe::egui::{Context, Event, Id, TouchPhase};
 

@@ -8,12 +8,10 @@ use crate::language::tr;
 pub(crate) use crate::look::{Compare, Look, Tool};
 use crate::notices::Notices;
 use belvedere::core::{DVec2, DVec3, Navigation};
-use belvedere::editor::{
-    Answer, Editor, Judged, Order, Pace, Painter, Quality, Shown, Sides, above_ground, frame_factor, navigation,
-    object_at, set_camera,
-};
+use belvedere::editor::{Answer, Editor, Judged, Order, Pace, Painter, Quality, Shown, Sides, above_ground, object_at};
 use belvedere::scene::Frame;
 use belvedere::scene::Instant as Clock;
+use belvedere::scene_file::camera::{frame_factor, navigation, set_camera};
 use belvedere::scene_file::{CameraDoc, Document, LayerDoc, StageDoc};
 use eframe::egui::Id;
 use std::sync::Arc;

@@ -1,6 +1,7 @@
 //! Scene files: TOML or JSON to a [`Document`], with mistakes named by file, line and nearest valid key.
 
 mod by_property;
+pub mod camera;
 mod choices;
 mod city;
 mod common;

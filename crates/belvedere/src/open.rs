@@ -1,6 +1,5 @@
 //! Opens scene files and documents as sessions.
 
-use crate::editor::{framed, set_camera};
 use crate::guard::guarded;
 use crate::options::show_molecules;
 use crate::resolve::constructor;
@@ -8,6 +7,7 @@ use crate::resolve::motion::Motions;
 use crate::resolve::solving::Memory;
 use crate::resolve::solving::Solving;
 use crate::resolve::{self, LayerRequest, hidden, representations, validate};
+use crate::scene_file::camera::set_camera;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
     self, Document, EarthDoc, LayerDoc, LightDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc,
@@ -15,7 +15,7 @@ use crate::scene_file::{
 use crate::session::Loaded;
 use crate::verbs::target_views::outline;
 use crate::{BelvedereError, Needs, OpenOptions, Session};
-use belvedere_core::{Warning, WarningKind};
+use belvedere_core::{Aabb, DVec3, Navigation, Pinhole, Projection, Warning, WarningKind};
 use belvedere_io::crs::utm_epsg;
 use belvedere_scene::{Crs, Scene};
 use std::path::Path;
@@ -151,6 +151,18 @@ fn show_all(document: &mut Document, scene: &Scene) -> Result<(), BelvedereError
     document.camera.near = camera.pinhole.near;
     set_camera(document, &camera);
     Ok(())
+}
+
+/// A camera that shows a box from the south, `pitch_deg` over the horizon and turned by `heading_deg` clockwise from north; `None` for an
+/// empty box.
+fn framed(bounds: &Aabb, heading_deg: f64, pitch_deg: f64, image: [u32; 2]) -> Option<Navigation> {
+    let (heading, pitch) = (heading_deg.to_radians(), pitch_deg.to_radians());
+    let ahead = DVec3::new(heading.sin() * pitch.cos(), heading.cos() * pitch.cos(), -pitch.sin());
+    let lens = Projection::Perspective { fov_y: 45f64.to_radians() };
+    let size = (bounds.max - bounds.min).length();
+    let near = (1e-4 * size).clamp(1e-6, 1.0);
+    let pinhole = Pinhole::look_at(-ahead, DVec3::ZERO, DVec3::Z, lens, image, near, None).ok()?;
+    Navigation { pinhole, target: DVec3::ZERO }.framing(bounds).ok().filter(|_| !bounds.is_empty())
 }
 
 /// Parts of the scene to read for the given options.

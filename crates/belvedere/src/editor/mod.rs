@@ -27,7 +27,7 @@ mod thin;
 mod thumbnail;
 
 pub use beside::{THREADS, beside};
-pub use camera::{above_ground, frame_factor, framed, navigation, set_camera};
+pub use camera::above_ground;
 pub use find::{Matches, NameIndex, Named, Wanted, atoms_in, folded, place_in};
 pub use flight::{Flight, shown_whole};
 pub use layers::{with_layer_renamed, without_layer};

@@ -1,12 +1,12 @@
 //! Small pictures of variants of a document, such as presets to choose from.
 
+use super::Place;
 use super::live::options_for;
 use super::moving::quick;
 use super::rate::Quality;
 use super::thin::Thin;
-use super::{Place, camera};
 use crate::resolve::solving::Memory;
-use crate::scene_file::Document;
+use crate::scene_file::{Document, camera};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_scene::{Frame, LayerKind, Progress};
 use std::sync::Arc;

@@ -1,14 +1,16 @@
 //! Pictures of targets and of data alone: all that is drawn lies inside, and cameras that are given stay.
 
-use belvedere::core::DVec3;
+use belvedere::core::{DVec2, DVec3};
 use belvedere::scene::LayerKind;
-use belvedere::scene_file::LightDoc;
+use belvedere::scene_file::camera::{cut_to_frame, fit, frame_factor, navigation, set_camera};
+use belvedere::scene_file::{CameraDoc, LightDoc, SourceDocument, parse};
 use belvedere::verbs::appearance::Appearance;
 use belvedere::verbs::open_files::scene_of_data;
 use belvedere::verbs::reveal::Viewpoint;
 use belvedere::verbs::reveal_target::{TargetAnswer, TargetRequest, reveal_target};
 use belvedere::{OpenOptions, PictureOptions, Session};
 use belvedere_testkit::Random;
+use std::path::Path;
 
 fn request(file: &str, see: &str, image: [u32; 2]) -> TargetRequest {
     let light = LightDoc { sky: Some("white".into()), ..LightDoc::default() };
@@ -87,7 +89,7 @@ fn a_camera_that_is_given_stays_and_a_field_of_view_that_is_given_too() {
 }
 
 /// How far outside its picture, in shares of half of it, the farthest point lies of those that must be in it, seen alone from a file.
-fn farthest(file: &std::path::Path, wanted: &dyn Fn(&Session) -> Vec<DVec3>) -> f64 {
+fn farthest(file: &Path, wanted: &dyn Fn(&Session) -> Vec<DVec3>) -> f64 {
     let source = scene_of_data(file).expect("read").expect("a scene");
     let session = Session::from_document(source, &OpenOptions::default()).expect("opened");
     let pinhole = session.view().pinhole();
@@ -154,4 +156,39 @@ fn a_single_far_triangle_of_a_large_mesh_is_in_its_picture() {
         (0..layer.mesh.vertex_count() as u32).map(|v| layer.mesh.vertex(v)).collect()
     });
     assert!((0.8..1.0).contains(&off), "{off}");
+}
+
+#[test]
+fn a_picture_of_any_shape_holds_the_frame_and_gives_the_camera_back_unchanged() {
+    let scene = |camera: &str| {
+        let text = format!(
+            "format = 1\n[camera]\neye = [0, -900, 4000]\nlook_at = [0, 0, 300]\nimage = [320, 180]\n{camera}\n"
+        );
+        parse(Path::new("s.toml"), &text).expect("scene").document
+    };
+    for camera in ["fov_y_deg = 30.0", "projection = 'orthographic'\northo_height_m = 900.0", "fov_y_deg = 120.0"] {
+        let document = scene(camera);
+        for image in [[390, 844], [640, 640], [320, 180], [1920, 500]] {
+            let mut shown = document.clone();
+            fit(&mut shown, image);
+            let session = Session::from_document(SourceDocument::new(shown), &OpenOptions::default());
+            let session = session.expect("session");
+            let factor = frame_factor(&document, image);
+            let on_screen =
+                navigation(&document.camera, &document.camera, session.view(), session.scene(), (image, factor));
+            assert_eq!(on_screen.pinhole.projection, session.view().pinhole().projection, "{camera} {image:?}");
+            let mut back = document.clone();
+            set_camera(&mut back, &on_screen);
+            assert_eq!(back.camera.fov_y_deg, document.camera.fov_y_deg, "{image:?}");
+            let height = |camera: &CameraDoc| camera.ortho_height_m.unwrap_or(0.0);
+            assert!((height(&back.camera) - height(&document.camera)).abs() < 1e-9);
+            // A corner of the frame lies in the picture, unless its field of view is at its limit.
+            let framed = cut_to_frame(session.view(), &document, image);
+            assert_eq!(framed.pinhole().image, [320, 180], "{camera} {image:?}");
+            let corner = framed.ray(DVec2::ZERO).at(1000.0).expect("a point").point;
+            let at = session.view().project(corner).expect("seen").pixel;
+            let limit = factor * 180.0 / 320.0 < f64::from(image[1]) / f64::from(image[0]) - 1e-9;
+            assert!(limit || (at.x > -1e-6 && at.y > -1e-6), "{camera} {image:?}: {at}");
+        }
+    }
 }
