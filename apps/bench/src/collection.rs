@@ -42,7 +42,7 @@ pub const SCENES: &[(&str, Make)] = &[
 /// Files, opened as the window opens them.
 fn files(data: &Path, names: &[&str]) -> Result<Editor> {
     let paths: Vec<PathBuf> = names.iter().map(|name| data.join(name)).collect();
-    Ok(open_files(&paths, &[], &Progress::silent())?)
+    Ok(open_files(&paths, &[], &Progress::silent())?.into())
 }
 
 /// A document whose files are in the data collection.

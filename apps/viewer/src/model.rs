@@ -470,7 +470,7 @@ fn note(times: &mut Vec<f64>, milliseconds: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere::editor::Place;
+    use belvedere::placed::Place;
     use std::time::Duration;
 
     const SCENE: &str = r#"

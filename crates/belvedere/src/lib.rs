@@ -49,6 +49,7 @@ pub mod output;
 mod overlays;
 pub mod pick;
 pub mod picture;
+pub mod placed;
 pub mod places;
 pub mod print;
 pub mod record;

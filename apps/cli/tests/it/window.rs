@@ -1,6 +1,7 @@
 //! The application as `belvedere view` starts it, and what it saves.
 
 use super::{Place, read};
+use belvedere::editor::Editor;
 use std::os::unix::fs::PermissionsExt;
 use std::process::Command;
 
@@ -59,8 +60,8 @@ fn what_the_application_saves_is_drawn_by_the_command_line_byte_by_byte() {
     let place = Place::new();
     place.write("scene.toml", &format!("{SCENE}[[stage]]\nkind = \"spline_bend\"\npresets = \"progressive\"\n"));
     let progress = belvedere::scene::Progress::silent();
-    let mut editor =
-        belvedere::verbs::open_files::open_files(&[place.path("scene.toml")], &[], &progress).expect("opened");
+    let opened = belvedere::verbs::open_files::open_files(&[place.path("scene.toml")], &[], &progress);
+    let mut editor = Editor::from(opened.expect("opened"));
     // As a drag and a slider change it: numbers with many digits.
     editor.edit(|document| {
         document.camera.eye = belvedere::scene_file::PointDoc::Scene([4_765.432_109_877, -5200.1, 3600.0]);

@@ -280,7 +280,8 @@ fn paint(ui: &Ui, rect: Rect, name: &str, (card, [is_present, hovered, focused])
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere::editor::{Editor, Place};
+    use belvedere::editor::Editor;
+    use belvedere::placed::Place;
 
     #[test]
     fn a_variant_keeps_the_pivot_and_everything_else() {

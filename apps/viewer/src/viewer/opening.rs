@@ -46,7 +46,7 @@ impl Viewer {
                 (Some(consent), _) => Ok(Err(Refusal::Asks(consent))),
                 (None, Some(current)) => open_beside(current, &paths, &allowed, &trust, &progress).map(Ok),
                 (None, None) => {
-                    open_trusted(&paths, &allowed, &trust, &progress).map(|editor| Ok(Opened::Scene(Box::new(editor))))
+                    open_trusted(&paths, &allowed, &trust, &progress).map(|scene| Ok(Opened::Scene(Box::new(scene))))
                 }
             };
             let opened = match opened {
@@ -85,9 +85,9 @@ impl Viewer {
             }
             ctx.request_repaint_after_secs(0.1);
             match pending.opened.try_recv() {
-                Ok(Ok(Opened::Scene(editor))) => {
+                Ok(Ok(Opened::Scene(scene))) => {
                     self.pending = None;
-                    self.go_on_to(ctx, Next::Show(editor));
+                    self.go_on_to(ctx, Next::Show(Box::new((*scene).into())));
                 }
                 Ok(Ok(Opened::Layers(layers, folders))) => {
                     self.model.editor.add_layers(layers, folders);

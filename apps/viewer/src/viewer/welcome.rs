@@ -5,8 +5,9 @@ use crate::builtin::BUILTIN;
 use crate::language::{fill, later, tr};
 use crate::theme;
 use crate::wake::Wake;
-use belvedere::editor::{Place, THREADS, beside};
+use belvedere::editor::{THREADS, beside};
 use belvedere::picture::PictureOptions;
+use belvedere::placed::Place;
 use belvedere::scene::{Progress, RenderOptions};
 use belvedere::scene_file::{self, OverlayDoc};
 use eframe::egui::{

@@ -195,7 +195,7 @@ fn modules_import_each_other_in_one_direction() {
 }
 
 /// Verbs of the library that use another verb or the editor, and why they still do.
-const ABOVE_OTHERS: [(&str, &str); 13] = [
+const ABOVE_OTHERS: [(&str, &str); 11] = [
     // One request is handed to the search that answers it.
     ("asked", "drafts"),
     ("asked", "reveal"),
@@ -206,11 +206,9 @@ const ABOVE_OTHERS: [(&str, &str); 13] = [
     ("target_drafts", "drafts"),
     ("target_drafts", "reveal"),
     ("target_drafts", "reveal_target"),
-    // What is opened is told by its kind, shown by `reveal`, and goes into the editor; a page holds what the editor would show.
-    ("open_files", "editor"),
+    // What is opened is told by its kind and shown by `reveal`; a page holds what is opened.
     ("open_files", "info"),
     ("open_files", "reveal"),
-    ("pack", "editor"),
     ("pack", "open_files"),
 ];
 

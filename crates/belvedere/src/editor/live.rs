@@ -1,14 +1,15 @@
 //! A session that follows a document: everything is resolved again, but unchanged layers are not read again.
 
+use super::THREADS;
 use super::ground::{Ground, with_ground};
 use super::moving::{quick, within};
 use super::named::NamedSections;
 use super::rate::{Quality, Rate, TARGET_MS};
 use super::sun::HeldSun;
 use super::thin::Thin;
-use super::{Place, THREADS};
 use crate::fallback;
 use crate::picture::{self, DisplacementReport, PictureOptions};
+use crate::placed::Place;
 use crate::resolve::hidden;
 use crate::resolve::solving::Memory;
 use crate::scene_file::camera;
@@ -286,7 +287,7 @@ impl LiveSession {
 
     /// Resolves a document with all solvers.
     fn resting(&mut self, document: Document, order: &Order, progress: &Progress) -> Result<Session, BelvedereError> {
-        let options = options(order, progress);
+        let options = order.place.options(progress);
         let session = match self.open(&document, &options)? {
             Some(session) => {
                 let (began, mut memory) = (Instant::now(), self.memory.of_path());
@@ -318,7 +319,7 @@ impl LiveSession {
         // A preview has a camera of its own, so its picture is not drawn without it.
         let is_preview = document.constructor.as_ref().is_some_and(|doc| doc.kind == ConstructorKind::PathPreview);
         let in_time = constructs && !solves && (is_preview || self.constructing <= SOLVE_WITHIN);
-        let options = OpenOptions { unsolved: !in_time, unchecked: true, ..options(order, progress) };
+        let options = OpenOptions { unsolved: !in_time, unchecked: true, ..order.place.options(progress) };
         let Some(session) = self.open(&document, &options)? else {
             let session = self.reopened(&document, &options)?;
             self.session = Some(session.clone());
@@ -432,22 +433,6 @@ fn with_known_planes(mut document: Document, session: &Session) -> Document {
         }
     }
     document
-}
-
-fn options(order: &Order, progress: &Progress) -> OpenOptions {
-    options_for(&order.place, progress)
-}
-
-/// Options that open a document as the application does.
-pub(super) fn options_for(place: &Place, progress: &Progress) -> OpenOptions {
-    let roots = &place.roots;
-    let folder = Some(&roots.scene_dir).filter(|dir| !dir.as_os_str().is_empty());
-    OpenOptions {
-        allow_roots: folder.into_iter().chain(&roots.allowed).cloned().collect(),
-        allow_files: roots.files.clone(),
-        progress: progress.clone(),
-        ..OpenOptions::default()
-    }
 }
 
 /// The view at a share of the transition from straight to bent; straight or bent where there is no transition.

@@ -35,7 +35,7 @@ pub use lengths::{Lengths, ground_way, lengths, lengths_geojson};
 pub use live::{Judged, LiveSession, Order, Pace, Shown, Sides};
 pub use object::object_at;
 pub use painter::{Answer, Painter};
-pub use place::{FileChange, Place};
+pub use place::FileChange;
 pub use rate::{Quality, Rate};
 pub use rays::{next_turn, sharpness_at, sharpness_knob, with_parallel_planes, with_pivot_line};
 pub use recovery::{Recovered, Recovery};
@@ -44,6 +44,7 @@ pub use sections::{with_levels, with_own_style};
 pub use steps::step_name;
 pub use thumbnail::Thumbnails;
 
+use crate::placed::Place;
 use crate::scene_file::{Document, LayerDoc};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -212,6 +213,17 @@ mod tests {
         assert!(editor.redo() && editor.document().camera.fov_y_deg == 30.0);
         editor.edit(|d| d.title = "b".into());
         assert!(!editor.redo(), "what was undone is gone after an edit");
+    }
+
+    #[test]
+    fn layers_that_are_added_together_are_one_step() {
+        let (mut editor, text) = (editor(), "format = 1\n[camera]\neye = [0, 0, 10]\nlook_at = [0, 1, 0]\n");
+        let layer = |id: &str| format!("[[layer]]\nkind = 'line'\nid = '{id}'\nsource = 'way.gpx'\n");
+        let text = format!("{text}{}{}", layer("a"), layer("b"));
+        let layers = crate::scene_file::parse(Path::new("s.toml"), &text).expect("scene").document.layer;
+        editor.add_layers(layers, vec!["folder".into()]);
+        assert_eq!((editor.document().layer.len(), editor.place.roots.allowed.len()), (2, 1));
+        assert!(editor.undo() && editor.document().layer.is_empty());
     }
 
     #[test]

@@ -1,39 +1,13 @@
-//! Files of a document: opening and saving.
+//! The file of an edited document: opening and saving.
 
 use super::Editor;
-use crate::scene_file::paths::{Roots, folder_of};
-use crate::scene_file::{self, Document, SourceDocument};
-use crate::{BelvedereError, OpenOptions, Session, Trust, output};
+use crate::placed::PlacedDocument;
+use crate::scene_file::paths::folder_of;
+use crate::scene_file::{self, Document};
+use crate::{BelvedereError, Trust, output};
 use belvedere_io::{fs, split_table};
-use belvedere_scene::Progress;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-
-/// Paths of a document and its files.
-#[derive(Debug, Clone, Default)]
-pub struct Place {
-    /// The scene file; `None` if it was never saved.
-    pub scene: Option<PathBuf>,
-    /// Folders that its files may lie in.
-    pub roots: Roots,
-}
-
-impl Place {
-    /// The session of a document in this place, as the command line opens it. If the scene file holds the same document, it is among the
-    /// inputs.
-    ///
-    /// # Errors
-    /// As [`Session::from_document`].
-    pub fn session(&self, document: Document, progress: &Progress) -> Result<Session, BelvedereError> {
-        let folder = Some(&self.roots.scene_dir).filter(|dir| !dir.as_os_str().is_empty());
-        let allow_roots = folder.into_iter().chain(&self.roots.allowed).cloned().collect();
-        let allow_files = self.roots.files.clone();
-        let options = OpenOptions { allow_roots, allow_files, progress: progress.clone(), ..OpenOptions::default() };
-        let file = self.scene.as_deref().and_then(|path| scene_file::read(path).ok());
-        let source = file.filter(|file| file.document == document);
-        Session::from_document(source.unwrap_or_else(|| SourceDocument::new(document)), &options)
-    }
-}
 
 /// What another program did to a scene file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,6 +23,16 @@ fn text_on_disk(path: &Path) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
     fs::File::open(path).ok()?.take(scene_file::MAX_BYTES + 1).read_to_end(&mut bytes).ok()?;
     Some(bytes)
+}
+
+impl From<PlacedDocument> for Editor {
+    /// A document without history; one that is in no file has changes that are not saved.
+    fn from(PlacedDocument { document, place, text }: PlacedDocument) -> Self {
+        match text {
+            Some(text) => Self { text: Some(text.into()), ..Self::new(document, place) },
+            None => Self::unsaved(document, place),
+        }
+    }
 }
 
 impl Editor {
@@ -67,10 +51,7 @@ impl Editor {
     /// # Errors
     /// As [`Editor::open`].
     pub fn open_trusted(path: &Path, allowed: Vec<PathBuf>, trust: &Trust) -> Result<Self, BelvedereError> {
-        let (source, text) = scene_file::read_with_text(path)?;
-        let roots = Roots { scene_dir: folder_of(path), allowed, files: trust.files_of(path) };
-        let editor = Self::new(source.document, Place { scene: Some(path.to_owned()), roots });
-        Ok(Self { text: Some(text.into()), ..editor })
+        Ok(PlacedDocument::read(path, allowed, trust)?.into())
     }
 
     /// How the scene file has changed since it was read or written here; `None` if it has not, and without a file.

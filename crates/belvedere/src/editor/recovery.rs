@@ -1,6 +1,7 @@
 //! Recovery of a document after a crash.
 
-use super::{Editor, Place};
+use super::Editor;
+use crate::placed::Place;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, Document};
 use crate::{BelvedereError, output};

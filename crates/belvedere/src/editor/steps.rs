@@ -142,7 +142,7 @@ fn stages(before: &[StageDoc], after: &[StageDoc]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::editor::Place;
+    use crate::placed::Place;
     use crate::scene_file::{OverlayDoc, PointDoc};
 
     fn editor() -> Editor {

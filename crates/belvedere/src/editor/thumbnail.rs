@@ -1,10 +1,9 @@
 //! Small pictures of variants of a document, such as presets to choose from.
 
-use super::Place;
-use super::live::options_for;
 use super::moving::quick;
 use super::rate::Quality;
 use super::thin::Thin;
+use crate::placed::Place;
 use crate::resolve::solving::Memory;
 use crate::scene_file::{Document, camera};
 use crate::{BelvedereError, OpenOptions, Session};
@@ -29,7 +28,7 @@ pub struct Thumbnails {
 impl Thumbnails {
     /// * `session`: it has the layers of all documents. `scale`: width of the small pictures in that of the usual one, above 0.
     pub fn new(session: &Session, place: &Place, scale: f64) -> Self {
-        let options = OpenOptions { unsolved: true, ..options_for(place, &Progress::silent()) };
+        let options = OpenOptions { unsolved: true, ..place.options(&Progress::silent()) };
         Self { session: session.clone(), options, scale: scale.clamp(1e-3, 1.0) }
     }
 

@@ -4,7 +4,7 @@ use super::info::{self, FileInfo};
 use super::model_layers::{ground, layer, unit_of};
 use super::reveal::{RevealRequest, reveal};
 use crate::data::{features_of, ground_files, locate};
-use crate::editor::{Editor, Place};
+use crate::placed::{Place, PlacedDocument};
 use crate::request::{OfData, given_of};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, Document, EarthDoc, LayerDoc, SourceDocument};
@@ -24,7 +24,11 @@ const REMEDY: &str = "give one scene file, models (meshes, cities, molecules, vo
 ///
 /// # Errors
 /// [`BelvedereError`] of the first file that cannot be read; [`BelvedereError::Target`] for files that make no scene together.
-pub fn open_files(paths: &[PathBuf], allowed: &[PathBuf], progress: &Progress) -> Result<Editor, BelvedereError> {
+pub fn open_files(
+    paths: &[PathBuf],
+    allowed: &[PathBuf],
+    progress: &Progress,
+) -> Result<PlacedDocument, BelvedereError> {
     open_trusted(paths, allowed, &Trust::default(), progress)
 }
 
@@ -37,11 +41,11 @@ pub fn open_trusted(
     allowed: &[PathBuf],
     trust: &Trust,
     progress: &Progress,
-) -> Result<Editor, BelvedereError> {
+) -> Result<PlacedDocument, BelvedereError> {
     if let [path] = paths
         && (path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) || is_json_scene(path))
     {
-        return Editor::open_trusted(path, allowed.to_vec(), trust);
+        return PlacedDocument::read(path, allowed.to_vec(), trust);
     }
     let (mut grounds, mut features, mut models) = (Vec::new(), Vec::new(), Vec::new());
     for path in paths {
@@ -82,15 +86,14 @@ pub fn open_trusted(
         _ => return Err(BelvedereError::Target(format!("these files make no scene together; {REMEDY}"))),
     };
     document.title = title.unwrap_or(document.title);
-    // The scene is in no file.
-    Ok(Editor::unsaved(document, place))
+    Ok(PlacedDocument { document, place, text: None })
 }
 
 /// Result of opening files beside an open scene.
 #[derive(Debug, Clone)]
 pub enum Opened {
     /// A new scene.
-    Scene(Box<Editor>),
+    Scene(Box<PlacedDocument>),
     /// Routes, areas or points for the open terrain, and their folders.
     Layers(Vec<LayerDoc>, Vec<PathBuf>),
 }
@@ -113,14 +116,14 @@ pub fn open_beside(
         let is_scene = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) || is_json_scene(&path);
         let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
         if is_scene || !matches!(info::describe(name, progress)?, FileInfo::Features(_)) {
-            return open_trusted(paths, allowed, trust, progress).map(|editor| Opened::Scene(Box::new(editor)));
+            return open_trusted(paths, allowed, trust, progress).map(|scene| Opened::Scene(Box::new(scene)));
         }
         layers.push(features_of(&path, &layers)?);
         folders.extend(path.parent().map(Path::to_owned));
     }
     let new = layers.split_off(current.layer.len());
     match new.is_empty() {
-        true => open_trusted(paths, allowed, trust, progress).map(|editor| Opened::Scene(Box::new(editor))),
+        true => open_trusted(paths, allowed, trust, progress).map(|scene| Opened::Scene(Box::new(scene))),
         false => Ok(Opened::Layers(new, folders)),
     }
 }
@@ -267,10 +270,6 @@ mod tests {
         let ids: Vec<&str> = layers.iter().map(LayerDoc::id).collect();
         assert_eq!((ids, folders.len()), (vec!["way", "way-2"], 2));
         assert!(layers.iter().all(LayerDoc::must_see));
-        let mut editor = Editor::new(document.clone(), Place::default());
-        editor.add_layers(layers, folders);
-        assert_eq!(editor.document().layer.len(), 3);
-        assert!(editor.undo() && editor.document().layer.len() == 1);
         let scene = dir.path().join("other.toml");
         std::fs::write(&scene, ground).expect("scene");
         assert!(matches!(open(&[scene]), Ok(Opened::Scene(_))));

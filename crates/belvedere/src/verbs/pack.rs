@@ -1,8 +1,8 @@
 //! Packs a scene, its files and the application into a folder that any web server can host.
 
 use super::open_files::open_trusted;
-use crate::editor::{Editor, Place};
 use crate::guard::guarded;
+use crate::placed::{Place, PlacedDocument};
 use crate::{BelvedereError, DocumentError, Trust, output};
 use belvedere_io::{InputFile, IoError, atomic, fs, split_table};
 use belvedere_scene::Progress;
@@ -181,13 +181,13 @@ fn names_below(root: &Path, folder: &Path, names: &mut Vec<PathBuf>) {
 
 /// The scene with names valid in the bundle, and every file that it needs, with contents.
 fn scene_files(request: &PackRequest, progress: &Progress) -> Result<(Bundle, Vec<Vec<u8>>), BelvedereError> {
-    let editor = open_trusted(&request.files, &request.allowed, &request.trust, progress)?;
-    let session = editor.place.session((**editor.document()).clone(), progress)?;
-    let mut layout = Layout::new(&editor);
-    let mut document = (**editor.document()).clone();
+    let PlacedDocument { mut document, place, .. } =
+        open_trusted(&request.files, &request.allowed, &request.trust, progress)?;
+    let session = place.session(document.clone(), progress)?;
+    let mut layout = Layout::new(&place);
     let mut failed = None;
     document.for_each_path(&mut |name| {
-        let packed = editor.place.roots.resolve(name).map_err(Into::into).and_then(|file| layout.place(&file));
+        let packed = place.roots.resolve(name).map_err(Into::into).and_then(|file| layout.place(&file));
         match packed {
             Ok(packed) => *name = packed,
             Err(e) => failed = Some(e),
@@ -198,11 +198,11 @@ fn scene_files(request: &PackRequest, progress: &Progress) -> Result<(Bundle, Ve
     }
     // Files that the named files refer to, such as materials and tables.
     for input in session.input_paths() {
-        if editor.place.scene.as_deref().is_none_or(|scene| !same(scene, &input)) {
+        if place.scene.as_deref().is_none_or(|scene| !same(scene, &input)) {
             layout.place(&input)?;
         }
     }
-    let name = editor.place.scene.as_deref().and_then(|scene| scene.file_stem()?.to_str()).unwrap_or("scene");
+    let name = place.scene.as_deref().and_then(|scene| scene.file_stem()?.to_str()).unwrap_or("scene");
     let scene = format!("{SCENE_FOLDER}/{name}.toml");
     let text = output::document_toml(&document)?.into_bytes();
     let title = document.title.clone();
@@ -236,8 +236,7 @@ struct Layout {
 }
 
 impl Layout {
-    fn new(editor: &Editor) -> Self {
-        let Place { roots, .. } = &editor.place;
+    fn new(Place { roots, .. }: &Place) -> Self {
         let own = (!roots.scene_dir.as_os_str().is_empty()).then_some(&roots.scene_dir);
         let folders = own.into_iter().chain(&roots.allowed).filter_map(|folder| fs::canonicalize(folder).ok());
         // Beside single files that the user allowed lie those that they refer to.

@@ -1,7 +1,8 @@
 //! Pictures while the camera moves, and at rest after it.
 
-use belvedere::editor::{LiveSession, Order, Pace, Place, Quality, Shown, Sides};
+use belvedere::editor::{LiveSession, Order, Pace, Quality, Shown, Sides};
 use belvedere::picture::PictureOptions;
+use belvedere::placed::Place;
 use belvedere::scene::Progress;
 use belvedere::scene_file::{Document, PointDoc, SourceDocument, parse};
 use belvedere::{OpenOptions, Session};

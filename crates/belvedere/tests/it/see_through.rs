@@ -1,7 +1,8 @@
 //! The opacity of solids in the application: a layer is not read again for it, and the picture at rest is that of the command line.
 
-use belvedere::editor::{LiveSession, Order, Pace, Place, Quality, Shown, Sides};
+use belvedere::editor::{LiveSession, Order, Pace, Quality, Shown, Sides};
 use belvedere::picture::PictureOptions;
+use belvedere::placed::Place;
 use belvedere::scene::{Frame, Mesh, Progress};
 use belvedere::scene_file::{Document, SourceDocument, parse};
 use belvedere::{OpenOptions, Session};

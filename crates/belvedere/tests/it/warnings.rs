@@ -1,6 +1,7 @@
 //! The same ground, eye and route give the same warnings, whichever verb they come by.
 
-use belvedere::editor::{LiveSession, Order, Pace, Place, Sides};
+use belvedere::editor::{LiveSession, Order, Pace, Sides};
+use belvedere::placed::Place;
 use belvedere::scene::Progress;
 use belvedere::scene_file::AnimationDoc;
 use belvedere::verbs::animate::{AnimateRequest, animate};
