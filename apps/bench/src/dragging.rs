@@ -4,7 +4,8 @@
 use crate::clock::{process_ms, quantile};
 use anyhow::{Context, Result, bail, ensure};
 use belvedere::core::DVec2;
-use belvedere::editor::{Answer, Editor, Order, Pace, Painter, Quality, Shown, Sides, above_ground};
+use belvedere::editor::{Answer, Editor, Painter, above_ground};
+use belvedere::live::{Order, Pace, Quality, Shown, Sides};
 use belvedere::scene_file::Document;
 use belvedere::scene_file::camera::{frame_factor, navigation, set_camera};
 use schemars::JsonSchema;

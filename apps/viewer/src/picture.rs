@@ -8,7 +8,7 @@ use crate::model::{Compare, Model, Tool};
 use crate::pointer::{Hand, share};
 use crate::points::{coordinates, image_of};
 use belvedere::core::{Aabb, DVec2, DVec3};
-use belvedere::editor::{Pace, Shown};
+use belvedere::live::{Pace, Shown};
 use belvedere::scene::Frame;
 use eframe::egui::{
     Align2, Color32, ColorImage, Context, CursorIcon, FontId, Painter, Pos2, Rect, Response, Role, Sense, Stroke,

@@ -42,6 +42,7 @@ pub mod fallback;
 mod film;
 mod guard;
 mod kept;
+pub mod live;
 mod names;
 mod open;
 mod options;

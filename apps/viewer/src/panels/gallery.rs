@@ -3,7 +3,8 @@
 use crate::language::{fill, tr};
 use crate::model::Model;
 use belvedere::core::presets::{BUILTINS, Builtin};
-use belvedere::editor::{Thumbnails, beside};
+use belvedere::editor::beside;
+use belvedere::live::Thumbnails;
 use belvedere::scene::{Frame, Progress};
 use belvedere::scene_file::{Document, LayerDoc, PresetsDoc, SplineStageDoc, StageDoc};
 use eframe::egui::{

@@ -4,7 +4,7 @@ use super::{percent, set_stage, slider};
 use crate::language::{fill, tr};
 use crate::model::Model;
 use belvedere::core::DVec3;
-use belvedere::editor::Judged;
+use belvedere::live::Judged;
 use belvedere::scene_file::{LayerDoc, SolverMode, StageDoc, TerrainStageDoc};
 use eframe::egui::{ComboBox, Id, Ui};
 use std::sync::Arc;

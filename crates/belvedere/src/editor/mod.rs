@@ -1,30 +1,21 @@
-//! Editing of scenes: a document with its undo history, a session that follows it, and a painter in the background.
+//! Editing of scenes: a document with its undo history, and a painter in the background.
 //!
 //! The document holds all state: every action of the user is an edit of it, and the saved document renders to the same picture elsewhere.
 
 mod beside;
 mod camera;
-mod coarse;
 mod find;
 mod flight;
-mod ground;
 mod layers;
 mod lengths;
-mod live;
-mod moving;
-mod named;
 mod object;
 mod painter;
 mod place;
-mod rate;
 mod rays;
 mod recovery;
 mod residues;
 mod sections;
 mod steps;
-mod sun;
-mod thin;
-mod thumbnail;
 
 pub use beside::{THREADS, beside};
 pub use camera::above_ground;
@@ -32,17 +23,14 @@ pub use find::{Matches, NameIndex, Named, Wanted, atoms_in, folded, place_in};
 pub use flight::{Flight, shown_whole};
 pub use layers::{with_layer_renamed, without_layer};
 pub use lengths::{Lengths, ground_way, lengths, lengths_geojson};
-pub use live::{Judged, LiveSession, Order, Pace, Shown, Sides};
 pub use object::object_at;
 pub use painter::{Answer, Painter};
 pub use place::FileChange;
-pub use rate::{Quality, Rate};
 pub use rays::{next_turn, sharpness_at, sharpness_knob, with_parallel_planes, with_pivot_line};
 pub use recovery::{Recovered, Recovery};
 pub use residues::{NamedResidue, read_residues, residues};
 pub use sections::{with_levels, with_own_style};
 pub use steps::step_name;
-pub use thumbnail::Thumbnails;
 
 use crate::placed::Place;
 use crate::scene_file::{Document, LayerDoc};

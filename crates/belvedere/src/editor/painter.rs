@@ -1,7 +1,7 @@
 //! Draws pictures in the background: the newest order counts, and a picture at rest is cancelled by a new order.
 
 use super::beside::{THREADS, beside};
-use super::live::{Judged, LiveSession, Order, Pace, Shown};
+use crate::live::{Judged, LiveSession, Order, Pace, Shown};
 use crate::scene_file::Document;
 use belvedere_scene::Progress;
 use std::sync::atomic::Ordering;
@@ -187,7 +187,9 @@ impl Desk {
                 session.set_density(self.state().density);
                 let answer = guarded(&order.document, || session.show(&order, progress));
                 let mut state = self.state();
-                if session.has_time_to_judge(order.pace) && !progress.is_cancelled() {
+                // Without threads a judgement would hold the next picture of a motion up.
+                let in_background = THREADS || order.pace == Pace::Resting;
+                if in_background && session.has_time_to_judge(order.pace) && !progress.is_cancelled() {
                     state.to_judge = Some(order);
                 }
                 answer

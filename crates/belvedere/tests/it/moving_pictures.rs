@@ -1,6 +1,6 @@
 //! Pictures while the camera moves, and at rest after it.
 
-use belvedere::editor::{LiveSession, Order, Pace, Quality, Shown, Sides};
+use belvedere::live::{LiveSession, Order, Pace, Quality, Shown, Sides};
 use belvedere::picture::PictureOptions;
 use belvedere::placed::Place;
 use belvedere::scene::Progress;

@@ -1,6 +1,6 @@
 //! The opacity of solids in the application: a layer is not read again for it, and the picture at rest is that of the command line.
 
-use belvedere::editor::{LiveSession, Order, Pace, Quality, Shown, Sides};
+use belvedere::live::{LiveSession, Order, Pace, Quality, Shown, Sides};
 use belvedere::picture::PictureOptions;
 use belvedere::placed::Place;
 use belvedere::scene::{Frame, Mesh, Progress};

@@ -1,6 +1,6 @@
 //! The same ground, eye and route give the same warnings, whichever verb they come by.
 
-use belvedere::editor::{LiveSession, Order, Pace, Sides};
+use belvedere::live::{LiveSession, Order, Pace, Sides};
 use belvedere::placed::Place;
 use belvedere::scene::Progress;
 use belvedere::scene_file::AnimationDoc;

@@ -82,7 +82,7 @@ impl Quality {
 
 /// Chooses the quality of the next moving picture by the times of the last ones.
 #[derive(Debug)]
-pub struct Rate {
+pub(super) struct Rate {
     quality: Quality,
     /// By coarseness: share of the pixels, time and number of the last picture drawn with it.
     costs: [Option<(f64, f64, u32)>; COARSEST as usize + 1],
@@ -98,12 +98,12 @@ impl Default for Rate {
 
 impl Rate {
     /// Quality of the next picture.
-    pub fn quality(&self) -> Quality {
+    pub(super) fn quality(&self) -> Quality {
         self.quality
     }
 
     /// Notes the time of a picture of this quality, milliseconds, and chooses the quality of the next one.
-    pub fn note(&mut self, milliseconds: f64) {
+    pub(super) fn note(&mut self, milliseconds: f64) {
         self.pictures += 1;
         let (pixels, level) = (self.quality.pixels(), self.quality.coarseness as usize);
         self.costs[level] = Some((pixels, milliseconds, self.pictures));
@@ -124,7 +124,7 @@ impl Rate {
     /// Notes that a picture was broken off because it took too long.
     ///
     /// * `milliseconds`: time until then; what it would have taken is not known.
-    pub fn broken_off(&mut self, milliseconds: f64) {
+    pub(super) fn broken_off(&mut self, milliseconds: f64) {
         self.note(2.0 * milliseconds.max(LATE_MS));
     }
 

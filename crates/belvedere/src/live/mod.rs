@@ -1,12 +1,17 @@
 //! A session that follows a document: everything is resolved again, but unchanged layers are not read again.
 
-use super::THREADS;
-use super::ground::{Ground, with_ground};
-use super::moving::{quick, within};
-use super::named::NamedSections;
-use super::rate::{Quality, Rate, TARGET_MS};
-use super::sun::HeldSun;
-use super::thin::Thin;
+mod coarse;
+mod ground;
+mod moving;
+mod named;
+mod rate;
+mod sun;
+mod thin;
+mod thumbnail;
+
+pub use rate::Quality;
+pub use thumbnail::Thumbnails;
+
 use crate::fallback;
 use crate::picture::{self, DisplacementReport, PictureOptions};
 use crate::placed::Place;
@@ -22,8 +27,14 @@ use belvedere_construct::{MeasureOptions, Measures};
 use belvedere_core::{View, Warning};
 use belvedere_scene::Instant;
 use belvedere_scene::{Frame, Progress, RenderJob, RenderOptions, Scene};
+use ground::{Ground, with_ground};
+use moving::{quick, within};
+use named::NamedSections;
+use rate::{Rate, TARGET_MS};
 use std::sync::Arc;
 use std::time::Duration;
+use sun::HeldSun;
+use thin::Thin;
 
 /// An order for a picture of a document.
 #[derive(Debug, Clone)]
@@ -60,7 +71,7 @@ pub enum Sides {
 pub enum Pace {
     /// As little as possible, during a motion; slow solvers are postponed.
     Moving {
-        /// Quality of the picture; `None` = as good as is drawn in time ([`Rate`]).
+        /// Quality of the picture; `None` = as good as is drawn in time.
         quality: Option<Quality>,
     },
     /// As much as needed: the same picture that the command line draws.
@@ -239,12 +250,11 @@ impl LiveSession {
         }
     }
 
-    /// Whether there is time to judge a picture: always at rest; during a motion only in the background, and if the last judgement was
-    /// short, or long enough ago.
+    /// Whether there is time to judge a picture: always at rest; during a motion if the last judgement was short, or long enough ago.
     pub fn has_time_to_judge(&self, pace: Pace) -> bool {
         let waited = || self.judged_at.is_none_or(|at| at.elapsed() >= JUDGE_SHARE * self.judging);
         let in_time = || self.judging <= JUDGE_WITHIN || (self.judging <= JUDGE_AT_MOST && waited());
-        pace == Pace::Resting || (THREADS && in_time())
+        pace == Pace::Resting || in_time()
     }
 
     /// Visibility of the required features in the view of the last picture; `None` if there are none.
