@@ -1,10 +1,10 @@
 //! Scenes of the data collection, as a user opens them: places, towns, molecules, volumes, a mesh.
 
 use anyhow::Result;
-use belvedere::editor::Editor;
 use belvedere::scene::Progress;
 use belvedere::scene_file::{LayerDoc, StageDoc};
 use belvedere::verbs::open_files::open_files;
+use belvedere_studio::Editor;
 use std::path::{Path, PathBuf};
 
 const ANDORRA: &str = include_str!("../../../scenes/andorra.toml");

@@ -4,10 +4,10 @@
 use crate::clock::{process_ms, quantile};
 use anyhow::{Context, Result, bail, ensure};
 use belvedere::core::DVec2;
-use belvedere::editor::{Answer, Editor, Painter, above_ground};
 use belvedere::live::{Order, Pace, Quality, Shown, Sides};
 use belvedere::scene_file::Document;
 use belvedere::scene_file::camera::{frame_factor, navigation, set_camera};
+use belvedere_studio::{Answer, Editor, Painter, above_ground};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::sync::Arc;

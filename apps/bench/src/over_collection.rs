@@ -186,7 +186,7 @@ impl Case {
 
 fn cost(
     name: &str,
-    editor: belvedere::editor::Editor,
+    editor: belvedere_studio::Editor,
     request: &CollectionRequest,
     progress: &Progress,
 ) -> Result<SceneCost> {

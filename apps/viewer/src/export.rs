@@ -5,7 +5,6 @@ use crate::language::{fill, heard, later, tr};
 use crate::menu::Bookmark;
 use crate::model::Model;
 use crate::wake::Wake;
-use belvedere::editor::beside;
 use belvedere::picture::PictureOptions;
 use belvedere::placed::Place;
 use belvedere::scene::Progress;
@@ -13,6 +12,7 @@ use belvedere::scene_file::{AnimationDoc, Document, LayerDoc, PointDoc, SweepDoc
 use belvedere::verbs::animate::{AnimateRequest, animate};
 use belvedere::verbs::measure::{MeasureOptions, measure};
 use belvedere::{BelvedereError, RendererChoice, output};
+use belvedere_studio::beside;
 use eframe::egui::{Button, ComboBox, Context, DragValue, ProgressBar, Ui};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;

@@ -6,8 +6,8 @@ use crate::model::Model;
 use crate::points::has_same_layers;
 use crate::wake::Wake;
 use belvedere::core::{Aabb, DVec3};
-use belvedere::editor::{NameIndex, Wanted, atoms_in, beside, folded, place_in};
 use belvedere::scene_file::Document;
+use belvedere_studio::{NameIndex, Wanted, atoms_in, beside, folded, place_in};
 use eframe::egui::{
     Align2, Area, Button, Context, Frame, Id, Key, Modifiers, Order, Pos2, RichText, Role, ScrollArea, TextEdit, Ui,
     WidgetInfo, vec2,
@@ -97,8 +97,8 @@ impl Find {
             return;
         }
         let (mut hits, mut said) = (Vec::new(), None);
-        let scene = model.shown.as_ref().map(|shown| shown.session.scene());
-        match scene.and_then(|scene| place_in(scene, &self.text)) {
+        let session = model.shown.as_ref().map(|shown| &shown.session);
+        match session.and_then(|session| place_in(session, &self.text)) {
             Some(Ok((point, words))) => {
                 hits.push(Hit::Place(point));
                 said = words;
@@ -117,7 +117,7 @@ impl Find {
             hits.extend(found.best.into_iter().map(Hit::Thing));
         }
         if total == 0
-            && let Some(bounds) = scene.and_then(|scene| atoms_in(scene, &self.text))
+            && let Some(bounds) = session.and_then(|session| atoms_in(session.scene(), &self.text))
         {
             hits.push(Hit::Atoms(bounds));
             total = 1;

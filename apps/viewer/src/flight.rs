@@ -1,8 +1,8 @@
 //! What the model knows of a flight of the camera.
 
 use belvedere::core::DVec3;
-use belvedere::editor::Flight;
 use belvedere::scene_file::CameraDoc;
+use belvedere_studio::Flight;
 
 /// A flight under way.
 pub(crate) struct Flying {

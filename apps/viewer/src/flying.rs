@@ -3,9 +3,9 @@
 use crate::flight::{Flying, Ring};
 use crate::model::Model;
 use belvedere::core::{Aabb, Navigation, Pinhole, Projection};
-use belvedere::editor::{Flight, shown_whole};
 use belvedere::scene_file::camera::navigation;
 use belvedere::scene_file::{CameraDoc, ConstructorKind};
+use belvedere_studio::{Flight, shown_whole};
 use eframe::egui::{Context, Event, Id, TouchPhase};
 
 /// Duration of a flight, seconds.

@@ -1,4 +1,4 @@
-//! The application: each technique by hand. A thin shell over the facade's editor: panels edit one document, a painter draws it.
+//! The application: each technique by hand. A thin shell over `belvedere_studio`: panels edit one document, a painter draws it.
 
 mod address;
 #[cfg(target_family = "wasm")]

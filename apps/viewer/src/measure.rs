@@ -5,9 +5,9 @@ use crate::model::{Model, Tool};
 use crate::pointer::share;
 use crate::points::{Places, coordinates, has_same_layers};
 use belvedere::core::{DVec2, DVec3};
-use belvedere::editor::{Lengths, ground_way, lengths, lengths_geojson};
 use belvedere::scene::{LayerKind, Scene, Unit};
 use belvedere::scene_file::Document;
+use belvedere_studio::{Lengths, ground_way, lengths, lengths_geojson};
 use eframe::egui::{
     Align, Align2, Area, Color32, Context, CursorIcon, FontId, Frame, Grid, Id, Key, Layout, Mesh, Modifiers, Order,
     Painter, Pos2, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,

@@ -8,12 +8,12 @@ use crate::language::tr;
 pub(crate) use crate::look::{Compare, Look, Tool};
 use crate::notices::Notices;
 use belvedere::core::{DVec2, DVec3, Navigation};
-use belvedere::editor::{Answer, Editor, Painter, above_ground, object_at};
 use belvedere::live::{Judged, Order, Pace, Quality, Shown, Sides};
 use belvedere::scene::Frame;
 use belvedere::scene::Instant as Clock;
 use belvedere::scene_file::camera::{frame_factor, navigation, set_camera};
 use belvedere::scene_file::{CameraDoc, Document, LayerDoc, StageDoc};
+use belvedere_studio::{Answer, Editor, Painter, above_ground, object_at};
 use eframe::egui::Id;
 use std::sync::Arc;
 

@@ -7,7 +7,7 @@ use belvedere_scene::molecule::Selection;
 use belvedere_scene::{LayerKind, MeshLayer, Scene};
 
 /// The point of `x,y,z`; `None` for other texts.
-pub(crate) fn point(see: &str) -> Option<DVec3> {
+pub fn point(see: &str) -> Option<DVec3> {
     let numbers: Vec<f64> = see.split(',').map(|n| n.trim().parse().ok()).collect::<Option<_>>()?;
     match numbers[..] {
         [x, y, z] => Some(DVec3::new(x, y, z)).filter(|p| p.is_finite()),
@@ -15,8 +15,11 @@ pub(crate) fn point(see: &str) -> Option<DVec3> {
     }
 }
 
-/// The target with a name.
-pub(crate) fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError> {
+/// The target with a name: a point, a layer by its id, a part of a mesh or a box of a layer, or a selection of atoms.
+///
+/// # Errors
+/// [`BelvedereError::Target`] for a name of nothing, or of something that cannot be looked for.
+pub fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError> {
     if let Some(point) = point(see) {
         return Ok(Target::points([point]));
     }

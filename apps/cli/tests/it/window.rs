@@ -1,7 +1,7 @@
 //! The application as `belvedere view` starts it, and what it saves.
 
 use super::{Place, read};
-use belvedere::editor::Editor;
+use belvedere_studio::Editor;
 use std::os::unix::fs::PermissionsExt;
 use std::process::Command;
 

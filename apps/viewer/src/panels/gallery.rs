@@ -3,10 +3,10 @@
 use crate::language::{fill, tr};
 use crate::model::Model;
 use belvedere::core::presets::{BUILTINS, Builtin};
-use belvedere::editor::beside;
 use belvedere::live::Thumbnails;
 use belvedere::scene::{Frame, Progress};
 use belvedere::scene_file::{Document, LayerDoc, PresetsDoc, SplineStageDoc, StageDoc};
+use belvedere_studio::beside;
 use eframe::egui::{
     Align2, Color32, ColorImage, Context, FontId, Pos2, Rect, Role, Sense, Stroke, StrokeKind, TextureHandle,
     TextureOptions, Ui, WidgetInfo, pos2, vec2,
@@ -281,8 +281,8 @@ fn paint(ui: &Ui, rect: Rect, name: &str, (card, [is_present, hovered, focused])
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere::editor::Editor;
     use belvedere::placed::Place;
+    use belvedere_studio::Editor;
 
     #[test]
     fn a_variant_keeps_the_pivot_and_everything_else() {

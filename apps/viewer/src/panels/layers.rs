@@ -13,8 +13,8 @@ use crate::language::{fill, heard, tr};
 use crate::model::Model;
 use crate::widgets::steady;
 use belvedere::Warning;
-use belvedere::editor::{with_layer_renamed, without_layer};
 use belvedere::scene_file::LayerDoc;
+use belvedere_studio::{with_layer_renamed, without_layer};
 use eframe::egui::{Button, CollapsingHeader, Role, Ui, WidgetInfo};
 
 pub(crate) use residues::choose_clicked;

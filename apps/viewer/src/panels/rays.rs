@@ -6,8 +6,8 @@ use crate::language::{fill, tr};
 use crate::model::{Model, Tool};
 use belvedere::core::DVec3;
 use belvedere::core::map::curved_rays::{Model as RayModel, Sharpness};
-use belvedere::editor::{next_turn, with_parallel_planes, with_pivot_line};
 use belvedere::scene_file::{ConstructorDoc, ConstructorKind, LayerDoc, RaysStageDoc, StageDoc, TurnDoc};
+use belvedere_studio::{next_turn, with_parallel_planes, with_pivot_line};
 use eframe::egui::{CollapsingHeader, ComboBox, Context, Id, Ui};
 
 const KIND: &str = "curved_rays";

@@ -5,8 +5,8 @@ use crate::model::Model;
 use crate::widgets::strip::{StripEdit, strip};
 use belvedere::core::presets::PresetDocument;
 use belvedere::core::presets::edit::PresetChange;
-use belvedere::editor::{with_levels, with_own_style};
 use belvedere::scene_file::{Document, LayerDoc};
+use belvedere_studio::{with_levels, with_own_style};
 use eframe::egui::{Color32, ComboBox, Id, RichText, Role, TextStyle, TextWrapMode, Ui, WidgetInfo, WidgetText};
 
 /// Name of sections that name no representation.

@@ -2,7 +2,7 @@
 
 use super::Viewer;
 use crate::language::{heard, tr};
-use belvedere::editor::THREADS;
+use belvedere_studio::THREADS;
 use eframe::egui::{Align2, Area, Context, Frame, Id, Order, ProgressBar, vec2};
 
 /// Time after which running work is announced, seconds.

@@ -3,7 +3,7 @@
 use super::Viewer;
 use super::unsaved::Next;
 use crate::language::{fill, tr};
-use belvedere::editor::FileChange;
+use belvedere_studio::FileChange;
 use eframe::egui::{Button, Context, Id, Key, Modal};
 
 /// The open question.

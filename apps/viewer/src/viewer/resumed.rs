@@ -3,9 +3,9 @@
 use super::waiting::{Waiting, each_file, missing};
 use super::{Extra, Viewer};
 use crate::language::tr;
-use belvedere::editor::Recovered;
 use belvedere::io::fs;
 use belvedere::scene_file::Document;
+use belvedere_studio::Recovered;
 #[cfg(target_family = "wasm")]
 use eframe::egui::Context;
 use std::collections::BTreeSet;
@@ -156,7 +156,7 @@ impl Viewer {
 mod tests {
     use super::*;
     use crate::Opening;
-    use belvedere::editor::Editor;
+    use belvedere_studio::Editor;
 
     #[test]
     fn a_scene_comes_back_changed_and_waits_for_files_that_are_missing() {

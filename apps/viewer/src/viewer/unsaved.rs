@@ -2,7 +2,7 @@
 
 use super::Viewer;
 use crate::language::{fill, tr};
-use belvedere::editor::Editor;
+use belvedere_studio::Editor;
 use eframe::egui::{Button, Context, Id, Key, Modal, ViewportCommand};
 use std::sync::Arc;
 

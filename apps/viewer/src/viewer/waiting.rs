@@ -5,7 +5,7 @@ use super::unsaved::Next;
 use super::{Extra, Viewer};
 use crate::language::{fill, tr};
 use crate::menu::WaitingScene;
-use belvedere::editor::{Editor, Recovered};
+use belvedere_studio::{Editor, Recovered};
 use eframe::egui::Context;
 use std::path::{Path, PathBuf};
 

@@ -5,11 +5,11 @@ use crate::builtin::BUILTIN;
 use crate::language::{fill, later, tr};
 use crate::theme;
 use crate::wake::Wake;
-use belvedere::editor::{THREADS, beside};
 use belvedere::picture::PictureOptions;
 use belvedere::placed::Place;
 use belvedere::scene::{Progress, RenderOptions};
 use belvedere::scene_file::{self, OverlayDoc};
+use belvedere_studio::{THREADS, beside};
 use eframe::egui::{
     self, Align2, Button, ColorImage, Context, Id, Image, TextureHandle, TextureOptions, Vec2, Window, vec2,
 };

@@ -4,8 +4,8 @@ use super::nudged;
 use crate::language::{fill, later, tr};
 use belvedere::core::map::curved_rays::Sharpness;
 use belvedere::core::{DVec2, DVec3, View};
-use belvedere::editor::{sharpness_at, sharpness_knob};
 use belvedere::scene_file::TurnDoc;
+use belvedere_studio::{sharpness_at, sharpness_knob};
 use eframe::egui::{
     Color32, CursorIcon, FontId, Id, Pos2, Rect, Role, Sense, Stroke, TextureId, Ui, WidgetInfo, pos2, vec2,
 };

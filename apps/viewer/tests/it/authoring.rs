@@ -148,7 +148,7 @@ fn of_several_presets_the_chosen_one_is_edited_and_those_without_a_name_have_a_n
     let mut own = builtin("progressive");
     own.presets.extend(builtin("map").presets);
     own.presets.iter_mut().for_each(|preset| preset.name.clear());
-    let mut editor = belvedere::editor::Editor::open(&path, Vec::new()).expect("scene");
+    let mut editor = belvedere_studio::Editor::open(&path, Vec::new()).expect("scene");
     let stage = SplineStageDoc { presets: PresetsDoc::Inline(Box::new(own.clone())), pivot: None, plane: None };
     editor.edit(|document| document.stage.push(StageDoc::SplineBend(stage)));
     editor.save(&path).expect("saved");

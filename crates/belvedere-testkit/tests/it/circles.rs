@@ -194,7 +194,7 @@ fn modules_import_each_other_in_one_direction() {
     assert_eq!(found, Vec::<String>::new());
 }
 
-/// Verbs of the library that use another verb or the editor, and why they still do.
+/// Verbs of the library that use another verb or live sessions, and why they still do.
 const ABOVE_OTHERS: [(&str, &str); 11] = [
     // One request is handed to the search that answers it.
     ("asked", "drafts"),
@@ -215,12 +215,12 @@ const ABOVE_OTHERS: [(&str, &str); 11] = [
 /// Public modules beside the verbs that are none themselves: what several of them share, and the schemas of all answers.
 const NO_VERBS: [&str; 3] = ["appearance", "moved", "schemas"];
 
-/// Which module of the folder of verbs uses which verb other than itself, or the editor.
+/// Which module of the folder of verbs uses which verb other than itself, or live sessions.
 fn above_others(tree: &Tree, verbs: &BTreeSet<String>) -> BTreeSet<(String, String)> {
     let pairs = tree.uses().filter_map(|(module, target, _)| {
         let ([folder, from, ..], [first, rest @ ..]) = (&module[..], &target[..]) else { return None };
         let to = match rest {
-            _ if first == "editor" => first,
+            _ if first == "live" => first,
             [verb, ..] if first == "verbs" && verbs.contains(verb) => verb,
             _ => return None,
         };
@@ -230,7 +230,7 @@ fn above_others(tree: &Tree, verbs: &BTreeSet<String>) -> BTreeSet<(String, Stri
 }
 
 #[test]
-fn verbs_use_no_other_verb_and_no_editor() {
+fn verbs_use_no_other_verb_and_no_live_session() {
     let source = belvedere_testkit::workspace_root().join("crates/belvedere/src");
     let list = syn::parse_file(&fs::read_to_string(source.join("verbs/mod.rs")).expect("source")).expect("source");
     let public = list.items.iter().filter_map(|item| match item {
@@ -246,17 +246,17 @@ fn verbs_use_no_other_verb_and_no_editor() {
 #[test]
 fn a_verb_above_another_is_found() {
     let files = [
-        ("", "mod editor; mod verbs;"),
-        ("editor", "pub struct Editor;"),
+        ("", "mod live; mod verbs;"),
+        ("live", "pub struct LiveSession;"),
         ("verbs", "pub mod a; pub mod b; mod shared;"),
         ("verbs::a", "use super::shared::Part; pub fn a(_: Part) {}"),
-        ("verbs::b", "pub use super::a::a; fn b(_: crate::editor::Editor) {}"),
+        ("verbs::b", "pub use super::a::a; fn b(_: crate::live::LiveSession) {}"),
         ("verbs::shared", "pub struct Part; fn f() { crate::verbs::b::a(Part) }"),
     ];
     let module = |way: &str| way.split("::").filter(|name| !name.is_empty()).map(str::to_owned).collect();
     let tree = Tree::of(&files.map(|(way, text)| (module(way), text.to_owned())));
     let verbs = BTreeSet::from(["a".to_owned(), "b".to_owned()]);
-    let found = [("b", "a"), ("b", "editor"), ("shared", "a")];
+    let found = [("b", "a"), ("b", "live"), ("shared", "a")];
     assert_eq!(above_others(&tree, &verbs), BTreeSet::from(found.map(|(from, to)| (from.to_owned(), to.to_owned()))));
 }
 

@@ -92,11 +92,16 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
         ],
         &["flate2", "glam", "pdf-writer", "rayon", "schemars", "serde", "serde_json", "thiserror", "toml"],
     ),
-    ("belvedere-bench", &["belvedere"], &["anyhow", "rayon", "schemars", "serde", "serde_json", "tempfile"]),
+    ("belvedere-studio", &["belvedere"], &["rayon", "serde", "serde_json"]),
+    (
+        "belvedere-bench",
+        &["belvedere", "belvedere-studio"],
+        &["anyhow", "rayon", "schemars", "serde", "serde_json", "tempfile"],
+    ),
     ("belvedere-gallery", &["belvedere"], &["anyhow", "plotters", "plotters-backend", "serde"]),
     (
         "belvedere-viewer",
-        &["belvedere"],
+        &["belvedere", "belvedere-studio"],
         &[
             "clap",
             "eframe",

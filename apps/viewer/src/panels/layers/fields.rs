@@ -3,8 +3,8 @@
 use crate::language::{fill, tr};
 use crate::model::Model;
 use belvedere::by_property::{Field, fields};
-use belvedere::editor::beside;
 use belvedere::scene_file::LayerDoc;
+use belvedere_studio::beside;
 use eframe::egui::{Id, Ui};
 use std::sync::{Arc, OnceLock};
 

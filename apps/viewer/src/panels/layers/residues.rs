@@ -3,8 +3,8 @@
 use crate::language::{fill, tr};
 use crate::model::{Model, Tool};
 use crate::panels::rays::track;
-use belvedere::editor::{NamedResidue, read_residues, residues};
 use belvedere::scene_file::{LayerDoc, MoleculeDoc};
+use belvedere_studio::{NamedResidue, read_residues, residues};
 use eframe::egui::{Button, ComboBox, Id, TextEdit, Ui};
 use std::sync::Arc;
 

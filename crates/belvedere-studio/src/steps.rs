@@ -1,7 +1,7 @@
 //! Names of undo steps, found by comparing the document before and after.
 
 use super::Editor;
-use crate::scene_file::{CameraDoc, ConstructorKind, Document, LayerDoc, StageDoc};
+use belvedere::scene_file::{CameraDoc, ConstructorKind, Document, LayerDoc, StageDoc};
 
 impl Editor {
     /// Names of all steps, oldest first, and the number of those that are not undone.
@@ -142,13 +142,13 @@ fn stages(before: &[StageDoc], after: &[StageDoc]) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::placed::Place;
-    use crate::scene_file::{OverlayDoc, PointDoc};
+    use belvedere::placed::Place;
+    use belvedere::scene_file::{OverlayDoc, PointDoc};
 
     fn editor() -> Editor {
         let text = "format = 1\n[camera]\neye = [0, 0, 10]\nlook_at = [0, 1, 0]\n[[layer]]\nkind = 'line'\nid = 'way'\nsource = 'way.gpx'\n\
             [[layer]]\nkind = 'point'\nid = 'huts'\nsource = 'huts.gpx'\n";
-        let source = crate::scene_file::parse(std::path::Path::new("s.toml"), text).expect("scene");
+        let source = belvedere::scene_file::parse(std::path::Path::new("s.toml"), text).expect("scene");
         Editor::new(source.document, Place::default())
     }
 

@@ -1,6 +1,6 @@
 //! Edits of the list of layers.
 
-use crate::scene_file::{self, Document, layer_names};
+use belvedere::scene_file::{self, Document, layer_names};
 use std::path::Path;
 
 /// The document with another id for a layer, wherever it is named: by stages, sections, constructors, animations and representations.

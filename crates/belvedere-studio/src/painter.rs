@@ -1,9 +1,10 @@
 //! Draws pictures in the background: the newest order counts, and a picture at rest is cancelled by a new order.
 
 use super::beside::{THREADS, beside};
-use crate::live::{Judged, LiveSession, Order, Pace, Shown};
-use crate::scene_file::Document;
-use belvedere_scene::Progress;
+use belvedere::BelvedereError;
+use belvedere::live::{Judged, LiveSession, Order, Pace, Shown};
+use belvedere::scene::Progress;
+use belvedere::scene_file::Document;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
@@ -211,7 +212,7 @@ impl Desk {
 }
 
 /// A picture, or the reason why there is none; `None` if it was cancelled. A panic is a reason too, so that the window lives on.
-fn guarded(document: &Arc<Document>, show: impl FnOnce() -> Result<Shown, crate::BelvedereError>) -> Option<Answer> {
+fn guarded(document: &Arc<Document>, show: impl FnOnce() -> Result<Shown, BelvedereError>) -> Option<Answer> {
     let failed = |reason| Some(Answer::Failed(document.clone(), reason));
     match std::panic::catch_unwind(std::panic::AssertUnwindSafe(show)) {
         Ok(Ok(shown)) => Some(Answer::Shown(Box::new(shown))),

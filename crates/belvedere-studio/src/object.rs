@@ -1,10 +1,10 @@
 //! Objects under the pointer.
 
 use super::residues::residue_at;
-use crate::Session;
-use crate::pick::pick;
-use belvedere_core::{DVec2, DVec3};
-use belvedere_scene::{BoxShape, LayerKind, Progress};
+use belvedere::Session;
+use belvedere::core::{DVec2, DVec3};
+use belvedere::pick::pick;
+use belvedere::scene::{BoxShape, LayerKind, Progress};
 
 /// The object at a pixel of the picture, as a constructor's target: a part of a mesh by its name, a box as `LAYER/NUMBER`, a residue of a
 /// molecule as a selection of atoms, else the whole layer; `None` if the pixel shows no object.
@@ -41,8 +41,8 @@ fn distance(shape: &BoxShape, point: DVec3) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene_file::parse;
-    use crate::{OpenOptions, Session};
+    use belvedere::scene_file::parse;
+    use belvedere::{OpenOptions, Session};
     use std::path::Path;
 
     #[test]

@@ -1,10 +1,10 @@
 //! Recovery of a document after a crash.
 
 use super::Editor;
-use crate::placed::Place;
-use crate::scene_file::paths::Roots;
-use crate::scene_file::{self, Document};
-use crate::{BelvedereError, output};
+use belvedere::placed::Place;
+use belvedere::scene_file::paths::Roots;
+use belvedere::scene_file::{self, Document};
+use belvedere::{BelvedereError, output};
 use serde::{Deserialize, Serialize};
 use std::fs::{File, TryLockError};
 use std::path::{Path, PathBuf};
@@ -85,7 +85,7 @@ impl Recovery {
     pub fn claim(folder: &Path) -> Result<(Self, Option<Recovered>), BelvedereError> {
         let os = |path: &Path| {
             let path = path.to_owned();
-            move |e| BelvedereError::from(belvedere_io::IoError::os(&path, e))
+            move |e| BelvedereError::from(belvedere::io::IoError::os(&path, e))
         };
         std::fs::create_dir_all(folder).map_err(os(folder))?;
         for n in 0..Self::MOST {

@@ -1,10 +1,10 @@
 //! Residues of a molecule: listed, read from what a user types, found under the pointer. Each is told as a selection of atoms.
 
-use crate::BelvedereError;
-use belvedere_construct::rays::Target;
-use belvedere_core::DVec3;
-use belvedere_scene::molecule::{Residue, Selection};
-use belvedere_scene::{LayerKind, MoleculeLayer, Scene};
+use belvedere::BelvedereError;
+use belvedere::construct::rays::Target;
+use belvedere::core::DVec3;
+use belvedere::scene::molecule::{Residue, Selection};
+use belvedere::scene::{LayerKind, MoleculeLayer, Scene};
 use std::collections::HashSet;
 
 /// A residue that is drawn.
@@ -153,8 +153,8 @@ fn short_forms(layer: &MoleculeLayer, text: &str) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere_scene::Unit;
-    use belvedere_scene::molecule::{Atom, Element, ModelTransform, Molecule, MoleculeStyle};
+    use belvedere::scene::Unit;
+    use belvedere::scene::molecule::{Atom, Element, ModelTransform, Molecule, MoleculeStyle};
 
     fn scene() -> Scene {
         let residue = |(chain, number, insertion, name): (&str, i32, Option<char>, &str)| Residue {

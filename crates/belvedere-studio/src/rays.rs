@@ -1,8 +1,8 @@
 //! Turns to begin with, and their handles.
 
-use crate::scene_file::{AxisDoc, RaysStageDoc, TurnDoc};
-use belvedere_core::map::curved_rays::Sharpness;
-use belvedere_core::{DQuat, DVec3, Navigation};
+use belvedere::core::map::curved_rays::Sharpness;
+use belvedere::core::{DQuat, DVec3, Navigation};
+use belvedere::scene_file::{AxisDoc, RaysStageDoc, TurnDoc};
 
 /// Angle by which the rays of a new turn are led aside, radians.
 const ASIDE: f64 = 0.35;
@@ -93,9 +93,9 @@ fn axes(turn: &TurnDoc) -> (DVec3, DVec3) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene_file::parse;
-    use crate::{OpenOptions, Session};
-    use belvedere_core::{Pinhole, Projection};
+    use belvedere::core::{Pinhole, Projection};
+    use belvedere::scene_file::parse;
+    use belvedere::{OpenOptions, Session};
     use std::path::Path;
 
     fn turn() -> (DVec3, TurnDoc) {
@@ -115,7 +115,7 @@ mod tests {
         let mut source = parse(Path::new("s.toml"), text).expect("scene");
         for turn in [pivoted.clone(), with_parallel_planes(&pivoted)] {
             let stage = RaysStageDoc { model: Default::default(), turn: vec![turn], split: None };
-            source.document.stage = vec![crate::scene_file::StageDoc::CurvedRays(stage)];
+            source.document.stage = vec![belvedere::scene_file::StageDoc::CurvedRays(stage)];
             let session = Session::from_document(source.clone(), &OpenOptions::default());
             assert!(session.expect("a view").view().is_bent());
         }

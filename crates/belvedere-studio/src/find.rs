@@ -1,11 +1,10 @@
 //! Things of a scene by their names: an index that is made once and searched as the user types.
 
 use super::residues::name;
-use crate::BelvedereError;
-use crate::places::{Place, PlaceFinder};
-use crate::targets;
-use belvedere_core::{Aabb, DVec2, DVec3};
-use belvedere_scene::{Heightfield, Layer, LayerKind, MeshLayer, MoleculeLayer, Scene};
+use belvedere::core::{Aabb, DVec2, DVec3};
+use belvedere::places::Place;
+use belvedere::scene::{Heightfield, Layer, LayerKind, MeshLayer, MoleculeLayer, Scene};
+use belvedere::{BelvedereError, Session, targets};
 use std::collections::HashMap;
 
 /// A thing with a name.
@@ -270,9 +269,9 @@ fn plain(c: char) -> Option<&'static str> {
 ///
 /// # Errors
 /// [`BelvedereError::Position`] for a place that is not on the map.
-pub fn place_in(scene: &Scene, text: &str) -> Option<Result<(DVec3, Option<String>), BelvedereError>> {
+pub fn place_in(session: &Session, text: &str) -> Option<Result<(DVec3, Option<String>), BelvedereError>> {
     let place: Place = text.trim().parse().ok()?;
-    let found = PlaceFinder::of(scene).find(&place, "place");
+    let found = session.find_place(&place, "place");
     Some(found.map(|(point, said)| (point, said.map(|warning| warning.text().to_owned()))))
 }
 
@@ -291,8 +290,8 @@ pub fn atoms_in(scene: &Scene, text: &str) -> Option<Aabb> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere_scene::molecule::{Atom, Element, ModelTransform, Molecule, MoleculeStyle, Residue};
-    use belvedere_scene::{
+    use belvedere::scene::molecule::{Atom, Element, ModelTransform, Molecule, MoleculeStyle, Residue};
+    use belvedere::scene::{
         BoxLayer, BoxShape, Color, LineFeature, LineLayer, PointFeature, PointLayer, PointStyle, Unit,
     };
     use std::time::{Duration, Instant};

@@ -1,8 +1,8 @@
 //! Edits of styling sections that need more than the presets: layers of their own.
 
-use crate::scene_file::{CityDoc, CityStyleDoc, Document, LayerDoc, PresetsDoc, StageDoc};
-use belvedere_core::presets::PresetDocument;
-use belvedere_core::sections::TagPoint;
+use belvedere::core::presets::PresetDocument;
+use belvedere::core::sections::TagPoint;
+use belvedere::scene_file::{CityDoc, CityStyleDoc, Document, LayerDoc, PresetsDoc, StageDoc};
 
 /// Name of sections that name no representation.
 const UNNAMED: &str = "all";
@@ -150,8 +150,8 @@ fn renamed(layer: &LayerDoc, id: &str) -> Result<LayerDoc, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene_file::{SourceDocument, parse};
-    use crate::{OpenOptions, Session};
+    use belvedere::scene_file::{SourceDocument, parse};
+    use belvedere::{OpenOptions, Session};
     use std::path::Path;
 
     const TOWN: &str = "format = 1\n[camera]\neye = [-120.0, -900.0, 330.0]\nlook_at = [0.0, -100.0, 0.0]\nimage = [96, 54]\n\

@@ -1,10 +1,12 @@
 //! Lengths between points that a user sets: along the ground, straight, up and down, and the area in plan.
 
-use crate::resolve::ground::Ground;
-use belvedere_core::{DVec2, DVec3};
-use belvedere_scene::{Crs, Heightfield, Scene, Unit};
+use belvedere::core::{DVec2, DVec3};
+use belvedere::io::crs::Transform;
+use belvedere::scene::{Crs, Heightfield, Scene, Unit};
 use serde_json::{Value, json};
 
+/// EPSG code of longitude and latitude.
+const WGS84: u32 = 4326;
 /// Points of a height profile, at most.
 const PROFILE: usize = 400;
 
@@ -115,14 +117,17 @@ fn profile(way: &[DVec3]) -> Vec<[f64; 2]> {
 /// The chain as GeoJSON with its lengths as properties: a line, or the ring of three points and more where `closed`. Longitude and
 /// latitude (WGS84) with heights where the scene is georeferenced, as GeoJSON requires; else scene coordinates.
 pub fn lengths_geojson(scene: &Scene, points: &[DVec3], closed: bool) -> Value {
-    let ground = Ground::of(scene);
-    let place = |p: &DVec3| match ground.crs {
-        Crs::Local => Some([p.x, p.y, p.z]),
-        Crs::Epsg(_) => ground.lon_lat(p.truncate()).map(|lon_lat| [rounded(lon_lat.x), rounded(lon_lat.y), p.z]),
+    let from_degrees = match scene.crs {
+        Crs::Local => None,
+        Crs::Epsg(code) => Transform::between_epsg(WGS84, code).ok(),
     };
-    let geographic: Option<Vec<[f64; 3]>> = points.iter().map(place).collect();
-    let system =
-        if geographic.is_some() && ground.crs != Crs::Local { "OGC:CRS84".to_owned() } else { ground.crs.to_string() };
+    let geographic: Option<Vec<[f64; 3]>> = from_degrees.and_then(|from_degrees| {
+        let place = |p: &DVec3| {
+            from_degrees.inverse_one(p.truncate()).map(|lon_lat| [rounded(lon_lat.x), rounded(lon_lat.y), p.z])
+        };
+        points.iter().map(place).collect()
+    });
+    let system = if geographic.is_some() { "OGC:CRS84".to_owned() } else { scene.crs.to_string() };
     let mut chain = geographic.unwrap_or_else(|| points.iter().map(|p| p.to_array()).collect());
     let closes = closed && points.len() >= 3;
     let geometry = match chain.as_slice() {

@@ -32,8 +32,8 @@ pub use residues::{NamedResidue, read_residues, residues};
 pub use sections::{with_levels, with_own_style};
 pub use steps::step_name;
 
-use crate::placed::Place;
-use crate::scene_file::{Document, LayerDoc};
+use belvedere::placed::Place;
+use belvedere::scene_file::{Document, LayerDoc};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -184,7 +184,7 @@ mod tests {
 
     fn editor() -> Editor {
         let text = "format = 1\n[camera]\neye = [0, 0, 10]\nlook_at = [0, 1, 0]\n";
-        let source = crate::scene_file::parse(Path::new("s.toml"), text).expect("scene");
+        let source = belvedere::scene_file::parse(Path::new("s.toml"), text).expect("scene");
         Editor::new(source.document, Place::default())
     }
 
@@ -208,7 +208,7 @@ mod tests {
         let (mut editor, text) = (editor(), "format = 1\n[camera]\neye = [0, 0, 10]\nlook_at = [0, 1, 0]\n");
         let layer = |id: &str| format!("[[layer]]\nkind = 'line'\nid = '{id}'\nsource = 'way.gpx'\n");
         let text = format!("{text}{}{}", layer("a"), layer("b"));
-        let layers = crate::scene_file::parse(Path::new("s.toml"), &text).expect("scene").document.layer;
+        let layers = belvedere::scene_file::parse(Path::new("s.toml"), &text).expect("scene").document.layer;
         editor.add_layers(layers, vec!["folder".into()]);
         assert_eq!((editor.document().layer.len(), editor.place.roots.allowed.len()), (2, 1));
         assert!(editor.undo() && editor.document().layer.is_empty());

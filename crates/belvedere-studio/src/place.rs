@@ -1,11 +1,11 @@
 //! The file of an edited document: opening and saving.
 
 use super::Editor;
-use crate::placed::PlacedDocument;
-use crate::scene_file::paths::folder_of;
-use crate::scene_file::{self, Document};
-use crate::{BelvedereError, Trust, output};
-use belvedere_io::{fs, split_table};
+use belvedere::io::{fs, split_table};
+use belvedere::placed::PlacedDocument;
+use belvedere::scene_file::paths::folder_of;
+use belvedere::scene_file::{self, Document};
+use belvedere::{BelvedereError, Trust, output};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -161,7 +161,7 @@ impl Editor {
 pub(super) mod tests {
     use super::*;
 
-    pub(in crate::editor) fn scene(dir: &Path) -> PathBuf {
+    pub(crate) fn scene(dir: &Path) -> PathBuf {
         let path = dir.join("s.toml");
         let text = "format = 1\n[camera]\neye = [0, 0, 10]\nlook_at = [0, 1, 0]\n[[layer]]\nid = 'a'\nkind = 'mesh'\nsource = 'a.obj'\n";
         std::fs::write(&path, text).expect("scene");

@@ -1,7 +1,7 @@
 //! Cameras above the ground.
 
-use belvedere_core::{DVec3, Navigation};
-use belvedere_scene::Scene;
+use belvedere::core::{DVec3, Navigation};
+use belvedere::scene::Scene;
 
 /// Least height of an eye over the ground, metres.
 const EYE_M: f64 = 2.0;
@@ -18,8 +18,8 @@ pub fn above_ground(camera: Navigation, scene: &Scene) -> Navigation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene_file::parse;
-    use crate::{OpenOptions, Session};
+    use belvedere::scene_file::parse;
+    use belvedere::{OpenOptions, Session};
     use std::path::Path;
 
     #[test]

@@ -1,8 +1,8 @@
 //! Flights of the camera: from one view to another, above the ground.
 
 use super::camera::above_ground;
-use belvedere_core::{Aabb, DVec2, DVec3, Navigation, Pinhole, Projection};
-use belvedere_scene::{Heightfield, Scene};
+use belvedere::core::{Aabb, DVec2, DVec3, Navigation, Pinhole, Projection};
+use belvedere::scene::{Heightfield, Scene};
 use std::f64::consts::{PI, TAU};
 
 /// Half the width of what is shown around a single point, as a share of the diagonal of the scene.
