@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from . import presets, reports
 from ._native import version as _version
-from ._requests import RevealOptions
+from ._requests import AnimateOptions, DisoccludeOptions, RenderOptions, RevealOptions
 from .camera import Camera
 from .drafting import Draft, Drafts, drafts
 from .errors import Cancelled, Error, FileError, InputError, InternalError, MemoryLimitError
@@ -40,6 +40,9 @@ __all__ = [
     "Picture",
     "Projected",
     "Rays",
+    "AnimateOptions",
+    "DisoccludeOptions",
+    "RenderOptions",
     "RevealOptions",
     "Revealed",
     "Scene",

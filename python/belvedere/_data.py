@@ -34,14 +34,14 @@ def files_of(
     files: dict[str, Any] = {}
     terrain_crs: Crs | None = None
     if isinstance(dem, (str, os.PathLike)):
-        files["dem"] = os.fspath(dem)
+        files["data"] = os.fspath(dem)
         files.update(stated_by_caller(transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata))
     else:
         source = dem if _rasters.is_raster(dem) else np.asanyarray(joined("heights", dem))
         heights = _rasters.heights_of(source, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata)
         path = folder.file("terrain.tif")
         _rasters.write_geotiff(path, heights)
-        terrain_crs, files["dem"] = heights.crs, os.fspath(path)
+        terrain_crs, files["data"] = heights.crs, os.fspath(path)
         if terrain_crs.code is None:
             files["crs"] = "local"
         else:

@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, Sequence
+from typing import Any, Mapping, Sequence
 
 from ._ask import number
 from .errors import InputError
+
+
+#: Buffers that every picture has in memory.
+BUFFERS = ["depth", "id", "world"]
+#: Options of pictures that change what a scene is opened as.
+OF_SCENE = ("palette", "sky", "haze", "contours", "edge", "area_style", "no_sea", "representation", "color_by", "assembly", "model")
 
 
 def drawing(
@@ -15,43 +21,60 @@ def drawing(
     renderer: str = "auto",
     samples: int | None = None,
     lod_px: float | None = None,
-    compositing: str = "single",
+    compositing: str | None = None,
     stylise: bool | tuple[float, float] = False,
+    furniture: bool | str | Sequence[str] | None = None,
+    title: str | None = None,
+) -> dict[str, Any]:
+    """How a picture or a frame is drawn, as the engine takes it."""
+    asked = {
+        "straight": bool(straight),
+        "compare": bool(compare),
+        "renderer": str(renderer),
+        "samples": samples,
+        "lod": None if lod_px is None else number("lod_px", lod_px),
+        "compositing": compositing,
+        "stylise": strengths_of(stylise),
+        "furniture": furniture_of(furniture),
+        "title": None if title is None else str(title),
+    }
+    return given(asked)
+
+
+def given(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Options without those that are left out."""
+    return {name: value for name, value in options.items() if value is not None}
+
+
+def picture(
+    drawn: dict[str, Any],
+    *,
     grid: bool | float = False,
     heatmap: bool = False,
     ghost: bool = False,
     highlight: Sequence[str] = (),
     mark: bool = True,
-    furniture: bool | str | Sequence[str] | None = None,
-    title: str | None = None,
     overhead: bool = False,
     outside: bool | Sequence[Sequence[float]] = False,
     buffers: bool = False,
+    **options: Any,
 ) -> dict[str, Any]:
-    """How a picture is drawn, as the engine takes it."""
-    spacing = None if grid is False else 0.0 if grid is True else number("grid", grid)
-    if spacing is not None and spacing < 0:
+    """How a picture is drawn, with what only pictures have."""
+    spacing = grid if isinstance(grid, bool) else number("grid", grid)
+    if not isinstance(spacing, bool) and spacing <= 0:
         raise InputError(f"grid={grid} is not a spacing; give scene units above 0, or True")
-    return {
-        "straight": bool(straight),
-        "compare": bool(compare),
-        "renderer": renderer,
-        "samples": samples,
-        "lod_px": None if lod_px is None else number("lod_px", lod_px),
-        "compositing": compositing,
-        "stylise": strengths_of(stylise),
-        "grid": spacing,
+    asked = {
+        **drawn,
+        "grid": spacing or None,
         "heatmap": bool(heatmap),
         "ghost": bool(ghost),
         "highlight": [highlight] if isinstance(highlight, str) else list(highlight),
         "no_mark": not mark,
-        "furniture": furniture_of(furniture),
-        "title": None if title is None else str(title),
         "overhead": bool(overhead),
-        "from_outside": outside is not False,
-        "outside": None if isinstance(outside, bool) else outside,
-        "buffers": bool(buffers),
+        "outside": outside if isinstance(outside, bool) else list(outside),
+        "aux": BUFFERS if buffers else [],
     }
+    return {**asked, **given(options)}
 
 
 def furniture_of(wanted: bool | str | Sequence[str] | None) -> list[str] | None:

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Sequence
+from typing import TYPE_CHECKING, Sequence
 
 from . import _native
 from ._ask import Progress, asked, number
-from ._drawing import drawing
+from ._drawing import drawing, given
 from ._json import size as size_of
 from ._json import text
 from .errors import InputError
 from .reports import FilmReport
 from .scene import Scene
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._requests import AnimateOptions
 
 
 def animate(
@@ -40,6 +45,7 @@ def animate(
     part: tuple[int, int] | None = None,
     threads: int | None = None,
     progress: Progress = None,
+    **options: Unpack[AnimateOptions],
 ) -> FilmReport:
     """Draws the frames of a film, PNG, and encodes them if ``out`` ends in ``.mp4`` and ffmpeg is installed.
 
@@ -52,30 +58,46 @@ def animate(
     * ``resume``: goes on with existing frames, to the same bytes as an uninterrupted film. Ctrl-C leaves whole frames.
     * ``part``: first and last frame, counted from 0: one of several processes that draw a film into one folder, see :mod:`belvedere.batch`; a call
       without it and with ``resume`` collects the parts.
+    * All other options of ``belvedere animate`` by their names (``renderer``, ``lod``, ``paper`` ...): :class:`belvedere.AnimateOptions` lists
+      them.
 
     Raises :class:`belvedere.FileError` where frames exist already.
     """
     if not isinstance(scene, Scene):
         scene = Scene.open(scene)
-    animation: dict[str, Any] = {"along": along, "marker": marker, "clock": clock, "profile": profile}
-    if sweep_deg is not None and sweep_deg is not False:
-        animation["sweep"] = {"phi_deg": [0.0, 0.0, 0.0] if sweep_deg is True else [number("sweep_deg", v) for v in sweep_deg]}
-    if turntable_deg_per_s is not None and turntable_deg_per_s is not False:
-        speed = 0.0 if turntable_deg_per_s is True else number("turntable_deg_per_s", turntable_deg_per_s)
-        animation["turntable"] = {"deg_per_s": speed}
-    if frames is not None:
-        if isinstance(frames, bool) or not isinstance(frames, int) or not 0 < frames < 2**32:
-            raise InputError(f"frames={frames!r} is not a number of frames; give a whole number above 0")
-        animation["frames"] = frames
-    animation["fps"] = None if fps is None else number("fps", fps)
-    animation["speed_mps"] = None if speed_mps is None else number("speed_mps", speed_mps)
-    animation = {key: value for key, value in animation.items() if value is not None}
-    first_and_last = None if part is None else _part(part)
-    drawn = drawing(straight=straight, compare=compare, samples=samples, furniture=furniture, title=title)
+    if sweep_deg is None or sweep_deg is False:
+        sweep = None
+    else:
+        sweep = [0.0, 0.0, 0.0] if sweep_deg is True else [number("sweep_deg", v) for v in sweep_deg]
+    if turntable_deg_per_s is None or turntable_deg_per_s is False:
+        turn = None
+    else:
+        turn = 0.0 if turntable_deg_per_s is True else number("turntable_deg_per_s", turntable_deg_per_s)
+    if frames is not None and (isinstance(frames, bool) or not isinstance(frames, int) or not 0 < frames < 2**32):
+        raise InputError(f"frames={frames!r} is not a number of frames; give a whole number above 0")
+    request = given(
+        {
+            **drawing(straight=straight, compare=compare, samples=samples, furniture=furniture, title=title),
+            "along": along,
+            "sweep": sweep,
+            "turntable": turn,
+            "frames": frames,
+            "fps": None if fps is None else number("fps", fps),
+            "speed": None if speed_mps is None else number("speed_mps", speed_mps),
+            "marker": marker,
+            "clock": clock,
+            "profile": profile,
+            "resume": bool(resume),
+            "part": None if part is None else _part(part),
+            **options,
+        }
+    )
+    paper = {name: request.pop(name) for name in ("paper", "dpi", "margin_mm") if name in request}
     with asked(threads, progress) as ask, scene._named():
+        sheet, pixels = scene._sheet(size_of(size), paper)
         # The ground is solved for every frame, not on opening.
-        native = scene._open({"unsolved": True, "size": size_of(size)}, ask)
-        answer = _native.animate(native, os.fspath(out), text("animation", animation), text("animate", drawn), resume, overwrite, first_and_last, ask)
+        native = scene._open({"unsolved": True, "size": pixels}, ask)
+        answer = _native.animate(native, os.fspath(out), text("animate", {**request, **sheet}), bool(overwrite), ask)
     return FilmReport.of(json.loads(answer))
 
 

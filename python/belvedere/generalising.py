@@ -10,6 +10,8 @@ from typing import Any, Mapping, Sequence
 
 from . import _native
 from ._ask import Progress, asked, number
+from ._drawing import given
+from ._json import text
 from .errors import InputError
 from .reports import Note, notes_of
 
@@ -52,7 +54,8 @@ def generalise(
     several = [roads] if isinstance(roads, (str, os.PathLike)) else list(roads)
     margin = None if margin_m is None else number("margin_m", margin_m)
     with asked(threads, progress) as ask:
-        answer = json.loads(_native.generalise(os.fspath(city), [os.fspath(r) for r in several], os.fspath(out), margin, bool(overwrite), ask))
+        request = given({"city": os.fspath(city), "roads": [os.fspath(r) for r in several], "margin": margin})
+        answer = json.loads(_native.generalise(text("generalise", request), os.fspath(out), bool(overwrite), ask))
     return Generalised(
         tuple(Path(p) for p in answer["files"]), answer["summary"], tuple(answer["missed"]), tuple(notes_of(answer["warnings"])), answer["report"]
     )

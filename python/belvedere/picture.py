@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _native
+from ._drawing import BUFFERS
 from .errors import InputError
 from .reports import Displacement, Note, notes_of
 
@@ -25,7 +26,7 @@ class Picture:
     In a notebook it shows itself. Arrays have row 0 on top; all of them are copies.
     """
 
-    def __init__(self, native: NativePicture, again: Callable[[Mapping[str, Any]], NativePicture] | None = None, exact: bool = False) -> None:
+    def __init__(self, native: NativePicture, again: Callable[[Mapping[str, Any], str | None], NativePicture] | None = None, exact: bool = False) -> None:
         self._native = native
         self._again = again
         self._exact = exact
@@ -124,7 +125,7 @@ class Picture:
         if ending in (".svg", ".pdf"):
             if self._again is None:
                 raise InputError(f"{path}: this picture has no scene to draw vectors of; write a PNG")
-            native = self._again({"vectors": "alone" if vectors_only else "over_raster", "buffers": bool(buffers)})
+            native = self._again({"aux": BUFFERS if buffers else []}, "alone" if vectors_only else "over_raster")
         elif vectors_only:
             raise InputError(f"{path}: vectors_only needs a name that ends in .svg or .pdf")
         return [Path(p) for p in native.save(os.fspath(path), list(buffers), exr, overwrite)]
@@ -146,7 +147,7 @@ class Picture:
     def _with_buffers(self) -> NativePicture:
         if not self._exact and self._again is not None:
             # Colours, ids and record stay those of the first drawing: a picture does not change when it is looked at.
-            self._native, self._exact = self._native.with_buffers_of(self._again({"buffers": True})), True
+            self._native, self._exact = self._native.with_buffers_of(self._again({"aux": BUFFERS}, None)), True
         return self._native
 
     def _array(self, data: bytearray, dtype: Any, channels: int = 0) -> NDArray[Any]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Mapping, Sequence
 from . import _native
 from ._ask import Progress, asked, number
 from ._data import files_of
-from ._drawing import furniture_of, strengths_of
+from ._drawing import furniture_of, given, strengths_of
 from ._folder import Folder, Named
 from ._json import place, text
 from ._json import size as size_of
@@ -34,13 +34,15 @@ class Revealed:
     def __init__(self, native: NativeReveal, folder: Folder, samples: int | None) -> None:
         self._native = native
         self._folder = folder
-        self._drawn = {"samples": samples, "print": json.loads(native.paper()) or {}}
+        self._drawn = given({"samples": samples, **(json.loads(native.paper()) or {})})
 
     @cached_property
     def picture(self) -> Picture:
         """The picture; its ``straight`` is the one without bends, unless nothing is bent."""
         scene = self._native.scene()
-        return Picture(self._native.picture(), lambda changed: scene.render(text("render", {**self._drawn, **changed}), (0, None, None)))
+        return Picture(
+            self._native.picture(), lambda changed, vectors: scene.render(text("render", {**self._drawn, **changed}), vectors, (0, None, None))
+        )
 
     @cached_property
     def scene(self) -> Scene:
@@ -213,9 +215,8 @@ def _request(
         fill_voids=fill_voids, folder=folder, rivers=rivers, drape=drape,
     )  # fmt: skip
     return {
-        "data": files.pop("dem"),
+                **files,
         **({} if scene_crs is None else {"crs": scene_crs}),
-        **files,
         **options,
         **_light_of(light),
         "stylise": strengths_of(stylise),

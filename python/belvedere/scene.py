@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from . import _native, viewing
 from ._ask import Ask, Progress, asked, number
 from ._crs import Crs, crs_of
-from ._drawing import drawing
+from ._drawing import OF_SCENE, drawing, given, picture
 from ._folder import Folder, Named
 from ._layers import Layers
 from ._masks import joined, masked_count
@@ -28,7 +28,10 @@ from .picture import Picture
 from .reports import MeasureReport, Note, Picked, notes_of
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
     from ._native import NativePicture, NativeScene
+    from ._requests import RenderOptions
 
 __all__ = ["Scene", "Projected", "Displaced", "Rays", "MISSES"]
 
@@ -306,7 +309,7 @@ class Scene(Layers):
         renderer: str = "auto",
         samples: int | None = None,
         lod_px: float | None = None,
-        compositing: str = "single",
+        compositing: str | None = None,
         stylise: bool | tuple[float, float] = False,
         grid: bool | float = False,
         heatmap: bool = False,
@@ -324,6 +327,7 @@ class Scene(Layers):
         threads: int | None = None,
         progress: Progress = None,
         time_limit_s: float | None = None,
+        **shown: Unpack[RenderOptions],
     ) -> Picture:
         """Draws the scene. The same scene gives the same bytes as ``belvedere render``, on any number of threads.
 
@@ -342,20 +346,27 @@ class Scene(Layers):
           ``margin_mm``: white margin of the paper. By default those of the scene, unless ``size`` is given.
         * ``buffers``: draws depth and world at once, see ``Picture.depth``.
         * ``threads``, ``progress``, ``time_limit_s``: see :func:`belvedere.reveal`.
+        * All other options of ``belvedere render`` by their names (``palette``, ``sky``, ``edge`` ...): :class:`belvedere.RenderOptions` lists them.
+          Those that show the scene otherwise than it says open it anew.
         """
-        options = drawing(
-            straight=straight, compare=compare, renderer=renderer, samples=samples, lod_px=lod_px, compositing=compositing,
-            stylise=stylise, grid=grid, heatmap=heatmap, ghost=ghost, highlight=highlight, mark=mark, furniture=furniture,
-            title=title, overhead=overhead, outside=outside, buffers=buffers,
+        options = picture(
+            drawing(
+                straight=straight, compare=compare, renderer=renderer, samples=samples, lod_px=lod_px, compositing=compositing,
+                stylise=stylise, furniture=furniture, title=title,
+            ),
+            grid=grid, heatmap=heatmap, ghost=ghost, highlight=highlight, mark=mark, overhead=overhead, outside=outside, buffers=buffers,
+            **shown,
         )  # fmt: skip
         with asked(threads, progress, time_limit_s) as ask:
             sheet, pixels = self._sheet(_size(size), {"paper": paper, "dpi": dpi, "margin_mm": margin_mm})
             options.update(sheet)
-            native = self._sized(pixels, ask)
+            of_scene = {name: options[name] for name in OF_SCENE if name in options}
+            native = self._open({"size": pixels, "shows": of_scene}, ask) if of_scene else self._sized(pixels, ask)
             with self._named():
-                drawn = native.render(_text("render", options), ask)
+                drawn = native.render(_text("render", options), None, ask)
         silent: Ask = (ask[0], ask[1], None)
-        again: Callable[[Mapping[str, Any]], NativePicture] = lambda changed: native.render(_text("render", {**options, **changed}), silent)
+        again: Callable[[Mapping[str, Any], str | None], NativePicture]
+        again = lambda changed, vectors: native.render(_text("render", {**options, **changed}), vectors, silent)
         return Picture(drawn, again, exact=buffers)
 
     def measure(
@@ -373,7 +384,8 @@ class Scene(Layers):
         * ``spacing_m``: largest distance between samples of a line, scene units; by default an eighth of the cell of the terrain.
         """
         with asked(threads, progress, time_limit_s) as ask, self._named():
-            return MeasureReport.of(json.loads(self._sized(_size(size), ask).measure(spacing_m, str(renderer), ask)))
+            request = given({"spacing": None if spacing_m is None else number("spacing_m", spacing_m), "renderer": str(renderer)})
+            return MeasureReport.of(json.loads(self._sized(_size(size), ask).measure(_text("measure", request), ask)))
 
     def project(self, points: object, *, size: tuple[int, int] | None = None, straight: bool = False, threads: int | None = None,
                 progress: Progress = None) -> Projected:  # fmt: skip
@@ -472,7 +484,7 @@ class Scene(Layers):
             return {}, size
         with self._named():
             found = _native.sheet(*self._described(), _text("paper", asked), size)
-        return ({}, size) if found is None else ({"print": json.loads(found[0])}, found[1])
+        return ({}, size) if found is None else (given(json.loads(found[0])), found[1])
 
     def _sized(self, size: list[int] | None, ask: Ask) -> NativeScene:
         if size is None:

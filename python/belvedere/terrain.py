@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from . import _native
 from ._ask import Progress, asked, number
 from ._data import files_of
+from ._drawing import given
 from ._folder import Folder, Named
 from ._json import place, text
 from .errors import InputError
@@ -21,7 +22,10 @@ from .reports import GroundReport, Note, notes_of
 from .scene import Scene
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
     from ._native import NativeGround
+    from ._requests import DisoccludeOptions
 
 
 class Ground:
@@ -116,12 +120,12 @@ def disocclude(
     mode: str | None = None,
     parameters: Mapping[str, Any] | None = None,
     limits: bool = True,
-    curved_earth: bool = False,
     grid: str = "input",
     rivers: object = None,
     threads: int | None = None,
     progress: Progress = None,
     time_limit_s: float | None = None,
+    **options: Unpack[DisoccludeOptions],
 ) -> Ground:
     """Moves ground up and down, as little and as smoothly as possible, until features are visible from an eye.
 
@@ -133,28 +137,28 @@ def disocclude(
     * ``grid``: ``input``, or ``scene``: the grid in metres that was solved on, on which guarantees hold at every node.
     * ``rivers``: lines that do not run uphill on the displaced ground, given as features are.
     * ``threads``, ``progress``, ``time_limit_s``: see :func:`belvedere.reveal`.
+    * All other options of ``belvedere disocclude`` by their names: :class:`belvedere.DisoccludeOptions` lists them.
     """
     if grid not in ("input", "scene"):
         raise InputError(f"grid={grid!r} is no grid; give 'input' or 'scene'")
-    settings = dict(parameters or {})
-    if mode is not None:
-        settings["mode"] = mode
-    if not limits:
-        settings["limits"] = False
     folder = Folder()
     files = files_of(
         dem, features, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata, features_crs=features_crs,
-        fill_voids=fill_voids, folder=folder, rivers=rivers,
+        fill_voids=bool(fill_voids), folder=folder, rivers=rivers,
     )  # fmt: skip
-    request = {
-        "files": files,
-        "fill_voids": bool(fill_voids),
-        "eye": place("eye", eye),
-        "look_at": place("look_at", look_at),
-        "fov_x_deg": number("fov_x_deg", fov_x_deg),
-        "parameters": [f"{key}={json.dumps(value)}" for key, value in settings.items()],
-        "curved_earth": bool(curved_earth),
-        "scene_grid": grid == "scene",
-    }
+    del files["keep_voids"]
+    request = given(
+        {
+            **files,
+            "eye": place("eye", eye),
+            "look": place("look_at", look_at),
+            "fov": number("fov_x_deg", fov_x_deg),
+            "mode": mode,
+            "no_limits": not limits,
+            "set": [f"{key}={json.dumps(value)}" for key, value in (parameters or {}).items()],
+            "grid": grid,
+            **options,
+        }
+    )
     with asked(threads, progress, time_limit_s) as ask, Named(os.fspath(folder.path)):
         return Ground(_native.disocclude(text("disocclude", request), ask), folder)

@@ -1,35 +1,34 @@
 //! Films.
 
-use crate::request::{self, Drawing};
+use crate::errors::raised;
+use crate::request;
 use crate::scene::NativeScene;
 use crate::work::{Ask, run};
 use belvedere::output;
-use belvedere::verbs::animate::{self as verb, AnimateRequest, Film};
+use belvedere::print::Sheet;
+use belvedere::request::Animate;
+use belvedere::verbs::animate::{self as verb, Film};
+use belvedere::verbs::asked::film;
 use pyo3::prelude::*;
 use serde_json::json;
 use std::path::PathBuf;
 
 /// Draws all missing frames, then encodes the film; the answer as JSON.
 #[pyfunction]
-#[allow(clippy::too_many_arguments)] // those of the verb
 pub(crate) fn animate(
     py: Python<'_>,
     scene: &NativeScene,
     out: PathBuf,
-    animation: &str,
-    drawing: &str,
-    resume: bool,
+    asked: &str,
     overwrite: bool,
-    part: Option<[usize; 2]>,
     ask: Ask,
 ) -> PyResult<String> {
-    let animation = request::read("animation", animation)?;
-    let drawing: Drawing = request::read("animate", drawing)?;
-    let picture = drawing.options(Default::default())?;
-    let session = scene.session.clone().furnished(&drawing.furniture()?);
+    let asked: Animate = request::request("animate", asked)?;
+    // With paper and pixels per inch no size is left open.
+    let sheet = Sheet::of(&asked.paper.document(), None, [1, 1]).map_err(|e| raised(&e))?;
+    let mut request = film(&asked, sheet, out, overwrite).map_err(|e| raised(&e))?;
+    let session = scene.session.clone().furnished(&asked.furnishing.wish());
     run(py, &ask, move |progress| {
-        let mut request =
-            AnimateRequest { animation, picture, out, resume, overwrite, part: part.map(|[first, last]| first..=last) };
         request.picture.progress = progress.clone();
         let made = verb::animate(&session, &request, &progress)?;
         let (film, missing) = match &made.film {

@@ -1,8 +1,10 @@
 //! Levels of abstraction of cities.
 
+use crate::request::request;
 use crate::work::{Ask, run};
 use belvedere::output;
-use belvedere::verbs::generalise::{self as verb, GeneraliseRequest, GeneraliseSettings};
+use belvedere::request::Generalise;
+use belvedere::verbs::generalise as verb;
 use pyo3::prelude::*;
 use serde_json::json;
 use std::path::PathBuf;
@@ -11,23 +13,20 @@ use std::path::PathBuf;
 #[pyfunction]
 pub(crate) fn generalise(
     py: Python<'_>,
-    city: PathBuf,
-    roads: Vec<PathBuf>,
+    asked: &str,
     out: PathBuf,
-    margin_m: Option<f64>,
     overwrite: bool,
     ask: Ask,
 ) -> PyResult<String> {
+    let asked: Generalise = request("generalise", asked)?;
     run(py, &ask, move |progress| {
-        let inputs: Vec<PathBuf> = roads.iter().chain([&city]).cloned().collect();
+        let inputs: Vec<PathBuf> = asked.roads.iter().chain([&asked.city]).map(PathBuf::from).collect();
         if out.exists() {
             for path in [None, Some(0)].iter().flat_map(|epsg| verb::files(&out, *epsg)) {
                 output::check(&path, &inputs, overwrite)?;
             }
         }
-        let mut settings = GeneraliseSettings::default();
-        settings.margin_m = margin_m.unwrap_or(settings.margin_m);
-        let found = verb::generalise(&GeneraliseRequest { city, roads, settings }, &progress)?;
+        let found = verb::generalise(&asked, &progress)?;
         let files = found.write(&out, overwrite, &progress)?;
         let warnings = [found.warnings.clone(), found.generalised.report.notes.clone(), found.failing()].concat();
         let answer = json!({

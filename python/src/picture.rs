@@ -1,7 +1,6 @@
 //! Pictures as bytes.
 
 use crate::errors::{raised, wrong};
-use crate::request::BUFFERS;
 use crate::work::{Ask, run};
 use belvedere::picture::{AuxBuffer, AuxFormat, PictureOptions, outputs};
 use belvedere::scene::Frame;
@@ -117,7 +116,7 @@ impl NativePicture {
 }
 
 fn buffer(name: &str) -> PyResult<AuxBuffer> {
-    let all = [&BUFFERS[..], &[AuxBuffer::Displacement]].concat();
+    let all = [AuxBuffer::Depth, AuxBuffer::Id, AuxBuffer::World, AuxBuffer::Displacement];
     all.into_iter()
         .find(|buffer| buffer.name() == name)
         .ok_or_else(|| wrong(&format!("buffers: {name:?} is not a buffer; possible: depth, id, world, displacement")))

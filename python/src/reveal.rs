@@ -6,7 +6,7 @@ use crate::request::{self, Opening};
 use crate::scene::NativeScene;
 use crate::work::{Ask, run};
 use belvedere::picture::PictureOptions;
-use belvedere::request::{Reveal, read};
+use belvedere::request::Reveal;
 use belvedere::verbs::asked::{self, Revealed, Setting};
 use belvedere::verbs::reveal::RevealFiles;
 use belvedere::{answers, output};
@@ -16,7 +16,7 @@ use std::path::PathBuf;
 
 /// A request, and how scenes are opened.
 fn asked_for(what: &str, asked: &str, open: &str) -> PyResult<(Reveal, Opening)> {
-    Ok((read(asked).map_err(|reason| wrong(&format!("{what}: {reason}")))?, request::read("options", open)?))
+    Ok((request::request(what, asked)?, request::read("options", open)?))
 }
 
 fn setting(open: Opening, progress: belvedere::scene::Progress) -> Setting {

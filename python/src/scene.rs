@@ -2,10 +2,14 @@
 
 use crate::errors::{raised, wrong};
 use crate::picture::NativePicture;
-use crate::request::{self, Drawing, Opening, RendererName};
+use crate::request::{self, Opening};
 use crate::work::{Ask, run};
-use belvedere::print::Sheet;
-use belvedere::scene_file::{self, PrintDoc};
+use belvedere::picture::PictureOptions;
+use belvedere::request::{Measure, Paper, Render};
+use belvedere::scene::Progress;
+use belvedere::scene_file;
+use belvedere::vectors::VectorContent;
+use belvedere::verbs::asked;
 use belvedere::verbs::measure::{self, MeasureOptions};
 use belvedere::verbs::open_files::scene_or_data;
 use belvedere::{Session, answers, output};
@@ -28,11 +32,11 @@ pub(crate) fn sheet(
     asked: &str,
     size: Option<[u32; 2]>,
 ) -> PyResult<Option<(String, [u32; 2])>> {
-    let asked: PrintDoc = request::read("paper", asked)?;
+    let asked: Paper = request::request("paper", asked)?;
     let source =
         text.map_or_else(|| scene_or_data(&path, &Default::default()), |text| Ok(scene_file::parse(&path, text)?));
     let document = source.map_err(|e| raised(&e))?.document;
-    let sheet = Sheet::asked(&asked, document.print.as_ref(), size, document.camera.image).map_err(|e| raised(&e))?;
+    let (sheet, _) = asked::paper((&asked, size), &document).map_err(|e| raised(&e))?;
     sheet.map(|s| Ok((output::json(&s.document()).map_err(|e| raised(&e))?, s.pixels()))).transpose()
 }
 
@@ -75,29 +79,36 @@ impl NativeScene {
     }
 
     /// Draws a picture.
-    fn render(&self, py: Python<'_>, options: &str, ask: Ask) -> PyResult<NativePicture> {
-        let drawing: Drawing = request::read("render", options)?;
+    ///
+    /// * `vectors`: marks that become shapes: `over_raster` or `alone`.
+    #[pyo3(signature = (asked, vectors, ask))]
+    fn render(&self, py: Python<'_>, asked: &str, vectors: Option<&str>, ask: Ask) -> PyResult<NativePicture> {
+        let asked: Render = request::request("render", asked)?;
+        let vectors = match vectors {
+            Some("alone") => VectorContent::Alone,
+            Some(_) => VectorContent::OverRaster,
+            None => VectorContent::Nothing,
+        };
+        let session = self.session.clone().furnished(&asked.air.furnishing.wish());
         // Mistakes are told before the work begins.
-        drawing.options(Default::default())?;
-        let session = self.session.clone().furnished(&drawing.furniture()?);
+        request::picture(&asked, &session, Progress::silent())?;
         run(py, &ask, move |progress| {
             // Checked above.
-            let options = drawing.options(progress).unwrap_or_default();
-            Ok(NativePicture::of(&session, session.render(&options)?))
+            let options = request::picture(&asked, &session, progress).unwrap_or_default();
+            Ok(NativePicture::of(&session, session.render(&PictureOptions { vectors, ..options })?))
         })
     }
 
     /// Visible shares, JSON, as the program writes them into a file.
-    fn measure(&self, py: Python<'_>, spacing_m: Option<f64>, renderer: &str, ask: Ask) -> PyResult<String> {
-        if spacing_m.is_some_and(|s| !(s > 0.0 && s.is_finite())) {
-            let given = spacing_m.unwrap_or_default();
+    fn measure(&self, py: Python<'_>, asked: &str, ask: Ask) -> PyResult<String> {
+        let asked: Measure = request::request("measure", asked)?;
+        if let Some(given) = asked.spacing.filter(|s| !(*s > 0.0 && s.is_finite())) {
             return Err(wrong(&format!("spacing_m={given} is not a distance; give a number above 0, or None")));
         }
-        let renderer: RendererName = request::read("renderer", &format!("{renderer:?}"))?;
         let session = self.session.clone();
-        let options = MeasureOptions { spacing_m, ..MeasureOptions::default() };
+        let options = MeasureOptions { spacing_m: asked.spacing, ..MeasureOptions::default() };
         run(py, &ask, move |progress| {
-            let report = measure::measure(&session, &options, renderer.into(), &progress)?;
+            let report = measure::measure(&session, &options, &asked.renderer, &progress)?;
             answers::in_file("measure", &[], &report)
         })
     }

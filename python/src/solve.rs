@@ -5,68 +5,15 @@ use crate::picture::filled;
 use crate::request::{self, Opening};
 use crate::scene::NativeScene;
 use crate::work::{Ask, run};
-use belvedere::DataFiles;
 use belvedere::answers;
 use belvedere::io::raster::Raster;
 use belvedere::output;
-use belvedere::scene_file::{SurfaceDoc, TerrainStageDoc, VerticalUnit};
-use belvedere::verbs::disocclude::{self as verb, DisoccludeFiles, DisoccludeRequest, Disoccluded, WrittenGrid};
+use belvedere::request::Disocclude;
+use belvedere::verbs::disocclude::{self as verb, DisoccludeFiles, Disoccluded};
 use pyo3::prelude::*;
 use pyo3::types::PyByteArray;
-use serde::Deserialize;
 use std::path::PathBuf;
 use std::sync::Arc;
-
-/// Files of terrain and features, and what they do not say themselves.
-#[derive(Debug, Clone, Default, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-struct Files {
-    dem: String,
-    features: Vec<String>,
-    rivers: Vec<String>,
-    crs: Option<String>,
-    keep_voids: bool,
-    fill_voids: bool,
-    area_style: Option<SurfaceDoc>,
-    source_crs: Option<String>,
-    nodata: Option<f64>,
-    vertical_unit: Option<VerticalUnit>,
-    name_field: Option<String>,
-}
-
-impl Files {
-    /// The files as the facade takes them.
-    fn data(self) -> DataFiles {
-        DataFiles {
-            dem: self.dem,
-            features: self.features,
-            rivers: self.rivers,
-            crs: self.crs,
-            keep_voids: self.keep_voids,
-            fill_all_voids: self.fill_voids,
-            area_style: self.area_style,
-            source_crs: self.source_crs,
-            nodata: self.nodata,
-            vertical_unit: self.vertical_unit,
-            name_field: self.name_field,
-            ..DataFiles::default()
-        }
-    }
-}
-
-/// What is asked for.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Asked {
-    files: Files,
-    fill_voids: bool,
-    eye: String,
-    look_at: String,
-    fov_x_deg: f64,
-    parameters: Vec<String>,
-    curved_earth: bool,
-    scene_grid: bool,
-}
 
 /// Displaced ground.
 #[pyclass(frozen)]
@@ -170,20 +117,9 @@ fn values<'py>(py: Python<'py>, raster: &Raster) -> PyResult<Bound<'py, PyByteAr
 /// Moves ground so that features are visible from the eye.
 #[pyfunction]
 pub(crate) fn disocclude(py: Python<'_>, asked: &str, ask: Ask) -> PyResult<NativeGround> {
-    let asked: Asked = request::read("disocclude", asked)?;
-    let parameters: TerrainStageDoc = verb::parameters(&asked.parameters).map_err(|e| raised(&e))?;
-    let request = DisoccludeRequest {
-        data: asked.files.data(),
-        fill_voids: asked.fill_voids,
-        places: request::places(Some(&asked.eye), Some(&asked.look_at))?,
-        fov_x_deg: asked.fov_x_deg,
-        parameters,
-        curved_earth: asked.curved_earth,
-        grid: if asked.scene_grid { WrittenGrid::Scene } else { WrittenGrid::Input },
-        ..DisoccludeRequest::default()
-    };
+    let asked: Disocclude = request::request("disocclude", asked)?;
     let (found, report) = run(py, &ask, move |progress| {
-        let found = verb::disocclude(&request, &Opening::default().options(progress))?;
+        let found = verb::disocclude(&asked, &Opening::default().options(progress))?;
         let report = answers::in_file("disocclude", &[], &found.document())?;
         Ok((found, report))
     })?;

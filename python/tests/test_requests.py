@@ -11,10 +11,15 @@ from belvedere import _native, _requests
 
 def test_the_options_are_those_of_the_schema() -> None:
     assert request_options.FILE.read_text(encoding="utf-8") == request_options.text(), "python python/tests/request_options.py writes them anew"
-    named = set(inspect.signature(belvedere.reveal).parameters)
-    for option in request_options.schema("reveal")["properties"]:
-        own = request_options.OWN.get(option)
-        assert own in named if own else option in _requests.RevealOptions.__annotations__, option
+    for verb, (called, own) in request_options.OWN.items():
+        call = belvedere.Scene if called.startswith("Scene.") else belvedere
+        named = set(inspect.signature(getattr(call, called.rpartition(".")[2])).parameters)
+        options = request_options.schema(verb)["properties"]
+        assert set(own.values()) <= named and set(own) <= set(options), verb
+        assert not request_options.others(verb) or request_options.others(verb) == list(
+            getattr(_requests, f"{verb.capitalize()}Options").__annotations__
+        ), verb
+        assert set(request_options.ELSEWHERE.get(verb, [])) <= set(options), verb
     with pytest.raises(belvedere.InputError, match="no request"):
         _native.request_schema("nothing")
 
@@ -57,3 +62,19 @@ def test_what_data_alone_do_not_say_is_said(tmp_path: Path) -> None:
     with pytest.raises(belvedere.InputError, match="for data alone, and a scene file says it itself"):
         scene = belvedere.Scene.builtin("massif").save(tmp_path / "s.json")
         belvedere.Scene.open(scene, nodata=0.0).document
+
+
+def test_options_of_render_change_the_picture() -> None:
+    scene = belvedere.Scene.builtin("massif?size=65")
+    usual = scene.render(size=(96, 54), threads=2).rgba
+    changes = {"palette": "desert", "sky": "white", "haze": 1.0, "contours": 50.0, "edge": "block", "no_sea": None}
+    for name, value in changes.items():
+        drawn = scene.render(size=(96, 54), threads=2, **{name: value}).rgba
+        assert (drawn != usual).any() == (value is not None), name
+    assert (scene.render(size=(96, 54), threads=2).rgba == usual).all()
+    with pytest.raises(belvedere.InputError, match='there is no renderer "exakt"; did you mean "exact"'):
+        scene.render(size=(96, 54), renderer="exakt")
+    with pytest.raises(belvedere.InputError, match='unknown option "palete"; did you mean "palette"'):
+        scene.render(palete="desert")  # type: ignore[call-arg]
+    with pytest.raises(belvedere.InputError, match="for molecules, and there is none"):
+        scene.render(color_by="chain")

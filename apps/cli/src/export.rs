@@ -5,8 +5,7 @@ use crate::outputs;
 use crate::report::{Context, is_stdout};
 use belvedere::export::{self, ExportOptions, GROUND_NODES};
 use belvedere::io::atomic;
-use belvedere::request::OfData;
-use belvedere::request::parse::size;
+use belvedere::request::Export;
 use belvedere::{Needs, OpenOptions};
 use clap::Args;
 use std::path::PathBuf;
@@ -19,17 +18,8 @@ pub(crate) struct ExportArgs {
     /// Output, glTF 2.0 in one binary file; - = standard output
     #[arg(short, long, value_name = "OUT.glb")]
     out: PathBuf,
-    /// Size of the picture that the camera is for, instead of the scene's
-    #[arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = size)]
-    size: Option<[u32; 2]>,
-    /// The scene without its bends
-    #[arg(long)]
-    straight: bool,
-    /// Most nodes of the ground, 4 to 4,000,000; of finer ground every second, third ... node is taken
-    #[arg(long, value_name = "N", default_value_t = GROUND_NODES as u32, allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(4..=4_000_000))]
-    nodes: u32,
     #[command(flatten)]
-    data: OfData,
+    asked: Export,
 }
 
 pub(crate) fn export_scene(args: &ExportArgs, context: &Context) -> anyhow::Result<Goal> {
@@ -39,12 +29,12 @@ pub(crate) fn export_scene(args: &ExportArgs, context: &Context) -> anyhow::Resu
         outputs::check_stdout(context)?;
     }
     outputs::check(&files, std::slice::from_ref(&args.scene), context)?;
-    let options = OpenOptions { unsolved: args.straight, ..context.options(Needs::Everything, args.size) };
-    let session = context.open_drawable(&args.scene, &args.data, &options)?;
+    let options = OpenOptions { unsolved: args.asked.straight, ..context.options(Needs::Everything, args.asked.size) };
+    let session = context.open_drawable(&args.scene, &args.asked.data, &options)?;
     outputs::check(&files, &session.input_paths(), context)?;
     let options = ExportOptions {
-        ground_nodes: args.nodes as usize,
-        straight: args.straight,
+        ground_nodes: args.asked.nodes.map_or(GROUND_NODES, |nodes| nodes as usize),
+        straight: args.asked.straight,
         progress: context.progress.clone(),
     };
     let made = export::export(&session, &options)?;

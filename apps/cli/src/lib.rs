@@ -2,19 +2,19 @@
 // Doc comments of arguments are help texts, and those hold JSON.
 #![allow(rustdoc::broken_intra_doc_links)]
 
+mod animate;
 mod args;
 mod bench;
 mod bench_args;
 mod city;
 mod common_args;
+mod disocclude;
 mod drafts;
-mod draw_args;
 mod export;
 mod goal;
 mod info_args;
 mod inputs;
 mod interrupt;
-mod kinds;
 mod memory;
 mod options_of_keys;
 mod outputs;
@@ -22,7 +22,8 @@ mod pack;
 mod parse;
 mod point_args;
 mod preset;
-mod print_args;
+mod picture_names;
+mod render;
 mod report;
 mod reveal;
 mod scene_keys;

@@ -7,6 +7,7 @@ use crate::timings::Timings;
 use belvedere::answers::{self, Content, Written};
 use belvedere::core::{PinholeError, plain};
 use belvedere::io::IoError;
+use belvedere::picture::PictureOptions;
 use belvedere::request::OfData;
 use belvedere::scene::Progress;
 use belvedere::scene_file::DocumentKind;
@@ -213,6 +214,13 @@ impl Context {
     /// The same with other options.
     pub(crate) fn open_with(&self, scene: &Path, options: &OpenOptions) -> anyhow::Result<Session> {
         Ok(Session::from_document(self.stdin.scene(scene)?, options)?)
+    }
+
+    /// A picture with the threads, memory and progress of the run.
+    pub(crate) fn running(&self, mut picture: PictureOptions) -> PictureOptions {
+        picture.quality.threads = self.common.threads;
+        picture.quality.max_bytes = belvedere::io::budget::bytes();
+        PictureOptions { progress: self.progress.clone(), ..picture }
     }
 
     /// Opens a scene, or data that can be drawn without one.

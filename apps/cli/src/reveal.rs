@@ -4,7 +4,7 @@ use crate::args::RevealArgs;
 use crate::goal::Goal;
 use crate::inputs::as_text;
 use crate::outputs::{self, png_named};
-use crate::print_args;
+use crate::picture_names;
 use crate::report::{Context, is_stdout};
 use belvedere::picture::{self, PictureOptions};
 use belvedere::scene_file::LightDoc;
@@ -33,10 +33,8 @@ pub(crate) fn reveal(mut args: RevealArgs, context: &Context) -> anyhow::Result<
     let (sheet, size) = asked::sheet(&args.asked)?;
     let transparent = args.asked.appearance.air.sky.as_deref() == Some(LightDoc::TRANSPARENT);
     picture::check_format(&args.out, size.map(|side| side as usize), transparent)?;
-    let mut picture =
-        PictureOptions { vectors: print_args::vectors(&args.out, args.vectors_only), ..Default::default() };
-    picture.quality.threads = context.common.threads;
-    picture.quality.max_bytes = belvedere::io::budget::bytes();
+    let vectors = picture_names::vectors(&args.out, args.vectors_only);
+    let picture = context.running(PictureOptions { vectors, ..Default::default() });
     let setting = Setting {
         open: context.options(Needs::Everything, None),
         picture,
@@ -56,7 +54,7 @@ pub(crate) fn reveal(mut args: RevealArgs, context: &Context) -> anyhow::Result<
 fn ready(args: &RevealArgs, files: &RevealFiles, context: &Context) -> anyhow::Result<()> {
     match args.drafts {
         Some(_) => png_named(&args.out)?,
-        None => print_args::check_name(&args.out, args.vectors_only)?,
+        None => picture_names::check_name(&args.out, args.vectors_only)?,
     }
     files.before.as_deref().map_or(Ok(()), png_named)?;
     let to_stdout = is_stdout(&args.out);

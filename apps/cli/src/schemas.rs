@@ -2,6 +2,7 @@
 
 use belvedere::answers::{Answer, Warned};
 use belvedere::output;
+use belvedere::request::WITH_REQUEST;
 use belvedere::verbs::schemas;
 use belvedere_bench::{BenchReport, CollectionReport};
 use clap::builder::PossibleValuesParser;
@@ -22,7 +23,7 @@ pub(crate) fn names() -> PossibleValuesParser {
 pub(crate) fn text(of: &str, request: bool) -> anyhow::Result<String> {
     if request {
         return belvedere::request::schema(of)
-            .ok_or_else(|| anyhow::anyhow!("--request: the request of {of} has no schema; possible: reveal"));
+            .ok_or_else(|| anyhow::anyhow!("--request: the request of {of} has no schema; possible: {}", WITH_REQUEST.join(", ")));
     }
     if of == BENCH {
         return Ok(schemas::schema_of(

@@ -11,7 +11,7 @@ use belvedere::scene::Progress;
 use belvedere::scene_file::{AnimationDoc, Document, LayerDoc, PointDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{AnimateRequest, animate};
 use belvedere::verbs::measure::{MeasureOptions, measure};
-use belvedere::{BelvedereError, RendererChoice, output};
+use belvedere::{BelvedereError, RendererName, output};
 use belvedere_studio::beside;
 use eframe::egui::{Button, ComboBox, Context, DragValue, ProgressBar, Ui};
 use std::path::{Path, PathBuf};
@@ -361,7 +361,7 @@ fn make(
             Ok([made.folder].into_iter().chain(cameras).collect())
         }
         Want::Report => {
-            let report = measure(&session, &MeasureOptions::default(), RendererChoice::Cpu, progress)?;
+            let report = measure(&session, &MeasureOptions::default(), &RendererName::CPU, progress)?;
             output::write_text(path, &output::pretty(&report)?, true)?;
             Ok(vec![path.to_owned()])
         }

@@ -43,6 +43,9 @@ pub struct Document {
     /// What is done to the surfaces of the picture.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stylisation: Option<super::stylisation::StylisationDoc>,
+    /// Renderer of the pictures: `cpu`, `exact`, or one that the program registers; by default the fastest that there is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub renderer: Option<super::request::RendererName>,
     /// Paper of the pictures that `render` writes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub print: Option<super::print::PrintDoc>,
@@ -84,6 +87,7 @@ impl Document {
             overlay: None,
             furniture: None,
             stylisation: None,
+            renderer: None,
             print: None,
             text: None,
             layer: Vec::new(),
@@ -120,6 +124,7 @@ pub(super) struct Head {
     pub(super) overlay: Option<super::overlay::OverlayDoc>,
     pub(super) furniture: Option<super::furniture::FurnitureDoc>,
     pub(super) stylisation: Option<super::stylisation::StylisationDoc>,
+    pub(super) renderer: Option<super::request::RendererName>,
     pub(super) print: Option<super::print::PrintDoc>,
     pub(super) text: Option<super::text::TextDoc>,
     #[serde(default)]

@@ -329,6 +329,7 @@ fn document(root: &Node) -> Result<Document, DocError> {
         overlay: head.overlay,
         furniture: head.furniture,
         stylisation: head.stylisation,
+        renderer: head.renderer,
         print: head.print,
         text: head.text,
         representations: head.representations,

@@ -5,11 +5,11 @@ mod tiles;
 use crate::record::{AreaRecord, InputFile, LayerNotes};
 use crate::resolve::vectors::{FeatureKind, kind_of, kinds_of};
 use crate::resolve::{self, LayerRequest};
+use crate::scene_file::request::Stated;
 use crate::scene_file::paths::{Roots, folder_of};
 use crate::scene_file::{
     AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, LayerDoc, LineDoc, LineStyleDoc, Origin, PaletteDoc, Paths,
     PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, TextDoc,
-    VerticalUnit,
 };
 use crate::session::{Description, Loaded};
 use crate::{BelvedereError, OpenOptions, Session};
@@ -57,14 +57,8 @@ pub struct DataFiles {
     pub no_sea: bool,
     /// Surface that areas are drawn as; automatic if left out.
     pub area_style: Option<SurfaceDoc>,
-    /// `EPSG:n` of the terrain, instead of what its file says.
-    pub source_crs: Option<String>,
-    /// Stored value of the terrain that means "no data", instead of what its file says.
-    pub nodata: Option<f64>,
-    /// Unit of the terrain's heights, instead of what its file says.
-    pub vertical_unit: Option<VerticalUnit>,
-    /// Property that holds the names of features, instead of the one that looks most like a name.
-    pub name_field: Option<String>,
+    /// What the files do not say.
+    pub stated: Stated,
 }
 
 /// Contents of the files.
@@ -96,9 +90,9 @@ impl DataFiles {
             source: tiles::paths(ground),
             fill_voids: !self.keep_voids,
             largest_hole: (!self.keep_voids && !self.fill_all_voids).then_some(LARGEST_HOLE),
-            source_crs: self.source_crs.clone(),
-            nodata: self.nodata,
-            vertical_unit: self.vertical_unit,
+            source_crs: self.stated.raster.source_crs.clone(),
+            nodata: self.stated.raster.nodata,
+            vertical_unit: self.stated.raster.vertical_unit,
             drape: (!drape.is_empty()).then(|| tiles::paths(drape)),
             style: TerrainStyleDoc {
                 palette,
@@ -129,7 +123,7 @@ impl DataFiles {
                 | LayerDoc::Point(PointLayerDoc { name_field, .. }) = &mut layer
                     && !source.starts_with("builtin:")
                 {
-                    name_field.clone_from(&self.name_field);
+                    name_field.clone_from(&self.stated.name_field);
                 }
                 if self.labels {
                     write_names(&mut layer);
@@ -190,6 +184,7 @@ impl Data {
             overlay: None,
             furniture: None,
             stylisation: None,
+            renderer: None,
             print: None,
             text: self.text,
             light: None,

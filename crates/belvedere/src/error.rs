@@ -99,6 +99,14 @@ pub enum BelvedereError {
         /// The measured value, the limit, and what to do.
         reason: String,
     },
+    /// A renderer that does not exist.
+    #[error("there is no renderer \"{name}\"; {advice}")]
+    NoRenderer {
+        /// Its name.
+        name: String,
+        /// What to do.
+        advice: String,
+    },
     /// A picture that cannot be written as vectors.
     #[error("{0} cannot be written as vectors; write a PNG")]
     NoVectors(&'static str),

@@ -10,15 +10,16 @@ use crate::resolve::motion::Motions;
 use crate::resolve::solving::{Memory, Solving};
 use crate::resolve::terrain;
 use crate::resolve::{validate, view, wall};
+use crate::scene_file::request::RendererName;
 use crate::scene_file::paths::{Roots, folder_of, stays_below};
 use crate::scene_file::{Document, FurnitureDoc, FurnitureWish, OverlayDoc, SourceDocument, StageDoc};
+use crate::renderers::{self, Renderers, SharedRenderer};
 use crate::{BelvedereError, OpenOptions};
 use belvedere_core::Warning;
 use belvedere_core::{Pinhole, SpaceMap, View};
-use belvedere_cpu::CpuRenderer;
 use belvedere_disocclusion::{TerrainReport, TerrainSettings};
 use belvedere_io::{budget, split_table};
-use belvedere_scene::{Light, Progress, Renderer, Scene, Stylisation};
+use belvedere_scene::{Light, Progress, Scene, Stylisation};
 use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 use std::sync::Arc;
 
@@ -29,7 +30,7 @@ use std::sync::Arc;
 pub struct Session {
     pub(crate) loaded: Loaded,
     pub(crate) resolved: Resolved,
-    pub(crate) renderer: Arc<dyn Renderer + Send + Sync>,
+    pub(crate) renderers: Renderers,
     /// Memory that its pictures keep.
     pub(crate) kept: Arc<Kept>,
 }
@@ -75,12 +76,8 @@ pub(crate) struct Description {
 
 impl std::fmt::Debug for Session {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { loaded, resolved, renderer, kept: _ } = self;
-        f.debug_struct("Session")
-            .field("loaded", loaded)
-            .field("resolved", resolved)
-            .field("renderer", &renderer.name())
-            .finish()
+        let Self { loaded, resolved, renderers: _, kept: _ } = self;
+        f.debug_struct("Session").field("loaded", loaded).field("resolved", resolved).finish_non_exhaustive()
     }
 }
 
@@ -149,6 +146,7 @@ impl Session {
         roots: Roots,
         solving: Option<&mut Solving<'_>>,
     ) -> Result<Self, BelvedereError> {
+        source.document.renderer.as_ref().map_or(Ok(()), renderers::check)?;
         let resolved = Resolved::of(source, roots, &loaded.scene, solving, true)?;
         Ok(Self::together(loaded.drawn_for(&resolved), resolved))
     }
@@ -159,7 +157,9 @@ impl Session {
     }
 
     fn together(loaded: Loaded, resolved: Resolved) -> Self {
-        Self { loaded, resolved, renderer: Arc::new(CpuRenderer::default()), kept: Arc::default() }
+        let description = resolved.description.as_ref();
+        let usual = description.and_then(|d| d.source.document.renderer.clone()).unwrap_or_default();
+        Self { loaded, resolved, renderers: Renderers::new(usual), kept: Arc::default() }
     }
 
     /// Bytes of a budget that a picture may take. What the renderer keeps of the last picture is in its estimate and counts once.
@@ -167,9 +167,17 @@ impl Session {
         budget::left_beside(budget, self.kept.others(budget::held()))
     }
 
-    /// The same with another renderer.
-    pub fn with_renderer(self, renderer: Arc<dyn Renderer + Send + Sync>) -> Self {
-        Self { renderer, ..self }
+    /// The same with another renderer, which `auto` then is.
+    pub fn with_renderer(self, renderer: SharedRenderer) -> Self {
+        Self { renderers: Renderers::of(renderer), ..self }
+    }
+
+    /// The renderer of a name, with the caches of the session.
+    ///
+    /// # Errors
+    /// [`BelvedereError::NoRenderer`].
+    pub fn renderer(&self, name: &RendererName) -> Result<SharedRenderer, BelvedereError> {
+        self.renderers.get(name)
     }
 
     /// The same under another light.

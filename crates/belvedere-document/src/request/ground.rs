@@ -20,6 +20,15 @@ pub struct Stated {
     pub name_field: Option<String>,
 }
 
+impl Stated {
+    /// A terrain whose file does not state its coordinate system.
+    ///
+    /// * `source_crs`: `EPSG:n`.
+    pub fn in_crs(source_crs: &str) -> Self {
+        Self { raster: StatedRaster { source_crs: Some(source_crs.into()), ..StatedRaster::default() }, name_field: None }
+    }
+}
+
 /// What the file of a terrain does not say.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[cfg_attr(feature = "clap", derive(clap::Args))]

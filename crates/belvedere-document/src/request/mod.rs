@@ -3,24 +3,34 @@
 //! A field of a request is the key of its JSON form, the option of the command line (feature `clap`), an argument in Python, and a line of
 //! the schema. Doors add only what is theirs, such as names of outputs.
 
+mod animate;
 #[cfg(feature = "clap")]
 mod args;
+mod disocclude;
+mod drawing;
 mod ground;
 mod look;
 mod molecule;
 mod options;
+mod others;
 mod paper;
+mod render;
 mod reveal;
 #[cfg_attr(not(feature = "clap"), allow(dead_code, unreachable_pub))]
 mod value;
 
+pub use animate::Animate;
 #[cfg(feature = "clap")]
 pub use args::one_of;
+pub use disocclude::{Disocclude, WrittenGrid};
+pub use drawing::{Drawing, RendererName};
 pub use ground::{OfData, Stated, StatedRaster};
 pub use look::{Air, Furnishing, FurnitureItems, Look};
 pub use molecule::Molecules;
-pub use options::{given_of, options, read, schema};
+pub use options::{Request, WITH_REQUEST, given_of, options, read, schema};
+pub use others::{Export, Generalise, Measure};
 pub use paper::Paper;
+pub use render::{AuxBuffer, AuxFormat, Outside, Render};
 pub use reveal::{Reveal, Technique};
 pub use value::EXAGGERATION;
 

@@ -6,6 +6,10 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
+/// A request of a verb: an object of options, with a schema.
+pub trait Request: DeserializeOwned + JsonSchema {}
+impl<T: DeserializeOwned + JsonSchema> Request for T {}
+
 /// Names of the options of a request, in the order of its fields, those of its groups among them.
 pub fn options<T: JsonSchema>() -> Vec<String> {
     let schema = schemars::schema_for!(T);
@@ -13,9 +17,18 @@ pub fn options<T: JsonSchema>() -> Vec<String> {
     properties.map(|all| all.keys().cloned().collect()).unwrap_or_default()
 }
 
-/// The JSON Schema of the request of a verb; `None` for a verb whose request is not data yet.
+/// Verbs whose request is data.
+pub const WITH_REQUEST: [&str; 7] = ["animate", "disocclude", "export", "generalise", "measure", "render", "reveal"];
+
+/// The JSON Schema of the request of a verb, one of [`WITH_REQUEST`]; `None` for another one.
 pub fn schema(verb: &str) -> Option<String> {
     let mut schema = match verb {
+        "animate" => schemars::schema_for!(super::Animate),
+        "disocclude" => schemars::schema_for!(super::Disocclude),
+        "export" => schemars::schema_for!(super::Export),
+        "generalise" => schemars::schema_for!(super::Generalise),
+        "measure" => schemars::schema_for!(super::Measure),
+        "render" => schemars::schema_for!(super::Render),
         "reveal" => schemars::schema_for!(super::Reveal),
         _ => return None,
     };
@@ -41,7 +54,7 @@ pub fn given_of<T: Serialize + Default>(request: &T, names: &[&'static str]) -> 
 ///
 /// # Errors
 /// A sentence with the option that is unknown, or whose value is wrong.
-pub fn read<T: DeserializeOwned + JsonSchema>(text: &str) -> Result<T, String> {
+pub fn read<T: Request>(text: &str) -> Result<T, String> {
     let value: Value = serde_json::from_str(text).map_err(|e| e.to_string())?;
     let known = options::<T>();
     let asked = value.as_object().ok_or("a request is an object of options")?;

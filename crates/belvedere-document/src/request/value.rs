@@ -40,6 +40,41 @@ pub fn with_height(text: &str) -> Result<Place, String> {
     if place.has_height() { Ok(place) } else { Err(without.into()) }
 }
 
+/// A place without a height, such as `1.5,42.5`.
+pub(crate) fn position(text: &str) -> Result<Place, String> {
+    let place: Place = text.parse()?;
+    if place.has_height() { Err("give X,Y without a height".into()) } else { Ok(place) }
+}
+
+/// A permitted error in pixels, 0..=64.
+pub(crate) fn lod(text: &str) -> Result<f64, String> {
+    let px = text.parse().ok().filter(|px| (0.0..=64.0).contains(px));
+    px.ok_or_else(|| "give an error in pixels in 0..=64; 0 draws every cell".into())
+}
+
+/// `phi`, `phi=25:80` or `phi=25:80:0.5`, degrees; values that are not given are 0.
+pub(crate) fn sweep(text: &str) -> Result<[f64; 3], String> {
+    let wrong = || "give phi, or phi=FIRST:LAST[:STEP] in degrees, such as phi=25:80".to_owned();
+    if text == "phi" {
+        return Ok([0.0; 3]);
+    }
+    let range = text.strip_prefix("phi=").ok_or_else(wrong)?;
+    match numbers(&range.replace(':', ",")).as_deref() {
+        Some([first, last]) if first != last => Ok([*first, *last, 0.0]),
+        Some([first, last, step]) if first != last && *step > 0.0 => Ok([*first, *last, *step]),
+        _ => Err(wrong()),
+    }
+}
+
+/// The first and the last frame of a part, such as `0:249`.
+pub(crate) fn part(text: &str) -> Result<[usize; 2], String> {
+    let ends: Option<Vec<usize>> = text.split(':').map(|end| end.trim().parse().ok()).collect();
+    match ends.as_deref() {
+        Some([first, last]) if first <= last => Ok([*first, *last]),
+        _ => Err("give FIRST:LAST, frames counted from 0, such as 0:249".into()),
+    }
+}
+
 /// The name of a fallback for a target that no bend shows; the text unchanged.
 pub(crate) fn fallback(text: &str) -> Result<String, String> {
     text.parse::<crate::Fallback>().map(|_| text.to_owned())

@@ -487,7 +487,7 @@ fn target_seen(session: &Session, progress: &Progress) -> Result<Option<f64>, Be
     let options = RenderOptions { samples: 1, ..RenderOptions::default() };
     let draw = |scene: &Scene, view: &View| {
         let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
-        Ok::<_, BelvedereError>(session.renderer.render(&job)?)
+        Ok::<_, BelvedereError>(session.renderer(&crate::RendererName::AUTO)?.render(&job)?)
     };
     fallback::in_sight::of_session(session, (view, &frame), &draw)
 }

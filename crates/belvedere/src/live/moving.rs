@@ -67,7 +67,7 @@ pub(super) fn quick(
     let draw = |scene: &Scene, view: &View| {
         let job = RenderJob { scene, view, light: &light, options: &options, progress };
         let before = budget::held();
-        let frame = session.renderer.render(&job)?;
+        let frame = session.renderer(&crate::RendererName::AUTO)?.render(&job)?;
         session.kept.drawn([before, budget::held()], kept::bytes_of(&frame));
         Ok::<_, BelvedereError>(frame)
     };

@@ -89,7 +89,7 @@ pub(crate) fn later(
         frame: Frame { width, height, ..Frame::default() },
         alpha: None,
         straight: None,
-        sidecar: sidecar(session, request, (made, &rigid), inputs),
+        sidecar: sidecar(session, request, (made, &rigid), inputs)?,
         vectors: None,
         aux: Vec::new(),
         aux_format: request.aux_format,
@@ -129,7 +129,7 @@ pub(crate) fn write_straight(
     let rows = rows(session, request, Path::new("straight.png"))?.unwrap_or(ROWS);
     let program = format!("belvedere {}", crate::VERSION);
     let mut result = Ok(());
-    request.renderer.of(session).in_rows(&job, &mut |front| {
+    session.renderer(&request.renderer)?.in_rows(&job, &mut |front| {
         let bands = Bands { session, request, view: &view, rows, furnished: &Plan::default(), thin: None };
         let [width, height] = front.size();
         let text = [("Software", program.as_str())];
@@ -195,7 +195,7 @@ pub(crate) fn rows(session: &Session, request: &PictureOptions, out: &Path) -> R
         options: &options,
         progress: &request.progress,
     };
-    let renderer = request.renderer.of(session);
+    let renderer = session.renderer(&request.renderer)?;
     let needed = renderer.bytes_for(&job, None);
     let fits = needed <= options.max_bytes;
     if request.band_rows.is_none() && fits && width * height <= LARGE {
@@ -263,7 +263,7 @@ fn write(
     let (view, mut options) = (drawn_view(session, request), options(session, request));
     let furnished = furniture::plan(session, (session.scene(), &view), request, (false, false));
     options.keep_clear.clone_from(&furnished.keep_clear);
-    let renderer = request.renderer.of(session);
+    let renderer = session.renderer(&request.renderer)?;
     let ticked = with_distances(session.scene(), &session.resolved.furniture);
     let scaled = widths::scaled(&ticked, request.density);
     let (light, progress, whole) = (session.light(), &request.progress, &*scaled);
@@ -333,7 +333,7 @@ impl Bands<'_> {
             render_ms: 0.0,
             warnings: Vec::new(),
         };
-        let sidecar = sidecar(session, request, (made, &rigid), inputs);
+        let sidecar = sidecar(session, request, (made, &rigid), inputs)?;
         let mut picture = Picture {
             frame: Frame { width, height, stats: front.stats(), ..Frame::default() },
             alpha: None,

@@ -1,6 +1,6 @@
 //! Buffers beside a picture as channels of one OpenEXR file.
 
-use super::options::AuxBuffer;
+use super::AuxBuffer;
 use crate::BelvedereError;
 use crate::bodies::RigidLayers;
 use belvedere_core::{DVec3, View};

@@ -2,7 +2,8 @@
 
 use super::displacement::{self, DisplacementReport};
 use super::mark_target::plain;
-use super::options::{AuxBuffer, PictureOptions};
+use super::AuxBuffer;
+use super::options::PictureOptions;
 use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, SeeThroughRecord, Sidecar, TerrainRecord};
 use super::volume_record::VolumeRecord;
 use super::{furniture, nothing_seen, transparent, vectors};
@@ -62,7 +63,7 @@ pub(crate) fn draw(
     let render_ms = started.elapsed().as_secs_f64() * 1e3;
     let stats = frame.stats.clone();
     let made = Made { view: &view, overlay, displacement, fallback, stats, furniture, render_ms, warnings };
-    let sidecar = sidecar(session, request, (made, &rigid), inputs);
+    let sidecar = sidecar(session, request, (made, &rigid), inputs)?;
     let (aux, aux_format, crs) = (request.aux.clone(), request.aux_format, session.scene().crs);
     let unit = session.scene().unit;
     Ok(Picture { frame, alpha, straight, sidecar, vectors, aux, aux_format, view, rigid, crs, unit, later: None })
@@ -87,14 +88,14 @@ pub(super) fn sidecar(
     request: &PictureOptions,
     (made, rigid): (Made<'_>, &RigidLayers),
     inputs: Vec<InputFile>,
-) -> Sidecar {
+) -> Result<Sidecar, BelvedereError> {
     let Made { view, overlay, displacement, fallback, stats, furniture, render_ms, warnings: of_picture } = made;
     let names = session.public_names();
     let mut volumes = VolumeRecord::all(session.scene());
     volumes.iter_mut().for_each(|volume| volume.transfer = names.text(&volume.transfer));
-    Sidecar {
+    Ok(Sidecar {
         program: format!("belvedere {}", crate::VERSION),
-        renderer: request.renderer.of(session).name(),
+        renderer: session.renderer(&request.renderer)?.name(),
         picture_sha256: None,
         note: displacement.map(|d| note(view, &d, session.scene().unit)),
         print: request.print,
@@ -125,7 +126,7 @@ pub(super) fn sidecar(
         of_picture,
         stats,
         render_ms,
-    }
+    })
 }
 
 /// Pictures with all marks.
@@ -192,7 +193,7 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
         let scene = with_distances(scene, ticked);
         let scene = &*widths::scaled(&scene, request.density);
         let job = RenderJob { scene, view, light: session.light(), options: &surfaces, progress };
-        Ok::<_, BelvedereError>(request.renderer.of(session).render(&job)?)
+        Ok::<_, BelvedereError>(session.renderer(&request.renderer)?.render(&job)?)
     };
     let bare = || Ok(FallbackPicture { frame: draw(scene, &view)?, pixels_opened: None });
     let picture = plan.as_ref().map_or_else(bare, |plan| plan.draw(&view, &draw))?;
@@ -206,7 +207,7 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
         && let Some(cut) = thin::cut(scene, &view, covered)?
     {
         let job = RenderJob { scene: &cut, view: &view, light: session.light(), options: &surfaces, progress };
-        let behind = request.renderer.of(session).render(&job)?;
+        let behind = session.renderer(&request.renderer)?.render(&job)?;
         thin::Thin::new(scene, &view, covered, [frame.width, frame.height]).draw(&mut frame, &behind, 0);
     }
     let mut vectors = as_vectors.then(|| {
@@ -222,7 +223,7 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
             let options = RenderOptions { names: None, ..options.clone() };
             let job =
                 RenderJob { scene, view: &view.straightened(), light: session.light(), options: &options, progress };
-            request.renderer.of(session).render(&job)
+            Ok::<_, BelvedereError>(session.renderer(&request.renderer)?.render(&job)?)
         })
         .transpose()?;
     let mut heatmap_max = None;
@@ -232,7 +233,7 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
         let max_bytes = options.max_bytes;
         let options = RenderOptions { marks: false, aux, max_bytes, ..request.quality.clone() };
         let job = RenderJob { scene, view: &view, light: session.light(), options: &options, progress };
-        let bare = request.renderer.of(session).render(&job)?;
+        let bare = session.renderer(&request.renderer)?.render(&job)?;
         heatmap_max = Some(heat::paint(&mut frame, &bare, (&view, &rigid)));
     }
     let highlight = (!marks.is_empty() && !request.straight)
@@ -242,7 +243,7 @@ fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress)
             let options = RenderOptions { marks: false, aux, max_bytes, ..request.quality.clone() };
             let draw = |view: &View| {
                 let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
-                request.renderer.of(session).render(&job)
+                Ok::<_, BelvedereError>(session.renderer(&request.renderer)?.render(&job)?)
             };
             let bent = draw(&view)?;
             let straight = marks.contains(&HighlightMark::Revealed).then(|| draw(&view.straightened())).transpose()?;
@@ -338,7 +339,7 @@ pub(crate) fn draw_camera(
     let options = RenderOptions { overlay: figure.overlay.clone(), max_bytes, ..request.quality.clone() };
     let (scene, view, light) = (session.scene(), &figure.view, session.light());
     let job = RenderJob { scene, view, light, options: &options, progress };
-    let mut frame = request.renderer.of(session).render(&job)?;
+    let mut frame = session.renderer(&request.renderer)?.render(&job)?;
     let title = if scene.title.is_empty() { "The camera" } else { &scene.title };
     camera::draw_legend(&mut Canvas::new(&mut frame.color, frame.width), &figure, (title, scene.unit));
     let overlay = OverlayRecord { camera: Some(picture.name()), ..OverlayRecord::default() };

@@ -36,7 +36,7 @@ pub(crate) fn placed(
     options.max_bytes = session.bytes_for_picture(options.max_bytes);
     let surfaces = RenderOptions { samples: 1, exposures: 1, marks: false, ..options.clone() };
     let job = RenderJob { scene, view: &view, light: session.light(), options: &surfaces, progress };
-    let depth = session.renderer.render(&job)?.depth;
+    let depth = session.renderer(&request.renderer)?.render(&job)?.depth;
     let lines = grid::wanted(session.scene(), request.grid.or(grid::stated(wanted)));
     options.overlay.under.extend(lines.into_iter().map(|line| widths::line(line, request.density)));
     let furnished = furniture::plan(session, (session.scene(), &view), request, (!marks.is_empty(), heatmap));

@@ -18,7 +18,7 @@ pub(crate) fn plain<'a>(
     let light = Light { shadows: false, ..*session.light() };
     move |scene, view| {
         let job = RenderJob { scene, view, light: &light, options: &drawing, progress };
-        Ok(options.renderer.of(session).render(&job)?)
+        Ok(session.renderer(&options.renderer)?.render(&job)?)
     }
 }
 

@@ -2,10 +2,10 @@
 
 use crate::print::Sheet;
 use crate::scene_file::HighlightMark;
+use crate::scene_file::request::{AuxBuffer, AuxFormat};
 use crate::vectors::VectorContent;
-use crate::{CameraPicture, Session};
-use belvedere_cpu::ExactRenderer;
-use belvedere_scene::{Progress, RenderOptions, Renderer, Stylisation};
+use crate::{CameraPicture, RendererName};
+use belvedere_scene::{Progress, RenderOptions, Stylisation};
 
 /// Thresholds per pixel, over all its samples, for transitions between styling sections in pictures at rest.
 pub const THRESHOLDS: u32 = 64;
@@ -24,7 +24,7 @@ pub struct PictureOptions {
     /// Format of the buffers.
     pub aux_format: AuxFormat,
     /// Renderer that draws the picture.
-    pub renderer: RendererChoice,
+    pub renderer: RendererName,
     /// Stylisation instead of the scene's.
     pub stylisation: Option<Stylisation>,
     /// Grid on the ground instead of the scene's: spacing in scene units, or `Some(None)` for an automatic one.
@@ -48,7 +48,7 @@ pub struct PictureOptions {
     pub print: Option<Sheet>,
     /// Lines, areas, points, names and legends that become shapes instead of pixels, see [`Picture::vectors`](super::Picture::vectors).
     pub vectors: VectorContent,
-    /// Rows that [`Session::render_to`] draws at a time, rounded up to a multiple of 16; 0 = all in one piece. `None` = it depends on size
+    /// Rows that [`crate::Session::render_to`] draws at a time, rounded up to a multiple of 16; 0 = all in one piece. `None` = it depends on size
     /// and memory.
     pub band_rows: Option<usize>,
     /// Progress and cancellation.
@@ -71,7 +71,7 @@ impl Default for PictureOptions {
             compare: false,
             aux: Vec::new(),
             aux_format: AuxFormat::default(),
-            renderer: RendererChoice::default(),
+            renderer: RendererName::AUTO,
             stylisation: None,
             grid: None,
             heatmap: false,
@@ -85,61 +85,6 @@ impl Default for PictureOptions {
             vectors: VectorContent::Nothing,
             band_rows: None,
             progress: Progress::default(),
-        }
-    }
-}
-
-/// Format of buffers beside a picture.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum AuxFormat {
-    /// One NPY file per buffer, `OUT.NAME.npy`.
-    #[default]
-    Npy,
-    /// One OpenEXR file of all buffers, `OUT.exr`.
-    Exr,
-}
-
-/// Choice of the renderer.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum RendererChoice {
-    /// The rasteriser.
-    #[default]
-    Cpu,
-    /// The exact tracer of curved rays: slower, without subdivision.
-    Exact,
-}
-
-impl RendererChoice {
-    /// The renderer; the rasteriser is the session's own, with its caches.
-    pub fn of(self, session: &Session) -> &dyn Renderer {
-        match self {
-            Self::Cpu => &*session.renderer,
-            Self::Exact => &ExactRenderer,
-        }
-    }
-}
-
-/// A buffer beside the picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum AuxBuffer {
-    /// Depth, f32, infinite where sky.
-    Depth,
-    /// 1 + index of the layer, u32, 0 where sky.
-    Id,
-    /// World position, 3 x f64, NaN where sky.
-    World,
-    /// Displaced minus world position, 3 x f64, NaN where sky.
-    Displacement,
-}
-
-impl AuxBuffer {
-    /// Name in options and file names.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Depth => "depth",
-            Self::Id => "id",
-            Self::World => "world",
-            Self::Displacement => "displacement",
         }
     }
 }

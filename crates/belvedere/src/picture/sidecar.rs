@@ -1,7 +1,7 @@
 //! A finished picture and the record beside it.
 
 use super::displacement::DisplacementReport;
-use super::options::{AuxBuffer, AuxFormat, PictureOptions};
+use super::{AuxBuffer, AuxFormat, PictureOptions};
 use super::target_place::TargetPlace;
 use super::volume_record::VolumeRecord;
 use crate::bodies::RigidLayers;

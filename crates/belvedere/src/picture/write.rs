@@ -1,7 +1,7 @@
 //! Pictures, records and buffers as files.
 
 use super::buffers;
-use super::options::{AuxBuffer, AuxFormat, PictureOptions};
+use super::{AuxBuffer, AuxFormat, PictureOptions};
 use super::sidecar::Picture;
 use crate::BelvedereError;
 use crate::output;

@@ -10,11 +10,12 @@ use crate::guard::guarded;
 use crate::output;
 use crate::picture::{self, PictureOptions};
 use crate::places::{Place, PlaceFinder};
+use crate::request::{Disocclude, WrittenGrid};
 use crate::record::{self, InputFile};
 use crate::resolve::ground::earth_radius;
 use crate::resolve::terrain as intent;
 use crate::scene_file::{self, CameraDoc, EarthDoc, StageDoc, TerrainStageDoc};
-use crate::{BelvedereError, OpenOptions, Session};
+use crate::{Advice, BelvedereError, OpenOptions, Session};
 use belvedere_construct::measure::{Shares, percent};
 use belvedere_construct::reveal::shortfall;
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, View};
@@ -42,48 +43,6 @@ const WRITING: f64 = 1.5;
 /// Visible share of the features in view that is the goal.
 const VISIBLE_LENGTH: f64 = 0.995;
 
-/// Features to show, and the eye.
-#[derive(Debug, Clone, Default)]
-pub struct DisoccludeRequest {
-    /// Elevation model (one file) and features; `fill_voids` decides about holes.
-    pub data: DataFiles,
-    /// Fills holes of the elevation model of at most [`crate::data::LARGEST_HOLE`] of its area, also in the files that are written.
-    pub fill_voids: bool,
-    /// Eye: x, y in the system of the elevation model (degrees if geographic), z metres over its datum.
-    pub eye: [f64; 3],
-    /// Point looked at, x, y likewise.
-    pub look: [f64; 2],
-    /// Eye and point looked at as a user wrote them, instead of `eye` and `look`.
-    pub places: Option<[Place; 2]>,
-    /// Full horizontal field of view, degrees, in (0, 180).
-    pub fov_x_deg: f64,
-    /// Parameters of the solver.
-    pub parameters: TerrainStageDoc,
-    /// Lets the ground curve downwards with the distance.
-    pub curved_earth: bool,
-    /// Grid of the files that are written.
-    pub grid: WrittenGrid,
-}
-
-impl DisoccludeRequest {
-    /// Eye and point looked at as they are written.
-    fn written(&self) -> [Place; 2] {
-        let [x, y, z] = self.eye;
-        self.places.unwrap_or([Place::of([x, y], Some(z)), Place::of(self.look, None)])
-    }
-}
-
-/// Grid of the written heights.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, JsonSchema, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum WrittenGrid {
-    /// The grid of the input, in its coordinate system. Heights are resampled if the solver's grid is another one.
-    #[default]
-    Input,
-    /// The solver's grid, in metres: guarantees hold at every node.
-    Scene,
-}
-
 /// Parameters of the solver from `key=value` texts, keys and values as in scene files.
 ///
 /// # Errors
@@ -109,6 +68,35 @@ pub fn parameters(texts: &[String]) -> Result<TerrainStageDoc, BelvedereError> {
     match (&document.delta, &document.delta_sha256) {
         (None, None) => Ok(document),
         _ => Err(BelvedereError::Setting("delta is what is solved for; leave it out".into())),
+    }
+}
+
+/// The stage that a request asks for: its keys, then its options.
+fn stage_of(request: &Disocclude) -> Result<TerrainStageDoc, BelvedereError> {
+    let mut stage = parameters(&request.set)?;
+    stage.mode = request.mode.or(stage.mode);
+    if request.no_limits {
+        stage.limits = Some(false);
+    }
+    Ok(stage)
+}
+
+fn places(request: &Disocclude) -> Result<[Place; 2], BelvedereError> {
+    let missing = || BelvedereError::Argument(Advice::new("{} and {} are needed; give both", &["eye", "look"]));
+    let [eye, look] = [request.eye, request.look];
+    Ok([eye.ok_or_else(missing)?, look.ok_or_else(missing)?])
+}
+
+fn files(request: &Disocclude) -> DataFiles {
+    DataFiles {
+        dem: request.data.clone(),
+        features: request.features.clone(),
+        rivers: request.rivers.clone(),
+        crs: request.crs.clone(),
+        keep_voids: !request.fill_voids,
+        area_style: request.area_style,
+        stated: request.stated.clone(),
+        ..DataFiles::default()
     }
 }
 
@@ -205,27 +193,29 @@ impl DisoccludeFiles {
 /// # Errors
 /// [`BelvedereError::FieldOfView`], [`BelvedereError::Position`], [`BelvedereError::EyeIsTarget`], [`BelvedereError::Setting`],
 /// [`BelvedereError::Disocclusion`]; those of the loaders.
-pub fn disocclude(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Disoccluded, BelvedereError> {
+pub fn disocclude(request: &Disocclude, options: &OpenOptions) -> Result<Disoccluded, BelvedereError> {
     guarded(|| disoccluded(request, options))
 }
 
-fn disoccluded(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Disoccluded, BelvedereError> {
-    intent::check(&request.parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
-    let mut settings = intent::settings(&request.parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
-    let mut data = DataFiles { keep_voids: !request.fill_voids, ..request.data.clone() }.load(true, options)?;
+fn disoccluded(request: &Disocclude, options: &OpenOptions) -> Result<Disoccluded, BelvedereError> {
+    let parameters = stage_of(request)?;
+    intent::check(&parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
+    let mut settings = intent::settings(&parameters).map_err(|(_, reason)| BelvedereError::Setting(reason))?;
+    let (grid, places) = (request.grid.unwrap_or_default(), places(request)?);
+    let mut data = files(request).load(true, options)?;
     settings.rivers.append(&mut data.rivers);
     let solver = TerrainSolver::new(settings)?.in_plan();
-    let dem = &request.data.dem;
+    let dem = &request.data;
     let original = data.original.take().ok_or_else(|| IoError::format(dem, "is no file; give an elevation model"))?;
     let radius = request.curved_earth.then(|| earth_radius(&data.scene, &mut data.warnings));
     data.warnings.extend(original.georeference_note());
-    let (mut camera, said) = LevelCamera::new(request, &original, &data.scene, radius)?;
+    let (mut camera, said) = LevelCamera::new((request, &places), &original, &data.scene, radius)?;
     data.warnings.extend(said);
     let scene_eye = camera.eye.to_array();
-    let [eye, look] = request.written();
+    let [eye, look] = places;
     let [eye_x, eye_y] = eye.numbers();
     let adjusting = options.progress.part(ADJUSTING);
-    let moved_eye = camera.adjust(request.parameters.adjust_viewpoint, &solver, &data.scene, &adjusting)?;
+    let moved_eye = camera.adjust(parameters.adjust_viewpoint, &solver, &data.scene, &adjusting)?;
     data.warnings.extend(moved_eye.as_ref().map(|(_, said)| said.clone()));
     let view = camera.view(camera.target.extend(camera.eye.z), None)?;
     let solving = options.progress.before(WRITING);
@@ -234,7 +224,7 @@ fn disoccluded(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Dis
     let lakes = LevelLakes::new(&solved.stage, &solved.report, &data.scene);
     let delta = |p: DVec2| lakes.at(p);
     let mut rivers_written = Vec::new();
-    let (rasters, grid) = match (request.grid, data.scene.terrain()) {
+    let (rasters, written_on) = match (grid, data.scene.terrain()) {
         (WrittenGrid::Scene, Some(terrain)) => {
             (moved_terrain(terrain, data.scene.crs, delta), FileGrid::of_terrain(terrain))
         }
@@ -250,10 +240,10 @@ fn disoccluded(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Dis
         }
     };
     let seen_by = (&*data.scene, &view);
-    let [straight, written] = grid.judged(&solver, seen_by, &rasters, &solved.report, &options.progress)?;
-    let visible_written = (!grid.solved_on).then_some(written.visible_dense);
-    written.put(&straight, grid.solved_on, &mut solved.report);
-    drop(grid);
+    let [straight, written] = written_on.judged(&solver, seen_by, &rasters, &solved.report, &options.progress)?;
+    let visible_written = (!written_on.solved_on).then_some(written.visible_dense);
+    written.put(&straight, written_on.solved_on, &mut solved.report);
+    drop(written_on);
     data.warnings.extend(intent::remarks(&solved, &data.scene));
     data.warnings.extend(visible_written.and_then(|share| resampled_away(share, &solved)));
     let ground = data.scene.terrain().and_then(|t| t.surface_at(camera.target));
@@ -276,9 +266,9 @@ fn disoccluded(request: &DisoccludeRequest, options: &OpenOptions) -> Result<Dis
         scene_eye,
         adjusted_eye: moved_eye.map(|(eye, _)| eye.to_array()),
         look: look.numbers(),
-        fov_x_deg: request.fov_x_deg,
+        fov_x_deg: request.fov.unwrap_or(Disocclude::FOV_X_DEG),
         earth: if request.curved_earth { "curved" } else { "flat" },
-        grid: request.grid,
+        grid,
         visible_written,
         rivers_written,
         layers: session.scene().layers.iter().map(|l| l.id.clone()).collect(),
@@ -313,18 +303,17 @@ struct LevelCamera {
 
 impl LevelCamera {
     fn new(
-        request: &DisoccludeRequest,
+        (request, [eye, look]): (&Disocclude, &[Place; 2]),
         original: &OriginalTerrain,
         scene: &Scene,
         earth_radius: Option<f64>,
     ) -> Result<(Self, Vec<Warning>), BelvedereError> {
-        let deg = request.fov_x_deg;
+        let deg = request.fov.unwrap_or(Disocclude::FOV_X_DEG);
         if !(deg > 0.0 && deg < 180.0) {
             return Err(BelvedereError::FieldOfView { deg });
         }
-        let [eye, look] = request.written();
         let finder = PlaceFinder::of(scene).in_model(original);
-        let ((eye, of_eye), (target, of_target)) = (finder.find(&eye, "eye")?, finder.on_map(&look, "target")?);
+        let ((eye, of_eye), (target, of_target)) = (finder.find(eye, "eye")?, finder.on_map(look, "target")?);
         if eye.truncate().distance(target) < 1e-6 {
             return Err(BelvedereError::EyeIsTarget);
         }

@@ -237,7 +237,7 @@ pub struct MachineInfo {
     /// Worker threads.
     pub threads: usize,
     /// Renderers.
-    pub renderers: Vec<&'static str>,
+    pub renderers: Vec<String>,
     /// GPU adapters: none in this version.
     pub adapters: Vec<String>,
     /// Summary in words.
@@ -248,7 +248,7 @@ pub struct MachineInfo {
 pub fn machine() -> MachineInfo {
     MachineInfo {
         threads: std::thread::available_parallelism().map_or(1, usize::from),
-        renderers: vec!["cpu", "exact"],
+        renderers: crate::renderers::names(),
         adapters: Vec::new(),
         note: "no GPU renderer in this version",
     }

@@ -2,7 +2,7 @@
 
 use super::shares::shares;
 use crate::guard::guarded;
-use crate::{BelvedereError, RendererChoice, Session};
+use crate::{BelvedereError, RendererName, Session};
 pub use belvedere_construct::MeasureOptions;
 use belvedere_construct::Measures;
 use belvedere_core::Warning;
@@ -53,7 +53,7 @@ pub struct MeasureReport {
 pub fn measure(
     session: &Session,
     options: &MeasureOptions,
-    renderer: RendererChoice,
+    renderer: &RendererName,
     progress: &Progress,
 ) -> Result<MeasureReport, BelvedereError> {
     guarded(|| measured(session, options, renderer, progress))
@@ -62,13 +62,13 @@ pub fn measure(
 fn measured(
     session: &Session,
     options: &MeasureOptions,
-    renderer: RendererChoice,
+    renderer: &RendererName,
     progress: &Progress,
 ) -> Result<MeasureReport, BelvedereError> {
     session.check_drawable()?;
-    let renderer = renderer.of(session);
+    let renderer = session.renderer(renderer)?;
     let mut measures =
-        belvedere_construct::measure(session.scene(), session.view(), Some(renderer), options, progress)?;
+        belvedere_construct::measure(session.scene(), session.view(), Some(&*renderer), options, progress)?;
     let shares = shares(&measures, session.terrain_report());
     let scene_warnings = session.warnings();
     measures.warnings.splice(..0, scene_warnings.iter().cloned());
@@ -95,6 +95,6 @@ impl Session {
     /// # Errors
     /// Those of [`measure`].
     pub fn measure(&self, options: &MeasureOptions) -> Result<MeasureReport, BelvedereError> {
-        measure(self, options, RendererChoice::default(), &Progress::silent())
+        measure(self, options, &RendererName::AUTO, &Progress::silent())
     }
 }

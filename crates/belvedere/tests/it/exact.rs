@@ -1,7 +1,8 @@
 //! The rasteriser against the exact tracer on every ready scene, at the default tolerance, with and without level of detail.
 
 use belvedere::core::View;
-use belvedere::picture::{AuxBuffer, PictureOptions, RendererChoice, THRESHOLDS};
+use belvedere::RendererName;
+use belvedere::picture::{AuxBuffer, PictureOptions, THRESHOLDS};
 use belvedere::scene::{Frame, RenderOptions};
 use belvedere::{OpenOptions, Session};
 use std::path::PathBuf;
@@ -9,7 +10,7 @@ use std::path::PathBuf;
 /// A picture with one sample per pixel.
 ///
 /// * `lod_px`: largest error of the level of detail, pixels.
-fn draw(session: &Session, renderer: RendererChoice, lod_px: f64) -> Frame {
+fn draw(session: &Session, renderer: RendererName, lod_px: f64) -> Frame {
     let quality = RenderOptions { samples: 1, exposures: THRESHOLDS, lod_px, marks: false, ..RenderOptions::default() };
     let aux = vec![AuxBuffer::Depth, AuxBuffer::Id];
     session.render(&PictureOptions { quality, aux, renderer, ..PictureOptions::default() }).expect("picture").frame
@@ -79,9 +80,9 @@ fn every_ready_scene_is_drawn_as_the_tracer_sees_it() {
         // How moved ground is drawn is asked, not how much it shows: the published solver moves it in a hundredth of the time.
         text = text.replace("mode = \"qp\"", "mode = \"paper\"");
         let session = middle(Session::from_text(&path, &text, &options).expect("session"), columns);
-        let exact = draw(&session, RendererChoice::Exact, 0.0);
+        let exact = draw(&session, RendererName::EXACT, 0.0);
         for lod_px in [0.0, 0.5] {
-            let [judged, ids, depths] = compare(&exact, &draw(&session, RendererChoice::Cpu, lod_px));
+            let [judged, ids, depths] = compare(&exact, &draw(&session, RendererName::CPU, lod_px));
             let few = |n: usize| n as f64 <= 1e-3 * judged as f64;
             if judged < (columns * size[1]) as usize / 3 || !few(ids) || !few(depths) {
                 faults.push(format!(

@@ -4,6 +4,7 @@
 use belvedere::scene::Progress;
 use belvedere::scene_file::AnimationDoc;
 use belvedere::verbs::animate::{AnimateRequest, Animation, FrameRecord, animate};
+use belvedere::request::Stated;
 use belvedere::{DataFiles, OpenOptions, Session};
 use std::path::{Path, PathBuf};
 
@@ -75,7 +76,7 @@ impl Ground {
         DataFiles {
             dem: text(&dem),
             features: vec![text(&route)],
-            source_crs: Some("EPSG:32632".into()),
+            stated: Stated::in_crs("EPSG:32632"),
             ..DataFiles::default()
         }
     }

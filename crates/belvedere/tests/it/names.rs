@@ -14,7 +14,7 @@ struct Given {
     viewpoint: verbs::reveal::Viewpoint,
     technique: verbs::reveal::Technique,
     reveal: verbs::reveal::RevealRequest,
-    disocclude: verbs::disocclude::DisoccludeRequest,
+    disocclude: belvedere::request::Disocclude,
     animate: verbs::animate::AnimateRequest,
     measure: construct::MeasureOptions,
     progress: scene::Progress,

@@ -1,6 +1,6 @@
 //! What is painted on drawn ground: lines of equal height lie at their heights, in bent views too, and the edge of the data fades.
 
-use belvedere::picture::{AuxBuffer, PictureOptions, RendererChoice};
+use belvedere::{RendererName, picture::{AuxBuffer, PictureOptions}};
 use belvedere::scene::Frame;
 use belvedere::{OpenOptions, Session};
 use std::path::Path;
@@ -31,7 +31,7 @@ style = {{ relief = 'none', palette = 'plain', {style} }}
     Session::from_text(Path::new("s.toml"), &text, &OpenOptions::default()).expect("a scene")
 }
 
-fn drawn(session: &Session, renderer: RendererChoice) -> Frame {
+fn drawn(session: &Session, renderer: RendererName) -> Frame {
     let aux = vec![AuxBuffer::World];
     session.render(&PictureOptions { aux, renderer, ..PictureOptions::default() }).expect("a picture").frame
 }
@@ -41,9 +41,9 @@ const BENT: &str = "[[stage]]\nkind = 'spline_bend'\npresets = 'progressive'\n";
 #[test]
 fn lines_lie_at_their_heights_straight_and_bent_by_both_renderers() {
     for stages in ["", BENT] {
-        for renderer in [RendererChoice::Cpu, RendererChoice::Exact] {
+        for renderer in [RendererName::CPU, RendererName::EXACT] {
             let with = session(&format!("contours = {EVERY}"), "", stages);
-            let (lines, bare) = (drawn(&with, renderer), drawn(&session("", "", stages), renderer));
+            let (lines, bare) = (drawn(&with, renderer.clone()), drawn(&session("", "", stages), renderer.clone()));
             let ground = with.scene().terrain().expect("ground");
             let world = lines.world.as_ref().expect("places");
             let height =
@@ -87,7 +87,7 @@ fn the_edge_fades_into_the_background_and_the_middle_stays() {
     for light in ["sky = 'white'", "sky = '#102030'"] {
         let white = light.contains("white");
         let (soft, plain) = (session("edge = 'soft'", light, ""), session("", light, ""));
-        let [a, b] = [&soft, &plain].map(|session| drawn(session, RendererChoice::Cpu));
+        let [a, b] = [&soft, &plain].map(|session| drawn(session, RendererName::CPU));
         let bounds = plain.scene().terrain().expect("ground").bounds();
         let size = (bounds.max - bounds.min).truncate().min_element();
         let world = b.world.as_ref().expect("places");

@@ -3,7 +3,7 @@
 use belvedere::core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere::cpu::ExactRenderer;
 use belvedere::scene::{Heightfield, LayerKind, Scene};
-use belvedere::{BelvedereError, OpenOptions, PictureOptions, RendererChoice, Session};
+use belvedere::{BelvedereError, OpenOptions, PictureOptions, RendererName, Session};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -36,7 +36,7 @@ fn layers_from_memory_are_drawn_and_recorded() {
 #[test]
 fn a_session_draws_with_the_renderer_that_it_is_given() {
     let session = Session::from_parts(hills(), view(200.0));
-    let exact = PictureOptions { renderer: RendererChoice::Exact, ..PictureOptions::default() };
+    let exact = PictureOptions { renderer: RendererName::EXACT, ..PictureOptions::default() };
     let asked = session.render(&exact).unwrap().frame.color;
     let given = session.clone().with_renderer(Arc::new(ExactRenderer)).render(&PictureOptions::default()).unwrap();
     assert!(given.frame.color == asked);

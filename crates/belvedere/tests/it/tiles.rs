@@ -1,6 +1,7 @@
 //! Terrain that comes in several files.
 
 use belvedere::verbs::reveal::{RevealRequest, reveal};
+use belvedere::request::Stated;
 use belvedere::{DataFiles, OpenOptions};
 use std::path::{Path, PathBuf};
 
@@ -32,7 +33,7 @@ fn route(folder: &Path) -> String {
 }
 
 fn revealed(dem: String, features: Vec<String>) -> Result<Vec<[u8; 3]>, String> {
-    let data = DataFiles { dem, features, source_crs: Some("EPSG:32632".into()), ..DataFiles::default() };
+    let data = DataFiles { dem, features, stated: Stated::in_crs("EPSG:32632"), ..DataFiles::default() };
     let request = RevealRequest { data, image: Some([96, 54]), ..RevealRequest::default() };
     reveal(&request, &OpenOptions::default()).map(|answer| answer.picture.frame.color).map_err(|e| e.to_string())
 }

@@ -2,12 +2,13 @@
 
 use belvedere::live::{LiveSession, Order, Pace, Sides};
 use belvedere::placed::Place;
+use belvedere::request::{Disocclude, Stated};
 use belvedere::scene::Progress;
 use belvedere::scene_file::AnimationDoc;
 use belvedere::verbs::animate::{AnimateRequest, animate};
-use belvedere::verbs::disocclude::{DisoccludeRequest, disocclude};
+use belvedere::verbs::disocclude::disocclude;
 use belvedere::verbs::reveal::{RevealFiles, RevealRequest, Technique, Viewpoint, reveal};
-use belvedere::{DataFiles, OpenOptions, PictureOptions, Session, Warning};
+use belvedere::{DataFiles, OpenOptions, PictureOptions, Session, Warning, places};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -32,7 +33,7 @@ fn data(folder: &Path) -> DataFiles {
     DataFiles {
         dem: text(&dem),
         features: vec![text(&route)],
-        source_crs: Some("EPSG:32632".into()),
+        stated: Stated::in_crs("EPSG:32632"),
         ..DataFiles::default()
     }
 }
@@ -85,12 +86,15 @@ fn every_verb_gives_the_same_warnings_for_the_same_thing() {
         assert_eq!(solved(shown.session.warnings()), revealed, "{what}");
     }
 
-    let request = DisoccludeRequest {
-        data: data(folder.path()),
-        eye: EYE,
-        look: LOOK,
-        fov_x_deg: 60.0,
-        ..DisoccludeRequest::default()
+    let DataFiles { dem, features, stated, .. } = data(folder.path());
+    let request = Disocclude {
+        data: dem,
+        features,
+        stated,
+        eye: Some(places::Place::of([EYE[0], EYE[1]], Some(EYE[2]))),
+        look: Some(places::Place::of(LOOK, None)),
+        fov: Some(60.0),
+        ..Disocclude::default()
     };
     let alone = solved(disocclude(&request, &OpenOptions::default()).unwrap().session.warnings());
     let spikes = |warnings: &[String]| warnings.iter().find(|w| w.contains("spikes")).cloned();

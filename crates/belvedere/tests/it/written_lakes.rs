@@ -2,8 +2,10 @@
 
 use belvedere::core::DVec2;
 use belvedere::scene::{Heightfield, Progress};
-use belvedere::verbs::disocclude::{DisoccludeFiles, DisoccludeRequest, WrittenGrid, disocclude};
-use belvedere::{DataFiles, OpenOptions, Session};
+use belvedere::verbs::disocclude::{DisoccludeFiles, disocclude};
+use belvedere::places::Place;
+use belvedere::request::{Disocclude, Stated, WrittenGrid};
+use belvedere::{OpenOptions, Session};
 use std::path::Path;
 
 const WATER_M: f64 = 100.0;
@@ -18,7 +20,7 @@ fn height(c: usize, r: usize) -> f64 {
     }
 }
 
-fn data(folder: &Path) -> DataFiles {
+fn request(folder: &Path) -> Disocclude {
     let row = |r: usize| (0..90).map(|c| format!("{:.3} ", height(c, r))).collect::<String>() + "\n";
     let header = "ncols 90\nnrows 90\nxllcorner 499990\nyllcorner 4999990\ncellsize 20\nNODATA_value -9999\n";
     let [dem, lake] = ["dem.asc", "lake.geojson"].map(|name| folder.join(name));
@@ -29,11 +31,13 @@ fn data(folder: &Path) -> DataFiles {
         "coordinates": [[[500595, 5001075], [501185, 5001075], [501185, 5001425], [500595, 5001425], [500595, 5001075]]]}}]}"#;
     std::fs::write(&lake, area).unwrap();
     let text = |path: &Path| path.display().to_string();
-    DataFiles {
-        dem: text(&dem),
+    Disocclude {
+        data: text(&dem),
         features: vec![text(&lake)],
-        source_crs: Some("EPSG:32632".into()),
-        ..DataFiles::default()
+        stated: Stated::in_crs("EPSG:32632"),
+        eye: Some(Place::of([500_900.0, 5_000_100.0], Some(150.0))),
+        look: Some(Place::of([500_900.0, 5_001_300.0], None)),
+        ..Disocclude::default()
     }
 }
 
@@ -51,14 +55,7 @@ fn terrain_of(file: &Path) -> Heightfield {
 fn written_heights_are_those_solved_and_their_lakes_are_level() {
     let folder = tempfile::tempdir().unwrap();
     for (grid, name) in [(WrittenGrid::Scene, "scene.tif"), (WrittenGrid::Input, "input.tif")] {
-        let request = DisoccludeRequest {
-            data: data(folder.path()),
-            eye: [500_900.0, 5_000_100.0, 150.0],
-            look: [500_900.0, 5_001_300.0],
-            fov_x_deg: 70.0,
-            grid,
-            ..DisoccludeRequest::default()
-        };
+        let request = Disocclude { grid: Some(grid), ..request(folder.path()) };
         let found = disocclude(&request, &OpenOptions::default()).unwrap();
         let lakes = &found.solved.report.lakes;
         assert!(lakes.len() == 1 && lakes[0].name == "Tarn" && (lakes[0].height_m - WATER_M).abs() < 1e-9, "{lakes:?}");

@@ -3,8 +3,10 @@
 use belvedere::io::TerrainRequest;
 use belvedere::io::terrain::load_original;
 use belvedere::scene::Progress;
-use belvedere::verbs::disocclude::{DisoccludeFiles, DisoccludeRequest, WrittenGrid, disocclude, parameters};
-use belvedere::{DataFiles, OpenOptions};
+use belvedere::verbs::disocclude::{DisoccludeFiles, disocclude};
+use belvedere::places::Place;
+use belvedere::request::Disocclude;
+use belvedere::OpenOptions;
 use std::path::Path;
 
 const SIDE: usize = 48;
@@ -77,21 +79,15 @@ fn rivers_run_downhill_on_the_grid_of_the_input() {
     line(&river, &stream().into_iter().rev().collect::<Vec<_>>());
     let text = |path: &Path| path.display().to_string();
     let [free, kept] = [false, true].map(|rivers| {
-        let data = DataFiles {
-            dem: text(&dem),
+        let [x, y] = degrees([middle(45.0), 45.0]);
+        let request = Disocclude {
+            data: text(&dem),
             features: vec![text(&way)],
             rivers: if rivers { vec![text(&river)] } else { Vec::new() },
-            ..DataFiles::default()
-        };
-        let [x, y] = degrees([middle(45.0), 45.0]);
-        let request = DisoccludeRequest {
-            data,
-            eye: [x, y, 1060.0],
-            look: degrees([24.0, 10.0]),
-            fov_x_deg: 70.0,
-            parameters: parameters(&["solver_nodes=24".into()]).unwrap(),
-            grid: WrittenGrid::Input,
-            ..DisoccludeRequest::default()
+            eye: Some(Place::of([x, y], Some(1060.0))),
+            look: Some(Place::of(degrees([24.0, 10.0]), None)),
+            set: vec!["solver_nodes=24".into()],
+            ..Disocclude::default()
         };
         let found = disocclude(&request, &OpenOptions::default()).unwrap();
         let out = folder.path().join("out.tif");

@@ -173,7 +173,7 @@ impl Manifest {
                 samples: request.quality.samples,
                 tolerance_px: request.quality.tolerance_px,
                 lod_px: request.quality.lod_px,
-                renderer: request.renderer.of(session).name().to_owned(),
+                renderer: session.renderer(&request.renderer)?.name().to_owned(),
                 straight: request.straight,
                 compare: request.compare,
             },

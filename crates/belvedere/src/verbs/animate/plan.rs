@@ -165,7 +165,7 @@ impl Judge<'_> {
         let options = RenderOptions { samples: 1, marks: false, ..RenderOptions::default() };
         let (scene, light, progress) = (session.scene(), session.light(), &self.progress);
         let job = RenderJob { scene, view: &view, light, options: &options, progress };
-        self.session.renderer.render_into(&job, &mut self.frame)?;
+        self.session.renderer(&crate::RendererName::AUTO)?.render_into(&job, &mut self.frame)?;
         Ok(if ground.seen_from_below(&self.frame)[1] > 0 { Lack::Side } else { Lack::Nothing })
     }
 }

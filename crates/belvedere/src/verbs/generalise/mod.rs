@@ -10,9 +10,9 @@ use crate::city_map::{MapPicture, bounds, map_picture};
 use crate::guard::guarded;
 use crate::names::PublicNames;
 use crate::record::{self, InputFile};
+use crate::request::Generalise;
 use crate::{BelvedereError, output};
-pub use belvedere_construct::generalise::GeneraliseSettings;
-use belvedere_construct::generalise::{GeneraliseReport, Generalised, LevelReport};
+use belvedere_construct::generalise::{GeneraliseReport, GeneraliseSettings, Generalised, LevelReport};
 use belvedere_core::DVec2;
 use belvedere_core::Warning;
 use belvedere_io::city_write::{BlockFigures, write_city_json};
@@ -28,17 +28,6 @@ const MAP_PX: usize = 4096;
 const MAP_LEAST_M: f64 = 0.25;
 /// Margin around the buildings on the map, metres.
 const MAP_MARGIN_M: f64 = 50.0;
-
-/// Request for levels of abstraction.
-#[derive(Debug, Clone, Default)]
-pub struct GeneraliseRequest {
-    /// Buildings: CityJSON, CityGML, OSM PBF, or footprints as GeoJSON, shapefile or GeoPackage.
-    pub city: PathBuf,
-    /// Streets, railways, water: the same formats.
-    pub roads: Vec<PathBuf>,
-    /// Parameters of the generalisation.
-    pub settings: GeneraliseSettings,
-}
 
 /// A city and its levels.
 pub struct GeneralisedCity {
@@ -68,14 +57,17 @@ pub struct GeneraliseDocument<'a> {
 ///
 /// # Errors
 /// [`BelvedereError::Io`], [`BelvedereError::Crs`], [`BelvedereError::Generalise`].
-pub fn generalise(request: &GeneraliseRequest, progress: &Progress) -> Result<GeneralisedCity, BelvedereError> {
+pub fn generalise(request: &Generalise, progress: &Progress) -> Result<GeneralisedCity, BelvedereError> {
     guarded(|| generalised(request, progress))
 }
 
-fn generalised(request: &GeneraliseRequest, progress: &Progress) -> Result<GeneralisedCity, BelvedereError> {
+fn generalised(request: &Generalise, progress: &Progress) -> Result<GeneralisedCity, BelvedereError> {
     progress.tick("read", 0.0)?;
-    let read::Read { city, epsg, inputs, warnings } = read::read(&request.city, &request.roads)?;
-    let mut generalised = belvedere_construct::generalise::generalise(&city, &request.settings, progress)?;
+    let roads: Vec<PathBuf> = request.roads.iter().map(PathBuf::from).collect();
+    let mut settings = GeneraliseSettings::default();
+    settings.margin_m = request.margin.unwrap_or(settings.margin_m);
+    let read::Read { city, epsg, inputs, warnings } = read::read(Path::new(&request.city), &roads)?;
+    let mut generalised = belvedere_construct::generalise::generalise(&city, &settings, progress)?;
     let mut bases = Bases::default();
     bases.add(&city, 0.0);
     if let Some(ground) = bases.ground() {

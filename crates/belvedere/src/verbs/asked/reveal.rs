@@ -1,17 +1,17 @@
 //! `reveal` as it is asked for: one request for terrain with features, cities and models.
 
-use super::appearance::Appearance;
-use super::drafts::{self, DraftsAnswer};
-use super::hold_a_city;
-use super::reveal::{self, IMAGE, RevealAnswer, RevealDocument, RevealFiles, RevealRequest, Technique};
-use super::reveal_target::{self, TargetAnswer, TargetDocument, TargetRequest};
-use super::target_drafts::target_drafts;
+use crate::verbs::appearance::Appearance;
+use crate::verbs::drafts::{DraftsAnswer};
+use crate::verbs::hold_a_city;
+use crate::verbs::reveal::{IMAGE, RevealAnswer, RevealDocument, RevealFiles, RevealRequest, Technique};
+use crate::verbs::reveal_target::{self, TargetAnswer, TargetDocument, TargetRequest};
+use crate::verbs::target_drafts::target_drafts;
 use crate::picture::{Picture, PictureOptions};
 use crate::places::Place;
 use crate::print::Sheet;
 use crate::request::{Molecules, Reveal, given_of};
 use crate::scene_file::{self, PaletteDoc};
-use crate::{Advice, BelvedereError, DataFiles, OpenOptions, Session, Warning};
+use crate::{Advice, BelvedereError, DataFiles, OpenOptions, Session, Warning, verbs};
 use belvedere_core::DVec3;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -51,11 +51,11 @@ pub enum RevealedDocument<'a> {
 ///
 /// # Errors
 /// [`BelvedereError::Argument`] for options that do not go together, else as
-/// [`reveal::reveal`] and [`reveal_target::reveal_target`].
+/// [`verbs::reveal::reveal`] and [`reveal_target::reveal_target`].
 pub fn reveal(asked: &Reveal, setting: &Setting) -> Result<Revealed, BelvedereError> {
     let open = opened(asked, setting);
     Ok(match Request::of(asked, setting)? {
-        Request::Features(request) => Revealed::Features(reveal::reveal(&request, &open)?.into()),
+        Request::Features(request) => Revealed::Features(verbs::reveal::reveal(&request, &open)?.into()),
         Request::Target(request) => Revealed::Target(reveal_target::reveal_target(&request, &open)?.into()),
     })
 }
@@ -63,11 +63,11 @@ pub fn reveal(asked: &Reveal, setting: &Setting) -> Result<Revealed, BelvedereEr
 /// Up to `count` drafts of what is asked for, from different sides.
 ///
 /// # Errors
-/// As [`reveal()`], [`drafts::drafts`] and [`target_drafts`].
+/// As [`reveal()`], [`verbs::drafts::drafts`] and [`target_drafts`].
 pub fn drafts(asked: &Reveal, count: usize, setting: &Setting) -> Result<DraftsAnswer, BelvedereError> {
     let open = opened(asked, setting);
     match Request::of(asked, setting)? {
-        Request::Features(request) => drafts::drafts(&request, count, &open),
+        Request::Features(request) => verbs::drafts::drafts(&request, count, &open),
         Request::Target(request) => target_drafts(&request, count, &open),
     }
 }
@@ -185,7 +185,6 @@ fn check(asked: &Reveal, models: bool) -> Result<(), BelvedereError> {
 }
 
 fn data(asked: &Reveal) -> DataFiles {
-    let raster = asked.stated.raster.clone();
     DataFiles {
         dem: asked.data.clone(),
         features: asked.features.clone(),
@@ -199,10 +198,7 @@ fn data(asked: &Reveal) -> DataFiles {
         palette: asked.palette.as_deref().map(PaletteDoc::of).unwrap_or_default(),
         no_sea: asked.no_sea,
         area_style: asked.area_style,
-        source_crs: raster.source_crs,
-        nodata: raster.nodata,
-        vertical_unit: raster.vertical_unit,
-        name_field: asked.stated.name_field.clone(),
+        stated: asked.stated.clone(),
     }
 }
 

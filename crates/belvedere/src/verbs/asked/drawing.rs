@@ -1,0 +1,144 @@
+//! Pictures and films of scenes.
+
+use crate::picture::{PictureOptions, THRESHOLDS};
+use crate::print::Sheet;
+use crate::renderers;
+use crate::request::{Animate, Drawing, Outside, Paper, Render, given_of};
+use crate::scene_file::{Document, SwitchOrLength};
+use crate::verbs::animate::AnimateRequest;
+use crate::{Advice, BelvedereError, CameraPicture, OpenOptions, Session};
+use belvedere_core::Warning;
+use std::path::PathBuf;
+
+/// How a picture or a frame is drawn.
+///
+/// # Errors
+/// [`BelvedereError::NoRenderer`], [`BelvedereError::Appearance`].
+pub fn picture_of(asked: &Drawing) -> Result<PictureOptions, BelvedereError> {
+    renderers::check(&asked.renderer)?;
+    let mut options = PictureOptions {
+        straight: asked.straight,
+        compare: asked.compare,
+        renderer: asked.renderer.clone(),
+        ..PictureOptions::default()
+    };
+    let quality = &mut options.quality;
+    quality.samples = asked.samples.unwrap_or(quality.samples);
+    quality.lod_px = asked.lod.unwrap_or(quality.lod_px);
+    quality.exposures = asked.thresholds.unwrap_or(THRESHOLDS).div_ceil(quality.samples.max(1));
+    quality.compositing = asked.compositing.unwrap_or_default();
+    let strengths = asked.stylise.as_ref().map(|stylise| stylise.strengths()).transpose();
+    options.stylisation =
+        strengths.map_err(|(_, reason)| BelvedereError::Appearance { option: "stylise", reason })?;
+    Ok(options)
+}
+
+/// A picture of a session, which was opened with [`OpenOptions::showing`]; and warnings about places that are asked for.
+///
+/// # Errors
+/// As [`picture_of`]; [`BelvedereError::Argument`] for two pictures of the camera, [`BelvedereError::Position`].
+pub fn picture(asked: &Render, session: &Session) -> Result<(PictureOptions, Vec<Warning>), BelvedereError> {
+    let mut warnings = Vec::new();
+    let camera = match (asked.overhead, asked.outside.filter(Outside::is_asked)) {
+        (true, Some(_)) => {
+            let text = "{} and {} are two pictures of the camera; give one of them";
+            return Err(BelvedereError::Argument(Advice::new(text, &["overhead", "outside"])));
+        }
+        (true, None) => Some(CameraPicture::Overhead),
+        (false, Some(Outside::From(places))) => {
+            let mut found = [[0.0; 3]; 2];
+            for (to, place) in found.iter_mut().zip(&places) {
+                let (p, said) = session.find_place(place, "outside")?;
+                *to = p.to_array();
+                warnings.extend(said);
+            }
+            Some(CameraPicture::Outside(Some(found)))
+        }
+        (false, Some(Outside::Auto(_))) => Some(CameraPicture::Outside(None)),
+        (false, None) => None,
+    };
+    let options = PictureOptions { camera, ..unheard(asked)? };
+    Ok((options, warnings))
+}
+
+/// The same before the scene is opened, without what depends on it: places. It tells mistakes, and the files that will be written.
+///
+/// # Errors
+/// As [`picture_of`].
+pub fn unheard(asked: &Render) -> Result<PictureOptions, BelvedereError> {
+    let grid = match asked.grid {
+        Some(SwitchOrLength::Switch(true)) => Some(None),
+        Some(SwitchOrLength::Length(spacing)) => Some(Some(spacing)),
+        Some(SwitchOrLength::Switch(false)) | None => None,
+    };
+    let is_outside = asked.outside.is_some_and(|outside| outside.is_asked());
+    Ok(PictureOptions {
+        aux: asked.aux.clone(),
+        aux_format: asked.aux_format.unwrap_or_default(),
+        grid,
+        heatmap: asked.heatmap,
+        ghost: asked.ghost,
+        highlight: asked.highlight.clone(),
+        no_mark: asked.no_mark,
+        camera: asked.overhead.then_some(CameraPicture::Overhead).or(is_outside.then_some(CameraPicture::Outside(None))),
+        band_rows: asked.band_rows.map(|rows| rows as usize),
+        ..picture_of(&asked.drawing)?
+    })
+}
+
+/// The paper that is asked for beside that of a scene, and the size of the picture in pixels where one of the two states it.
+///
+/// # Errors
+/// [`BelvedereError::Paper`]; not of the scene's own paper, of which opening the scene tells the line.
+pub fn paper(
+    (asked, size): (&Paper, Option<[u32; 2]>),
+    scene: &Document,
+) -> Result<(Option<Sheet>, Option<[u32; 2]>), BelvedereError> {
+    let (own, shape) = (scene.print.as_ref(), scene.camera.image);
+    if own.is_some_and(|own| Sheet::of(own, None, shape).is_err()) {
+        return Ok((None, size));
+    }
+    let sheet = Sheet::asked(&asked.document(), own, size, shape)?;
+    Ok((sheet, sheet.map(|sheet| sheet.pixels()).or(size)))
+}
+
+/// A film into `out`, see [`AnimateRequest::out`].
+///
+/// # Errors
+/// As [`picture_of`].
+pub fn film(asked: &Animate, sheet: Option<Sheet>, out: PathBuf, overwrite: bool) -> Result<AnimateRequest, BelvedereError> {
+    let picture = picture_of(&asked.drawing)?;
+    Ok(AnimateRequest {
+        animation: asked.motion(),
+        picture: sheet.map_or(picture.clone(), |sheet| picture.on(sheet)),
+        out,
+        resume: asked.resume,
+        overwrite,
+        part: asked.part.map(|[first, last]| first..=last),
+    })
+}
+
+impl OpenOptions {
+    /// The options with what a picture is asked to show otherwise than its scene says.
+    pub fn showing(self, asked: &Render) -> Self {
+        let air = &asked.air;
+        Self {
+            palette: asked.palette.as_deref().map(crate::scene_file::PaletteDoc::of),
+            sky: air.sky.clone(),
+            haze: air.haze,
+            furniture: Some(air.furnishing.wish()),
+            area_style: asked.area_style,
+            sea: asked.no_sea.then_some(false),
+            // A straight picture does not need the ground solved.
+            unsolved: asked.drawing.straight,
+            molecule: asked.molecules.clone(),
+            ..self.airy(air)
+        }
+    }
+}
+
+/// Whether [`OpenOptions::showing`] changes anything: whether a scene that is open without it can be drawn as asked.
+pub fn is_as_opened(asked: &Render) -> bool {
+    let of_scene = ["palette", "sky", "haze", "contours", "edge", "area_style", "no_sea", "representation", "color_by", "assembly", "model"];
+    given_of(asked, &of_scene).is_empty()
+}
