@@ -6,11 +6,11 @@ use belvedere::construct::rays::Target;
 use belvedere::core::map::curved_rays::{Model, TurnSpec};
 use belvedere::core::map::split_rays::{Fork, Seam, SplitSpec};
 use belvedere::core::{CurvedRays, DVec2, DVec3, Pinhole, Projection, SplitRays, Stage, View};
-use belvedere::cpu::Tracer;
 use belvedere::scene::{
     BoxLayer, BoxShape, Color, Frame, Hidden, Layer, LayerKind, LineFeature, LineLayer, PointFeature, PointLayer,
     PointStyle, Scene,
 };
+use belvedere::sight::trace::Tracer;
 use belvedere::{CameraPicture, OpenOptions, PictureOptions, Session, fallback};
 use std::path::Path;
 

@@ -1,8 +1,8 @@
 //! What a renderer tells of the surfaces it has drawn.
 
 use crate::depths::Depths;
-use crate::screen::Screen;
 use belvedere_core::{Aabb, DVec2, DVec3, EdgeError};
+use belvedere_sight::screen::Screen;
 
 /// One drawing of the scene: where it places points. Views draw each image of every point once, by one pass per record of their rays
 /// and, where the records leave something out, by one per segment; most views need one pass.

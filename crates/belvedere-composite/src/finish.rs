@@ -4,10 +4,10 @@ use crate::buffers::Buffers;
 use crate::canvas::Canvas;
 use crate::color::{self, Packed};
 use crate::marks::Marks;
-use crate::screen::{BAND, Screen};
 use crate::stylise::{self, Relief};
 use crate::veil::Veiled;
-use belvedere_scene::{Frame, RenderJob};
+use belvedere_scene::{Frame, ROWS, RenderJob};
+use belvedere_sight::screen::Screen;
 use rayon::prelude::*;
 
 /// Buffers of a picture; every pixel is sky.
@@ -58,19 +58,19 @@ pub fn draw_marks(marks: &Marks, veiled: Option<Veiled<'_>>, screen: &Screen, bu
     draw_marks_on_rows(marks, veiled, (screen, 0), buffers);
 }
 
-/// [`draw_marks`] on the rows of a picture from `first` on, a multiple of [`BAND`].
+/// [`draw_marks`] on the rows of a picture from `first` on, a multiple of [`ROWS`].
 pub fn draw_marks_on_rows(
     marks: &Marks,
     veiled: Option<Veiled<'_>>,
     (screen, first): (&Screen, usize),
     buffers: &mut Buffers,
 ) {
-    let chunk = BAND * screen.width as usize;
+    let chunk = ROWS * screen.width as usize;
     let Buffers { depth, color, id, out, .. } = buffers;
     let encoding = color::encoding();
     out.par_chunks_mut(chunk).zip(color.par_chunks_mut(chunk)).zip(id.par_chunks_mut(chunk)).enumerate().for_each(
         |(i, ((out, color), id))| {
-            let y0 = (first + i * BAND) as i32;
+            let y0 = (first + i * ROWS) as i32;
             marks.draw(y0, screen, depth, color, id);
             if let Some(veiled) = veiled {
                 veiled.lay(y0, screen, color);

@@ -1,5 +1,5 @@
 //! Compositing of styling sections by whole layers: every representation is drawn alone, and the pictures are mixed by the weights. This is
-//! the published method, and that for pictures with edges or without common surfaces; thresholds ([`crate::sections`]) need no memory
+//! the published method, and that for pictures with edges or without common surfaces; thresholds ([`belvedere_sight::sections`]) need no memory
 //! per representation, but give depths of single samples.
 //!
 //! Source: Pasewaldt et al. 2011, section 4.4; dividing by the sum of the weights, where layers see different places, is ours.
@@ -8,12 +8,12 @@ use crate::buffers::Buffers;
 use crate::color::{Packed, Rgb, encode, linear};
 use crate::finish::draw_marks;
 use crate::marks::Marks;
-use crate::screen::Screen;
-use crate::sections::Sections;
 use crate::stylise;
 use belvedere_core::DVec3;
 use belvedere_core::sections::MOST_REPRESENTATIONS;
 use belvedere_scene::{Compositing, Frame, FrameStats, Overlay, RenderError, RenderJob, RenderOptions};
+use belvedere_sight::screen::Screen;
+use belvedere_sight::sections::Sections;
 use rayon::prelude::*;
 
 /// Sums of weights below this count as 0.

@@ -2,7 +2,7 @@
 //!
 //! A renderer draws surfaces: colours, depths, ids. What else belongs to a picture is the same for all of them and needs no more than
 //! [`drawn::Drawn`] tells: [`stylise`] darkens edges, [`marks`] draws lines, points and names and decides by lines of sight what of them
-//! is hidden, [`sections`] says which representation a sample shows, [`layers`] mixes pictures of whole representations, [`branches`]
+//! is hidden, [`layers`] mixes pictures of whole representations, [`branches`]
 //! joins pictures where rays part, [`veil`] lays solids that something shines through over all of it, and [`canvas`] draws on finished pixels. [`finish`] puts these in their order.
 
 pub mod branches;
@@ -14,8 +14,6 @@ pub mod drawn;
 pub mod finish;
 pub mod layers;
 pub mod marks;
-pub mod screen;
-pub mod sections;
 pub mod skyline;
 pub mod stylise;
 pub mod unsharp;

@@ -8,7 +8,7 @@
 
 use crate::color::{Packed, Rgb};
 use crate::marks::Marks;
-use crate::screen::Screen;
+use belvedere_sight::screen::Screen;
 
 /// The light of a picture's see-through solids, pixel by pixel.
 #[derive(Debug, Default)]

@@ -1,4 +1,5 @@
-//! Renderers without a GPU: a threaded, deterministic rasteriser for bent views, and an exact tracer of curved rays that judges it.
+//! Renderers without a GPU: a threaded, deterministic rasteriser for bent views, and an exact one that follows the curved ray of every sample
+//! ([`belvedere_sight::trace`]).
 //!
 //! A frame of the rasteriser, step by step:
 //!
@@ -12,14 +13,13 @@
 //! 5. `see_through`: solids that something shines through are drawn into samples of their own, which become a veil over the picture.
 //! 6. `volume`: light that rays gather in voxels, up to the surfaces, is laid over them.
 //! 7. [`belvedere_composite`]: stylisation, then lines, outlines, points and names, then the veil, by lines of sight through the surfaces themselves
-//!    (`marks`, `trace`).
+//!    (`marks`).
 //!
 //! Where styling sections show layers in part, samples choose by thresholds, and exposures of a band are averaged. Where rays part,
 //! every branch is drawn so and the pictures are put together along the seams.
 
 mod cache;
 mod exact;
-mod fast;
 mod frame;
 mod geometry;
 mod level_rows;
@@ -36,7 +36,6 @@ mod shade;
 mod simd;
 mod surfaces;
 mod tint;
-mod trace;
 mod traced_veil;
 mod volume;
 
@@ -45,5 +44,4 @@ pub use geometry::project::GroundImage;
 pub use marks::{mark_shapes, next_names};
 pub use rasteriser::CpuRenderer;
 pub use tint::GroundTint;
-pub use trace::{RayHit, Tracer};
 pub use volume::VolumeTracer;

@@ -1,15 +1,15 @@
 //! Marks over surfaces that were drawn by passes: lines of sight go through the exact tracer.
 
 use crate::geometry::pass::{InView, Pass};
-use crate::trace::Tracer;
 use belvedere_composite::depths::{DepthTiles, Depths};
 use belvedere_composite::drawn::{self, Drawn, Sight};
 use belvedere_composite::marks::{Marks, NameMemory, Patience, Shapes};
-use belvedere_composite::screen::{COARSE_PX, Screen};
-use belvedere_composite::sections::{Exposure, Sections};
 use belvedere_core::{Aabb, DVec2, DVec3, EdgeError};
 use belvedere_scene::{LayerKind, RenderJob};
 use belvedere_sight::Solids;
+use belvedere_sight::screen::{COARSE_PX, Screen};
+use belvedere_sight::sections::{Exposure, Sections};
+use belvedere_sight::trace::Tracer;
 use std::sync::OnceLock;
 
 /// Terrain with more nodes is not prepared for lines of sight in every frame.

@@ -20,11 +20,10 @@ use belvedere_composite::depths::Depths;
 use belvedere_composite::finish::{buffers_in, finish_veiled};
 use belvedere_composite::layers;
 use belvedere_composite::marks::Marks;
-use belvedere_composite::sections::Sections;
 use belvedere_composite::stylise::Relief;
 use belvedere_composite::veil::{Veil, Veiled};
-use belvedere_scene::Instant;
-use belvedere_scene::{Frame, PictureRows, RenderError, RenderJob, Renderer};
+use belvedere_scene::{Frame, Instant, PictureRows, RenderError, RenderJob, Renderer};
+use belvedere_sight::sections::Sections;
 use belvedere_sight::{Carried, Solids};
 use std::sync::{Arc, Mutex};
 

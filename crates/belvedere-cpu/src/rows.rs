@@ -22,7 +22,6 @@ use belvedere_composite::depths::{DepthTiles, Depths};
 use belvedere_composite::finish::{draw_marks_on_rows, is_open};
 use belvedere_composite::layers::Levels;
 use belvedere_composite::marks::Marks;
-use belvedere_composite::sections::Sections;
 use belvedere_composite::skyline::Skyline;
 use belvedere_composite::stylise::{self, Relief, StyledRows, Survey};
 use belvedere_composite::unsharp::{DepthGrid, Surroundings};
@@ -30,6 +29,7 @@ use belvedere_composite::veil::{Veil, Veiled};
 use belvedere_scene::{
     Cancelled, Frame, FrameStats, Instant, LayerKind, PictureRows, PixelGrid, RenderError, RenderJob, Stylisation,
 };
+use belvedere_sight::sections::Sections;
 use belvedere_sight::{Carried, Solids};
 use rayon::ThreadPool;
 use rayon::prelude::*;

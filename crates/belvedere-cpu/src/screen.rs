@@ -1,8 +1,8 @@
 //! Vertices on the image: fixed-point pixels and nearness.
 
 use crate::points::Points;
-pub(crate) use belvedere_composite::screen::{PLANES, Screen};
 use belvedere_core::DVec3;
+pub(crate) use belvedere_sight::screen::{PLANES, Screen};
 
 /// Fixed-point steps per pixel.
 pub(crate) const SUB: i32 = 256;

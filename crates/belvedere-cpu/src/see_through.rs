@@ -6,10 +6,10 @@ use crate::raster::band::{Band, SKY};
 use crate::screen::{SUB, Screen};
 use crate::shade::{Painted, Samples, Shader};
 use belvedere_composite::color::Rgb;
-use belvedere_composite::sections::{Exposure, Sections};
 use belvedere_composite::veil::VeilRows;
 use belvedere_scene::Scene;
 use belvedere_sight::Solids;
+use belvedere_sight::sections::{Exposure, Sections};
 use std::ops::Range;
 
 /// Weights of colours below this are left out: a 2000th of the steps of a picture.

@@ -3,15 +3,13 @@
 use crate::screen::SUB;
 use crate::see_through::SeeThrough;
 use crate::shade::Shader;
-use crate::trace::beam::RowRays;
-use crate::trace::same_surface::same_surface;
-use crate::trace::{RayHit, Tracer};
 use belvedere_composite::color::Rgb;
-use belvedere_composite::sections::{Exposure, Sections};
 use belvedere_composite::veil::Veil;
 use belvedere_core::DVec2;
 use belvedere_scene::{RenderError, RenderJob};
 use belvedere_sight::Solids;
+use belvedere_sight::sections::{Exposure, Sections};
+use belvedere_sight::trace::{RayHit, RowRays, Tracer, same_surface};
 use rayon::prelude::*;
 use std::cell::OnceCell;
 

@@ -1,4 +1,5 @@
-//! Ground as it is drawn, and lines of sight over it.
+//! Ground as it is drawn, lines of sight over it, and the exact tracer of curved rays ([`trace`]): what is seen where, asked by everything that
+//! draws, measures or picks.
 
 mod beam;
 mod boxes;
@@ -6,6 +7,7 @@ mod carried;
 mod clip;
 mod crossings;
 mod displaced;
+mod fast;
 mod field;
 mod ground;
 mod light_buffer;
@@ -14,9 +16,12 @@ mod mesh_tree;
 mod obstacles;
 mod openness;
 mod pyramid;
+pub mod screen;
+pub mod sections;
 mod shadow;
 mod solids;
 mod summits;
+pub mod trace;
 mod voxels;
 
 pub use boxes::{BoxTree, UprightBox};
@@ -24,6 +29,7 @@ pub use carried::{Carried, CarriedLayer};
 pub use clip::clip_segment;
 pub use crossings::{AT_NODE, SightLine, SightSample, guard_tau, sight_samples};
 pub use displaced::{DisplacedGround, Excess, SightVertex};
+pub use fast::Fast;
 pub use field::{Field, FieldError};
 pub use ground::{Ground, Lift};
 pub use light_buffer::{Blocker, Found, LightBuffer};

@@ -7,7 +7,7 @@ use crate::figure_set::{Facts, Figure};
 use anyhow::Result;
 use belvedere::core::map::curved_rays::Model;
 use belvedere::core::{DVec2, DVec3};
-use belvedere::cpu::Tracer;
+use belvedere::sight::trace::Tracer;
 use belvedere::{CameraPicture, Session};
 
 /// Size of the panels, pixels; number of rays across the picture; rows in which they start, shares of its height from the horizon down.

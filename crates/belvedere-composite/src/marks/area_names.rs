@@ -45,7 +45,7 @@ impl MarkBuilder<'_> {
             // On no ground nothing is painted.
             let Some(height) = self.scene.terrain().and_then(|ground| ground.surface_at(pole.at)) else { continue };
             let p: DVec3 = pole.at.extend(height + layer.lift_m);
-            if shown != crate::sections::Shown::Everything && !is_shown(p) {
+            if shown != belvedere_sight::sections::Shown::Everything && !is_shown(p) {
                 continue;
             }
             // Nothing is drawn there but the name.

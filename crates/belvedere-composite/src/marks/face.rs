@@ -2,9 +2,9 @@
 
 use crate::color::{Packed, Rgb, linear};
 use crate::drawn::Pass;
-use crate::screen::Screen;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::OverlayFace;
+use belvedere_sight::screen::Screen;
 
 /// Factor of the opacity behind surfaces.
 const BEHIND: f32 = 0.35;
@@ -80,7 +80,7 @@ impl Face {
 
 /// The part of a convex polygon in front of the near plane and inside the guard planes.
 fn clipped(mut corners: Vec<DVec3>, screen: &Screen) -> Vec<DVec3> {
-    for plane in 0..crate::screen::PLANES {
+    for plane in 0..belvedere_sight::screen::PLANES {
         let mut out = Vec::with_capacity(corners.len() + 1);
         for (i, &a) in corners.iter().enumerate() {
             let b = corners[(i + 1) % corners.len()];

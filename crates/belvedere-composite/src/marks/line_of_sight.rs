@@ -2,9 +2,9 @@
 
 use crate::drawn::Sight;
 use crate::marks::path::LinePoint;
-use crate::screen::Screen;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::Scene;
+use belvedere_sight::screen::Screen;
 
 /// A surface nearer than a point by less than this share of its depth, or of a pixel's width there, does not hide it: rounding.
 const SLACK: f64 = 1e-6;

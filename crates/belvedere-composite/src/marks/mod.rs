@@ -30,14 +30,14 @@ use crate::canvas::{Canvas, Fonts};
 use crate::color::{Packed, linear};
 use crate::depths::{DepthTiles, Depths};
 use crate::drawn::{Drawn, Pass, Sight};
-use crate::screen::{BAND, COARSE_PX, Screen};
-use crate::sections::Sections;
 use crate::skyline::Skyline;
 use alike::alike;
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{
-    AreaLayer, Color, Hidden, LayerKind, LineFeature, LineLayer, Overlay, OverlayLine, RenderJob, Scene, Symbol,
+    AreaLayer, Color, Hidden, LayerKind, LineFeature, LineLayer, Overlay, OverlayLine, ROWS, RenderJob, Scene, Symbol,
 };
+use belvedere_sight::screen::{COARSE_PX, Screen};
+use belvedere_sight::sections::Sections;
 use drawing::PlacedDrawing;
 use face::Face;
 use label::Labels;
@@ -403,7 +403,7 @@ impl MarkBuilder<'_> {
             })
             .collect();
         let (strokes, lines): (Vec<_>, Vec<_>) = drawn.into_iter().unzip();
-        StrokeLayer::new(strokes.concat(), inks, id, self.screen.height as usize, BAND).with_lines(lines.concat())
+        StrokeLayer::new(strokes.concat(), inks, id, self.screen.height as usize, ROWS).with_lines(lines.concat())
     }
 
     /// Images of a line in every pass, with the number of the pass.
@@ -501,7 +501,7 @@ impl MarkBuilder<'_> {
         }
         let white = Color::rgb(255, 255, 255);
         let inks = inks(white, Some(layer.color), hidden);
-        Some(StrokeLayer::new(strokes, inks, id, self.screen.height as usize, BAND))
+        Some(StrokeLayer::new(strokes, inks, id, self.screen.height as usize, ROWS))
     }
 }
 

@@ -2,9 +2,9 @@
 
 use crate::drawn::Pass;
 use crate::marks::segment;
-use crate::screen::{COARSE_PX, Screen};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Heightfield, Scene};
+use belvedere_sight::screen::{COARSE_PX, Screen};
 
 /// Largest distance of the vertices from the ground up to which a line counts as lying on it, scene units.
 const ON_GROUND: f64 = 1.0;

@@ -6,9 +6,8 @@ use crate::marks::path::LinePoint;
 use crate::marks::request::{LabelRequest, rank_of};
 use crate::marks::ribbon::{Lane, Stroke, StrokeLayer};
 use crate::marks::{HIDDEN_WIDTH, MarkBuilder, Marker, casing_of, darker, inks, symbol, width_or_none};
-use crate::screen::BAND;
 use belvedere_core::{Aabb, DVec2, DVec3};
-use belvedere_scene::{Color, Hidden, OverlayPoint, PointFeature, PointLayer, PointStyle, Symbol};
+use belvedere_scene::{Color, Hidden, OverlayPoint, PointFeature, PointLayer, PointStyle, ROWS, Symbol};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
@@ -77,7 +76,7 @@ impl MarkBuilder<'_> {
         // Under drawings lie discs that are not seen, so that they are found at their pixels.
         let color = if is_own { group.color.with_alpha(0) } else { group.color };
         let inks = inks(color, casing.filter(|_| !is_own), layer.hidden);
-        StrokeLayer::new(strokes, inks, id, self.screen.height as usize, BAND)
+        StrokeLayer::new(strokes, inks, id, self.screen.height as usize, ROWS)
     }
 
     pub(super) fn overlay_point(&self, point: &OverlayPoint, requests: &mut Vec<LabelRequest>) -> StrokeLayer {
@@ -92,7 +91,7 @@ impl MarkBuilder<'_> {
             }));
         }
         let casing = Some(Color::rgb(255, 255, 255));
-        StrokeLayer::new(strokes, inks(point.color, casing, point.hidden), 0, self.screen.height as usize, BAND)
+        StrokeLayer::new(strokes, inks(point.color, casing, point.hidden), 0, self.screen.height as usize, ROWS)
     }
 
     /// Draws a marker at every image of a point; returns where a name belongs.

@@ -2,9 +2,9 @@
 
 use crate::marks::MarkBuilder;
 use crate::marks::path::LinePoint;
-use crate::sections::Shown;
 use belvedere_core::DVec3;
 use belvedere_scene::{LineFeature, LineLayer, PointLayer};
+use belvedere_sight::sections::Shown;
 use std::borrow::Cow;
 
 impl MarkBuilder<'_> {

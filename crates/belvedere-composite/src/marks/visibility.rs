@@ -5,8 +5,8 @@ use crate::drawn::Pass;
 use crate::marks::line_of_sight::LineOfSight;
 use crate::marks::path::{LinePoint, PathPoint};
 use crate::marks::segment;
-use crate::screen::Screen;
 use belvedere_core::DVec2;
+use belvedere_sight::screen::Screen;
 
 /// Hidden gaps shorter than this are closed, then visible specks shorter than this are dropped, pixels; up to twice this length
 /// they are shortened, so that they grow continuously from nothing.

@@ -5,13 +5,13 @@ use belvedere_composite::depths::Depths;
 use belvedere_composite::drawn::{Drawn, Pass, Sight};
 use belvedere_composite::finish::{buffers, finish};
 use belvedere_composite::marks::Marks;
-use belvedere_composite::screen::Screen;
 use belvedere_composite::{branches, layers};
 use belvedere_core::{Aabb, DVec2, DVec3, EdgeError, Pinhole, Projection, View};
 use belvedere_scene::{
     Color, Frame, Hidden, Layer, LayerKind, Light, LineFeature, LineLayer, PointFeature, PointLayer, PointStyle,
     Progress, RenderError, RenderJob, RenderOptions, Renderer, Scene, Stylisation, Symbol,
 };
+use belvedere_sight::screen::Screen;
 
 /// A ball of this radius about the origin.
 const RADIUS: f64 = 10.0;

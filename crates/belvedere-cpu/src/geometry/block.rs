@@ -3,8 +3,8 @@
 use crate::cache::lock;
 use crate::geometry::grid::{Nodes, ScreenExtent};
 use crate::screen::{Screen, ScreenVertex};
-use belvedere_composite::sections::{Sections, Shown};
 use belvedere_core::Aabb;
+use belvedere_sight::sections::{Sections, Shown};
 use std::sync::Mutex;
 
 /// A vertex of a subdivided or clipped triangle: image, and weights of vertices 1 and 2 of the parent triangle.

@@ -14,10 +14,10 @@ use crate::geometry::select::{DetailSelector, Selection};
 use crate::raster::band::Band;
 use crate::raster::cells::SIDE;
 use crate::screen::Screen;
-use belvedere_composite::sections::{Exposure, Sections, Shown};
 use belvedere_core::Aabb;
 use belvedere_scene::{LayerKind, Progress, RenderJob};
 use belvedere_sight::LayerPart;
+use belvedere_sight::sections::{Exposure, Sections, Shown};
 use rayon::prelude::*;
 use std::sync::Arc;
 

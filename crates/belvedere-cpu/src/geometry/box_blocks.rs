@@ -3,10 +3,10 @@
 use crate::geometry::block::{Block, Counts, Job};
 use crate::geometry::pass::Pass;
 use crate::geometry::refine::Refiner;
-use belvedere_composite::sections::Shown;
 use belvedere_core::{Aabb, DVec3};
 use belvedere_scene::{BoxLayer, BoxShape};
 use belvedere_sight::CarriedLayer;
+use belvedere_sight::sections::Shown;
 use rayon::prelude::*;
 
 /// Number of boxes of a block.

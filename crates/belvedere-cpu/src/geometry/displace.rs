@@ -3,12 +3,12 @@
 //! Everything that is drawn goes through here, points in rows and single ones alike, by the same arithmetic in the same
 //! order: two pieces of a surface that share a point place it alike to the last bit.
 
-use crate::fast::Fast;
 use crate::geometry::spline_table::SplineTable;
 use crate::geometry::way::Way;
 use crate::points::{Points, each};
 use belvedere_core::map::curved_rays::{StraightMap, Turn};
 use belvedere_core::{CurvedRays, DVec3, Stage, View};
+use belvedere_sight::Fast;
 
 /// All stages of a view for one pass over the scene.
 #[derive(Debug)]

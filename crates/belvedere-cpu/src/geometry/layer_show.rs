@@ -1,7 +1,7 @@
 //! Samples at which styling sections show a layer.
 
 use crate::raster::thin::ThinShow;
-use belvedere_composite::sections::{Exposure, Intervals, Sections};
+use belvedere_sight::sections::{Exposure, Intervals, Sections};
 
 /// Shows a layer sample by sample.
 pub(crate) struct LayerShow<'a> {

@@ -7,7 +7,6 @@
 mod cameras;
 mod runs;
 
-use crate::fast::Fast;
 use crate::geometry::spline_table::SplineTable;
 use crate::geometry::way::Way;
 use crate::screen::{Row, SUB};
@@ -16,6 +15,7 @@ use belvedere_core::map::curved_rays::{LinearForm, StraightMap, Turn};
 use belvedere_core::map::terrain::TerrainDisocclusion;
 use belvedere_core::{DVec2, DVec3, Pinhole, View};
 use belvedere_scene::Heightfield;
+use belvedere_sight::Fast;
 use cameras::{Bend, Form, Spline};
 use rayon::prelude::*;
 pub(crate) use runs::Batch;

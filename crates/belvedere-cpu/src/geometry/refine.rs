@@ -3,8 +3,8 @@
 use crate::geometry::block::{SoupTriangle, SoupVertex};
 use crate::geometry::pass::Pass;
 use crate::screen::{PLANES, SUB, Screen, ScreenVertex, Snap};
-use belvedere_composite::screen::COARSE_PX;
 use belvedere_core::{DVec3, EdgeError};
+use belvedere_sight::screen::COARSE_PX;
 
 /// An edge is halved at most this often, and at most [`MOST_HALVINGS`] times while its image is longer than the tolerance: of an edge of
 /// 10^8 m a tenth of a millimetre is left.

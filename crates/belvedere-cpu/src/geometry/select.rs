@@ -5,9 +5,9 @@ use crate::geometry::lod::Tree;
 use crate::geometry::part::Part;
 use crate::geometry::pass::edge_error;
 use crate::geometry::way::Way;
-use belvedere_composite::screen::COARSE_PX;
 use belvedere_core::{Aabb, View};
 use belvedere_scene::Heightfield;
+use belvedere_sight::screen::COARSE_PX;
 
 /// A block to draw.
 #[derive(Debug, Clone)]

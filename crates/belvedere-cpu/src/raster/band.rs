@@ -3,7 +3,7 @@
 use crate::screen::SUB;
 use std::ops::Range;
 
-pub(crate) use belvedere_composite::screen::BAND;
+pub(crate) use belvedere_scene::ROWS as BAND;
 
 /// Samples of padding at the end of a row, which wide writes may touch.
 pub(crate) const SLACK: usize = 8;

@@ -2,10 +2,10 @@
 
 use crate::shade::ground::terrain::TerrainShade;
 use crate::shade::{LayerShade, Shaded, Shader};
-use crate::trace::{Part, RayHit};
 use belvedere_composite::color::Rgb;
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{CellTriangle, NodeState};
+use belvedere_sight::trace::{Part, RayHit};
 
 impl Shader<'_> {
     /// Colour, id and point of the hit `seen` on the ray of `pixel`, or of the sky.

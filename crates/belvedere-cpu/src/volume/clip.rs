@@ -2,11 +2,11 @@
 
 use super::arc::{Arc, Joined, Knot, LatticeConic, NEAR};
 use super::cubic::Cubic;
-use crate::trace::curve::{Curve, Span, Split};
 use belvedere_core::conic::ConicArc;
 use belvedere_core::map::curved_rays::{Bend, RayPiece, Shape};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::Volume;
+use belvedere_sight::trace::{Curve, Span, Split};
 
 /// Largest number of halvings of a part of a bent piece.
 const MAX_HALVINGS: u32 = 12;

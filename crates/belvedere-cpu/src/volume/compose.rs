@@ -6,11 +6,11 @@ use super::gather::{Drawing, Drawn, Found, Row, Way};
 use super::march::Marcher;
 use super::ray::Rays;
 use super::smooth::{self, Behind};
-use crate::trace::deepest;
 use belvedere_composite::buffers::Buffers;
 use belvedere_composite::color::Packed;
 use belvedere_core::DVec2;
 use belvedere_scene::{LayerKind, RenderError, RenderJob};
+use belvedere_sight::trace::deepest;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 

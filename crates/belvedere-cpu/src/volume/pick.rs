@@ -1,9 +1,9 @@
 //! The point at which a pixel shows a volume rather than the surface behind.
 
 use super::reference;
-use crate::trace::{Part, RayHit, deepest};
 use belvedere_core::{DVec2, View};
 use belvedere_scene::{LayerKind, Scene};
+use belvedere_sight::trace::{Part, RayHit, deepest};
 
 /// The volumes of a scene, prepared for rays of one view.
 pub struct VolumeTracer<'a> {

@@ -2,9 +2,9 @@
 
 use super::clip::{Clip, Segment};
 use super::sheaf::{Sheaf, TILE};
-use crate::trace::curve::Split;
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::Volume;
+use belvedere_sight::trace::Split;
 
 /// Relative difference below which two depths belong to one image of a point.
 const SAME_DEPTH: f64 = 0.02;

@@ -5,8 +5,8 @@ use crate::support::{hills, layer, options, pinhole, render, scene, terrain};
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::map::split_rays::{Fork, Seam, SplitSpec};
 use belvedere_core::{DVec2, DVec3, SplitRays, Stage, View};
-use belvedere_cpu::Tracer;
 use belvedere_scene::{LayerKind, Scene};
+use belvedere_sight::trace::Tracer;
 
 const IMAGE: [u32; 2] = [160, 120];
 

@@ -9,11 +9,12 @@ use belvedere_core::presets::PresetDocument;
 use belvedere_core::{
     CurvedRays, DVec2, DVec3, EarthCurvature, Pinhole, Projection, SplineBend, Stage, TerrainDisocclusion, View,
 };
-use belvedere_cpu::{ExactRenderer, Tracer};
+use belvedere_cpu::ExactRenderer;
 use belvedere_scene::{
     Aux, BoxLayer, BoxShape, Color, Frame, Heightfield, LayerKind, Light, Mesh, MeshColors, MeshLayer, NodeState,
     Progress, RenderJob, RenderOptions, Renderer, Scene,
 };
+use belvedere_sight::trace::Tracer;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 

@@ -4,9 +4,9 @@ use crate::exact::difference;
 use crate::support::{pinhole, scene};
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::{CurvedRays, DVec3, Stage, View};
-use belvedere_cpu::Tracer;
 use belvedere_scene::molecule::{ModelTransform, Representation, Selection};
 use belvedere_scene::{Layer, LayerKind, MoleculeLayer, MoleculeStyle, Scene, Unit};
+use belvedere_sight::trace::Tracer;
 
 fn helix(representation: Representation) -> Scene {
     let (made, _) = belvedere_builtin::dna(7, 10).expect("the helix can be built");

@@ -8,11 +8,11 @@ use belvedere_core::map::spline::{ReferencePlane, default_pivot};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::sections::TagPoint;
 use belvedere_core::{DVec2, DVec3, EarthCurvature, SplineBend, Stage, View};
-use belvedere_cpu::Tracer;
 use belvedere_scene::{
     BoxLayer, BoxShape, Color, LayerKind, Mesh, MeshColors, MeshLayer, RenderOptions, Representation, RigidParts, Scene,
 };
 use belvedere_sight::Carried;
+use belvedere_sight::trace::Tracer;
 
 const IMAGE: [u32; 2] = [120, 90];
 

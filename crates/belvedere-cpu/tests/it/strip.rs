@@ -6,8 +6,8 @@ use belvedere_core::map::spline::{ReferencePlane, SplineBend, default_pivot};
 use belvedere_core::map::strip::{SmoothedRoute, Strip};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Stage, View};
-use belvedere_cpu::Tracer;
 use belvedere_scene::{LayerKind, Scene};
+use belvedere_sight::trace::Tracer;
 
 const HALF_WIDTH: f64 = 110.0;
 

@@ -68,7 +68,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
     ),
     (
         "belvedere-composite",
-        &["belvedere-core", "belvedere-scene"],
+        &["belvedere-core", "belvedere-scene", "belvedere-sight"],
         &["ab_glyph_rasterizer", "glam", "harfrust", "rayon", "skrifa"],
     ),
     (

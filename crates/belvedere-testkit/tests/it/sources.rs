@@ -54,7 +54,7 @@ fn nothing_is_left_unfinished_or_silently_skipped() {
 }
 
 #[test]
-fn the_renderer_names_techniques_in_one_place() {
+fn what_draws_and_judges_names_techniques_in_one_place() {
     const NAMES: [&str; 9] = [
         "EarthCurvature",
         "TerrainDisocclusion",
@@ -67,7 +67,9 @@ fn the_renderer_names_techniques_in_one_place() {
         "SplitRays",
     ];
     let (mut files, mut found, mut here) = (Vec::new(), Vec::new(), 0);
-    rust_files(&belvedere_testkit::workspace_root().join("crates/belvedere-cpu/src"), &mut files);
+    for name in ["sight", "composite", "cpu"] {
+        rust_files(&belvedere_testkit::workspace_root().join(format!("crates/belvedere-{name}/src")), &mut files);
+    }
     for file in files.iter().filter(|f| f.file_name().is_some_and(|n| n != "tests.rs")) {
         let text = fs::read_to_string(file).expect("source");
         let drawing = text.split("#[cfg(test)]").next().unwrap_or_default();

@@ -5,11 +5,11 @@ use crate::print::REFERENCE_DPI;
 use crate::scene_file::LayerDoc;
 use crate::vectors::{VectorContent, VectorPicture, areas, is_blank, tolerance_px};
 use crate::{BelvedereError, Session};
-use belvedere_composite::sections::Sections;
 use belvedere_core::plain::escaped;
 use belvedere_core::{Warning, WarningKind};
 use belvedere_cpu::mark_shapes;
 use belvedere_scene::{Frame, Layer, LayerKind, RenderJob};
+use belvedere_sight::sections::Sections;
 
 /// Refuses pictures whose marks cannot be told as shapes.
 pub(super) fn check(session: &Session, request: &PictureOptions) -> Result<(), BelvedereError> {

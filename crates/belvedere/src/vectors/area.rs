@@ -3,8 +3,8 @@
 
 use belvedere_composite::marks::simplified;
 use belvedere_core::{DVec2, View};
-use belvedere_cpu::Tracer;
 use belvedere_scene::{AreaLayer, Color, Frame, LayerKind, Scene};
+use belvedere_sight::trace::Tracer;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -1,11 +1,11 @@
 //! Pictures as vectors, read by another reader of XML: where lines and areas lie, how much of them is hidden, names, layers.
 
 use belvedere::core::{DVec2, DVec3};
-use belvedere::cpu::Tracer;
 use belvedere::picture::PictureOptions;
 use belvedere::print::Sheet;
 use belvedere::scene::{LayerKind, Scene};
 use belvedere::scene_file::{PrintDoc, parse};
+use belvedere::sight::trace::Tracer;
 use belvedere::vectors::VectorContent;
 use belvedere::verbs::measure::MeasureOptions;
 use belvedere::{OpenOptions, Session};

@@ -1,11 +1,11 @@
 //! Heights and light of ground that a stage moves vertically; the light is kept between frames where the ground did not change.
 
 use crate::cache::GroundCache;
-use crate::fast::Fast;
 use crate::shade::ground::lit::{LitGround, LitKey};
 use crate::shade::ground::surface::{MipPyramid, Surface};
 use belvedere_core::{DVec3, Stage, TerrainDisocclusion};
 use belvedere_scene::{Heightfield, NodeState};
+use belvedere_sight::Fast;
 use rayon::prelude::*;
 use std::sync::Arc;
 

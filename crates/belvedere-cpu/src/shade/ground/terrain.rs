@@ -17,9 +17,9 @@ use crate::shade::overlay::drape::DrapeMap;
 use crate::shade::relief::ReliefLight;
 use crate::shade::{Shader, lod};
 use belvedere_composite::color::{Rgb, linear, smoothstep};
-use belvedere_composite::sections::Sections;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{AreaSurface, Haze, Heightfield, Light, RenderJob, Shading, Sky, TerrainLayer};
+use belvedere_sight::sections::Sections;
 use std::sync::Arc;
 
 /// A terrain layer ready for shading.

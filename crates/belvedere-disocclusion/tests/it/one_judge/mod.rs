@@ -4,9 +4,9 @@
 mod compared;
 
 use belvedere_core::{DVec2, View};
-use belvedere_cpu::Tracer;
 use belvedere_disocclusion::report::{UnresolvedReason, UnresolvedRun};
 use belvedere_disocclusion::{SolverMode, TerrainReport, TerrainSettings};
+use belvedere_sight::trace::Tracer;
 use compared::{AGREES, Case, Compared, LIFT_M, case, compared, made};
 
 /// As published, promised on coarse ground twice, and at a price.

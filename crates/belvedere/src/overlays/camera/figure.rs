@@ -4,8 +4,8 @@ use super::subject::{CameraFigure, CameraPicture, DARK, Subject};
 use super::{position, rays, spline, turns};
 use crate::BelvedereError;
 use belvedere_core::{Stage, View};
-use belvedere_cpu::Tracer;
 use belvedere_scene::{Overlay, Scene};
+use belvedere_sight::trace::Tracer;
 
 /// Draws the camera of a view of a scene.
 ///

@@ -2,8 +2,8 @@
 
 use super::subject::{Subject, line, segment_color};
 use belvedere_core::{CurvedRays, DVec2, DVec3, SplitRays, View};
-use belvedere_cpu::{RayHit, Tracer};
 use belvedere_scene::{Color, Overlay};
+use belvedere_sight::trace::{RayHit, Tracer};
 
 /// Numbers of rays across the picture and from its bottom to its top.
 const ACROSS: usize = 11;

@@ -1,8 +1,8 @@
 //! Subject of a picture of the camera: the view, and the length of its rays.
 
 use belvedere_core::{DVec3, View};
-use belvedere_cpu::Tracer;
 use belvedere_scene::{Color, Hidden, Overlay, OverlayLine, OverlayPoint, Symbol};
+use belvedere_sight::trace::Tracer;
 
 /// Position from which a picture of the camera is drawn.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,8 @@
 //! Places that the picture shows: what a pixel sees, and where a place lies on the picture.
 
 use belvedere_core::{DVec2, DVec3, View};
-use belvedere_cpu::Tracer;
 use belvedere_scene::{LayerKind, Scene};
+use belvedere_sight::trace::Tracer;
 
 /// Largest relative depth by which a seen place may lie behind what its pixel shows.
 const NO_DEEPER: f64 = 0.02;

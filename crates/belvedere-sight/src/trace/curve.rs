@@ -15,10 +15,11 @@ const ALIKE: f64 = 1e-12;
 ///
 /// Earth curvature and terrain disocclusion both move points of a vertical line alike, so their order does not matter and the
 /// latter may be left on the ground: there it is a height per point of the map, kinks and all, and no curve has to follow it.
-pub(crate) struct Split<'a> {
+pub struct Split<'a> {
     pub(crate) view: Cow<'a, View>,
     smooth: View,
-    pub(crate) ground: Option<&'a TerrainDisocclusion>,
+    /// The displacement of the ground.
+    pub ground: Option<&'a TerrainDisocclusion>,
     earth: Option<Parabola>,
     bend: Option<&'a SplineBend>,
     strip: Option<(&'a Strip, View)>,
@@ -38,7 +39,7 @@ enum Kind {
 
 /// Inverse of the earth's curvature: heights grow with the square of the distance from the eye.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Parabola {
+struct Parabola {
     eye: DVec2,
     factor: f64,
 }
@@ -63,7 +64,8 @@ impl Parabola {
 }
 
 impl<'a> Split<'a> {
-    pub(crate) fn new(view: &'a View) -> Self {
+    /// Splits a view.
+    pub fn new(view: &'a View) -> Self {
         Self::of(Cow::Borrowed(view), view.ground(), view.strip(), view.spline_bend())
     }
 
@@ -102,12 +104,12 @@ impl<'a> Split<'a> {
     }
 
     /// Height by which the ground at a point is displaced, scene units.
-    pub(crate) fn lift(&self, p: DVec3) -> f64 {
+    pub fn lift(&self, p: DVec3) -> f64 {
         self.ground.map_or(0.0, |g| g.delta_at(p))
     }
 
     /// Bound on the absolute lift of the ground between two points.
-    pub(crate) fn most_lift(&self, a: DVec3, b: DVec3) -> f64 {
+    pub fn most_lift(&self, a: DVec3, b: DVec3) -> f64 {
         self.ground.map_or(0.0, |g| {
             let (min, max) = (a.min(b).truncate(), a.max(b).truncate());
             let [lo, hi] = g.grid().range_over(min, max).unwrap_or([0.0; 2]);
@@ -116,13 +118,13 @@ impl<'a> Split<'a> {
     }
 
     /// Shape common to the rays of an image row (`y` in pixels), over a range of depths.
-    pub(crate) fn row(&self, y: f64, range: [f64; 2]) -> Option<Row<'a>> {
+    pub fn row(&self, y: f64, range: [f64; 2]) -> Option<Row<'a>> {
         let bend = self.bend.filter(|_| self.kind == Kind::Rows)?;
         Some(Row::new(bend, self.view.pinhole(), y, range))
     }
 
     /// The ray of a pixel; `row` is the common shape of its image row.
-    pub(crate) fn curve<'s>(&'s self, pixel: DVec2, row: Option<&'s Row<'a>>) -> Curve<'s, 'a> {
+    pub fn curve<'s>(&'s self, pixel: DVec2, row: Option<&'s Row<'a>>) -> Curve<'s, 'a> {
         let ray = self.smooth.ray(pixel);
         let shape = match (self.kind, row) {
             (Kind::Rows, Some(row)) => Curved::Row { row, lateral: row.lateral(self.view.pinhole().line(pixel)) },
@@ -149,7 +151,7 @@ impl<'a> Split<'a> {
 }
 
 /// A ray.
-pub(crate) struct Curve<'s, 'a> {
+pub struct Curve<'s, 'a> {
     shape: Curved<'s, 'a>,
     earth: Option<Parabola>,
     /// The strip, and the ray up to it.
@@ -167,23 +169,25 @@ enum Curved<'s, 'a> {
 
 /// Part of a ray and its chord.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Span {
-    pub(crate) depth: [f64; 2],
+pub struct Span {
+    /// Depths at which it begins and ends, scene units.
+    pub depth: [f64; 2],
     /// Points of the ray at these depths; `None` where it has none.
     ends: [Option<DVec3>; 2],
     /// Bound on the distance between ray and chord at equal shares of the depths, scene units.
-    pub(crate) reach: f64,
+    pub reach: f64,
     /// Number of the piece, or of the node of the row.
     at: u32,
 }
 
 impl Span {
     /// Ends of the chord; `None` where the ray has none.
-    pub(crate) fn chord(&self) -> Option<(DVec3, DVec3)> {
+    pub fn chord(&self) -> Option<(DVec3, DVec3)> {
         Some((self.ends[0]?, self.ends[1]?))
     }
 
-    pub(crate) fn has_point(&self) -> bool {
+    /// Whether the ray has a point at one of its ends.
+    pub fn has_point(&self) -> bool {
         self.ends.iter().any(Option::is_some)
     }
 
@@ -236,7 +240,7 @@ impl Curve<'_, '_> {
     }
 
     /// Spans that cover a range of depths, in order.
-    pub(crate) fn spans(&self, [near, far]: [f64; 2]) -> Vec<Span> {
+    pub fn spans(&self, [near, far]: [f64; 2]) -> Vec<Span> {
         match &self.shape {
             Curved::Pieces(pieces) => {
                 let parts = pieces.iter().enumerate().filter_map(|(i, piece)| {
@@ -254,7 +258,7 @@ impl Curve<'_, '_> {
     }
 
     /// Both halves of a span.
-    pub(crate) fn halves(&self, span: &Span) -> Vec<Span> {
+    pub fn halves(&self, span: &Span) -> Vec<Span> {
         let [a, b] = span.depth;
         let middle = 0.5 * (a + b);
         match &self.shape {

@@ -6,7 +6,7 @@ use super::{Part, RayHit};
 const SAME_SURFACE: f64 = 0.02;
 
 /// Whether two hits lie on one surface, whose colours change smoothly.
-pub(crate) fn same_surface(a: Option<RayHit>, b: Option<RayHit>) -> bool {
+pub fn same_surface(a: Option<RayHit>, b: Option<RayHit>) -> bool {
     match (a, b) {
         (None, None) => true,
         (Some(a), Some(b)) if a.layer == b.layer => match (a.part, b.part) {

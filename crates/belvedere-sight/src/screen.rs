@@ -5,9 +5,6 @@ use belvedere_core::{DVec2, DVec3, Pinhole};
 /// Vertices farther than this from the image centre are clipped, so that edge functions fit 64-bit integers.
 const GUARD_PX: f64 = 131_072.0;
 
-/// Image rows that are drawn together, a band.
-pub const BAND: usize = belvedere_scene::ROWS;
-
 /// Tolerance of bent edges drawn straight from which on a picture is a coarse one, pixels: one that moves. What only shows at rest is then
 /// left out of it.
 pub const COARSE_PX: f64 = 1.0;

@@ -1,11 +1,11 @@
-//! Stages that this renderer computes faster than through [`belvedere_core::map::StageMap`]: the only file of the renderer that names
+//! Stages that are computed faster than through [`belvedere_core::map::StageMap`]: the only file of what draws and judges that names
 //! techniques; all others ask a stage for its properties.
 
 use belvedere_core::{CurvedRays, EarthCurvature, SplineBend, Stage, TerrainDisocclusion};
 
-/// A stage as the renderer computes it.
+/// A stage by its faster form.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Fast<'a> {
+pub enum Fast<'a> {
     /// One addition that depends on the squared distance from the eye.
     Earth(&'a EarthCurvature),
     /// One addition, read from a grid; the ground is moved instead of bending rays.
@@ -19,7 +19,8 @@ pub(crate) enum Fast<'a> {
 }
 
 impl<'a> Fast<'a> {
-    pub(crate) fn of(stage: &'a Stage) -> Self {
+    /// The form of a stage.
+    pub fn of(stage: &'a Stage) -> Self {
         match stage {
             Stage::EarthCurvature(earth) => Self::Earth(earth),
             Stage::TerrainDisocclusion(ground) => Self::Ground(ground),

@@ -1,10 +1,10 @@
 //! Intersections of a ray with the triangles of meshes.
 
+use crate::MeshTree;
 use crate::trace::curve::Span;
 use crate::trace::root::root;
 use crate::trace::tracer::{Found, Part, Walk};
 use belvedere_core::DVec3;
-use belvedere_sight::MeshTree;
 
 /// Slack of the barycentric weights at which a bent ray still hits a triangle: more than rounding, so that no ray slips between
 /// two triangles.

@@ -13,7 +13,7 @@ const MAX_HALVINGS: u32 = 16;
 const CELLS: f64 = 3.0;
 
 /// Rays of one image row.
-pub(crate) struct RowRays<'t, 'a> {
+pub struct RowRays<'t, 'a> {
     tracer: &'t Tracer<'a>,
     row: Option<Row<'a>>,
     y: f64,
@@ -24,7 +24,8 @@ pub(crate) struct RowRays<'t, 'a> {
 }
 
 impl<'t, 'a> RowRays<'t, 'a> {
-    pub(crate) fn new(tracer: &'t Tracer<'a>, y: f64, sample: usize) -> Self {
+    /// * `y`: of the row, pixels; `sample`: number of the sample of every pixel.
+    pub fn new(tracer: &'t Tracer<'a>, y: f64, sample: usize) -> Self {
         let bodies = tracer.bodies.as_ref().map(|bodies| Box::new(RowRays::new(bodies, y, sample)));
         Self { tracer, row: tracer.split.row(y, tracer.range), y, sample, bodies }
     }
@@ -34,7 +35,7 @@ impl<'t, 'a> RowRays<'t, 'a> {
     }
 
     /// First hit of one ray.
-    pub(crate) fn first_hit(&self, x: f64) -> Option<RayHit> {
+    pub fn first_hit(&self, x: f64) -> Option<RayHit> {
         let bodies = self.bodies.as_ref().and_then(|bodies| bodies.first_hit(x));
         nearer(self.hit_from(x, self.tracer.range[0]), bodies)
     }
@@ -45,7 +46,7 @@ impl<'t, 'a> RowRays<'t, 'a> {
     }
 
     /// First hits of the rays at `x` = 0.5, 1.5 ..
-    pub(crate) fn first_hits(&self, out: &mut [Option<RayHit>]) {
+    pub fn first_hits(&self, out: &mut [Option<RayHit>]) {
         for (i, group) in out.chunks_mut(GROUP).enumerate() {
             let x = |k: usize| (i * GROUP + k) as f64 + 0.5;
             let start = self.clear_until(x(0), x(group.len() - 1));

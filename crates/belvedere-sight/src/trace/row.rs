@@ -21,7 +21,7 @@ pub(crate) struct Node {
 }
 
 /// Common shape of the rays of an image row.
-pub(crate) struct Row<'a> {
+pub struct Row<'a> {
     bend: &'a SplineBend,
     /// In the plane of the curve: position at depth 0 and change per unit of depth, curve units.
     line: [DVec2; 2],

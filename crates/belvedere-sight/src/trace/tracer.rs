@@ -1,12 +1,12 @@
 //! First hits of curved rays on the surfaces of a scene.
 
 use crate::screen::Screen;
+use crate::sections::{Exposure, Sections, Shown};
 use crate::trace::curve::{Curve, Span, Split};
 use crate::trace::root::root;
-use belvedere_composite::sections::{Exposure, Sections, Shown};
+use crate::{Carried, GridLine, Lift, MeshTree, Obstacles, Solids, UprightBox};
 use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::{CellTriangle, Heightfield, LayerKind, NodeState, Scene};
-use belvedere_sight::{Carried, GridLine, Lift, MeshTree, Obstacles, Solids, UprightBox};
 use std::ops::ControlFlow;
 
 /// Distance of a ray from its chord, pixels, below which the chord is used to find its hits.
@@ -28,7 +28,8 @@ pub struct RayHit {
     pub point: DVec3,
     /// Segment of the curved ray, see [`belvedere_core::Displaced::segment`].
     pub segment: u32,
-    pub(crate) part: Part,
+    /// Part of the layer.
+    pub part: Part,
 }
 
 impl RayHit {
@@ -43,7 +44,7 @@ impl RayHit {
 
 /// Part of a layer.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Part {
+pub enum Part {
     /// Cell (column, row) of a terrain, and which of its triangles.
     Cell([usize; 2], CellTriangle),
     /// Number of a box and the outward normal of its face.
@@ -91,8 +92,10 @@ impl<'a> Tracer<'a> {
         Self::exposed((scene, Solids::Opaque), view, sections, Exposure::new(1, 1))
     }
 
+    /// The same for chosen solids and samples.
+    ///
     /// * `solids`: those of the scene that rays meet; `exposure`: thresholds of the samples.
-    pub(crate) fn exposed(
+    pub fn exposed(
         (scene, solids): (&'a Scene, Solids),
         view: &'a View,
         sections: Option<Sections<'a>>,
@@ -227,7 +230,7 @@ pub(crate) fn nearer(a: Option<RayHit>, b: Option<RayHit>) -> Option<RayHit> {
 }
 
 /// Depth beyond which no surface is seen: the largest depth of a lattice over the scene's bounds, and a step more.
-pub(crate) fn deepest(scene: &Scene, view: &View) -> f64 {
+pub fn deepest(scene: &Scene, view: &View) -> f64 {
     deepest_in(&scene.bounds(), view)
 }
 
