@@ -2,8 +2,9 @@
 //!
 //! A renderer draws surfaces: colours, depths, ids. What else belongs to a picture is the same for all of them and needs no more than
 //! [`drawn::Drawn`] tells: [`stylise`] darkens edges, [`marks`] draws lines, points and names and decides by lines of sight what of them
-//! is hidden, [`layers`] mixes pictures of whole representations, [`branches`]
-//! joins pictures where rays part, [`veil`] lays solids that something shines through over all of it, and [`canvas`] draws on finished pixels. [`finish`] puts these in their order.
+//! is hidden ([`traced_marks`] by those of the exact tracer), [`layers`] mixes pictures of whole representations, [`branches`]
+//! joins pictures where rays part, [`veil`] lays solids that something shines through over all of it, and [`canvas`] draws on finished pixels.
+//! [`finish`] puts these in their order.
 
 pub mod branches;
 pub mod buffers;
@@ -16,5 +17,6 @@ pub mod layers;
 pub mod marks;
 pub mod skyline;
 pub mod stylise;
+pub mod traced_marks;
 pub mod unsharp;
 pub mod veil;

@@ -5,8 +5,6 @@
 
 use crate::frame::checked;
 use crate::geometry::blocks::Blocks;
-use crate::geometry::pass::Pass;
-use crate::marks;
 use crate::over_ground;
 use crate::raster::band::{BAND, sample_offsets};
 use crate::screen::{SUB, Screen};
@@ -21,10 +19,12 @@ use belvedere_composite::depths::Depths;
 use belvedere_composite::finish::{buffers, finish_veiled};
 use belvedere_composite::layers;
 use belvedere_composite::marks::Marks;
+use belvedere_composite::traced_marks;
 use belvedere_composite::veil::Veiled;
 use belvedere_core::DVec2;
 use belvedere_scene::{Frame, FrameStats, Instant, LayerKind, RenderError, RenderJob, Renderer};
 use belvedere_sight::Solids;
+use belvedere_sight::pass::Pass;
 use belvedere_sight::sections::{Exposure, Sections};
 use belvedere_sight::trace::{RayHit, RowRays, Tracer, same_surface};
 use rayon::prelude::*;
@@ -65,7 +65,7 @@ impl Renderer for ExactRenderer {
     fn render(&self, job: &RenderJob<'_>) -> Result<Frame, RenderError> {
         // First hits on every layer that is seen through.
         let hits = (SeeThrough::of(job.scene).len() * size_of::<Option<RayHit>>()) as u64;
-        checked(job, hits, |job| branches::draw(job, |job| layers::draw(job, render, marks::place_alone)))
+        checked(job, hits, |job| branches::draw(job, |job| layers::draw(job, render, traced_marks::place_alone)))
     }
 }
 
@@ -90,12 +90,12 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
     };
     over_ground::paint(job, (&shader, &screen), (0, [None, None]), &mut buffers);
     let samples = volume::compose(job, Way::Exact, &mut buffers)?;
-    let marks = marks::place_alone(job, &screen, &buffers.depth);
+    let marks = traced_marks::place_alone(job, &screen, &buffers.depth);
     job.progress.tick("lines", 0.0)?;
-    let passes = Pass::all(job.view);
-    let front = veil.as_ref().filter(|_| Marks::are_in(job));
-    let front = front
-        .map(|veil| marks::place(job, &passes, &screen, (Depths::Whole(&veil.nearest(&buffers.depth)), Solids::Drawn)));
+    let front = veil.as_ref().filter(|_| Marks::are_in(job)).map(|veil| {
+        let (passes, nearest) = (Pass::all(job.view), veil.nearest(&buffers.depth));
+        traced_marks::place(job, &passes.iter().collect::<Vec<_>>(), &screen, (Depths::Whole(&nearest), Solids::Drawn))
+    });
     let front = front.unwrap_or_default();
     let veiled = veil.as_ref().map(|veil| Veiled { veil, first: 0, front: &front });
     finish_veiled(job, (&marks, veiled), &screen, None, &mut buffers);

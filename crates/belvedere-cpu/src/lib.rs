@@ -13,7 +13,7 @@
 //! 5. `see_through`: solids that something shines through are drawn into samples of their own, which become a veil over the picture.
 //! 6. `volume`: light that rays gather in voxels, up to the surfaces, is laid over them.
 //! 7. [`belvedere_composite`]: stylisation, then lines, outlines, points and names, then the veil, by lines of sight through the surfaces themselves
-//!    (`marks`).
+//!    ([`belvedere_composite::traced_marks`]).
 //!
 //! Where styling sections show layers in part, samples choose by thresholds, and exposures of a band are averaged. Where rays part,
 //! every branch is drawn so and the pictures are put together along the seams.
@@ -23,9 +23,7 @@ mod exact;
 mod frame;
 mod geometry;
 mod level_rows;
-mod marks;
 mod over_ground;
-mod points;
 mod raster;
 mod rasteriser;
 mod resolve;
@@ -41,7 +39,6 @@ mod volume;
 
 pub use exact::ExactRenderer;
 pub use geometry::project::GroundImage;
-pub use marks::{mark_shapes, next_names};
 pub use rasteriser::CpuRenderer;
 pub use tint::GroundTint;
 pub use volume::VolumeTracer;

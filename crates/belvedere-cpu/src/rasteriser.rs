@@ -5,7 +5,6 @@ use crate::frame::{checked, needed};
 use crate::geometry::lod::Tree;
 use crate::geometry::pass::{BodyPasses, Pass};
 use crate::level_rows;
-use crate::marks;
 use crate::over_ground;
 use crate::raster::band::sample_offsets;
 use crate::rows;
@@ -21,6 +20,7 @@ use belvedere_composite::finish::{buffers_in, finish_veiled};
 use belvedere_composite::layers;
 use belvedere_composite::marks::Marks;
 use belvedere_composite::stylise::Relief;
+use belvedere_composite::traced_marks;
 use belvedere_composite::veil::{Veil, Veiled};
 use belvedere_scene::{Frame, Instant, PictureRows, RenderError, RenderJob, Renderer};
 use belvedere_sight::sections::Sections;
@@ -69,7 +69,7 @@ impl Renderer for CpuRenderer {
         let old = Mutex::new(std::mem::take(frame));
         *frame = checked(job, 0, |job| {
             branches::draw(job, |job| {
-                layers::draw(job, |job| self.draw(job, std::mem::take(&mut *lock(&old))), marks::place_alone)
+                layers::draw(job, |job| self.draw(job, std::mem::take(&mut *lock(&old))), traced_marks::place_alone)
             })
         })?;
         Ok(())
@@ -143,9 +143,11 @@ impl CpuRenderer {
         over_ground::paint(job, (&shader, &screen), (0, [None, None]), &mut buffers);
         let samples = volume::compose(job, Way::Fast, &mut buffers)?;
         if buffers.open {
-            let marks = marks::place(job, &passes, &screen, (Depths::Whole(&buffers.depth), Solids::Opaque));
+            let plain = Pass::plain(&passes);
+            let marks = traced_marks::place(job, &plain, &screen, (Depths::Whole(&buffers.depth), Solids::Opaque));
             let front = veil.as_ref().filter(|_| Marks::are_in(job)).map(|veil| {
-                marks::place(job, &passes, &screen, (Depths::Whole(&veil.nearest(&buffers.depth)), Solids::Drawn))
+                let nearest = veil.nearest(&buffers.depth);
+                traced_marks::place(job, &plain, &screen, (Depths::Whole(&nearest), Solids::Drawn))
             });
             let front = front.unwrap_or_default();
             job.progress.tick("lines", 0.0)?;

@@ -7,7 +7,6 @@ use crate::cache::{GroundCache, lock};
 use crate::frame::{check_memory, threads_of};
 use crate::geometry::lod::Tree;
 use crate::geometry::pass::{BodyPasses, Pass};
-use crate::marks;
 use crate::over_ground::{self, SeenRow};
 use crate::raster::band::{BAND, Band, SKY, sample_offsets};
 use crate::resolve::relief::resolve_relief;
@@ -24,11 +23,13 @@ use belvedere_composite::layers::Levels;
 use belvedere_composite::marks::Marks;
 use belvedere_composite::skyline::Skyline;
 use belvedere_composite::stylise::{self, Relief, StyledRows, Survey};
+use belvedere_composite::traced_marks;
 use belvedere_composite::unsharp::{DepthGrid, Surroundings};
 use belvedere_composite::veil::{Veil, Veiled};
 use belvedere_scene::{
     Cancelled, Frame, FrameStats, Instant, LayerKind, PictureRows, PixelGrid, RenderError, RenderJob, Stylisation,
 };
+use belvedere_sight::pass;
 use belvedere_sight::sections::Sections;
 use belvedere_sight::{Carried, Solids};
 use rayon::ThreadPool;
@@ -112,7 +113,7 @@ pub(crate) fn draw(
         stats: FrameStats::default(),
         color: Mutex::default(),
     };
-    on(pool, || rows.prepare(&passes))?;
+    on(pool, || rows.prepare(&Pass::plain(&passes)))?;
     rows.stats = stats(blocks, 0, start);
     work(&rows)
 }
@@ -156,7 +157,7 @@ impl Prepared<'_> {
     }
 
     /// Decides what holds for the whole picture.
-    fn prepare(&mut self, passes: &[Pass<'_>]) -> Result<(), RenderError> {
+    fn prepare(&mut self, passes: &[&pass::Pass<'_>]) -> Result<(), RenderError> {
         let Surfaces { job, screen, .. } = self.surfaces;
         let Stylisation { edges, unsharp } = job.options.stylisation;
         let [_, height] = self.picture();
@@ -172,10 +173,10 @@ impl Prepared<'_> {
         if !(job.options.marks && Marks::are_in(job)) {
             return Ok(());
         }
-        let mut tiles = marks::wanted_depths(job, passes, screen);
+        let mut tiles = traced_marks::wanted_depths(job, passes, screen);
         tiles.make_room();
         let mut near = (!self.surfaces.layers.is_empty()).then(|| {
-            let mut near = marks::wanted_depths(job, passes, screen);
+            let mut near = traced_marks::wanted_depths(job, passes, screen);
             near.make_room();
             near
         });
@@ -196,9 +197,9 @@ impl Prepared<'_> {
                 near.skyline = tiles.skyline.clone();
             }
         }
-        self.marks = marks::place(job, passes, screen, (Depths::Tiles(&tiles), Solids::Opaque));
+        self.marks = traced_marks::place(job, passes, screen, (Depths::Tiles(&tiles), Solids::Opaque));
         if let Some(near) = &near {
-            self.front = marks::place(job, passes, screen, (Depths::Tiles(near), Solids::Drawn));
+            self.front = traced_marks::place(job, passes, screen, (Depths::Tiles(near), Solids::Drawn));
         }
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Vertices on the image: fixed-point pixels and nearness.
 
-use crate::points::Points;
 use belvedere_core::DVec3;
+use belvedere_sight::pass::Points;
 pub(crate) use belvedere_sight::screen::{PLANES, Screen};
 
 /// Fixed-point steps per pixel.

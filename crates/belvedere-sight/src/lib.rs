@@ -1,5 +1,5 @@
-//! Ground as it is drawn, lines of sight over it, and the exact tracer of curved rays ([`trace`]): what is seen where, asked by everything that
-//! draws, measures or picks.
+//! Ground as it is drawn, lines of sight over it, passes over a view ([`pass`]), and the exact tracer of curved rays ([`trace`]): what is
+//! seen where, asked by everything that draws, measures or picks.
 
 mod beam;
 mod boxes;
@@ -15,6 +15,7 @@ mod line;
 mod mesh_tree;
 mod obstacles;
 mod openness;
+pub mod pass;
 mod pyramid;
 pub mod screen;
 pub mod sections;

@@ -1,9 +1,9 @@
 //! Translucent, flat, convex faces, in front of surfaces or faintly behind them.
 
 use crate::color::{Packed, Rgb, linear};
-use crate::drawn::Pass;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::OverlayFace;
+use belvedere_sight::pass::Pass;
 use belvedere_sight::screen::Screen;
 
 /// Factor of the opacity behind surfaces.
@@ -24,7 +24,7 @@ pub(crate) struct Face {
 
 impl Face {
     /// `None` if no part of it can be visible.
-    pub(crate) fn new(face: &OverlayFace, pass: &dyn Pass, screen: &Screen) -> Option<Self> {
+    pub(crate) fn new(face: &OverlayFace, pass: &Pass<'_>, screen: &Screen) -> Option<Self> {
         let corners: Vec<DVec3> =
             face.corners.iter().map(|&p| Some(screen.view_from(pass.displace(p)?))).collect::<Option<_>>()?;
         let corners = clipped(corners, screen);

@@ -29,13 +29,14 @@ mod visibility;
 use crate::canvas::{Canvas, Fonts};
 use crate::color::{Packed, linear};
 use crate::depths::{DepthTiles, Depths};
-use crate::drawn::{Drawn, Pass, Sight};
+use crate::drawn::{Drawn, Sight};
 use crate::skyline::Skyline;
 use alike::alike;
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{
     AreaLayer, Color, Hidden, LayerKind, LineFeature, LineLayer, Overlay, OverlayLine, ROWS, RenderJob, Scene, Symbol,
 };
+use belvedere_sight::pass::Pass;
 use belvedere_sight::screen::{COARSE_PX, Screen};
 use belvedere_sight::sections::Sections;
 use drawing::PlacedDrawing;
@@ -267,7 +268,7 @@ struct MarkBuilder<'a> {
     sections: Option<&'a Sections<'a>>,
     scene: &'a Scene,
     /// All passes of the view, the first ones of its records.
-    passes: &'a [&'a dyn Pass],
+    passes: &'a [&'a Pass<'a>],
     records: usize,
     screen: &'a Screen,
     tolerance_px: f64,
@@ -305,7 +306,7 @@ struct Marker {
 impl<'a> MarkBuilder<'a> {
     /// The passes that draw the contents of some boxes, each image once: the records, or the segments where the records leave something
     /// out; segments part at the ends of the turns.
-    fn passes_for(&self, boxes: impl Iterator<Item = Aabb>) -> &'a [&'a dyn Pass] {
+    fn passes_for(&self, boxes: impl Iterator<Item = Aabb>) -> &'a [&'a Pass<'a>] {
         let (records, segments) = self.passes.split_at(self.records.min(self.passes.len()));
         let mut boxes = boxes;
         let left_out = |b: &Aabb| segments.iter().any(|s| s.fills_in(self.screen, b));

@@ -1,9 +1,9 @@
 //! Lines draped on the ground and projected onto the image.
 
-use crate::drawn::Pass;
 use crate::marks::segment;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{Heightfield, Scene};
+use belvedere_sight::pass::Pass;
 use belvedere_sight::screen::{COARSE_PX, Screen};
 
 /// Largest distance of the vertices from the ground up to which a line counts as lying on it, scene units.
@@ -157,7 +157,7 @@ struct Vertex {
 
 /// Images of a polyline in one pass: pieces without a gap, each of at least two points, straight to the tolerance.
 pub(crate) fn project(
-    pass: &dyn Pass,
+    pass: &Pass<'_>,
     screen: &Screen,
     points: &[LinePoint],
     tolerance_px: f64,
@@ -176,7 +176,7 @@ pub(crate) fn project(
 }
 
 struct Tracer<'a> {
-    pass: &'a dyn Pass,
+    pass: &'a Pass<'a>,
     screen: &'a Screen,
     tolerance_px: f64,
     pieces: Vec<Vec<PathPoint>>,

@@ -1,11 +1,11 @@
 //! Visible and hidden parts of a line, stable from frame to frame.
 
 use crate::depths::Depths;
-use crate::drawn::Pass;
 use crate::marks::line_of_sight::LineOfSight;
 use crate::marks::path::{LinePoint, PathPoint};
 use crate::marks::segment;
 use belvedere_core::DVec2;
+use belvedere_sight::pass::Pass;
 use belvedere_sight::screen::Screen;
 
 /// Hidden gaps shorter than this are closed, then visible specks shorter than this are dropped, pixels; up to twice this length
@@ -132,7 +132,7 @@ impl Run {
 /// Judges the stations of a line: by the depth buffer where it is clear, else by lines of sight.
 #[derive(Clone, Copy)]
 pub(crate) struct LineVisibility<'a> {
-    pub(crate) pass: &'a dyn Pass,
+    pub(crate) pass: &'a Pass<'a>,
     pub(crate) screen: &'a Screen,
     pub(crate) map: DepthMap<'a>,
     pub(crate) sight: &'a LineOfSight<'a>,
@@ -314,34 +314,11 @@ mod tests {
     use super::*;
     use crate::drawn::Sight;
     use crate::marks::path;
-    use belvedere_core::{Aabb, DVec3, EdgeError, Pinhole, Projection};
+    use belvedere_core::{DVec3, Pinhole, Projection, View};
     use belvedere_scene::Scene;
 
-    /// Nothing is displaced, and there is no surface.
-    #[derive(Debug)]
+    /// There is no surface.
     struct Empty;
-
-    impl Pass for Empty {
-        fn displace(&self, p: DVec3) -> Option<DVec3> {
-            Some(p)
-        }
-
-        fn margins(&self, _: DVec3) -> [f64; 2] {
-            [f64::INFINITY; 2]
-        }
-
-        fn edge_error(&self, _: DVec3, _: DVec3) -> EdgeError {
-            EdgeError::NONE
-        }
-
-        fn is_straight(&self) -> bool {
-            true
-        }
-
-        fn fills_in(&self, _: &Screen, _: &Aabb) -> bool {
-            false
-        }
-    }
 
     impl Sight for Empty {
         fn first_depth(&self, _: DVec2) -> Option<f64> {
@@ -356,10 +333,12 @@ mod tests {
         let (scene, screen, depth) = (Scene::default(), Screen::new(&pinhole), vec![f32::INFINITY; 320 * 240]);
         let sight = LineOfSight { scene: &scene, sight: &Empty };
         let map = DepthMap { depth: Depths::Whole(&depth), width: 320, height: 240 };
-        let visibility = LineVisibility { pass: &Empty, screen: &screen, map, sight: &sight, lift_m: 0.0 };
+        let view = View::straight(pinhole.clone());
+        let pass = &Pass::all(&view)[0];
+        let visibility = LineVisibility { pass, screen: &screen, map, sight: &sight, lift_m: 0.0 };
         // From near to forty times as far.
         let line = path::as_given(&[DVec3::new(-20.0, 50.0, -5.0), DVec3::new(600.0, 2000.0, -40.0)]);
-        let pieces = path::project(&Empty, &screen, &line, 0.5);
+        let pieces = path::project(pass, &screen, &line, 0.5);
         let runs: Vec<Run> = pieces.iter().flat_map(|piece| visibility.runs(piece, 0.0)).collect();
         let stations: Vec<&Station> = runs.iter().flat_map(|run| &run.stations).collect();
         assert!(stations.len() > 50, "{}", stations.len());

@@ -2,15 +2,16 @@
 
 use belvedere_composite::color::{Packed, Rgb};
 use belvedere_composite::depths::Depths;
-use belvedere_composite::drawn::{Drawn, Pass, Sight};
+use belvedere_composite::drawn::{Drawn, Sight};
 use belvedere_composite::finish::{buffers, finish};
 use belvedere_composite::marks::Marks;
 use belvedere_composite::{branches, layers};
-use belvedere_core::{Aabb, DVec2, DVec3, EdgeError, Pinhole, Projection, View};
+use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_scene::{
     Color, Frame, Hidden, Layer, LayerKind, Light, LineFeature, LineLayer, PointFeature, PointLayer, PointStyle,
     Progress, RenderError, RenderJob, RenderOptions, Renderer, Scene, Stylisation, Symbol,
 };
+use belvedere_sight::pass::Pass;
 use belvedere_sight::screen::Screen;
 
 /// A ball of this radius about the origin.
@@ -22,31 +23,6 @@ const HEIGHT: f64 = 2.0;
 
 /// Draws the ball.
 struct Ball;
-
-#[derive(Debug)]
-struct Unbent;
-
-impl Pass for Unbent {
-    fn displace(&self, p: DVec3) -> Option<DVec3> {
-        Some(p)
-    }
-
-    fn margins(&self, _: DVec3) -> [f64; 2] {
-        [f64::INFINITY; 2]
-    }
-
-    fn edge_error(&self, _: DVec3, _: DVec3) -> EdgeError {
-        EdgeError::NONE
-    }
-
-    fn is_straight(&self) -> bool {
-        true
-    }
-
-    fn fills_in(&self, _: &Screen, _: &Aabb) -> bool {
-        false
-    }
-}
 
 struct Rays<'a>(&'a Pinhole);
 
@@ -61,7 +37,8 @@ impl Sight for Rays<'_> {
 }
 
 fn marks(job: &RenderJob<'_>, screen: &Screen, depth: &[f32]) -> Marks {
-    let passes: [&dyn Pass; 1] = [&Unbent];
+    let passes = Pass::all(job.view);
+    let passes: Vec<&Pass<'_>> = passes.iter().collect();
     let sight = Rays(job.view.pinhole());
     Marks::new(job, &Drawn { passes: &passes, screen, tolerance_px: 0.5, depth: Depths::Whole(depth), sight: &sight })
 }

@@ -9,7 +9,7 @@ use crate::geometry::layer_show::LayerShow;
 use crate::geometry::locate::{Held, JoinedPasses, Locator};
 use crate::geometry::lod::Tree;
 use crate::geometry::mesh_blocks::Drawn;
-use crate::geometry::pass::{BodyPasses, InView, Pass};
+use crate::geometry::pass::{BodyPasses, Pass};
 use crate::geometry::select::{DetailSelector, Selection};
 use crate::raster::band::Band;
 use crate::raster::cells::SIDE;
@@ -17,6 +17,7 @@ use crate::screen::Screen;
 use belvedere_core::Aabb;
 use belvedere_scene::{LayerKind, Progress, RenderJob};
 use belvedere_sight::LayerPart;
+use belvedere_sight::pass::InView;
 use belvedere_sight::sections::{Exposure, Sections, Shown};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -127,8 +128,8 @@ impl Blocks {
                         let seen_in = bounds.filter(|_| !c.held.whole);
                         let passes =
                             joined.of(choice.held(&c.held), c.held.whole).filter(move |_| shown != Shown::Nothing);
-                        let seen =
-                            passes.filter(move |pass| seen_in.is_none_or(|b| pass.in_view(screen, &b) != InView::No));
+                        let seen = passes
+                            .filter(move |pass| seen_in.is_none_or(|b| pass.plain.in_view(screen, &b) != InView::No));
                         let thin = shown == Shown::Partly;
                         seen.filter_map(move |pass| job.terrain_block(pass, hf, &tree.sparse, (c, bounds), thin))
                     });

@@ -51,8 +51,8 @@ impl Job<'_> {
         if shown == Shown::Nothing {
             return None;
         }
-        let mut refiner = Refiner::new(pass, self.screen, self.tolerance_px, self.spare.soup());
-        let judge = !pass.keeps_edges();
+        let mut refiner = Refiner::new(&pass.plain, self.screen, self.tolerance_px, self.spare.soup());
+        let judge = !pass.plain.keeps_edges();
         let mut missed = 0;
         for (k, corners) in corners_of(layer, carried, chunk).enumerate() {
             let Some(corners) = corners.map(|c| c.map(|p| refiner.corner(p))) else {
@@ -66,7 +66,7 @@ impl Job<'_> {
             }
         }
         let counts = Counts { drawn: refiner.out.len() as u64, split: refiner.splits, missed };
-        let block = Block::soup(self.layer, pass.numbers, chunk * BOXES, refiner.out, counts)?;
+        let block = Block::soup(self.layer, pass.plain.numbers(), chunk * BOXES, refiner.out, counts)?;
         let block = Block { bodies: carried.is_some(), ..block };
         let Some(sections) = self.sections.filter(|_| shown == Shown::Partly) else { return Some(block) };
         Some(block.thinned(|parent| {

@@ -1,8 +1,9 @@
 //! Which records of a curved-ray chain draw a box, and whether they may draw it at once.
 
-use crate::geometry::pass::{InView, Pass, displaced};
+use crate::geometry::pass::Pass;
 use crate::screen::Screen;
 use belvedere_core::{Aabb, DVec3, View};
+use belvedere_sight::pass::{InView, displaced};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -79,7 +80,7 @@ impl<'a> Locator<'a> {
     pub(crate) fn px_per_height(&self, bounds: &Aabb, passes: impl Iterator<Item = u32>, coarse: bool) -> Option<f64> {
         let of = |number: u32| {
             let pass = &self.passes[number as usize];
-            let InView::Maybe(mut extent) = pass.in_view(self.screen, bounds) else { return None };
+            let InView::Maybe(mut extent) = pass.plain.in_view(self.screen, bounds) else { return None };
             if coarse {
                 extent = pass.shown_extent(self.screen, bounds, extent);
             }
@@ -91,13 +92,13 @@ impl<'a> Locator<'a> {
     /// Whether part of a box lies beside or behind the eye; `false` for curved rays.
     pub(crate) fn reaches_behind(&self, bounds: &Aabb) -> bool {
         let [pass] = self.passes else { return false };
-        let depth = |p: DVec3| pass.displace(p).map(|v| self.screen.view_from(v).z);
+        let depth = |p: DVec3| pass.plain.displace(p).map(|v| self.screen.view_from(v).z);
         bounds.corners().into_iter().filter_map(depth).any(|depth| depth <= 0.0)
     }
 
     /// Whether a pass shows part of the box.
     pub(crate) fn shows(&self, number: u32, bounds: &Aabb) -> bool {
-        self.passes[number as usize].in_view(self.screen, bounds) != InView::No
+        self.passes[number as usize].plain.in_view(self.screen, bounds) != InView::No
     }
 }
 

@@ -109,12 +109,12 @@ impl Job<'_> {
             thin.iter().flat_map(|s| keys.iter().map(|&key| s.parameter(drawn.place(key)[0]))).collect();
         let places: Vec<DVec3> = keys.iter().map(|&key| drawn.place(key)[1]).collect();
         let judge = match drawn {
-            Drawn::Bodies(..) => !pass.is_straight_in(&Aabb::of(places.iter().copied()), self.tolerance_px),
-            _ => !pass.is_straight_in(bounds, self.tolerance_px),
+            Drawn::Bodies(..) => !pass.plain.is_straight_in(&Aabb::of(places.iter().copied()), self.tolerance_px),
+            _ => !pass.plain.is_straight_in(bounds, self.tolerance_px),
         };
         let vertices = self.mesh_vertices(pass, &places, judge);
         let missed = vertices.list.iter().filter(|v| v.missed).count() as u64;
-        let mut refiner = Refiner::new(pass, self.screen, self.tolerance_px, self.spare.soup());
+        let mut refiner = Refiner::new(&pass.plain, self.screen, self.tolerance_px, self.spare.soup());
         for (t, corners) in triangles.iter().zip(&corners) {
             let of_corners = |s: &Sections<'_>| s.of_corners(self.layer as usize, corners.map(|c| along[c as usize]));
             if thin.is_some_and(|s| of_corners(s) == Shown::Nothing) {
@@ -135,7 +135,7 @@ impl Job<'_> {
             }
         }
         let counts = Counts { drawn: refiner.out.len() as u64, split: refiner.splits, missed };
-        let block = Block::soup(self.layer, pass.numbers, first, refiner.out, counts)?;
+        let block = Block::soup(self.layer, pass.plain.numbers(), first, refiner.out, counts)?;
         let block = Block { bodies: matches!(drawn, Drawn::Bodies(..)), ..block };
         let Some(sections) = thin else { return Some(block) };
         Some(block.thinned(|k| mesh.corners(first + k as usize).map(|p| sections.parameter(p))))
@@ -143,14 +143,14 @@ impl Job<'_> {
 
     /// The vertices at the given places, most of them in single precision.
     fn mesh_vertices(&self, pass: &Pass<'_>, places: &[DVec3], judge: bool) -> Vertices {
-        let edges = if judge { places.iter().map(|&p| pass.edge_point(p)).collect() } else { Vec::new() };
+        let edges = if judge { places.iter().map(|&p| pass.plain.edge_point(p)).collect() } else { Vec::new() };
         let mut batch = Batch::default();
         if !pass.batch(places.iter().copied(), &mut batch) {
             return Vertices { list: places.iter().map(|&p| self.mesh_vertex(pass, p)).collect(), edges };
         }
         let [xs, ys] = &batch.images;
         let vertex = |(i, &p): (usize, &DVec3)| {
-            if batch.missed[i] != 0 || !pass.margins(p).iter().all(|m| *m >= 0.0) {
+            if batch.missed[i] != 0 || !pass.plain.margins(p).iter().all(|m| *m >= 0.0) {
                 return self.mesh_vertex(pass, p);
             }
             let image = ScreenVertex { x: xs[i], y: ys[i], q: batch.nearness[i] };
@@ -168,8 +168,8 @@ impl Job<'_> {
     }
 
     fn mesh_vertex(&self, pass: &Pass<'_>, p: DVec3) -> Vertex {
-        let v = pass.displace(p).map(|d| self.screen.view_from(d)).filter(|v| v.is_finite());
-        let whole = |v: &DVec3| self.screen.is_drawable(*v) && pass.margins(p).iter().all(|m| *m >= 0.0);
+        let v = pass.plain.displace(p).map(|d| self.screen.view_from(d)).filter(|v| v.is_finite());
+        let whole = |v: &DVec3| self.screen.is_drawable(*v) && pass.plain.margins(p).iter().all(|m| *m >= 0.0);
         let image = v.filter(whole).map(|v| (self.screen.snap(v), self.screen.outcode(v, self.tolerance_px)));
         Vertex { p, image, missed: v.is_none_or(|v| !(v.z > 0.0)) }
     }
@@ -189,7 +189,7 @@ impl Job<'_> {
             let later = corners[i].p.to_array().partial_cmp(&corners[k].p.to_array()) == Some(Ordering::Greater);
             let (from, to) = if later { (k, i) } else { (i, k) };
             let [from, to] = [from, to].map(|i| vertices.edges[numbers[i]].as_ref());
-            pass.edge_error_between(from, to).is_some_and(|error| error <= self.tolerance_px)
+            pass.plain.edge_error_between(from, to).is_some_and(|error| error <= self.tolerance_px)
         };
         let judged = !vertices.edges.is_empty();
         let whole = beyond_a & beyond_b & beyond_c == 0 && (!judged || (0..3).all(straight));

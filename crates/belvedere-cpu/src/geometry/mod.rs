@@ -3,7 +3,6 @@
 pub(crate) mod block;
 pub(crate) mod blocks;
 pub(crate) mod box_blocks;
-mod displace;
 pub(crate) mod drawn_solids;
 pub(crate) mod grid;
 mod layer_show;
@@ -15,6 +14,5 @@ pub(crate) mod pass;
 pub(crate) mod project;
 mod refine;
 mod select;
-mod spline_table;
+mod spline_from_eye;
 mod terrain_blocks;
-pub(crate) mod way;

@@ -1,29 +1,18 @@
-//! One drawing of the scene, or of part of it: a record of a curved-ray chain, several records that displace as one map, or a segment
-//! of the rays where records leave something out.
+//! Passes over a view with the projection in single precision and bounds on the image of heights.
 
-use crate::geometry::displace::Displacer;
 use crate::geometry::lod::DecimatedHeights;
 use crate::geometry::project::{Batch, Projector};
-use crate::geometry::way::Way;
-use crate::points::Points;
 use crate::raster::cells::NODES;
 use crate::screen::{Row, Screen, ScreenVertex, Snap};
-use belvedere_core::{Aabb, CurvedRays, DMat3, DVec2, DVec3, EdgeError, EdgePoint, Edges, Stage, View};
+use belvedere_core::{Aabb, DMat3, DVec2, DVec3, View};
 use belvedere_scene::Heightfield;
 use belvedere_sight::Carried;
+use belvedere_sight::pass::{self, Extent, Points, Way, displaced};
 
-/// A view prepared for a frame.
+/// A pass prepared for a frame.
 #[derive(Debug)]
 pub(crate) struct Pass<'a> {
-    view: &'a View,
-    way: Way,
-    /// Numbers of the first and the last record or segment, among all passes of the view.
-    pub(crate) numbers: [usize; 2],
-    /// Whether geometry that does not belong to the record or segment is clipped.
-    cut: bool,
-    displacer: Displacer<'a>,
-    /// `None` unless edges are bent by a single turn alone.
-    edges: Option<Edges<'a>>,
+    pub(crate) plain: pass::Pass<'a>,
     projector: Option<Projector<'a>>,
     height: HeightPx,
 }
@@ -38,24 +27,6 @@ impl<'a> BodyPasses<'a> {
     pub(crate) fn new(carried: &'a Carried) -> Self {
         Self { carried, passes: Pass::all(carried.after()) }
     }
-}
-
-/// Whether the image shows a box.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum InView {
-    /// The box is not visible in this pass.
-    No,
-    /// The box may be visible, with its extent; `None` where part of it may be beside or behind the eye.
-    Maybe(Option<Extent>),
-}
-
-/// Extent of a box on the image and in depth.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Extent {
-    /// Least depth, positive.
-    depth: f64,
-    /// Least and largest position on the image, pixels from its centre.
-    image: [DVec2; 2],
 }
 
 /// Columns of the ground: `count` of them from `first` on, `step` apart.
@@ -81,43 +52,24 @@ impl Columns {
 }
 
 impl<'a> Pass<'a> {
-    /// The passes of a view: one for each record, then one for each segment of curved rays. The records draw every image of every point
-    /// once, except what they leave out ([`CurvedRays::leaves_out`]), which the segments draw.
+    /// The passes of a view, see [`pass::Pass::all`].
     pub(crate) fn all(view: &'a View) -> Vec<Self> {
-        let records = view.records();
-        let segments = view.curved_rays().filter(|rays| rays.turn_count() > 0).map_or(0, CurvedRays::segments);
-        let of_records =
-            (0..records).map(|record| Self::new(view, Way::Records([record; 2]), [record; 2], records > 1));
-        let of_segments = (0..segments).map(|k| Self::new(view, Way::Segment(k), [records + k as usize; 2], true));
-        of_records.chain(of_segments).collect()
+        pass::Pass::all(view).into_iter().map(Self::new).collect()
     }
 
-    /// The pass for records from the first to the last that displace as one map, see [`CurvedRays::is_continuous`].
+    /// The pass for several records, see [`pass::Pass::between`].
     pub(crate) fn between(view: &'a View, records: [usize; 2]) -> Self {
-        Self::new(view, Way::Records(records), records, false)
+        Self::new(pass::Pass::between(view, records))
     }
 
-    fn new(view: &'a View, way: Way, numbers: [usize; 2], cut: bool) -> Self {
-        let edges = match way {
-            Way::Records([first, last]) if first == last => view.edges(first),
-            Way::Segment(number) if number % 2 == 1 => view.edges(number as usize / 2),
-            _ => None,
-        };
-        Self {
-            view,
-            way,
-            numbers,
-            cut,
-            displacer: Displacer::new(view, way),
-            edges,
-            projector: Projector::new(view, way),
-            height: HeightPx::new(view, way),
-        }
+    fn new(plain: pass::Pass<'a>) -> Self {
+        let (view, way) = (plain.view(), plain.way());
+        Self { plain, projector: Projector::new(view, way), height: HeightPx::new(view, way) }
     }
 
-    /// Displaced position; `None` where the point has no image.
-    pub(crate) fn displace(&self, p: DVec3) -> Option<DVec3> {
-        if self.is_straight() { Some(p) } else { self.displacer.point(p) }
+    /// The passes without what this renderer adds.
+    pub(crate) fn plain<'p>(passes: &'p [Self]) -> Vec<&'p pass::Pass<'a>> {
+        passes.iter().map(|pass| &pass.plain).collect()
     }
 
     /// Columns for [`Pass::ground_row`].
@@ -153,7 +105,7 @@ impl<'a> Pass<'a> {
             (x[i], y[i], z[i]) = (xy.x, xy.y, f64::from(heights[i]));
         }
         let mut points = Points { x: &mut x[..n], y: &mut y[..n], z: &mut z[..n] };
-        self.displacer.row(&mut points) && screen.snap_row(&points, out)
+        self.plain.displace_row(&mut points) && screen.snap_row(&points, out)
     }
 
     /// Images of positions in single precision; `false` if the pass has none.
@@ -176,102 +128,17 @@ impl<'a> Pass<'a> {
         whole.then_some(ScreenVertex { x, y, q })
     }
 
-    /// Signed distances that must be positive for the point to belong to this pass.
-    pub(crate) fn margins(&self, p: DVec3) -> [f64; 2] {
-        match self.way {
-            _ if !self.cut => [f64::INFINITY; 2],
-            Way::Records([record, _]) => self.view.record_margins(record, p),
-            Way::Segment(number) => self.view.segment_margins(number, p),
-        }
-    }
-
-    /// Whether the records may leave out part of a box that this segment then has to draw.
-    pub(crate) fn is_left_out(&self, bounds: &Aabb) -> bool {
-        let (Way::Segment(number), Some(rays)) = (self.way, self.view.curved_rays()) else { return false };
-        displaced(self.view.earlier_stages(), bounds).is_none_or(|b| rays.leaves_out(number, &b))
-    }
-
-    /// Whether part of a box may be clipped from a segment.
-    pub(crate) fn cuts(&self, bounds: &Aabb) -> bool {
-        let (Way::Segment(number), Some(rays)) = (self.way, self.view.curved_rays()) else { return false };
-        let planes = rays.segment_planes(number);
-        displaced(self.view.earlier_stages(), bounds)
-            .is_none_or(|b| b.corners().iter().any(|&p| planes.iter().flatten().any(|plane| !(plane.at(p) > 0.0))))
-    }
-
-    /// Whether edges stay straight wherever they are.
-    pub(crate) fn keeps_edges(&self) -> bool {
-        let straight_part = matches!(self.way, Way::Segment(number) if number % 2 == 0);
-        self.is_straight() || (straight_part && self.view.stages().len() == 1)
-    }
-
-    /// Whether all edges inside a box may be drawn straight within the tolerance; `false` also where the error is unknown.
-    pub(crate) fn is_straight_in(&self, bounds: &Aabb, tolerance_px: f64) -> bool {
-        self.keeps_edges() || self.edges.as_ref().is_some_and(|edges| edges.box_error_px(bounds) <= tolerance_px)
-    }
-
-    /// Input of [`Pass::edge_error_between`]; `None` where it cannot be precomputed.
-    pub(crate) fn edge_point(&self, p: DVec3) -> Option<EdgePoint> {
-        self.edges.as_ref()?.point(p)
-    }
-
-    /// [`EdgeError::px`] of [`Pass::edge_error`] from precomputed ends; `None` where it must be computed from their positions.
-    pub(crate) fn edge_error_between(&self, a: Option<&EdgePoint>, b: Option<&EdgePoint>) -> Option<f64> {
-        Some(self.edges.as_ref()?.error_px(a?, b?))
-    }
-
-    /// See [`View::edge_error`].
-    pub(crate) fn edge_error(&self, a: DVec3, b: DVec3) -> EdgeError {
-        edge_error(self.view, self.way, a, b)
-    }
-
-    /// Whether an edge may have an image between its ends where neither end has one.
-    pub(crate) fn crosses(&self, a: DVec3, b: DVec3) -> bool {
-        self.has_border() && !is_missed(self.view.stages(), &Aabb::of([a, b]))
-    }
-
-    /// See [`belvedere_core::map::StageMap::has_border`].
-    pub(crate) fn has_border(&self) -> bool {
-        self.view.stages().iter().any(|s| s.has_border())
-    }
-
-    /// Whether the pass may show the box, judged by its displaced bounds.
-    pub(crate) fn in_view(&self, screen: &Screen, bounds: &Aabb) -> InView {
-        if is_missed(self.view.stages(), bounds) {
-            return InView::No;
-        }
-        let Some(rays) = self.view.curved_rays() else {
-            return displaced(self.view.stages(), bounds)
-                .map_or(InView::Maybe(None), |b| image_of(screen, &b.corners()));
-        };
-        let Some(before) = displaced(self.view.earlier_stages(), bounds) else { return InView::Maybe(None) };
-        let eye = self.view.pinhole().eye;
-        let record = match self.way {
-            _ if rays.turn_count() == 0 => return image_of(screen, &before.corners()),
-            Way::Records([record, _]) => record,
-            Way::Segment(number) => match rays.straight_map(number) {
-                Some(map) => {
-                    let image = before.corners().map(|p| eye + map.linear * (p - map.viewpoint));
-                    return image_of(screen, &image);
-                }
-                None => number as usize / 2,
-            },
-        };
-        let Some(hull) = rays.displaced_hull_in(record, &before) else { return InView::Maybe(None) };
-        let hull = hull.map(|v| eye + v);
-        if self.view.records() == 1 { image_of(screen, &Aabb::of(hull).corners()) } else { image_of(screen, &hull) }
-    }
-
     /// Extent of the part of a box that the image shows, for a view without curved rays: no point of it is nearer to the eye than the
     /// displaced box, nor farther from the axis than the corners of the image. The box itself may reach behind the eye.
     ///
-    /// * `extent`: of the whole box, see [`InView::Maybe`].
+    /// * `extent`: of the whole box, see [`pass::InView::Maybe`].
     pub(crate) fn shown_extent(&self, screen: &Screen, bounds: &Aabb, extent: Option<Extent>) -> Option<Extent> {
-        if screen.ortho || self.view.curved_rays().is_some() {
+        let view = self.plain.view();
+        if screen.ortho || view.curved_rays().is_some() {
             return extent;
         }
-        let Some(displaced) = displaced(self.view.stages(), bounds) else { return extent };
-        let eye = self.view.pinhole().eye;
+        let Some(displaced) = displaced(view.stages(), bounds) else { return extent };
+        let eye = view.pinhole().eye;
         let distance = eye.clamp(displaced.min, displaced.max).distance(eye);
         let depth = distance * screen.scale / screen.scale.hypot(screen.center.length());
         match extent {
@@ -281,10 +148,10 @@ impl<'a> Pass<'a> {
     }
 
     /// Bound on the pixels that a unit of height inside the box spans on the image; infinite where unknown.
-    /// * `extent`: of the box, see [`InView::Maybe`].
+    /// * `extent`: of the box, see [`pass::InView::Maybe`].
     pub(crate) fn px_per_height(&self, screen: &Screen, bounds: &Aabb, extent: Option<Extent>) -> f64 {
         let Some(Extent { depth, image }) = extent else { return f64::INFINITY };
-        let turning = self.view.stages().iter().filter(|s| s.turns_heights());
+        let turning = self.plain.view().stages().iter().filter(|s| s.turns_heights());
         let stretch = turning.enumerate().map(|(i, stage)| {
             // The first stage that turns heights stretches the upright direction by the length of its image; later stages stretch by at most
             // the norm of their Jacobian.
@@ -304,43 +171,6 @@ impl<'a> Pass<'a> {
         let height_px = self.height.most(screen, image) * stretch.product::<f64>();
         if screen.ortho { height_px } else { height_px / depth }
     }
-
-    pub(crate) fn is_straight(&self) -> bool {
-        self.displacer.is_straight()
-    }
-}
-
-/// See [`View::edge_error`].
-pub(crate) fn edge_error(view: &View, way: Way, a: DVec3, b: DVec3) -> EdgeError {
-    match way {
-        Way::Records([first, last]) if first == last => view.edge_error_in(first, a, b),
-        Way::Records([first, last]) => view.edge_error_between(first..=last, a, b),
-        Way::Segment(number) => view.edge_error_along(number, a, b),
-    }
-}
-
-/// Whether the image may show the hull of displaced points.
-fn image_of(screen: &Screen, hull: &[DVec3]) -> InView {
-    let (mut code, mut depth) = (u8::MAX, f64::INFINITY);
-    let mut image = [DVec2::INFINITY, DVec2::NEG_INFINITY];
-    for &p in hull {
-        let v = screen.view_from(p);
-        code &= screen.outcode(v, 2.0);
-        depth = depth.min(v.z);
-        let at = screen.pixel(v) - screen.center;
-        image = [image[0].min(at), image[1].max(at)];
-    }
-    if code != 0 { InView::No } else { InView::Maybe((depth > 0.0).then_some(Extent { depth, image })) }
-}
-
-/// Whether the stages give no point of a box an image.
-fn is_missed(stages: &[Stage], bounds: &Aabb) -> bool {
-    let mut with_border = stages.iter().enumerate().filter(|(_, stage)| stage.has_border());
-    with_border.any(|(at, stage)| displaced(&stages[..at], bounds).is_some_and(|b| stage.misses(&b)))
-}
-
-pub(crate) fn displaced(stages: &[Stage], bounds: &Aabb) -> Option<Aabb> {
-    stages.iter().try_fold(*bounds, |b, stage| stage.displaced_bounds(&b))
 }
 
 /// Pixels that a unit of height moves an image at depth 1.
@@ -410,7 +240,8 @@ mod tests {
     use super::*;
     use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
     use belvedere_core::map::earth::EarthCurvature;
-    use belvedere_core::{Pinhole, Projection};
+    use belvedere_core::{CurvedRays, Pinhole, Projection, Stage};
+    use belvedere_sight::pass::InView;
 
     fn views() -> Vec<View> {
         let (eye, target) = (DVec3::new(300.0, -9000.0, 2600.0), DVec3::new(0.0, 0.0, -900.0));
@@ -441,7 +272,7 @@ mod tests {
                 let turn = |seed: f64| (f64::from(k) * seed).fract();
                 let min = eye + DVec3::new(-4e3 * turn(0.618), -4e3 * turn(0.755), -200.0 - 1500.0 * turn(0.57));
                 let bounds = Aabb { min, max: min + DVec3::new(5e3, 5e3, 150.0) };
-                let InView::Maybe(extent) = pass.in_view(&screen, &bounds) else { continue };
+                let InView::Maybe(extent) = pass.plain.in_view(&screen, &bounds) else { continue };
                 let shown = pass.shown_extent(&screen, &bounds, extent);
                 assert!(shown.is_some(), "{bounds:?}");
                 let most = pass.px_per_height(&screen, &bounds, shown);
@@ -470,7 +301,7 @@ mod tests {
             for (i, j) in (-8..8).flat_map(|i| (-6..24).map(move |j| (i, j))) {
                 let min = DVec3::new(500.0 * f64::from(i), 500.0 * f64::from(j), -200.0);
                 let bounds = Aabb { min, max: min + DVec3::new(400.0, 400.0, 300.0) };
-                let InView::Maybe(extent @ Some(_)) = pass.in_view(&screen, &bounds) else { continue };
+                let InView::Maybe(extent @ Some(_)) = pass.plain.in_view(&screen, &bounds) else { continue };
                 let most = pass.px_per_height(&screen, &bounds, extent);
                 let mut worst = 0.0f64;
                 let image = |p: DVec3| view.displace_in(0, p).ok().and_then(|d| view.pinhole().project(d.point).ok());

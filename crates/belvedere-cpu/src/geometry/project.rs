@@ -7,8 +7,7 @@
 mod cameras;
 mod runs;
 
-use crate::geometry::spline_table::SplineTable;
-use crate::geometry::way::Way;
+use crate::geometry::spline_from_eye::SplineFromEye;
 use crate::screen::{Row, SUB};
 use crate::simd;
 use belvedere_core::map::curved_rays::{LinearForm, StraightMap, Turn};
@@ -16,6 +15,7 @@ use belvedere_core::map::terrain::TerrainDisocclusion;
 use belvedere_core::{DVec2, DVec3, Pinhole, View};
 use belvedere_scene::Heightfield;
 use belvedere_sight::Fast;
+use belvedere_sight::pass::{SplineTable, Way};
 use cameras::{Bend, Form, Spline};
 use rayon::prelude::*;
 pub(crate) use runs::Batch;
@@ -82,7 +82,7 @@ impl<'a> Projector<'a> {
                 }
                 Fast::Ground(t) => out.lift = Some(t),
                 Fast::Spline(bend) => {
-                    let table = SplineTable::new(bend).seen_from(p.eye)?;
+                    let table = SplineFromEye::new(&SplineTable::new(bend), p.eye)?;
                     out.spline = Some(Spline::new(table, [p.right, p.down, p.forward]));
                 }
                 // Turns take what a spline has bent.

@@ -1,9 +1,9 @@
 //! Subdivision of triangles until the error of their bent edges is within the tolerance, and clipping.
 
 use crate::geometry::block::{SoupTriangle, SoupVertex};
-use crate::geometry::pass::Pass;
 use crate::screen::{PLANES, SUB, Screen, ScreenVertex, Snap};
 use belvedere_core::{DVec3, EdgeError};
+use belvedere_sight::pass::Pass;
 use belvedere_sight::screen::COARSE_PX;
 
 /// An edge is halved at most this often, and at most [`MOST_HALVINGS`] times while its image is longer than the tolerance: of an edge of

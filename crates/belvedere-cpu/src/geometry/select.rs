@@ -3,10 +3,9 @@
 use crate::geometry::locate::{Held, Locator};
 use crate::geometry::lod::Tree;
 use crate::geometry::part::Part;
-use crate::geometry::pass::edge_error;
-use crate::geometry::way::Way;
 use belvedere_core::{Aabb, View};
 use belvedere_scene::Heightfield;
+use belvedere_sight::pass::{Way, edge_error};
 use belvedere_sight::screen::COARSE_PX;
 
 /// A block to draw.

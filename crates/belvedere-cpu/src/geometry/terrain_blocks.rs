@@ -27,7 +27,7 @@ impl Job<'_> {
         let mut out = Block {
             bodies: false,
             layer: self.layer,
-            passes: pass.numbers,
+            passes: pass.plain.numbers(),
             origin,
             cells: [0, 1].map(|axis| (last[axis] - origin[axis]) / step),
             step,
@@ -38,8 +38,8 @@ impl Job<'_> {
             counts: Counts::default(),
             thin: Vec::new(),
         };
-        let judges = !pass.keeps_edges() && (chosen.edges || chosen.judged.contains(&true));
-        let careful = thin || judges || !chosen.held.whole || bounds.is_none_or(|b| pass.cuts(&b));
+        let judges = !pass.plain.keeps_edges() && (chosen.edges || chosen.judged.contains(&true));
+        let careful = thin || judges || !chosen.held.whole || bounds.is_none_or(|b| pass.plain.cuts(&b));
         if !careful && let Some(mut nodes) = self.project_grid(pass, hf, sparse, &out) {
             nodes.close_seams(chosen.seam);
             out.cover = nodes.cover();
@@ -120,10 +120,10 @@ impl Job<'_> {
     }
 
     fn refine_grid(&self, pass: &Pass<'_>, hf: &Heightfield, block: &mut Block, chosen: &SelectedBlock) {
-        let mut refiner = Refiner::new(pass, self.screen, self.tolerance_px, self.spare.soup());
+        let mut refiner = Refiner::new(&pass.plain, self.screen, self.tolerance_px, self.spare.soup());
         let (cells, seam) = (block.cells, block.seam);
         let [cols, rows] = cells;
-        let ([north, east, south, west], judge) = (chosen.judged, !pass.keeps_edges());
+        let ([north, east, south, west], judge) = (chosen.judged, !pass.plain.keeps_edges());
         let corners: Vec<Option<Corner>> = (0..(cols + 1) * (rows + 1))
             .map(|i| {
                 let kept = kept_node(seam, cells, [i % (cols + 1), i / (cols + 1)]);

@@ -95,7 +95,7 @@ impl<'a> PixelCenters<'a> {
             Surface::Plane(..) => None,
         };
         // A point where the record does not apply is not seen by any ray.
-        let belongs = |s: &Solution| centers.pass.margins(s.p).iter().all(|m| *m >= -1e-6 * s.depth);
+        let belongs = |s: &Solution| centers.pass.plain.margins(s.p).iter().all(|m| *m >= -1e-6 * s.depth);
         first.filter(belongs).or(settled.filter(belongs)).map(|s| (s.p, s.depth as f32))
     }
 
@@ -111,7 +111,7 @@ impl<'a> PixelCenters<'a> {
         if first == last {
             return all.next();
         }
-        let holding = all.filter(|c| c.pass.margins(p).iter().all(|m| *m >= 0.0));
+        let holding = all.filter(|c| c.pass.plain.margins(p).iter().all(|m| *m >= 0.0));
         let off = holding.filter_map(|c| Some((c.image(p)?.0.distance_squared(pixel), c)));
         off.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, c)| c)
     }
@@ -261,7 +261,7 @@ impl PassCenters<'_> {
 
     /// Pixel and depth of the image of a point.
     fn image(&self, p: DVec3) -> Option<(DVec2, f64)> {
-        let v = self.screen.view_from(self.pass.displace(p)?);
+        let v = self.screen.view_from(self.pass.plain.displace(p)?);
         (v.z >= self.screen.near).then(|| (self.screen.pixel(v), v.z))
     }
 }

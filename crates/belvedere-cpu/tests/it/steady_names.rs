@@ -2,8 +2,8 @@
 
 use crate::support::{Random, hills, layer, line, options, pinhole, render, scene, terrain};
 use belvedere_composite::marks::{NameMemory, Patience};
+use belvedere_composite::traced_marks::next_names;
 use belvedere_core::{DVec2, DVec3, View};
-use belvedere_cpu::next_names;
 use belvedere_scene::{
     Color, FeatureStyle, Hidden, LayerKind, Light, NameId, NamePlace, PlacedName, PointFeature, PointLayer, PointStyle,
     Progress, RenderJob, RenderOptions, Scene, Symbol,

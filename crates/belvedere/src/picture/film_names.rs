@@ -6,7 +6,7 @@ use crate::overlays::furniture::with_distances;
 use crate::overlays::{grid, highlight, widths};
 use crate::{BelvedereError, Session};
 use belvedere_composite::marks::{Marks, NameMemory, Patience};
-use belvedere_cpu::next_names;
+use belvedere_composite::traced_marks::next_names;
 use belvedere_scene::{Progress, RenderJob, RenderOptions};
 
 /// Whether the names of a film of a session can be placed beforehand: whether it has any, and every frame is one drawing of the scene.

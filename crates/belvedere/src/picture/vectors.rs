@@ -5,9 +5,9 @@ use crate::print::REFERENCE_DPI;
 use crate::scene_file::LayerDoc;
 use crate::vectors::{VectorContent, VectorPicture, areas, is_blank, tolerance_px};
 use crate::{BelvedereError, Session};
+use belvedere_composite::traced_marks::mark_shapes;
 use belvedere_core::plain::escaped;
 use belvedere_core::{Warning, WarningKind};
-use belvedere_cpu::mark_shapes;
 use belvedere_scene::{Frame, Layer, LayerKind, RenderJob};
 use belvedere_sight::sections::Sections;
 

@@ -1,7 +1,7 @@
 //! Cameras in single precision.
 
 use crate::geometry::project::{Part, Projector};
-use crate::geometry::spline_table::SplineFromEye;
+use crate::geometry::spline_from_eye::SplineFromEye;
 use crate::screen::SUB;
 use crate::simd::nearest;
 use belvedere_core::DVec3;

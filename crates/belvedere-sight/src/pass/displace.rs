@@ -3,16 +3,16 @@
 //! Everything that is drawn goes through here, points in rows and single ones alike, by the same arithmetic in the same
 //! order: two pieces of a surface that share a point place it alike to the last bit.
 
-use crate::geometry::spline_table::SplineTable;
-use crate::geometry::way::Way;
-use crate::points::{Points, each};
+use crate::Fast;
+use crate::pass::points::{Points, each};
+use crate::pass::spline_table::SplineTable;
+use crate::pass::way::Way;
 use belvedere_core::map::curved_rays::{StraightMap, Turn};
 use belvedere_core::{CurvedRays, DVec3, Stage, View};
-use belvedere_sight::Fast;
 
 /// All stages of a view for one pass over the scene.
 #[derive(Debug)]
-pub(crate) struct Displacer<'a> {
+pub(super) struct Displacer<'a> {
     steps: Vec<Step<'a>>,
 }
 
@@ -81,7 +81,7 @@ impl<'a> Step<'a> {
 }
 
 impl<'a> Displacer<'a> {
-    pub(crate) fn new(view: &'a View, way: Way) -> Self {
+    pub(super) fn new(view: &'a View, way: Way) -> Self {
         let step = |stage: &'a Stage| match Fast::of(stage) {
             Fast::Spline(bend) => Step::Spline(SplineTable::new(bend)),
             Fast::Rays(rays) => match way {
@@ -101,12 +101,12 @@ impl<'a> Displacer<'a> {
     }
 
     /// Whether nothing is displaced.
-    pub(crate) fn is_straight(&self) -> bool {
+    pub(super) fn is_straight(&self) -> bool {
         self.steps.is_empty()
     }
 
     /// Displaced position; `None` where the point has no image.
-    pub(crate) fn point(&self, p: DVec3) -> Option<DVec3> {
+    pub(super) fn point(&self, p: DVec3) -> Option<DVec3> {
         let (mut x, mut y, mut z) = ([p.x], [p.y], [p.z]);
         let known = self.row(&mut Points { x: &mut x, y: &mut y, z: &mut z });
         let p = DVec3::new(x[0], y[0], z[0]);
@@ -115,7 +115,7 @@ impl<'a> Displacer<'a> {
 
     /// Displaces points of slices of equal length; `false` if one of them has no image (the rest is then unspecified).
     /// A point that overflows comes out as not finite.
-    pub(crate) fn row(&self, p: &mut Points<'_>) -> bool {
+    pub(super) fn row(&self, p: &mut Points<'_>) -> bool {
         self.steps.iter().all(|step| step.row(p))
     }
 }

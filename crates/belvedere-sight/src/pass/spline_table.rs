@@ -1,11 +1,11 @@
 //! A spline bend as a table along the curve.
 
-use crate::points::{Points, each};
+use crate::pass::points::{Points, each};
 use belvedere_core::map::spline::SplineBend;
 use belvedere_core::{DVec2, DVec3, SpaceMap};
 
 /// Pieces of the curve between its ends; with its two extensions a power of two.
-const PIECES: usize = 510;
+pub const PIECES: usize = 510;
 /// Largest accepted error of a point on the curve, curve units, and of a unit normal. The eye is about one curve unit away
 /// from the curve, so both stay far below 0.01 pixel.
 const PLACE_ERROR: f64 = 1e-7;
@@ -14,13 +14,10 @@ const NORMAL_ERROR: f64 = 1e-6;
 const HALVINGS: usize = 16;
 /// Places of a piece where its error is judged, shares of its length.
 const JUDGED: [f64; 3] = [0.25, 0.5, 0.75];
-/// Entries of the table in single precision: pieces, and second parts of pieces that are cut.
-const ENTRIES: usize = 1024;
-
 /// Cubic pieces of equal length along the curve for its point and its normal, ours; pieces whose error is too large (at
 /// corners of the curve) fall back on the stage itself.
 #[derive(Debug)]
-pub(crate) struct SplineTable<'a> {
+pub struct SplineTable<'a> {
     bend: &'a SplineBend,
     /// Pivot, right, heading, normal; then the plane of the curve.
     origin: DVec3,
@@ -41,6 +38,17 @@ struct Piece {
     good: bool,
 }
 
+/// A cubic of the table.
+#[derive(Debug, Clone, Copy)]
+pub struct TableCubic {
+    /// `c[0] + c[1] t + c[2] t^2 + c[3] t^3`, t = 0..1: point (u, v) relative to the pivot in scene units, normal (u, v).
+    pub c: [[f64; 4]; 4],
+    /// Where it begins, pieces from the near end of the curve.
+    pub begins: f64,
+    /// How long it is, pieces.
+    pub length: f64,
+}
+
 /// Point and normal with their derivatives by pieces.
 #[derive(Clone, Copy)]
 struct Knot {
@@ -49,7 +57,8 @@ struct Knot {
 }
 
 impl<'a> SplineTable<'a> {
-    pub(crate) fn new(bend: &'a SplineBend) -> Self {
+    /// Tabulates a bend.
+    pub fn new(bend: &'a SplineBend) -> Self {
         let length = bend.curve().length();
         let piece_length = bend.scale() * length / PIECES as f64;
         let mut table = Self {
@@ -137,59 +146,51 @@ impl<'a> SplineTable<'a> {
         (lo > k && self.is_close(&b, places[1])).then_some(([a, b], lo))
     }
 
-    /// The table as seen from the eye; `None` if one of its pieces is not close enough to the curve.
-    pub(crate) fn seen_from(&self, eye: DVec3) -> Option<SplineFromEye> {
+    /// Cubics that are close to the curve everywhere: those of the pieces, each cut in two where its curvature has a kink; `None` if that is
+    /// not enough for one of them. The first and the last are the straight extensions.
+    pub fn cubics(&self) -> Option<Vec<(TableCubic, Option<TableCubic>)>> {
         if self.pieces.len() != PIECES + 2 {
             return None;
         }
-        let offset = eye - self.origin;
-        let [right, heading, normal] = self.axes.map(|axis| axis.dot(offset));
-        let at_eye = heading * self.pieces_per_unit + self.piece_of_origin;
-        let in_plane = self.curve_axes.map(|axis| axis.dot(right * self.axes[0] - offset));
-        // A piece in powers of the position from `from` on, in pieces, where `piece` has it from `begins` on and is `length` long.
-        let entry = |piece: &Piece, [begins, length]: [f64; 2], from: f64| {
-            let [u, v, nu, nv] = piece.c.map(|[a, b, c, d]| {
-                let slope = b / length;
-                [a + (from - begins) * slope, slope, c / length.powi(2), d / length.powi(3)]
-            });
-            let lifted = |place: [f64; 4], turned: [f64; 4], at: f64| {
-                let [a, b, c, d]: [f64; 4] = std::array::from_fn(|power| place[power] + normal * turned[power]);
-                [a + at, b, c, d]
-            };
-            let rows = [lifted(u, nu, in_plane[0]), lifted(v, nv, in_plane[1]), nu, nv];
-            let c = std::array::from_fn(|power| rows.map(|row| row[power] as f32));
-            PieceFromEye { c, from: (from - at_eye) as f32, until: f32::INFINITY, next: 0 }
-        };
-        let mut entries = vec![PieceFromEye::default(); ENTRIES];
-        let mut used = PIECES + 2;
-        for (k, piece) in self.pieces.iter().enumerate() {
+        let cubic = |piece: &Piece, [begins, length]: [f64; 2]| TableCubic { c: piece.c, begins, length };
+        let of = |(k, piece): (usize, &Piece)| {
             let begins = k.saturating_sub(1) as f64;
-            entries[k] = match k {
-                // Extensions are straight: they begin at the eye where that is beside the curve, for small numbers there.
-                0 => entry(piece, [begins, 1.0], at_eye.min(0.0)),
-                _ if k == PIECES + 1 => entry(piece, [begins, 1.0], at_eye.max(PIECES as f64)),
-                _ if piece.good => entry(piece, [begins, 1.0], begins),
-                _ => {
-                    let ([a, b], at) = self.cut(begins)?;
-                    *entries.get_mut(used)? = entry(&b, [at, begins + 1.0 - at], at);
-                    used += 1;
-                    let first = entry(&a, [begins, at - begins], begins);
-                    PieceFromEye { until: (at - at_eye) as f32, next: used - 1, ..first }
-                }
-            };
-        }
-        Some(SplineFromEye {
-            right: self.axes[0],
-            heading_pieces: self.axes[1] * self.pieces_per_unit,
-            normal: self.axes[2],
-            curve_axes: self.curve_axes,
-            at_eye: at_eye as f32,
-            entries: entries.into_boxed_slice().try_into().ok()?,
-        })
+            if piece.good {
+                return Some((cubic(piece, [begins, 1.0]), None));
+            }
+            let ([a, b], at) = self.cut(begins)?;
+            Some((cubic(&a, [begins, at - begins]), Some(cubic(&b, [at, begins + 1.0 - at]))))
+        };
+        self.pieces.iter().enumerate().map(of).collect()
     }
 
-    /// See [`crate::geometry::displace::Displacer::row`].
-    pub(crate) fn row(&self, points: &mut Points<'_>) -> bool {
+    /// Pivot: the origin of the curve's plane.
+    pub fn origin(&self) -> DVec3 {
+        self.origin
+    }
+
+    /// Right, heading and normal of the reference plane, unit vectors.
+    pub fn axes(&self) -> [DVec3; 3] {
+        self.axes
+    }
+
+    /// Axes of the plane that the curve lies in.
+    pub fn curve_axes(&self) -> [DVec3; 2] {
+        self.curve_axes
+    }
+
+    /// Pieces per scene unit along the curve.
+    pub fn pieces_per_unit(&self) -> f64 {
+        self.pieces_per_unit
+    }
+
+    /// Pieces from the near end of the curve to its origin.
+    pub fn piece_of_origin(&self) -> f64 {
+        self.piece_of_origin
+    }
+
+    /// Displaces points in place; `false` if one of them has no image.
+    pub(super) fn row(&self, points: &mut Points<'_>) -> bool {
         each(points, |p| self.point(p))
     }
 
@@ -213,48 +214,6 @@ impl<'a> SplineTable<'a> {
             }
             _ => self.bend.apply(p).ok(),
         }
-    }
-}
-
-/// A spline bend in single precision, for positions relative to the eye: numbers are small where points are near.
-#[derive(Debug)]
-pub(crate) struct SplineFromEye {
-    /// Unit vector that the bend leaves alone.
-    pub(crate) right: DVec3,
-    /// Pieces along the curve per scene unit.
-    pub(crate) heading_pieces: DVec3,
-    /// Unit normal of the reference plane.
-    pub(crate) normal: DVec3,
-    /// Axes of the plane that the curve lies in.
-    pub(crate) curve_axes: [DVec3; 2],
-    /// Pieces from the near end of the curve to the eye.
-    at_eye: f32,
-    entries: Box<[PieceFromEye; ENTRIES]>,
-}
-
-/// Powers of the position in pieces from `from` on: point of the curve, lifted by the height of the eye and relative to it, and normal.
-#[derive(Debug, Clone, Copy, Default)]
-struct PieceFromEye {
-    c: [[f32; 4]; 4],
-    /// Where the piece begins, pieces from the eye.
-    from: f32,
-    /// Where it ends before the next uniform piece, and the entry that goes on there.
-    until: f32,
-    next: usize,
-}
-
-impl SplineFromEye {
-    /// Point (u, v) relative to the eye, and normal (u, v).
-    /// * `s`: pieces from the eye.
-    #[inline(always)]
-    pub(crate) fn at(&self, s: f32) -> [f32; 4] {
-        let k = (s + self.at_eye + 1.0).max(0.0).min((PIECES + 1) as f32) as usize;
-        // The number of entries is a power of two, and this no check of bounds.
-        let entry = |k: usize| &self.entries[k & (ENTRIES - 1)];
-        let piece = entry(k);
-        let piece = if s >= piece.until { entry(piece.next) } else { piece };
-        let (t, [c0, c1, c2, c3]) = (s - piece.from, piece.c);
-        std::array::from_fn(|i| c0[i] + t * (c1[i] + t * (c2[i] + t * c3[i])))
     }
 }
 
