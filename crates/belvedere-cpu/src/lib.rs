@@ -41,4 +41,3 @@ pub use exact::ExactRenderer;
 pub use geometry::project::GroundImage;
 pub use rasteriser::CpuRenderer;
 pub use tint::GroundTint;
-pub use volume::VolumeTracer;

@@ -1,5 +1,5 @@
-//! Ground as it is drawn, lines of sight over it, passes over a view ([`pass`]), and the exact tracer of curved rays ([`trace`]): what is
-//! seen where, asked by everything that draws, measures or picks.
+//! Ground as it is drawn, lines of sight over it, passes over a view ([`pass`]), and the exact tracer of curved rays through surfaces
+//! ([`trace`]) and volumes ([`volume`]): what is seen where, asked by everything that draws, measures or picks.
 
 mod beam;
 mod boxes;
@@ -23,6 +23,7 @@ mod shadow;
 mod solids;
 mod summits;
 pub mod trace;
+pub mod volume;
 mod voxels;
 
 pub use boxes::{BoxTree, UprightBox};

@@ -2,9 +2,9 @@
 
 use crate::{BelvedereError, Session};
 use belvedere_core::{DVec2, DVec3, View, polygon};
-use belvedere_cpu::VolumeTracer;
 use belvedere_scene::{AreaLayer, Heightfield, Layer, LayerKind, LineLayer, PointLayer, Progress, Scene};
 use belvedere_sight::trace::{RayHit, Tracer};
+use belvedere_sight::volume::VolumeTracer;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::Serialize;

@@ -4,9 +4,10 @@ use super::clip::Segment;
 use super::march::Marcher;
 use super::ray::Rays;
 use super::spans::Spans;
-use super::{Gathered, place_in_step, reference};
+use super::{Gathered, reference};
 use belvedere_core::DVec2;
 use belvedere_scene::VolumeLayer;
+use belvedere_sight::volume::place_in_step;
 
 /// Most rays that are followed together, and segments of rays beyond which no more are added.
 const BATCH: usize = 1024;

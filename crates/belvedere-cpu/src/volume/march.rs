@@ -1,14 +1,15 @@
 //! Fast ray marching: rays side by side, with empty-space skipping.
 
+use super::Gathered;
 use super::clip::Segment;
 use super::packet::Packet;
 use super::prepared::Prepared;
 use super::sampler::{Sampler, Voxel};
 use super::spans::Spans;
-use super::{ENOUGH, Gathered};
 use crate::simd;
 use belvedere_core::View;
 use belvedere_scene::{Volume, VolumeLayer, VoxelValues};
+use belvedere_sight::volume::ENOUGH;
 
 /// Follows rays through a volume.
 pub(super) struct Marcher<'v>(Prepared<'v>);

@@ -8,7 +8,8 @@
 //! 3. [`compose`]: over the surfaces by depth, and into depth, id and place where more than half of the light is absorbed; [`smooth`]
 //!    follows more rays at the [`edges`].
 //!
-//! [`reference`] does the same in 64 bits, one sample after the other: the exact renderer uses it, and the fast method is tested against it.
+//! [`reference`] does the same in 64 bits, one sample after the other ([`belvedere_sight::volume`]): the exact renderer uses it, and the fast
+//! method is tested against it.
 //! Source: Cui et al. 2010, section on volumes; equal steps, opacity by length and skipping are ours or common.
 
 mod arc;
@@ -22,7 +23,6 @@ mod gather;
 mod light;
 mod march;
 mod packet;
-mod pick;
 mod prepared;
 mod ray;
 mod reference;
@@ -36,15 +36,9 @@ mod tests;
 
 pub(crate) use compose::compose;
 pub(crate) use gather::Way;
-pub use pick::VolumeTracer;
 
-use belvedere_core::{DVec2, DVec3};
+use belvedere_core::DVec3;
 use glam::Vec3A;
-
-/// Absorbed share of light at which a ray ends.
-const ENOUGH: f32 = 0.99;
-/// Absorbed share of light at which a pixel shows the volume rather than the surface behind.
-const HALF: f32 = 0.5;
 
 /// Light that a ray gathers in a volume.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -66,21 +60,4 @@ impl Gathered {
     pub(crate) fn over(&self, behind: Vec3A) -> Vec3A {
         self.color + behind * (1.0 - self.alpha)
     }
-}
-
-/// Place of the samples of a pixel's ray within their steps, 0..=1: scattered from pixel to pixel, since samples in the middles of all steps
-/// draw contours of their own on surfaces that are steeper than a step. Source: Jimenez 2014, interleaved gradient noise.
-fn place_in_step(pixel: DVec2) -> f64 {
-    let at = pixel.floor();
-    let noise = (52.982_918_9 * (0.067_110_56 * at.x + 0.005_837_15 * at.y).fract()).fract();
-    // The three rays of a pixel at an edge share the step among them.
-    let thirds = (3.0 * (pixel - at)).floor();
-    (noise + 0.5 + (thirds.x + thirds.y - 2.0) / 3.0).rem_euclid(1.0)
-}
-
-/// Share of a step, 0..=1, after which half of the light is left; light decays exponentially along the step.
-///
-/// * `before`: light left where the step begins, above a half. `alpha`: what the step absorbs, 0..=1.
-fn half_within(before: f32, alpha: f32) -> f64 {
-    (f64::from(HALF / before).ln() / (-f64::from(alpha)).ln_1p()).clamp(0.0, 1.0)
 }

@@ -2,6 +2,7 @@
 //!
 //! What a ray gathers does not depend on the rays beside it, so pictures do not depend on how rays are put together.
 
+use super::Gathered;
 use super::bricks::EDGE;
 use super::clip::Segment;
 use super::cursor::{Cursor, Stretch};
@@ -9,9 +10,9 @@ use super::light::light;
 use super::prepared::Prepared;
 use super::sampler::{Sampler, Voxel};
 use super::table::ENTRIES;
-use super::{ENOUGH, Gathered, HALF, half_within};
 use crate::simd::{Kernel, nearest};
 use belvedere_scene::VolumeModel;
+use belvedere_sight::volume::{ENOUGH, HALF, half_within};
 
 /// Rays side by side.
 const RAYS: usize = 32;

@@ -7,11 +7,11 @@ use belvedere_scene::{TransferFunction, VolumeLayer};
 /// Number of entries: a ramp over a hundredth of the range has forty.
 pub(super) const ENTRIES: usize = 4096;
 
-/// Linear red, green, blue of a value, and the opacity of a reference step.
-pub(super) fn light_and_opacity(transfer: &TransferFunction, value: f64) -> ([f32; 3], f64) {
+/// Linear red, green, blue of a value.
+pub(super) fn light_of(transfer: &TransferFunction, value: f64) -> [f32; 3] {
     let [r, g, b, _] = transfer.at(value);
     let rgb: Rgb = linear_of([r, g, b].map(|c| c as f32));
-    (rgb.to_array(), transfer.opacity(value))
+    rgb.to_array()
 }
 
 /// Colour and opacity by value.
@@ -36,9 +36,9 @@ impl Table {
         let mut colors = Box::new([[0.0; 4]; ENTRIES]);
         let mut visible_before = vec![0; ENTRIES + 1];
         for i in 0..ENTRIES {
-            let (rgb, opacity) = light_and_opacity(&layer.transfer, lo + per_entry * i as f64);
-            colors[i][..3].copy_from_slice(&rgb);
-            alphas[i][0] = absorbed(opacity, steps) as f32;
+            let value = lo + per_entry * i as f64;
+            colors[i][..3].copy_from_slice(&light_of(&layer.transfer, value));
+            alphas[i][0] = absorbed(layer.transfer.opacity(value), steps) as f32;
             visible_before[i + 1] = visible_before[i] + u32::from(alphas[i][0] > 0.0);
         }
         for i in 1..ENTRIES {

@@ -3,7 +3,7 @@
 use super::clip::Segment;
 use super::march::Marcher;
 use super::ray::Rays;
-use super::{Gathered, place_in_step, reference};
+use super::{Gathered, reference};
 use belvedere_core::map::StageMap;
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::map::spline::{ReferencePlane, default_pivot};
@@ -16,6 +16,7 @@ use belvedere_scene::{
     VoxelValues,
 };
 use belvedere_sight::Voxels;
+use belvedere_sight::volume::place_in_step;
 
 const IMAGE: [u32; 2] = [64, 48];
 

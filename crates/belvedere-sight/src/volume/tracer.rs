@@ -1,9 +1,9 @@
 //! The point at which a pixel shows a volume rather than the surface behind.
 
-use super::reference;
+use super::absorb;
+use crate::trace::{Part, RayHit, deepest};
 use belvedere_core::{DVec2, View};
 use belvedere_scene::{LayerKind, Scene};
-use belvedere_sight::trace::{Part, RayHit, deepest};
 
 /// The volumes of a scene, prepared for rays of one view.
 pub struct VolumeTracer<'a> {
@@ -25,7 +25,7 @@ impl<'a> VolumeTracer<'a> {
         let range = [self.range[0], self.range[1].min(before)];
         let hits = self.scene.layers.iter().enumerate().filter_map(|(layer, l)| match &l.kind {
             LayerKind::Volume(volume) => {
-                let (depth, point) = reference::gather(self.view, volume, pixel, range).half?;
+                let (depth, point) = absorb(self.view, volume, pixel, range, |_| {}).half?;
                 let segment = self.view.ray(pixel).at(depth).map_or(0, |p| p.segment);
                 Some(RayHit { layer, depth, point, segment, part: Part::Voxels })
             }
