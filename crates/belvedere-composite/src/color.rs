@@ -118,6 +118,16 @@ pub fn sixteen_bits(v: f32) -> u16 {
     (v + 8_388_608.0).to_bits() as u16
 }
 
+/// Adding it leaves the rounded integer in the low bits of the mantissa.
+const ROUND: f32 = 12_582_912.0;
+
+/// The nearest integer of a value between -2^22 and 2^22, arbitrary beyond. It takes one addition, unlike `as`, which handles all
+/// values.
+#[inline(always)]
+pub fn nearest(v: f32) -> i32 {
+    ((v + ROUND).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)
+}
+
 /// Linear light kept in 16 bits per channel, by square root so that dark tones keep their steps.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Packed([u16; 3]);

@@ -4,7 +4,7 @@
 //! [`drawn::Drawn`] tells: [`stylise`] darkens edges, [`marks`] draws lines, points and names and decides by lines of sight what of them
 //! is hidden ([`traced_marks`] by those of the exact tracer), [`layers`] mixes pictures of whole representations, [`branches`]
 //! joins pictures where rays part, [`veil`] lays solids that something shines through over all of it, and [`canvas`] draws on finished pixels.
-//! [`finish`] puts these in their order.
+//! [`finish`] puts these in their order. [`tint`] has the colours of ground before it is lit.
 
 pub mod branches;
 pub mod buffers;
@@ -17,6 +17,7 @@ pub mod layers;
 pub mod marks;
 pub mod skyline;
 pub mod stylise;
+pub mod tint;
 pub mod traced_marks;
 pub mod unsharp;
 pub mod veil;

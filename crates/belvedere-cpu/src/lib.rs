@@ -33,11 +33,9 @@ mod see_through;
 mod shade;
 mod simd;
 mod surfaces;
-mod tint;
 mod traced_veil;
 mod volume;
 
 pub use exact::ExactRenderer;
 pub use geometry::project::GroundImage;
 pub use rasteriser::CpuRenderer;
-pub use tint::GroundTint;

@@ -4,6 +4,7 @@
 //! run time. Only instructions differ: no operation is contracted or reordered, so all versions give the same
 //! bits.
 
+pub(crate) use belvedere_composite::color::nearest;
 use pulp::{Arch, Simd, WithSimd};
 use std::sync::LazyLock;
 
@@ -35,14 +36,4 @@ impl<K: Kernel> WithSimd for With<K> {
 #[inline]
 pub(crate) fn run<K: Kernel>(kernel: K) -> K::Output {
     ARCH.dispatch(With(kernel))
-}
-
-/// Adding it leaves the rounded integer in the low bits of the mantissa.
-const ROUND: f32 = 12_582_912.0;
-
-/// The nearest integer of a value between -2^22 and 2^22, arbitrary beyond. It takes one addition, unlike `as`, which handles all
-/// values.
-#[inline(always)]
-pub(crate) fn nearest(v: f32) -> i32 {
-    ((v + ROUND).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)
 }

@@ -3,8 +3,8 @@
 use super::sheet::Sheet;
 use super::{Carrier, ExportOptions, MOST_TRIANGLES};
 use crate::BelvedereError;
+use belvedere_composite::tint::GroundTint;
 use belvedere_core::{DVec2, Warning, WarningKind, polygon};
-use belvedere_cpu::GroundTint;
 use belvedere_scene::{AreaLayer, Color, Drape, Heightfield, LayerKind, Scene, TerrainLayer};
 use rayon::prelude::*;
 

@@ -147,10 +147,10 @@ impl Squares {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shade::ground::palette::Tint;
     use crate::shade::ground::patch::LightingInputs;
     use crate::shade::ground::tiles::CELL;
     use crate::shade::relief::ReliefLight;
+    use belvedere_composite::tint::GroundTint;
     use belvedere_core::grid::Grid;
     use belvedere_core::{DVec2, SpaceMap};
     use belvedere_scene::{Light, PaletteName, Relief};
@@ -195,7 +195,7 @@ mod tests {
             palette: PaletteName::Alpine.into(),
             exaggeration: 1.0,
         };
-        let tint = Tint::new(&key.palette, hf.z_range());
+        let tint = GroundTint::new(&key.palette, hf.z_range());
         let relief = ReliefLight::new(key.relief, &key.light);
         let frame = |depth: f32| {
             let mut heights = hf.heights().to_vec();

@@ -323,11 +323,11 @@ impl Lit {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shade::ground::palette::Tint;
     use crate::shade::ground::patch::GroundShape;
     use crate::shade::ground::planes::Planes;
     use crate::shade::ground::surface::{MipPyramid, Surface};
     use crate::shade::ground::tiles::CELL;
+    use belvedere_composite::tint::GroundTint;
     use belvedere_core::DVec2;
     use belvedere_scene::{Heightfield, Light, NodeState, Palette, PaletteName, Relief};
     use std::sync::Arc;
@@ -350,7 +350,7 @@ mod tests {
     ) {
         let surface = Surface::of_map(hf);
         let means = MipPyramid::new(&surface);
-        let tint = Tint::new(palette, hf.z_range());
+        let tint = GroundTint::new(palette, hf.z_range());
         let light = ReliefLight::new(relief, &Light::default());
         let inputs = LightingInputs {
             surface: &surface,
@@ -386,7 +386,8 @@ mod tests {
                         let steep = shape.truncate().truncate().length();
                         let normal = Vec3A::new(-shape.x, -shape.y, 1.0).normalize();
                         let light = m.light.at(normal, m.means.openness().at(shape.z, near.z, near.w), 1.0);
-                        let want = m.tint.color(shape.z, steep) * light;
+                        let want = Rgb::from_array(m.tint.color(f64::from(shape.z), DVec2::new(f64::from(steep), 0.0)))
+                            * light;
                         let apart = parts.albedo() * (m.light.warm * parts.direct + m.light.cool * parts.sky);
                         let steps = |c: Rgb| c.max(Rgb::ZERO).to_array().map(|v| 255.0 * v.sqrt());
                         for has in [apart, linear(ground.color(at, 0, m).0)] {
@@ -409,7 +410,7 @@ mod tests {
         let sunken = hf.heights().iter().enumerate().map(|(i, h)| h - bowl(i)).collect();
         let (map, moved) = (Surface::of_map(&hf), Surface::lifted(&hf, Arc::new(sunken)));
         let (map_means, moved_means) = (MipPyramid::new(&map), MipPyramid::new(&moved));
-        let tint = Tint::new(&PaletteName::Alpine.into(), hf.z_range());
+        let tint = GroundTint::new(&PaletteName::Alpine.into(), hf.z_range());
         let light = ReliefLight::new(Relief::Swiss, &Light::default());
         let inputs = |surface, means, map| LightingInputs {
             surface,

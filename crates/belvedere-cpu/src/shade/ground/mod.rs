@@ -1,12 +1,10 @@
 //! Colour of the ground: light that is fixed to the map, computed node by node in tiles of a mip pyramid and remembered.
 
 pub(crate) mod batch;
-mod climate_tint;
 mod displaced;
 mod edge;
 pub(crate) mod grain;
 pub(crate) mod lit;
-pub(crate) mod palette;
 mod patch;
 mod planes;
 mod rows;

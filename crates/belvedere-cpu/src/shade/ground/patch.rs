@@ -1,7 +1,6 @@
 //! Nodes of the ground with the light on them, a patch at a time: each step is a plain loop over short arrays, which
 //! compilers turn into vector instructions.
 
-use crate::shade::ground::palette::Tint;
 use crate::shade::ground::planes::Planes;
 use crate::shade::ground::rows::RefinedRows;
 use crate::shade::ground::shadow::Shadows;
@@ -9,6 +8,7 @@ use crate::shade::ground::surface::{MipPyramid, Surface};
 use crate::shade::ground::tiles::Line;
 use crate::shade::relief::ReliefLight;
 use crate::simd::{self, Kernel, LANES, Lanes};
+use belvedere_composite::tint::GroundTint;
 
 /// Inputs of the tiles of lit ground.
 pub(crate) struct LightingInputs<'a> {
@@ -17,7 +17,7 @@ pub(crate) struct LightingInputs<'a> {
     /// The undisplaced ground, if the lit one is displaced: the tint uses its heights and slopes.
     pub(crate) map: Option<GroundShape<'a>>,
     pub(crate) shadows: Option<&'a Shadows>,
-    pub(crate) tint: &'a Tint,
+    pub(crate) tint: &'a GroundTint,
     pub(crate) light: &'a ReliefLight,
     pub(crate) exaggeration: f32,
 }

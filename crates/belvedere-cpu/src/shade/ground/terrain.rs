@@ -6,7 +6,6 @@ use crate::shade::ground::displaced::{self, DisplacedLight};
 use crate::shade::ground::edge::Border;
 use crate::shade::ground::grain::grain;
 use crate::shade::ground::lit::{Lit, LitGround, LitKey};
-use crate::shade::ground::palette::Tint;
 use crate::shade::ground::patch::{GroundShape, LightingInputs};
 use crate::shade::ground::shadow::Shadows;
 use crate::shade::ground::surface::{MipPyramid, Surface};
@@ -17,6 +16,7 @@ use crate::shade::overlay::drape::DrapeMap;
 use crate::shade::relief::ReliefLight;
 use crate::shade::{Shader, lod};
 use belvedere_composite::color::{Rgb, linear, smoothstep};
+use belvedere_composite::tint::GroundTint;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{AreaSurface, Haze, Heightfield, Light, RenderJob, Shading, Sky, TerrainLayer};
 use belvedere_sight::sections::Sections;
@@ -36,7 +36,7 @@ pub(crate) struct TerrainShade<'a> {
     /// The undisplaced ground and its averages, where light falls on a displaced one.
     map: Option<(Surface<'a>, Arc<MipPyramid>)>,
     shadows: Option<Arc<Shadows>>,
-    tint: Tint,
+    tint: GroundTint,
     /// Direction of the light on the map, columns and rows.
     to_light: [f32; 2],
     exaggeration: f32,
@@ -119,7 +119,7 @@ impl<'a> TerrainShade<'a> {
             surface,
             map,
             shadows,
-            tint: Tint::new(&layer.palette, hf.z_range()),
+            tint: GroundTint::new(&layer.palette, hf.z_range()),
             to_light: [light.azimuth.sin() as f32, -light.azimuth.cos() as f32],
             exaggeration: layer.exaggeration as f32,
             drapes: drapes(layer, cache),

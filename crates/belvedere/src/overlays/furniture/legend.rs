@@ -3,9 +3,9 @@
 use super::Subject;
 use super::block::{Row, Sign};
 use belvedere_composite::color::{Rgb, encode};
+use belvedere_composite::tint::GroundTint;
 use belvedere_core::DVec2;
 use belvedere_core::plain::number;
-use belvedere_cpu::GroundTint;
 use belvedere_scene::{Color, Edge, Layer, LayerKind, Palette, PaletteName, TerrainLayer, VolumeLayer};
 
 /// Steps of a bar of colours.

@@ -4,28 +4,28 @@ use belvedere_scene::{Climate, PaletteName};
 
 /// A colour at a height.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Stop {
+pub(super) struct Stop {
     /// Over the sea, metres.
-    pub(crate) height_m: f32,
-    pub(crate) color: [u8; 3],
+    pub(super) height_m: f32,
+    pub(super) color: [u8; 3],
     /// Strength of the texture, 0..=1.
-    pub(crate) rough: f32,
+    pub(super) rough: f32,
 }
 
 /// Colours by height, and those that steepness and snow add.
 #[derive(Debug, Clone)]
-pub(crate) struct Look {
+pub(super) struct Look {
     /// At least two, by height.
-    pub(crate) stops: Vec<Stop>,
-    pub(crate) rock: [u8; 3],
+    pub(super) stops: Vec<Stop>,
+    pub(super) rock: [u8; 3],
     /// Tangents of the slopes at which rock begins and at which it covers the ground.
-    pub(crate) rock_slope: [f32; 2],
+    pub(super) rock_slope: [f32; 2],
     /// Heights at which snow begins and at which it covers gentle slopes, metres.
-    pub(crate) snow_m: [f32; 2],
+    pub(super) snow_m: [f32; 2],
     /// Tangents of the slopes at which snow begins to slide off and has gone.
-    pub(crate) snow_slope: [f32; 2],
+    pub(super) snow_slope: [f32; 2],
     /// Height that a slope of tangent 1 to the north adds for snow, metres.
-    pub(crate) north_m: f32,
+    pub(super) north_m: f32,
 }
 
 /// Parts of the way from the valleys (0) over the line of trees (1) to the line of snow (2), with colours and textures. Lighter the higher.
@@ -74,7 +74,7 @@ const FOREST_M: f32 = 1800.0;
 
 /// The look of a palette at a place; `None` for palettes that do not depend on it.
 /// * `z_range_m`: heights of the ground.
-pub(crate) fn look(name: PaletteName, climate: &Climate, z_range_m: [f64; 2]) -> Option<Look> {
+pub(super) fn look(name: PaletteName, climate: &Climate, z_range_m: [f64; 2]) -> Option<Look> {
     let [trees, snow] = [climate.tree_line_m as f32, climate.snow_line_m as f32];
     let dry = climate.dryness as f32;
     let sunny = if climate.latitude_deg < 0.0 { -1.0 } else { 1.0 };
@@ -103,7 +103,7 @@ pub(crate) fn look(name: PaletteName, climate: &Climate, z_range_m: [f64; 2]) ->
 }
 
 /// The look of a season where the place is not known: its lines are those of the range of heights.
-pub(crate) fn unplaced(name: PaletteName, z_range_m: [f64; 2]) -> Look {
+pub(super) fn unplaced(name: PaletteName, z_range_m: [f64; 2]) -> Look {
     let [bottom, top] = z_range_m;
     let snow_line_m = (bottom + 0.7 * (top - bottom)).max(2450.0);
     let climate = Climate { snow_line_m, tree_line_m: snow_line_m - 1050.0, dryness: 0.0, latitude_deg: 45.0 };

@@ -1,19 +1,22 @@
 //! Hypsometric tints. The built-in ramps are ours: muted, lighter the higher for every kind of colour vision, so that they
 //! also read without colour.
 
-use crate::shade::ground::climate_tint::{self, Stop};
-use crate::simd::nearest;
-use belvedere_composite::color::{Rgb, linear};
+mod climate;
+
+use crate::color::{Rgb, linear, nearest};
+use belvedere_core::DVec2;
 use belvedere_scene::{Palette, PaletteName, Ramp};
+use climate::Stop;
 
 /// Steps of the table by height.
 const STEPS: usize = 1024;
 /// Colour of the ground below a translucent ramp.
 const GREY: [u8; 3] = [205, 205, 202];
 
-/// Tint by height, and the colours that steepness and height add.
+/// Colours of ground by height and slope, as pictures show them before they are lit: tint by height, and the colours that steepness and
+/// height add.
 #[derive(Debug, Clone)]
-pub(crate) struct Tint {
+pub struct GroundTint {
     /// Colours and the strength of the texture of the ground; the last one is repeated.
     ramp: Box<[[f32; 4]; STEPS + 1]>,
     bottom_m: f32,
@@ -90,9 +93,11 @@ const ATLAS: Stops = &[
     (7000.0, [244, 243, 242]),
 ];
 
-impl Tint {
-    /// * `z_range_m`: heights that the ramp spans.
-    pub(crate) fn new(palette: &Palette, z_range_m: [f64; 2]) -> Self {
+impl GroundTint {
+    /// The colours of a palette.
+    ///
+    /// * `z_range_m`: heights that its ramp spans.
+    pub fn new(palette: &Palette, z_range_m: [f64; 2]) -> Self {
         let [bottom, top] = z_range_m.map(|z| z as f32);
         let span = (top - bottom).max(1e-3);
         let name = match palette {
@@ -100,7 +105,7 @@ impl Tint {
                 return Self::even(from_ramp(ramp, z_range_m), GREY, z_range_m);
             }
             Palette::Placed(name, climate) => {
-                if let Some(look) = climate_tint::look(*name, climate, z_range_m) {
+                if let Some(look) = climate::look(*name, climate, z_range_m) {
                     return Self::of_look(&look);
                 }
                 *name
@@ -130,7 +135,7 @@ impl Tint {
                 Self::even((0..STEPS).map(|i| ramp_at(ATLAS, height(i))).collect(), GREY, z_range_m)
             }
             // Without a place the seasons have the line of snow that the range of heights gives.
-            PaletteName::Winter | PaletteName::Autumn => Self::of_look(&climate_tint::unplaced(name, z_range_m)),
+            PaletteName::Winter | PaletteName::Autumn => Self::of_look(&climate::unplaced(name, z_range_m)),
             PaletteName::Alpine | PaletteName::Auto | PaletteName::Swiss => {
                 let line = (bottom + 0.70 * span).max(2450.0);
                 Self {
@@ -162,7 +167,7 @@ impl Tint {
         }
     }
 
-    fn of_look(look: &climate_tint::Look) -> Self {
+    fn of_look(look: &climate::Look) -> Self {
         let [bottom, top] = [&look.stops[0], &look.stops[look.stops.len() - 1]].map(|stop| stop.height_m);
         let span = (top - bottom).max(1e-3);
         let at = |i: usize| stop_at(&look.stops, bottom + span * i.min(STEPS - 1) as f32 / (STEPS - 1) as f32);
@@ -182,19 +187,14 @@ impl Tint {
     }
 
     /// Whether the ground has a texture.
-    pub(crate) fn is_textured(&self) -> bool {
+    pub fn is_textured(&self) -> bool {
         self.rock_rough > 0.0
     }
 
     /// Colours of ground at heights, with the tangents of its slopes and those of their parts that fall to the north, linear: the tint, rock
     /// where it is steep, snow where it is high and not steep; fourth, the strength of its texture.
     #[inline(always)]
-    pub(crate) fn colors<const N: usize>(
-        &self,
-        height_m: &[f32; N],
-        steep: &[f32; N],
-        north: &[f32; N],
-    ) -> [[f32; N]; 4] {
+    pub fn colors<const N: usize>(&self, height_m: &[f32; N], steep: &[f32; N], north: &[f32; N]) -> [[f32; N]; 4] {
         // The last index of the table lies just before its end.
         const MOST: f32 = (STEPS - 1) as f32 - 0.001;
         let (mut below, mut share, mut rock, mut snow) = ([0; N], [0.0; N], [0.0; N], [0.0; N]);
@@ -228,11 +228,13 @@ impl Tint {
         out
     }
 
-    /// The colour of one point, see [`Tint::colors`].
-    #[cfg(test)]
-    pub(crate) fn color(&self, height_m: f32, steep: f32) -> Rgb {
-        let [[r], [g], [b], _] = self.colors(&[height_m], &[steep], &[0.0]);
-        Rgb::new(r, g, b)
+    /// The colour of one point, linear red, green and blue, 0..=1.
+    ///
+    /// * `height_m`: true height;
+    /// * `slope`: rise to the east and to the north, metres per metre.
+    pub fn color(&self, height_m: f64, slope: DVec2) -> [f32; 3] {
+        let [r, g, b, _] = self.colors(&[height_m as f32], &[slope.length() as f32], &[-slope.y as f32]);
+        [r, g, b].map(|[v]| v.clamp(0.0, 1.0))
     }
 }
 
@@ -309,6 +311,11 @@ mod tests {
         Rgb::new(116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z))
     }
 
+    fn color(tint: &GroundTint, height_m: f32, steep: f32) -> Rgb {
+        let [[r], [g], [b], _] = tint.colors(&[height_m], &[steep], &[0.0]);
+        Rgb::new(r, g, b)
+    }
+
     #[test]
     fn built_in_ramps_are_told_apart_by_every_kind_of_colour_vision() {
         for (stops, least) in [(ALPINE, 3.0), (DESERT, 3.0), (GLACIAL, 3.0), (CLEAR, 8.0)] {
@@ -334,7 +341,7 @@ mod tests {
                 continue;
             }
             for range in [[0.0, 4000.0], [12.0, 12.0]] {
-                let tint = Tint::new(&palette, range);
+                let tint = GroundTint::new(&palette, range);
                 let snow = tint.snow_m.at(range[0] as f32);
                 assert!(snow == 0.0, "{palette:?}: {snow} of the lowest ground is snow");
             }
@@ -343,8 +350,8 @@ mod tests {
 
     #[test]
     fn snow_slides_off_steep_ground() {
-        let tint = Tint::new(&PaletteName::Alpine.into(), [1000.0, 4800.0]);
-        let snow = |steep: f32| tint.color(4800.0, steep);
+        let tint = GroundTint::new(&PaletteName::Alpine.into(), [1000.0, 4800.0]);
+        let snow = |steep: f32| color(&tint, 4800.0, steep);
         assert!((snow(0.3) - tint.snow).abs().max_element() < 0.02, "gentle: {}", snow(0.3));
         for steep in [1.4, 3.0, 50.0] {
             assert!(snow(steep).max_element() < 0.6 * tint.snow.min_element(), "tangent {steep}: {}", snow(steep));
@@ -355,10 +362,10 @@ mod tests {
     fn every_palette_has_colours_at_every_height() {
         for palette in PaletteName::ALL.map(|(_, name)| Palette::Named(name)) {
             for range in [[0.0, 0.0], [-400.0, 9000.0], [300.0, 3100.0], [1e6, 1e6 + 1e-6]] {
-                let tint = Tint::new(&palette, range);
+                let tint = GroundTint::new(&palette, range);
                 for z in [range[0], 0.5 * (range[0] + range[1]), range[1], -1e9, 1e9] {
                     for steep in [0.0, 0.9, 50.0] {
-                        let c = tint.color(z as f32, steep);
+                        let c = color(&tint, z as f32, steep);
                         assert!(c.min_element() > 0.01 && c.max_element() <= 1.0, "{palette:?} {range:?} at {z}: {c}");
                     }
                 }
@@ -371,11 +378,11 @@ mod tests {
         let stop = |z: f64, c: Color| RampStop { height: RampHeight::Metres(z), color: c };
         let (low, high) = (Color::rgb(10, 200, 30), Color::rgb(250, 20, 100));
         let ramp = Ramp { stops: vec![stop(0.0, low), stop(1000.0, high)], ..Ramp::default() };
-        let tint = Tint::new(&Palette::Ramp(Arc::new(ramp)), [0.0, 1000.0]);
-        let near = |z: f32, c: [u8; 3]| (tint.color(z, 9.0) - linear(c)).abs().max_element() < 0.01;
+        let tint = GroundTint::new(&Palette::Ramp(Arc::new(ramp)), [0.0, 1000.0]);
+        let near = |z: f32, c: [u8; 3]| (color(&tint, z, 9.0) - linear(c)).abs().max_element() < 0.01;
         assert!(near(0.0, [10, 200, 30]) && near(500.0, [130, 110, 65]) && near(1000.0, [250, 20, 100]));
         let clear = Ramp { stops: vec![stop(0.0, low.with_alpha(0))], ..Ramp::default() };
-        let tint = Tint::new(&Palette::Ramp(Arc::new(clear)), [0.0, 1000.0]);
-        assert!((tint.color(5.0, 0.0) - linear(GREY)).abs().max_element() < 1e-3);
+        let tint = GroundTint::new(&Palette::Ramp(Arc::new(clear)), [0.0, 1000.0]);
+        assert!((color(&tint, 5.0, 0.0) - linear(GREY)).abs().max_element() < 1e-3);
     }
 }
