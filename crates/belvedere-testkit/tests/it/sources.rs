@@ -84,6 +84,25 @@ fn what_draws_and_judges_names_techniques_in_one_place() {
     assert_eq!(found, Vec::<String>::new());
 }
 
+#[test]
+fn the_facade_names_renderers_only_where_they_are_chosen() {
+    const CHOSEN: [&str; 2] = ["lib.rs", "renderers.rs"];
+    let source = belvedere_testkit::workspace_root().join("crates/belvedere/src");
+    let mut files = Vec::new();
+    rust_files(&source, &mut files);
+    let mut naming: Vec<String> = files
+        .iter()
+        .filter(|f| f.file_name().is_some_and(|n| n != "tests.rs"))
+        .filter(|f| {
+            let text = fs::read_to_string(f).expect("source");
+            text.split("#[cfg(test)]").next().unwrap_or_default().contains("belvedere_cpu")
+        })
+        .map(|f| f.strip_prefix(&source).expect("below").to_string_lossy().replace('\\', "/"))
+        .collect();
+    naming.sort();
+    assert_eq!(naming, CHOSEN, "the tracer, marks and tints lie below renderers");
+}
+
 /// Phrases of docs/CONVENTIONS.md, "Plain English", that hide the subject or the thing; each in two halves so that this file does not find itself.
 const UNPLAIN: [[&str; 2]; 9] = [
     [" came", " to;"],
