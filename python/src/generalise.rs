@@ -11,13 +11,7 @@ use std::path::PathBuf;
 
 /// Generalises a city and writes its levels into a folder; the answer as JSON.
 #[pyfunction]
-pub(crate) fn generalise(
-    py: Python<'_>,
-    asked: &str,
-    out: PathBuf,
-    overwrite: bool,
-    ask: Ask,
-) -> PyResult<String> {
+pub(crate) fn generalise(py: Python<'_>, asked: &str, out: PathBuf, overwrite: bool, ask: Ask) -> PyResult<String> {
     let asked: Generalise = request("generalise", asked)?;
     run(py, &ask, move |progress| {
         let inputs: Vec<PathBuf> = asked.roads.iter().chain([&asked.city]).map(PathBuf::from).collect();

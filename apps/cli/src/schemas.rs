@@ -22,8 +22,9 @@ pub(crate) fn names() -> PossibleValuesParser {
 /// The schema of scene files, or of the answers or the request of a verb.
 pub(crate) fn text(of: &str, request: bool) -> anyhow::Result<String> {
     if request {
-        return belvedere::request::schema(of)
-            .ok_or_else(|| anyhow::anyhow!("--request: the request of {of} has no schema; possible: {}", WITH_REQUEST.join(", ")));
+        return belvedere::request::schema(of).ok_or_else(|| {
+            anyhow::anyhow!("--request: the request of {of} has no schema; possible: {}", WITH_REQUEST.join(", "))
+        });
     }
     if of == BENCH {
         return Ok(schemas::schema_of(

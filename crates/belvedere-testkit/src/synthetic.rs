@@ -128,6 +128,13 @@ pub struct Marcher {
     pub fault: f64,
 }
 
+impl Marcher {
+    /// Colour of all ground.
+    pub const GROUND: [u8; 3] = [120, 140, 90];
+    /// Colour of the sky.
+    pub const SKY: [u8; 3] = [200, 220, 240];
+}
+
 impl Renderer for Marcher {
     fn name(&self) -> &'static str {
         "marcher"
@@ -137,15 +144,19 @@ impl Renderer for Marcher {
         let [width, height] = job.view.pinhole().image.map(|n| n as usize);
         let hf = job.scene.terrain().unwrap();
         let far = 2.5 * hf.bounds().max.x;
-        let depth: Vec<f32> = (0..width * height)
-            .into_par_iter()
-            .map(|i| {
-                let pixel = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
-                march(job.view, hf, pixel, 1.0, far, 500).map_or(f32::INFINITY, |d| (d * self.fault) as f32)
-            })
-            .collect();
-        let id = depth.iter().map(|d| u32::from(d.is_finite())).collect();
-        let color = vec![[0; 3]; width * height];
-        Ok(Frame { width, height, color, depth, id, world: None, stats: FrameStats::default() })
+        let pixel = |i: usize| DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
+        let depths: Vec<Option<f64>> =
+            (0..width * height).into_par_iter().map(|i| march(job.view, hf, pixel(i), 1.0, far, 500)).collect();
+        job.progress.tick("march", 1.0)?;
+        let world = |(i, depth): (usize, &Option<f64>)| {
+            let point = depth.and_then(|depth| job.view.ray(pixel(i)).at(depth).ok());
+            point.map_or([f64::NAN; 3], |point| point.point.to_array())
+        };
+        let world: Option<Vec<[f64; 3]>> =
+            job.options.aux.world.then(|| depths.iter().enumerate().map(world).collect());
+        let color = depths.iter().map(|depth| if depth.is_some() { Self::GROUND } else { Self::SKY }).collect();
+        let depth = depths.iter().map(|depth| depth.map_or(f32::INFINITY, |d| (d * self.fault) as f32)).collect();
+        let id = depths.iter().map(|depth| u32::from(depth.is_some())).collect();
+        Ok(Frame { width, height, color, depth, id, world, stats: FrameStats::default() })
     }
 }

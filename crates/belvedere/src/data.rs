@@ -5,8 +5,8 @@ mod tiles;
 use crate::record::{AreaRecord, InputFile, LayerNotes};
 use crate::resolve::vectors::{FeatureKind, kind_of, kinds_of};
 use crate::resolve::{self, LayerRequest};
-use crate::scene_file::request::Stated;
 use crate::scene_file::paths::{Roots, folder_of};
+use crate::scene_file::request::Stated;
 use crate::scene_file::{
     AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, LayerDoc, LineDoc, LineStyleDoc, Origin, PaletteDoc, Paths,
     PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, TextDoc,

@@ -5,6 +5,7 @@ mod branches;
 mod cache;
 mod exact;
 mod huge_triangles;
+mod laws;
 mod lines;
 mod lod;
 mod marks;

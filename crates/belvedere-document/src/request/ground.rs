@@ -25,7 +25,10 @@ impl Stated {
     ///
     /// * `source_crs`: `EPSG:n`.
     pub fn in_crs(source_crs: &str) -> Self {
-        Self { raster: StatedRaster { source_crs: Some(source_crs.into()), ..StatedRaster::default() }, name_field: None }
+        Self {
+            raster: StatedRaster { source_crs: Some(source_crs.into()), ..StatedRaster::default() },
+            name_field: None,
+        }
     }
 }
 

@@ -4,7 +4,7 @@
 use super::args::one_of;
 #[cfg(feature = "clap")]
 use super::value;
-use super::{Look, Paper, Stated};
+use super::{Look, Paper, RendererName, Stated};
 use crate::SurfaceDoc;
 use crate::place::Place;
 use schemars::JsonSchema;
@@ -48,6 +48,9 @@ pub struct Reveal {
     /// Size of the picture, such as 1920x1080
     #[cfg_attr(feature = "clap", arg(long, value_name = "WxH", allow_hyphen_values = true, value_parser = value::size))]
     pub size: Option<[u32; 2]>,
+    /// Renderer, as of `render`: auto, cpu, exact, or one that the program registers
+    #[cfg_attr(feature = "clap", arg(long, value_name = "NAME", default_value_t))]
+    pub renderer: RendererName,
     /// Coverage samples per pixel: 1, 4 or 16; 4 by default
     #[cfg_attr(feature = "clap", arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value::samples))]
     pub samples: Option<u32>,

@@ -30,6 +30,7 @@
 
 mod camera;
 mod map;
+pub mod renderer;
 
 pub use camera::{
     CameraCase, camera_depth_rises_along_rays, camera_jacobian_matches_differences, camera_moves_with_its_parameters,
@@ -194,6 +195,39 @@ macro_rules! camera_laws {
             fn moves_with_its_parameters() {
                 $crate::laws::camera_moves_with_its_parameters(&$case);
             }
+        }
+    };
+}
+
+/// Writes one test per law of a renderer into a module.
+///
+/// `renderer_laws!(name, super::renderer())`: `renderer` returns a [`belvedere_scene::Renderer`]; the expression is evaluated inside the new
+/// module, anew for each law. This is the contract that makes a renderer one of the program's: whatever asks, it draws what lines of sight
+/// say that is there.
+#[macro_export]
+macro_rules! renderer_laws {
+    ($name:ident, $renderer:expr) => {
+        $crate::renderer_laws!(
+            $name,
+            $renderer,
+            [
+                draws_what_a_ray_meets,
+                fills_its_buffers,
+                is_deterministic,
+                draws_into_an_old_frame,
+                draws_rows_as_the_whole,
+                ends_when_it_is_cancelled
+            ]
+        );
+    };
+    ($name:ident, $renderer:expr, [$($law:ident),+]) => {
+        mod $name {
+            $(
+                #[test]
+                fn $law() {
+                    $crate::laws::renderer::$law(&$renderer);
+                }
+            )+
         }
     };
 }

@@ -1,8 +1,8 @@
 //! Draws the picture of a session: layers, marks over them, the straight picture beside the bent one.
 
+use super::AuxBuffer;
 use super::displacement::{self, DisplacementReport};
 use super::mark_target::plain;
-use super::AuxBuffer;
 use super::options::PictureOptions;
 use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, SeeThroughRecord, Sidecar, TerrainRecord};
 use super::volume_record::VolumeRecord;

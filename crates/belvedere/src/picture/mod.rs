@@ -16,11 +16,11 @@ mod vectors;
 mod volume_record;
 mod write;
 
+pub use crate::scene_file::request::{AuxBuffer, AuxFormat};
 pub(crate) use bands::{later, write_later, write_straight};
 pub use displacement::DisplacementReport;
 pub(crate) use draw::{draw, draw_camera, draw_view};
 pub(crate) use mark_target::plain;
-pub use crate::scene_file::request::{AuxBuffer, AuxFormat};
 pub use options::{PictureOptions, THRESHOLDS};
 pub use sidecar::{MoleculeRecord, OverlayRecord, Picture, SeeThroughRecord, Sidecar, TerrainRecord};
 pub use target_place::{TargetPlace, VoxelPlace};

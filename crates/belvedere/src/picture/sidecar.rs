@@ -1,9 +1,9 @@
 //! A finished picture and the record beside it.
 
 use super::displacement::DisplacementReport;
-use super::{AuxBuffer, AuxFormat, PictureOptions};
 use super::target_place::TargetPlace;
 use super::volume_record::VolumeRecord;
+use super::{AuxBuffer, AuxFormat, PictureOptions};
 use crate::bodies::RigidLayers;
 use crate::fallback::FallbackRecord;
 use crate::overlays::furniture::FurnitureRecord;

@@ -1,8 +1,8 @@
 //! Pictures, records and buffers as files.
 
 use super::buffers;
-use super::{AuxBuffer, AuxFormat, PictureOptions};
 use super::sidecar::Picture;
+use super::{AuxBuffer, AuxFormat, PictureOptions};
 use crate::BelvedereError;
 use crate::output;
 use crate::overlays::badge;

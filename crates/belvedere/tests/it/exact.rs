@@ -1,7 +1,7 @@
 //! The rasteriser against the exact tracer on every ready scene, at the default tolerance, with and without level of detail.
 
-use belvedere::core::View;
 use belvedere::RendererName;
+use belvedere::core::View;
 use belvedere::picture::{AuxBuffer, PictureOptions, THRESHOLDS};
 use belvedere::scene::{Frame, RenderOptions};
 use belvedere::{OpenOptions, Session};

@@ -1,10 +1,10 @@
 //! Films along routes of scenes as `reveal` writes them: the ground is seen from above in every frame, the camera moves smoothly, and the mark
 //! at the walker is always there.
 
+use belvedere::request::Stated;
 use belvedere::scene::Progress;
 use belvedere::scene_file::AnimationDoc;
 use belvedere::verbs::animate::{AnimateRequest, Animation, FrameRecord, animate};
-use belvedere::request::Stated;
 use belvedere::{DataFiles, OpenOptions, Session};
 use std::path::{Path, PathBuf};
 

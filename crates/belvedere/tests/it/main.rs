@@ -15,6 +15,7 @@ mod names;
 mod options_of_reveal;
 mod over_ground;
 mod parts;
+mod renderers;
 mod ribbon_targets;
 mod see_through;
 mod sessions;

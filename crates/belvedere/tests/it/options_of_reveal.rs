@@ -84,6 +84,7 @@ fn rows(folder: &Path) -> Vec<(&'static str, Does)> {
         ("look", Changes(json!([503_500.0, 5_003_000.0]), none())),
         ("fov", Changes(json!(60), none())),
         ("size", Changes(json!([64, 36]), none())),
+        ("renderer", Changes(json!("exact"), none())),
         ("samples", Changes(json!(1), none())),
         ("paper", Changes(json!("40x30mm"), json!({ "size": null, "dpi": 50 }))),
         ("dpi", Changes(json!(240), json!({ "size": [320, 180] }))),

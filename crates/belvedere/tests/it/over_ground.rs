@@ -1,8 +1,11 @@
 //! What is painted on drawn ground: lines of equal height lie at their heights, in bent views too, and the edge of the data fades.
 
-use belvedere::{RendererName, picture::{AuxBuffer, PictureOptions}};
 use belvedere::scene::Frame;
 use belvedere::{OpenOptions, Session};
+use belvedere::{
+    RendererName,
+    picture::{AuxBuffer, PictureOptions},
+};
 use std::path::Path;
 
 /// The interval, scene units.

@@ -1,7 +1,7 @@
 //! Terrain that comes in several files.
 
-use belvedere::verbs::reveal::{RevealRequest, reveal};
 use belvedere::request::Stated;
+use belvedere::verbs::reveal::{RevealRequest, reveal};
 use belvedere::{DataFiles, OpenOptions};
 use std::path::{Path, PathBuf};
 

@@ -1,10 +1,10 @@
 //! The heights that `disocclude` writes are the solved ones, and its lakes are level.
 
 use belvedere::core::DVec2;
-use belvedere::scene::{Heightfield, Progress};
-use belvedere::verbs::disocclude::{DisoccludeFiles, disocclude};
 use belvedere::places::Place;
 use belvedere::request::{Disocclude, Stated, WrittenGrid};
+use belvedere::scene::{Heightfield, Progress};
+use belvedere::verbs::disocclude::{DisoccludeFiles, disocclude};
 use belvedere::{OpenOptions, Session};
 use std::path::Path;
 

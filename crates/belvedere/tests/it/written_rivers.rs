@@ -1,12 +1,12 @@
 //! Rivers run downhill on the heights that `disocclude` writes, also on other grids than the solver's.
 
+use belvedere::OpenOptions;
 use belvedere::io::TerrainRequest;
 use belvedere::io::terrain::load_original;
-use belvedere::scene::Progress;
-use belvedere::verbs::disocclude::{DisoccludeFiles, disocclude};
 use belvedere::places::Place;
 use belvedere::request::Disocclude;
-use belvedere::OpenOptions;
+use belvedere::scene::Progress;
+use belvedere::verbs::disocclude::{DisoccludeFiles, disocclude};
 use std::path::Path;
 
 const SIDE: usize = 48;

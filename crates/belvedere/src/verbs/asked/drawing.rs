@@ -28,8 +28,7 @@ pub fn picture_of(asked: &Drawing) -> Result<PictureOptions, BelvedereError> {
     quality.exposures = asked.thresholds.unwrap_or(THRESHOLDS).div_ceil(quality.samples.max(1));
     quality.compositing = asked.compositing.unwrap_or_default();
     let strengths = asked.stylise.as_ref().map(|stylise| stylise.strengths()).transpose();
-    options.stylisation =
-        strengths.map_err(|(_, reason)| BelvedereError::Appearance { option: "stylise", reason })?;
+    options.stylisation = strengths.map_err(|(_, reason)| BelvedereError::Appearance { option: "stylise", reason })?;
     Ok(options)
 }
 
@@ -80,7 +79,10 @@ pub fn unheard(asked: &Render) -> Result<PictureOptions, BelvedereError> {
         ghost: asked.ghost,
         highlight: asked.highlight.clone(),
         no_mark: asked.no_mark,
-        camera: asked.overhead.then_some(CameraPicture::Overhead).or(is_outside.then_some(CameraPicture::Outside(None))),
+        camera: asked
+            .overhead
+            .then_some(CameraPicture::Overhead)
+            .or(is_outside.then_some(CameraPicture::Outside(None))),
         band_rows: asked.band_rows.map(|rows| rows as usize),
         ..picture_of(&asked.drawing)?
     })
@@ -106,7 +108,12 @@ pub fn paper(
 ///
 /// # Errors
 /// As [`picture_of`].
-pub fn film(asked: &Animate, sheet: Option<Sheet>, out: PathBuf, overwrite: bool) -> Result<AnimateRequest, BelvedereError> {
+pub fn film(
+    asked: &Animate,
+    sheet: Option<Sheet>,
+    out: PathBuf,
+    overwrite: bool,
+) -> Result<AnimateRequest, BelvedereError> {
     let picture = picture_of(&asked.drawing)?;
     Ok(AnimateRequest {
         animation: asked.motion(),
@@ -139,6 +146,18 @@ impl OpenOptions {
 
 /// Whether [`OpenOptions::showing`] changes anything: whether a scene that is open without it can be drawn as asked.
 pub fn is_as_opened(asked: &Render) -> bool {
-    let of_scene = ["palette", "sky", "haze", "contours", "edge", "area_style", "no_sea", "representation", "color_by", "assembly", "model"];
+    let of_scene = [
+        "palette",
+        "sky",
+        "haze",
+        "contours",
+        "edge",
+        "area_style",
+        "no_sea",
+        "representation",
+        "color_by",
+        "assembly",
+        "model",
+    ];
     given_of(asked, &of_scene).is_empty()
 }

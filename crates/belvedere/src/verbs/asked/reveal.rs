@@ -1,16 +1,17 @@
 //! `reveal` as it is asked for: one request for terrain with features, cities and models.
 
+use crate::picture::{Picture, PictureOptions};
+use crate::places::Place;
+use crate::print::Sheet;
+use crate::renderers;
+use crate::request::{Molecules, Reveal, given_of};
+use crate::scene_file::{self, PaletteDoc};
 use crate::verbs::appearance::Appearance;
-use crate::verbs::drafts::{DraftsAnswer};
+use crate::verbs::drafts::DraftsAnswer;
 use crate::verbs::hold_a_city;
 use crate::verbs::reveal::{IMAGE, RevealAnswer, RevealDocument, RevealFiles, RevealRequest, Technique};
 use crate::verbs::reveal_target::{self, TargetAnswer, TargetDocument, TargetRequest};
 use crate::verbs::target_drafts::target_drafts;
-use crate::picture::{Picture, PictureOptions};
-use crate::places::Place;
-use crate::print::Sheet;
-use crate::request::{Molecules, Reveal, given_of};
-use crate::scene_file::{self, PaletteDoc};
 use crate::{Advice, BelvedereError, DataFiles, OpenOptions, Session, Warning, verbs};
 use belvedere_core::DVec3;
 use serde::Serialize;
@@ -115,6 +116,8 @@ impl Request {
         check(asked, models)?;
         let (sheet, _) = sheet(asked)?;
         let mut picture = setting.picture.clone();
+        renderers::check(&asked.renderer)?;
+        picture.renderer = asked.renderer.clone();
         picture.quality.samples = asked.samples.unwrap_or(picture.quality.samples);
         let picture = match sheet {
             Some(sheet) => picture.on(sheet),
