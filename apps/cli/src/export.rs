@@ -3,7 +3,7 @@
 use crate::goal::Goal;
 use crate::outputs;
 use crate::report::{Context, is_stdout};
-use belvedere::export::{self, ExportOptions, GROUND_NODES};
+use belvedere::export::{self, ExportOptions};
 use belvedere::io::atomic;
 use belvedere::request::Export;
 use belvedere::{Needs, OpenOptions};
@@ -32,11 +32,7 @@ pub(crate) fn export_scene(args: &ExportArgs, context: &Context) -> anyhow::Resu
     let options = OpenOptions { unsolved: args.asked.straight, ..context.options(Needs::Everything, args.asked.size) };
     let session = context.open_drawable(&args.scene, &args.asked.data, &options)?;
     outputs::check(&files, &session.input_paths(), context)?;
-    let options = ExportOptions {
-        ground_nodes: args.asked.nodes.map_or(GROUND_NODES, |nodes| nodes as usize),
-        straight: args.asked.straight,
-        progress: context.progress.clone(),
-    };
+    let options = ExportOptions { progress: context.progress.clone(), ..ExportOptions::of(&args.asked) };
     let made = export::export(&session, &options)?;
     context.finish();
     match &files[..] {

@@ -4,13 +4,13 @@ use crate::goal::Goal;
 use crate::outputs;
 use crate::picture_names::{check_name, is_vectors, vectors};
 use crate::report::{Context, is_stdout};
+use belvedere::Needs;
 use belvedere::core::{Warning, WarningKind};
 use belvedere::picture::{self, Picture, PictureOptions};
 use belvedere::request::Render;
 use belvedere::scene::Sky;
 use belvedere::verbs::asked;
 use belvedere::verbs::schemas::Rendered;
-use belvedere::{Needs, Session};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -34,19 +34,15 @@ pub(crate) fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goa
     let (asked, out) = (&args.asked, &args.out);
     check_name(out, args.vectors_only)?;
     let source = context.stdin.drawable(&args.scene, &asked.data)?;
-    let (sheet, size) = asked::paper((&asked.paper, asked.drawing.size), &source.document)?;
-    let mut files = picture::outputs(out, &asked::unheard(asked)?, source.document.solves_terrain());
+    let mut files = picture::outputs(out, &asked::foreseen(asked)?, source.document.solves_terrain());
     ready(args, context)?;
     if is_stdout(out) {
         files.clear();
     }
     outputs::check(&files, std::slice::from_ref(&args.scene), context)?;
-    let options = context.options(Needs::Everything, size).showing(asked);
-    let session = Session::from_document(source, &options)?;
+    let (session, request, said) = asked::opened(source, asked, context.options(Needs::Everything, None))?;
     outputs::check(&files, &session.input_paths(), context)?;
-    let (request, said) = asked::picture(asked, &session)?;
     let request = PictureOptions { vectors: vectors(out, args.vectors_only), ..context.running(request) };
-    let request = sheet.map_or(request.clone(), |sheet| request.on(sheet));
     let transparent = session.light().sky == Sky::Transparent;
     picture::check_format(out, session.view().pinhole().image.map(|side| side as usize), transparent)?;
     let (picture, written) = match is_stdout(out) {

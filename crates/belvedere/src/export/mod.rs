@@ -11,6 +11,7 @@ mod solids;
 
 use crate::guard::guarded;
 use crate::record::ViewRecord;
+use crate::request::Export;
 use crate::{Advice, BelvedereError, Session};
 use belvedere_core::{Aabb, DVec3, View, Warning, WarningKind};
 use belvedere_scene::{LayerKind, Progress, Unit};
@@ -33,6 +34,15 @@ pub struct ExportOptions {
     pub straight: bool,
     /// Progress and cancellation.
     pub progress: Progress,
+}
+
+impl ExportOptions {
+    /// The options that are asked for.
+    pub fn of(asked: &Export) -> Self {
+        let usual = Self::default();
+        let ground_nodes = asked.nodes.map_or(usual.ground_nodes, |nodes| nodes as usize);
+        Self { ground_nodes, straight: asked.straight, ..usual }
+    }
 }
 
 impl Default for ExportOptions {

@@ -12,7 +12,7 @@ mod letters;
 mod memory;
 mod moving_pictures;
 mod names;
-mod options_of_reveal;
+mod options;
 mod over_ground;
 mod parts;
 mod renderers;

@@ -3,8 +3,8 @@
 use crate::picture::{PictureOptions, THRESHOLDS};
 use crate::print::Sheet;
 use crate::renderers;
-use crate::request::{Animate, Drawing, Outside, Paper, Render, given_of};
-use crate::scene_file::{Document, SwitchOrLength};
+use crate::request::{Animate, Drawing, Outside, Paper, Render};
+use crate::scene_file::{Document, PaletteDoc, SourceDocument, SwitchOrLength};
 use crate::verbs::animate::AnimateRequest;
 use crate::{Advice, BelvedereError, CameraPicture, OpenOptions, Session};
 use belvedere_core::Warning;
@@ -32,45 +32,56 @@ pub fn picture_of(asked: &Drawing) -> Result<PictureOptions, BelvedereError> {
     Ok(options)
 }
 
+/// A scene, opened with what a picture is asked to show otherwise than it says; how the picture is drawn; and warnings about places that are
+/// asked for.
+///
+/// # Errors
+/// As [`picture`] and [`Session::from_document`]; [`BelvedereError::Paper`].
+pub fn opened(
+    source: SourceDocument,
+    asked: &Render,
+    open: OpenOptions,
+) -> Result<(Session, PictureOptions, Vec<Warning>), BelvedereError> {
+    let (sheet, image) = paper((&asked.paper, asked.drawing.size), &source.document)?;
+    foreseen(asked)?;
+    let session = Session::from_document(source, &OpenOptions { image, ..open.showing(asked) })?;
+    let (options, warnings) = picture(asked, &session)?;
+    Ok((session, sheet.map_or(options.clone(), |sheet| options.on(sheet)), warnings))
+}
+
 /// A picture of a session, which was opened with [`OpenOptions::showing`]; and warnings about places that are asked for.
 ///
 /// # Errors
 /// As [`picture_of`]; [`BelvedereError::Argument`] for two pictures of the camera, [`BelvedereError::Position`].
 pub fn picture(asked: &Render, session: &Session) -> Result<(PictureOptions, Vec<Warning>), BelvedereError> {
-    let mut warnings = Vec::new();
-    let camera = match (asked.overhead, asked.outside.filter(Outside::is_asked)) {
-        (true, Some(_)) => {
-            let text = "{} and {} are two pictures of the camera; give one of them";
-            return Err(BelvedereError::Argument(Advice::new(text, &["overhead", "outside"])));
+    let (mut options, mut warnings) = (foreseen(asked)?, Vec::new());
+    if let Some(Outside::From(places)) = &asked.outside {
+        let mut found = [[0.0; 3]; 2];
+        for (to, place) in found.iter_mut().zip(places) {
+            let (p, said) = session.find_place(place, "outside")?;
+            *to = p.to_array();
+            warnings.extend(said);
         }
-        (true, None) => Some(CameraPicture::Overhead),
-        (false, Some(Outside::From(places))) => {
-            let mut found = [[0.0; 3]; 2];
-            for (to, place) in found.iter_mut().zip(&places) {
-                let (p, said) = session.find_place(place, "outside")?;
-                *to = p.to_array();
-                warnings.extend(said);
-            }
-            Some(CameraPicture::Outside(Some(found)))
-        }
-        (false, Some(Outside::Auto(_))) => Some(CameraPicture::Outside(None)),
-        (false, None) => None,
-    };
-    let options = PictureOptions { camera, ..unheard(asked)? };
+        options.camera = Some(CameraPicture::Outside(Some(found)));
+    }
     Ok((options, warnings))
 }
 
 /// The same before the scene is opened, without what depends on it: places. It tells mistakes, and the files that will be written.
 ///
 /// # Errors
-/// As [`picture_of`].
-pub fn unheard(asked: &Render) -> Result<PictureOptions, BelvedereError> {
+/// As [`picture_of`]; [`BelvedereError::Argument`] for two pictures of the camera.
+pub fn foreseen(asked: &Render) -> Result<PictureOptions, BelvedereError> {
     let grid = match asked.grid {
         Some(SwitchOrLength::Switch(true)) => Some(None),
         Some(SwitchOrLength::Length(spacing)) => Some(Some(spacing)),
         Some(SwitchOrLength::Switch(false)) | None => None,
     };
     let is_outside = asked.outside.is_some_and(|outside| outside.is_asked());
+    if asked.overhead && is_outside {
+        let text = "{} and {} are two pictures of the camera; give one of them";
+        return Err(BelvedereError::Argument(Advice::new(text, &["overhead", "outside"])));
+    }
     Ok(PictureOptions {
         aux: asked.aux.clone(),
         aux_format: asked.aux_format.unwrap_or_default(),
@@ -130,7 +141,7 @@ impl OpenOptions {
     pub fn showing(self, asked: &Render) -> Self {
         let air = &asked.air;
         Self {
-            palette: asked.palette.as_deref().map(crate::scene_file::PaletteDoc::of),
+            palette: asked.palette.as_deref().map(PaletteDoc::of),
             sky: air.sky.clone(),
             haze: air.haze,
             furniture: Some(air.furnishing.wish()),
@@ -142,22 +153,4 @@ impl OpenOptions {
             ..self.airy(air)
         }
     }
-}
-
-/// Whether [`OpenOptions::showing`] changes anything: whether a scene that is open without it can be drawn as asked.
-pub fn is_as_opened(asked: &Render) -> bool {
-    let of_scene = [
-        "palette",
-        "sky",
-        "haze",
-        "contours",
-        "edge",
-        "area_style",
-        "no_sea",
-        "representation",
-        "color_by",
-        "assembly",
-        "model",
-    ];
-    given_of(asked, &of_scene).is_empty()
 }

@@ -3,5 +3,5 @@
 mod drawing;
 mod reveal;
 
-pub use drawing::{film, is_as_opened, paper, picture, picture_of, unheard};
+pub use drawing::{film, foreseen, opened, paper, picture, picture_of};
 pub use reveal::{Revealed, RevealedDocument, Setting, drafts, is_of_models, reveal, sheet};
