@@ -7,7 +7,7 @@
 use anyhow::{Context, Result};
 use belvedere::core::DVec3;
 use belvedere::cpu::CpuRenderer;
-use belvedere::scene::{LayerKind, Light, Mesh, MeshColors, Progress, RenderJob, RenderOptions, Renderer, Scene};
+use belvedere::scene::{Light, Mesh, MeshColors, Progress, RenderJob, RenderOptions, Renderer, Scene};
 use belvedere_bench::clock::{Stopwatch, median};
 use belvedere_bench::sizes::{counts, sized, sized_views};
 
@@ -76,7 +76,7 @@ fn split(scene: &Scene, is_long: &dyn Fn(DVec3, DVec3) -> bool) -> Result<(Scene
     let mut out = scene.clone();
     let mut shortest = f64::INFINITY;
     for layer in &mut out.layers {
-        let LayerKind::Mesh(layer) = &mut layer.kind else { continue };
+        let Some(layer) = layer.kind.mesh_mut() else { continue };
         let mut pending: Vec<[DVec3; 3]> =
             layer.mesh.triangles().iter().map(|t| t.map(|v| layer.mesh.vertex(v))).collect();
         let (mut positions, mut triangles) = (Vec::new(), Vec::new());

@@ -105,7 +105,7 @@ fn with_route(mut scene: Scene) -> Result<Scene> {
     let feature = |points| LineFeature { style: None, name: "route".into(), points };
     let features = drape_polyline(terrain, &route).parts.into_iter().map(feature).collect();
     let line = LineLayer::new(features, Color::rgb(215, 48, 31));
-    scene.layers.push(Layer { id: "route".into(), must_see: true, kind: LayerKind::Line(line) });
+    scene.layers.push(Layer { id: "route".into(), must_see: true, kind: line.into() });
     Ok(scene)
 }
 

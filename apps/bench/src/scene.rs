@@ -5,7 +5,7 @@ use belvedere::core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere::core::map::spline::{ReferencePlane, default_pivot};
 use belvedere::core::presets::PresetDocument;
 use belvedere::core::{CurvedRays, DVec2, DVec3, Pinhole, Projection, SplineBend, Stage, View};
-use belvedere::scene::{Heightfield, Layer, LayerKind, PaletteName, Relief, Scene, TerrainLayer};
+use belvedere::scene::{Heightfield, Layer, PaletteName, Relief, Scene, TerrainLayer};
 
 /// Name of what bends a view, and the view.
 pub type NamedView = (&'static str, View);
@@ -38,7 +38,7 @@ pub fn scene_of(heightfield: Heightfield) -> Scene {
         contours: None,
         edge: belvedere::scene::Edge::Plain,
     };
-    let layer = Layer { id: "ground".into(), must_see: false, kind: LayerKind::Terrain(terrain) };
+    let layer = Layer { id: "ground".into(), must_see: false, kind: terrain.into() };
     Scene { layers: vec![layer], ..Scene::default() }
 }
 

@@ -4,7 +4,7 @@ use crate::scene::{ground, views};
 use anyhow::{Result, bail};
 use belvedere::core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere::core::{CurvedRays, DVec3, Stage, View};
-use belvedere::scene::{Color, Layer, LayerKind, Mesh, MeshColors, MeshLayer, Scene};
+use belvedere::scene::{Color, Layer, LayerKind, Mesh, MeshColors, MeshLayer, OwnLayer, Scene};
 
 /// Names of the scenes.
 pub const NAMES: [&str; 4] = ["blocks", "molecule", "canyon", "city"];
@@ -59,7 +59,9 @@ pub fn sized_views(image: [u32; 2]) -> Result<[(&'static str, View); 3]> {
 /// Vertices and triangles of a scene.
 pub fn counts(scene: &Scene) -> [usize; 2] {
     let of = |layer: &Layer| match &layer.kind {
-        LayerKind::Mesh(m) => [m.mesh.positions().len(), m.mesh.triangles().len()],
+        LayerKind::Mesh(m) | LayerKind::Own(OwnLayer { surface: m, .. }) => {
+            [m.mesh.positions().len(), m.mesh.triangles().len()]
+        }
         LayerKind::Terrain(t) => {
             let (cols, rows) = (t.heightfield.cols(), t.heightfield.rows());
             [cols * rows, 2 * (cols - 1) * (rows - 1)]

@@ -4,7 +4,7 @@ use anyhow::{Context, Result, bail, ensure};
 use belvedere::Session;
 use belvedere::core::{Pinhole, Projection};
 use belvedere::export::{ExportOptions, export};
-use belvedere::scene::{Color, LayerKind, Volume, VolumeLayer, VolumeModel, VoxelValues};
+use belvedere::scene::{Color, Volume, VolumeLayer, VolumeModel, VoxelValues};
 use serde_json::{Value, json};
 use std::io::Write;
 use std::path::Path;
@@ -28,10 +28,7 @@ pub(crate) fn version(python: &Path) -> Result<String> {
 /// A scene that cannot be written for VTK, a script that fails.
 pub(crate) fn straight_ms(python: &Path, session: &Session, (image, frames): ([u32; 2], usize)) -> Result<f64> {
     let folder = tempfile::tempdir()?;
-    let volume = session.scene().layers.iter().find_map(|layer| match &layer.kind {
-        LayerKind::Volume(volume) => Some(volume),
-        _ => None,
-    });
+    let volume = session.scene().layers.iter().find_map(|layer| layer.kind.volume());
     let pinhole = session.view().pinhole();
     let mut order = match volume {
         Some(layer) => of_volume(layer, pinhole, folder.path())?,

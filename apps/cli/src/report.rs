@@ -82,6 +82,7 @@ pub(crate) fn relative(text: &str) -> String {
 fn in_options(error: &BelvedereError) -> String {
     match error {
         BelvedereError::FieldOfView { .. } => format!("--fov: {error}"),
+        BelvedereError::NoRenderer { .. } => format!("--renderer: {error}"),
         BelvedereError::Highlight(_) => format!("--highlight: {error}"),
         BelvedereError::Appearance { option, .. } => format!("--{option}: {error}"),
         BelvedereError::Setting(_) => format!("--set: {error}"),

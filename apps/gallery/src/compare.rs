@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use belvedere::core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere::core::{DVec2, DVec3, View};
 use belvedere::output::{self, pretty};
-use belvedere::scene::{BoxShape, Frame, LayerKind};
+use belvedere::scene::{BoxShape, Frame};
 use belvedere::{OpenOptions, Session};
 use serde::Serialize;
 use std::fmt::Write;
@@ -124,7 +124,7 @@ fn sessions(easel: &Easel<'_>) -> Result<Vec<(&'static str, Session, &'static st
 fn alone(session: &Session) -> Session {
     let mut scene = session.scene().clone();
     for layer in &mut scene.layers {
-        if let LayerKind::Boxes(boxes) = &mut layer.kind {
+        if let Some(boxes) = layer.kind.boxes_mut() {
             boxes.boxes.clear();
         }
     }
@@ -133,10 +133,7 @@ fn alone(session: &Session) -> Session {
 
 /// See [`Row::bent_edges`].
 fn bent_edges(session: &Session) -> f64 {
-    let boxes = session.scene().layers.iter().filter_map(|l| match &l.kind {
-        LayerKind::Boxes(layer) => Some(&layer.boxes),
-        _ => None,
-    });
+    let boxes = session.scene().layers.iter().filter_map(|l| l.kind.boxes().map(|layer| &layer.boxes));
     boxes.flatten().map(|shape| bent_edges_of(shape, session.view())).fold(0.0, f64::max)
 }
 

@@ -7,8 +7,8 @@ use belvedere::core::map::curved_rays::{Model, TurnSpec};
 use belvedere::core::map::split_rays::{Fork, Seam, SplitSpec};
 use belvedere::core::{CurvedRays, DVec2, DVec3, Pinhole, Projection, SplitRays, Stage, View};
 use belvedere::scene::{
-    BoxLayer, BoxShape, Color, Frame, Hidden, Layer, LayerKind, LineFeature, LineLayer, PointFeature, PointLayer,
-    PointStyle, Scene,
+    BoxLayer, BoxShape, Color, Frame, Hidden, Layer, LineFeature, LineLayer, PointFeature, PointLayer, PointStyle,
+    Scene,
 };
 use belvedere::sight::trace::Tracer;
 use belvedere::{CameraPicture, OpenOptions, PictureOptions, Session, fallback};
@@ -124,7 +124,7 @@ pub(crate) fn turns(session: &Session) -> Result<Vec<TurnSpec>> {
 /// The session with boxes of its own, each in a layer of its name.
 pub(crate) fn with_boxes(session: &Session, boxes: impl IntoIterator<Item = (String, Vec<BoxShape>)>) -> Session {
     let mut scene = session.scene().clone();
-    let layer = |(id, boxes)| Layer { id, must_see: false, kind: LayerKind::Boxes(BoxLayer::new(boxes)) };
+    let layer = |(id, boxes)| Layer { id, must_see: false, kind: BoxLayer::new(boxes).into() };
     scene.layers.extend(boxes.into_iter().map(layer));
     Session::from_parts(scene, session.view().clone()).with_light(*session.light())
 }
@@ -139,7 +139,7 @@ pub(crate) fn with_lines(
         let feature = |points| LineFeature { style: None, name: String::new(), points };
         let features = lines.into_iter().map(feature).collect();
         let layer = LineLayer { width_px, hidden: Hidden::Show, lift_m: 0.0, ..LineLayer::new(features, color) };
-        Layer { id: id.to_owned(), must_see: false, kind: LayerKind::Line(layer) }
+        Layer { id: id.to_owned(), must_see: false, kind: layer.into() }
     };
     scene.layers.extend(lines.into_iter().map(layer));
     Session::from_parts(scene, session.view().clone()).with_light(*session.light())
@@ -158,7 +158,7 @@ pub(crate) fn with_points(session: &Session, points: &[(&str, DVec3)], color: Co
         hidden: Hidden::Show,
         lift_m: 0.0,
     };
-    scene.layers.push(Layer { id: "marks".into(), must_see: false, kind: LayerKind::Point(layer) });
+    scene.layers.push(Layer { id: "marks".into(), must_see: false, kind: layer.into() });
     Session::from_parts(scene, session.view().clone()).with_light(*session.light())
 }
 

@@ -5,7 +5,7 @@ use crate::model::{Model, Tool};
 use crate::pointer::share;
 use crate::points::{Places, coordinates, has_same_layers};
 use belvedere::core::{DVec2, DVec3};
-use belvedere::scene::{LayerKind, Scene, Unit};
+use belvedere::scene::{Scene, Unit};
 use belvedere::scene_file::Document;
 use belvedere_studio::{Lengths, ground_way, lengths, lengths_geojson};
 use eframe::egui::{
@@ -198,7 +198,7 @@ fn surface_at(at: DVec2, model: &Model) -> Option<DVec3> {
     let point = model.world_at(at)?;
     let layer = model.layer_at(at)?;
     let scene = shown.session.scene();
-    let is_ground = scene.layers.iter().any(|one| one.id == layer && matches!(one.kind, LayerKind::Terrain(_)));
+    let is_ground = scene.layers.iter().any(|one| one.id == layer && one.kind.terrain().is_some());
     let ground = scene.terrain().filter(|_| is_ground).and_then(|ground| ground.surface_at(point.truncate()));
     Some(ground.map_or(point, |z| point.with_z(z)))
 }

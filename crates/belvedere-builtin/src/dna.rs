@@ -4,7 +4,7 @@ use super::{BuiltinError, SuggestedCamera};
 use crate::noise::seeded;
 use belvedere_core::DVec3;
 use belvedere_scene::molecule::{Atom, Element, ModelTransform, Residue};
-use belvedere_scene::{Crs, Layer, LayerKind, Molecule, MoleculeLayer, MoleculeStyle, Scene, Unit};
+use belvedere_scene::{Crs, Layer, Molecule, MoleculeLayer, MoleculeStyle, Scene, Unit};
 
 /// Turn and rise from one base pair to the next: ten pairs to a turn.
 const TWIST_DEG: f64 = 36.0;
@@ -117,7 +117,7 @@ pub fn dna(seed: u64, pairs: usize) -> Result<(Scene, SuggestedCamera), BuiltinE
     let height = RISE * pairs as f64;
     let style = MoleculeStyle::default();
     let layer = MoleculeLayer::new(molecule, &style, ModelTransform::default())?;
-    let layers = vec![Layer { id: "dna".into(), must_see: false, kind: LayerKind::Molecule(Box::new(layer)) }];
+    let layers = vec![Layer { id: "dna".into(), must_see: false, kind: layer.into() }];
     let title = format!("B-DNA, {pairs} base pairs");
     let eye = DVec3::new(0.0, -1.7 * height.max(24.0), 0.0);
     let camera = SuggestedCamera { title: title.clone(), eye, look_at: DVec3::ZERO, fov_y: 40f64.to_radians() };

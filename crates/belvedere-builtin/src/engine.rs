@@ -118,7 +118,7 @@ mod tests {
 
     fn volume(seed: u64) -> std::sync::Arc<Volume> {
         let (scene, _) = engine(seed).unwrap();
-        let LayerKind::Volume(layer) = &scene.layers[0].kind else { panic!("a volume") };
+        let Some(layer) = scene.layers[0].kind.volume() else { panic!("a volume") };
         layer.volume.clone()
     }
 

@@ -27,7 +27,7 @@ pub use tube::tube;
 use belvedere_core::DVec3;
 use belvedere_scene::molecule::MoleculeError;
 use belvedere_scene::{
-    Color, Heightfield, HeightfieldError, Hidden, Layer, LayerKind, LineFeature, LineLayer, MeshError, Palette, Relief,
+    Color, Heightfield, HeightfieldError, Hidden, Layer, LineFeature, LineLayer, MeshError, Palette, Relief,
     TerrainLayer, VolumeError,
 };
 
@@ -92,7 +92,7 @@ fn ground_layer(heightfield: Heightfield, palette: Palette) -> Layer {
     Layer {
         id: "ground".into(),
         must_see: false,
-        kind: LayerKind::Terrain(TerrainLayer {
+        kind: TerrainLayer {
             heightfield: heightfield.into(),
             drapes: Vec::new(),
             relief: Relief::Swiss,
@@ -101,7 +101,8 @@ fn ground_layer(heightfield: Heightfield, palette: Palette) -> Layer {
             palette,
             contours: None,
             edge: belvedere_scene::Edge::Plain,
-        }),
+        }
+        .into(),
     }
 }
 
@@ -109,7 +110,7 @@ fn line_layer(id: &str, feature: LineFeature) -> Layer {
     Layer {
         id: id.into(),
         must_see: true,
-        kind: LayerKind::Line(LineLayer {
+        kind: LineLayer {
             features: vec![feature],
             color: Color::rgb(215, 48, 31),
             width_px: 3.0,
@@ -119,6 +120,7 @@ fn line_layer(id: &str, feature: LineFeature) -> Layer {
             markers: None,
             label_px: None,
             marker_px: belvedere_scene::SMALL_LETTERS_PX,
-        }),
+        }
+        .into(),
     }
 }

@@ -8,8 +8,8 @@ use super::{BuiltinError, SuggestedCamera, ground_layer, line_layer};
 use crate::route::{RouteCost, RouteError, Window, route_in};
 use belvedere_core::DVec2;
 use belvedere_scene::{
-    AreaFeature, AreaLayer, AreaSurface, Color, Crs, Heightfield, HeightfieldError, Hidden, Layer, LayerKind,
-    LineFeature, NodeState, PaletteName, Scene, Unit, drape_polyline,
+    AreaFeature, AreaLayer, AreaSurface, Color, Crs, Heightfield, HeightfieldError, Hidden, Layer, LineFeature,
+    NodeState, PaletteName, Scene, Unit, drape_polyline,
 };
 
 /// Side of the massif, metres.
@@ -63,7 +63,7 @@ fn lake_layer(lake: Lake) -> Layer {
     Layer {
         id: "lake".into(),
         must_see: false,
-        kind: LayerKind::Area(AreaLayer {
+        kind: AreaLayer {
             features: vec![AreaFeature { style: None, name: "Lake".into(), rings }],
             fill: Color::rgb(74, 133, 168),
             outline: Some(Color::rgb(42, 88, 120)),
@@ -72,7 +72,8 @@ fn lake_layer(lake: Lake) -> Layer {
             hidden: Hidden::Cut,
             lift_m: 0.5,
             label_px: None,
-        }),
+        }
+        .into(),
     }
 }
 

@@ -5,8 +5,8 @@ use super::viewpoint::{Viewpoint, best_viewpoint};
 use super::{BuiltinError, SuggestedCamera, ground_layer, line_layer};
 use belvedere_core::{DVec2, DVec3};
 use belvedere_scene::{
-    AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Color, Crs, Heightfield, Hidden, Layer, LayerKind,
-    LineFeature, NodeState, PaletteName, Scene, Unit, drape_polyline,
+    AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Color, Crs, Heightfield, Hidden, Layer, LineFeature,
+    NodeState, PaletteName, Scene, Unit, drape_polyline,
 };
 
 /// Blocks per side.
@@ -80,7 +80,7 @@ pub fn street(seed: u64) -> Result<(Scene, SuggestedCamera), BuiltinError> {
         ground_layer(terrain, PaletteName::Plain.into()),
         area_layer("blocks", blocks, Color::rgb(222, 217, 207)),
         area_layer("parks", parks, Color::rgb(146, 178, 120)),
-        Layer { id: "towers".into(), must_see: false, kind: LayerKind::Boxes(BoxLayer::new(towers)) },
+        Layer { id: "towers".into(), must_see: false, kind: BoxLayer::new(towers).into() },
         line_layer("route", LineFeature { style: None, name: "Route through town".into(), points }),
     ];
     let camera = SuggestedCamera { title: title.clone(), eye, look_at, fov_y: 45f64.to_radians() };
@@ -91,7 +91,7 @@ fn area_layer(id: &str, features: Vec<AreaFeature>, fill: Color) -> Layer {
     Layer {
         id: id.into(),
         must_see: false,
-        kind: LayerKind::Area(AreaLayer {
+        kind: AreaLayer {
             features,
             fill,
             outline: None,
@@ -100,7 +100,8 @@ fn area_layer(id: &str, features: Vec<AreaFeature>, fill: Color) -> Layer {
             hidden: Hidden::Cut,
             lift_m: 0.1,
             label_px: None,
-        }),
+        }
+        .into(),
     }
 }
 

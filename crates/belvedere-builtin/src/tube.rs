@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn the_channel_runs_inside_a_wall_from_end_to_end() {
         let (scene, _) = tube(7).unwrap();
-        let LayerKind::Volume(layer) = &scene.layers[0].kind else { panic!("a volume") };
+        let Some(layer) = scene.layers[0].kind.volume() else { panic!("a volume") };
         let middle = middle();
         let value = |p: DVec3| layer.volume.at(p).unwrap();
         for (k, p) in middle.iter().enumerate() {

@@ -242,7 +242,7 @@ enum Kind {
 impl Kind {
     fn of(kind: &LayerKind) -> Self {
         match kind {
-            LayerKind::Boxes(_) | LayerKind::Mesh(_) => Self::Solid,
+            LayerKind::Boxes(_) | LayerKind::Mesh(_) | LayerKind::Own(_) => Self::Solid,
             LayerKind::Volume(_) => Self::Cloud,
             _ => Self::Depth,
         }

@@ -3,7 +3,7 @@
 use crate::sample::Sample;
 use belvedere_core::DVec3;
 use belvedere_core::random::Random;
-use belvedere_scene::{BoxLayer, BoxShape, LayerKind, MeshLayer, MoleculeLayer};
+use belvedere_scene::{BoxLayer, BoxShape, LayerKind, MeshLayer, MoleculeLayer, OwnLayer};
 
 /// Samples of a surface, at least and at most.
 const SAMPLES: [f64; 2] = [1000.0, 6000.0];
@@ -31,7 +31,7 @@ pub(crate) fn surface(kind: &LayerKind, spacing: f64) -> Option<SampledSurface> 
     let (name, numbers, triangles) = match kind {
         LayerKind::Boxes(layer) => of_boxes(layer),
         LayerKind::Molecule(layer) => of_molecule(layer),
-        LayerKind::Mesh(layer) => of_mesh(layer),
+        LayerKind::Mesh(layer) | LayerKind::Own(OwnLayer { surface: layer, .. }) => of_mesh(layer),
         LayerKind::Terrain(_)
         | LayerKind::Volume(_)
         | LayerKind::Line(_)

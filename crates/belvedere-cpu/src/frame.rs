@@ -66,7 +66,7 @@ pub(crate) fn needed(job: &RenderJob<'_>, (more_per_pixel, rows): (u64, Option<u
         + if job.scene.paints_over_ground() { 5 } else { 0 }
         + if job.scene.has_see_through() { Veil::BYTES } else { 0 }
         // For volumes whose edges are smooth: colour and depth of what lies behind, light and share absorbed.
-        + if samples > 1 && job.scene.layers.iter().any(|l| matches!(l.kind, LayerKind::Volume(_))) { 14 } else { 0 }
+        + if samples > 1 && job.scene.layers.iter().any(|l| l.kind.volume().is_some()) { 14 } else { 0 }
         + if stylise::is_on(job) { 64 + Relief::bytes(u64::from(samples)) } else { 0 };
     let threads = if job.options.threads == 0 { rayon::current_num_threads() } else { job.options.threads } as u64;
     let layers = 1 + SeeThrough::of(job.scene).len() as u64;

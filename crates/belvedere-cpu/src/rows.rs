@@ -27,7 +27,7 @@ use belvedere_composite::traced_marks;
 use belvedere_composite::unsharp::{DepthGrid, Surroundings};
 use belvedere_composite::veil::{Veil, Veiled};
 use belvedere_scene::{
-    Cancelled, Frame, FrameStats, Instant, LayerKind, PictureRows, PixelGrid, RenderError, RenderJob, Stylisation,
+    Cancelled, Frame, FrameStats, Instant, PictureRows, PixelGrid, RenderError, RenderJob, Stylisation,
 };
 use belvedere_sight::pass;
 use belvedere_sight::sections::Sections;
@@ -45,7 +45,7 @@ pub(crate) type Caches<'a> = (&'a GroundCache<(), Arc<Tree>>, &'a LightCache);
 
 /// What keeps the rasteriser from drawing a job some rows at a time.
 pub(crate) fn whole_only(job: &RenderJob<'_>) -> Option<&'static str> {
-    let has_volumes = job.scene.layers.iter().any(|layer| matches!(layer.kind, LayerKind::Volume(_)));
+    let has_volumes = job.scene.layers.iter().any(|layer| layer.kind.volume().is_some());
     let is_marked = Levels::of(job).is_some_and(|levels| !levels.published) && Marks::are_in(job);
     let reasons = [
         (has_volumes, "its volumes"),

@@ -92,16 +92,13 @@ fn scene(heightfield: Heightfield, crs: belvedere_scene::Crs, features: Vec<(&st
         contours: None,
         edge: belvedere_scene::Edge::Plain,
     };
-    let mut layers = vec![Layer { id: "ground".into(), must_see: false, kind: LayerKind::Terrain(ground) }];
+    let mut layers = vec![Layer { id: "ground".into(), must_see: false, kind: ground.into() }];
     layers.extend(features.into_iter().map(|(id, kind)| Layer { id: id.into(), must_see: true, kind }));
     Scene { crs, layers, ..Scene::default() }
 }
 
 fn ways(scene: &Scene) -> Vec<Vec<DVec2>> {
-    let lines = scene.layers.iter().filter_map(|l| match &l.kind {
-        LayerKind::Line(l) => Some(&l.features),
-        _ => None,
-    });
+    let lines = scene.layers.iter().filter_map(|l| l.kind.lines().map(|l| &l.features));
     lines.flatten().map(|f| f.points.iter().map(|p| p.truncate()).collect()).collect()
 }
 

@@ -173,6 +173,7 @@ pub(super) fn required_features(scene: &Scene) -> Vec<RequiredFeature> {
             LayerKind::Terrain(_)
             | LayerKind::Boxes(_)
             | LayerKind::Mesh(_)
+            | LayerKind::Own(_)
             | LayerKind::Molecule(_)
             | LayerKind::Volume(_) => (0.0, Vec::new()),
         };

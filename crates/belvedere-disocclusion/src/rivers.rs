@@ -7,7 +7,7 @@
 
 use crate::points::mesh_crossings;
 use belvedere_core::DVec2;
-use belvedere_scene::{CellTriangle, LayerKind, Scene};
+use belvedere_scene::{CellTriangle, Scene};
 use serde::Serialize;
 
 /// Height by which a displaced river may rise downstream more than the elevation model does, metres.
@@ -53,10 +53,10 @@ impl RiverLine {
     pub fn of(scene: &Scene, ids: &[String]) -> Result<Vec<Self>, RiverError> {
         let mut out = Vec::new();
         for id in ids {
-            let known = || scene.layers.iter().filter(|l| matches!(l.kind, LayerKind::Line(_))).map(|l| l.id.clone());
+            let known = || scene.layers.iter().filter(|l| l.kind.lines().is_some()).map(|l| l.id.clone());
             let wrong = || RiverError { id: id.clone(), lines: known().collect() };
             let (layer, found) = scene.layers.iter().enumerate().find(|(_, l)| l.id == *id).ok_or_else(wrong)?;
-            let LayerKind::Line(lines) = &found.kind else { return Err(wrong()) };
+            let Some(lines) = found.kind.lines() else { return Err(wrong()) };
             out.extend(lines.features.iter().enumerate().map(|(feature, line)| Self {
                 layer,
                 feature,

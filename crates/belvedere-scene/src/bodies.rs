@@ -24,8 +24,7 @@ impl Bodies {
             LayerKind::Boxes(layer) if layer.rigid && !layer.boxes.is_empty() => {
                 Some(Self { of_triangle: None, feet: layer.boxes.iter().map(|b| b.base).collect() })
             }
-            LayerKind::Mesh(layer) => Self::of_mesh(&layer.mesh, &layer.rigid),
-            _ => None,
+            kind => kind.mesh().and_then(|layer| Self::of_mesh(&layer.mesh, &layer.rigid)),
         }
     }
 

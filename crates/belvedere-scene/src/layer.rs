@@ -1,8 +1,8 @@
 //! Layers and their styles.
 
 use crate::{
-    Climate, Color, DistanceMarkers, FeatureStyle, Heightfield, Hidden, MeshLayer, MoleculeLayer, PointStyle, Ramp,
-    VolumeLayer,
+    Climate, Color, DistanceMarkers, FeatureStyle, Heightfield, Hidden, MeshLayer, MoleculeLayer, OwnLayer, PointStyle,
+    Ramp, VolumeLayer,
 };
 use belvedere_core::{Aabb, DVec2, DVec3, Pinhole};
 use serde::{Deserialize, Serialize};
@@ -483,6 +483,8 @@ pub enum LayerKind {
     Area(AreaLayer),
     /// Points on the ground.
     Point(PointLayer),
+    /// A kind that a program brings along.
+    Own(OwnLayer),
 }
 
 /// One layer of a scene.
@@ -502,7 +504,7 @@ impl Layer {
         match &self.kind {
             LayerKind::Terrain(t) => t.heightfield.bounds(),
             LayerKind::Boxes(b) => Aabb::of(b.boxes.iter().flat_map(BoxShape::corners)),
-            LayerKind::Mesh(_) | LayerKind::Molecule(_) => {
+            LayerKind::Mesh(_) | LayerKind::Molecule(_) | LayerKind::Own(_) => {
                 self.kind.triangles().map_or(Aabb::EMPTY, |m| m.mesh.bounds())
             }
             LayerKind::Volume(v) => v.volume.bounds(),
@@ -520,7 +522,7 @@ impl LayerKind {
             Self::Line(l) => &l.features.get(index)?.name,
             Self::Area(a) => &a.features.get(index)?.name,
             Self::Point(p) => &p.features.get(index)?.name,
-            Self::Terrain(_) | Self::Boxes(_) | Self::Mesh(_) | Self::Molecule(_) | Self::Volume(_) => return None,
+            _ => return None,
         };
         Some(name.as_str()).filter(|name| !name.is_empty())
     }
@@ -531,7 +533,7 @@ impl LayerKind {
             Self::Line(l) => l.features.len(),
             Self::Area(a) => a.features.len(),
             Self::Point(p) => p.features.len(),
-            Self::Terrain(_) | Self::Boxes(_) | Self::Mesh(_) | Self::Molecule(_) | Self::Volume(_) => 0,
+            _ => 0,
         };
         let first = self.feature_name(0);
         first.filter(|_| (1..count).all(|i| self.feature_name(i) == first))
@@ -581,18 +583,17 @@ impl LayerKind {
     pub fn set_opacity(&mut self, opacity: f32) {
         match self {
             Self::Boxes(boxes) => boxes.opacity = opacity,
-            Self::Mesh(mesh) => mesh.opacity = opacity,
+            Self::Mesh(mesh) | Self::Own(OwnLayer { surface: mesh, .. }) => mesh.opacity = opacity,
             Self::Molecule(molecule) => molecule.surface.opacity = opacity,
             _ => {}
         }
     }
 
-    /// The triangles of a mesh, or of the surface of a molecule; `None` for everything else.
+    /// The triangles of a mesh, of a kind of one's own, or of the surface of a molecule; `None` for everything else.
     pub fn triangles(&self) -> Option<&MeshLayer> {
         match self {
-            Self::Mesh(mesh) => Some(mesh),
             Self::Molecule(molecule) => Some(&molecule.surface),
-            _ => None,
+            other => other.mesh(),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Layers that move.
 
-use crate::{BoxShape, LayerKind, MeshLayer, Placement};
+use crate::{BoxShape, LayerKind, Placement};
 use belvedere_core::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -89,7 +89,11 @@ impl LayerKind {
                 layer.boxes.iter_mut().for_each(|b| *b = place(b));
                 Some(Self::Boxes(layer))
             }
-            Self::Mesh(layer) => Some(Self::Mesh(MeshLayer { mesh: layer.mesh.placed(at), ..layer.clone() })),
+            Self::Mesh(_) | Self::Own(_) => {
+                let mut placed = self.clone();
+                placed.mesh_mut().into_iter().for_each(|layer| layer.mesh = layer.mesh.placed(at));
+                Some(placed)
+            }
             _ => None,
         }
     }
@@ -98,7 +102,7 @@ impl LayerKind {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{BoxLayer, Color, Mesh, MeshColors};
+    use crate::{BoxLayer, Color, Mesh, MeshColors, MeshLayer};
 
     fn key(t: f64, x: f64, yaw_deg: f64) -> (f64, Placement) {
         (t, Placement { translate: DVec3::new(x, 0.0, 1.0), yaw: yaw_deg.to_radians() })

@@ -62,14 +62,14 @@ pub struct Scene {
 
 impl Scene {
     /// This scene with another layer, whose features are not required.
-    pub fn with_layer(mut self, id: impl Into<String>, kind: LayerKind) -> Self {
-        self.layers.push(Layer { id: id.into(), must_see: false, kind });
+    pub fn with_layer(mut self, id: impl Into<String>, kind: impl Into<LayerKind>) -> Self {
+        self.layers.push(Layer { id: id.into(), must_see: false, kind: kind.into() });
         self
     }
 
     /// This scene with ground in the usual style.
     pub fn with_terrain(self, id: impl Into<String>, heightfield: impl Into<Arc<Heightfield>>) -> Self {
-        self.with_layer(id, LayerKind::Terrain(TerrainLayer::new(heightfield)))
+        self.with_layer(id, TerrainLayer::new(heightfield))
     }
 
     /// This scene with a line that must be seen, in the usual style: laid on the terrain, or at height 0 in a scene without
@@ -93,15 +93,12 @@ impl Scene {
 
     /// Whether something is painted on ground that was drawn: lines of equal height.
     pub fn paints_over_ground(&self) -> bool {
-        self.layers.iter().any(|layer| matches!(&layer.kind, LayerKind::Terrain(t) if t.contours.is_some()))
+        self.layers.iter().any(|layer| layer.kind.terrain().is_some_and(|t| t.contours.is_some()))
     }
 
     /// The first terrain layer's heightfield.
     pub fn terrain(&self) -> Option<&Heightfield> {
-        self.layers.iter().find_map(|l| match &l.kind {
-            LayerKind::Terrain(t) => Some(&*t.heightfield),
-            _ => None,
-        })
+        self.layers.iter().find_map(|l| l.kind.terrain().map(|t| &*t.heightfield))
     }
 
     /// Layers that must be seen, with their indices.
@@ -143,7 +140,7 @@ mod tests {
             id: id.into(),
             layers: layers.iter().map(|l| (*l).to_owned()).collect(),
         };
-        let layer = |scene: Scene, id: &str| scene.with_layer(id, LayerKind::Boxes(BoxLayer::default()));
+        let layer = |scene: Scene, id: &str| scene.with_layer(id, BoxLayer::default());
         let scene = ["ground", "houses", "blocks", "church"].into_iter().fold(Scene::default(), layer);
         let representations = vec![of("loa0", &["houses", "church"]), of("loa1", &["blocks", "church"])];
         let scene = Scene { representations, ..scene };

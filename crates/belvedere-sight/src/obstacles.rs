@@ -117,7 +117,7 @@ impl<'a> Obstacles<'a> {
                     let kept = b.boxes.iter().enumerate().filter(|(k, _)| !left_out.contains(&(*k as u32)));
                     boxes.extend(kept.map(|(k, shape)| ([i, k], shape)));
                 }
-                LayerKind::Mesh(_) | LayerKind::Molecule(_) => {
+                LayerKind::Mesh(_) | LayerKind::Own(_) | LayerKind::Molecule(_) => {
                     let Some(m) = layer.kind.triangles() else { continue };
                     if !left_out.is_empty() && held == LayerPart::Everything {
                         meshes.push((i, MeshTree::without_parts(&m.mesh, left_out)));

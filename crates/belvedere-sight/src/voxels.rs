@@ -4,7 +4,7 @@
 
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::volume::BRICK;
-use belvedere_scene::{LayerKind, Scene, VolumeLayer};
+use belvedere_scene::{Scene, VolumeLayer};
 
 /// Largest distance of a chord from the ray, voxel edges.
 const NEAR: f64 = 0.1;
@@ -27,9 +27,8 @@ impl<'a> Voxels<'a> {
     /// The volumes of `scene` but for some layers, by their index; one pass over their bricks.
     pub fn without(scene: &'a Scene, layers: &[usize]) -> Self {
         let others = scene.layers.iter().enumerate().filter(|(i, _)| !layers.contains(i));
-        let volumes = others.filter_map(|(_, layer)| match &layer.kind {
-            LayerKind::Volume(v) => Some(Absorber::new(v)).filter(|a| a.visible.contains(&true)),
-            _ => None,
+        let volumes = others.filter_map(|(_, layer)| {
+            layer.kind.volume().map(|v| Absorber::new(v)).filter(|a| a.visible.contains(&true))
         });
         Self { volumes: volumes.collect() }
     }
@@ -219,7 +218,7 @@ mod tests {
         let volume = Volume::new([30; 3], DMat3::from_diagonal(DVec3::splat(2.0)), DVec3::ZERO, values).unwrap();
         let point = |value, opacity| TransferPoint { value, color: Color::rgb(0, 0, 0), opacity };
         let transfer = TransferFunction::new("test", vec![point(50.0, 0.0), point(50.0, opacity)], 1.0).unwrap();
-        let kind = LayerKind::Volume(VolumeLayer::new(volume, transfer));
+        let kind = VolumeLayer::new(volume, transfer).into();
         let layers = vec![Layer { id: "wall".into(), must_see: false, kind }];
         Scene { title: String::new(), crs: Crs::Local, unit: Unit::Voxel, layers, ..Scene::default() }
     }

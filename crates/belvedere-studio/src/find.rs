@@ -3,7 +3,7 @@
 use super::residues::name;
 use belvedere::core::{Aabb, DVec2, DVec3};
 use belvedere::places::Place;
-use belvedere::scene::{Heightfield, Layer, LayerKind, MeshLayer, MoleculeLayer, Scene};
+use belvedere::scene::{Heightfield, Layer, LayerKind, MeshLayer, MoleculeLayer, OwnLayer, Scene};
 use belvedere::{BelvedereError, Session, targets};
 use std::collections::HashMap;
 
@@ -142,7 +142,7 @@ fn within(scene: &Scene, layer: &Layer) -> Vec<(String, Aabb)> {
             let named = point.features.iter().filter(|f| !f.name.is_empty());
             named.map(|f| (f.name.clone(), Aabb::of([f.position]))).collect()
         }
-        LayerKind::Mesh(mesh) => parts(mesh),
+        LayerKind::Mesh(mesh) | LayerKind::Own(OwnLayer { surface: mesh, .. }) => parts(mesh),
         LayerKind::Molecule(molecule) => residues(molecule),
         LayerKind::Boxes(boxes) => {
             let name = |i: usize| format!("{}/{}", layer.id, i + 1);
@@ -278,7 +278,7 @@ pub fn place_in(session: &Session, text: &str) -> Option<Result<(DVec3, Option<S
 /// The box around the atoms that a selection such as `chain B and resi 12-18` means in a molecule of the scene; `None` for other texts
 /// and without such atoms.
 pub fn atoms_in(scene: &Scene, text: &str) -> Option<Aabb> {
-    let has_atoms = scene.layers.iter().any(|layer| matches!(layer.kind, LayerKind::Molecule(_)));
+    let has_atoms = scene.layers.iter().any(|layer| layer.kind.molecule().is_some());
     if !has_atoms || text.trim().is_empty() || targets::point(text).is_some() {
         return None;
     }
@@ -301,8 +301,7 @@ mod tests {
         let features = names.enumerate().map(feature).collect();
         let color = Color::rgb(0, 0, 0);
         let (size_px, style, hidden, lift_m) = (5.0, PointStyle::default(), Default::default(), 0.0);
-        Scene::default()
-            .with_layer("huts", LayerKind::Point(PointLayer { features, color, size_px, style, hidden, lift_m }))
+        Scene::default().with_layer("huts", PointLayer { features, color, size_px, style, hidden, lift_m })
     }
 
     fn names<'i>(index: &'i NameIndex, text: &str) -> Vec<&'i str> {
@@ -331,7 +330,7 @@ mod tests {
             style: None,
         };
         let line = LineLayer::new(vec![piece(0.0), piece(7.0)], Color::rgb(0, 0, 0));
-        let index = NameIndex::of(&Scene::default().with_layer("rivers", LayerKind::Line(line)));
+        let index = NameIndex::of(&Scene::default().with_layer("rivers", line));
         let found = index.search("inn", 5);
         assert_eq!(found.total, 1);
         let bounds = index.get(found.best[0]).expect("it").bounds;
@@ -359,8 +358,8 @@ mod tests {
         let layer = MoleculeLayer::new(molecule, &style, ModelTransform::default()).expect("layer");
         let shape = BoxShape { base: DVec3::ZERO, size: DVec3::ONE, yaw: 0.0, color: Color::rgb(0, 0, 0) };
         let scene = Scene { unit: Unit::Angstrom, ..Scene::default() }
-            .with_layer("protein", LayerKind::Molecule(Box::new(layer)))
-            .with_layer("towers", LayerKind::Boxes(BoxLayer::new(vec![shape])));
+            .with_layer("protein", layer)
+            .with_layer("towers", BoxLayer::new(vec![shape]));
         let index = NameIndex::of(&scene);
         assert_eq!(names(&index, "a:12"), ["A:12 ALA", "A:120 GLY"]);
         assert_eq!((names(&index, "chain b"), names(&index, "towers/1")), (vec!["chain B"], vec!["towers/1"]));

@@ -4,7 +4,7 @@ use super::residues::residue_at;
 use belvedere::Session;
 use belvedere::core::{DVec2, DVec3};
 use belvedere::pick::pick;
-use belvedere::scene::{BoxShape, LayerKind, Progress};
+use belvedere::scene::{BoxShape, LayerKind, OwnLayer, Progress};
 
 /// The object at a pixel of the picture, as a constructor's target: a part of a mesh by its name, a box as `LAYER/NUMBER`, a residue of a
 /// molecule as a selection of atoms, else the whole layer; `None` if the pixel shows no object.
@@ -18,7 +18,9 @@ pub fn object_at(session: &Session, layer: &str, pixel: DVec2, point: Option<DVe
             let nearest = boxes.boxes.iter().enumerate().min_by(|a, b| off(a.1).total_cmp(&off(b.1)));
             nearest.filter(|_| point.is_some()).map(|(k, _)| format!("{layer}/{}", k + 1))
         }
-        LayerKind::Mesh(mesh) if mesh.names.iter().any(|name| !name.is_empty()) => {
+        LayerKind::Mesh(mesh) | LayerKind::Own(OwnLayer { surface: mesh, .. })
+            if mesh.names.iter().any(|name| !name.is_empty()) =>
+        {
             let picked = pick(session, &[pixel.to_array()], &Progress::silent()).ok()?.pixels.pop()??;
             picked.feature.filter(|_| picked.layer == layer)
         }

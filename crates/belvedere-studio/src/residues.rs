@@ -182,7 +182,7 @@ mod tests {
         let molecule = Molecule::new((0..all.len()).map(atom).collect(), all.map(residue).to_vec(), &[]);
         let style = MoleculeStyle { selection: Selection::dry(), ..MoleculeStyle::default() };
         let layer = MoleculeLayer::new(molecule.expect("molecule"), &style, ModelTransform::default()).expect("layer");
-        Scene { unit: Unit::Angstrom, ..Scene::default() }.with_layer("m", LayerKind::Molecule(Box::new(layer)))
+        Scene { unit: Unit::Angstrom, ..Scene::default() }.with_layer("m", layer)
     }
 
     /// Residues that a selection means.

@@ -4,7 +4,7 @@
 
 use belvedere::core::map::StageMap;
 use belvedere::core::{DMat3, DVec2, DVec3, Miss, Pinhole, SpaceMap, Stage, View};
-use belvedere::scene::{BoxLayer, BoxShape, Color, Heightfield, LayerKind, Scene};
+use belvedere::scene::{BoxLayer, BoxShape, Color, Heightfield, Scene};
 use belvedere::{BelvedereError, PictureOptions, Session};
 use std::path::Path;
 
@@ -56,9 +56,7 @@ pub fn run(folder: &Path) -> Result<[Option<String>; 2], Box<dyn std::error::Err
         yaw: 0.0,
         color: Color::rgb(201, 194, 184),
     };
-    let scene = Scene::default()
-        .with_terrain("ground", ground)
-        .with_layer("building", LayerKind::Boxes(BoxLayer::new(vec![building])));
+    let scene = Scene::default().with_terrain("ground", ground).with_layer("building", BoxLayer::new(vec![building]));
 
     let (eye, target) = (DVec3::new(0.0, 0.0, 30.0), DVec3::new(0.0, 100.0, 40.0));
     let camera = Pinhole::looking(eye, target).fov_y_deg(70.0).image([320, 240]).near(1.0).build()?;

@@ -364,10 +364,10 @@ fn checked(frames: u32) -> Result<u32, BelvedereError> {
 
 /// The longest line of a layer, joined with other lines that continue it.
 fn route(scene: &Scene, id: &str) -> Result<Vec<DVec3>, BelvedereError> {
-    let lines = |kind: &LayerKind| matches!(kind, LayerKind::Line(_));
+    let lines = |kind: &LayerKind| kind.lines().is_some();
     let known: Vec<&str> = scene.layers.iter().filter(|l| lines(&l.kind)).map(|l| l.id.as_str()).collect();
     let layer = scene.layers.iter().find(|l| l.id == id);
-    let Some(LayerKind::Line(layer)) = layer.map(|l| &l.kind) else {
+    let Some(layer) = layer.and_then(|layer| layer.kind.lines()) else {
         let hint = if known.is_empty() { "the scene has none".to_owned() } else { scene_file::suggestion(id, &known) };
         return Err(BelvedereError::Animation(format!("along: \"{id}\" is no line layer of the scene; {hint}")));
     };

@@ -81,13 +81,13 @@ fn named(name: &str) -> Option<String> {
 fn surface(scene: &Scene, seen: &RayHit) -> Option<Picked> {
     let layer = scene.layers.get(seen.layer)?;
     let (mut id, mut feature) = (&layer.id, None);
-    if let LayerKind::Mesh(m) = &layer.kind {
+    if let Some(m) = layer.kind.mesh() {
         feature = seen.triangle().and_then(|t| m.name_of(t)).map(str::to_owned);
     }
-    if let LayerKind::Molecule(m) = &layer.kind {
+    if let Some(m) = layer.kind.molecule() {
         feature = seen.triangle().and_then(|t| m.name_of(t));
     }
-    if let LayerKind::Terrain(_) = layer.kind {
+    if let Some(_) = layer.kind.terrain() {
         for (other, area) in scene.layers.iter().filter_map(area_of) {
             let hit = area.features.iter().find(|f| polygon::is_inside(&f.rings, seen.point.truncate()));
             if let Some(hit) = hit {
@@ -99,10 +99,7 @@ fn surface(scene: &Scene, seen: &RayHit) -> Option<Picked> {
 }
 
 fn area_of(layer: &Layer) -> Option<(&Layer, &AreaLayer)> {
-    match &layer.kind {
-        LayerKind::Area(a) => Some((layer, a)),
-        _ => None,
-    }
+    layer.kind.areas().map(|a| (layer, a))
 }
 
 /// Images of lines and points, in the order of the layers.

@@ -146,7 +146,9 @@ impl Session {
         roots: Roots,
         solving: Option<&mut Solving<'_>>,
     ) -> Result<Self, BelvedereError> {
-        source.document.renderer.as_ref().map_or(Ok(()), renderers::check)?;
+        if let Some(unknown) = source.document.renderer.as_ref().and_then(|name| renderers::check(name).err()) {
+            return Err(source.error(&["renderer"], unknown).into());
+        }
         let resolved = Resolved::of(source, roots, &loaded.scene, solving, true)?;
         Ok(Self::together(loaded.drawn_for(&resolved), resolved))
     }

@@ -34,10 +34,7 @@ pub fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError> {
     if let Some(target) = part(scene, see) {
         return Ok(target);
     }
-    let molecules = scene.layers.iter().enumerate().filter_map(|(index, l)| match &l.kind {
-        LayerKind::Molecule(m) => Some((index, m)),
-        _ => None,
-    });
+    let molecules = scene.layers.iter().enumerate().filter_map(|(index, l)| l.kind.molecule().map(|m| (index, m)));
     let mut complaint = None;
     for (index, layer) in molecules {
         match Selection::parse(see) {
@@ -74,10 +71,7 @@ pub(crate) fn part(scene: &Scene, name: &str) -> Option<Target> {
 }
 
 fn meshes(scene: &Scene) -> impl Iterator<Item = (usize, &MeshLayer)> {
-    scene.layers.iter().enumerate().filter_map(|(index, layer)| match &layer.kind {
-        LayerKind::Mesh(mesh) => Some((index, mesh)),
-        _ => None,
-    })
+    scene.layers.iter().enumerate().filter_map(|(index, layer)| layer.kind.mesh().map(|mesh| (index, mesh)))
 }
 
 #[cfg(test)]

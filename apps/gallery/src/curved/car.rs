@@ -8,7 +8,7 @@ use anyhow::Result;
 use belvedere::Session;
 use belvedere::core::DVec3;
 use belvedere::core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
-use belvedere::scene::{BoxShape, Color, LayerKind};
+use belvedere::scene::{BoxShape, Color};
 
 const SCENE: &str = include_str!("scenes/car.toml");
 const CAR: &str = "car";
@@ -67,9 +67,6 @@ pub(super) fn across(easel: &Easel<'_>) -> Result<Figure> {
 /// Largest distance of the image of an edge of the car from the chord between its ends, as a share of the chord's length.
 fn bent_edges(session: &Session) -> f64 {
     let layers = session.scene().layers.iter().filter(|l| l.id == CAR);
-    let boxes = layers.filter_map(|l| match &l.kind {
-        LayerKind::Boxes(layer) => Some(&layer.boxes),
-        _ => None,
-    });
+    let boxes = layers.filter_map(|l| l.kind.boxes().map(|layer| &layer.boxes));
     boxes.flatten().map(|shape| bent_edges_of(shape, session.view())).fold(0.0, f64::max)
 }

@@ -8,7 +8,7 @@ use belvedere::Session;
 use belvedere::composite::canvas::Canvas;
 use belvedere::core::map::curved_rays::{Model, TurnSpec};
 use belvedere::core::{Aabb, DVec2, DVec3};
-use belvedere::scene::{Color, LayerKind};
+use belvedere::scene::Color;
 
 const SCENE: &str = include_str!("../../../../scenes/dna.toml");
 /// Layer of the required feature.
@@ -21,7 +21,7 @@ const POINTS: u32 = 24;
 /// Corners of the surface of the atoms that must be seen.
 fn wanted_corners(session: &Session) -> Result<Vec<DVec3>> {
     for layer in &session.scene().layers {
-        let LayerKind::Molecule(layer) = &layer.kind else { continue };
+        let Some(layer) = layer.kind.molecule() else { continue };
         let Some(wanted) = &layer.wanted else { continue };
         let (mask, mesh) = (layer.mask_of(wanted), &layer.surface.mesh);
         let shown = |t: usize| mesh.part(t).is_some_and(|atom| mask.get(atom as usize) == Some(&true));

@@ -2,7 +2,7 @@
 
 use super::area::Area;
 use belvedere::disocclusion::internals::NO_CELL;
-use belvedere::scene::{Drape, LayerKind, PaletteName, Scene};
+use belvedere::scene::{Drape, PaletteName, Scene};
 
 /// Opacity of the colours over the relief.
 const ALPHA: u8 = 215;
@@ -22,7 +22,7 @@ pub(crate) fn painted(area: &Area) -> Scene {
     };
     let mut scene = area.session.scene().clone();
     for layer in &mut scene.layers {
-        if let LayerKind::Terrain(terrain) = &mut layer.kind {
+        if let Some(terrain) = layer.kind.terrain_mut() {
             terrain.drapes = vec![drape.clone()];
             terrain.palette = PaletteName::Plain.into();
         }

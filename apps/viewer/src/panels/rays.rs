@@ -140,10 +140,9 @@ fn in_sight(target: &str, seen: Option<f64>) -> String {
 
 /// Length of the path of a preview, scene units.
 fn path_length(model: &Model, constructor: &ConstructorDoc) -> Option<f64> {
-    use belvedere::scene::LayerKind;
     let scene = model.shown.as_ref()?.session.scene();
     let layer = scene.layers.iter().find(|layer| Some(&layer.id) == constructor.path.as_ref())?;
-    let LayerKind::Line(line) = &layer.kind else { return None };
+    let Some(line) = layer.kind.lines() else { return None };
     let length = |points: &[DVec3]| points.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f64>();
     line.features.iter().map(|feature| length(&feature.points)).reduce(f64::max)
 }

@@ -20,24 +20,11 @@ fn terrain(scene: &Scene) -> &Heightfield {
 }
 
 fn must_see(scene: &Scene) -> &[DVec3] {
-    scene
-        .must_see()
-        .find_map(|(_, l)| match &l.kind {
-            LayerKind::Line(l) => Some(l.features[0].points.as_slice()),
-            _ => None,
-        })
-        .unwrap()
+    scene.must_see().find_map(|(_, l)| l.kind.lines().map(|l| l.features[0].points.as_slice())).unwrap()
 }
 
 fn boxes(scene: &Scene) -> &[BoxShape] {
-    scene
-        .layers
-        .iter()
-        .find_map(|l| match &l.kind {
-            LayerKind::Boxes(b) => Some(b.boxes.as_slice()),
-            _ => None,
-        })
-        .unwrap_or_default()
+    scene.layers.iter().find_map(|l| l.kind.boxes().map(|b| b.boxes.as_slice())).unwrap_or_default()
 }
 
 /// Brute force: 2000 samples between eye and point, on the drawn surface and in the boxes.

@@ -116,7 +116,7 @@ impl Marks {
 
     /// Whether the marks of a job stand where the sky begins: names of points do.
     pub fn read_skyline(job: &RenderJob<'_>) -> bool {
-        let named = |kind: &LayerKind| matches!(kind, LayerKind::Point(p) if p.style.label_px.is_some());
+        let named = |kind: &LayerKind| kind.points().is_some_and(|p| p.style.label_px.is_some());
         job.scene.layers.iter().any(|layer| named(&layer.kind))
     }
 

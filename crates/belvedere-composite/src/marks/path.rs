@@ -261,7 +261,7 @@ impl Tracer<'_> {
 mod tests {
     use super::*;
     use belvedere_core::{Pinhole, Projection};
-    use belvedere_scene::{Layer, LayerKind, PaletteName, Relief, TerrainLayer};
+    use belvedere_scene::{Layer, PaletteName, Relief, TerrainLayer};
 
     /// Waves of 400 over a square of 20,000 by nodes 50 apart.
     fn ground() -> Scene {
@@ -279,7 +279,7 @@ mod tests {
             contours: None,
             edge: belvedere_scene::Edge::Plain,
         };
-        let layer = Layer { id: "ground".into(), must_see: false, kind: LayerKind::Terrain(terrain) };
+        let layer = Layer { id: "ground".into(), must_see: false, kind: terrain.into() };
         Scene { layers: vec![layer], ..Scene::default() }
     }
 

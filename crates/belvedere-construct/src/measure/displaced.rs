@@ -4,7 +4,7 @@
 use crate::sample::Sample;
 use belvedere_core::grid::Grid;
 use belvedere_core::{DVec2, SpaceMap, Stage, View};
-use belvedere_scene::{LayerKind, Scene};
+use belvedere_scene::Scene;
 use belvedere_sight::{DisplacedGround, Field};
 
 /// Depth under the ground down to which a line of sight still counts as clear, scene units: rounding.
@@ -34,10 +34,8 @@ impl DisplacedSight {
             }
         }
         let delta = delta?;
-        let mut grounds = scene.layers.iter().enumerate().filter_map(|(i, l)| match &l.kind {
-            LayerKind::Terrain(t) => Some((i, &t.heightfield)),
-            _ => None,
-        });
+        let mut grounds =
+            scene.layers.iter().enumerate().filter_map(|(i, l)| l.kind.terrain().map(|t| (i, &t.heightfield)));
         let (layer, hf) = grounds.next()?;
         if grounds.next().is_some() {
             return None;

@@ -2,7 +2,7 @@
 //! the picture and tested against each position, however small they are. A drawn picture resolves no more than its pixels.
 
 use belvedere_core::{DVec2, DVec3, View};
-use belvedere_scene::{Heightfield, LayerKind, Scene};
+use belvedere_scene::{Heightfield, Scene};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -81,7 +81,7 @@ pub(super) fn depths(scene: &Scene, view: &View, places: &[DVec2], flat: bool) -
     let found: Vec<AtomicU64> = places.iter().map(|_| AtomicU64::new(f64::INFINITY.to_bits())).collect();
     let bins = Bins::new(places, view.pinhole().image);
     for layer in &scene.layers {
-        if let LayerKind::Terrain(terrain) = &layer.kind {
+        if let Some(terrain) = layer.kind.terrain() {
             over_terrain(&terrain.heightfield, view, &bins, (&found, flat));
         }
     }

@@ -2,7 +2,7 @@
 
 use super::path::Path;
 use belvedere_core::{DVec3, Pinhole};
-use belvedere_scene::{LayerKind, Scene, VolumeLayer};
+use belvedere_scene::{Scene, VolumeLayer};
 use belvedere_sight::Obstacles;
 
 /// Distance behind each position of a path up to which an eye may stand, scene units.
@@ -117,10 +117,7 @@ pub(super) fn vessels<'a>(scene: &'a Scene, path: &Path) -> Vec<&'a VolumeLayer>
         let clear = |k: &u32| opacity(layer, at(*k)).is_some_and(|opacity| opacity < CLEAR);
         (0..LOOKED_AT).filter(clear).count() as f64 >= MOSTLY * f64::from(LOOKED_AT)
     };
-    let volumes = scene.layers.iter().filter_map(|layer| match &layer.kind {
-        LayerKind::Volume(layer) => Some(layer),
-        _ => None,
-    });
+    let volumes = scene.layers.iter().filter_map(|layer| layer.kind.volume());
     volumes.filter(runs_through).collect()
 }
 

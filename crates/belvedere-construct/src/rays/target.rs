@@ -3,7 +3,7 @@
 use super::surface_points;
 use crate::surface_samples::spread;
 use belvedere_core::{Aabb, DVec2, DVec3, View};
-use belvedere_scene::{LayerKind, Scene, Unit};
+use belvedere_scene::{LayerKind, OwnLayer, Scene, Unit};
 use belvedere_sight::{Obstacles, SightOptions, Voxels};
 use std::sync::Arc;
 
@@ -58,7 +58,7 @@ impl Target {
                 let points = layer.visible_voxels(MOST_BALLS);
                 (!points.is_empty()).then(|| Self { own_layers: vec![index], ..Self::points(points) })
             }
-            LayerKind::Mesh(m) => match &m.wanted {
+            LayerKind::Mesh(m) | LayerKind::Own(OwnLayer { surface: m, .. }) => match &m.wanted {
                 Some(parts) => Self::parts(scene, index, parts),
                 None => {
                     let points = surface_points::on_triangles((0..m.mesh.triangles().len()).map(|t| m.mesh.corners(t)));
@@ -84,7 +84,7 @@ impl Target {
         let mut parts = parts.to_vec();
         parts.sort_unstable();
         let (bounds, points) = match &scene.layers.get(index)?.kind {
-            LayerKind::Mesh(layer) => {
+            LayerKind::Mesh(layer) | LayerKind::Own(OwnLayer { surface: layer, .. }) => {
                 let mesh = &layer.mesh;
                 let is_own = |&t: &usize| mesh.part(t).is_some_and(|part| parts.binary_search(&part).is_ok());
                 let own: Vec<usize> = (0..mesh.triangles().len()).filter(is_own).collect();
@@ -103,7 +103,7 @@ impl Target {
     /// Atoms of a molecule, by their numbers: as balls, or where they are drawn as ribbons or smooth surfaces by points all over these. Those
     /// that are not drawn, or buried under a smooth surface, are left out. `None` if none is drawn.
     pub fn atoms(scene: &Scene, index: usize, atoms: &[usize]) -> Option<Self> {
-        let LayerKind::Molecule(layer) = &scene.layers.get(index)?.kind else { return None };
+        let Some(layer) = scene.layers.get(index)?.kind.molecule() else { return None };
         let mesh = &layer.surface.mesh;
         let mut drawn = vec![false; layer.molecule.atoms().len()];
         for part in (0..mesh.triangles().len()).filter_map(|t| mesh.part(t)) {
@@ -227,7 +227,7 @@ impl<'a> TargetSight<'a> {
         };
         // Molecules and volumes have no ground.
         let lowest = (scene.unit == Unit::Metre && !bounds.is_empty()).then_some(bounds.min.z);
-        let is_clear = !scene.layers.iter().any(|layer| matches!(layer.kind, LayerKind::Volume(_)));
+        let is_clear = !scene.layers.iter().any(|layer| layer.kind.volume().is_some());
         let (obstacles, voxels) = (Arc::new(obstacles), Arc::new(voxels));
         Self { scene, lowest, target, obstacles, voxels, is_clear, sight }
     }

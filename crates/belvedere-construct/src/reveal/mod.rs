@@ -25,7 +25,7 @@ use crate::sample::{Amount, SampledFeature};
 use crate::samples::{default_spacing, sample_features};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{DVec2, DVec3, View, Warning, WarningKind};
-use belvedere_scene::{Heightfield, LayerKind, Progress, Scene, Unit};
+use belvedere_scene::{Heightfield, Progress, Scene, Unit};
 use choose::Base;
 use evaluate::Evaluator;
 use search::Candidate;
@@ -157,7 +157,7 @@ const FLAT_CELLS: f64 = 256.0;
 /// Level ground under a city without terrain, at the median height of its lines and points that must be seen; `None` if there is no such
 /// scene.
 fn flat_ground(scene: &Scene) -> Option<Heightfield> {
-    let has_mesh = scene.layers.iter().any(|l| matches!(l.kind, LayerKind::Mesh(_)));
+    let has_mesh = scene.layers.iter().any(|l| l.kind.mesh().is_some());
     let bounds = scene.bounds();
     if scene.unit != Unit::Metre || !has_mesh || bounds.is_empty() {
         return None;

@@ -5,7 +5,7 @@ use belvedere_construct::{RevealMemory, RevealOptions, reveal};
 use belvedere_io::load_vectors;
 use belvedere_io::vector::lines_on_terrain;
 use belvedere_io::{TerrainRequest, load_terrain};
-use belvedere_scene::{LayerKind, Progress, Scene};
+use belvedere_scene::{Progress, Scene};
 use belvedere_testkit::synthetic::{line_layer, terrain_layer};
 
 fn load(terrain: &str, lines: &str) -> Option<Scene> {
@@ -14,7 +14,7 @@ fn load(terrain: &str, lines: &str) -> Option<Scene> {
     let vectors = load_vectors(&lines).unwrap().value;
     let features = lines_on_terrain(&vectors, loaded.crs, Some(&loaded.heightfield)).unwrap().value;
     let mut route = line_layer("route", Vec::new());
-    if let LayerKind::Line(line) = &mut route.kind {
+    if let Some(line) = route.kind.lines_mut() {
         line.features = features;
     }
     Some(Scene { crs: loaded.crs, layers: vec![terrain_layer(loaded.heightfield), route], ..Scene::default() })

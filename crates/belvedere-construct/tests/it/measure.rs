@@ -1,6 +1,6 @@
 use belvedere_construct::{ConstructError, MeasureOptions, Measures, measure};
 use belvedere_core::{DVec3, View};
-use belvedere_scene::{LayerKind, Progress, Renderer, Scene};
+use belvedere_scene::{Progress, Renderer, Scene};
 use belvedere_testkit::synthetic::{Marcher, camera, line_layer, on_a_small_planet, point_layer, scene};
 
 fn run(scene: &Scene, view: &View, renderer: Option<&dyn Renderer>) -> Result<Measures, ConstructError> {
@@ -49,7 +49,7 @@ fn amounts_add_up() {
     let m = run(&scene, &view, None).unwrap();
     let (lines, points) = (m.lines.unwrap(), m.points.unwrap());
     assert_eq!(m.features.len(), 2);
-    let LayerKind::Line(trail) = &scene.layers[1].kind else { unreachable!("the second layer is the trail") };
+    let Some(trail) = scene.layers[1].kind.lines() else { unreachable!("the second layer is the trail") };
     let corners = trail.features[0].points.windows(2);
     let plan: f64 = corners.map(|w| w[0].truncate().distance(w[1].truncate())).sum();
     assert!((lines.total - plan).abs() < 1e-6, "a trail of {plan} m in plan measures {} m", lines.total);

@@ -5,8 +5,7 @@ use belvedere_construct::rays::{Lens, PathPreview, Target, TargetSight};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_cpu::CpuRenderer;
 use belvedere_scene::{
-    BoxLayer, BoxShape, Color, Frame, Heightfield, Layer, LayerKind, Light, Progress, RenderJob, RenderOptions,
-    Renderer, Scene,
+    BoxLayer, BoxShape, Color, Frame, Heightfield, Layer, Light, Progress, RenderJob, RenderOptions, Renderer, Scene,
 };
 use belvedere_testkit::Random;
 
@@ -54,7 +53,7 @@ fn street(seed: u64) -> (Scene, Vec<DVec3>) {
     points.push(at.extend(0.3));
     let ground =
         Heightfield::measured(DVec2::new(-800.0, 1400.0), DVec2::splat(100.0), 17, 20, vec![0.0; 340]).unwrap();
-    let layer = Layer { id: "houses".into(), must_see: false, kind: LayerKind::Boxes(BoxLayer::new(houses)) };
+    let layer = Layer { id: "houses".into(), must_see: false, kind: BoxLayer::new(houses).into() };
     let mut scene = Scene::default().with_terrain("ground", ground);
     scene.layers.push(layer);
     (scene, points)

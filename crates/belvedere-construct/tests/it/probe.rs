@@ -3,7 +3,7 @@
 use crate::preview::{canyon, path};
 use belvedere_construct::rays::{ProbeMemory, ProbeOptions, Probed, Target, TargetSight, auto_probe};
 use belvedere_core::{Aabb, CurvedRays, DVec2, DVec3, Pinhole, Projection, View};
-use belvedere_scene::{BoxShape, LayerKind, Progress, Scene};
+use belvedere_scene::{BoxShape, Progress, Scene};
 use belvedere_testkit::Random;
 
 const IMAGE: [u32; 2] = [640, 360];
@@ -20,8 +20,7 @@ fn probe(scene: &Scene, base: &View) -> Probed {
 
 /// Points on the walls and tops of boxes, chosen without the probe.
 fn on_boxes(scene: &Scene, count: usize, random: &mut Random) -> Vec<DVec3> {
-    let boxes =
-        scene.layers.iter().filter_map(|l| if let LayerKind::Boxes(b) = &l.kind { Some(&b.boxes) } else { None });
+    let boxes = scene.layers.iter().filter_map(|l| if let Some(b) = l.kind.boxes() { Some(&b.boxes) } else { None });
     let boxes: Vec<&BoxShape> = boxes.flatten().collect();
     (0..count)
         .map(|_| {

@@ -96,7 +96,7 @@ fn a_turn_shows_what_a_wall_hides() {
 #[test]
 fn of_a_molecule_the_selected_atoms_are_sampled() {
     let (made, _) = belvedere_builtin::dna(7, 10).expect("the helix can be built");
-    let LayerKind::Molecule(dna) = &made.layers[0].kind else { panic!("a molecule") };
+    let Some(dna) = made.layers[0].kind.molecule() else { panic!("a molecule") };
     let dna = MoleculeLayer::new(dna.molecule.clone(), &MoleculeStyle::default(), dna.placement).expect("well formed");
     let wanted = Selection::parse("chain B and resi 13").expect("a selection");
     let mask = wanted.mask(&dna.molecule);

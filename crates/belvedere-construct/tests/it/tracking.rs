@@ -25,8 +25,7 @@ fn block(base: DVec3, size: DVec3) -> BoxShape {
 }
 
 fn scene(walls: Vec<BoxShape>, target: BoxShape) -> Scene {
-    let layer =
-        |id: &str, boxes| Layer { id: id.into(), must_see: false, kind: LayerKind::Boxes(BoxLayer::new(boxes)) };
+    let layer = |id: &str, boxes| Layer { id: id.into(), must_see: false, kind: BoxLayer::new(boxes).into() };
     Scene { layers: vec![layer("walls", walls), layer("target", vec![target])], ..Scene::default() }
 }
 

@@ -4,7 +4,7 @@ use belvedere_construct::rays::{FilmPlanner, Target, TrackingMemory, TrackingOpt
 use belvedere_core::{DVec3, Pinhole, Projection, View};
 use belvedere_cpu::CpuRenderer;
 use belvedere_scene::molecule::{MoleculeLayer, MoleculeStyle, Selection};
-use belvedere_scene::{Frame, LayerKind, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
+use belvedere_scene::{Frame, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
 
 const SELECTED: &str = "chain A and resi 3";
 const FRAMES: usize = 16;
@@ -21,12 +21,12 @@ fn draw(scene: &Scene, view: &View) -> Frame {
 /// The helix, or what is selected of it alone.
 fn scene(only_selected: bool) -> Scene {
     let (made, _) = belvedere_builtin::dna(7, 6).unwrap();
-    let LayerKind::Molecule(dna) = &made.layers[0].kind else { panic!("a molecule") };
+    let Some(dna) = made.layers[0].kind.molecule() else { panic!("a molecule") };
     let selected = Selection::parse(SELECTED).unwrap();
     let selection = if only_selected { selected.clone() } else { Selection::all() };
     let style = MoleculeStyle { selection, detail: Some(1), ..MoleculeStyle::default() };
     let layer = MoleculeLayer::new(dna.molecule.clone(), &style, dna.placement).unwrap().wanting(selected);
-    Scene { unit: made.unit, ..Scene::default() }.with_layer("dna", LayerKind::Molecule(Box::new(layer)))
+    Scene { unit: made.unit, ..Scene::default() }.with_layer("dna", layer)
 }
 
 /// The camera goes a third round.

@@ -8,7 +8,7 @@ use belvedere_composite::buffers::Buffers;
 use belvedere_composite::color::Rgb;
 use belvedere_composite::stylise;
 use belvedere_core::DVec2;
-use belvedere_scene::{LayerKind, RenderJob};
+use belvedere_scene::RenderJob;
 
 /// What a row of pixels sees: world points and layers.
 pub(crate) type SeenRow = (Vec<[f64; 3]>, Vec<u32>);
@@ -29,10 +29,10 @@ pub(crate) fn paint(
     if let Some(world) = buffers.world.take() {
         let is_area = |id: u32| {
             let layer = (id as usize).checked_sub(1).and_then(|i| job.scene.layers.get(i));
-            layer.is_some_and(|layer| matches!(layer.kind, LayerKind::Area(_)))
+            layer.is_some_and(|layer| layer.kind.areas().is_some())
         };
         for (i, layer) in job.scene.layers.iter().enumerate() {
-            let LayerKind::Terrain(terrain) = &layer.kind else { continue };
+            let Some(terrain) = layer.kind.terrain() else { continue };
             // Areas are painted on the ground below them.
             let shows = |id: u32| id == i as u32 + 1 || is_area(id);
             let seen = |world, id| Seen { world, id, shows: &shows, width };

@@ -69,12 +69,13 @@ impl<'a> Casters<'a> {
         if !(light.shadows && sun.z > 0.01) {
             return None;
         }
-        if !scene.layers.iter().any(|l| matches!(l.kind, LayerKind::Boxes(_)) || l.kind.triangles().is_some()) {
+        if !scene.layers.iter().any(|l| l.kind.boxes().is_some() || l.kind.triangles().is_some()) {
             return None;
         }
         // Molecules alone have shadows by a light of their own.
-        let takes_sun =
-            |kind: &LayerKind| matches!(kind, LayerKind::Boxes(_) | LayerKind::Mesh(_) | LayerKind::Terrain(_));
+        let takes_sun = |kind: &LayerKind| {
+            matches!(kind, LayerKind::Boxes(_) | LayerKind::Mesh(_) | LayerKind::Own(_) | LayerKind::Terrain(_))
+        };
         if !scene.layers.iter().any(|l| takes_sun(&l.kind)) {
             return None;
         }
@@ -357,8 +358,8 @@ mod tests {
         let suns = [(1.5, 0.8), (0.3, 1.5), (4.1, 0.25), (2.6, 0.02), (5.9, 0.5)];
         for (azimuth, altitude) in suns {
             let casters = Casters::new(&scene, &Light { azimuth, altitude, ..SUN }, &|_| true, 1 << 20).unwrap();
-            let LayerKind::Boxes(towers) = &scene.layers[1].kind else { panic!("boxes") };
-            let LayerKind::Mesh(model) = &scene.layers[2].kind else { panic!("mesh") };
+            let Some(towers) = scene.layers[1].kind.boxes() else { panic!("boxes") };
+            let Some(model) = scene.layers[2].kind.mesh() else { panic!("mesh") };
             for i in 0..3000 {
                 let side = 0.02 * 200f64.powf(next());
                 let throws = |layer: usize| i % 5 > 0 || layer != 1 + i % 2;
@@ -380,7 +381,7 @@ mod tests {
                     let length = casters.way(p.z - 2.0 * side, casters.top);
                     told += usize::from(casters.buffer.around(&Bundle { center: p, half, length }).is_some());
                 };
-                let LayerKind::Terrain(ground) = &scene.layers[0].kind else { panic!("terrain") };
+                let Some(ground) = scene.layers[0].kind.terrain() else { panic!("terrain") };
                 let xy = DVec2::new(4e5 - 40.0, 5e6 - 40.0) + 380.0 * DVec2::new(next(), next());
                 let along = side * DVec2::from_angle(6.0 * next());
                 let z = ground.heightfield.surface_at(xy).expect("ground");

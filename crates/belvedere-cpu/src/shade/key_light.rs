@@ -57,7 +57,7 @@ pub(crate) struct KeyShadows {
 impl KeyShadows {
     /// The shadows of all molecules through which nothing shines; `None` if there is none or shadows are not wanted.
     pub(crate) fn of(job: &RenderJob<'_>) -> Option<Self> {
-        let casts = |kind: &LayerKind| matches!(kind, LayerKind::Molecule(_)) && !kind.is_see_through();
+        let casts = |kind: &LayerKind| kind.molecule().is_some() && !kind.is_see_through();
         let meshes = || job.scene.layers.iter().filter(|l| casts(&l.kind)).filter_map(|l| l.kind.triangles());
         if !job.light.shadows || meshes().all(|m| m.mesh.triangles().is_empty()) {
             return None;

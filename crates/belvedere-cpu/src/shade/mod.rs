@@ -27,7 +27,7 @@ use crate::simd::nearest;
 use belvedere_composite::color::{Rgb, linear, smoothstep};
 use belvedere_composite::stylise::Face;
 use belvedere_core::{DVec2, DVec3};
-use belvedere_scene::{AreaSurface, BoxLayer, BoxShape, Heightfield, LayerKind, Relief, RenderJob};
+use belvedere_scene::{AreaSurface, BoxLayer, BoxShape, Heightfield, LayerKind, OwnLayer, Relief, RenderJob};
 use belvedere_sight::sections::Sections;
 use cast::Casters;
 use glam::Vec3A;
@@ -103,7 +103,9 @@ impl<'a> Shader<'a> {
             .map(|(i, l)| match &l.kind {
                 LayerKind::Terrain(t) => LayerShade::Terrain(Box::new(TerrainShade::new((i, t), job, cache))),
                 LayerKind::Boxes(b) => LayerShade::Boxes(b, ReliefLight::new(Relief::Sun, job.light)),
-                LayerKind::Mesh(m) => LayerShade::Mesh(mesh::MeshShade::new(m, job.light)),
+                LayerKind::Mesh(m) | LayerKind::Own(OwnLayer { surface: m, .. }) => {
+                    LayerShade::Mesh(mesh::MeshShade::new(m, job.light))
+                }
                 LayerKind::Molecule(m) => {
                     LayerShade::Molecule(molecule::MoleculeShade::new(&m.surface, job.view, key_shadows.clone()))
                 }

@@ -117,7 +117,7 @@ impl<'a> PixelCenters<'a> {
     }
 
     fn surface(&self, found: &DrawnTriangle<'_>) -> Option<Surface<'a>> {
-        if let LayerKind::Terrain(t) = &self.scene.layers.get(found.block.layer as usize)?.kind {
+        if let Some(t) = self.scene.layers.get(found.block.layer as usize)?.kind.terrain() {
             return Some(Surface::Ground(&t.heightfield));
         }
         let [a, b, c] = self.corners(found)?;

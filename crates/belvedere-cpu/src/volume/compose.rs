@@ -9,7 +9,7 @@ use super::smooth::{self, Behind};
 use belvedere_composite::buffers::Buffers;
 use belvedere_composite::color::Packed;
 use belvedere_core::DVec2;
-use belvedere_scene::{LayerKind, RenderError, RenderJob};
+use belvedere_scene::{RenderError, RenderJob};
 use belvedere_sight::trace::deepest;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
@@ -25,10 +25,7 @@ pub(crate) fn compose(job: &RenderJob<'_>, way: Way, buffers: &mut Buffers) -> R
         .layers
         .iter()
         .enumerate()
-        .filter_map(|(index, l)| match &l.kind {
-            LayerKind::Volume(layer) => Some((index, layer, Marcher::new(layer))),
-            _ => None,
-        })
+        .filter_map(|(index, l)| l.kind.volume().map(|layer| (index, layer, Marcher::new(layer))))
         .filter(|(_, _, marcher)| !marcher.is_clear())
         .map(|(index, layer, marcher)| Drawn { index, layer, spans: marcher.spans(job.view), marcher })
         .collect();

@@ -105,7 +105,7 @@ fn tower(hf: &Heightfield, x: f64, y: f64, yaw: f64) -> BoxShape {
 /// The built-in church at twice its size; with a fault, two of its corners are exchanged.
 fn church(at: DVec3, faulty: bool) -> LayerKind {
     let (scene, _) = belvedere_builtin::church().expect("the church can be built");
-    let LayerKind::Mesh(made) = &scene.layers[0].kind else { panic!("a mesh") };
+    let Some(made) = scene.layers[0].kind.mesh() else { panic!("a mesh") };
     let swapped = |v: u32| match v {
         4 if faulty => 40,
         40 if faulty => 4,

@@ -206,7 +206,7 @@ fn distance_marks_belong_to_their_line() {
     let hf = ridge();
     let mut route = with_line(&hf, Hidden::Cut);
     let plain = render(&route, &camera(400.0), &options(4));
-    if let LayerKind::Line(l) = &mut route.layers[1].kind {
+    if let Some(l) = route.layers[1].kind.lines_mut() {
         l.markers = Some(DistanceMarkers::Every(200.0));
     }
     let marked = render(&route, &camera(400.0), &options(4));
@@ -271,7 +271,7 @@ fn overlays_leave_depth_and_id_alone_and_faces_fade_behind_the_ground() {
 fn marks_do_not_depend_on_threads() {
     let hf = ridge();
     let mut all = with_line(&hf, Hidden::Dash);
-    if let LayerKind::Line(l) = &mut all.layers[1].kind {
+    if let Some(l) = all.layers[1].kind.lines_mut() {
         l.markers = Some(DistanceMarkers::Auto);
     }
     all.layers.push(layer("summits", LayerKind::Point(summits())));

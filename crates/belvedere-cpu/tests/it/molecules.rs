@@ -5,15 +5,15 @@ use crate::support::{pinhole, scene};
 use belvedere_core::map::curved_rays::{Model, Pencil, Sharpness, TurnSpec};
 use belvedere_core::{CurvedRays, DVec3, Stage, View};
 use belvedere_scene::molecule::{ModelTransform, Representation, Selection};
-use belvedere_scene::{Layer, LayerKind, MoleculeLayer, MoleculeStyle, Scene, Unit};
+use belvedere_scene::{Layer, MoleculeLayer, MoleculeStyle, Scene, Unit};
 use belvedere_sight::trace::Tracer;
 
 fn helix(representation: Representation) -> Scene {
     let (made, _) = belvedere_builtin::dna(7, 10).expect("the helix can be built");
-    let LayerKind::Molecule(layer) = &made.layers[0].kind else { panic!("a molecule") };
+    let Some(layer) = made.layers[0].kind.molecule() else { panic!("a molecule") };
     let style = MoleculeStyle { representation, ..MoleculeStyle::default() };
     let layer = MoleculeLayer::new(layer.molecule.clone(), &style, ModelTransform::default()).expect("well formed");
-    let layers = vec![Layer { id: "dna".into(), must_see: false, kind: LayerKind::Molecule(Box::new(layer)) }];
+    let layers = vec![Layer { id: "dna".into(), must_see: false, kind: layer.into() }];
     Scene { unit: Unit::Angstrom, ..scene(layers) }
 }
 
@@ -52,7 +52,7 @@ fn rasteriser_and_tracer_agree_on_molecules() {
 #[test]
 fn a_ray_at_an_atom_meets_that_atom_or_one_before_it() {
     let scene = helix(Representation::SpaceFilling);
-    let LayerKind::Molecule(layer) = &scene.layers[0].kind else { panic!("a molecule") };
+    let Some(layer) = scene.layers[0].kind.molecule() else { panic!("a molecule") };
     let view = bent(Model::Modified, [240, 200]);
     let tracer = Tracer::new(&scene, &view);
     let oxygen = Selection::parse("element O").expect("a selection");

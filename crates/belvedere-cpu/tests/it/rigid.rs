@@ -148,7 +148,7 @@ fn what_is_seen_of_a_body_is_told_by_its_true_place() {
             let body = match hit.layer {
                 // The place is on the surface of one of the boxes. The frame does not store the number of the box, so the nearest is used.
                 0 => {
-                    let LayerKind::Boxes(layer) = &town.layers[0].kind else { panic!("boxes") };
+                    let Some(layer) = town.layers[0].kind.boxes() else { panic!("boxes") };
                     let far = |b: &BoxShape| {
                         let local = DVec2::from_angle(-b.yaw).rotate((p - b.base).truncate());
                         let out = (local.abs() - 0.5 * b.size.truncate()).max(DVec2::ZERO).length();

@@ -35,7 +35,7 @@ use adjust::RequiredPoints;
 use belvedere_core::grid::{Grid, GridError};
 use belvedere_core::{DVec2, EarthCurvature, SpaceMap, TerrainDisocclusion, View};
 use belvedere_scene::Instant;
-use belvedere_scene::{Heightfield, LayerKind, Progress, Scene};
+use belvedere_scene::{Heightfield, Progress, Scene};
 use memory::{Prepared, Weights};
 use passes::Passes;
 use points_in_view::PointsInView;
@@ -197,10 +197,7 @@ impl TerrainSolver {
 
 /// The heights that are solved on.
 fn ground(scene: &Scene) -> Option<&Arc<Heightfield>> {
-    scene.layers.iter().find_map(|l| match &l.kind {
-        LayerKind::Terrain(t) => Some(&t.heightfield),
-        _ => None,
-    })
+    scene.layers.iter().find_map(|l| l.kind.terrain().map(|t| &t.heightfield))
 }
 
 /// The solution of one frame, without the figures of its report.

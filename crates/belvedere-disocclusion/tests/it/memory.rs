@@ -2,7 +2,7 @@
 
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, TerrainDisocclusion, View};
 use belvedere_disocclusion::{Solved, SolverMode, TerrainMemory, TerrainSettings, TerrainSolver};
-use belvedere_scene::{Heightfield, LayerKind, NodeState, Progress, Scene};
+use belvedere_scene::{Heightfield, NodeState, Progress, Scene};
 use belvedere_testkit::synthetic::{line_layer, mountains, terrain_layer, trail};
 
 const NODES: usize = 65;
@@ -45,7 +45,7 @@ fn other_ground_or_features_of_the_same_size_begin_anew() {
     let base = scene(plain.clone(), route.clone());
     let hill = |i: usize, h: f32| if i / NODES > 45 && i % NODES > 25 { h + 120.0 } else { h };
     let mut lifted = base.clone();
-    if let LayerKind::Line(line) = &mut lifted.layers[1].kind {
+    if let Some(line) = lifted.layers[1].kind.lines_mut() {
         line.lift_m = 40.0;
     }
     let mut optional = base.clone();

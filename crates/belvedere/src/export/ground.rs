@@ -5,7 +5,7 @@ use super::{Carrier, ExportOptions, MOST_TRIANGLES};
 use crate::BelvedereError;
 use belvedere_composite::tint::GroundTint;
 use belvedere_core::{DVec2, Warning, WarningKind, polygon};
-use belvedere_scene::{AreaLayer, Color, Drape, Heightfield, LayerKind, Scene, TerrainLayer};
+use belvedere_scene::{AreaLayer, Color, Drape, Heightfield, Scene, TerrainLayer};
 use rayon::prelude::*;
 
 /// Displaced ground with its colours.
@@ -35,7 +35,7 @@ pub(super) fn sheet(
         lay(drape, hf, (&cols, &rows), &mut colors);
     }
     for layer in &scene.layers {
-        if let LayerKind::Area(areas) = &layer.kind {
+        if let Some(areas) = layer.kind.areas() {
             fill(areas, hf, (&cols, &rows), &mut colors);
         }
     }

@@ -142,7 +142,7 @@ fn exported(session: &Session, options: &ExportOptions) -> Result<Exported, Belv
                 LayerKind::Terrain(terrain) => {
                     Some(ground::sheet(terrain, scene, &carrier, options, &mut warnings, &layer.id)?)
                 }
-                LayerKind::Boxes(_) | LayerKind::Mesh(_) | LayerKind::Molecule(_) => {
+                LayerKind::Boxes(_) | LayerKind::Mesh(_) | LayerKind::Own(_) | LayerKind::Molecule(_) => {
                     Some(solids::sheet(&layer.kind, &carrier, options)?)
                 }
                 LayerKind::Line(lines) => Some(marks::tubes(lines, &carrier)),

@@ -36,7 +36,7 @@ pub(super) fn sheet(kind: &LayerKind, carrier: &Carrier<'_>, options: &ExportOpt
 
 /// Corners and colours of all triangles of a layer, with their numbers.
 fn triangles(kind: &LayerKind) -> Vec<(usize, [DVec3; 3], [Color; 3])> {
-    if let LayerKind::Boxes(layer) = kind {
+    if let Some(layer) = kind.boxes() {
         let of_box = |(k, shape): (usize, &BoxShape)| {
             let (corners, color) = (shape.corners(), shape.color);
             let outward = BoxShape::TRIANGLES.map(|t| t.map(|corner| corners[corner]));

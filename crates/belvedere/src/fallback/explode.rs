@@ -2,7 +2,7 @@
 
 use super::occluders::{Extent, Part, is_one_of};
 use belvedere_core::{DVec3, View};
-use belvedere_scene::{LayerKind, Scene, Unit};
+use belvedere_scene::{LayerKind, OwnLayer, Scene, Unit};
 
 /// Directions across the view that are tried.
 const DIRECTIONS: usize = 16;
@@ -57,7 +57,9 @@ pub(super) fn moved(scene: &Scene, moves: &[(&Part, DVec3)]) -> Scene {
         }
         match &mut layer.kind {
             LayerKind::Boxes(b) => b.boxes.iter_mut().enumerate().for_each(|(k, b)| b.base += of(k)),
-            LayerKind::Mesh(m) => m.mesh = m.mesh.moved(&|t| of(m.mesh.part(t).unwrap_or(0) as usize)),
+            LayerKind::Mesh(m) | LayerKind::Own(OwnLayer { surface: m, .. }) => {
+                m.mesh = m.mesh.moved(&|t| of(m.mesh.part(t).unwrap_or(0) as usize))
+            }
             LayerKind::Molecule(m) => {
                 let spared = moves.iter().find(|(part, _)| part.layer == i).map_or(&[][..], |(part, _)| &part.spared);
                 let mesh = &m.surface.mesh;

@@ -6,7 +6,7 @@ use crate::targets;
 use crate::{BelvedereError, Session};
 use belvedere_construct::rays::Target;
 use belvedere_core::{DVec2, DVec3, View};
-use belvedere_scene::{Frame, LayerKind, Scene};
+use belvedere_scene::{Frame, Scene};
 
 /// Number of the part of a city's mesh that is its level ground.
 const PLATE: u32 = 0;
@@ -54,7 +54,7 @@ impl Judge {
     pub(crate) fn of_target(scene: &Scene, target: &Target) -> Option<Self> {
         let mut on_ground = target.clone();
         if let Some((layer, parts)) = &mut on_ground.own_parts
-            && matches!(&scene.layers[*layer].kind, LayerKind::Mesh(mesh) if mesh.has_plate)
+            && scene.layers[*layer].kind.mesh().is_some_and(|mesh| mesh.has_plate)
             && parts.first() != Some(&PLATE)
         {
             parts.insert(0, PLATE);

@@ -186,7 +186,7 @@ fn asked(session: &Session) -> Option<(&SourceDocument, &ConstructorDoc)> {
 
 /// Whether volumes let light through, which ids and depths of pictures do not tell.
 pub(crate) fn has_volumes(scene: &Scene) -> bool {
-    scene.layers.iter().any(|layer| matches!(layer.kind, LayerKind::Volume(_)))
+    scene.layers.iter().any(|layer| layer.kind.volume().is_some())
 }
 
 /// Plans the fallbacks in `view` that show a target.
@@ -300,7 +300,7 @@ impl FallbackPlan {
     }
 
     fn is_volume(&self, part: &Part) -> bool {
-        matches!(self.scene.layers[part.layer].kind, LayerKind::Volume(_))
+        self.scene.layers[part.layer].kind.volume().is_some()
     }
 
     /// The view that begins at the nearest depth of the target, where volumes are cut; `None` if none is, or if it cannot be.
@@ -421,7 +421,7 @@ impl FallbackPlan {
             .target
             .own_parts
             .as_ref()
-            .is_some_and(|(layer, _)| matches!(self.scene.layers[*layer].kind, LayerKind::Molecule(_)));
+            .is_some_and(|(layer, _)| self.scene.layers[*layer].kind.molecule().is_some());
         let alone = occluders::target_alone(&self.scene, &self.target).filter(|_| is_molecule);
         let Some(alone) = alone else { return Ok(region::mask(view, &self.target, self.margin_px, size)) };
         let image: Vec<bool> = draw(&alone, view)?.id.iter().map(|id| self.is_target(*id)).collect();

@@ -3,7 +3,7 @@
 use belvedere_construct::rays::{Target, TargetSight};
 use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::molecule::MoleculeLayer;
-use belvedere_scene::{BoxLayer, BoxShape, Layer, LayerKind, Scene};
+use belvedere_scene::{BoxLayer, BoxShape, Layer, LayerKind, OwnLayer, Scene};
 
 /// Depths up to this many near distances of the camera count as lying on its near plane.
 const AT_EYE: f64 = 1.0 + 1e-9;
@@ -66,7 +66,7 @@ fn parts(scene: &Scene, index: usize, target: &Target) -> Vec<Part> {
             };
             b.boxes.iter().enumerate().filter(|(k, _)| !own.contains(&(*k as u32))).map(part).collect()
         }
-        LayerKind::Mesh(m) if m.mesh.part(0).is_some() => {
+        LayerKind::Mesh(m) | LayerKind::Own(OwnLayer { surface: m, .. }) if m.mesh.part(0).is_some() => {
             let mut bounds = std::collections::BTreeMap::<u32, Aabb>::new();
             for t in 0..m.mesh.triangles().len() {
                 let Some(part) = m.mesh.part(t).filter(|p| !own.contains(p)) else { continue };
@@ -115,7 +115,9 @@ pub(super) fn target_alone(scene: &Scene, target: &Target) -> Option<Scene> {
             LayerKind::Boxes(b) => {
                 b.boxes = numbers.iter().filter_map(|&k| b.boxes.get(k as usize).copied()).collect();
             }
-            LayerKind::Mesh(m) => m.mesh = m.mesh.only(&|t| is_one_of(numbers, m.mesh.part(t))),
+            LayerKind::Mesh(m) | LayerKind::Own(OwnLayer { surface: m, .. }) => {
+                m.mesh = m.mesh.only(&|t| is_one_of(numbers, m.mesh.part(t)))
+            }
             LayerKind::Molecule(m) => keep_atoms(m, numbers),
             _ => {}
         }
@@ -171,7 +173,9 @@ fn only(layer: &Layer, number: Option<usize>) -> LayerKind {
     let mut kind = layer.kind.clone();
     match (&mut kind, number) {
         (LayerKind::Boxes(b), Some(k)) => b.boxes = b.boxes.get(k).copied().into_iter().collect(),
-        (LayerKind::Mesh(m), Some(k)) => m.mesh = m.mesh.only(&|t| m.mesh.part(t) == Some(k as u32)),
+        (LayerKind::Mesh(m) | LayerKind::Own(OwnLayer { surface: m, .. }), Some(k)) => {
+            m.mesh = m.mesh.only(&|t| m.mesh.part(t) == Some(k as u32))
+        }
         _ => {}
     }
     kind
@@ -197,7 +201,7 @@ pub(super) fn without(scene: &Scene, parts: &[&Part]) -> Scene {
                 let all = b.boxes.iter().enumerate().filter(|(k, _)| stays(*k)).map(|(_, b)| *b);
                 b.boxes = all.collect();
             }
-            LayerKind::Mesh(m) if !gone.is_empty() => {
+            LayerKind::Mesh(m) | LayerKind::Own(OwnLayer { surface: m, .. }) if !gone.is_empty() => {
                 m.mesh = m.mesh.only(&|t| m.mesh.part(t).is_none_or(|p| stays(p as usize)));
             }
             _ => {}

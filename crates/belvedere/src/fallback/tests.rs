@@ -21,9 +21,9 @@ fn scene() -> Scene {
     // A fraction of a pixel next to the target, so that it hides nothing.
     wall.push(shape([20.865, 80.0, -10.0], [8.0, 1.0, 20.0]));
     wall.push(shape([0.0, 200.0, -10.0], [30.0, 5.0, 30.0]));
-    let scene = Scene::default().with_layer("wall", LayerKind::Boxes(BoxLayer::new(wall)));
+    let scene = Scene::default().with_layer("wall", BoxLayer::new(wall));
     let block = BoxLayer::new(vec![shape([0.0, 100.0, -6.0], [40.0, 8.0, 12.0])]);
-    scene.with_layer("block", LayerKind::Boxes(block))
+    scene.with_layer("block", block)
 }
 
 fn view() -> View {
@@ -157,7 +157,7 @@ fn molecule() -> Scene {
     let molecule = Molecule::new(atoms, vec![residue("COR", 1), residue("SHL", 2)], &[]).unwrap();
     let style = MoleculeStyle { representation: Representation::SpaceFilling, ..MoleculeStyle::default() };
     let layer = MoleculeLayer::new(molecule, &style, ModelTransform::default()).unwrap();
-    Scene { unit: Unit::Angstrom, ..Scene::default() }.with_layer("ball", LayerKind::Molecule(Box::new(layer)))
+    Scene { unit: Unit::Angstrom, ..Scene::default() }.with_layer("ball", layer)
 }
 
 #[test]

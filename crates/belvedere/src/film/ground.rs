@@ -1,7 +1,7 @@
 //! The ground as a view draws it: the eye's clearance over it, and the side that a picture shows.
 
 use belvedere_core::{DVec2, DVec3, View};
-use belvedere_scene::{CellTriangle, Frame, Heightfield, LayerKind, NodeState, Scene};
+use belvedere_scene::{CellTriangle, Frame, Heightfield, NodeState, Scene};
 
 /// Part of the clearance that follows from the size of a cell.
 const CELLS: f64 = 0.25;
@@ -33,9 +33,8 @@ struct Facet {
 impl<'a> DrawnGround<'a> {
     /// `None` for a scene without terrain.
     pub(crate) fn of(scene: &'a Scene, view: &'a View) -> Option<Self> {
-        scene.layers.iter().enumerate().find_map(|(i, layer)| match &layer.kind {
-            LayerKind::Terrain(t) => Some(Self { terrain: &t.heightfield, view, id: 1 + i as u32 }),
-            _ => None,
+        scene.layers.iter().enumerate().find_map(|(i, layer)| {
+            layer.kind.terrain().map(|t| Self { terrain: &t.heightfield, view, id: 1 + i as u32 })
         })
     }
 
@@ -144,7 +143,7 @@ mod tests {
         let states = vec![NodeState::Measured; 41 * 41];
         let terrain = Heightfield::new(DVec2::new(0.0, 400.0), DVec2::splat(10.0), 41, 41, heights, states)
             .expect("a heightfield");
-        let kind = LayerKind::Terrain(TerrainLayer::new(terrain));
+        let kind = TerrainLayer::new(terrain).into();
         Scene { layers: vec![Layer { id: "ground".into(), must_see: false, kind }], ..Scene::default() }
     }
 

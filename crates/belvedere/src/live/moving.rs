@@ -5,9 +5,7 @@ use crate::overlays::{grid, widths};
 use crate::{BelvedereError, Session, fallback, kept};
 use belvedere_core::View;
 use belvedere_io::budget;
-use belvedere_scene::{
-    Compositing, Frame, Instant, Layer, LayerKind, Progress, RenderJob, RenderOptions, Scene, Stylisation,
-};
+use belvedere_scene::{Compositing, Frame, Instant, Layer, Progress, RenderJob, RenderOptions, Scene, Stylisation};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -56,7 +54,7 @@ pub(super) fn quick(
         (options.stylisation, options.compositing) = (Stylisation::default(), Compositing::Dither);
     }
     let mut light = *session.light();
-    let casts = |layer: &Layer| matches!(layer.kind, LayerKind::Boxes(_)) || layer.kind.triangles().is_some();
+    let casts = |layer: &Layer| layer.kind.boxes().is_some() || layer.kind.triangles().is_some();
     if quality.coarseness() >= UNSHADED && light.altitude > 0.0 && scene.layers.iter().any(casts) {
         light.shadows = false;
     }

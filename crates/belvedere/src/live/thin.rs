@@ -4,7 +4,7 @@
 use super::coarse;
 use super::rate::Quality;
 use crate::overlays::widths;
-use belvedere_scene::{Layer, LayerKind, MeshLayer, MoleculeLayer, Scene, VolumeModel};
+use belvedere_scene::{Layer, LayerKind, MeshLayer, MoleculeLayer, OwnLayer, Scene, VolumeModel};
 use std::sync::Arc;
 
 /// Detail of moving pictures from which on volumes are not shaded.
@@ -83,7 +83,8 @@ impl Thin {
                 label_px: molecule.label_px,
                 wanted: molecule.wanted.clone(),
             }))),
-            LayerKind::Mesh(_) => Some(LayerKind::Mesh(coarser)),
+            LayerKind::Mesh(_) => Some(coarser.into()),
+            LayerKind::Own(own) => Some(OwnLayer { surface: coarser, ..own.clone() }.into()),
             _ => None,
         }
     }
@@ -103,7 +104,7 @@ fn changes(kind: &LayerKind, quality: Quality) -> bool {
 /// A volume of a picture of this quality; other layers as they are.
 fn thinned(kind: &LayerKind, quality: Quality) -> LayerKind {
     let mut kind = kind.clone();
-    if let LayerKind::Volume(volume) = &mut kind {
+    if let Some(volume) = kind.volume_mut() {
         volume.step *= quality.volume_step();
         if quality.coarseness() >= PLAIN {
             volume.model = VolumeModel::Plain;
@@ -115,20 +116,17 @@ fn thinned(kind: &LayerKind, quality: Quality) -> LayerKind {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere_scene::{Color, Layer, LayerKind, LineLayer};
+    use belvedere_scene::{Color, Layer, LineLayer};
 
     #[test]
     fn lines_are_as_thin_as_the_picture_is_coarse_and_made_once() {
-        let layer = Layer {
-            id: "way".into(),
-            must_see: true,
-            kind: LayerKind::Line(LineLayer::new(Vec::new(), Color::rgb(1, 2, 3))),
-        };
+        let layer =
+            Layer { id: "way".into(), must_see: true, kind: LineLayer::new(Vec::new(), Color::rgb(1, 2, 3)).into() };
         let scene = Arc::new(Scene { layers: vec![layer], ..Scene::default() });
         let mut thin = Thin::default();
         assert!(Arc::ptr_eq(&thin.scene(scene.clone(), Quality::FULL, 1.0), &scene), "nothing to do");
         let least = thin.scene(scene.clone(), Quality::LEAST, 1.0);
-        let LayerKind::Line(line) = &least.layers[0].kind else { panic!("no line") };
+        let Some(line) = least.layers[0].kind.lines() else { panic!("no line") };
         assert_eq!((line.width_px, least.layers[0].must_see), (3.0 * Quality::LEAST.width(), true));
         assert!(Arc::ptr_eq(&thin.scene(scene, Quality::LEAST, 1.0), &least), "made twice");
     }
@@ -148,7 +146,7 @@ mod tests {
         assert!(count(&all) > 200_000 && (10_000..=40_000).contains(&count(&coarse)), "{}", count(&coarse));
         let scene = session(&format!("{camera}id = 'v'\nkind = 'volume'\nsource = 'builtin:tube'\n"));
         let coarse = Thin::default().scene(scene.loaded.scene.clone(), Quality::LEAST, 1.0);
-        let LayerKind::Volume(volume) = &coarse.layers[0].kind else { panic!("no volume") };
+        let Some(volume) = coarse.layers[0].kind.volume() else { panic!("no volume") };
         assert_eq!((volume.step, volume.model), (2.0, VolumeModel::Plain));
     }
 }

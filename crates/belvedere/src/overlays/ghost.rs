@@ -1,7 +1,7 @@
 //! Skyline, ridges and routes of the straight picture, drawn faintly over the bent one.
 
 use belvedere_composite::canvas::Canvas;
-use belvedere_scene::{Color, Frame, LayerKind, Scene};
+use belvedere_scene::{Color, Frame, Scene};
 
 /// Relative second difference of `1 / depth` beyond which a pixel is a ridge: it is 0 on planes.
 const RIDGE: f32 = 0.02;
@@ -15,10 +15,7 @@ pub(crate) fn draw(bent: &mut Frame, straight: &Frame, scene: &Scene) {
     }
     let ridges = ridges(straight);
     let colors: Vec<Option<Color>> = std::iter::once(None)
-        .chain(scene.layers.iter().map(|l| match &l.kind {
-            LayerKind::Line(line) => Some(line.color.with_alpha(90)),
-            _ => None,
-        }))
+        .chain(scene.layers.iter().map(|l| l.kind.lines().map(|line| line.color.with_alpha(90))))
         .collect();
     let mut canvas = Canvas::new(&mut bent.color, width);
     for y in 0..height as i64 {

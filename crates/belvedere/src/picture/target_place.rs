@@ -52,7 +52,7 @@ impl TargetPlace {
     /// [`BelvedereError::Position`].
     pub(crate) fn check(scene: &Scene, p: DVec3) -> Result<(), BelvedereError> {
         let bounds = scene.bounds();
-        let holds_volumes = scene.layers.iter().any(|l| matches!(l.kind, LayerKind::Volume(_)));
+        let holds_volumes = scene.layers.iter().any(|l| l.kind.volume().is_some());
         if !holds_volumes || bounds.is_empty() || (p.cmpge(bounds.min) & p.cmple(bounds.max)).all() {
             return Ok(());
         }

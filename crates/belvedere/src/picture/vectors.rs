@@ -41,13 +41,15 @@ pub(super) fn left_out(session: &Session, has_more: bool) -> Result<Option<Warni
         LayerKind::Line(_) | LayerKind::Point(_) => true,
         LayerKind::Area(area) => area.outline.is_some() || has_ground && whole,
         LayerKind::Molecule(molecule) => molecule.label_px.is_some(),
-        LayerKind::Terrain(_) | LayerKind::Boxes(_) | LayerKind::Mesh(_) | LayerKind::Volume(_) => false,
+        LayerKind::Terrain(_) | LayerKind::Boxes(_) | LayerKind::Mesh(_) | LayerKind::Own(_) | LayerKind::Volume(_) => {
+            false
+        }
     };
     let left: Vec<&Layer> = scene.layers.iter().filter(|layer| !is_drawn(&layer.kind)).collect();
     if left.len() == scene.layers.len() && !has_more {
         return Err(BelvedereError::NothingAsVectors { layers: named(session, &left) });
     }
-    let left: Vec<&Layer> = left.into_iter().filter(|layer| !matches!(layer.kind, LayerKind::Terrain(_))).collect();
+    let left: Vec<&Layer> = left.into_iter().filter(|layer| !layer.kind.terrain().is_some()).collect();
     Ok((!left.is_empty()).then(|| {
         let (count, layers) = (left.len(), if left.len() == 1 { "layer has" } else { "layers have" });
         let text = format!("{count} {layers} no vectors and is left out: {}", named(session, &left));
@@ -60,26 +62,13 @@ fn named(session: &Session, layers: &[&Layer]) -> String {
     let documents = session.resolved().map_or(&[][..], |document| &document.layer);
     // A city is a mesh in the scene.
     let stated = |layer: &Layer| documents.iter().find(|other| other.id() == layer.id).map(LayerDoc::kind);
-    let kind = |layer: &Layer| stated(layer).unwrap_or_else(|| kind_name(&layer.kind));
+    let kind = |layer: &Layer| stated(layer).unwrap_or_else(|| layer.kind.name());
     let mut words: Vec<String> =
         layers.iter().take(NAMED).map(|layer| format!("{} ({})", escaped(&layer.id), kind(layer))).collect();
     if layers.len() > NAMED {
         words.push(format!("{} more", layers.len() - NAMED));
     }
     words.join(", ")
-}
-
-fn kind_name(kind: &LayerKind) -> &'static str {
-    match kind {
-        LayerKind::Terrain(_) => "terrain",
-        LayerKind::Boxes(_) => "boxes",
-        LayerKind::Mesh(_) => "mesh",
-        LayerKind::Molecule(_) => "molecule",
-        LayerKind::Volume(_) => "volume",
-        LayerKind::Line(_) => "line",
-        LayerKind::Area(_) => "area",
-        LayerKind::Point(_) => "point",
-    }
 }
 
 /// Whether the vectors show nothing of the scene.

@@ -1,6 +1,6 @@
 //! Record of the volumes of a picture.
 
-use belvedere_scene::{LayerKind, Scene, VolumeLayer};
+use belvedere_scene::{Scene, VolumeLayer};
 use serde::Serialize;
 
 /// How a volume was drawn.
@@ -27,10 +27,7 @@ pub struct VolumeRecord {
 impl VolumeRecord {
     /// The volumes of a scene.
     pub(super) fn all(scene: &Scene) -> Vec<Self> {
-        let records = scene.layers.iter().filter_map(|layer| match &layer.kind {
-            LayerKind::Volume(v) => Some(Self::of(&layer.id, v)),
-            _ => None,
-        });
+        let records = scene.layers.iter().filter_map(|layer| layer.kind.volume().map(|v| Self::of(&layer.id, v)));
         records.collect()
     }
 

@@ -93,7 +93,7 @@ pub(crate) fn fill_surfaces(layers: &mut [LayerDoc], scene: &Scene) {
     for doc in layers {
         let LayerDoc::Area(doc) = doc else { continue };
         let layer = scene.layers.iter().find(|l| l.id == doc.id);
-        let Some(LayerKind::Area(layer)) = layer.map(|l| &l.kind) else { continue };
+        let Some(layer) = layer.and_then(|layer| layer.kind.areas()) else { continue };
         doc.style.water = None;
         doc.style.surface = Some(match layer.surface {
             AreaSurface::Outline => SurfaceDoc::Outline,

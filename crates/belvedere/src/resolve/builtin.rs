@@ -101,7 +101,7 @@ fn town(request: &Request) -> Result<(Scene, builtin::SuggestedCamera), String> 
     let stand = Stand::Own(&OwnGround::Level(0.0), extent);
     let layer = super::city_mesh::mesh(city, &CityColors::default(), &stand)?;
     let title = format!("Town {}: its church between roofs", request.seed);
-    let layers = vec![Layer { id: "town".into(), must_see: false, kind: LayerKind::Mesh(layer) }];
+    let layers = vec![Layer { id: "town".into(), must_see: false, kind: layer.into() }];
     let camera = builtin::SuggestedCamera {
         title: title.clone(),
         eye: DVec3::new(0.0, -0.75 * size, 0.25 * size),

@@ -4,7 +4,7 @@
 use super::loader::Loader;
 use crate::scene_file::TerrainDoc;
 use belvedere_core::{DVec2, DVec3};
-use belvedere_scene::{Color, Edge, Heightfield, Layer, LayerKind, Mesh, MeshColors, MeshLayer, TerrainLayer};
+use belvedere_scene::{Color, Edge, Heightfield, Layer, Mesh, MeshColors, MeshLayer, TerrainLayer};
 use std::collections::HashMap;
 
 /// Colours of the sides, and of the surface.
@@ -28,7 +28,7 @@ pub(super) fn layer(loader: &Loader<'_>, doc: &TerrainDoc, terrain: &TerrainLaye
     };
     let taken = loader.layers.iter().any(|l| l.id() == Edge::LAYER);
     let id = if taken { format!("{} of {}", Edge::LAYER, doc.id) } else { Edge::LAYER.to_owned() };
-    Some(Layer { id, must_see: false, kind: LayerKind::Mesh(MeshLayer::new(mesh, color)) })
+    Some(Layer { id, must_see: false, kind: MeshLayer::new(mesh, color).into() })
 }
 
 fn base_of_block(ground: &Heightfield) -> f64 {

@@ -101,7 +101,7 @@ pub(crate) fn load(request: LayerRequest<'_>, options: &OpenOptions) -> Result<L
         if let LayerDoc::Terrain(doc) = doc {
             let (layer, found) = terrain(&mut loader, i, doc, crs).map_err(|e| loader.in_layer(i, e))?;
             crs.get_or_insert(found);
-            layers[i] = Some(Layer { id: doc.id.clone(), must_see: false, kind: LayerKind::Terrain(layer) });
+            layers[i] = Some(Layer { id: doc.id.clone(), must_see: false, kind: layer.into() });
         }
     }
     for (i, doc) in docs.iter().enumerate().filter(|_| needs != Needs::View) {
@@ -168,10 +168,7 @@ fn share_surfaces(layers: &mut [Layer]) {
 }
 
 fn first_terrain(layers: &[Option<Layer>]) -> Option<&Heightfield> {
-    layers.iter().flatten().find_map(|l| match &l.kind {
-        LayerKind::Terrain(t) => Some(&*t.heightfield),
-        _ => None,
-    })
+    layers.iter().flatten().find_map(|l| l.kind.terrain().map(|t| &*t.heightfield))
 }
 
 /// The coordinate system that the document names; `None`: automatic.

@@ -8,7 +8,7 @@ use crate::scene_file::{MeshDoc, Paths, TransformDoc};
 use belvedere_core::{DVec2, DVec3, Warning, WarningKind};
 use belvedere_io::crs::{CoordinateSystem, Transform};
 use belvedere_io::{MeshFile, load_mesh};
-use belvedere_scene::{Crs, LayerKind, Mesh, MeshColors, MeshLayer, RigidParts, Texturing};
+use belvedere_scene::{Crs, LayerKind, Mesh, MeshColors, MeshLayer, OwnLayer, RigidParts, Texturing};
 use belvedere_sight::{GroundHeight, Occluded, OpennessSettings};
 use glam::{DMat3, EulerRot};
 
@@ -99,7 +99,7 @@ fn source(loader: &mut Loader<'_>, index: usize, doc: &MeshDoc) -> Result<MeshFi
         && builtin::is_name(name)
     {
         return loader.builtin(index, name, |kind| match kind {
-            LayerKind::Mesh(layer) => Some(of_mesh(&layer.mesh)),
+            LayerKind::Mesh(layer) | LayerKind::Own(OwnLayer { surface: layer, .. }) => Some(of_mesh(&layer.mesh)),
             _ => None,
         });
     }

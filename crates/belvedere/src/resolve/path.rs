@@ -6,7 +6,7 @@ use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, DocError, SourceDocument};
 use belvedere_core::DVec3;
 use belvedere_io::InputFile;
-use belvedere_scene::{LayerKind, Scene};
+use belvedere_scene::Scene;
 use serde::Deserialize;
 use std::path::Path;
 
@@ -19,7 +19,7 @@ pub(super) fn read(
 ) -> Result<(Vec<DVec3>, Option<InputFile>), BelvedereError> {
     let keys = ["constructor", "path"];
     if let Some(layer) = scene.layers.iter().find(|l| l.id == name) {
-        if let LayerKind::Line(line) = &layer.kind {
+        if let Some(line) = layer.kind.lines() {
             let gap = scene.terrain().map_or(1.0, |t| 20.0 * t.spacing().max_element());
             return Ok((line.longest_chain(gap), None));
         }

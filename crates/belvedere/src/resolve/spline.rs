@@ -9,7 +9,7 @@ use belvedere_core::map::spline::default_pivot;
 use belvedere_core::presets::{PresetDocument, PresetError};
 use belvedere_core::{DVec3, SplineBend};
 use belvedere_io::InputFile;
-use belvedere_scene::{Heightfield, Layer, LayerKind, RigidParts};
+use belvedere_scene::{Heightfield, Layer, LayerKind, OwnLayer, RigidParts};
 
 /// The bend of the first spline stage.
 pub(super) fn first_spline(context: &StageContext<'_>) -> Result<Option<SplineBend>, BelvedereError> {
@@ -56,7 +56,7 @@ fn heights(context: &StageContext<'_>) -> Option<[f64; 2]> {
     let terrain = context.ground.terrain.map(Heightfield::z_range);
     let solid = |layer: &Layer| match &layer.kind {
         LayerKind::Boxes(boxes) => !boxes.rigid,
-        LayerKind::Mesh(mesh) => mesh.rigid == RigidParts::None,
+        LayerKind::Mesh(mesh) | LayerKind::Own(OwnLayer { surface: mesh, .. }) => mesh.rigid == RigidParts::None,
         _ => false,
     };
     let bounds = context.scene.layers.iter().filter(|l| solid(l)).map(Layer::bounds);

@@ -7,7 +7,6 @@ use belvedere_core::map::spline::default_pivot;
 use belvedere_core::map::strip::{SmoothedRoute, Strip, StripError};
 use belvedere_core::{DVec2, Stage};
 use belvedere_core::{Warning, WarningKind};
-use belvedere_scene::LayerKind;
 use serde::Serialize;
 
 /// Default half width as a share of the route's length in plan.
@@ -95,7 +94,7 @@ fn route(
         let hint = scene_file::suggestion(id, &ids);
         return Err(at.error(&["along"], format!("a strip along \"{id}\": there is no such layer ({hint})")).into());
     };
-    let LayerKind::Line(line) = &layer.kind else {
+    let Some(line) = layer.kind.lines() else {
         return Err(at
             .error(&["along"], format!("a strip along \"{id}\": the layer is no line; name a layer of kind line"))
             .into());

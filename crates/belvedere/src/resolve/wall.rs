@@ -7,7 +7,7 @@ use belvedere_construct::rays::{Wall, find_wall, share_inside};
 use belvedere_core::DVec3;
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::volume::WALL;
-use belvedere_scene::{LayerKind, Scene, TransferFunction};
+use belvedere_scene::{Scene, TransferFunction};
 use serde::{Deserialize, Serialize};
 
 /// Share of the path inside a volume from which on the volume is drawn as a wall by default.
@@ -54,7 +54,7 @@ pub(super) fn around(
     for (index, doc) in volumes(source) {
         let is_asked = doc.transfer == WALL;
         let Some(layer) = scene.layers.iter().find(|l| l.id == doc.id) else { continue };
-        let LayerKind::Volume(volume) = &layer.kind else { continue };
+        let Some(volume) = layer.kind.volume() else { continue };
         let is_meant = is_asked || (doc.transfer == AUTO && share_inside(&volume.volume, path) >= INSIDE);
         if !is_meant {
             continue;
@@ -75,7 +75,7 @@ pub(super) fn around(
 pub(crate) fn drawn(scene: &Scene, walls: &[WallReport]) -> Option<Scene> {
     let mut changed = None;
     for (i, layer) in scene.layers.iter().enumerate() {
-        let LayerKind::Volume(volume) = &layer.kind else { continue };
+        let Some(volume) = layer.kind.volume() else { continue };
         let transfer = match walls.iter().find(|wall| wall.layer == layer.id) {
             Some(wall) => wall.transfer(),
             // A wall of an earlier path is replaced.
@@ -84,7 +84,7 @@ pub(crate) fn drawn(scene: &Scene, walls: &[WallReport]) -> Option<Scene> {
         };
         if transfer != volume.transfer {
             let changed: &mut Scene = changed.get_or_insert_with(|| scene.clone());
-            if let LayerKind::Volume(volume) = &mut changed.layers[i].kind {
+            if let Some(volume) = changed.layers[i].kind.volume_mut() {
                 volume.transfer = transfer;
             }
         }

@@ -36,16 +36,16 @@ pub struct AreaShape {
 /// * `frame`: with world points, its ids without marks.
 /// * `tolerance`: of simplified rings, pixels.
 pub(crate) fn areas((scene, view): (&Scene, &View), frame: &Frame, tolerance: f64) -> Vec<AreaShape> {
-    let is_ground = |kind: &LayerKind| matches!(kind, LayerKind::Terrain(_));
+    let is_ground = |kind: &LayerKind| kind.terrain().is_some();
     let Some(ground) = scene.layers.iter().position(|layer| is_ground(&layer.kind)) else { return Vec::new() };
     // Where areas are painted the ids are theirs.
     let shows_ground: Vec<bool> = std::iter::once(false)
-        .chain(scene.layers.iter().map(|layer| is_ground(&layer.kind) || matches!(layer.kind, LayerKind::Area(_))))
+        .chain(scene.layers.iter().map(|layer| is_ground(&layer.kind) || layer.kind.areas().is_some()))
         .collect();
     let mut tracer = None;
     let mut shapes = Vec::new();
     for (index, layer) in scene.layers.iter().enumerate() {
-        let LayerKind::Area(layer) = &layer.kind else { continue };
+        let Some(layer) = layer.kind.areas() else { continue };
         let plans: Vec<Plan> = layer.features.par_iter().map(|f| Plan::new(&f.rings)).collect();
         let pixels = GroundPixels { frame, shows_ground: &shows_ground };
         let tracer = tracer.get_or_insert_with(|| Tracer::of_opaque(scene, view));

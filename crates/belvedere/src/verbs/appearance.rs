@@ -117,7 +117,7 @@ pub(super) fn softly_ended(options: &OpenOptions) -> OpenOptions {
 /// The session with another shading of its terrain, in the scene and in the documents.
 fn shaded(mut session: Session, relief: Relief) -> Session {
     for layer in &mut Arc::make_mut(&mut session.loaded.scene).layers {
-        if let LayerKind::Terrain(terrain) = &mut layer.kind {
+        if let Some(terrain) = layer.kind.terrain_mut() {
             terrain.relief = relief;
         }
     }

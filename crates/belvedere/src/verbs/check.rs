@@ -3,7 +3,7 @@
 use crate::scene_file::StageDoc;
 use crate::{BelvedereError, Session};
 use belvedere_core::Warning;
-use belvedere_scene::{Bodies, LayerKind};
+use belvedere_scene::Bodies;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -57,16 +57,7 @@ impl std::fmt::Display for CheckReport {
 pub fn check(session: &Session) -> Result<CheckReport, BelvedereError> {
     session.check_drawable()?;
     let layers = session.scene().layers.iter().map(|layer| {
-        let (kind, count) = match &layer.kind {
-            LayerKind::Terrain(t) => ("terrain", t.heightfield.heights().len()),
-            LayerKind::Line(l) => ("line", l.features.len()),
-            LayerKind::Area(l) => ("area", l.features.len()),
-            LayerKind::Point(l) => ("point", l.features.len()),
-            LayerKind::Boxes(l) => ("boxes", l.boxes.len()),
-            LayerKind::Mesh(l) => ("mesh", l.mesh.triangles().len()),
-            LayerKind::Molecule(l) => ("molecule", l.atoms),
-            LayerKind::Volume(l) => ("volume", l.volume.values().len()),
-        };
+        let (kind, count) = (layer.kind.name(), layer.kind.count());
         let rigid = Bodies::of(&layer.kind).is_some();
         CheckedLayer { id: layer.id.clone(), kind, count, must_see: layer.must_see, rigid }
     });

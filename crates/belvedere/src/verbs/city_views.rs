@@ -4,7 +4,7 @@ use super::target_views::fitted;
 use crate::{Advice, BelvedereError};
 use belvedere_construct::rays::{Target, TargetSight};
 use belvedere_core::{Aabb, DVec3, View};
-use belvedere_scene::{LayerKind, Scene};
+use belvedere_scene::{LayerKind, OwnLayer, Scene};
 use rayon::prelude::*;
 
 /// Headings, degrees clockwise from north, those along the light first.
@@ -82,7 +82,7 @@ pub(super) fn around(
 fn has_room(scene: &Scene, eye: DVec3) -> bool {
     let above = scene.terrain().and_then(|t| t.surface_at(eye.truncate())).is_none_or(|z| eye.z > z + CLEAR_M);
     let clear = |kind: &LayerKind| match kind {
-        LayerKind::Mesh(layer) => {
+        LayerKind::Mesh(layer) | LayerKind::Own(OwnLayer { surface: layer, .. }) => {
             let mesh = &layer.mesh;
             let near = |t: usize| {
                 let bounds = Aabb::of(mesh.corners(t));

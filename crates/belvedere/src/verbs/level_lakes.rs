@@ -3,7 +3,7 @@
 use belvedere_core::{DVec2, TerrainDisocclusion, polygon};
 use belvedere_disocclusion::TerrainReport;
 use belvedere_disocclusion::report::BANK_M;
-use belvedere_scene::{Heightfield, LayerKind, Scene};
+use belvedere_scene::{Heightfield, Scene};
 
 /// One lake: its bounding box, its rings, the height up to which its area counts as water, and its displacement.
 struct Lake<'a> {
@@ -25,7 +25,7 @@ impl<'a> LevelLakes<'a> {
     /// * `report`: gives the areas of the scene that are lakes, and their displacements.
     pub(super) fn new(stage: &'a TerrainDisocclusion, report: &TerrainReport, scene: &'a Scene) -> Self {
         let lake = |of: &belvedere_disocclusion::report::LakeReport| {
-            let LayerKind::Area(areas) = &scene.layers.get(of.layer)?.kind else { return None };
+            let Some(areas) = scene.layers.get(of.layer)?.kind.areas() else { return None };
             let rings = &areas.features.get(of.feature)?.rings[..];
             let corners = rings.iter().flatten().filter(|p| p.is_finite());
             let [low, high] = corners.fold([DVec2::MAX, DVec2::MIN], |[a, b], p| [a.min(*p), b.max(*p)]);

@@ -110,6 +110,7 @@ impl MovedFeatures {
                 LayerKind::Terrain(_)
                 | LayerKind::Boxes(_)
                 | LayerKind::Mesh(_)
+                | LayerKind::Own(_)
                 | LayerKind::Molecule(_)
                 | LayerKind::Volume(_) => continue,
             };

@@ -135,7 +135,7 @@ mod tests {
     use super::*;
     use belvedere_construct::rays::Target;
     use belvedere_core::Aabb;
-    use belvedere_scene::{BoxLayer, BoxShape, Color, Layer, LayerKind, Scene, Unit};
+    use belvedere_scene::{BoxLayer, BoxShape, Color, Layer, Scene, Unit};
 
     /// A row of slabs, a target behind them, and the eye in front of them.
     fn scene() -> Scene {
@@ -145,7 +145,7 @@ mod tests {
         };
         let wall = BoxLayer::new(vec![slab(0.0, DVec3::new(60.0, 2.0, 40.0), 0.0)]);
         let low = BoxLayer::new(vec![slab(40.0, DVec3::new(50.0, 2.0, 12.0), 28.0)]);
-        let layer = |id: &str, boxes| Layer { id: id.into(), must_see: false, kind: LayerKind::Boxes(boxes) };
+        let layer = |id: &str, boxes: BoxLayer| Layer { id: id.into(), must_see: false, kind: boxes.into() };
         Scene { layers: vec![layer("wall", wall), layer("low", low)], unit: Unit::Angstrom, ..Scene::default() }
     }
 

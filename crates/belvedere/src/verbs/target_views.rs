@@ -3,7 +3,7 @@
 use crate::BelvedereError;
 use belvedere_construct::rays::{Target, TargetSight};
 use belvedere_core::{Aabb, DVec2, DVec3, Pinhole, Projection, View};
-use belvedere_scene::{Layer, LayerKind, Mesh, Scene, Unit};
+use belvedere_scene::{Layer, LayerKind, Mesh, OwnLayer, Scene, Unit};
 use rayon::prelude::*;
 
 /// Headings of the views that are tried, degrees clockwise, those from the front first; and their pitches, degrees: of things that stand
@@ -29,7 +29,7 @@ pub(crate) fn outline(scene: &Scene, most: usize, cities: &[&str]) -> Vec<DVec3>
     let of = |layer: &Layer| -> Vec<DVec3> {
         match &layer.kind {
             LayerKind::Volume(v) => v.outline(),
-            LayerKind::Mesh(m) => {
+            LayerKind::Mesh(m) | LayerKind::Own(OwnLayer { surface: m, .. }) => {
                 let Aabb { min, max } = layer.bounds();
                 let is_inside = |p: &DVec3| p.cmpgt(min).all() && p.cmplt(max).all();
                 let on_plate = cities.contains(&layer.id.as_str());

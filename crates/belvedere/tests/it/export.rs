@@ -2,7 +2,7 @@
 
 use belvedere::core::{DMat3, DQuat, DVec2, DVec3, Pinhole, View};
 use belvedere::export::{ExportOptions, Exported, export};
-use belvedere::scene::{Color, Heightfield, Hidden, LayerKind, PointFeature, PointLayer, PointStyle, Scene};
+use belvedere::scene::{Color, Heightfield, Hidden, PointFeature, PointLayer, PointStyle, Scene};
 use belvedere::{OpenOptions, Session};
 use glam::{DMat4, DVec4};
 
@@ -17,7 +17,7 @@ fn with_marks(name: &str, places: [[f64; 2]; 3]) -> (Session, [DVec3; 3]) {
     let features = marks.map(|position| PointFeature { position, ..PointFeature::default() }).to_vec();
     let (color, style) = (Color::rgb(200, 30, 30), PointStyle::default());
     let layer = PointLayer { features, color, size_px: 9.0, style, hidden: Hidden::Show, lift_m: 0.0 };
-    let scene = session.scene().clone().with_layer("marks", LayerKind::Point(layer));
+    let scene = session.scene().clone().with_layer("marks", layer);
     (Session::from_parts(scene, session.view().clone()), marks)
 }
 
@@ -154,7 +154,7 @@ fn single_precision_does_not_move_marks_far_from_the_origin_of_a_zone() {
     let features = marks.map(|position| PointFeature { position, ..PointFeature::default() }).to_vec();
     let (color, style) = (Color::rgb(200, 30, 30), PointStyle::default());
     let layer = PointLayer { features, color, size_px: 9.0, style, hidden: Hidden::Show, lift_m: 0.0 };
-    let scene = Scene::default().with_terrain("ground", ground).with_layer("marks", LayerKind::Point(layer));
+    let scene = Scene::default().with_terrain("ground", ground).with_layer("marks", layer);
     let camera = Pinhole::looking(at(4500.0, -6000.0) + 2000.0 * DVec3::Z, at(4500.0, 5000.0)).image([3840, 2160]);
     let session = Session::from_parts(scene, View::straight(camera.build().expect("a camera")));
     let made = export(&session, &ExportOptions::default()).expect("exported");
@@ -211,10 +211,7 @@ fn streets_with_boxes_are_exported_and_seams_refused() {
 fn lines_are_closed_tubes_as_wide_as_in_the_picture() {
     let (session, _) = with_marks("massif.toml", MASSIF);
     let made = export(&session, &ExportOptions { ground_nodes: 2000, ..ExportOptions::default() }).expect("exported");
-    let line = session.scene().layers.iter().find_map(|l| match &l.kind {
-        LayerKind::Line(line) => Some((l.id.clone(), line.width_px)),
-        _ => None,
-    });
+    let line = session.scene().layers.iter().find_map(|l| l.kind.lines().map(|line| (l.id.clone(), line.width_px)));
     let (id, width_px) = line.expect("a line");
     let (_, triangles) = Read::of(&made).mesh(&id);
     let mut edges = std::collections::HashMap::new();

@@ -4,7 +4,7 @@
 use belvedere::composite::canvas::{Canvas, CanvasShape, Fonts, fonts_in};
 use belvedere::core::DVec2;
 use belvedere::picture::PictureOptions;
-use belvedere::scene::{Color, FontFile, LayerKind, PlaceKind, Symbol};
+use belvedere::scene::{Color, FontFile, PlaceKind, Symbol};
 use belvedere::scene_file::parse;
 use belvedere::vectors::VectorContent;
 use belvedere::{OpenOptions, Session};
@@ -158,7 +158,7 @@ fn points_have_the_symbols_ranks_and_heights_that_they_say() {
     let features = |style: &str| {
         let session = scene(folder.path(), &places, style, "").expect("opens");
         let layer = &session.scene().layers.iter().find(|layer| layer.id == "places").expect("there").kind;
-        let LayerKind::Point(layer) = layer else { panic!("points") };
+        let Some(layer) = layer.points() else { panic!("points") };
         layer.features.clone()
     };
     let own = features("label = 'name:de'");

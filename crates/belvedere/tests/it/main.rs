@@ -14,6 +14,7 @@ mod moving_pictures;
 mod names;
 mod options;
 mod over_ground;
+mod own_layers;
 mod parts;
 mod renderers;
 mod ribbon_targets;

@@ -3,7 +3,7 @@
 use belvedere::core::View;
 use belvedere::cpu::CpuRenderer;
 use belvedere::scene::molecule::Selection;
-use belvedere::scene::{Frame, LayerKind, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
+use belvedere::scene::{Frame, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
 use belvedere::verbs::reveal_target::{TargetAnswer, TargetRequest, reveal_target};
 use belvedere::{OpenOptions, PictureOptions};
 use std::fmt::Write;
@@ -48,7 +48,7 @@ fn revealed(file: &Path, see: &str, fallback: &[&str]) -> TargetAnswer {
 /// The ribbon of a selection alone.
 fn alone(scene: &Scene, see: &str) -> Scene {
     let mut scene = scene.clone();
-    let LayerKind::Molecule(molecule) = &mut scene.layers[0].kind else { panic!("no molecule") };
+    let Some(molecule) = scene.layers[0].kind.molecule_mut() else { panic!("no molecule") };
     let own = molecule.mask_of(&Selection::parse(see).expect("a selection"));
     let mesh = &molecule.surface.mesh;
     molecule.surface.mesh = mesh.only(&|t| mesh.part(t).is_some_and(|part| own[part as usize]));

@@ -3,7 +3,7 @@
 use crate::language::{fill, tr};
 use crate::model::Model;
 use belvedere::scene::volume::TRANSFER_NAMES;
-use belvedere::scene::{LayerKind, TransferPoint, VolumeLayer};
+use belvedere::scene::{TransferPoint, VolumeLayer};
 use eframe::egui::{
     Color32, ComboBox, CursorIcon, Id, Pos2, Rect, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2,
 };
@@ -25,7 +25,7 @@ pub(super) fn show(ui: &mut Ui, model: &Model, id: &str, transfer: &mut String) 
     });
     let scene = model.shown.as_ref().map(|shown| shown.session.scene());
     let layer = scene.and_then(|scene| scene.layers.iter().find(|layer| layer.id == id));
-    let Some(LayerKind::Volume(volume)) = layer.map(|layer| &layer.kind) else { return };
+    let Some(volume) = layer.and_then(|layer| layer.kind.volume()) else { return };
     let points = stated(transfer).unwrap_or_else(|| volume.transfer.points().to_vec());
     if let Some(points) = curve(ui, ui.scope_id().with(("transfer", id)), volume, &points) {
         *transfer = text(&points);

@@ -126,7 +126,7 @@ impl Chain {
 mod tests {
     use super::*;
     use belvedere_core::{Aabb, Pinhole, Projection};
-    use belvedere_scene::{BoxLayer, BoxShape, Color, LayerKind, Scene};
+    use belvedere_scene::{BoxLayer, BoxShape, Color, Scene};
 
     /// A wall 30 m high, 40 m before the eye.
     fn voxels() -> Voxels {
@@ -136,7 +136,7 @@ mod tests {
             yaw: 0.0,
             color: Color::rgb(1, 2, 3),
         };
-        let scene = Scene::default().with_layer("wall", LayerKind::Boxes(BoxLayer::new(vec![wall])));
+        let scene = Scene::default().with_layer("wall", BoxLayer::new(vec![wall]));
         Voxels::new(&scene, &Aabb { min: DVec3::new(-80.0, -10.0, 0.0), max: DVec3::new(80.0, 120.0, 70.0) })
     }
 

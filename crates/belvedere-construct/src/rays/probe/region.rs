@@ -59,8 +59,9 @@ impl Region {
 
 /// Around everything that has a surface.
 fn solid_bounds(scene: &Scene) -> Aabb {
-    use belvedere_scene::LayerKind::{Boxes, Mesh, Molecule, Terrain};
-    let solid = scene.layers.iter().filter(|l| matches!(l.kind, Boxes(_) | Mesh(_) | Molecule(_) | Terrain(_)));
+    use belvedere_scene::LayerKind::{Boxes, Mesh, Molecule, Own, Terrain};
+    let solid =
+        scene.layers.iter().filter(|l| matches!(l.kind, Boxes(_) | Mesh(_) | Molecule(_) | Own(_) | Terrain(_)));
     solid.fold(Aabb::EMPTY, |b, l| b.union(l.bounds()))
 }
 

@@ -260,8 +260,8 @@ mod tests {
         let ground = Heightfield::measured(DVec2::new(-50.0, 50.0), DVec2::splat(10.0), 11, 11, heights).unwrap();
         let scene = Scene::default()
             .with_terrain("ground", ground)
-            .with_layer("box", LayerKind::Boxes(BoxLayer::new(vec![shape])))
-            .with_layer("mesh", LayerKind::Mesh(MeshLayer::new(mesh.clone(), Color::rgb(1, 2, 3))));
+            .with_layer("box", BoxLayer::new(vec![shape]))
+            .with_layer("mesh", MeshLayer::new(mesh.clone(), Color::rgb(1, 2, 3)));
         let voxels = Voxels::new(&scene, &region());
         assert!(voxels.len() <= MOST_CELLS as usize * 5 / 4 && voxels.size().into_iter().max() >= Some(64));
         let mut points = Vec::new();
@@ -301,7 +301,7 @@ mod tests {
             yaw: 0.0,
             color: Color::rgb(1, 2, 3),
         };
-        let scene = Scene::default().with_layer("wall", LayerKind::Boxes(BoxLayer::new(vec![wall])));
+        let scene = Scene::default().with_layer("wall", BoxLayer::new(vec![wall]));
         let voxels = Voxels::new(&scene, &region());
         let [left, right] = [-30.0, 30.0].map(|x| DVec3::new(x, 0.0, 5.0));
         assert!(!voxels.is_free(left, right, 0.0, 0.0) && !voxels.sees(left, right));

@@ -134,7 +134,7 @@ fn unit(step: [isize; 3]) -> DVec3 {
 mod tests {
     use super::*;
     use belvedere_core::Aabb;
-    use belvedere_scene::{BoxLayer, BoxShape, Color, LayerKind, Scene};
+    use belvedere_scene::{BoxLayer, BoxShape, Color, Scene};
 
     /// A wall with the eye before it.
     fn voxels() -> Voxels {
@@ -144,7 +144,7 @@ mod tests {
             yaw: 0.0,
             color: Color::rgb(1, 2, 3),
         };
-        let scene = Scene::default().with_layer("wall", LayerKind::Boxes(BoxLayer::new(vec![wall])));
+        let scene = Scene::default().with_layer("wall", BoxLayer::new(vec![wall]));
         let region = Aabb { min: DVec3::new(-60.0, -20.0, 0.0), max: DVec3::new(60.0, 80.0, 60.0) };
         Voxels::new(&scene, &region)
     }

@@ -394,8 +394,7 @@ mod tests {
     use crate::shade::LightCache;
     use belvedere_core::{DVec3, Pinhole, Projection, View};
     use belvedere_scene::{
-        Heightfield, Layer, LayerKind, Light, PaletteName, Progress, Relief, RenderJob, RenderOptions, Scene,
-        TerrainLayer,
+        Heightfield, Layer, Light, PaletteName, Progress, Relief, RenderJob, RenderOptions, Scene, TerrainLayer,
     };
     use belvedere_sight::Solids;
 
@@ -414,7 +413,7 @@ mod tests {
             contours: None,
             edge: belvedere_scene::Edge::Plain,
         };
-        let layer = Layer { id: "ground".into(), must_see: false, kind: LayerKind::Terrain(terrain) };
+        let layer = Layer { id: "ground".into(), must_see: false, kind: terrain.into() };
         Scene { layers: vec![layer], ..Scene::default() }
     }
 

@@ -194,7 +194,7 @@ fn marched(case: &Case, view: &View) -> f64 {
         sum
     };
     let inside = (1..2500).map(|i| (low + DVec2::new(digits(i, 2), digits(i, 3)) * (high - low), 1.0));
-    let LayerKind::Point(points) = &case.scene.layers[2].kind else { unreachable!("the third layer is the summit") };
+    let Some(points) = case.scene.layers[2].kind.points() else { unreachable!("the third layer is the summit") };
     let summit = points.features.iter().map(|f| (f.position.truncate(), 1.0));
     let shares = [ground.share(along.collect()), ground.share(inside.collect()), ground.share(summit.collect())];
     shares.into_iter().flatten().fold(1.0, f64::min)

@@ -6,7 +6,7 @@ use belvedere_composite::color::{Rgb, encode};
 use belvedere_composite::tint::GroundTint;
 use belvedere_core::DVec2;
 use belvedere_core::plain::number;
-use belvedere_scene::{Color, Edge, Layer, LayerKind, Palette, PaletteName, TerrainLayer, VolumeLayer};
+use belvedere_scene::{Color, Edge, Layer, LayerKind, OwnLayer, Palette, PaletteName, TerrainLayer, VolumeLayer};
 
 /// Steps of a bar of colours.
 const STEPS: usize = 64;
@@ -23,7 +23,7 @@ fn of_layer(subject: &Subject<'_>, layer: &Layer) -> Vec<Row> {
     let words = stated.or(layer.kind.only_name()).unwrap_or(&layer.id).trim();
     // Sides and mats of the ground are no layer of the scene.
     let is_edge = layer.id == Edge::LAYER || layer.id.starts_with("edge of ");
-    if words.is_empty() || is_edge && matches!(layer.kind, LayerKind::Mesh(_)) {
+    if words.is_empty() || is_edge && layer.kind.mesh().is_some() {
         return Vec::new();
     }
     let row = |sign: Sign| Row { sign, words: words.to_owned(), inset: false };
@@ -54,7 +54,7 @@ fn of_layer(subject: &Subject<'_>, layer: &Layer) -> Vec<Row> {
             let fill = boxes.boxes.first().map(|b| b.color);
             return fill.map(|fill| row(Sign::Area { fill, outline: None })).into_iter().collect();
         }
-        LayerKind::Mesh(mesh) => {
+        LayerKind::Mesh(mesh) | LayerKind::Own(OwnLayer { surface: mesh, .. }) => {
             let fill = if mesh.mesh.triangles().is_empty() {
                 None
             } else {

@@ -14,7 +14,7 @@ use crate::record::LayerNotes;
 use crate::scene_file::{CompassDoc, CompassPlace, Corner, FurnitureDoc, ScaleDoc, SwitchOrText};
 use belvedere_composite::canvas::{Canvas, CanvasShape};
 use belvedere_core::{DVec2, View};
-use belvedere_scene::{DistanceMarkers, LayerKind, Scene};
+use belvedere_scene::{DistanceMarkers, Scene};
 use block::Block;
 use sighted::Sighted;
 use std::borrow::Cow;
@@ -96,7 +96,7 @@ pub(crate) fn with_distances<'s>(scene: &'s Scene, doc: &FurnitureDoc) -> Cow<'s
     }
     let mut scene = scene.clone();
     for layer in scene.layers.iter_mut().filter(|layer| layer.must_see) {
-        if let LayerKind::Line(line) = &mut layer.kind {
+        if let Some(line) = layer.kind.lines_mut() {
             line.markers.get_or_insert(DistanceMarkers::Auto);
         }
     }

@@ -56,7 +56,7 @@ fn with_point() -> Scene {
     let style = PointStyle { symbol: Symbol::Triangle, casing: None, label_px: None };
     let (color, hidden) = (Color::rgb(1, 2, 3), Hidden::Fade);
     let layer = PointLayer { features: vec![point], color, size_px: 8.0, style, hidden, lift_m: 1.0 };
-    hills().with_layer("huts", LayerKind::Point(layer))
+    hills().with_layer("huts", layer)
 }
 
 /// A point layer is called by the name of its points, unless they have several, or the scene says otherwise.
@@ -64,7 +64,7 @@ fn with_point() -> Scene {
 fn rows_of_the_legend_have_the_name_of_what_they_show() {
     let words = |names: &[&str], doc: &FurnitureDoc| {
         let mut scene = with_point();
-        if let LayerKind::Point(layer) = &mut scene.layers[1].kind {
+        if let Some(layer) = scene.layers[1].kind.points_mut() {
             let point = layer.features[0].clone();
             layer.features = names.iter().map(|name| PointFeature { name: (*name).into(), ..point.clone() }).collect();
         }

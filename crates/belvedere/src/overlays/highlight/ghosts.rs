@@ -2,7 +2,7 @@
 
 use belvedere_composite::canvas::Canvas;
 use belvedere_core::{Aabb, DVec2, DVec3, View};
-use belvedere_scene::{Color, Layer, LayerKind, MeshLayer, Scene};
+use belvedere_scene::{Color, Layer, LayerKind, MeshLayer, OwnLayer, Scene};
 use serde::Serialize;
 
 /// Widths of rim and line, pixels of a picture 720 high.
@@ -108,7 +108,7 @@ fn bounds(layer: &Layer) -> Aabb {
         Aabb::of(wanted.flat_map(|t| mesh.corners(t)))
     };
     match &layer.kind {
-        LayerKind::Mesh(m) if m.wanted.is_some() => {
+        LayerKind::Mesh(m) | LayerKind::Own(OwnLayer { surface: m, .. }) if m.wanted.is_some() => {
             of_parts(m, &|part| m.wanted.as_ref().is_some_and(|wanted| wanted.contains(&part)))
         }
         LayerKind::Molecule(m) if m.wanted.is_some() => {
