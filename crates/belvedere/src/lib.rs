@@ -23,9 +23,127 @@
 //! ```
 //!
 //! A scene file describes the same and more, and is opened by [`Session::open`]. Terrain and routes straight from files become a
-//! bent picture by [`verbs::reveal`], or moved ground by [`verbs::disocclude`]. Everything that a call takes or gives has its name
-//! in this crate: [`core`] (views and stages), [`scene`] (layers, frames), [`io`] (loaders), [`construct`], [`disocclusion`],
-//! [`cpu`] (renderers), [`builtin`] (generated scenes).
+//! bent picture by [`verbs::asked::reveal`], or moved ground by [`verbs::disocclude`]; what verbs are asked is plain data of [`request`].
+//! Everything that a call takes or gives has its name in this crate: [`core`] (views and stages), [`scene`] (layers, frames), [`io`] (loaders),
+//! [`construct`], [`disocclusion`], [`cpu`] (renderers), [`builtin`] (generated scenes).
+//!
+//! # A tour: from a formula to a picture
+//!
+//! A picture is a pinhole photograph of a displaced world. A *map* displaces points, and can undo it. This one raises what lies farther north:
+//!
+//! ```
+//! use belvedere::core::map::StageMap;
+//! use belvedere::core::{DMat3, DVec2, DVec3, Miss, Pinhole, SpaceMap, Stage, View};
+//! use belvedere::scene::{Heightfield, Scene};
+//! use belvedere::{PictureOptions, Session};
+//!
+//! #[derive(Debug)]
+//! struct Ramp;
+//!
+//! impl SpaceMap for Ramp {
+//!     fn apply(&self, p: DVec3) -> Result<DVec3, Miss> {
+//!         Ok(p + p.y.max(0.0).powi(2) / 2000.0 * DVec3::Z)
+//!     }
+//!     fn invert(&self, p: DVec3) -> Result<DVec3, Miss> {
+//!         Ok(p - p.y.max(0.0).powi(2) / 2000.0 * DVec3::Z)
+//!     }
+//!     fn jacobian(&self, p: DVec3) -> Result<DMat3, Miss> {
+//!         Ok(DMat3::from_cols(DVec3::X, DVec3::new(0.0, 1.0, p.y.max(0.0) / 1000.0), DVec3::Z))
+//!     }
+//! }
+//! impl StageMap for Ramp {}
+//!
+//! // A *view* is a pinhole and its stages: a point has a pixel, and a pixel has a ray, which is curved.
+//! let camera = Pinhole::looking(DVec3::new(0.0, -100.0, 60.0), DVec3::new(0.0, 400.0, 0.0)).image([160, 90]).build()?;
+//! let view = View::new(camera, vec![Stage::own(Ramp)])?;
+//! let point = DVec3::new(20.0, 300.0, 0.0);
+//! let image = view.project(point).map_err(|miss| format!("{miss:?}"))?;
+//! let along = view.ray(image.pixel).at(image.depth).map_err(|miss| format!("{miss:?}"))?;
+//! assert!(along.point.distance(point) < 1e-6);
+//!
+//! // Renderers, picks and measures go through the view: none of them knows the map.
+//! let ground = Heightfield::measured(DVec2::new(-300.0, 600.0), DVec2::splat(10.0), 61, 61, vec![0.0; 61 * 61])?;
+//! let session = Session::from_parts(Scene::default().with_terrain("ground", ground), view);
+//! let picture = session.render(&PictureOptions::default())?;
+//! assert_eq!(picture.sidecar.stages, ["own"]);
+//! let seen = session.pick(&[image.pixel.to_array()])?;
+//! assert!(seen[0].as_ref().is_some_and(|seen| (seen.point[1] - 300.0).abs() < 0.1));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A *layer* of your own kind says what its surface is ([`scene::LayerContent`]); it is then drawn, picked, measured and exported like a mesh:
+//!
+//! ```
+//! use belvedere::core::{DVec3, Pinhole, View};
+//! use belvedere::scene::{Color, LayerContent, Mesh, MeshColors, MeshLayer, OwnLayer, Scene};
+//! use belvedere::{PictureOptions, Session};
+//!
+//! #[derive(Debug)]
+//! struct Sail([DVec3; 3]);
+//!
+//! impl LayerContent for Sail {
+//!     fn kind(&self) -> &'static str {
+//!         "sail"
+//!     }
+//!     fn surface(&self) -> MeshLayer {
+//!         let mesh = Mesh::new(&self.0, vec![[0, 1, 2]], MeshColors::Layer);
+//!         MeshLayer::new(mesh.expect("three finite corners"), Color::rgb(250, 240, 220))
+//!     }
+//! }
+//!
+//! let sail = Sail([DVec3::new(-2.0, 20.0, 0.0), DVec3::new(2.0, 20.0, 0.0), DVec3::new(0.0, 20.0, 6.0)]);
+//! let scene = Scene::default().with_layer("sail", OwnLayer::new(sail));
+//! let camera = Pinhole::looking(DVec3::new(0.0, 0.0, 2.0), DVec3::new(0.0, 20.0, 2.0)).image([80, 60]).build()?;
+//! let session = Session::from_parts(scene, View::straight(camera));
+//! let frame = session.render(&PictureOptions::default())?.frame;
+//! assert!(frame.id.iter().filter(|id| **id == 1).count() > 100);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! A *renderer* of your own is handed a job and gives a frame ([`scene::Renderer`]). Registered under a name ([`renderers::register`]) it is the
+//! one of every verb that asks for it: in options of pictures, in the key `renderer` of scene files, on a command line. Its contract is
+//! `renderer_laws!` of `belvedere-testkit`. This one follows the ray of each pixel by steps:
+//!
+//! ```
+//! use belvedere::core::{DVec2, DVec3, Pinhole, View};
+//! use belvedere::scene::{Frame, Heightfield, RenderError, RenderJob, Renderer, Scene};
+//! use belvedere::{PictureOptions, Session, renderers};
+//! use std::sync::Arc;
+//!
+//! struct Stepper;
+//!
+//! impl Renderer for Stepper {
+//!     fn name(&self) -> &'static str {
+//!         "stepper"
+//!     }
+//!     fn render(&self, job: &RenderJob<'_>) -> Result<Frame, RenderError> {
+//!         let [width, height] = job.view.pinhole().image.map(|side| side as usize);
+//!         let mut frame = Frame { width, height, ..Frame::default() };
+//!         for i in 0..width * height {
+//!             job.progress.tick("step", i as f64 / (width * height) as f64)?;
+//!             let ray = job.view.ray(DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5));
+//!             let is_below = |depth: &f64| {
+//!                 let point = ray.at(*depth).ok().map(|at| at.point);
+//!                 let ground = |p: DVec3| job.scene.terrain()?.surface_at(p.truncate());
+//!                 point.is_some_and(|p| ground(p).is_some_and(|z| p.z < z))
+//!             };
+//!             let hit = (1..400).map(|step| 5.0 * f64::from(step)).find(is_below);
+//!             frame.color.push(if hit.is_some() { [120, 140, 90] } else { [200, 220, 240] });
+//!             frame.depth.push(hit.map_or(f32::INFINITY, |depth| depth as f32));
+//!             frame.id.push(u32::from(hit.is_some()));
+//!         }
+//!         Ok(frame)
+//!     }
+//! }
+//!
+//! renderers::register("stepper", || Arc::new(Stepper));
+//! let ground = Heightfield::measured(DVec2::new(-300.0, 600.0), DVec2::splat(10.0), 61, 61, vec![0.0; 61 * 61])?;
+//! let camera = Pinhole::looking(DVec3::new(0.0, -100.0, 60.0), DVec3::new(0.0, 400.0, 0.0)).image([80, 45]).build()?;
+//! let session = Session::from_parts(Scene::default().with_terrain("ground", ground), View::straight(camera));
+//! let picture = session.render(&PictureOptions { renderer: "stepper".into(), ..PictureOptions::default() })?;
+//! assert_eq!(picture.sidecar.renderer, "stepper");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod advice;
 pub mod answers;
