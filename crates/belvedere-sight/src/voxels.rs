@@ -28,7 +28,7 @@ impl<'a> Voxels<'a> {
     pub fn without(scene: &'a Scene, layers: &[usize]) -> Self {
         let others = scene.layers.iter().enumerate().filter(|(i, _)| !layers.contains(i));
         let volumes = others.filter_map(|(_, layer)| {
-            layer.kind.volume().map(|v| Absorber::new(v)).filter(|a| a.visible.contains(&true))
+            layer.kind.volume().map(Absorber::new).filter(|a| a.visible.contains(&true))
         });
         Self { volumes: volumes.collect() }
     }
