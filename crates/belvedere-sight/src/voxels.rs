@@ -27,9 +27,8 @@ impl<'a> Voxels<'a> {
     /// The volumes of `scene` but for some layers, by their index; one pass over their bricks.
     pub fn without(scene: &'a Scene, layers: &[usize]) -> Self {
         let others = scene.layers.iter().enumerate().filter(|(i, _)| !layers.contains(i));
-        let volumes = others.filter_map(|(_, layer)| {
-            layer.kind.volume().map(Absorber::new).filter(|a| a.visible.contains(&true))
-        });
+        let volumes = others
+            .filter_map(|(_, layer)| layer.kind.volume().map(Absorber::new).filter(|a| a.visible.contains(&true)));
         Self { volumes: volumes.collect() }
     }
 

@@ -87,7 +87,7 @@ fn surface(scene: &Scene, seen: &RayHit) -> Option<Picked> {
     if let Some(m) = layer.kind.molecule() {
         feature = seen.triangle().and_then(|t| m.name_of(t));
     }
-    if let Some(_) = layer.kind.terrain() {
+    if layer.kind.terrain().is_some() {
         for (other, area) in scene.layers.iter().filter_map(area_of) {
             let hit = area.features.iter().find(|f| polygon::is_inside(&f.rings, seen.point.truncate()));
             if let Some(hit) = hit {

@@ -197,7 +197,7 @@ impl Marks {
         let faces = overlay
             .faces
             .iter()
-            .flat_map(|f| passes.iter().take(job.view.records()).filter_map(|p| Face::new(f, *p, screen)));
+            .flat_map(|f| passes.iter().take(job.view.records()).filter_map(|p| Face::new(f, p, screen)));
         let (size, density, keep_clear) = (2.0 * screen.center, job.options.density, &job.options.keep_clear[..]);
         let labels = Labels::place(requests, &Page { size, density, fonts: &fonts, keep_clear }, choice);
         Self { under, faces: faces.collect(), sheets, drawings: points.drawings, labels }
@@ -413,14 +413,9 @@ impl MarkBuilder<'_> {
         let mut runs = Vec::new();
         let pairs = line.windows(2).map(|pair| Aabb::of([pair[0].p, pair[1].p]));
         for (i, pass) in self.passes_for(pairs).iter().enumerate() {
-            let judge = LineVisibility {
-                pass: *pass,
-                screen: self.screen,
-                map: self.map,
-                sight: self.sight,
-                lift_m: style.lift_m,
-            };
-            for piece in path::project(*pass, self.screen, line, self.tolerance_px) {
+            let judge =
+                LineVisibility { pass, screen: self.screen, map: self.map, sight: self.sight, lift_m: style.lift_m };
+            for piece in path::project(pass, self.screen, line, self.tolerance_px) {
                 runs.extend(judge.runs(&piece, reach).into_iter().map(|run| (i, run)));
             }
         }

@@ -20,7 +20,7 @@ fn probe(scene: &Scene, base: &View) -> Probed {
 
 /// Points on the walls and tops of boxes, chosen without the probe.
 fn on_boxes(scene: &Scene, count: usize, random: &mut Random) -> Vec<DVec3> {
-    let boxes = scene.layers.iter().filter_map(|l| if let Some(b) = l.kind.boxes() { Some(&b.boxes) } else { None });
+    let boxes = scene.layers.iter().filter_map(|l| l.kind.boxes().map(|b| &b.boxes));
     let boxes: Vec<&BoxShape> = boxes.flatten().collect();
     (0..count)
         .map(|_| {

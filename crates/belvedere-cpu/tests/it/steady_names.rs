@@ -117,7 +117,7 @@ fn names_of_points_and_lines_keep_their_places_past_a_moving_camera() {
 fn the_first_frame_is_the_picture_and_given_names_are_drawn_where_they_were_placed() {
     // Points of lines are told in thousandths of a metre, those of points exactly.
     let mut scene = named();
-    scene.layers.retain(|layer| !layer.kind.lines().is_some());
+    scene.layers.retain(|layer| layer.kind.lines().is_none());
     let first = &film(&scene, true)[..1];
     let given = RenderOptions { names: Some(first[0].clone().into()), ..options(1) };
     assert!(render(&scene, &view(0), &given).color == render(&scene, &view(0), &options(1)).color);

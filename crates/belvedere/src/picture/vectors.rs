@@ -49,7 +49,7 @@ pub(super) fn left_out(session: &Session, has_more: bool) -> Result<Option<Warni
     if left.len() == scene.layers.len() && !has_more {
         return Err(BelvedereError::NothingAsVectors { layers: named(session, &left) });
     }
-    let left: Vec<&Layer> = left.into_iter().filter(|layer| !layer.kind.terrain().is_some()).collect();
+    let left: Vec<&Layer> = left.into_iter().filter(|layer| layer.kind.terrain().is_none()).collect();
     Ok((!left.is_empty()).then(|| {
         let (count, layers) = (left.len(), if left.len() == 1 { "layer has" } else { "layers have" });
         let text = format!("{count} {layers} no vectors and is left out: {}", named(session, &left));

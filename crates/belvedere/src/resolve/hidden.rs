@@ -36,7 +36,7 @@ pub(crate) fn apply(scene: &mut Scene, document: &Document) {
         layer.must_see = false;
         let moves = document.layer.iter().any(|doc| *doc.id() == *layer.id && doc.motion().is_some());
         let is_followed = moves || layer_names::is_named_by(&followers, &layer.id);
-        if !layer.kind.terrain().is_some() && !is_followed {
+        if layer.kind.terrain().is_none() && !is_followed {
             layer.kind = LayerKind::Boxes(BoxLayer::default());
         }
     }

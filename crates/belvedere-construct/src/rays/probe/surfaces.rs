@@ -81,7 +81,7 @@ fn ground_points(scene: &Scene, region: &Aabb, count: usize, off: f64) -> Vec<Su
     }
     let step = (extent.x * extent.y / count as f64).sqrt();
     let [cols, rows] = [extent.x, extent.y].map(|e| (e / step).ceil() as usize);
-    let boxes = scene.layers.iter().filter_map(|l| if let Some(b) = l.kind.boxes() { Some(&b.boxes) } else { None });
+    let boxes = scene.layers.iter().filter_map(|l| l.kind.boxes().map(|b| &b.boxes));
     let boxes: Vec<_> = boxes.flatten().collect();
     let mut random = Random::new(0x6772_6f75_6e64);
     let mut points = Vec::with_capacity(cols * rows);
