@@ -9,7 +9,7 @@ use belvedere::core::{DVec3, Pinhole, Projection, Stage, View};
 use belvedere::cpu::CpuRenderer;
 use belvedere::disocclusion::{LiveTerrain, TerrainMemory, TerrainSettings, TerrainSolver};
 use belvedere::scene::{
-    Color, Frame, Layer, LayerKind, Light, LineFeature, LineLayer, Progress, RenderJob, RenderOptions, Renderer, Scene,
+    Color, Frame, Layer, Light, LineFeature, LineLayer, Progress, RenderJob, RenderOptions, Renderer, Scene,
     drape_polyline,
 };
 use schemars::JsonSchema;
@@ -110,10 +110,7 @@ fn with_route(mut scene: Scene) -> Result<Scene> {
 }
 
 fn views(scene: &Scene, image: [u32; 2], pictures: usize) -> Result<Vec<View>> {
-    let lines = scene.layers.iter().filter_map(|l| match &l.kind {
-        LayerKind::Line(line) => line.features.first(),
-        _ => None,
-    });
+    let lines = scene.layers.iter().filter_map(|l| l.kind.lines().and_then(|line| line.features.first()));
     let route: Vec<_> = lines.flat_map(|f| f.points.iter().map(|p| p.truncate())).collect();
     let length: f64 = route.windows(2).map(|p| p[0].distance(p[1])).sum();
     let flight = Flight::along(&route, scene.terrain(), &FlightOptions::for_length(length))?;

@@ -85,10 +85,7 @@ impl TracedSight<'_> {
 }
 
 fn prepared<'a>(job: &RenderJob<'a>, solids: Solids) -> Option<Tracer<'a>> {
-    let nodes = |kind: &LayerKind| match kind {
-        LayerKind::Terrain(t) => t.heightfield.cols() * t.heightfield.rows(),
-        _ => 0,
-    };
+    let nodes = |kind: &LayerKind| kind.terrain().map_or(0, |t| t.heightfield.cols() * t.heightfield.rows());
     // The lines of a coarse picture are hidden by its depths alone.
     let nodes: usize = job.scene.layers.iter().map(|l| nodes(&l.kind)).sum();
     (nodes <= MAX_NODES && job.options.tolerance_px < COARSE_PX)

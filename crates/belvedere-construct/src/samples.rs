@@ -45,16 +45,12 @@ pub fn judged_samples(scene: &Scene) -> Vec<SampledFeature> {
     let usual = default_spacing(scene).max(1e-6);
     // Shares of short lines are to be as fine as those of long ones.
     let length = |f: &LineFeature| f.points.windows(2).map(|w| w[0].truncate().distance(w[1].truncate())).sum::<f64>();
-    let of_layer = |layer: &Layer| match &layer.kind {
-        LayerKind::Line(l) => l.features.iter().map(length).filter(|length| length.is_finite()).sum(),
-        _ => 0.0,
+    let of_layer = |layer: &Layer| {
+        layer.kind.lines().map_or(0.0, |l| l.features.iter().map(length).filter(|length| length.is_finite()).sum())
     };
     let lines: f64 = scene.must_see().map(|(_, layer)| of_layer(layer)).sum();
     let on_lines = (usual / DENSER[0]).min((lines / LEAST_ON_LINES).max(usual / FINEST));
-    let areas_of = |layer: &Layer| match &layer.kind {
-        LayerKind::Area(a) => a.features.len(),
-        _ => 0,
-    };
+    let areas_of = |layer: &Layer| layer.kind.areas().map_or(0, |a| a.features.len());
     let areas = scene.must_see().map(|(_, layer)| areas_of(layer)).sum::<usize>().max(1) as f64;
     let judged = JUDGED_ALL.map(|all| (all / areas).clamp(FEWEST_JUDGED, MOST_JUDGED));
     let sampled = |(index, layer): (usize, &Layer)| {

@@ -4,7 +4,7 @@ use belvedere::BelvedereError;
 use belvedere::construct::rays::Target;
 use belvedere::core::DVec3;
 use belvedere::scene::molecule::{Residue, Selection};
-use belvedere::scene::{LayerKind, MoleculeLayer, Scene};
+use belvedere::scene::{MoleculeLayer, Scene};
 use std::collections::HashSet;
 
 /// A residue that is drawn.
@@ -74,10 +74,11 @@ pub(super) fn residue_at(layer: &MoleculeLayer, point: DVec3) -> Option<String> 
 }
 
 fn molecule<'s>(scene: &'s Scene, id: &str) -> Option<(usize, &'s MoleculeLayer)> {
-    scene.layers.iter().enumerate().find_map(|(index, layer)| match &layer.kind {
-        LayerKind::Molecule(molecule) if layer.id == id => Some((index, &**molecule)),
-        _ => None,
-    })
+    scene
+        .layers
+        .iter()
+        .enumerate()
+        .find_map(|(index, layer)| layer.kind.molecule().filter(|_| layer.id == id).map(|molecule| (index, molecule)))
 }
 
 fn drawn_atoms(layer: &MoleculeLayer) -> Vec<usize> {

@@ -4,7 +4,7 @@ use crate::BelvedereError;
 use belvedere_construct::rays::Target;
 use belvedere_core::DVec3;
 use belvedere_scene::molecule::Selection;
-use belvedere_scene::{LayerKind, MeshLayer, Scene};
+use belvedere_scene::{MeshLayer, Scene};
 
 /// The point of `x,y,z`; `None` for other texts.
 pub fn point(see: &str) -> Option<DVec3> {
@@ -63,7 +63,7 @@ pub fn target(scene: &Scene, see: &str) -> Result<Target, BelvedereError> {
 pub(crate) fn part(scene: &Scene, name: &str) -> Option<Target> {
     if let Some((layer, number)) = name.rsplit_once('/')
         && let (Some(index), Ok(number)) = (scene.layers.iter().position(|l| l.id == layer), number.parse::<u32>())
-        && let LayerKind::Boxes(_) = scene.layers[index].kind
+        && scene.layers[index].kind.boxes().is_some()
     {
         return Target::parts(scene, index, &[number.checked_sub(1)?]);
     }

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use belvedere::construct::{self, MeasureOptions};
 use belvedere::core::map::curved_rays::{Pencil, TurnSpec};
 use belvedere::core::{DVec2, DVec3};
-use belvedere::scene::{Color, Frame, LayerKind, Progress};
+use belvedere::scene::{Color, Frame, Progress};
 use belvedere::{CameraPicture, Session};
 
 const SCENE: &str = include_str!("../../../../scenes/canyon_preview.toml");
@@ -132,10 +132,7 @@ fn marks(session: &Session, turn: Option<usize>) -> Vec<(&'static str, Vec<Vec<D
 
 /// Arc length, metres, of the river's vertex nearest in plan to a point.
 fn along_river(session: &Session, place: DVec3) -> Result<f64> {
-    let line = session.scene().layers.iter().find_map(|l| match &l.kind {
-        LayerKind::Line(l) => l.features.first(),
-        _ => None,
-    });
+    let line = session.scene().layers.iter().find_map(|l| l.kind.lines().and_then(|l| l.features.first()));
     let points = &line.context("the scene has no river")?.points;
     let (mut best, mut along) = ((f64::INFINITY, 0.0), 0.0);
     for (i, p) in points.iter().enumerate() {

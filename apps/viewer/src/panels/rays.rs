@@ -142,7 +142,7 @@ fn in_sight(target: &str, seen: Option<f64>) -> String {
 fn path_length(model: &Model, constructor: &ConstructorDoc) -> Option<f64> {
     let scene = model.shown.as_ref()?.session.scene();
     let layer = scene.layers.iter().find(|layer| Some(&layer.id) == constructor.path.as_ref())?;
-    let Some(line) = layer.kind.lines() else { return None };
+    let line = layer.kind.lines()?;
     let length = |points: &[DVec3]| points.windows(2).map(|pair| pair[0].distance(pair[1])).sum::<f64>();
     line.features.iter().map(|feature| length(&feature.points)).reduce(f64::max)
 }

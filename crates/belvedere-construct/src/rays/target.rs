@@ -103,7 +103,7 @@ impl Target {
     /// Atoms of a molecule, by their numbers: as balls, or where they are drawn as ribbons or smooth surfaces by points all over these. Those
     /// that are not drawn, or buried under a smooth surface, are left out. `None` if none is drawn.
     pub fn atoms(scene: &Scene, index: usize, atoms: &[usize]) -> Option<Self> {
-        let Some(layer) = scene.layers.get(index)?.kind.molecule() else { return None };
+        let layer = scene.layers.get(index)?.kind.molecule()?;
         let mesh = &layer.surface.mesh;
         let mut drawn = vec![false; layer.molecule.atoms().len()];
         for part in (0..mesh.triangles().len()).filter_map(|t| mesh.part(t)) {

@@ -112,10 +112,12 @@ impl<'a> Shader<'a> {
                 _ => LayerShade::Other,
             })
             .collect();
-        let areas = job.scene.layers.iter().enumerate().filter_map(|(i, l)| match &l.kind {
-            LayerKind::Area(a) => AreaMap::new(i as u32, a, &cache.areas),
-            _ => None,
-        });
+        let areas = job
+            .scene
+            .layers
+            .iter()
+            .enumerate()
+            .filter_map(|(i, l)| l.kind.areas().and_then(|a| AreaMap::new(i as u32, a, &cache.areas)));
         // The sea is drawn below all other areas.
         let mut areas: Vec<AreaMap> = areas.collect();
         areas.sort_by_key(|a| a.surface != AreaSurface::Sea);

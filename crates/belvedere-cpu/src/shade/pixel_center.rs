@@ -139,7 +139,7 @@ impl<'a> PixelCenters<'a> {
     /// Motion of the body that a triangle belongs to.
     fn motion(&self, found: &DrawnTriangle<'_>) -> Option<&'a RigidMotion> {
         let layer = found.block.layer as usize;
-        let per_origin = if matches!(self.scene.layers.get(layer)?.kind, LayerKind::Boxes(_)) { 12 } else { 1 };
+        let per_origin = if self.scene.layers.get(layer)?.kind.boxes().is_some() { 12 } else { 1 };
         let triangle = per_origin * found.block.origin[0] + found.parent as usize;
         self.bodies?.carried.layer(layer)?.body(triangle).map(|(_, motion)| motion)
     }

@@ -140,11 +140,11 @@ pub fn fills_its_buffers(renderer: &dyn Renderer) {
         assert_eq!([frame.width, frame.height], [w, h], "{name}");
         let world = frame.world.as_ref().expect("world points were asked for");
         assert_eq!([frame.color.len(), frame.id.len(), frame.depth.len(), world.len()], [w * h; 4], "{name}");
-        for i in 0..w * h {
-            let nothing = frame.id[i] == 0;
-            assert_eq!(frame.depth[i] == f32::INFINITY, nothing, "{name} {i}: depth {}", frame.depth[i]);
-            assert_eq!(world[i].iter().all(|v| v.is_nan()), nothing, "{name} {i}: {:?}", world[i]);
-            assert!(frame.id[i] as usize <= scene.layers.len() && frame.depth[i] > 0.0, "{name} {i}");
+        for (i, ((id, depth), point)) in frame.id.iter().zip(&frame.depth).zip(world).enumerate() {
+            let nothing = *id == 0;
+            assert_eq!(*depth == f32::INFINITY, nothing, "{name} {i}: depth {depth}");
+            assert_eq!(point.iter().all(|v| v.is_nan()), nothing, "{name} {i}: {point:?}");
+            assert!(*id as usize <= scene.layers.len() && *depth > 0.0, "{name} {i}");
         }
         assert!(drawn(renderer, &scene, &view, &options(false)).world.is_none(), "{name}");
     }

@@ -3,7 +3,7 @@
 use belvedere_core::{DVec2, View};
 use belvedere_disocclusion::report::Covered;
 use belvedere_disocclusion::{DisocclusionError, ghost};
-use belvedere_scene::{Frame, LayerKind, Scene};
+use belvedere_scene::{Frame, Scene};
 use std::ops::Range;
 
 /// Depth of cover at which the ground is half transparent, scene units.
@@ -17,10 +17,7 @@ const RADIUS: f64 = 0.02;
 /// [`DisocclusionError::Field`].
 pub(crate) fn cut(scene: &Scene, view: &View, covered: &[Covered]) -> Result<Option<Scene>, DisocclusionError> {
     let mut out = scene.clone();
-    let ground = out.layers.iter_mut().find_map(|l| match &mut l.kind {
-        LayerKind::Terrain(t) => Some(&mut t.heightfield),
-        _ => None,
-    });
+    let ground = out.layers.iter_mut().find_map(|l| l.kind.terrain_mut().map(|t| &mut t.heightfield));
     let Some(ground) = ground else { return Ok(None) };
     *ground = ghost::cut_open(ground, view, covered)?.into();
     Ok(Some(out))

@@ -19,10 +19,8 @@ pub(super) fn layer(
 ) -> Result<LayerKind, BelvedereError> {
     let (mut features, found) = match &doc.source {
         Paths::One(name) if builtin::is_name(name) => {
-            let (features, surface) = loader.builtin(index, name, |kind| match kind {
-                LayerKind::Area(layer) => Some((layer.features.clone(), layer.surface)),
-                _ => None,
-            })?;
+            let (features, surface) = loader
+                .builtin(index, name, |kind| kind.areas().map(|layer| (layer.features.clone(), layer.surface)))?;
             (features, AreaKind { surface, why: format!("{name} says so") })
         }
         paths => vectors::areas(loader, index, &doc.id, paths, ground)?,
@@ -43,7 +41,7 @@ pub(super) fn layer(
         None => surface.color(),
     };
     features.iter_mut().for_each(|f| f.style = by_property::as_opaque_as(fill, f.style));
-    Ok(LayerKind::Area(AreaLayer {
+    Ok(AreaLayer {
         features,
         fill,
         outline: match &style.outline {
@@ -55,7 +53,8 @@ pub(super) fn layer(
         hidden: style.hidden,
         lift_m: style.lift_m,
         label_px: (style.labels || style.label.is_some()).then_some(style.label_px),
-    }))
+    }
+    .into())
 }
 
 /// Surface given by options or the scene.

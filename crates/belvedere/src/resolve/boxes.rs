@@ -14,10 +14,9 @@ use std::path::Path;
 pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &BoxesDoc) -> Result<LayerKind, BelvedereError> {
     let default = loader.color(index, &doc.style.color)?;
     let mut boxes = match (&doc.source, &doc.boxes) {
-        (Some(name), _) if builtin::is_name(name) => loader.builtin(index, name, |kind| match kind {
-            LayerKind::Boxes(layer) => Some(layer.boxes.clone()),
-            _ => None,
-        })?,
+        (Some(name), _) if builtin::is_name(name) => {
+            loader.builtin(index, name, |kind| kind.boxes().map(|layer| layer.boxes.clone()))?
+        }
         (Some(name), _) => {
             let path = loader.files(index, "source", &Paths::One(name.clone()))?.remove(0);
             let (docs, file) = read(&path)?;
@@ -31,7 +30,7 @@ pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &BoxesDoc) -> Re
         check(transform).map_err(|reason| loader.fail(index, "transform", reason))?;
         boxes.iter_mut().for_each(|b| apply(b, transform));
     }
-    Ok(LayerKind::Boxes(BoxLayer { rigid: doc.rigid, ..BoxLayer::new(boxes) }))
+    Ok(BoxLayer { rigid: doc.rigid, ..BoxLayer::new(boxes) }.into())
 }
 
 fn shapes(docs: &[BoxDoc], default: Color) -> Result<Vec<BoxShape>, String> {

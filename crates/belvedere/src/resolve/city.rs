@@ -162,7 +162,7 @@ pub(super) fn layer(
         (_, Some(select)) => Some(wanted(&layer, select).map_err(|e| loader.fail(index, "select", e))?),
         _ => None,
     };
-    Ok(LayerKind::Mesh(layer))
+    Ok(layer.into())
 }
 
 /// Numbers of the parts of the buildings and other solids that a text means: as a whole, or else separated by commas.

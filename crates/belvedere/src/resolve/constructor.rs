@@ -65,10 +65,11 @@ fn judge(report: &mut PathReport, scene: &Scene, view: &View, (preview, layer): 
     if scene.terrain().is_none() {
         return;
     }
-    let lift = scene.layers.iter().find(|l| Some(l.id.as_str()) == layer).map_or(0.0, |l| match &l.kind {
-        LayerKind::Line(line) => line.lift_m,
-        _ => 0.0,
-    });
+    let lift = scene
+        .layers
+        .iter()
+        .find(|l| Some(l.id.as_str()) == layer)
+        .map_or(0.0, |l| l.kind.lines().map_or(0.0, |line| line.lift_m));
     let PreviewReport { position_m, wanted_m, reach_m, .. } = report.preview;
     let path: (&dyn Fn(f64) -> _, f64) = (&|s| preview.point_at(s), preview.length());
     let [ahead, all] = length_seen(scene, view, path, [position_m, position_m + wanted_m], lift);

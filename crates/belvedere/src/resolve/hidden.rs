@@ -2,7 +2,7 @@
 
 use crate::BelvedereError;
 use crate::scene_file::{Document, SourceDocument, layer_names, suggestion};
-use belvedere_scene::{BoxLayer, LayerKind, Representation, Scene};
+use belvedere_scene::{BoxLayer, Representation, Scene};
 
 /// Name of the representation that no section shows.
 const HIDDEN: &str = "hidden";
@@ -37,7 +37,7 @@ pub(crate) fn apply(scene: &mut Scene, document: &Document) {
         let moves = document.layer.iter().any(|doc| *doc.id() == *layer.id && doc.motion().is_some());
         let is_followed = moves || layer_names::is_named_by(&followers, &layer.id);
         if layer.kind.terrain().is_none() && !is_followed {
-            layer.kind = LayerKind::Boxes(BoxLayer::default());
+            layer.kind = BoxLayer::default().into();
         }
     }
     for representation in &mut scene.representations {

@@ -203,10 +203,8 @@ fn terrain(
     let style = &doc.style;
     let (heightfield, crs) = match doc.source.as_slice() {
         [name] if builtin::is_name(name) => {
-            let heightfield = loader.builtin(index, name, |kind| match kind {
-                LayerKind::Terrain(layer) => Some(layer.heightfield.clone()),
-                _ => None,
-            })?;
+            let heightfield =
+                loader.builtin(index, name, |kind| kind.terrain().map(|layer| layer.heightfield.clone()))?;
             (heightfield, wanted.unwrap_or_default())
         }
         _ => {
@@ -296,10 +294,9 @@ fn line(
 ) -> Result<LayerKind, BelvedereError> {
     let mut features = match (&doc.source, &doc.route) {
         (_, Some(doc)) => vec![route(loader, index, doc, ground)?],
-        (Some(Paths::One(name)), None) if builtin::is_name(name) => loader.builtin(index, name, |kind| match kind {
-            LayerKind::Line(layer) => Some(layer.features.clone()),
-            _ => None,
-        })?,
+        (Some(Paths::One(name)), None) if builtin::is_name(name) => {
+            loader.builtin(index, name, |kind| kind.lines().map(|layer| layer.features.clone()))?
+        }
         (Some(paths), None) => vectors::lines(loader, index, paths, ground)?,
         (None, None) => Vec::new(),
     };

@@ -8,7 +8,7 @@ use crate::scene_file::{MeshDoc, Paths, TransformDoc};
 use belvedere_core::{DVec2, DVec3, Warning, WarningKind};
 use belvedere_io::crs::{CoordinateSystem, Transform};
 use belvedere_io::{MeshFile, load_mesh};
-use belvedere_scene::{Crs, LayerKind, Mesh, MeshColors, MeshLayer, OwnLayer, RigidParts, Texturing};
+use belvedere_scene::{Crs, LayerKind, Mesh, MeshColors, MeshLayer, RigidParts, Texturing};
 use belvedere_sight::{GroundHeight, Occluded, OpennessSettings};
 use glam::{DMat3, EulerRot};
 
@@ -42,7 +42,7 @@ pub(super) fn layer(
     if let Some(select) = &doc.select {
         layer.wanted = Some(wanted(&layer, select).map_err(|e| loader.fail(index, "select", e))?);
     }
-    Ok(LayerKind::Mesh(layer))
+    Ok(layer.into())
 }
 
 /// The mesh with ambient occlusion, if that is asked for and something is drawn.
@@ -98,10 +98,7 @@ fn source(loader: &mut Loader<'_>, index: usize, doc: &MeshDoc) -> Result<MeshFi
     if let Paths::One(name) = &doc.source
         && builtin::is_name(name)
     {
-        return loader.builtin(index, name, |kind| match kind {
-            LayerKind::Mesh(layer) | LayerKind::Own(OwnLayer { surface: layer, .. }) => Some(of_mesh(&layer.mesh)),
-            _ => None,
-        });
+        return loader.builtin(index, name, |kind| kind.mesh().map(|layer| of_mesh(&layer.mesh)));
     }
     let mut all: Option<MeshFile> = None;
     for path in loader.files(index, "source", &doc.source)? {

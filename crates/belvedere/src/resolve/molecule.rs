@@ -55,7 +55,7 @@ pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &MoleculeDoc) ->
         Some(wanted) => layer.wanting(wanted),
         None => layer,
     };
-    Ok(LayerKind::Molecule(Box::new(layer)))
+    Ok(layer.into())
 }
 
 /// Bytes at the peak of making the triangles of an atom: 120 for each triangle, in sizes from 100,000 atoms on.
@@ -84,10 +84,8 @@ fn source(
             let reason = format!("{key} is for files, built-in molecules have none; leave it out");
             return Err(loader.fail(index, key, reason));
         }
-        let molecule = loader.builtin(index, &doc.source, |kind| match kind {
-            LayerKind::Molecule(layer) => Some(Molecule::clone(&layer.molecule)),
-            _ => None,
-        })?;
+        let molecule =
+            loader.builtin(index, &doc.source, |kind| kind.molecule().map(|layer| Molecule::clone(&layer.molecule)))?;
         return Ok((molecule, Vec::new()));
     }
     let path = loader.file(index, "source", &doc.source)?;

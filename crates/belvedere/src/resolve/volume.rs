@@ -12,10 +12,7 @@ use glam::EulerRot;
 /// The layer.
 pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &VolumeDoc) -> Result<LayerKind, BelvedereError> {
     let volume = if builtin::is_name(&doc.source) {
-        loader.builtin(index, &doc.source, |kind| match kind {
-            LayerKind::Volume(layer) => Some(Volume::clone(&layer.volume)),
-            _ => None,
-        })?
+        loader.builtin(index, &doc.source, |kind| kind.volume().map(|layer| Volume::clone(&layer.volume)))?
     } else {
         let request = request(loader, index, doc)?;
         let path = loader.file(index, "source", &doc.source)?;
@@ -31,7 +28,7 @@ pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &VolumeDoc) -> R
     let constant = one_value(&volume);
     loader.note(index, constant);
     let transfer = transfer::find(loader, index, &doc.transfer, &volume)?;
-    Ok(LayerKind::Volume(VolumeLayer { step: doc.step, model: doc.shading, ..VolumeLayer::new(volume, transfer) }))
+    Ok(VolumeLayer { step: doc.step, model: doc.shading, ..VolumeLayer::new(volume, transfer) }.into())
 }
 
 /// The volume of a file.

@@ -25,7 +25,7 @@ impl<'a> LevelLakes<'a> {
     /// * `report`: gives the areas of the scene that are lakes, and their displacements.
     pub(super) fn new(stage: &'a TerrainDisocclusion, report: &TerrainReport, scene: &'a Scene) -> Self {
         let lake = |of: &belvedere_disocclusion::report::LakeReport| {
-            let Some(areas) = scene.layers.get(of.layer)?.kind.areas() else { return None };
+            let areas = scene.layers.get(of.layer)?.kind.areas()?;
             let rings = &areas.features.get(of.feature)?.rings[..];
             let corners = rings.iter().flatten().filter(|p| p.is_finite());
             let [low, high] = corners.fold([DVec2::MAX, DVec2::MIN], |[a, b], p| [a.min(*p), b.max(*p)]);

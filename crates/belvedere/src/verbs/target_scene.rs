@@ -102,10 +102,7 @@ impl Meant {
 fn length(kind: &LayerKind) -> f64 {
     let flat =
         |points: &[DVec3]| points.windows(2).map(|w| DVec2::distance(w[0].truncate(), w[1].truncate())).sum::<f64>();
-    match kind {
-        LayerKind::Line(l) => l.features.iter().map(|f| flat(&f.points)).filter(|length| length.is_finite()).sum(),
-        _ => 0.0,
-    }
+    kind.lines().map_or(0.0, |l| l.features.iter().map(|f| flat(&f.points)).filter(|length| length.is_finite()).sum())
 }
 
 /// Opens the files with a provisional camera.
