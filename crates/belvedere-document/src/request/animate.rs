@@ -24,7 +24,7 @@ pub struct Animate {
     /// Ground speed along the route, metres per second of film; by default the whole route in all frames
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", allow_negative_numbers = true, value_parser = value::number))]
     pub speed: Option<f64>,
-    /// Tilt through the viewing angles of the spline's presets: phi, or phi=FIRST:LAST[:STEP] in degrees
+    /// Tilt through the viewing angles of the spline's presets: phi, phi=FIRST:LAST or phi=FIRST:LAST:STEP in degrees
     #[cfg_attr(feature = "clap", arg(long, value_name = "phi[=A:B]", group = "way", value_parser = value::sweep))]
     pub sweep: Option<[f64; 3]>,
     /// Turn once around the point looked at, or as the scene says; with a value at so many degrees per second
