@@ -45,7 +45,7 @@ pub struct Document {
     pub stylisation: Option<super::stylisation::StylisationDoc>,
     /// Renderer of the pictures: `cpu`, `exact`, or one that the program registers; by default the fastest that there is.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub renderer: Option<super::request::RendererName>,
+    pub renderer: Option<super::renderer::RendererName>,
     /// Paper of the pictures that `render` writes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub print: Option<super::print::PrintDoc>,
@@ -124,7 +124,7 @@ pub(super) struct Head {
     pub(super) overlay: Option<super::overlay::OverlayDoc>,
     pub(super) furniture: Option<super::furniture::FurnitureDoc>,
     pub(super) stylisation: Option<super::stylisation::StylisationDoc>,
-    pub(super) renderer: Option<super::request::RendererName>,
+    pub(super) renderer: Option<super::renderer::RendererName>,
     pub(super) print: Option<super::print::PrintDoc>,
     pub(super) text: Option<super::text::TextDoc>,
     #[serde(default)]

@@ -28,6 +28,7 @@ pub mod place;
 mod points;
 mod print;
 mod relief;
+mod renderer;
 pub mod request;
 mod rewritten;
 mod stages;

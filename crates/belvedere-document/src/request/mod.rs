@@ -19,11 +19,12 @@ mod reveal;
 #[cfg_attr(not(feature = "clap"), allow(dead_code, unreachable_pub))]
 mod value;
 
+pub use crate::renderer::RendererName;
 pub use animate::Animate;
 #[cfg(feature = "clap")]
 pub use args::one_of;
 pub use disocclude::{Disocclude, WrittenGrid};
-pub use drawing::{Drawing, RendererName};
+pub use drawing::Drawing;
 pub use ground::{OfData, Stated, StatedRaster};
 pub use look::{Air, Furnishing, FurnitureItems, Look};
 pub use molecule::Molecules;
