@@ -63,7 +63,7 @@ fn scene() -> Scene {
 
 fn pinhole() -> Pinhole {
     let lens = Projection::Perspective { fov_y: 0.7 };
-    let (eye, target) = (DVec3::new(505.0, 20.0, 130.0), DVec3::new(505.0, 400.0, 130.0));
+    let (eye, target) = (DVec3::new(505.0, 20.0, 130.0), DVec3::new(505.0, 400.0, 340.0));
     Pinhole::look_at(eye, target, DVec3::Z, lens, [120, 80], 1.0, None).expect("a camera")
 }
 
@@ -71,7 +71,7 @@ fn pinhole() -> Pinhole {
 fn over_the_wall() -> View {
     let plane = |y: f64| DVec3::new(505.0, y, 130.0);
     let spec = TurnSpec {
-        viewpoint: DVec3::new(505.0, 150.0, 330.0),
+        viewpoint: DVec3::new(505.0, 20.0, 320.0),
         t0: plane(160.0),
         t1: plane(200.0),
         t2: plane(240.0),

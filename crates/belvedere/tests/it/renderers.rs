@@ -48,7 +48,7 @@ source = "way.geojson"
 must_see = true
 [[stage]]
 kind = "spline_bend"
-preset = "progressive"
+presets = "progressive"
 "#;
     std::fs::write(&scene, text).expect("a file");
     [dem, way].map(|path| path.display().to_string())

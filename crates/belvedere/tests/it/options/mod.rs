@@ -134,7 +134,7 @@ id = "wood"
 source = "way.geojson"
 [[stage]]
 kind = "spline_bend"
-preset = "progressive"
+presets = "progressive"
 "#;
     let path = folder.join("hills.toml");
     std::fs::write(&path, text).expect("a file");
