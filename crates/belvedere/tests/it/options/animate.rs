@@ -13,7 +13,9 @@ use std::cell::Cell;
 use std::path::Path;
 
 /// Options that another test tries.
-const ELSEWHERE: [(&str, &str); 4] = [
+const ELSEWHERE: [(&str, &str); 5] = [
+    // It needs large ground.
+    ("lod", "lod.rs of the renderer"),
     // The frames are the same.
     ("resume", "parts.rs"),
     // It needs a route with times.
@@ -33,7 +35,7 @@ fn rows() -> Vec<(&'static str, Does)> {
         ("fps", Changes(json!(10), none())),
         ("along", IsRefused(json!("gone"), "gone")),
         ("speed", Changes(json!(30), none())),
-        ("sweep", Changes(json!([30, 60, 0]), json!({ "along": null }))),
+        ("sweep", Changes(json!([30, 60, 0]), json!({ "along": null, "sweep": [20, 50, 0] }))),
         ("turntable", Changes(json!(90), free())),
         ("marker", Changes(json!(true), large())),
         ("profile", Changes(json!(true), large())),
@@ -44,7 +46,6 @@ fn rows() -> Vec<(&'static str, Does)> {
         ("compare", Changes(json!(true), none())),
         ("samples", Changes(json!(1), none())),
         ("stylise", Changes(json!({ "edges": true, "unsharp": true }), none())),
-        ("lod", Changes(json!(16), none())),
         ("paper", Changes(json!("40x30mm"), json!({ "dpi": 50 }))),
         ("dpi", Changes(json!(240), large())),
         ("margin_mm", Changes(json!(5), json!({ "dpi": 50, "paper": "40x30mm" }))),

@@ -10,7 +10,9 @@ use serde_json::{Value, json};
 use std::path::Path;
 
 /// Options that another test tries.
-const ELSEWHERE: [(&str, &str); 3] = [
+const ELSEWHERE: [(&str, &str); 4] = [
+    // It needs large ground.
+    ("lod", "lod.rs of the renderer"),
     // The bytes are the same.
     ("band_rows", "bands.rs"),
     // They need styling sections that meet.
@@ -30,7 +32,6 @@ fn rows() -> Vec<(&'static str, Does)> {
         ("compare", Changes(json!(true), none())),
         ("samples", Changes(json!(1), none())),
         ("stylise", Changes(json!({ "edges": true, "unsharp": true }), none())),
-        ("lod", Changes(json!(16), none())),
         ("paper", Changes(json!("40x30mm"), json!({ "dpi": 50 }))),
         ("dpi", Changes(json!(240), large())),
         ("margin_mm", Changes(json!(5), json!({ "dpi": 50, "paper": "40x30mm" }))),
