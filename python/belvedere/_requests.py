@@ -68,6 +68,9 @@ class RevealOptions(TypedDict, total=False):
     #: Shading of the terrain; swiss by default, sun with --light-time
     relief: Literal["swiss", "sun", "none"] | None
 
+    #: Renderer, as of `render`: auto, cpu, exact, or one that the program registers
+    renderer: str
+
     #: What molecules are shown as, instead of what the scene says; without a scene auto
     representation: Literal["ball_and_stick", "space_filling", "sticks", "ribbon", "surface", "auto"] | None
 
@@ -94,6 +97,90 @@ class RevealOptions(TypedDict, total=False):
 
     #: Axis that points upwards in the picture, with --see: x, y, z, -x, -y or -z
     up: Sequence[Any] | None
+
+    #: Unit of the terrain's heights, instead of the stated one
+    vertical_unit: Literal["m", "ft", "us-ft"] | None
+
+
+class RenderOptions(TypedDict, total=False):
+    """Options of :meth:`belvedere.Scene.render` beside those of its signature; each is that of the command line of this name."""
+
+    #: Style of the areas of all layers, instead of the scene's; auto = the one that properties and names give
+    area_style: Literal["auto", "outline", "plain", "water", "forest", "glacier", "park"] | None
+
+    #: Biological assembly of molecules, such as 1: draws the copies that the file describes (`info` lists them); asymmetric = the atoms of the file alone
+    assembly: str | None
+
+    #: Colours of molecules: auto (by element; ribbons and surfaces by chain), element, chain, residue, structure, or one colour #rrggbb
+    color_by: str | None
+
+    #: Draw lines of equal height on the ground, every M metres of true height; by default at an interval that fits the scale
+    contours: bool | float | None
+
+    #: How the ground ends where its data end: soft (it fades), block (it is cut, with sides), mat (it stands on a plain surface), plain
+    edge: Literal["plain", "soft", "mat", "block"] | None
+
+    #: Haze: on (the default: dims the farther part of the view), off, or the visibility in kilometres
+    haze: bool | float | None
+
+    #: Model of a file of molecules that holds several, from 1
+    model: int | None
+
+    #: Draw the sea as ordinary ground
+    no_sea: bool
+
+    #: Tint of the terrain instead of the scene's: a name, as of `reveal`, or a file of colours by height (GDAL text, GMT .cpt)
+    palette: str | None
+
+    #: What molecules are shown as, instead of what the scene says; without a scene auto
+    representation: Literal["ball_and_stick", "space_filling", "sticks", "ribbon", "surface", "auto"] | None
+
+    #: Sky: auto (by the height of the sun), day, dusk, night, white, a colour #rrggbb, or transparent (PNG and SVG)
+    sky: str | None
+
+    #: Thresholds per pixel in transitions between styling sections, 1 to 4096; 64 by default, 1 is a dither
+    thresholds: int | None
+
+
+class AnimateOptions(TypedDict, total=False):
+    """Options of :func:`belvedere.animate` beside those of its signature; each is that of the command line of this name."""
+
+    #: How representations of styling sections are composited; single by default
+    compositing: Literal["single", "dither", "layers"] | None
+
+    #: Pixels per inch, 300 with --paper unless --size is given; lengths that the scene states in pixels are 1/96 inch each
+    dpi: float | None
+
+    #: Largest error of the terrain's level of detail, pixels, 0 to 64; 0.5 by default, 0 draws every grid cell
+    lod: float | None
+
+    #: White margin of the paper on every side, millimetres; PNG, TIFF, JPEG and WebP leave it out
+    margin_mm: float | None
+
+    #: Paper: A0 to A6 (landscape where the picture is wider than high), A3-portrait, A3-landscape, or a size such as 420x297mm; pixels, widths of lines and heights of letters follow from it
+    paper: str | None
+
+    #: Renderer: auto (the scene's, else the fastest that there is), cpu (the rasteriser on the processor), exact (the tracer along the curved ray of every sample: slow, without subdivision error, the reference), or one that the program registers
+    renderer: str
+
+    #: Thresholds per pixel in transitions between styling sections, 1 to 4096; 64 by default, 1 is a dither
+    thresholds: int | None
+
+
+class DisoccludeOptions(TypedDict, total=False):
+    """Options of :func:`belvedere.disocclude` beside those of its signature; each is that of the command line of this name."""
+
+    #: Style of areas in the picture, instead of the one that their properties and names give
+    area_style: Literal["auto", "outline", "plain", "water", "forest", "glacier", "park"] | None
+
+    #: Coordinate system to solve in: auto, EPSG:n or local
+    crs: str | None
+
+    #: Lower the ground with the distance, as on a sphere, with refraction
+    curved_earth: bool
+
+    #: Property that holds the names of features, instead of the one that looks most like a name
+    name_field: str | None
 
     #: Unit of the terrain's heights, instead of the stated one
     vertical_unit: Literal["m", "ft", "us-ft"] | None

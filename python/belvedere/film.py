@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from typing import TYPE_CHECKING, Sequence
+from typing import TYPE_CHECKING, Any, Sequence
 
 from . import _native
 from ._ask import Progress, asked, number
@@ -92,7 +92,7 @@ def animate(
             **options,
         }
     )
-    paper = {name: request.pop(name) for name in ("paper", "dpi", "margin_mm") if name in request}
+    paper: dict[str, Any] = {name: request.pop(name) for name in ("paper", "dpi", "margin_mm") if name in request}
     with asked(threads, progress) as ask, scene._named():
         sheet, pixels = scene._sheet(size_of(size), paper)
         # The ground is solved for every frame, not on opening.
