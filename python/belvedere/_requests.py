@@ -173,9 +173,6 @@ class DisoccludeOptions(TypedDict, total=False):
     #: Style of areas in the picture, instead of the one that their properties and names give
     area_style: Literal["auto", "outline", "plain", "water", "forest", "glacier", "park"] | None
 
-    #: Coordinate system to solve in: auto, EPSG:n or local
-    crs: str | None
-
     #: Lower the ground with the distance, as on a sphere, with refraction
     curved_earth: bool
 

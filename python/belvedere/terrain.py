@@ -122,6 +122,7 @@ def disocclude(
     limits: bool = True,
     grid: str = "input",
     rivers: object = None,
+    scene_crs: str | None = None,
     threads: int | None = None,
     progress: Progress = None,
     time_limit_s: float | None = None,
@@ -135,6 +136,7 @@ def disocclude(
     * ``mode``: ``qp`` (default), ``paper`` or ``paper+qp``. ``parameters``: those of the stage ``terrain_disocclusion``, such as ``{"w": 0.6}``.
     * ``limits=False`` lifts the limits of depth and slope of the displaced ground.
     * ``grid``: ``input``, or ``scene``: the grid in metres that was solved on, on which guarantees hold at every node.
+    * ``scene_crs``: coordinate system to solve in: ``auto``, ``EPSG:n`` or ``local``.
     * ``rivers``: lines that do not run uphill on the displaced ground, given as features are.
     * ``threads``, ``progress``, ``time_limit_s``: see :func:`belvedere.reveal`.
     * All other options of ``belvedere disocclude`` by their names: :class:`belvedere.DisoccludeOptions` lists them.
@@ -150,6 +152,7 @@ def disocclude(
     request = given(
         {
             **files,
+            **({} if scene_crs is None else {"crs": scene_crs}),
             "eye": place("eye", eye),
             "look": place("look_at", look_at),
             "fov": number("fov_x_deg", fov_x_deg),

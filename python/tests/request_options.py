@@ -28,7 +28,8 @@ OWN: dict[str, tuple[str, dict[str, str]]] = {
     }),
     "disocclude": ("disocclude", {
         "data": "dem", "features": "features", "rivers": "rivers", "eye": "eye", "look": "look_at", "fov": "fov_x_deg", "mode": "mode",
-        "no_limits": "limits", "set": "parameters", "grid": "grid", "fill_voids": "fill_voids", "source_crs": "crs", "nodata": "nodata",
+        "no_limits": "limits", "set": "parameters", "grid": "grid", "fill_voids": "fill_voids", "source_crs": "crs", "crs": "scene_crs",
+        "nodata": "nodata",
     }),
     "measure": ("Scene.measure", {"spacing": "spacing_m", "size": "size", "renderer": "renderer"}),
     "generalise": ("generalise", {"city": "city", "roads": "roads", "margin": "margin_m"}),
