@@ -40,6 +40,7 @@ def animate(
     straight: bool = False,
     compare: bool = False,
     samples: int | None = None,
+    stylise: bool | tuple[float, float] = False,
     resume: bool = False,
     overwrite: bool = False,
     part: tuple[int, int] | None = None,
@@ -77,7 +78,7 @@ def animate(
         raise InputError(f"frames={frames!r} is not a number of frames; give a whole number above 0")
     request = given(
         {
-            **drawing(straight=straight, compare=compare, samples=samples, furniture=furniture, title=title),
+            **drawing(straight=straight, compare=compare, samples=samples, stylise=stylise, furniture=furniture, title=title),
             "along": along,
             "sweep": sweep,
             "turntable": turn,
