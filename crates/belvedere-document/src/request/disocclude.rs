@@ -45,7 +45,7 @@ pub struct Disocclude {
     /// Grid of the written heights; input by default
     #[cfg_attr(feature = "clap", arg(long, value_name = "GRID", value_parser = one_of::<WrittenGrid>()))]
     pub grid: Option<WrittenGrid>,
-    /// Fill holes of the elevation model, also in the written heights, instead of leaving them open
+    /// Fill all holes of the elevation model, also in the written heights, instead of leaving them open
     #[cfg_attr(feature = "clap", arg(long))]
     pub fill_voids: bool,
     /// Style of areas in the picture, instead of the one that their properties and names give

@@ -94,6 +94,7 @@ fn files(request: &Disocclude) -> DataFiles {
         rivers: request.rivers.clone(),
         crs: request.crs.clone(),
         keep_voids: !request.fill_voids,
+        fill_all_voids: request.fill_voids,
         area_style: request.area_style,
         stated: request.stated.clone(),
         ..DataFiles::default()

@@ -77,3 +77,21 @@ fn an_eye_is_needed() {
     let refused = solved(folder.path(), &asked).map(|_| ()).map_err(|e| e.to_string());
     assert!(refused.as_ref().is_err_and(|e| e.contains("`eye` and `look` are needed")), "{refused:?}");
 }
+
+/// The hills have a hole of 9 % of their nodes, which is larger than what `reveal` fills unasked.
+#[test]
+fn large_holes_are_filled_where_it_is_asked_for() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let base = hills(folder.path());
+    let (eye, look) = ("503000,5000100,600", "503000,5003000");
+    let holes = [false, true].map(|fill_voids| {
+        let asked = json!({ "data": base["data"], "features": base["features"], "source_crs": base["source_crs"], "eye": eye, "look": look,
+            "set": ["solver_nodes=24"], "fill_voids": fill_voids });
+        let asked: Disocclude = read(&asked.to_string()).expect("a request");
+        let found = disocclude(&asked, &OpenOptions::default()).expect("ground");
+        let heights = &found.rasters()[0];
+        let count = heights.info.width * heights.info.height;
+        (0..count).filter(|i| heights.sample_f64(0, i % heights.info.width, i / heights.info.width).is_none()).count()
+    });
+    assert_eq!(holes, [925, 0]);
+}
