@@ -1,26 +1,23 @@
 //! Pictures that are drawn and written some rows at a time, so that memory does not grow with their height. Every byte is that of the picture
 //! in one piece.
 
-use super::draw::{Made, draw_inset, mark_words, sidecar};
+use super::displacement;
+use super::draw::{Made, sidecar};
 use super::options::PictureOptions;
+use super::over::{Measured, Over};
+use super::plan::{self, Pass, Plan};
 use super::sidecar::{Later, OverlayRecord, Picture};
-use super::{displacement, furniture};
 use crate::bodies::RigidLayers;
 use crate::guard::guarded;
-use crate::overlays::furniture::{FurnitureRecord, Plan, with_distances};
-use crate::overlays::{badge, curve_inset, grid, highlight, thin, widths};
+use crate::overlays::furniture::FurnitureRecord;
+use crate::overlays::thin;
 use crate::record::{self, InputFile};
-use crate::scene_file::Inset;
-use crate::vectors::VectorContent;
 use crate::{BelvedereError, Session, fallback};
 use belvedere_composite::canvas::Canvas;
-use belvedere_core::View;
 use belvedere_io::picture_file::{PictureFile, PictureFormat};
 use belvedere_io::png::{self, Channels};
 use belvedere_io::{atomic, budget};
-use belvedere_scene::{
-    Frame, FrameStats, Instant, PictureRows, ROWS, RenderError, RenderJob, RenderOptions, Scene, Sky, Stylisation,
-};
+use belvedere_scene::{Frame, FrameStats, Instant, PictureRows, ROWS, RenderError, RenderJob, Sky};
 use std::cell::RefCell;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -72,7 +69,7 @@ pub(crate) fn later(
     }
     let scene = session.scene();
     let [width, height] = session.view().pinhole().image.map(|side| side as usize);
-    let view = drawn_view(session, request);
+    let view = plan::view(session, request);
     let rigid = RigidLayers::of(scene, &view);
     let inputs = session.public_names().inputs(&record::inputs(&session.inputs())?);
     let made = Made {
@@ -121,29 +118,34 @@ pub(crate) fn write_straight(
     out: &Path,
     overwrite: bool,
 ) -> Result<(), BelvedereError> {
-    let request = &PictureOptions { straight: true, ..*later.options.clone() };
-    let (view, options) = (drawn_view(session, request), options(session, request));
-    let scaled = widths::scaled(session.scene(), request.density);
-    let (scene, light, progress) = (&*scaled, session.light(), &request.progress);
-    let job = RenderJob { scene, view: &view, light, options: &options, progress };
+    let request = &*later.options;
+    let plan = plan_of(session, request)?;
     let rows = rows(session, request, Path::new("straight.png"))?.unwrap_or(ROWS);
+    let renderer = session.renderer(&request.renderer)?;
     let program = format!("belvedere {}", crate::VERSION);
     let mut result = Ok(());
-    session.renderer(&request.renderer)?.in_rows(&job, &mut |front| {
-        let bands = Bands { session, request, view: &view, rows, furnished: &Plan::default(), thin: None };
-        let [width, height] = front.size();
-        let text = [("Software", program.as_str())];
-        result = drawn(|failed| {
-            atomic::write_atomic(out, overwrite, |file| {
-                png::encode_rows(file, (width, height), Channels::Rgb, (&text, None), &|rows| {
-                    bands.draw(front, &|_, _| {}, rows).map_err(|error| error.kept_in(failed))
+    plan.with(Pass::Straight, |job| {
+        renderer.in_rows(job, &mut |front| {
+            let bands = Bands { plan: &plan, rows, thin: None };
+            let [width, height] = front.size();
+            let text = [("Software", program.as_str())];
+            result = drawn(|failed| {
+                atomic::write_atomic(out, overwrite, |file| {
+                    png::encode_rows(file, (width, height), Channels::Rgb, (&text, None), &|rows| {
+                        bands.draw(front, &|_, _| {}, rows).map_err(|error| error.kept_in(failed))
+                    })
                 })
-            })
-            .map_err(BelvedereError::from)
-        });
-        Ok(())
-    })?;
+                .map_err(BelvedereError::from)
+            });
+            Ok(())
+        })
+    })??;
     result
+}
+
+/// The plan of a picture without a fallback.
+fn plan_of<'a>(session: &'a Session, request: &'a PictureOptions) -> Result<Plan<'a>, BelvedereError> {
+    Plan::new(session, request, (session.scene(), plan::view(session, request)), &request.progress)
 }
 
 /// Runs some writing, during which drawing may fail: then that is the error.
@@ -159,23 +161,20 @@ fn drawn<T>(
 }
 
 /// Why a picture is drawn in one piece alone, whatever its size; `None` if it may be drawn in bands.
-fn whole_only(session: &Session, request: &PictureOptions, out: &Path) -> Option<&'static str> {
-    let overlay = &session.resolved.overlay;
+fn whole_only(plan: &Plan<'_>, out: &Path) -> Option<&'static str> {
+    let Plan { session, request, wanted, .. } = plan;
     let ending = out.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let format = PictureFormat::of(out).unwrap_or(PictureFormat::Png);
-    let is_marked = highlight::chosen((&request.highlight, request.heatmap), overlay)
-        .is_ok_and(|(marks, heatmap)| heatmap || (!marks.is_empty() && !request.straight));
-    let bent = !request.straight && session.view().is_bent();
-    let is_vector = request.vectors != VectorContent::Nothing || ["svg", "svgz", "pdf"].contains(&ending.as_str());
+    let is_vector = wanted.vectors || ["svg", "svgz", "pdf"].contains(&ending.as_str());
     let reasons = [
-        (request.compare, "the pair of pictures"),
+        (wanted.compare, "the pair of pictures"),
         (request.camera.is_some(), "the picture of the camera"),
         (!request.aux.is_empty(), "buffers beside it"),
         (is_vector, "its vectors"),
         (!PictureFile::has_rows(format), "its format (PNG, TIFF and JPEG are written in bands)"),
         (session.light().sky == Sky::Transparent, "its transparent sky"),
-        (bent && (request.ghost || overlay.ghost), "the straight picture faintly over it"),
-        (is_marked, "highlights or a heat map"),
+        (wanted.ghost, "the straight picture faintly over it"),
+        (wanted.heatmap || !wanted.highlight.is_empty(), "highlights or a heat map"),
         (!request.straight && fallback::is_asked(session), "a fallback for its target"),
     ];
     reasons.into_iter().find(|(is, _)| *is).map(|(_, what)| what)
@@ -187,67 +186,39 @@ pub(crate) fn rows(session: &Session, request: &PictureOptions, out: &Path) -> R
         return Ok(None);
     }
     let [width, height] = session.view().pinhole().image.map(u64::from);
-    let (view, options) = (drawn_view(session, request), options(session, request));
-    let job = RenderJob {
-        scene: session.scene(),
-        view: &view,
-        light: session.light(),
-        options: &options,
-        progress: &request.progress,
-    };
-    let renderer = session.renderer(&request.renderer)?;
-    let needed = renderer.bytes_for(&job, None);
-    let fits = needed <= options.max_bytes;
+    let (plan, renderer) = (plan_of(session, request)?, session.renderer(&request.renderer)?);
+    let max_bytes = session.bytes_for_picture(request.quality.max_bytes);
+    let (needed, refused) =
+        plan.with(Pass::Surfaces, |job| (renderer.bytes_for(job, None), renderer.whole_only(job)))?;
+    let fits = needed <= max_bytes;
     if request.band_rows.is_none() && fits && width * height <= LARGE {
         return Ok(None);
     }
-    if let Some(what) = whole_only(session, request, out).or_else(|| renderer.whole_only(&job)) {
+    if let Some(what) = whole_only(&plan, out).or(refused) {
         if request.band_rows.is_none() && fits {
             return Ok(None);
         }
-        let (needed_mib, limit_mib) = (needed.div_ceil(1 << 20), options.max_bytes >> 20);
+        let (needed_mib, limit_mib) = (needed.div_ceil(1 << 20), max_bytes >> 20);
         return Err(BelvedereError::OnePiece { what, size: [width, height], needed_mib, limit_mib });
     }
     if let Some(rows) = request.band_rows {
         return Ok(Some(rows.next_multiple_of(ROWS)));
     }
-    let threads = match options.threads {
+    let threads = match request.quality.threads {
         0 => rayon::current_num_threads(),
         threads => threads,
     };
     let of_row = width * PER_PIXEL;
-    let most = (options.max_bytes / 4 / of_row).max(ROWS as u64);
+    let most = (max_bytes / 4 / of_row).max(ROWS as u64);
     let usual = (BAND_BYTES / of_row).max((2 * threads * ROWS) as u64).min(most);
     Ok(Some((usual as usize / ROWS).max(1) * ROWS))
 }
 
-fn drawn_view(session: &Session, request: &PictureOptions) -> View {
-    if request.straight { session.view().straightened() } else { session.view().clone() }
-}
-
-fn stylisation(session: &Session, request: &PictureOptions) -> Stylisation {
-    request.stylisation.unwrap_or(session.resolved.stylisation)
-}
-
-/// Options of the renderer: those of a picture in one piece without world points.
-fn options(session: &Session, request: &PictureOptions) -> RenderOptions {
-    let mut options = RenderOptions { stylisation: stylisation(session, request), ..request.quality.clone() };
-    options.max_bytes = session.bytes_for_picture(options.max_bytes);
-    let wanted = request.grid.or(grid::stated(&session.resolved.overlay));
-    let lines = grid::wanted(session.scene(), wanted).into_iter();
-    options.overlay.under.extend(lines.map(|line| widths::line(line, request.density)));
-    options.density = request.density;
-    options
-}
-
 /// Everything that the rows of a picture are made of.
 struct Bands<'a> {
-    session: &'a Session,
-    request: &'a PictureOptions,
-    view: &'a View,
+    plan: &'a Plan<'a>,
     /// Rows of a band.
     rows: usize,
-    furnished: &'a Plan,
     /// The picture of the lowered ground, and where it shows through.
     thin: Option<(&'a dyn PictureRows, thin::Thin)>,
 }
@@ -260,35 +231,25 @@ fn write(
 ) -> Result<(Picture, Vec<PathBuf>), BelvedereError> {
     session.check_drawable()?;
     let started = Instant::now();
-    let (view, mut options) = (drawn_view(session, request), options(session, request));
-    let furnished = furniture::plan(session, (session.scene(), &view), request, (false, false));
-    options.keep_clear.clone_from(&furnished.keep_clear);
-    let renderer = session.renderer(&request.renderer)?;
-    let ticked = with_distances(session.scene(), &session.resolved.furniture);
-    let scaled = widths::scaled(&ticked, request.density);
-    let (light, progress, whole) = (session.light(), &request.progress, &*scaled);
-    let job = |scene| RenderJob { scene, view: &view, light, options: &options, progress };
-    let covered = session.terrain_report().map(|r| &r.covered[..]).filter(|c| !c.is_empty() && !request.straight);
-    let cut: Option<Scene> = match covered {
-        Some(covered) => thin::cut(session.scene(), &view, covered)?,
-        None => None,
-    };
+    let (plan, renderer) = (plan_of(session, request)?, session.renderer(&request.renderer)?);
     let mut result = None;
-    renderer.in_rows(&job(whole), &mut |front| {
-        let Some((cut, covered)) = cut.as_ref().zip(covered) else {
-            let bands = Bands { session, request, view: &view, rows, furnished: &furnished, thin: None };
-            result = Some(bands.write(front, out, (started, inputs.clone())));
-            return Ok(());
-        };
-        let thin = thin::Thin::new(session.scene(), &view, covered, front.size());
-        let mut thin = Some(thin);
-        renderer.in_rows(&job(cut), &mut |behind| {
-            let thin = thin.take().map(|thin| (behind, thin));
-            let bands = Bands { session, request, view: &view, rows, furnished: &furnished, thin };
-            result = Some(bands.write(front, out, (started, inputs.clone())));
-            Ok(())
+    let mut write = |front: &dyn PictureRows, thin: Option<(&dyn PictureRows, thin::Thin)>| {
+        result = Some(Bands { plan: &plan, rows, thin }.write(front, out, (started, inputs.clone())));
+        Ok(())
+    };
+    let mut draw = |behind: Option<&RenderJob<'_>>| {
+        plan.with(Pass::Surfaces, |job| {
+            renderer.in_rows(job, &mut |front| {
+                let Some(behind) = behind else { return write(front, None) };
+                let mut thin = Some(thin::Thin::new(plan.scene, &plan.view, plan.covered, front.size()));
+                renderer.in_rows(behind, &mut |behind| write(front, thin.take().map(|thin| (behind, thin))))
+            })
         })
-    })?;
+    };
+    match plan.passes().contains(&Pass::Lowered) {
+        true => plan.with(Pass::Lowered, |behind| draw(Some(behind)))???,
+        false => draw(None)??,
+    }
     // The renderer calls its work once.
     result.unwrap_or(Err(RenderError::WholeOnly { what: "its renderer" }.into()))
 }
@@ -300,36 +261,18 @@ impl Bands<'_> {
         (out, overwrite): (&Path, bool),
         (started, inputs): (Instant, Vec<InputFile>),
     ) -> Result<(Picture, Vec<PathBuf>), BelvedereError> {
-        let (session, request, view, scene) = (self.session, self.request, self.view, self.session.scene());
+        let &Plan { session, request, scene, ref view, ref furniture, .. } = self.plan;
         let [width, height] = front.size();
         let rigid = RigidLayers::of(scene, view);
         let displacement = view.is_bent().then(|| displacement::measure(view, &rigid, &front)).transpose()?;
-        let mark = mark_words(session, request, [width, height], displacement);
-        let figure =
-            session.resolved.overlay.inset.and_then(|inset| Some((inset, curve_inset::CurveFigure::of(view)?)));
-        // Whether the picture has room for the inset.
-        let inset: Option<Inset> = figure
-            .as_ref()
-            .filter(|(_, figure)| draw_inset(Canvas::recording(&mut Vec::new(), [width, height]), figure, request))
-            .map(|(inset, _)| *inset);
-        let Stylisation { edges, unsharp } = stylisation(session, request);
-        let grid = request.grid.or(grid::stated(&session.resolved.overlay));
-        let overlay = OverlayRecord {
-            edges: (edges > 0.0).then_some(edges),
-            unsharp: (unsharp > 0.0).then_some(unsharp),
-            mark: mark.is_some(),
-            mark_words: mark.clone(),
-            inset,
-            grid: grid.and_then(|spacing| grid::spacing(scene, spacing)),
-            ..OverlayRecord::default()
-        };
+        let over = Over::new(self.plan, Measured { displacement, ..Measured::default() }, [width, height]);
         let made = Made {
             view,
-            overlay,
+            overlay: over.record(),
             displacement,
             fallback: None,
             stats: front.stats(),
-            furniture: self.furnished.record.clone(),
+            furniture: furniture.record.clone(),
             render_ms: 0.0,
             warnings: Vec::new(),
         };
@@ -349,16 +292,7 @@ impl Bands<'_> {
             later: None,
         };
         let furnish = |pixels: &mut [[u8; 3]], first: usize| {
-            if let Some((_, figure)) = &figure {
-                draw_inset(Canvas::rows(pixels, [width, height], first), figure, request);
-            }
-            for (_, shapes) in &self.furnished.kinds {
-                let mut canvas = Canvas::rows(pixels, [width, height], first);
-                shapes.iter().for_each(|shape| canvas.put(shape));
-            }
-            if let Some(words) = &mark {
-                badge::draw(&mut Canvas::rows(pixels, [width, height], first), words, request.density);
-            }
+            over.draw(|_, draw| draw(Canvas::rows(pixels, [width, height], first)));
         };
         let written = drawn(|failed| {
             picture.write_rows(out, overwrite, &|file| {

@@ -1,26 +1,27 @@
 //! Draws the picture of a session: layers, marks over them, the straight picture beside the bent one.
 
-use super::AuxBuffer;
 use super::displacement::{self, DisplacementReport};
 use super::mark_target::plain;
 use super::options::PictureOptions;
+use super::over::{Measured, Over};
+use super::plan::{self, Pass, Plan};
 use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, SeeThroughRecord, Sidecar, TerrainRecord};
 use super::volume_record::VolumeRecord;
 use super::{furniture, nothing_seen, transparent, vectors};
 use crate::bodies::RigidLayers;
 use crate::fallback::{self, FallbackPicture, FallbackPlan, FallbackRecord};
 use crate::guard::guarded;
-use crate::overlays::furniture::{FurnitureRecord, with_distances};
-use crate::overlays::{badge, camera, curve_inset, ghost, grid, heat, highlight, thin, widths};
+use crate::overlays::furniture::FurnitureRecord;
+use crate::overlays::{camera, ghost, heat, highlight, thin};
 use crate::record::{self, InputFile, ViewRecord};
-use crate::scene_file::{Document, HighlightMark};
+use crate::scene_file::Document;
 use crate::vectors::{Furnish, VectorContent, VectorPicture};
 use crate::{BelvedereError, CameraPicture, Session, kept};
 use belvedere_composite::canvas::Canvas;
 use belvedere_core::{View, Warning};
 use belvedere_io::budget;
 use belvedere_scene::Instant;
-use belvedere_scene::{Aux, Frame, FrameStats, Progress, RenderJob, RenderOptions, Scene, Unit};
+use belvedere_scene::{Frame, FrameStats, Progress, RenderJob, RenderOptions, Scene, Unit};
 
 impl Session {
     /// Draws the session's view, or its camera.
@@ -156,175 +157,137 @@ pub(crate) fn draw_view(
 }
 
 fn draw_marked(session: &Session, request: &PictureOptions, progress: &Progress) -> Result<Drawn, BelvedereError> {
-    let view = if request.straight { session.view().straightened() } else { session.view().clone() };
+    let view = plan::view(session, request);
     let judging = plain(session, request, progress);
-    let plan = if request.straight { None } else { fallback::of_session(session, &view, Some(&judging))? };
-    let scene = plan.as_ref().map_or(session.scene(), FallbackPlan::scene);
-    if plan.is_some() && request.vectors != VectorContent::Nothing {
+    let fallback = if request.straight { None } else { fallback::of_session(session, &view, Some(&judging))? };
+    if fallback.is_some() && request.vectors != VectorContent::Nothing {
         return Err(BelvedereError::NoVectors("pictures with a fallback for a target"));
     }
-    let wanted = &session.resolved.overlay;
-    let (marks, heatmap) = highlight::chosen((&request.highlight, request.heatmap), wanted)?;
-    let ghost = (request.ghost || wanted.ghost) && view.is_bent();
-    let grid = request.grid.or(grid::stated(wanted));
-    let grid_spacing = grid.and_then(|spacing| grid::spacing(scene, spacing));
-    let rigid = RigidLayers::of(scene, &view);
-    let as_vectors = request.vectors != VectorContent::Nothing;
-    let world = rigid.any()
-        || as_vectors
-        || request.aux.iter().any(|a| matches!(a, AuxBuffer::World | AuxBuffer::Displacement));
-    let exact = !request.aux.is_empty();
-    let stylisation = request.stylisation.unwrap_or(session.resolved.stylisation);
-    let mut options = RenderOptions { aux: Aux { world, exact }, stylisation, ..request.quality.clone() };
-    options.max_bytes = session.bytes_for_picture(options.max_bytes);
-    options.overlay.under.extend(grid::wanted(scene, grid).into_iter().map(|line| widths::line(line, request.density)));
-    options.density = request.density;
-    let furnished = furniture::plan(session, (scene, &view), request, (!marks.is_empty(), heatmap));
-    options.keep_clear.clone_from(&furnished.keep_clear);
-    let mut warnings = Vec::new();
+    let scene = fallback.as_ref().map_or(session.scene(), FallbackPlan::scene);
+    let plan = Plan::new(session, request, (scene, view), progress)?;
+    let mut painting = Painting { fallback: fallback.as_ref(), ..Painting::new(&plan) };
     if request.vectors == VectorContent::Alone {
-        let has_more = !options.overlay.under.is_empty() || !furnished.kinds.is_empty();
-        warnings.extend(vectors::left_out(session, has_more)?);
+        let has_more = plan.wanted.grid.is_some() || !plan.furniture.kinds.is_empty();
+        painting.warnings.extend(vectors::left_out(session, has_more)?);
     }
-    let ticked = &session.resolved.furniture;
-    // What becomes vectors is not drawn.
-    let surfaces = RenderOptions { marks: !as_vectors, ..options.clone() };
-    let draw = |scene: &Scene, view: &View| {
-        let scene = with_distances(scene, ticked);
-        let scene = &*widths::scaled(&scene, request.density);
-        let job = RenderJob { scene, view, light: session.light(), options: &surfaces, progress };
-        Ok::<_, BelvedereError>(session.renderer(&request.renderer)?.render(&job)?)
-    };
-    let bare = || Ok(FallbackPicture { frame: draw(scene, &view)?, pixels_opened: None });
-    let picture = plan.as_ref().map_or_else(bare, |plan| plan.draw(&view, &draw))?;
-    let unseen = nothing_seen::warning(scene, &view, &picture.frame);
-    // Measured before further pictures are drawn over it.
-    let fallback = plan.as_ref().map(|plan| plan.measured(&view, (session.scene(), &picture), &draw)).transpose()?;
-    warnings.extend(fallback.iter().filter_map(FallbackRecord::warning));
-    let mut frame = picture.frame;
-    if let Some(covered) =
-        session.terrain_report().map(|r| &r.covered[..]).filter(|c| !c.is_empty() && !request.straight)
-        && let Some(cut) = thin::cut(scene, &view, covered)?
-    {
-        let job = RenderJob { scene: &cut, view: &view, light: session.light(), options: &surfaces, progress };
-        let behind = session.renderer(&request.renderer)?.render(&job)?;
-        thin::Thin::new(scene, &view, covered, [frame.width, frame.height]).draw(&mut frame, &behind, 0);
+    for pass in plan.passes() {
+        painting.take(pass)?;
     }
-    let mut vectors = as_vectors.then(|| {
-        let scene = with_distances(scene, ticked);
-        let scene = &*widths::scaled(&scene, request.density);
-        let job = RenderJob { scene, view: &view, light: session.light(), options: &options, progress };
-        vectors::of_marks(&job, &frame, request)
-    });
-    let straight = (request.compare || ghost)
-        .then(|| {
-            // The straight picture is always one of pixels.
-            let scene = &*widths::scaled(session.scene(), request.density);
-            let options = RenderOptions { names: None, ..options.clone() };
-            let job =
-                RenderJob { scene, view: &view.straightened(), light: session.light(), options: &options, progress };
-            Ok::<_, BelvedereError>(session.renderer(&request.renderer)?.render(&job)?)
-        })
-        .transpose()?;
-    let mut heatmap_max = None;
-    if heatmap {
-        // Names and lines are drawn over the heat map, not tinted by it.
-        let aux = Aux { world: true, exact: false };
-        let max_bytes = options.max_bytes;
-        let options = RenderOptions { marks: false, aux, max_bytes, ..request.quality.clone() };
-        let job = RenderJob { scene, view: &view, light: session.light(), options: &options, progress };
-        let bare = session.renderer(&request.renderer)?.render(&job)?;
-        heatmap_max = Some(heat::paint(&mut frame, &bare, (&view, &rigid)));
-    }
-    let highlight = (!marks.is_empty() && !request.straight)
-        .then(|| {
-            let aux = Aux { world: true, exact: true };
-            let max_bytes = options.max_bytes;
-            let options = RenderOptions { marks: false, aux, max_bytes, ..request.quality.clone() };
-            let draw = |view: &View| {
-                let job = RenderJob { scene, view, light: session.light(), options: &options, progress };
-                Ok::<_, BelvedereError>(session.renderer(&request.renderer)?.render(&job)?)
-            };
-            let bent = draw(&view)?;
-            let straight = marks.contains(&HighlightMark::Revealed).then(|| draw(&view.straightened())).transpose()?;
-            let bare = highlight::Bare { bent: &bent, straight: straight.as_ref() };
-            Ok::<_, BelvedereError>(highlight::paint(&mut frame, &bare, scene, &view, &marks, wanted.highlight_px))
-        })
-        .transpose()?;
-    if let Some(straight) = straight.as_ref().filter(|_| ghost) {
-        ghost::draw(&mut frame, straight, scene);
-    }
-    let displacement = view.is_bent().then(|| displacement::measure(&view, &rigid, &frame)).transpose()?;
-    let mark = mark_words(session, request, [frame.width, frame.height], displacement);
-    let size = [frame.width, frame.height];
-    let mut shapes = Vec::new();
-    let mut furniture = Furnish { pixels: &mut frame.color, size, record: as_vectors.then_some(&mut shapes) };
-    furniture.draw("legend", |canvas| {
-        let mut canvas = canvas.scaled(request.density);
-        if let Some(most) = heatmap_max {
-            heat::legend(&mut canvas, most);
-        }
-        if let Some(record) = &highlight {
-            let taken = if heatmap_max.is_some() { heat::LEGEND_HEIGHT + 10.0 } else { 0.0 };
-            highlight::legend(&mut canvas, record, taken);
-        }
-    });
-    let figure = wanted.inset.and_then(|inset| Some((inset, curve_inset::CurveFigure::of(&view)?)));
-    let mut inset = None;
-    furniture.draw("inset", |canvas| {
-        inset = figure.filter(|(_, figure)| draw_inset(canvas, figure, request)).map(|(inset, _)| inset);
-    });
-    for (name, shapes) in &furnished.kinds {
-        furniture.draw(name, |mut canvas| shapes.iter().for_each(|shape| canvas.put(shape)));
-    }
-    furniture.draw("mark", |mut canvas| {
-        if let Some(words) = &mark {
-            badge::draw(&mut canvas, words, request.density);
-        }
-    });
-    let seen = vectors.as_ref().is_some_and(|vectors| !vectors::is_empty(vectors));
-    warnings.extend(unseen.filter(|_| !seen));
-    if let Some(vectors) = &mut vectors {
-        vectors.furniture = shapes;
-        warnings.extend(vectors::blank(vectors));
-    }
-    let overlay = OverlayRecord {
-        edges: (stylisation.edges > 0.0).then_some(stylisation.edges),
-        unsharp: (stylisation.unsharp > 0.0).then_some(stylisation.unsharp),
-        mark: mark.is_some(),
-        mark_words: mark,
-        inset,
-        grid: grid_spacing,
-        heatmap_max,
-        ghost,
-        highlight,
-        camera: None,
-    };
-    let straight = straight.filter(|_| request.compare);
-    let furniture = furnished.record;
-    Ok(Drawn { view, frame, straight, overlay, furniture, displacement, fallback, vectors, warnings })
+    painting.finish()
 }
 
-/// Words of the mark of a bent picture, if it has one.
-/// * `size`: of the picture, pixels.
-pub(super) fn mark_words(
-    session: &Session,
-    request: &PictureOptions,
-    size: [usize; 2],
-    displacement: Option<DisplacementReport>,
-) -> Option<String> {
-    let [width, height] = size.map(|pixels| (pixels as f64 / request.density) as usize);
-    match displacement {
-        _ if !session.resolved.overlay.mark || request.no_mark || !badge::fits(width, height) => None,
-        _ if request.steady_mark => Some(badge::WORDS.to_owned()),
-        moved => moved.map(|moved| badge::words(width, moved.max_m, session.scene().unit)),
-    }
+/// A picture while its plan is carried out.
+struct Painting<'a> {
+    plan: &'a Plan<'a>,
+    fallback: Option<&'a FallbackPlan>,
+    frame: Frame,
+    straight: Option<Frame>,
+    /// Exact surfaces of the straight view.
+    exact_straight: Option<Frame>,
+    vectors: Option<VectorPicture>,
+    measured: Measured,
+    fallback_record: Option<FallbackRecord>,
+    /// That nothing is seen.
+    unseen: Option<Warning>,
+    warnings: Vec<Warning>,
 }
 
-/// Draws the curve of a spline; whether the picture is large enough.
-pub(super) fn draw_inset(canvas: Canvas<'_>, figure: &curve_inset::CurveFigure, request: &PictureOptions) -> bool {
-    // Its letters are of one size in windows of every density; on paper they are lengths.
-    curve_inset::draw(&mut canvas.scaled(if request.print.is_some() { request.density } else { 1.0 }), figure)
+impl<'a> Painting<'a> {
+    fn new(plan: &'a Plan<'a>) -> Self {
+        Self {
+            plan,
+            fallback: None,
+            frame: Frame::default(),
+            straight: None,
+            exact_straight: None,
+            vectors: None,
+            measured: Measured::default(),
+            fallback_record: None,
+            unseen: None,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Makes a drawing and puts it into the picture.
+    fn take(&mut self, pass: Pass) -> Result<(), BelvedereError> {
+        let plan = self.plan;
+        let (scene, view, wanted) = (plan.scene, &plan.view, &plan.wanted);
+        match pass {
+            Pass::Surfaces => self.surfaces()?,
+            Pass::Lowered => {
+                let size = [self.frame.width, self.frame.height];
+                thin::Thin::new(scene, view, plan.covered, size).draw(&mut self.frame, &plan.draw(pass)?, 0);
+            }
+            Pass::Marks => {
+                self.vectors = Some(plan.with(pass, |job| vectors::of_marks(job, &self.frame, plan.request))?);
+            }
+            Pass::Straight => self.straight = Some(plan.draw(pass)?),
+            Pass::Moved => {
+                let rigid = RigidLayers::of(scene, view);
+                self.measured.heatmap_max = Some(heat::paint(&mut self.frame, &plan.draw(pass)?, (view, &rigid)));
+            }
+            Pass::ExactStraight => self.exact_straight = Some(plan.draw(pass)?),
+            Pass::Exact => {
+                let bare = highlight::Bare { bent: &plan.draw(pass)?, straight: self.exact_straight.as_ref() };
+                let ramp_px = plan.session.resolved.overlay.highlight_px;
+                let record = highlight::paint(&mut self.frame, &bare, scene, view, &wanted.highlight, ramp_px);
+                (self.measured.highlight, self.exact_straight) = (Some(record), None);
+            }
+            Pass::Depths => {}
+        }
+        Ok(())
+    }
+
+    /// Draws the picture itself, with the changes of its fallback.
+    fn surfaces(&mut self) -> Result<(), BelvedereError> {
+        let plan = self.plan;
+        let draw = |scene: &Scene, view: &View| plan.draw_scene(scene, view);
+        let picture = match self.fallback {
+            Some(fallback) => fallback.draw(&plan.view, &draw)?,
+            None => FallbackPicture { frame: plan.draw(Pass::Surfaces)?, pixels_opened: None },
+        };
+        self.unseen = nothing_seen::warning(plan.scene, &plan.view, &picture.frame);
+        // Measured before further pictures are drawn over it.
+        let measure = |fallback: &FallbackPlan| fallback.measured(&plan.view, (plan.session.scene(), &picture), &draw);
+        self.fallback_record = self.fallback.map(measure).transpose()?;
+        self.warnings.extend(self.fallback_record.iter().filter_map(FallbackRecord::warning));
+        self.frame = picture.frame;
+        Ok(())
+    }
+
+    /// Draws what lies over the picture.
+    fn finish(mut self) -> Result<Drawn, BelvedereError> {
+        let Plan { session: _, request, scene, view, wanted, furniture, .. } = self.plan;
+        if let Some(straight) = self.straight.as_ref().filter(|_| wanted.ghost) {
+            ghost::draw(&mut self.frame, straight, scene);
+        }
+        let rigid = RigidLayers::of(scene, view);
+        let displacement = view.is_bent().then(|| displacement::measure(view, &rigid, &self.frame)).transpose()?;
+        self.measured.displacement = displacement;
+        let size = [self.frame.width, self.frame.height];
+        let over = Over::new(self.plan, self.measured, size);
+        let mut shapes = Vec::new();
+        let record = wanted.vectors.then_some(&mut shapes);
+        let mut furnish = Furnish { pixels: &mut self.frame.color, size, record };
+        over.draw(|name, draw| furnish.draw(name, draw));
+        let seen = self.vectors.as_ref().is_some_and(|vectors| !vectors::is_empty(vectors));
+        self.warnings.extend(self.unseen.filter(|_| !seen));
+        if let Some(vectors) = &mut self.vectors {
+            vectors.furniture = shapes;
+            self.warnings.extend(vectors::blank(vectors));
+        }
+        Ok(Drawn {
+            view: view.clone(),
+            frame: self.frame,
+            straight: self.straight.filter(|_| request.compare),
+            overlay: over.record(),
+            furniture: furniture.record.clone(),
+            displacement,
+            fallback: self.fallback_record,
+            vectors: self.vectors,
+            warnings: self.warnings,
+        })
+    }
 }
 
 /// Draws the picture of the camera.

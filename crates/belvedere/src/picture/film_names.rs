@@ -1,13 +1,12 @@
 //! Names of the frames of a film, placed over surfaces that are drawn without anything else.
 
-use super::furniture;
 use super::options::PictureOptions;
+use super::plan::{self, Pass, Plan};
 use crate::overlays::furniture::with_distances;
-use crate::overlays::{grid, highlight, widths};
 use crate::{BelvedereError, Session};
 use belvedere_composite::marks::{Marks, NameMemory, Patience};
 use belvedere_composite::traced_marks::next_names;
-use belvedere_scene::{Progress, RenderJob, RenderOptions};
+use belvedere_scene::Progress;
 
 /// Whether the names of a film of a session can be placed beforehand: whether it has any, and every frame is one drawing of the scene.
 pub(crate) fn are_placed(session: &Session, request: &PictureOptions) -> bool {
@@ -27,19 +26,8 @@ pub(crate) fn placed(
     (before, patience): (&NameMemory, Patience),
     progress: &Progress,
 ) -> Result<NameMemory, BelvedereError> {
-    let view = if request.straight { session.view().straightened() } else { session.view().clone() };
-    let wanted = &session.resolved.overlay;
-    let (marks, heatmap) = highlight::chosen((&request.highlight, request.heatmap), wanted)?;
-    let scene = with_distances(session.scene(), &session.resolved.furniture);
-    let scene = &*widths::scaled(&scene, request.density);
-    let mut options = RenderOptions { names: None, density: request.density, ..request.quality.clone() };
-    options.max_bytes = session.bytes_for_picture(options.max_bytes);
-    let surfaces = RenderOptions { samples: 1, exposures: 1, marks: false, ..options.clone() };
-    let job = RenderJob { scene, view: &view, light: session.light(), options: &surfaces, progress };
-    let depth = session.renderer(&request.renderer)?.render(&job)?.depth;
-    let lines = grid::wanted(session.scene(), request.grid.or(grid::stated(wanted)));
-    options.overlay.under.extend(lines.into_iter().map(|line| widths::line(line, request.density)));
-    let furnished = furniture::plan(session, (session.scene(), &view), request, (!marks.is_empty(), heatmap));
-    options.keep_clear = furnished.keep_clear;
-    Ok(next_names(&RenderJob { options: &options, ..job }, &depth, (before, patience)))
+    let view = plan::view(session, request);
+    let plan = Plan::new(session, request, (session.scene(), view), progress)?;
+    let depth = plan.draw(Pass::Depths)?.depth;
+    plan.with(Pass::Marks, |job| next_names(job, &depth, (before, patience)))
 }

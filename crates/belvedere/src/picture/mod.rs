@@ -9,6 +9,8 @@ mod furniture;
 mod mark_target;
 mod nothing_seen;
 mod options;
+mod over;
+mod plan;
 mod sidecar;
 mod target_place;
 mod transparent;
