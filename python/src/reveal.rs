@@ -7,8 +7,8 @@ use crate::scene::NativeScene;
 use crate::work::{Ask, run};
 use belvedere::picture::PictureOptions;
 use belvedere::request::Reveal;
-use belvedere::verbs::asked::{self, Revealed, Setting};
-use belvedere::verbs::reveal::RevealFiles;
+use belvedere::verbs;
+use belvedere::verbs::reveal::{RevealAnswer, RevealFiles, Setting};
 use belvedere::{answers, output};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -34,7 +34,7 @@ pub(crate) fn drafts(
 ) -> PyResult<(String, usize, Py<PyBytes>)> {
     let (asked, open) = asked_for("drafts", asked, open)?;
     let (numbers, width, colors) = run(py, &ask, move |progress| {
-        let found = asked::drafts(&asked, count, &setting(open, progress))?;
+        let found = verbs::reveal::drafts(&asked, count, &setting(open, progress))?;
         let (width, _, colors) = found.sheet();
         let numbers = serde_json::json!({ "drafts": found.drafts, "warnings": found.warnings });
         Ok((output::json(&numbers)?, width, colors))
@@ -45,7 +45,7 @@ pub(crate) fn drafts(
 /// Result of [`reveal`].
 #[pyclass(frozen)]
 pub(crate) struct NativeReveal {
-    answer: std::sync::Arc<Revealed>,
+    answer: std::sync::Arc<RevealAnswer>,
     report: String,
 }
 
@@ -53,12 +53,12 @@ pub(crate) struct NativeReveal {
 impl NativeReveal {
     /// Scene and bent view.
     fn scene(&self) -> NativeScene {
-        NativeScene { session: self.answer.session().clone() }
+        NativeScene { session: self.answer.session.clone() }
     }
 
     /// Both pictures.
     fn picture(&self) -> NativePicture {
-        NativePicture::of(self.answer.session(), self.answer.picture().clone())
+        NativePicture::of(&self.answer.session, self.answer.picture.clone())
     }
 
     /// The report, JSON.
@@ -69,7 +69,7 @@ impl NativeReveal {
 
     /// The paper of the picture, JSON; null without one.
     fn paper(&self) -> PyResult<String> {
-        let sheet = self.answer.picture().sidecar.print.map(|sheet| sheet.document());
+        let sheet = self.answer.picture.sidecar.print.map(|sheet| sheet.document());
         output::json(&sheet).map_err(|e| crate::errors::raised(&e))
     }
 
@@ -96,7 +96,7 @@ impl NativeReveal {
         let answer = self.answer.clone();
         let files = RevealFiles { out, before, report, scene };
         run(py, &Ask::default(), move |_| {
-            output::check_all(&files.all(), &answer.session().input_paths(), overwrite)?;
+            output::check_all(&files.all(), &answer.session.input_paths(), overwrite)?;
             answer.write(&files, overwrite)
         })
     }
@@ -107,7 +107,7 @@ impl NativeReveal {
 pub(crate) fn reveal(py: Python<'_>, asked: &str, open: &str, ask: Ask) -> PyResult<NativeReveal> {
     let (asked, open) = asked_for("reveal", asked, open)?;
     let (answer, report) = run(py, &ask, move |progress| {
-        let answer = asked::reveal(&asked, &setting(open, progress))?;
+        let answer = verbs::reveal::reveal(&asked, &setting(open, progress))?;
         let report = answers::in_file("reveal", &[], &answer.document())?;
         Ok((answer, report))
     })?;

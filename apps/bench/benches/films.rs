@@ -6,11 +6,12 @@
 
 use anyhow::{Context, Result, bail};
 use belvedere::builtin::valley_route;
+use belvedere::request::Reveal;
 use belvedere::scene::{Crs, Progress};
 use belvedere::scene_file::AnimationDoc;
 use belvedere::verbs::animate::{AnimateRequest, Animation, animate};
-use belvedere::verbs::reveal::{RevealFiles, RevealRequest, Technique, reveal};
-use belvedere::{DataFiles, OpenOptions, Session};
+use belvedere::verbs::reveal::{RevealFiles, Technique, reveal};
+use belvedere::{OpenOptions, Session};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -114,11 +115,11 @@ fn film(
         Route::File(name) => data.join(name),
         Route::Seed(seed) => seeded_route(&dem, seed, folder, &options)?,
     };
-    let files = DataFiles { dem, features: vec![route.display().to_string()], ..DataFiles::default() };
-    let request = RevealRequest { data: files, image: Some(IMAGE), technique, ..RevealRequest::default() };
+    let (features, size, technique) = (vec![route.display().to_string()], Some(IMAGE), Some(technique));
+    let asked = Reveal { data: dem, features, size, technique, ..Reveal::default() };
     let scene = folder.join("scene.toml");
     let written = RevealFiles { out: folder.join("out.png"), scene: Some(scene.clone()), ..RevealFiles::default() };
-    reveal(&request, &options)?.write(&written, true)?;
+    reveal(&asked, &options.clone().into())?.write(&written, true)?;
     let session = Session::open(&scene, &OpenOptions { unsolved: true, ..options })?;
     let animation = AnimationDoc {
         along: Some("features1".into()),

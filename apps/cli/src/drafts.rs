@@ -2,7 +2,7 @@
 
 use crate::goal::Goal;
 use crate::report::{Context, print};
-use belvedere::verbs::drafts::{Draft, DraftsAnswer};
+use belvedere::verbs::reveal::{Draft, DraftsAnswer};
 use belvedere::verbs::schemas::{DraftWithCommand, Drafts};
 use std::path::{Path, PathBuf};
 

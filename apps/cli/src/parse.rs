@@ -1,6 +1,6 @@
 //! Values of arguments.
 
-use belvedere::verbs::drafts::MOST_DRAFTS;
+use belvedere::verbs::reveal::MOST_DRAFTS;
 
 /// Most worker threads: far above what helps, far below what a system refuses to start.
 const MAX_THREADS: usize = 1024;

@@ -8,8 +8,7 @@ use crate::picture_names;
 use crate::report::{Context, is_stdout};
 use belvedere::picture::{self, PictureOptions};
 use belvedere::scene_file::LightDoc;
-use belvedere::verbs::asked::{self, Revealed, Setting};
-use belvedere::verbs::reveal::{RevealFiles, Technique};
+use belvedere::verbs::reveal::{self, RevealAnswer, RevealFiles, Setting, Technique};
 use belvedere::{Needs, request::Reveal};
 use std::path::{Path, PathBuf};
 
@@ -30,7 +29,7 @@ pub(crate) fn reveal(mut args: RevealArgs, context: &Context) -> anyhow::Result<
         scene: args.scene.clone(),
     };
     ready(&args, &files, context)?;
-    let (sheet, size) = asked::sheet(&args.asked)?;
+    let (sheet, size) = reveal::sheet(&args.asked)?;
     let transparent = args.asked.appearance.air.sky.as_deref() == Some(LightDoc::TRANSPARENT);
     picture::check_format(&args.out, size.map(|side| side as usize), transparent)?;
     let vectors = picture_names::vectors(&args.out, args.vectors_only);
@@ -45,9 +44,9 @@ pub(crate) fn reveal(mut args: RevealArgs, context: &Context) -> anyhow::Result<
             sheet.is_none() && args.asked.paper == Default::default() && !args.vectors_only,
             "--drafts draws small pictures; leave out --paper, --dpi, --margin-mm and --vectors-only"
         );
-        return crate::drafts::sheet(&asked::drafts(&args.asked, count, &setting)?, &files.out, context);
+        return crate::drafts::sheet(&reveal::drafts(&args.asked, count, &setting)?, &files.out, context);
     }
-    deliver(&asked::reveal(&args.asked, &setting)?, &args.out, &files, context)
+    deliver(&reveal::reveal(&args.asked, &setting)?, &args.out, &files, context)
 }
 
 /// Refuses bad outputs before the work starts.
@@ -77,14 +76,14 @@ fn inputs(asked: &Reveal) -> Vec<PathBuf> {
 }
 
 /// Writes the files and says what was found.
-fn deliver(answer: &Revealed, out: &Path, files: &RevealFiles, context: &Context) -> anyhow::Result<Goal> {
+fn deliver(answer: &RevealAnswer, out: &Path, files: &RevealFiles, context: &Context) -> anyhow::Result<Goal> {
     let written = answer.write(files, context.common.overwrite)?;
-    context.timings.note_picture(answer.picture().record());
+    context.timings.note_picture(answer.picture.record());
     if let Some(scene) = &files.scene {
-        context.remember(scene, answer.session());
+        context.remember(scene, &answer.session);
     }
     if is_stdout(out) {
-        let mut alone = answer.picture().clone();
+        let mut alone = answer.picture.clone();
         alone.straight = None;
         outputs::write_stdout(&alone.to_png()?)?;
     }

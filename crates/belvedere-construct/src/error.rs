@@ -62,6 +62,9 @@ pub enum ConstructError {
         /// Eyes tried.
         tried: usize,
     },
+    /// No eye around a target in a city stands free.
+    #[error("no eye around the target is free of buildings; give eye and look")]
+    NoRoom,
     /// A pinhole could not be made.
     #[error(transparent)]
     Pinhole(#[from] PinholeError),

@@ -16,6 +16,7 @@ pub mod reveal;
 mod sample;
 mod samples;
 mod surface_samples;
+pub mod views;
 
 pub use error::ConstructError;
 pub use flight::{Flight, FlightError, FlightOptions};

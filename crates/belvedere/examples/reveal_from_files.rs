@@ -2,15 +2,14 @@
 //!
 //! `cargo run --example reveal_from_files -- dem.tif route.gpx out.png`; without arguments on generated ground.
 
-use belvedere::verbs::reveal::{RevealFiles, RevealRequest, reveal};
-use belvedere::{DataFiles, OpenOptions};
+use belvedere::request::Reveal;
+use belvedere::verbs::reveal::{RevealFiles, Setting, reveal};
 use std::path::PathBuf;
 
 /// Draws the picture and says how much of the route it shows, straight and bent.
 pub fn run(dem: &str, route: &str, out: PathBuf, image: [u32; 2]) -> Result<String, Box<dyn std::error::Error>> {
-    let data = DataFiles { dem: dem.into(), features: vec![route.into()], ..DataFiles::default() };
-    let request = RevealRequest { data, image: Some(image), ..RevealRequest::default() };
-    let answer = reveal(&request, &OpenOptions::default())?;
+    let asked = Reveal { data: dem.into(), features: vec![route.into()], size: Some(image), ..Reveal::default() };
+    let answer = reveal(&asked, &Setting::default())?;
     answer.write(&RevealFiles { out, ..RevealFiles::default() }, true)?;
     Ok(answer.summary())
 }

@@ -13,8 +13,8 @@ use crate::scene_file::{
     self, Document, EarthDoc, LayerDoc, LightDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc,
 };
 use crate::session::Loaded;
-use crate::verbs::target_views::outline;
 use crate::{BelvedereError, Needs, OpenOptions, Session};
+use belvedere_construct::views::outline;
 use belvedere_core::{Aabb, DVec3, Navigation, Pinhole, Projection, Warning, WarningKind};
 use belvedere_io::crs::utm_epsg;
 use belvedere_scene::{Crs, Scene};

@@ -5,13 +5,12 @@ use super::eyes::Eye;
 use super::options::RevealOptions;
 use super::score::{composition, frame, shown, unbent};
 use super::search::{BENT, BendSearch, Candidate, SearchStart, coarse_stride, stride_for};
+use super::thresholds::NOTHING_HIDDEN;
 use crate::ConstructError;
 use belvedere_core::{EarthCurvature, Projection, Stage, View};
 use belvedere_scene::Progress;
 use rayon::prelude::*;
 
-/// Share of what lies in the frame from which on nothing counts as hidden, and nothing is bent.
-pub(super) const NOTHING_HIDDEN: f64 = 0.995;
 /// Views kept for the search of a bend.
 pub(super) const VIEWS_KEPT: usize = 10;
 /// Views whose bend is improved before one is chosen.

@@ -5,6 +5,7 @@
 //! that turns the ground with the features towards the eye and lets the background sink back to a horizon
 //! (Pasewaldt et al. 2011; their presets are drawn by hand, the choice by visible length is ours).
 
+mod choice;
 mod choose;
 mod evaluate;
 mod eyes;
@@ -14,7 +15,9 @@ mod polish;
 mod score;
 mod search;
 mod shape;
+pub mod thresholds;
 
+pub use choice::Choice;
 pub use evaluate::Evaluation;
 pub use goal::{Goal, gain, shortfall};
 pub use options::RevealOptions;

@@ -2,13 +2,14 @@
 
 use super::info::{self, FileInfo};
 use super::model_layers::{ground, layer, unit_of};
-use super::reveal::{RevealRequest, reveal};
+use super::reveal::reveal;
 use crate::data::{features_of, ground_files, locate};
 use crate::placed::{Place, PlacedDocument};
+use crate::request::Reveal;
 use crate::request::{OfData, given_of};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, Document, EarthDoc, LayerDoc, SourceDocument};
-use crate::{Advice, BelvedereError, DataFiles, OpenOptions, Session, Trust};
+use crate::{Advice, BelvedereError, OpenOptions, Session, Trust};
 use belvedere_io::formats::Reader;
 use belvedere_io::{GeoTiff, Limits, fs, join_table, split_table};
 use belvedere_scene::Progress;
@@ -71,8 +72,8 @@ pub fn open_trusted(
     let title = paths.first().and_then(|path| path.file_name()?.to_str()?.split('.').next().map(str::to_owned));
     let mut document = match (grounds.as_slice(), features.is_empty(), models.is_empty()) {
         ([dem], false, true) => {
-            let data = DataFiles { dem: dem.clone(), features, ..DataFiles::default() };
-            let found = reveal(&RevealRequest { data, ..RevealRequest::default() }, &options)?.session;
+            let asked = Reveal { data: dem.clone(), features, ..Reveal::default() };
+            let found = reveal(&asked, &options.into())?.session;
             found.resolved().cloned().ok_or(BelvedereError::NoFeatures)?
         }
         ([_, ..], true, true) => shown(vec![ground(grounds)], &place, &options)?,
@@ -143,7 +144,7 @@ fn whole(layers: Vec<LayerDoc>, folders: Vec<PathBuf>) -> SourceDocument {
     // Models have no place on the earth; ground and cities may, in degrees too.
     let is_placed = layers.iter().any(|layer| matches!(layer, LayerDoc::Terrain(_) | LayerDoc::City(_)));
     let crs = if is_placed { "auto" } else { "local" };
-    let provisional = super::view_request::provisional_camera();
+    let provisional = super::provisional_camera();
     let unit = unit_of(&layers);
     let document = Document { crs: crs.into(), unit, layer: layers, ..Document::seen_by(provisional) };
     SourceDocument::of_files(document, folders)

@@ -2,15 +2,15 @@
 
 use super::check::CheckReport;
 use super::disocclude::DisoccludeDocument;
-use super::drafts::Draft;
 use super::generalise::GeneraliseDocument;
 use super::info::{FileInfo, MachineInfo};
 use super::measure::MeasureReport;
 use super::pack::Packed;
 use super::points::{DisplaceReport, ProjectReport, RaysReport};
 use super::preset::{Listed, PresetCheck};
-use super::reveal::RevealDocument;
-use super::reveal_target::TargetDocument;
+use super::reveal::Draft;
+use super::reveal::answer::{RevealDocument, TargetDocument};
+
 use crate::answers::{Answer, Warned, Written};
 use crate::export::ExportReport;
 use crate::fallback::FallbackRecord;

@@ -1,40 +1,41 @@
 //! Pictures of targets and of data alone: all that is drawn lies inside, and cameras that are given stay.
 
 use belvedere::core::{DVec2, DVec3};
+use belvedere::places::Place;
+use belvedere::request::{Air, Look, Reveal};
 use belvedere::scene::LayerKind;
 use belvedere::scene_file::camera::{cut_to_frame, fit, frame_factor, navigation, set_camera};
-use belvedere::scene_file::{CameraDoc, LightDoc, SourceDocument, parse};
-use belvedere::verbs::appearance::Appearance;
+use belvedere::scene_file::{CameraDoc, SourceDocument, parse};
 use belvedere::verbs::open_files::scene_of_data;
-use belvedere::verbs::reveal::Viewpoint;
-use belvedere::verbs::reveal_target::{TargetAnswer, TargetRequest, reveal_target};
-use belvedere::{OpenOptions, PictureOptions, Session};
+use belvedere::verbs::reveal::{Found, RefitRecord, RevealAnswer, Setting, reveal};
+use belvedere::{OpenOptions, Session};
 use belvedere_testkit::Random;
 use std::path::Path;
 
-fn request(file: &str, see: &str, image: [u32; 2]) -> TargetRequest {
-    let light = LightDoc { sky: Some("white".into()), ..LightDoc::default() };
-    let appearance = Appearance { light: Some(light), no_mark: true, ..Appearance::default() };
-    let mut picture = PictureOptions::default();
-    picture.quality.samples = 1;
-    let transfer = file.contains("engine").then(|| "solid".into());
-    TargetRequest {
-        files: vec![file.into()],
-        see: see.into(),
-        transfer,
-        image: Some(image),
-        appearance,
-        picture,
-        ..TargetRequest::default()
+fn request(file: &str, see: &str, image: [u32; 2]) -> Reveal {
+    let air = Air { sky: Some("white".into()), ..Air::default() };
+    Reveal {
+        data: file.into(),
+        see: Some(see.into()),
+        transfer: file.contains("engine").then(|| "solid".into()),
+        size: Some(image),
+        samples: Some(1),
+        appearance: Look { air, no_mark: true, ..Look::default() },
+        ..Reveal::default()
     }
 }
 
-fn revealed(request: &TargetRequest) -> TargetAnswer {
-    reveal_target(request, &OpenOptions::default()).expect("revealed")
+fn revealed(asked: &Reveal) -> RevealAnswer {
+    reveal(asked, &Setting::default()).expect("revealed")
+}
+
+fn refit(found: &RevealAnswer) -> Option<RefitRecord> {
+    let Found::Target { refit, .. } = &found.found else { panic!("no target") };
+    *refit
 }
 
 /// Shares of the picture beside what is drawn: left, above, right, below.
-fn margins(found: &TargetAnswer) -> [f64; 4] {
+fn margins(found: &RevealAnswer) -> [f64; 4] {
     let frame = &found.picture.frame;
     let is_drawn = |x: usize, y: usize| frame.color[y * frame.width + x].iter().any(|c| *c < 235);
     let column = |x: &usize| (0..frame.height).any(|y| is_drawn(*x, y));
@@ -61,10 +62,10 @@ fn bent_and_straight_models_lie_inside_with_even_margins_in_tall_and_wide_pictur
         assert!(beside.iter().all(|m| *m > 0.0), "{file} {image:?}: {beside:?}");
         assert!((left - right).abs() < 0.035 && (above - below).abs() < 0.035, "{file} {image:?}: {beside:?}");
         assert!(beside.iter().any(|m| *m < 0.065), "{file} {image:?} fills its picture: {beside:?}");
-        let refit = found.refit.expect("framed again");
+        let refit = refit(&found).expect("framed again");
         assert_eq!(refit.outside[1], 0.0, "{refit:?}");
         if image == [192, 108] {
-            assert!(found.report.visible == 1.0 && found.report.visible_straight == 0.0, "{:?}", found.report);
+            assert!(found.shares.visible_bent == 1.0 && found.shares.visible_straight == 0.0, "{:?}", found.shares);
             assert!(
                 refit.outside[0] > 0.05 && refit.turned_deg > 1.0,
                 "the bend moved much out of the frame: {refit:?}"
@@ -75,16 +76,16 @@ fn bent_and_straight_models_lie_inside_with_even_margins_in_tall_and_wide_pictur
 
 #[test]
 fn a_camera_that_is_given_stays_and_a_field_of_view_that_is_given_too() {
-    let viewpoint = Viewpoint { eye: [80.0, -300.0, 60.0], target: [80.0, 90.0], target_height: Some(60.0) };
+    let [eye, look] = [([80.0, -300.0], 60.0), ([80.0, 90.0], 60.0)].map(|(at, z)| Some(Place::of(at, Some(z))));
     let free = request("builtin:engine", "80,92,62", [96, 54]);
-    let given = revealed(&TargetRequest { viewpoint: Some(viewpoint), ..free.clone() });
-    assert_eq!(given.refit, None);
+    let given = revealed(&Reveal { eye, look, ..free.clone() });
+    assert_eq!(refit(&given), None);
     let eye = given.session.view().pinhole().eye;
-    assert!(eye.distance(viewpoint.eye.into()) < 1e-9, "{eye}");
+    assert!(eye.distance(DVec3::new(80.0, -300.0, 60.0)) < 1e-9, "{eye}");
     let ahead = given.session.view().pinhole().forward;
     assert!(ahead.y > 1.0 - 1e-9, "{ahead}");
-    let narrow = revealed(&TargetRequest { fov_y_deg: Some(36.0), ..free });
-    let [before, after] = narrow.refit.expect("turned").fov_y_deg;
+    let narrow = revealed(&Reveal { fov: Some(36.0), ..free });
+    let [before, after] = refit(&narrow).expect("turned").fov_y_deg;
     assert!((before - 36.0).abs() < 1e-9 && (after - 36.0).abs() < 1e-9, "{before} {after}");
 }
 

@@ -6,9 +6,9 @@ use belvedere::scene::Progress;
 use belvedere::scene_file::{AnimationDoc, TurntableDoc};
 use belvedere::vectors::VectorContent;
 use belvedere::verbs::animate::{AnimateRequest, animate};
-use belvedere::verbs::asked::{Setting, drafts, reveal};
 use belvedere::verbs::disocclude::{DisoccludeFiles, disocclude};
 use belvedere::verbs::measure::{MeasureOptions, measure};
+use belvedere::verbs::reveal::{Setting, drafts, reveal};
 use belvedere::{CameraPicture, OpenOptions, Picture, Session, renderers};
 use belvedere_testkit::synthetic::Marcher;
 use std::path::Path;
@@ -143,7 +143,7 @@ fn verbs_that_search_and_films_are_drawn_by_it() {
         ..Reveal::default()
     };
     let found = reveal(&asked, &Setting::default()).expect("a picture");
-    assert!(is_marched(found.picture()), "reveal");
+    assert!(is_marched(&found.picture), "reveal");
     let sheet = drafts(&asked, 2, &Setting::default()).expect("drafts");
     let (_, _, colors) = sheet.sheet();
     let marched = colors.iter().filter(|color| [Marcher::GROUND, Marcher::SKY].contains(*color)).count();

@@ -1,11 +1,12 @@
 //! Residues drawn as ribbons: what decides whether rays bend, or a fallback is taken, is what the picture shows.
 
+use belvedere::construct::rays::BendReport;
 use belvedere::core::View;
 use belvedere::cpu::CpuRenderer;
+use belvedere::request::Reveal;
 use belvedere::scene::molecule::Selection;
 use belvedere::scene::{Frame, Light, Progress, RenderJob, RenderOptions, Renderer, Scene};
-use belvedere::verbs::reveal_target::{TargetAnswer, TargetRequest, reveal_target};
-use belvedere::{OpenOptions, PictureOptions};
+use belvedere::verbs::reveal::{Found, RevealAnswer, Setting, reveal};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -31,18 +32,21 @@ fn bundle() -> String {
     text
 }
 
-fn revealed(file: &Path, see: &str, fallback: &[&str]) -> TargetAnswer {
-    let mut picture = PictureOptions::default();
-    picture.quality.samples = 1;
-    let request = TargetRequest {
-        files: vec![file.to_owned()],
-        see: see.into(),
-        image: Some([320, 180]),
+fn revealed(file: &Path, see: &str, fallback: &[&str]) -> RevealAnswer {
+    let asked = Reveal {
+        data: file.display().to_string(),
+        see: Some(see.into()),
+        size: Some([320, 180]),
+        samples: Some(1),
         fallback: fallback.iter().map(|rule| (*rule).to_owned()).collect(),
-        picture,
-        ..TargetRequest::default()
+        ..Reveal::default()
     };
-    reveal_target(&request, &OpenOptions::default()).expect("revealed")
+    reveal(&asked, &Setting::default()).expect("revealed")
+}
+
+fn report(found: &RevealAnswer) -> BendReport {
+    let Found::Target { report, .. } = &found.found else { panic!("no target") };
+    *report
 }
 
 /// The ribbon of a selection alone.
@@ -90,7 +94,7 @@ fn a_residue_drawn_as_a_ribbon_is_judged_bent_and_cut_free_by_its_pixels() {
             assert!(pixels > 30, "{see}: {pixels} pixels");
             share
         });
-        let report = &found.report;
+        let report = report(&found);
         let off =
             [straight * report.in_frame_straight - report.visible_straight, shown * report.in_frame - report.visible];
         assert!(off.iter().all(|off| off.abs() < 0.02), "{see}: {straight} and {shown} in the picture, {report:?}");
@@ -103,7 +107,7 @@ fn a_residue_drawn_as_a_ribbon_is_judged_bent_and_cut_free_by_its_pixels() {
         // What no bend shows a fallback does, and only that.
         let cut = revealed(&file, see, &["cutaway"]);
         let record = cut.picture.sidecar.fallback.as_ref();
-        assert_eq!(record.is_some(), cut.report.visible < 0.99, "{see}: {:?}", cut.report);
+        assert_eq!(record.is_some(), cut.shares.visible_bent < 0.99, "{see}: {:?}", cut.shares);
         let view = cut.session.view();
         let (open, _) = share(&cut.picture.frame, &draw(&alone(cut.session.scene(), see), view));
         assert!(open >= 0.99 && cut.missed().is_empty(), "{see}: {open}, {record:?}");

@@ -1,8 +1,7 @@
 //! Terrain that comes in several files.
 
-use belvedere::request::Stated;
-use belvedere::verbs::reveal::{RevealRequest, reveal};
-use belvedere::{DataFiles, OpenOptions};
+use belvedere::request::{Reveal, Stated};
+use belvedere::verbs::reveal::{Setting, reveal};
 use std::path::{Path, PathBuf};
 
 const COLS: usize = 80;
@@ -32,10 +31,10 @@ fn route(folder: &Path) -> String {
     path.display().to_string()
 }
 
-fn revealed(dem: String, features: Vec<String>) -> Result<Vec<[u8; 3]>, String> {
-    let data = DataFiles { dem, features, stated: Stated::in_crs("EPSG:32632"), ..DataFiles::default() };
-    let request = RevealRequest { data, image: Some([96, 54]), ..RevealRequest::default() };
-    reveal(&request, &OpenOptions::default()).map(|answer| answer.picture.frame.color).map_err(|e| e.to_string())
+fn revealed(data: String, features: Vec<String>) -> Result<Vec<[u8; 3]>, String> {
+    let (stated, size) = (Stated::in_crs("EPSG:32632"), Some([96, 54]));
+    let asked = Reveal { data, features, stated, size, ..Reveal::default() };
+    reveal(&asked, &Setting::default()).map(|answer| answer.picture.frame.color).map_err(|e| e.to_string())
 }
 
 #[test]

@@ -2,13 +2,13 @@
 
 use belvedere::live::{LiveSession, Order, Pace, Sides};
 use belvedere::placed::Place;
-use belvedere::request::{Disocclude, Stated};
+use belvedere::request::{Disocclude, Reveal, Stated};
 use belvedere::scene::Progress;
 use belvedere::scene_file::AnimationDoc;
 use belvedere::verbs::animate::{AnimateRequest, animate};
 use belvedere::verbs::disocclude::disocclude;
-use belvedere::verbs::reveal::{RevealFiles, RevealRequest, Technique, Viewpoint, reveal};
-use belvedere::{DataFiles, OpenOptions, PictureOptions, Session, Warning, places};
+use belvedere::verbs::reveal::{RevealFiles, Setting, Technique, reveal};
+use belvedere::{OpenOptions, PictureOptions, Session, Warning, places};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ const EYE: [f64; 3] = [500_900.0, 5_000_050.0, 130.0];
 const LOOK: [f64; 2] = [500_900.0, 5_001_500.0];
 
 /// Low hills, a wall, a route behind it and one sample that stands out by 900 m.
-fn data(folder: &Path) -> DataFiles {
+fn data(folder: &Path) -> Reveal {
     let height = |c: usize, r: usize| match (c, r) {
         (70, 20) => 1000.0,
         (_, 40..46) => 220.0,
@@ -30,12 +30,7 @@ fn data(folder: &Path) -> DataFiles {
         "coordinates": [[500500, 5001300], [500900, 5001350], [501300, 5001300]]}"#;
     std::fs::write(&route, line).unwrap();
     let text = |path: &Path| path.display().to_string();
-    DataFiles {
-        dem: text(&dem),
-        features: vec![text(&route)],
-        stated: Stated::in_crs("EPSG:32632"),
-        ..DataFiles::default()
-    }
+    Reveal { data: text(&dem), features: vec![text(&route)], stated: Stated::in_crs("EPSG:32632"), ..Reveal::default() }
 }
 
 /// Warnings of the solver, in order.
@@ -50,15 +45,15 @@ fn solved(warnings: impl IntoIterator<Item = Warning>) -> Vec<String> {
 fn every_verb_gives_the_same_warnings_for_the_same_thing() {
     let folder = tempfile::tempdir().unwrap();
     let [out, scene] = ["out.png", "scene.toml"].map(|name| folder.path().join(name));
-    let viewpoint = Viewpoint { eye: EYE, target: LOOK, target_height: None };
-    let request = RevealRequest {
-        data: data(folder.path()),
-        viewpoint: Some(viewpoint),
-        image: Some([96, 64]),
-        technique: Technique::Terrain,
-        ..RevealRequest::default()
+    let [x, y, z] = EYE;
+    let asked = Reveal {
+        eye: Some(places::Place::of([x, y], Some(z))),
+        look: Some(places::Place::of(LOOK, None)),
+        size: Some([96, 64]),
+        technique: Some(Technique::Terrain),
+        ..data(folder.path())
     };
-    let answer = reveal(&request, &OpenOptions::default()).unwrap();
+    let answer = reveal(&asked, &Setting::default()).unwrap();
     let revealed = solved(answer.session.warnings());
     assert!(revealed.iter().any(|w| w.contains("spikes")), "{revealed:#?}");
     answer.write(&RevealFiles { out, scene: Some(scene.clone()), ..RevealFiles::default() }, true).unwrap();
@@ -86,7 +81,7 @@ fn every_verb_gives_the_same_warnings_for_the_same_thing() {
         assert_eq!(solved(shown.session.warnings()), revealed, "{what}");
     }
 
-    let DataFiles { dem, features, stated, .. } = data(folder.path());
+    let Reveal { data: dem, features, stated, .. } = data(folder.path());
     let request = Disocclude {
         data: dem,
         features,

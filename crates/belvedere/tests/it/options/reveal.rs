@@ -4,7 +4,7 @@ use super::Does::{Changes, IsRefused};
 use super::{Does, hills, try_all};
 use belvedere::BelvedereError;
 use belvedere::request::{Reveal, options, read};
-use belvedere::verbs::asked::{Setting, reveal};
+use belvedere::verbs::reveal::{Setting, reveal};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -77,7 +77,7 @@ fn rows(folder: &Path) -> Vec<(&'static str, Does)> {
 fn drawn(asked: &Value) -> Result<(usize, Vec<[u8; 3]>), BelvedereError> {
     let asked: Reveal = read(&asked.to_string()).expect("a request");
     reveal(&asked, &Setting::default()).map(|answer| {
-        let frame = &answer.picture().frame;
+        let frame = &answer.picture.frame;
         (frame.width, frame.color.clone())
     })
 }

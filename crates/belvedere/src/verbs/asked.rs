@@ -1,4 +1,4 @@
-//! Pictures and films of scenes.
+//! Pictures, films and papers as requests of [`crate::request`] ask for them: every door of the program goes through here.
 
 use crate::picture::{PictureOptions, THRESHOLDS};
 use crate::print::Sheet;

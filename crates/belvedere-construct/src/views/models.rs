@@ -1,7 +1,7 @@
 //! Views of models around a target: the whole model fills the picture.
 
-use crate::BelvedereError;
-use belvedere_construct::rays::{Target, TargetSight};
+use crate::ConstructError;
+use crate::rays::{Target, TargetSight};
 use belvedere_core::{Aabb, DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_scene::{Layer, LayerKind, Mesh, OwnLayer, Scene, Unit};
 use rayon::prelude::*;
@@ -11,21 +11,22 @@ use rayon::prelude::*;
 const HEADINGS: [f64; 12] = [30.0, 330.0, 60.0, 300.0, 0.0, 90.0, 270.0, 120.0, 240.0, 150.0, 210.0, 180.0];
 const PITCHES: [[f64; 2]; 2] = [[20.0, 35.0], [8.0, 30.0]];
 /// Views for which bends are searched, at most.
-pub(super) const KEPT: usize = 8;
+const KEPT: usize = 8;
 /// Visible share that a heading of the list must gain over an earlier one.
 const WORTH: f64 = 0.03;
 /// Share of half the picture's width and height that the model takes up.
 const FITTED: f64 = 0.92;
 /// Share of the picture's height that the target takes up at least.
 const LEAST_TARGET: f64 = 0.22;
-/// Triangles by which a layer is framed, at most about: when many views are tried, and when the one that was chosen is refitted.
+/// Triangles by which a layer is framed, at most about, when many views are tried.
 const FEW: usize = 3000;
-pub(super) const MANY: usize = 200_000;
+/// The same when the view that was chosen is refitted.
+pub const MANY: usize = 200_000;
 
 /// Points that show how far the visible layers reach.
 /// * `most`: triangles of a layer by which that is told, at most about;
 /// * `cities`: ids of layers that stand on a plate, whose margin around them does not count.
-pub(crate) fn outline(scene: &Scene, most: usize, cities: &[&str]) -> Vec<DVec3> {
+pub fn outline(scene: &Scene, most: usize, cities: &[&str]) -> Vec<DVec3> {
     let of = |layer: &Layer| -> Vec<DVec3> {
         match &layer.kind {
             LayerKind::Volume(v) => v.outline(),
@@ -74,17 +75,17 @@ fn axes(up: DVec3) -> [DVec3; 3] {
 /// The views from all around that are worth a search for bends, the best first.
 ///
 /// * `up`: unit vector; `image`, `fov_y`: size in pixels, and full vertical field of view, radians;
-/// * `most`: number of views at most, [`KEPT`] for the search of one.
+/// * `most`: number of views at most; `None` = 8.
 ///
 /// # Errors
-/// [`BelvedereError`] if no camera is possible.
-pub(super) fn around(
+/// [`ConstructError::Pinhole`] if no camera is possible.
+pub fn around_model(
     (scene, sight): (&Scene, &TargetSight<'_>),
     target: &Target,
     up: DVec3,
     (image, fov_y): ([u32; 2], f64),
-    most: usize,
-) -> Result<Vec<View>, BelvedereError> {
+    most: Option<usize>,
+) -> Result<Vec<View>, ConstructError> {
     let points = outline(scene, FEW, &[]);
     let points = if points.is_empty() { target.points.clone() } else { points };
     let [east, north, up] = axes(up);
@@ -105,7 +106,7 @@ pub(super) fn around(
         })
         .collect();
     judged.sort_by(|a, b| b.0.total_cmp(&a.0));
-    judged.truncate(most);
+    judged.truncate(most.unwrap_or(KEPT));
     Ok(judged.into_iter().map(|(_, view)| view).collect())
 }
 
@@ -115,7 +116,7 @@ pub(super) fn fitted(
     target: &Target,
     (forward, up): (DVec3, DVec3),
     (image, fov_y): ([u32; 2], f64),
-) -> Result<Pinhole, BelvedereError> {
+) -> Result<Pinhole, ConstructError> {
     let right = forward.cross(up).normalize();
     let above = right.cross(forward);
     let half = (0.5 * fov_y).tan();

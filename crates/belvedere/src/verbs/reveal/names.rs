@@ -52,7 +52,7 @@ fn count<'n>(names: impl Iterator<Item = &'n str>) -> BTreeMap<String, usize> {
 }
 
 impl CitySee {
-    pub(super) fn of(file: &CityFile) -> Self {
+    pub(crate) fn of(file: &CityFile) -> Self {
         let buildings = count(file.city.buildings.iter().map(|b| b.name.as_str()).filter(|name| !name.is_empty()));
         let ids = file.city.buildings.iter().map(|b| b.id.clone()).filter(|id| !id.is_empty());
         let mut kinds: BTreeMap<String, usize> = BTreeMap::new();

@@ -1,15 +1,17 @@
 //! `reveal --see`: the files of a request as one scene, and what is meant in it.
 
-use super::model_layers::{ground, layer, set_transfer, unit_of};
-use super::target_names::{is_building, known_names};
-use super::target_request::TargetRequest;
+use super::names::{is_building, known_names};
+use super::request::Request;
 use crate::data::{features_of, text_of};
 use crate::places::Place;
 use crate::resolve::vectors::{FeatureKind, kinds_of};
 use crate::scene_file::{CityDoc, Document, LayerDoc, LineDoc, LineStyleDoc, Paths, SourceDocument};
 use crate::targets;
+use crate::verbs::model_layers::{ground, layer, set_transfer, unit_of};
+use crate::verbs::provisional_camera;
 use crate::{Advice, BelvedereError, OpenOptions, Session};
 use belvedere_construct::rays::Target;
+use belvedere_construct::reveal::thresholds;
 use belvedere_construct::sample_features;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_io::city::{is_city, is_meant};
@@ -21,9 +23,6 @@ use belvedere_scene::{LayerKind, Scene};
 use std::mem::take;
 use std::path::{Path, PathBuf};
 
-/// Points of lines and points by which bends are chosen, at most, and by which shares are judged, about.
-const TO_SEARCH: usize = 120;
-const TO_JUDGE: f64 = 1500.0;
 /// Number of the part of a city that is its level ground.
 const GROUND: u32 = 0;
 /// Streets of a map beside what must be seen.
@@ -71,13 +70,13 @@ impl Meant {
             }
             Self::Features => {
                 let length: f64 = scene.must_see().map(|(_, layer)| length(&layer.kind)).sum();
-                let features = sample_features(scene, (length / TO_JUDGE).max(1e-3));
+                let features = sample_features(scene, (length / thresholds::SAMPLES_TO_JUDGE).max(1e-3));
                 let points: Vec<DVec3> = features.iter().flat_map(|f| &f.samples).map(|s| s.p_world).collect();
                 if points.is_empty() {
                     let reason = "the features that must be seen lie outside the ground, or hold no position";
                     return Err(BelvedereError::Target(reason.into()));
                 }
-                let every = points.len().div_ceil(TO_SEARCH).max(1);
+                let every = points.len().div_ceil(thresholds::SAMPLES_IN_A_CITY).max(1);
                 let search = Target::points(points.iter().skip(every / 2).step_by(every).copied());
                 let judge = Target::points(points);
                 Ok(Targets { search, shape: judge.clone(), judge })
@@ -106,12 +105,13 @@ fn length(kind: &LayerKind) -> f64 {
 }
 
 /// Opens the files with a provisional camera.
-pub(super) fn open(request: &TargetRequest, options: &OpenOptions) -> Result<(Session, Meant), BelvedereError> {
-    let named = || Meant::Named(request.see.clone());
-    if let [file] = &request.files[..]
+pub(super) fn open(request: &Request<'_>) -> Result<(Session, Meant), BelvedereError> {
+    let (files, see, options) = (request.files(), request.see(), &request.open);
+    let named = || Meant::Named(see.to_owned());
+    if let [file] = &files[..]
         && is_scene(file)?
     {
-        if request.transfer.is_some() {
+        if request.asked.transfer.is_some() {
             let text = "a scene file states its transfer functions itself; leave {} out";
             return Err(BelvedereError::Argument(Advice::new(text, &["transfer"])));
         }
@@ -119,15 +119,15 @@ pub(super) fn open(request: &TargetRequest, options: &OpenOptions) -> Result<(Se
         return Ok((Session::open(file, &options)?, named()));
     }
     let mut options = options.clone();
-    let mut map = Map { see: request.see.clone(), ..Map::default() };
+    let mut map = Map { see: see.to_owned(), ..Map::default() };
     let mut models: Vec<LayerDoc> = Vec::new();
     // A file that is given as data, too, is read once.
     let is_given = |seen: &PathBuf| {
         let table = |path: &Path| split_table(path).1.map(str::to_owned);
-        request.files.iter().any(|file| same_file(file, seen) && table(file) == table(seen))
+        files.iter().any(|file| same_file(file, seen) && table(file) == table(seen))
     };
-    let seen = seen_file(&request.see).filter(|seen| !is_given(seen));
-    for file in request.files.iter().chain(seen.as_ref()) {
+    let seen = seen_file(see).filter(|seen| !is_given(seen));
+    for file in files.iter().chain(seen.as_ref()) {
         if file.to_str().is_some_and(|name| name.starts_with("builtin:")) {
             models.push(layer(file, &models)?);
             continue;
@@ -157,21 +157,21 @@ pub(super) fn open(request: &TargetRequest, options: &OpenOptions) -> Result<(Se
         false => {
             for layer in &mut models {
                 if let LayerDoc::Molecule(molecule) = layer
-                    && Selection::parse(&request.see).is_ok()
+                    && Selection::parse(see).is_ok()
                 {
-                    molecule.select = Some(request.see.clone());
+                    molecule.select = Some(see.to_owned());
                 }
             }
             (models, named(), "local")
         }
     };
     let mut layers = layers;
-    if let Some(transfer) = &request.transfer {
+    if let Some(transfer) = &request.asked.transfer {
         set_transfer(&mut layers, transfer, &mut options)?;
     }
     let unit = unit_of(&layers);
-    let camera = super::view_request::provisional_camera();
-    let title = match shown_name(&request.see) {
+    let camera = provisional_camera();
+    let title = match shown_name(see) {
         "" => "Revealed".into(),
         see => format!("{see} revealed"),
     };

@@ -1,11 +1,18 @@
-//! `reveal --drafts`: several views of the same features on one sheet, to choose from.
+//! Several views of the same subject on one sheet, to choose from.
 
+use super::answer::FinalShares;
 use super::appearance::softly_ended;
-use super::reveal::{FinalShares, RevealRequest, Viewpoint, reveal, search_options, taller};
+use super::opened::Opened;
+use super::request::{Request, Setting};
+use super::revealed;
+use crate::BelvedereError;
 use crate::guard::guarded;
 use crate::overlays::badge;
-use crate::{BelvedereError, OpenOptions};
+use crate::places::Place;
+use crate::request::Reveal;
 use belvedere_construct::measure::percent;
+use belvedere_construct::rays::{AroundOptions, bend_around_by};
+use belvedere_construct::reveal::thresholds;
 use belvedere_core::{DVec3, Projection, View};
 use belvedere_io::png::{self, Channels};
 use schemars::JsonSchema;
@@ -16,6 +23,8 @@ use std::path::Path;
 pub const MOST_DRAFTS: usize = 24;
 /// Width of a draft on the sheet at most, pixels.
 const WIDTH: usize = 640;
+/// Distance at which a point is told that a view of features looks at, metres: far enough that tenths of it do not turn the view.
+const FAR: f64 = 10_000.0;
 /// Gap between drafts, pixels.
 const GAP: usize = 8;
 
@@ -45,58 +54,78 @@ pub struct DraftsAnswer {
     pub warnings: Vec<belvedere_core::Warning>,
 }
 
-/// Chooses up to `count` views from different directions, and reveals the features in each. A draft's `eye`, `look` and `fov_y_deg` given to
-/// [`reveal`] make the same picture.
+/// Chooses up to `count` views from different directions, and reveals what is asked for in each. A draft's `eye`, `look` and `fov_y_deg` given to
+/// [`super::reveal()`] make the same picture.
 ///
 /// # Errors
-/// [`BelvedereError::Target`] unless `count` is 1 to [`MOST_DRAFTS`] and no view is given; those of [`reveal`].
-pub fn drafts(request: &RevealRequest, count: usize, options: &OpenOptions) -> Result<DraftsAnswer, BelvedereError> {
-    guarded(|| drafted(request, count, options))
+/// [`BelvedereError::Target`] unless `count` is 1 to [`MOST_DRAFTS`] and no view is given, also by a scene file; those of
+/// [`super::reveal()`].
+pub fn drafts(asked: &Reveal, count: usize, setting: &Setting) -> Result<DraftsAnswer, BelvedereError> {
+    guarded(|| drafted(&Request::of(asked, setting)?, count))
 }
 
-fn drafted(request: &RevealRequest, count: usize, options: &OpenOptions) -> Result<DraftsAnswer, BelvedereError> {
+fn drafted(request: &Request<'_>, count: usize) -> Result<DraftsAnswer, BelvedereError> {
     if !(1..=MOST_DRAFTS).contains(&count) {
         return Err(BelvedereError::Target(format!("{count} drafts were asked for; give 1 to {MOST_DRAFTS}")));
     }
-    if request.viewpoint.is_some() || request.places.is_some() {
+    if request.places.is_some() {
         return Err(BelvedereError::Target("drafts choose their views themselves; leave eye and look out".into()));
     }
-    let mut data = request.data.load(false, &softly_ended(options))?;
-    let search = search_options(request, &mut data)?;
-    let taller = taller(request, &data)?;
-    let scene = taller.as_ref().map_or(&data.scene, |taller| &taller.scene);
-    let views = belvedere_construct::reveal::views(scene, count, &search, &options.progress)?;
+    let views = if request.models { of_target(request, count)? } else { of_features(request, count)? };
     let mut out = DraftsAnswer { drafts: Vec::new(), warnings: Vec::new() };
-    for (i, view) in views.iter().enumerate() {
-        let Some((viewpoint, fov_y_deg)) = rounded(view) else { continue };
-        let request = RevealRequest { viewpoint: Some(viewpoint), fov_y_deg: Some(fov_y_deg), ..request.clone() };
-        let found = reveal(&request, options)?;
+    for (i, view) in views.into_iter().enumerate() {
+        let places = [view.eye, view.look].map(|[x, y, z]| Place::of([x, y], Some(z)));
+        let request = Request { places: Some(places), fov_y_deg: Some(view.fov_y_deg), ..request.clone() };
+        let found = revealed(&request)?;
         if i == 0 {
-            out.warnings = found.session.warnings();
+            out.warnings = found.warnings();
         }
-        let Viewpoint { eye, target: [x, y], target_height } = viewpoint;
         let frame = &found.picture.frame;
-        out.drafts.push(Draft {
-            eye,
-            look: [x, y, target_height.unwrap_or_default()],
-            fov_y_deg,
-            shares: found.shares,
-            pixels: smaller(frame.width, frame.height, &frame.color),
-        });
+        let pixels = smaller(frame.width, frame.height, &frame.color);
+        out.drafts.push(Draft { shares: found.shares, pixels, ..view });
     }
     Ok(out)
 }
 
-/// The view in numbers that are short enough to be typed; the drafts are drawn by these.
-fn rounded(view: &View) -> Option<(Viewpoint, f64)> {
-    let pinhole = view.pinhole();
-    let Projection::Perspective { fov_y } = pinhole.projection else { return None };
-    let tenth = |v: f64| (10.0 * v).round() / 10.0;
-    let eye = pinhole.eye.to_array().map(tenth);
-    let look = DVec3::from_array(eye) + 10_000.0 * pinhole.forward;
-    let [x, y, z] = look.to_array().map(tenth);
-    let fov_y_deg = (100.0 * fov_y.to_degrees()).round() / 100.0;
-    Some((Viewpoint { eye, target: [x, y], target_height: Some(z) }, fov_y_deg))
+/// The views of features, without their pictures.
+fn of_features(request: &Request<'_>, count: usize) -> Result<Vec<Draft>, BelvedereError> {
+    let mut data = request.data().load(false, &softly_ended(&request.open))?;
+    let search = request.search_options(&mut data)?;
+    let taller = request.taller(&data)?;
+    let scene = taller.as_ref().map_or(&data.scene, |taller| &taller.scene);
+    let views = belvedere_construct::reveal::views(scene, count, &search, &request.open.progress)?;
+    Ok(views.iter().filter_map(|view| Draft::of(view, FAR, 1)).collect())
+}
+
+/// The views of a target, without their pictures.
+fn of_target(request: &Request<'_>, count: usize) -> Result<Vec<Draft>, BelvedereError> {
+    let opened = Opened::of(request)?;
+    if opened.session.path().is_some() {
+        let reason = "drafts choose their views themselves; give data instead of a scene file";
+        return Err(BelvedereError::Target(reason.into()));
+    }
+    let mut views: Vec<View> = Vec::new();
+    let sight = opened.sight();
+    for view in opened.views(&sight, Some(thresholds::DRAFT_VIEWS))? {
+        let ahead = view.pinhole().forward;
+        let is_apart = |other: &View| other.pinhole().forward.angle_between(ahead) > thresholds::DRAFTS_APART;
+        if views.len() < count && views.iter().all(is_apart) {
+            views.push(view);
+        }
+    }
+    let center = opened.targets.search.center();
+    let mut out = Vec::new();
+    for view in &views {
+        let found = bend_around_by(&sight, view, &AroundOptions::default(), &request.open.progress)?;
+        let moved = opened.refitted(&sight, view, found.bent.as_ref().map(|(_, sidestep)| sidestep));
+        let view = moved.as_ref().map_or(view, |moved| &moved.straight);
+        let pinhole = view.pinhole();
+        let distance = (center - pinhole.eye).dot(pinhole.forward).max(pinhole.near);
+        // Exact to a ten-thousandth of the distance of the target.
+        let digits = (4 - distance.log10().floor() as i32).clamp(0, 12);
+        out.extend(Draft::of(view, distance, digits));
+    }
+    Ok(out)
 }
 
 /// The picture at most [`WIDTH`] wide, by the mean of squares of pixels.
@@ -119,13 +148,18 @@ fn smaller(width: usize, height: usize, pixels: &[[u8; 3]]) -> (usize, usize, Ve
 }
 
 impl Draft {
-    /// * `eye`, `look`, `fov_y_deg`: the view; `frame`: its picture.
-    pub(super) fn new(
-        (eye, look, fov_y_deg): ([f64; 3], [f64; 3], f64),
-        shares: FinalShares,
-        frame: &belvedere_scene::Frame,
-    ) -> Self {
-        Self { eye, look, fov_y_deg, shares, pixels: smaller(frame.width, frame.height, &frame.color) }
+    /// A view in numbers that are short enough to be typed, by which it is drawn later; `None` in parallel projection.
+    ///
+    /// * `distance`: of the point looked at, scene units; `digits`: of its numbers after the point.
+    fn of(view: &View, distance: f64, digits: i32) -> Option<Self> {
+        let pinhole = view.pinhole();
+        let Projection::Perspective { fov_y } = pinhole.projection else { return None };
+        let digits = digits as usize;
+        let short = |v: f64| format!("{v:.digits$}").parse().unwrap_or(v);
+        let eye = pinhole.eye.to_array().map(short);
+        let look = (DVec3::from_array(eye) + distance * pinhole.forward).to_array().map(short);
+        let fov_y_deg = (100.0 * fov_y.to_degrees()).round() / 100.0;
+        Some(Self { eye, look, fov_y_deg, shares: FinalShares::default(), pixels: (0, 0, Vec::new()) })
     }
 
     /// Its shares in words.

@@ -1,8 +1,8 @@
 //! Views of something in a city: oblique, filling the frame, from outside of all buildings.
 
-use super::target_views::fitted;
-use crate::{Advice, BelvedereError};
-use belvedere_construct::rays::{Target, TargetSight};
+use super::models::fitted;
+use crate::ConstructError;
+use crate::rays::{Target, TargetSight};
 use belvedere_core::{Aabb, DVec3, View};
 use belvedere_scene::{LayerKind, OwnLayer, Scene};
 use rayon::prelude::*;
@@ -14,7 +14,7 @@ const PITCHES: [(f64, f64); 4] = [(30.0, 0.0), (40.0, 0.01), (52.0, 0.03), (68.0
 /// The same for the last of the headings.
 const WORTH: f64 = 0.03;
 /// Views for which bends are searched, at most.
-pub(super) const KEPT: usize = 4;
+const KEPT: usize = 4;
 /// Factors by which routes and buildings are widened, so that they end within the frame and have surroundings.
 const MARGINS: [f64; 2] = [1.12, 1.45];
 /// Least distance around a building, metres.
@@ -23,7 +23,7 @@ const AROUND_M: f64 = 3.0;
 const CLEAR_M: f64 = 4.0;
 
 /// Points that the picture is to hold.
-pub(super) fn region(target: &Target) -> Vec<DVec3> {
+pub fn city_region(target: &Target) -> Vec<DVec3> {
     let center = target.center();
     let is_solid = !target.own_layers.is_empty() || target.own_parts.is_some();
     let factor = MARGINS[usize::from(is_solid)];
@@ -36,15 +36,17 @@ pub(super) fn region(target: &Target) -> Vec<DVec3> {
 
 /// The views that are worth a search for bends, the best first; only one if it shows the whole target.
 ///
+/// * `lens`: size of the picture, pixels, and full vertical field of view, radians; `most`: number of views at most; `None` = 4.
+///
 /// # Errors
-/// [`BelvedereError::Argument`] if no eye has room.
-pub(super) fn around(
+/// [`ConstructError::NoRoom`] if no eye has room.
+pub fn around_in_city(
     (scene, sight): (&Scene, &TargetSight<'_>),
     target: &Target,
     lens: ([u32; 2], f64),
-    most: usize,
-) -> Result<Vec<View>, BelvedereError> {
-    let points = region(target);
+    most: Option<usize>,
+) -> Result<Vec<View>, ConstructError> {
+    let points = city_region(target);
     let mut views = Vec::new();
     for (pitch, price) in PITCHES {
         for (k, heading) in HEADINGS.into_iter().enumerate() {
@@ -68,12 +70,9 @@ pub(super) fn around(
             kept.push(view);
         }
     }
-    kept.truncate(most);
+    kept.truncate(most.unwrap_or(KEPT));
     match kept.is_empty() {
-        true => {
-            let text = "no eye around the target is free of buildings; give {} and {}";
-            Err(BelvedereError::Argument(Advice::new(text, &["eye", "look"])))
-        }
+        true => Err(ConstructError::NoRoom),
         false => Ok(kept),
     }
 }

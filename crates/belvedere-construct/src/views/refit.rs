@@ -3,9 +3,8 @@
 //! A bend displaces space in the same way wherever the camera at its eye looks. It is therefore kept as it is: nothing comes to stand in
 //! front of anything else, and the frame alone changes.
 
-use belvedere_construct::rays::{Sidestep, TargetSight};
+use crate::rays::{Sidestep, TargetSight};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection, View};
-use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Share of the picture's width or height that the content takes up.
@@ -21,7 +20,8 @@ const FARTHEST: f64 = 4.0;
 const MAY_COST: f64 = 0.005;
 
 /// What another frame changed; in each pair before and after.
-#[derive(Debug, Clone, Copy, PartialEq, JsonSchema, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RefitRecord {
     /// Angle by which the camera was turned, degrees.
     pub turned_deg: f64,
@@ -33,23 +33,25 @@ pub struct RefitRecord {
 
 /// A camera in another frame.
 #[derive(Debug, Clone)]
-pub(super) struct Refit {
-    pub(super) straight: View,
-    pub(super) record: RefitRecord,
+pub struct Refit {
+    /// The view without its bend.
+    pub straight: View,
+    /// What changed.
+    pub record: RefitRecord,
 }
 
 /// What a frame is fitted to.
-pub(super) struct Content<'a> {
+pub struct Content<'a> {
     /// Points of all that the picture is to hold.
-    pub(super) points: &'a [DVec3],
+    pub points: &'a [DVec3],
     /// Direction that is up in the picture.
-    pub(super) up: DVec3,
+    pub up: DVec3,
     /// Whether the field of view may change.
-    pub(super) may_zoom: bool,
+    pub may_zoom: bool,
 }
 
 /// The view `base` in another frame, with its bend if there is one; `None` where that would show less of the target, straight or bent.
-pub(super) fn refit(
+pub fn refit(
     sight: &TargetSight<'_>,
     base: &View,
     sidestep: Option<&Sidestep>,
@@ -133,7 +135,7 @@ fn extent(pinhole: &Pinhole, directions: &[DVec3]) -> Option<(DVec2, DVec2)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use belvedere_construct::rays::Target;
+    use crate::rays::Target;
     use belvedere_core::Aabb;
     use belvedere_scene::{BoxLayer, BoxShape, Color, Layer, Scene, Unit};
 

@@ -3,12 +3,13 @@
 //! Lines of sight to some points choose among thousands of bends. What they miss between these points is seen in the picture: places that it
 //! hides become points themselves, and the search is repeated.
 
-use super::target_scene::Targets;
+use super::subject::Targets;
 use crate::fallback::in_sight::{Judge, Mask};
 use crate::fallback::{Draw, has_volumes};
 use crate::picture::{PictureOptions, plain};
 use crate::{BelvedereError, Session};
 use belvedere_construct::rays::{AroundOptions, BendReport, Sidestep, TargetSight, bend_around_by};
+use belvedere_construct::reveal::thresholds::LEAST_GAIN;
 use belvedere_core::{CurvedRays, Pinhole, Stage, View};
 use belvedere_scene::{Progress, Scene};
 
@@ -18,8 +19,6 @@ const ROUNDS: usize = 2;
 const PLACES: usize = 16;
 /// Pixels of a picture that judges, at most; larger ones show the same.
 const MOST_PIXELS: f64 = 1e6;
-/// Visible share that a bend must show in addition.
-const LEAST_GAIN: f64 = 0.001;
 
 /// Judges views of a target by pictures.
 pub(super) struct PictureJudge<'a> {

@@ -1,0 +1,9 @@
+//! Views of a part of a model or of a city, and the frame of a picture whose bend is known.
+
+mod city;
+mod models;
+mod refit;
+
+pub use city::{around_in_city, city_region};
+pub use models::{MANY, around_model, outline};
+pub use refit::{Content, Refit, RefitRecord, refit};
