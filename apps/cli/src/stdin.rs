@@ -11,7 +11,7 @@ use std::sync::OnceLock;
 use tempfile::TempDir;
 
 /// Largest input, bytes.
-const MOST: u64 = 2 << 30;
+const LARGEST_INPUT: u64 = 2 << 30;
 /// How much of its beginning tells what it is, bytes.
 const BEGINNING: usize = 4096;
 
@@ -76,8 +76,8 @@ impl Stdin {
         let folder = tempfile::tempdir().context("-: no temporary folder can be made")?;
         let _ = self.folder.set(folder);
         let mut bytes = Vec::new();
-        std::io::stdin().lock().take(MOST + 1).read_to_end(&mut bytes).context("-: standard input cannot be read")?;
-        ensure!(bytes.len() as u64 <= MOST, "-: standard input has more than {} GiB; name a file", MOST >> 30);
+        std::io::stdin().lock().take(LARGEST_INPUT + 1).read_to_end(&mut bytes).context("-: standard input cannot be read")?;
+        ensure!(bytes.len() as u64 <= LARGEST_INPUT, "-: standard input has more than {} GiB; name a file", LARGEST_INPUT >> 30);
         ensure!(!bytes.is_empty(), "-: standard input is empty; send a file or the output of a program to it");
         Ok(bytes)
     }

@@ -9,7 +9,7 @@ use clap::{Command, CommandFactory};
 use std::path::Path;
 
 /// Most characters of a mistake, before the way to the help.
-const MOST: usize = 420;
+const LONGEST: usize = 420;
 
 /// Help and version on standard output, a mistake as one line.
 pub(crate) fn report(error: &clap::Error) -> u8 {
@@ -22,7 +22,7 @@ pub(crate) fn report(error: &clap::Error) -> u8 {
     let (command, names) = meant(&cli, &given);
     let help = [&["belvedere"], &names[..], &["--help"]].concat().join(" ");
     let what = words(error, command);
-    fail(&format!("{}; see {help}", plain_text::shortened(&what, MOST)));
+    fail(&format!("{}; see {help}", plain_text::shortened(&what, LONGEST)));
     2
 }
 

@@ -16,7 +16,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 
 /// Most results that are listed.
-const MOST: usize = 40;
+const MOST_RESULTS: usize = 40;
 /// Width of the list, points.
 const WIDTH: f32 = 380.0;
 
@@ -112,7 +112,7 @@ impl Find {
         let others = hits.len();
         let mut total = others;
         if let Some((_, index)) = &self.index {
-            let found = index.search(&self.text, MOST.saturating_sub(others));
+            let found = index.search(&self.text, MOST_RESULTS.saturating_sub(others));
             total += found.total;
             hits.extend(found.best.into_iter().map(Hit::Thing));
         }

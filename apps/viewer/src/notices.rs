@@ -40,7 +40,7 @@ pub(crate) struct Notices {
 /// Time for which messages other than errors are shown, seconds.
 const STAYS: f64 = 6.0;
 /// Messages that are shown at once.
-const MOST: usize = 5;
+const MOST_MESSAGES: usize = 5;
 
 impl Notices {
     /// Adds an error, which stays until it is dismissed.
@@ -70,7 +70,7 @@ impl Notices {
     fn add(&mut self, notice: Notice) {
         self.shown.retain(|old| old.text != notice.text);
         self.shown.push(notice);
-        let extra = self.shown.len().saturating_sub(MOST);
+        let extra = self.shown.len().saturating_sub(MOST_MESSAGES);
         self.shown.drain(..extra);
     }
 

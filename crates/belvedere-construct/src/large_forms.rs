@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// Control heights per `sigma`.
 const PER_SIGMA: f64 = 2.0;
 /// Control heights on the longer side at most.
-const MOST: f64 = 2048.0;
+const CONTROL_HEIGHTS: f64 = 2048.0;
 /// Reach of the average, multiples of `sigma`.
 const REACH: f64 = 4.0;
 
@@ -16,7 +16,7 @@ const REACH: f64 = 4.0;
 pub fn large_forms(terrain: &Heightfield, sigma: f64) -> Option<BaseSurface> {
     let [cols, rows] = [terrain.cols(), terrain.rows()];
     let size = terrain.spacing() * DVec2::new((cols - 1) as f64, (rows - 1) as f64);
-    let spacing = (sigma / PER_SIGMA).max(terrain.spacing().max_element()).max(size.max_element() / MOST);
+    let spacing = (sigma / PER_SIGMA).max(terrain.spacing().max_element()).max(size.max_element() / CONTROL_HEIGHTS);
     let south_west = terrain.node_xy(0, rows - 1);
     let [across, up] = [size.x, size.y].map(|s| (s / spacing).ceil() as usize + 1);
     let mut sums = vec![[0.0f64; 2]; across * up];

@@ -3,12 +3,12 @@
 use belvedere_scene::Heightfield;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-/// Values by the ground that they were computed from and a key of all other inputs; keeps the [`MOST`] used last.
+/// Values by the ground that they were computed from and a key of all other inputs; keeps the [`ENTRIES`] used last.
 #[derive(Debug)]
 pub(crate) struct GroundCache<K, V>(Mutex<Vec<Entry<K, V>>>);
 
 /// Entries of a cache.
-const MOST: usize = 6;
+const ENTRIES: usize = 6;
 
 #[derive(Debug)]
 struct Entry<K, V> {
@@ -61,7 +61,7 @@ impl<K: PartialEq, V: Clone> GroundCache<K, V> {
     pub(crate) fn put(&self, ground: &Arc<Heightfield>, key: K, value: V) {
         let mut entries = lock(&self.0);
         entries.retain(|e| e.ground.strong_count() > 0 && !e.is_for(ground, &key));
-        if entries.len() >= MOST {
+        if entries.len() >= ENTRIES {
             entries.remove(0);
         }
         entries.push(Entry { ground: Arc::downgrade(ground), key, value });
@@ -97,9 +97,9 @@ mod tests {
     #[test]
     fn the_value_not_used_for_longest_goes_first_and_those_of_freed_grounds_before() {
         let (cache, a) = (GroundCache::default(), ground());
-        (0..MOST).for_each(|key| assert_eq!(cache.get(&a, key, || key), key));
+        (0..ENTRIES).for_each(|key| assert_eq!(cache.get(&a, key, || key), key));
         assert_eq!(cache.get(&a, 0, || 99), 0);
-        cache.get(&a, MOST, || MOST);
+        cache.get(&a, ENTRIES, || ENTRIES);
         assert_eq!([cache.take(&a, &0), cache.take(&a, &1), cache.take(&a, &2)], [Some(0), None, Some(2)]);
         for _ in 0..100 {
             assert_eq!(cache.get(&ground(), 3, || 77), 77, "an address used before is another ground");

@@ -10,7 +10,7 @@ pub const OPENSTREETMAP: &str = "© OpenStreetMap contributors";
 /// Bytes at the beginning of a file that are searched.
 const HEAD: u64 = 1 << 16;
 /// Longest text that is taken, characters.
-const MOST: usize = 160;
+const LONGEST: usize = 160;
 
 /// Whom the data of a file ask to be named, as far as the file says so; `None` if it does not, or cannot be read.
 ///
@@ -68,7 +68,7 @@ fn member(text: &str, key: &str) -> Option<String> {
 fn tidy(text: &str) -> Option<String> {
     let words: Vec<&str> = text.split_whitespace().collect();
     let line = words.join(" ");
-    let line: String = match line.char_indices().nth(MOST) {
+    let line: String = match line.char_indices().nth(LONGEST) {
         Some((end, _)) => format!("{}…", &line[..end]),
         None => line,
     };
@@ -102,6 +102,6 @@ mod tests {
             r#"{"attribution"#,
         ];
         assert!(silent.iter().all(|text| of_head(text).is_none()));
-        assert_eq!(tidy(&"ab ".repeat(100)).map(|text| text.chars().count()), Some(MOST + 1));
+        assert_eq!(tidy(&"ab ".repeat(100)).map(|text| text.chars().count()), Some(LONGEST + 1));
     }
 }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// Most files that are listed.
-const MOST: usize = 4000;
+const MOST_FILES: usize = 4000;
 /// Deepest folder below those of the system.
 const DEPTH: usize = 5;
 /// Words in names of files, the best first: plain letters of families that cover many scripts.
@@ -94,7 +94,7 @@ fn folders() -> Vec<PathBuf> {
 fn walk(folder: &Path, depth: usize, found: &mut Vec<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     for path in entries.filter_map(Result::ok).map(|entry| entry.path()) {
-        if found.len() >= MOST {
+        if found.len() >= MOST_FILES {
             return;
         }
         let is = |ending: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ending));

@@ -295,7 +295,7 @@ struct Table {
 }
 
 impl Table {
-    const STEPS: usize = 1024;
+    const TABLE_STEPS: usize = 1024;
 
     fn new(styling: &StylingSections) -> Self {
         let knees = styling.knees();
@@ -303,20 +303,20 @@ impl Table {
         // Slack, so that rounding does not put a knee into the wrong step.
         let slack = 1e-9 + 1e-3 * (to - from);
         let (from, to) = (from - slack, to + slack);
-        let per_step = (to - from) / Self::STEPS as f64;
+        let per_step = (to - from) / Self::TABLE_STEPS as f64;
         let representations = styling.representations().len();
         let place = |i: usize| from + per_step * i as f64;
-        let ends = (0..=Self::STEPS).flat_map(|i| styling.interval_ends(place(i)).into_iter().take(representations));
+        let ends = (0..=Self::TABLE_STEPS).flat_map(|i| styling.interval_ends(place(i)).into_iter().take(representations));
         let near = |i: usize| {
             let (a, b) = (place(i) - 1e-6 * per_step, place(i + 1) + 1e-6 * per_step);
             knees.iter().any(|knee| a <= *knee && *knee <= b)
         };
-        Self { from, per_step, representations, ends: ends.collect(), has_knee: (0..Self::STEPS).map(near).collect() }
+        Self { from, per_step, representations, ends: ends.collect(), has_knee: (0..Self::TABLE_STEPS).map(near).collect() }
     }
 
     #[inline]
     fn intervals(&self, styling: &StylingSections, parameter: f64) -> Intervals<'_> {
-        let at = ((parameter - self.from) / self.per_step).clamp(0.0, Self::STEPS as f64 - 1e-9);
+        let at = ((parameter - self.from) / self.per_step).clamp(0.0, Self::TABLE_STEPS as f64 - 1e-9);
         // NaN becomes 0.
         let (step, n) = (at as usize, self.representations);
         if self.has_knee[step] {

@@ -14,6 +14,7 @@ fn area(name: &str, place: &Place) -> String {
 }
 
 #[test]
+#[ignore = "long; .ci/long runs it"]
 fn pictures_tables_and_trends_of_an_area() {
     let place = Place::new();
     let scene = area("small.toml", &place);
@@ -59,6 +60,7 @@ fn pictures_tables_and_trends_of_an_area() {
 }
 
 #[test]
+#[ignore = "long; .ci/long runs it"]
 fn figures_of_curved_rays_show_what_was_hidden() {
     let place = Place::new();
     place.ok(&["figures", "curved", "-o", "rays", "--scale", "0.5"]);
@@ -137,6 +139,7 @@ fn every_means_shows_the_target_and_curved_rays_bend_edges_less_than_broken_ones
 }
 
 #[test]
+#[ignore = "long; .ci/long runs it"]
 fn charts_of_the_documents_are_drawn() {
     let place = Place::new();
     place.ok(&["figures", "algorithms", "-o", "charts"]);
@@ -166,6 +169,7 @@ fn unknown_figures_and_scenes_of_one_name_are_refused() {
 }
 
 #[test]
+#[ignore = "long; .ci/long runs it"]
 fn figures_of_multi_perspective_views_are_all_there() {
     let place = Place::new();
     place.ok(&["figures", "spline", "-o", "views", "--scale", "0.5"]);

@@ -489,6 +489,7 @@ fn areas_and_points_are_written_on_the_ground_that_makes_way_for_them() {
 }
 
 #[test]
+#[ignore = "long; .ci/long runs it"]
 fn the_eye_moves_where_it_may_and_that_is_said() {
     let place = place(|r, c| Some(hills(r, c)));
     let still = report(&place, &["--set", "adjust_viewpoint=1"]);

@@ -5,7 +5,7 @@ use eframe::egui::{Button, Context, Key, ScrollArea, TextEdit, Ui, Window};
 use std::path::{Path, PathBuf};
 
 /// Entries of a folder that are listed, at most.
-const MOST: usize = 400;
+const MOST_ENTRIES: usize = 400;
 
 /// A question for files.
 #[derive(Debug)]
@@ -50,7 +50,7 @@ impl Ask {
         let named = listed.filter_map(|entry| Some((entry.path().is_dir(), entry.file_name().into_string().ok()?)));
         self.entries = named.filter(|(_, name)| !name.starts_with('.')).collect();
         self.entries.sort_by_key(|(is_folder, name)| (!is_folder, name.to_lowercase()));
-        self.entries.truncate(MOST);
+        self.entries.truncate(MOST_ENTRIES);
         self.folder = folder;
     }
 

@@ -11,7 +11,7 @@ const LEAST_RIGHT: f64 = 0.25;
 /// Samples to each side that a baseline is smoothed over: the height of a letter.
 const REACH: i64 = 4;
 /// Most baselines of a line.
-const MOST: usize = 6;
+const BASELINES: usize = 6;
 /// Room along the line in widths of the text.
 const ROOM: f64 = 1.06;
 /// Above and below the baseline in heights of the letters.
@@ -70,7 +70,7 @@ pub(crate) fn baselines(line: &[DVec2], letters: Letters, held: Option<(f64, boo
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     let held = held.map(|(_, along)| Along { held: true, ..along });
     let found = held.into_iter().chain(found.into_iter().map(|(_, along)| along));
-    found.filter(|along| stays_off(&along.points, &line, letters)).take(MOST).collect()
+    found.filter(|along| stays_off(&along.points, &line, letters)).take(BASELINES).collect()
 }
 
 /// The baseline beside `count` steps of samples from one on, and its whole turn.

@@ -6,7 +6,7 @@ use belvedere_scene::DistanceMarkers;
 /// Number of marks on the longest line when the distance is chosen automatically.
 const WANTED: f64 = 10.0;
 /// Most marks on a line.
-const MOST: usize = 2000;
+const MOST_MARKS: usize = 2000;
 
 /// Distance between marks for lines of these lengths, scene units; `None` if no mark fits.
 pub(crate) fn spacing(markers: DistanceMarkers, lengths: impl Iterator<Item = f64>) -> Option<f64> {
@@ -15,7 +15,7 @@ pub(crate) fn spacing(markers: DistanceMarkers, lengths: impl Iterator<Item = f6
         DistanceMarkers::Every(every) => every,
         DistanceMarkers::Auto => round(longest / WANTED),
     };
-    (every > 0.0 && every < longest && longest / every <= MOST as f64).then_some(every)
+    (every > 0.0 && every < longest && longest / every <= MOST_MARKS as f64).then_some(every)
 }
 
 /// The next round number (1, 2 or 5 times a power of ten) at or above a value.

@@ -9,7 +9,7 @@ use belvedere_core::{DVec2, polygon::to_segment};
 use belvedere_scene::{Color, PlacedName};
 
 /// Most texts of a picture.
-const MOST: usize = 5000;
+const MOST_TEXTS: usize = 5000;
 /// Side of the squares of what is taken, units.
 const SQUARE: f64 = 48.0;
 /// Owner of what belongs to no request.
@@ -47,7 +47,7 @@ impl Labels {
         let mut placed: Vec<Placed> = Vec::new();
         let mut names: Vec<(PlacedName, bool)> = Vec::new();
         let mut place = |i: usize, request: &LabelRequest, places: &mut dyn FnMut(&Lines) -> Vec<Candidate>| {
-            if placed.len() >= MOST {
+            if placed.len() >= MOST_TEXTS {
                 return true;
             }
             let lines = Lines::of(request, page.fonts);

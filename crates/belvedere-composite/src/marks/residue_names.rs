@@ -9,7 +9,7 @@ use belvedere_scene::{Color, Hidden, MoleculeLayer, Symbol};
 use std::collections::HashSet;
 
 /// Most residues whose names are tried.
-const MOST: usize = 3000;
+const MOST_RESIDUES: usize = 3000;
 /// Ink of names.
 const INK: Color = Color::rgb(40, 44, 52);
 /// Distance of a name before the surface of its atom, as a share of its radius.
@@ -41,7 +41,7 @@ impl MarkBuilder<'_> {
         let eye = self.eye;
         let mut told = HashSet::new();
         let mut requests = Vec::new();
-        for (_, atom) in all.into_iter().take(MOST) {
+        for (_, atom) in all.into_iter().take(MOST_RESIDUES) {
             if !told.insert(molecule.atoms()[atom].residue) {
                 continue;
             }

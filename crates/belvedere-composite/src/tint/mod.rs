@@ -196,12 +196,12 @@ impl GroundTint {
     #[inline(always)]
     pub fn colors<const N: usize>(&self, height_m: &[f32; N], steep: &[f32; N], north: &[f32; N]) -> [[f32; N]; 4] {
         // The last index of the table lies just before its end.
-        const MOST: f32 = (STEPS - 1) as f32 - 0.001;
+        const LAST: f32 = (STEPS - 1) as f32 - 0.001;
         let (mut below, mut share, mut rock, mut snow) = ([0; N], [0.0; N], [0.0; N], [0.0; N]);
         for i in 0..N {
             let t = (height_m[i] - self.bottom_m) * self.per_m;
             let t = if t > 0.0 { t } else { 0.0 };
-            let t = if t < MOST { t } else { MOST };
+            let t = if t < LAST { t } else { LAST };
             // On an entry of the table either neighbour gives the same colour.
             below[i] = nearest(t - 0.5);
             share[i] = t - below[i] as f32;

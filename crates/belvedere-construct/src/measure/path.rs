@@ -8,7 +8,7 @@ use belvedere_core::{DVec3, View};
 use belvedere_scene::Scene;
 
 /// Samples of a path at most.
-const MOST: f64 = 20_000.0;
+const MOST_SAMPLES: f64 = 20_000.0;
 /// Samples per usual spacing, as where shares are judged.
 const DENSER: f64 = 4.0;
 
@@ -24,7 +24,7 @@ pub fn length_seen(
     ahead: [f64; 2],
     lift: f64,
 ) -> [f64; 2] {
-    let count = (DENSER * length / default_spacing(scene).max(1e-9)).ceil().clamp(1.0, MOST);
+    let count = (DENSER * length / default_spacing(scene).max(1e-9)).ceil().clamp(1.0, MOST_SAMPLES);
     let part = length / count;
     let middle = |k: usize| part * (k as f64 + 0.5);
     let sample = |k: usize| {

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Steps of f on either side of 0, at most.
-const MOST: usize = 250;
+const POSITIONS: usize = 250;
 /// Rings of positions in the first and the second search up, down and aslant.
 const WIDE: [usize; 2] = [4, 8];
 /// A frame that does not show the whole target costs more than any motion.
@@ -77,7 +77,7 @@ impl FilmPlanner {
             (share as f32, share >= WHOLE && (grow == 0.0 || search.seen(at, grow) >= WHOLE))
         };
         if self.pass == 0 {
-            let grid = ((1.0 / self.options.f_step).ceil() as usize).clamp(1, MOST);
+            let grid = ((1.0 / self.options.f_step).ceil() as usize).clamp(1, POSITIONS);
             let at = |k: usize| [k as f64 / grid as f64 - 1.0, 0.0];
             let sideways = (0..=2 * grid).into_par_iter().map(|k| seen(at(k))).collect();
             self.frames.push(Known { sideways, ..Known::default() });

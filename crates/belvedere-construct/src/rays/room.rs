@@ -13,7 +13,7 @@ pub(super) struct Room {
 }
 
 /// Number of distances that are tried; and least distance of the eye from ground and walls, share of the width of the picture.
-const STEPS: u32 = 24;
+const DISTANCES: u32 = 24;
 const MARGIN: f64 = 0.04;
 /// Without obstacles: greatest distance of the eye from the path in plan, share of the width of the picture.
 const ASIDE: f64 = 0.1;
@@ -69,14 +69,14 @@ impl Surroundings<'_> {
     /// Width of the corridor across the path, up to the width of the picture: the median over points, each given with its direction
     /// to the right.
     pub(super) fn corridor(&self, places: &[(DVec3, DVec3)]) -> f64 {
-        let step = 0.5 * self.width / f64::from(STEPS);
+        let step = 0.5 * self.width / f64::from(DISTANCES);
         let mut widths: Vec<f64> = places
             .iter()
             .map(|(at, right)| {
                 let side = |sign: f64| {
                     let to = |k: u32| *at + sign * f64::from(k) * step * *right;
                     let is_free = |k: &u32| self.is_free(to(*k - 1), to(*k));
-                    step * f64::from((1..=STEPS).take_while(is_free).last().unwrap_or(0))
+                    step * f64::from((1..=DISTANCES).take_while(is_free).last().unwrap_or(0))
                 };
                 side(-1.0) + side(1.0)
             })
@@ -88,9 +88,9 @@ impl Surroundings<'_> {
     /// Free distance back from the near plane of a camera towards its eye, scene units.
     fn free_behind(&self, far: &Pinhole, most: f64) -> f64 {
         let at = |back: f64| far.eye + (far.near - back) * far.forward;
-        let step = most / f64::from(STEPS);
+        let step = most / f64::from(DISTANCES);
         let is_free = |k: &u32| self.is_free(at(step * f64::from(*k - 1)), at(step * f64::from(*k)));
-        step * f64::from((1..=STEPS).take_while(is_free).last().unwrap_or(0))
+        step * f64::from((1..=DISTANCES).take_while(is_free).last().unwrap_or(0))
     }
 
     fn is_free(&self, from: DVec3, to: DVec3) -> bool {

@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 
 /// Points per edge of a cube, and most on a box: long ones have them along their length.
 const LATTICE: usize = 3;
-const MOST: usize = 30;
+const MOST_POINTS: usize = 30;
 /// Edges of a smaller share of the longest are short.
 const SHORT: f64 = 0.45;
 /// Steps along the edges of large triangles, at most.
-const STEPS: usize = 8;
+const EDGE_STEPS: usize = 8;
 /// Factor by which points lie nearer to the middle than the surface: the target may stand on something.
 const INSIDE: f64 = 0.96;
 
@@ -27,7 +27,7 @@ fn counts(size: DVec3) -> [usize; 3] {
     };
     let inside = |n: [usize; 3]| n.map(|n| n - 2).into_iter().product::<usize>();
     let on_surface = |n: [usize; 3]| n.into_iter().product::<usize>() - inside(n);
-    (LATTICE - 1..MOST).map(along).take_while(|n| on_surface(*n) <= MOST).last().unwrap_or(cube)
+    (LATTICE - 1..MOST_POINTS).map(along).take_while(|n| on_surface(*n) <= MOST_POINTS).last().unwrap_or(cube)
 }
 
 /// Points on the surface of a box about 0.
@@ -66,7 +66,7 @@ pub(super) fn on_triangles(triangles: impl Iterator<Item = [DVec3; 3]> + Clone) 
     let mut points = Vec::new();
     for [a, b, c] in triangles {
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
-        let n = if step > 0.0 { ((longest / step).ceil() as usize).clamp(1, STEPS) } else { 1 };
+        let n = if step > 0.0 { ((longest / step).ceil() as usize).clamp(1, EDGE_STEPS) } else { 1 };
         for (i, j) in (0..=n).flat_map(|i| (0..=n - i).map(move |j| (i, j))) {
             points.push(a + (b - a) * (i as f64 / n as f64) + (c - a) * (j as f64 / n as f64));
         }
@@ -108,7 +108,7 @@ mod tests {
         };
         let turned = shape(0.7);
         let points = on_boxes(&[turned]);
-        assert!((20..=MOST).contains(&points.len()), "{}", points.len());
+        assert!((20..=MOST_POINTS).contains(&points.len()), "{}", points.len());
         // No two neighbours along its length are farther apart than its height.
         let mut along: Vec<f64> = points
             .iter()
@@ -122,7 +122,7 @@ mod tests {
             let across = turned.yaw.cos() * d.y - turned.yaw.sin() * d.x;
             assert!(across.abs() <= 0.5 && (0.0..=2.0).contains(&d.z), "{p}");
         }
-        assert!(on_boxes(&vec![turned; 40]).len() <= 2 * MOST);
+        assert!(on_boxes(&vec![turned; 40]).len() <= 2 * MOST_POINTS);
         // One triangle across its bounds: nothing on the other side of the diagonal.
         let [a, b, c] = [DVec3::ZERO, DVec3::new(9.0, 0.0, 0.0), DVec3::new(0.0, 9.0, 0.0)];
         let points = on_triangles([[a, b, c]].into_iter());

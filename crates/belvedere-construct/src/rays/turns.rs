@@ -79,13 +79,13 @@ pub(super) fn turns(root: &Pinhole, from: DVec3, corners: &[Corner], shape: &Tur
 
 /// Result of `make` for the largest number of a range for which it gives one; changes smoothly with what `make` depends on.
 pub(super) fn largest<T>([least, most]: [f64; 2], make: impl Fn(f64) -> Option<T>) -> Option<T> {
-    const STEPS: usize = 12;
+    const HALVINGS: usize = 12;
     if let Some(made) = make(most) {
         return Some(made);
     }
     let mut best = make(least)?;
     let (mut low, mut high) = (least, most);
-    for _ in 0..STEPS {
+    for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
         match make(middle) {
             Some(made) => (low, best) = (middle, made),

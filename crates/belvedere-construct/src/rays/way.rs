@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 /// Rings around the middle, at most: all states fit 16 bits.
-const MOST: usize = 40;
+const RINGS: usize = 40;
 /// Positions on the first ring; every further ring has this many more, so that the axes and diagonals are among them.
 pub(super) const PER_RING: usize = 8;
 /// Distance of rings that is aimed at, share of the radius of the disc.
@@ -62,7 +62,7 @@ impl Disc {
             _ if most < 8.0 * CELL => most / (most / CELL).ceil(),
             _ => 2.0 * CELL,
         };
-        let rings = ((1.0 / cell * (1.0 + 1e-9)) as usize).min(MOST);
+        let rings = ((1.0 / cell * (1.0 + 1e-9)) as usize).min(RINGS);
         let places: Vec<(usize, [f64; 2])> = std::iter::once((0, [0.0; 2]))
             .chain((1..=rings).flat_map(|ring| {
                 let share = cell * rings as f64;

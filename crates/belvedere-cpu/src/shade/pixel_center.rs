@@ -12,7 +12,7 @@ use belvedere_scene::{BoxShape, Heightfield, LayerKind, Scene};
 use glam::DMat3;
 
 /// Largest number of Newton steps, and the distance from the centre at which they stop, pixels.
-const STEPS: usize = 10;
+const NEWTON_STEPS: usize = 10;
 const NEAR_PX: f64 = 2e-4;
 /// Largest distance from the centre at which a moved point is accepted, pixels.
 const ACCEPTED_PX: f64 = 5e-3;
@@ -167,7 +167,7 @@ impl PassCenters<'_> {
         let mut image = self.image(p)?;
         let mut best = (image.0.distance(pixel), p, image.1);
         let first = best.0;
-        for _ in 0..STEPS {
+        for _ in 0..NEWTON_STEPS {
             if best.0 <= NEAR_PX {
                 break;
             }

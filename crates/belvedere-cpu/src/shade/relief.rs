@@ -7,8 +7,8 @@ use glam::Vec3A;
 use std::sync::LazyLock;
 
 /// Steps of the table of tones, and the brightness of its last entry.
-const STEPS: usize = 1024;
-type Tones = [f32; STEPS + 1];
+const TONE_STEPS: usize = 1024;
+type Tones = [f32; TONE_STEPS + 1];
 const BRIGHTEST: f32 = 4.0;
 
 /// Highest altitude of the main light of the Swiss blend, radians: low light models gentle slopes better.
@@ -157,19 +157,19 @@ fn modelled([x, y, z]: [f32; 3]) -> [f32; 3] {
     [x * scale, y * scale, z * scale]
 }
 
-static TONES: LazyLock<Tones> = LazyLock::new(|| std::array::from_fn(|i| tone_of(i as f32 * BRIGHTEST / STEPS as f32)));
+static TONES: LazyLock<Tones> = LazyLock::new(|| std::array::from_fn(|i| tone_of(i as f32 * BRIGHTEST / TONE_STEPS as f32)));
 
 /// Tone curve: 1 on level ground, softly limited above, lifted below so that shadows keep their relief. From a table, since powers
 /// cost as much as the rest of the shading.
 #[inline(always)]
 fn tone(bright: f32, tones: &Tones) -> f32 {
     // The last index of the table lies just before its end.
-    const MOST: f32 = STEPS as f32 - 0.01;
-    let x = bright * (STEPS as f32 / BRIGHTEST);
-    let x = if x < MOST { x } else { MOST };
+    const LAST: f32 = TONE_STEPS as f32 - 0.01;
+    let x = bright * (TONE_STEPS as f32 / BRIGHTEST);
+    let x = if x < LAST { x } else { LAST };
     // On an entry of the table either neighbour gives the same tone.
     let i = nearest(x - 0.5);
-    let (a, b) = (tones[i as usize & (STEPS - 1)], tones[(i as usize & (STEPS - 1)) + 1]);
+    let (a, b) = (tones[i as usize & (TONE_STEPS - 1)], tones[(i as usize & (TONE_STEPS - 1)) + 1]);
     a + (x - i as f32) * (b - a)
 }
 

@@ -17,9 +17,9 @@ use belvedere_sight::volume::{ENOUGH, HALF, half_within};
 /// Rays side by side.
 const RAYS: usize = 32;
 /// Samples of a ray between two looks at the bricks.
-const STEPS: usize = 4;
+const SAMPLES_PER_LOOK: usize = 4;
 /// Samples that are taken together.
-const BLOCK: usize = RAYS * STEPS;
+const BLOCK: usize = RAYS * SAMPLES_PER_LOOK;
 /// Samples that are shaded together.
 const SHADED: usize = 32;
 
@@ -223,14 +223,14 @@ impl<'m, T: Voxel> Packet<'m, '_, T> {
         }
     }
 
-    /// Takes the next [`STEPS`] samples of the rays that are ready.
+    /// Takes the next [`SAMPLES_PER_LOOK`] samples of the rays that are ready.
     #[inline(always)]
     fn block(&mut self, lanes: &mut Lanes, followers: &[Option<Follower<'m>>; RAYS], ready: &Lane) {
         let prepared = self.prepared;
         let table = &prepared.table;
         let mut p = [[0.0; BLOCK]; 3];
         let mut n = [0.0; BLOCK];
-        for s in 0..STEPS {
+        for s in 0..SAMPLES_PER_LOOK {
             for l in 0..RAYS {
                 let way = lanes.first[l] + (lanes.passed[l] + s as f32);
                 n[s * RAYS + l] = if way < lanes.last[l] { way } else { lanes.last[l] };
@@ -238,7 +238,7 @@ impl<'m, T: Voxel> Packet<'m, '_, T> {
         }
         for (a, p) in p.iter_mut().enumerate() {
             let [c0, c1, c2, c3] = [0, 1, 2, 3].map(|k| &lanes.c[k][a]);
-            for s in 0..STEPS {
+            for s in 0..SAMPLES_PER_LOOK {
                 for l in 0..RAYS {
                     let n = n[s * RAYS + l];
                     p[s * RAYS + l] = c0[l] + n * (c1[l] + n * (c2[l] + n * c3[l]));
@@ -258,7 +258,7 @@ impl<'m, T: Voxel> Packet<'m, '_, T> {
             [alphas[i], changes[i]] = table.alphas[place[i] as usize & (ENTRIES - 1)];
         }
         let mut most = [0.0f32; RAYS];
-        for s in 0..STEPS {
+        for s in 0..SAMPLES_PER_LOOK {
             for l in 0..RAYS {
                 let i = s * RAYS + l;
                 let counts = ready[l] > 0.0 && lanes.passed[l] + (s as f32) < lanes.count[l];
@@ -277,7 +277,7 @@ impl<'m, T: Voxel> Packet<'m, '_, T> {
             self.lay(lanes, followers, &alphas, &place, [&factor, &white]);
         }
         for (l, ready) in ready.iter().enumerate() {
-            let passed = lanes.passed[l] + ready * STEPS as f32;
+            let passed = lanes.passed[l] + ready * SAMPLES_PER_LOOK as f32;
             lanes.passed[l] = if lanes.alpha[l] < ENOUGH { passed } else { lanes.count[l] };
         }
     }
@@ -287,7 +287,7 @@ impl<'m, T: Voxel> Packet<'m, '_, T> {
     fn shares(&self, lanes: &Lanes, alphas: &mut Block) {
         for l in 0..RAYS {
             let s = lanes.count[l] - 1.0 - lanes.passed[l];
-            if lanes.share[l] != 1.0 && (0.0..STEPS as f32).contains(&s) {
+            if lanes.share[l] != 1.0 && (0.0..SAMPLES_PER_LOOK as f32).contains(&s) {
                 let alpha = &mut alphas[s as usize * RAYS + l];
                 if *alpha > 0.0 {
                     *alpha = 1.0 - (1.0 - *alpha).powf(lanes.share[l]);
@@ -309,7 +309,7 @@ impl<'m, T: Voxel> Packet<'m, '_, T> {
         let mut weights = [0.0; BLOCK];
         let mut before_half = [0.0; RAYS];
         let mut half = [-1.0f32; RAYS];
-        for s in 0..STEPS {
+        for s in 0..SAMPLES_PER_LOOK {
             for l in 0..RAYS {
                 let i = s * RAYS + l;
                 let old = lanes.alpha[l];

@@ -53,7 +53,7 @@ impl Regions {
 /// band. Returns the summits. Every path is followed once, up to the first node whose answer is known, and back.
 fn climb(first_row: usize, cols: usize, ascent: &[u8], out: &mut [u32]) -> Vec<u32> {
     let first = first_row * cols;
-    let offset = STEPS.map(|(x, y)| y * cols as isize + x);
+    let offset = NEIGHBOURS.map(|(x, y)| y * cols as isize + x);
     let mut summits = Vec::new();
     for (i, &way) in ascent.iter().enumerate() {
         if way == SUMMIT {
@@ -139,7 +139,7 @@ struct Around {
     per_m: [f64; 8],
 }
 
-const STEPS: [(isize, isize); 8] = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
+const NEIGHBOURS: [(isize, isize); 8] = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 /// Codes beyond the eight neighbours: a node without a higher neighbour, and one without data.
 const SUMMIT: u8 = 8;
 const VOID: u8 = 9;
@@ -147,7 +147,7 @@ const VOID: u8 = 9;
 impl Around {
     fn new(field: &Field) -> Self {
         let d = field.spacing();
-        Self { per_m: STEPS.map(|(x, y)| 1.0 / (x as f64 * d.x).hypot(y as f64 * d.y)) }
+        Self { per_m: NEIGHBOURS.map(|(x, y)| 1.0 / (x as f64 * d.x).hypot(y as f64 * d.y)) }
     }
 
     /// For each node of some rows the neighbour in the direction of steepest ascent, [`SUMMIT`] or [`VOID`]; of equally steep
@@ -187,7 +187,7 @@ impl Around {
         while start + width < out.len() {
             let here = load(0, start);
             let (mut best, mut to) = (zero, simd.splat_f64s(f64::from(SUMMIT)));
-            for (k, (x, y)) in STEPS.into_iter().enumerate() {
+            for (k, (x, y)) in NEIGHBOURS.into_iter().enumerate() {
                 let rise = simd.sub_f64s(load(y, start.wrapping_add_signed(x)), here);
                 let slope = simd.mul_f64s(rise, simd.splat_f64s(self.per_m[k]));
                 // As in `better`.
@@ -214,7 +214,7 @@ impl Around {
             return VOID;
         }
         let (mut best, mut to) = (0.0, SUMMIT);
-        for (k, (x, y)) in STEPS.into_iter().enumerate() {
+        for (k, (x, y)) in NEIGHBOURS.into_iter().enumerate() {
             let (Some(c), Some(r)) = (col.checked_add_signed(x), row.checked_add_signed(y)) else { continue };
             let j = r * field.cols() + c;
             if c >= field.cols() || r >= field.rows() || field.void()[j] {

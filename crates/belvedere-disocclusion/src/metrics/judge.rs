@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// Depth under the ground down to which a line of sight still counts as clear, scene units: rounding.
 const TOUCH: f64 = 1e-6;
 /// Cells that lines of sight cross, per node of the ground, from which on it is worth preparing the grounds.
-const MANY: usize = 2;
+const WORTH_PREPARING: usize = 2;
 
 /// The kind of ground that hides a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -134,7 +134,7 @@ impl<'a> Judge<'a> {
     pub(crate) fn prepared(mut self, points: usize) -> Self {
         let pays = |ground: &DisplacedGround| {
             let [cols, rows] = ground.nodes();
-            points * (cols + rows) > MANY * cols * rows
+            points * (cols + rows) > WORTH_PREPARING * cols * rows
         };
         self.grounds = self.grounds.into_iter().map(|g| if pays(&g) { g.prepared() } else { g }).collect();
         self

@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 /// Rows that come into force or go out of it, up to which a factor is used again, as a preconditioner.
 const STALE: usize = 12;
 /// Conjugate gradient steps at most, and decrease of their residual at which they end.
-const STEPS: usize = 20;
+const CG_STEPS: usize = 20;
 const ENOUGH: f64 = 1e-8;
 /// The method ends with a step that, taken whole, moves no row by more than this share of what the row may be missed by.
 const STILL: f64 = 0.05;
@@ -131,7 +131,7 @@ impl<'a> Augmented<'a> {
         if !(first > 0.0) {
             return None;
         }
-        for _ in 0..STEPS {
+        for _ in 0..CG_STEPS {
             let mut product = self.metric.times(&p);
             let weights = self.rise(&p).into_iter().zip(&terms.diagonal).zip(force);
             let weights: Vec<f64> = weights.map(|((rise, d), force)| if *force { rise / d } else { 0.0 }).collect();

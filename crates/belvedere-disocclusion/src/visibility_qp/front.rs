@@ -10,7 +10,7 @@ const BLOCK: usize = 16;
 /// Rows of a product that are summed together.
 const TILE: usize = 4;
 /// Rows from which on they are shared among threads.
-const MANY: usize = 192;
+const SHARED_ROWS: usize = 192;
 /// A pivot below this share of its diagonal counts as dependent.
 const DEPENDENT: f64 = 1e-13;
 
@@ -61,7 +61,7 @@ impl Front {
             let mut block = Block::of(rows, own, [from, to]);
             Arch::new().dispatch(FactorBlock { block: &mut block, rows, diagonal: &diagonal });
             let work = |rows: &mut [f64]| Arch::new().dispatch(FollowBlock { block: &block, rows });
-            if lower.len() / own >= MANY {
+            if lower.len() / own >= SHARED_ROWS {
                 lower.par_chunks_mut(16 * TILE * own).for_each(work);
             } else {
                 work(lower);
@@ -73,7 +73,7 @@ impl Front {
         let work = |(k, left): (usize, &mut [f64])| {
             Arch::new().dispatch(SubtractProducts { left, first: k * TILE, below, packed: &packed, own });
         };
-        if border >= MANY {
+        if border >= SHARED_ROWS {
             left.par_chunks_mut(TILE * border).enumerate().for_each(work);
         } else if border > 0 {
             left.chunks_mut(TILE * border).enumerate().for_each(work);

@@ -210,9 +210,9 @@ impl GeoTiff {
 
 /// Directories that the first one points to, and warnings about those that cannot be read.
 fn sub_directories(container: &Container, first: &Ifd) -> Result<(Vec<Ifd>, Vec<Warning>), String> {
-    const MOST: usize = 64;
+    const MOST_SUB_IFDS: usize = 64;
     let (mut found, mut warnings) = (Vec::new(), Vec::new());
-    for at in container.uints(first, tag::SUB_IFDS)?.unwrap_or_default().into_iter().take(MOST) {
+    for at in container.uints(first, tag::SUB_IFDS)?.unwrap_or_default().into_iter().take(MOST_SUB_IFDS) {
         match container.directory(at) {
             Ok(ifd) => found.push(ifd),
             Err(reason) => warnings.push(no_overview(&reason)),

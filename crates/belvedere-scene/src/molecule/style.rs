@@ -30,7 +30,7 @@ pub enum Representation {
 
 impl Representation {
     /// Residues of chains from which on balls and rods hide each other.
-    const MANY: usize = 100;
+    const MANY_RESIDUES: usize = 100;
 
     /// The representation of a molecule: what [`Representation::Auto`] means for it, and all others as they are.
     pub fn of(self, molecule: &Molecule) -> Self {
@@ -39,7 +39,7 @@ impl Representation {
         }
         // Every amino acid has one alpha carbon, every nucleotide but the first of a chain one phosphorus atom.
         let stands_for_residue = |a: &&Atom| matches!((&*a.name, a.element), ("CA", Element::C) | ("P", Element::P));
-        let many = molecule.atoms().iter().filter(stands_for_residue).nth(Self::MANY - 1).is_some();
+        let many = molecule.atoms().iter().filter(stands_for_residue).nth(Self::MANY_RESIDUES - 1).is_some();
         if many { Self::Ribbon } else { Self::BallAndStick }
     }
 }

@@ -10,7 +10,7 @@ const COAST_M: f64 = 0.5;
 const BETWEEN: [f64; 2] = [0.12, 0.5];
 /// Rounds of cutting corners; fewer where a coast has very many.
 const ROUNDS: usize = 2;
-const MANY: usize = 400_000;
+const MANY_CORNERS: usize = 400_000;
 /// Nodes by which the sea is extended outside the ground, so that no coast runs along its edge.
 const BEYOND: usize = 2;
 
@@ -35,7 +35,7 @@ pub(super) fn rings(ground: &Heightfield, sea: &[bool], level: f64) -> Vec<Vec<D
             rings.push(ring);
         }
     }
-    let rounds = if rings.iter().map(Vec::len).sum::<usize>() > MANY { 0 } else { ROUNDS };
+    let rounds = if rings.iter().map(Vec::len).sum::<usize>() > MANY_CORNERS { 0 } else { ROUNDS };
     rings.into_iter().map(|ring| (0..rounds).fold(ring, |ring, _| cut(&ring))).collect()
 }
 

@@ -235,7 +235,7 @@ pub fn deepest(scene: &Scene, view: &View) -> f64 {
 }
 
 fn deepest_in(bounds: &Aabb, view: &View) -> f64 {
-    const STEPS: usize = 24;
+    const LATTICE: usize = 24;
     let far = view.pinhole().far.unwrap_or(f64::INFINITY);
     let near = view.pinhole().near;
     if bounds.is_empty() {
@@ -243,10 +243,10 @@ fn deepest_in(bounds: &Aabb, view: &View) -> f64 {
     }
     let mut largest = near;
     let mut step = 0.0f64;
-    let share = |i: usize| i as f64 / STEPS as f64;
+    let share = |i: usize| i as f64 / LATTICE as f64;
     for k in 0..3 {
-        let mut above: Vec<Option<f64>> = vec![None; STEPS + 1];
-        for j in 0..=STEPS {
+        let mut above: Vec<Option<f64>> = vec![None; LATTICE + 1];
+        for j in 0..=LATTICE {
             let mut before: Option<f64> = None;
             for (i, above) in above.iter_mut().enumerate() {
                 let p = bounds.min + (bounds.max - bounds.min) * DVec3::new(share(i), share(j), 0.5 * k as f64);

@@ -195,18 +195,9 @@ fn modules_import_each_other_in_one_direction() {
 }
 
 /// Verbs of the library that use another verb or live sessions, and why they still do.
-const ABOVE_OTHERS: [(&str, &str); 12] = [
+const ABOVE_OTHERS: [(&str, &str); 4] = [
     // One request is handed to the verb that answers it.
     ("asked", "animate"),
-    ("asked", "drafts"),
-    ("asked", "reveal"),
-    ("asked", "reveal_target"),
-    ("asked", "target_drafts"),
-    // They call `reveal` once for each view that they offer.
-    ("drafts", "reveal"),
-    ("target_drafts", "drafts"),
-    ("target_drafts", "reveal"),
-    ("target_drafts", "reveal_target"),
     // What is opened is told by its kind and shown by `reveal`; a page holds what is opened.
     ("open_files", "info"),
     ("open_files", "reveal"),
@@ -214,7 +205,7 @@ const ABOVE_OTHERS: [(&str, &str); 12] = [
 ];
 
 /// Public modules beside the verbs that are none themselves: what several of them share, and the schemas of all answers.
-const NO_VERBS: [&str; 3] = ["appearance", "moved", "schemas"];
+const NO_VERBS: [&str; 2] = ["moved", "schemas"];
 
 /// Which module of the folder of verbs uses which verb other than itself, or live sessions.
 fn above_others(tree: &Tree, verbs: &BTreeSet<String>) -> BTreeSet<(String, String)> {

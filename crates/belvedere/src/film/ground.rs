@@ -14,7 +14,7 @@ const BACK: [f64; 9] = [0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 0.64, 1.0];
 const BESIDE: f64 = 0.02;
 const PIXELS: f64 = 2.0;
 /// Most pixels along a side of a picture that are judged.
-const MOST: usize = 160;
+const JUDGED_PX: usize = 160;
 
 /// Facets of the terrain as a view displaces them.
 pub(crate) struct DrawnGround<'a> {
@@ -97,7 +97,7 @@ impl<'a> DrawnGround<'a> {
 
     /// Pixels of the ground that were judged, and those of them that show its lower side.
     pub(crate) fn seen_from_below(&self, frame: &Frame) -> [usize; 2] {
-        let step = (frame.width.max(frame.height) / MOST).max(1);
+        let step = (frame.width.max(frame.height) / JUDGED_PX).max(1);
         let mut out = [0, 0];
         for row in (step / 2..frame.height).step_by(step) {
             for col in (step / 2..frame.width).step_by(step) {

@@ -7,14 +7,14 @@ use belvedere_scene::{Color, Hidden, OverlayLine, Scene};
 
 /// Lines across the shorter side of the terrain if the spacing is automatic, and largest number of lines in one direction.
 const WANTED: f64 = 8.0;
-const MOST: f64 = 500.0;
+const MOST_LINES: f64 = 500.0;
 
 /// Spacing of the grid, scene units: as given, or round; `None` without terrain or with more than 500 lines.
 pub(crate) fn spacing(scene: &Scene, given: Option<f64>) -> Option<f64> {
     let bounds = scene.terrain()?.bounds();
     let size = (bounds.max - bounds.min).truncate();
     let spacing = given.unwrap_or_else(|| round_below(size.min_element() / WANTED));
-    (spacing > 0.0 && size.max_element() / spacing <= MOST).then_some(spacing)
+    (spacing > 0.0 && size.max_element() / spacing <= MOST_LINES).then_some(spacing)
 }
 
 /// The grid that a scene asks for: a spacing, or `Some(None)` for an automatic one.

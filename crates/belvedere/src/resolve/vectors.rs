@@ -208,12 +208,12 @@ fn stand(loader: &mut Loader<'_>, index: usize, vectors: &mut Vectors, crs: Crs)
 
 /// A line whose stretches without heights are at most `step` metres long.
 fn divided(line: &[Vertex], step: f64, metres: &dyn Fn(DVec2) -> Option<DVec2>) -> Vec<Vertex> {
-    const MOST: f64 = 1000.0;
+    const MOST_PARTS: f64 = 1000.0;
     let mut out = Vec::with_capacity(line.len());
     for pair in line.windows(2) {
         let length = metres(pair[0].xy).zip(metres(pair[1].xy)).map_or(0.0, |(a, b)| a.distance(b));
         let open = pair.iter().all(|v| v.z.is_none());
-        let parts = if open { (length / step).ceil().clamp(1.0, MOST) } else { 1.0 };
+        let parts = if open { (length / step).ceil().clamp(1.0, MOST_PARTS) } else { 1.0 };
         out.push(pair[0]);
         let at = |k: usize| Vertex { xy: pair[0].xy.lerp(pair[1].xy, k as f64 / parts), z: None };
         out.extend((1..parts as usize).map(at));

@@ -62,6 +62,7 @@ fn all(name: &str, image: [u32; 2]) {
 }
 
 #[test]
+#[ignore = "long; .ci/long runs it"]
 fn ground_with_a_route_and_names_is_the_same_in_bands() {
     all("massif.toml", [333, 217]);
     all("massif_panorama.toml", [401, 150]);
@@ -77,6 +78,7 @@ fn ground_behind_curved_rays_or_made_way_for_is_the_same_in_bands() {
 }
 
 #[test]
+#[ignore = "long; .ci/long runs it"]
 fn towns_and_maps_in_parallel_projection_are_the_same_in_bands() {
     all("town.toml", [333, 217]);
     all("town_rigid.toml", [333, 217]);
@@ -85,11 +87,13 @@ fn towns_and_maps_in_parallel_projection_are_the_same_in_bands() {
 }
 
 #[test]
+#[ignore = "long; .ci/long runs it"]
 fn levels_of_a_town_that_are_drawn_one_by_one_are_the_same_in_bands() {
     all("town_sections.toml", [233, 157]);
 }
 
 #[test]
+#[ignore = "long; .ci/long runs it"]
 fn molecules_and_what_shines_through_are_the_same_in_bands() {
     all("dna.toml", [233, 117]);
     all("church.toml", [233, 117]);

@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// Values that are offered for a colour of their own.
 const OFFERED: usize = 200;
 /// Most colours of single values.
-const MOST: usize = 40;
+const MOST_COLORS: usize = 40;
 
 fn hex(Color { r, g, b, .. }: Color) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
@@ -47,7 +47,7 @@ pub(super) fn colors(ui: &mut Ui, id: &str, reading: &Reading, by: &mut Option<C
             numbers(ui, id, doc);
             let is_smooth = doc.steps == Some(StepsDoc::Smooth);
             coloring.classes.iter().for_each(|class| swatch(ui, class, is_smooth));
-            if !is_smooth && field.values.len() <= MOST {
+            if !is_smooth && field.values.len() <= MOST_COLORS {
                 let each = ui.button(tr("A colour for each number"));
                 if each.on_hover_text(tr("each number becomes a category with a colour of its own")).clicked() {
                     let values = field.values.iter().zip(CATEGORIES.into_iter().cycle());
@@ -186,7 +186,7 @@ fn texts(ui: &mut Ui, id: &str, (doc, field): (&mut ColorByDoc, &Field), colorin
     }
     let is_new = |value: &&str| !coloring.classes.iter().any(|class| class.name == *value);
     let more: Vec<&str> = field.values.iter().map(|(v, _)| v.trim()).filter(is_new).take(OFFERED).collect();
-    if !more.is_empty() && coloring.classes.len() < MOST {
+    if !more.is_empty() && coloring.classes.len() < MOST_COLORS {
         let label = fill(tr("one more value of {0}"), &[&id]);
         ComboBox::from_label(label).selected_text(tr("choose")).show_ui(ui, |ui| {
             for value in more {

@@ -9,7 +9,7 @@ use eframe::egui::{Button, ComboBox, Id, TextEdit, Ui};
 use std::sync::Arc;
 
 /// Residues that the list shows; others are typed.
-const MOST: usize = 400;
+const MOST_RESIDUES: usize = 400;
 
 /// The fields of a molecule.
 pub(super) fn show(ui: &mut Ui, model: &mut Model, index: usize, doc: &MoleculeDoc) {
@@ -21,13 +21,13 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, index: usize, doc: &MoleculeD
             chosen = Some(None);
         }
         let all = listed(ui, model, doc);
-        for residue in all.iter().take(MOST) {
+        for residue in all.iter().take(MOST_RESIDUES) {
             if ui.selectable_label(doc.select.as_ref() == Some(&residue.select), &residue.name).clicked() {
                 chosen = Some(Some(residue.select.clone()));
             }
         }
-        if all.len() > MOST {
-            ui.weak(fill(tr("and {0} more: type chain and number"), &[&(all.len() - MOST)]));
+        if all.len() > MOST_RESIDUES {
+            ui.weak(fill(tr("and {0} more: type chain and number"), &[&(all.len() - MOST_RESIDUES)]));
         }
     });
     if let Some(select) = chosen {

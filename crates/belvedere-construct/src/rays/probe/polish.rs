@@ -10,7 +10,7 @@ use belvedere_scene::{Cancelled, Progress};
 use rayon::prelude::*;
 
 /// Steps by which points are moved, cells, one for each round.
-const STEPS: [f64; 4] = [3.0, 3.0, 1.5, 0.75];
+const MOVES: [f64; 4] = [3.0, 3.0, 1.5, 0.75];
 /// Distances of the viewpoints and lengths of the transitions are multiplied by these.
 const FACTORS: [f64; 2] = [1.35, 1.0 / 1.35];
 /// Range of the length of transitions, shares of the usual.
@@ -30,7 +30,7 @@ pub(super) fn polished(
 ) -> Result<(f64, Chain, usize), Cancelled> {
     let eye = base.pinhole().eye;
     let (mut best, mut tried) = ((score, chain), 0);
-    for step in STEPS {
+    for step in MOVES {
         let before = best.0;
         for coordinate in 0..3 * best.1.points.len() + 3 {
             progress.tick("improving the best ways", 0.8)?;
@@ -47,7 +47,7 @@ pub(super) fn polished(
                 }
             }
         }
-        if best.0 <= before && step < STEPS[0] {
+        if best.0 <= before && step < MOVES[0] {
             break;
         }
     }

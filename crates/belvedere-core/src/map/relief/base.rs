@@ -118,12 +118,12 @@ impl BaseSurface {
     /// Lower and upper bound of the height over a rectangle.
     pub(super) fn range(&self, min: DVec2, max: DVec2) -> [f64; 2] {
         /// For more control heights than this the range of the whole grid is returned.
-        const MOST: i64 = 4096;
+        const RANGED: i64 = 4096;
         let (([c0, r0], _), ([c1, r1], _)) = (self.place(min), self.place(max));
         let fold = |[lo, hi]: [f64; 2], v: f64| [lo.min(v), hi.max(v)];
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         // A B-spline lies within the hull of the control heights that act on it.
-        if (c1 - c0 + 4) * (r1 - r0 + 4) > MOST {
+        if (c1 - c0 + 4) * (r1 - r0 + 4) > RANGED {
             return self.control.iter().copied().fold(none, fold);
         }
         let rows = r0 - 1..=r1 + 2;

@@ -19,7 +19,7 @@ const FIRST: f64 = 0.25;
 /// Least share of the route's length that the smoothed route must keep.
 const LEFT: f64 = 0.1;
 /// Most samples and nodes.
-const MOST: f64 = 200_000.0;
+const MOST_NODES: f64 = 200_000.0;
 
 /// A route, smoothed.
 #[derive(Debug, Clone, PartialEq)]
@@ -132,8 +132,8 @@ impl Polyline {
     /// The average by a Gaussian, as a curve.
     fn smoothed(&self, sigma: f64, half_width: f64) -> Result<PlanCurve, StripError> {
         let (coarse, fine) = (sigma / SAMPLES, (sigma / SAMPLES).min(half_width / NODES));
-        if !(self.length() / fine <= MOST) {
-            return Err(StripError::TooFine { length: self.length(), fine, most: MOST });
+        if !(self.length() / fine <= MOST_NODES) {
+            return Err(StripError::TooFine { length: self.length(), fine, most: MOST_NODES });
         }
         let steps = (self.length() / coarse).ceil().max(SAMPLES) as usize;
         let step = self.length() / steps as f64;
@@ -157,7 +157,7 @@ impl Polyline {
     }
 
     fn finished(&self, curve: PlanCurve, smoothing: f64) -> SmoothedRoute {
-        let steps = (4.0 * self.length() / curve.spacing()).ceil().clamp(1.0, MOST) as usize;
+        let steps = (4.0 * self.length() / curve.spacing()).ceil().clamp(1.0, MOST_NODES) as usize;
         let off = |p: &DVec2| {
             let p = self.origin + *p;
             (curve.at(curve.nearest(p)).p.distance(p), p)
@@ -195,7 +195,7 @@ fn by_arc_length(places: &[[DVec2; 3]], fine: f64) -> (Vec<f64>, f64) {
         along[i] = along[i - 1] + 0.5 * (speed[i - 1] + speed[i]);
     }
     let (last, length) = (places.len() - 1, along[places.len() - 1]);
-    let pieces = ((length / fine).ceil().min(MOST) as usize).max(last);
+    let pieces = ((length / fine).ceil().min(MOST_NODES) as usize).max(last);
     let spacing = length / pieces as f64;
     let mut k = 0;
     let curvature = |i: usize| {

@@ -12,7 +12,7 @@ const FALL: f32 = 0.86;
 const BY_VALUE: f32 = 0.35;
 const BY_SLOPE: f32 = 0.30;
 /// Largest change of a square root of light by the roughest ground.
-const MOST: f32 = 0.15;
+const STRONGEST: f32 = 0.15;
 
 /// Factors of the square roots of lit colours at points of the ground, for a roughness of 1, less 1.
 /// * `node`: column and row of a node;
@@ -42,7 +42,7 @@ pub(crate) fn grain<const N: usize>(
     }
     for v in &mut out {
         let t = if *v > -2.0 { *v } else { -2.0 };
-        *v = MOST * if t < 2.0 { t } else { 2.0 };
+        *v = STRONGEST * if t < 2.0 { t } else { 2.0 };
     }
     out
 }
@@ -105,7 +105,7 @@ mod tests {
         for i in 0..n {
             let (col, row, px) = (3.0 + i as f32 * 0.0173, 900.0 - i as f32 * 0.0311, 0.02);
             let here = at(col, row, px);
-            assert!(here.is_finite() && here.abs() <= 2.0 * MOST);
+            assert!(here.is_finite() && here.abs() <= 2.0 * STRONGEST);
             // A tenth of a pixel further, across borders of cells too, hardly anything changes.
             assert!((at(col + 0.1 * px, row, px) - here).abs() < 0.06, "{col} {row}");
             // A slightly nearer eye neither.

@@ -66,16 +66,16 @@ const NIGHT_HAZE: [u8; 3] = [58, 72, 104];
 const NIGHT_DEG: f64 = 6.0;
 
 /// Steps of the table of sky colours per unit of the sine of the elevation.
-const STEPS: f32 = 512.0;
+const SHADES: f32 = 512.0;
 /// Last position in it.
-const MOST: f32 = 2.0 * STEPS - 0.01;
+const LAST: f32 = 2.0 * SHADES - 0.01;
 
 /// Colours of the air.
 #[derive(Debug)]
 pub(crate) struct Sky {
     /// Square roots of linear colours, by the sine of the elevation from -1 to 1, and the differences to the next entry; the fourth value
     /// is the summed change of these differences up to the entry.
-    steps: Box<[[[f32; 4]; 2]; 2 * STEPS as usize]>,
+    steps: Box<[[[f32; 4]; 2]; 2 * SHADES as usize]>,
     haze: Rgb,
     /// Upward parts of the ray of a pixel: sine = (a + b x + c y) / |(1, d (x - cx), d (y - cy))|.
     up: [f32; 3],
@@ -112,7 +112,7 @@ impl Sky {
         let span = (far - near).max(1e-6);
         let from_above = smoothstep(FROM_ABOVE[0], FROM_ABOVE[1], -pinhole.forward.z as f32);
         // The second derivative of the sine along a row is 1.2 at most, the distance from a chord an eighth of it.
-        let off = 0.15 * (LANES as f64 * per_px).powi(2) * f64::from(STEPS);
+        let off = 0.15 * (LANES as f64 * per_px).powi(2) * f64::from(SHADES);
         Self {
             steps: steps(towards),
             haze: linear([186, 205, 224]),
@@ -249,7 +249,7 @@ impl Sky {
     fn root_at(&self, at: f32) -> SkyPoint {
         // Positions are not negative, so the cast rounds down.
         let below = at as i32;
-        let ([low, change], share) = (&self.steps[below as usize & (2 * STEPS as usize - 1)], at - below as f32);
+        let ([low, change], share) = (&self.steps[below as usize & (2 * SHADES as usize - 1)], at - below as f32);
         let mut root = [0.0; 4];
         for k in 0..4 {
             root[k] = low[k] + share * change[k];
@@ -260,9 +260,9 @@ impl Sky {
     /// Position of a sample in the table.
     #[inline(always)]
     fn table_position(&self, [x, y]: [i32; 2]) -> f32 {
-        let at = (self.sine([x as f32 * (1.0 / SUB as f32), y as f32 * (1.0 / SUB as f32)]) + 1.0) * STEPS;
+        let at = (self.sine([x as f32 * (1.0 / SUB as f32), y as f32 * (1.0 / SUB as f32)]) + 1.0) * SHADES;
         let at = if at > 0.0 { at } else { 0.0 };
-        if at < MOST { at } else { MOST }
+        if at < LAST { at } else { LAST }
     }
 
     #[inline(always)]
@@ -282,7 +282,7 @@ impl Sky {
         }
         let mut root = [[0.0f32; 4]; LANES];
         for i in 0..LANES {
-            let [low, change] = &self.steps[below[i] as usize & (2 * STEPS as usize - 1)];
+            let [low, change] = &self.steps[below[i] as usize & (2 * SHADES as usize - 1)];
             for k in 0..4 {
                 root[i][k] = (low[k] + share[i] * change[k]) + threshold[i];
             }
@@ -307,7 +307,7 @@ impl Sky {
 
     #[inline]
     fn root(&self, sine: f32) -> Rgb {
-        let at = ((sine + 1.0) * STEPS).clamp(0.0, MOST);
+        let at = ((sine + 1.0) * SHADES).clamp(0.0, LAST);
         let [low, change] = self.steps[at as usize].map(|[r, g, b, _]| Rgb::new(r, g, b));
         low + at.fract() * change
     }
@@ -415,8 +415,8 @@ fn is_row(x: &[i32; LANES], y: &[i32; LANES]) -> bool {
     off == 0
 }
 
-fn steps(towards: impl Fn(f32) -> Rgb) -> Box<[[[f32; 4]; 2]; 2 * STEPS as usize]> {
-    let at = |i: usize| roots(towards(i as f32 / STEPS - 1.0));
+fn steps(towards: impl Fn(f32) -> Rgb) -> Box<[[[f32; 4]; 2]; 2 * SHADES as usize]> {
+    let at = |i: usize| roots(towards(i as f32 / SHADES - 1.0));
     let (mut next, mut before, mut turned) = (at(0), Rgb::ZERO, 0.0);
     Box::new(std::array::from_fn(|i| {
         let here = std::mem::replace(&mut next, at(i + 1));

@@ -6,7 +6,7 @@ use belvedere_core::{CurvedRays, DVec2, DVec3};
 use belvedere_scene::{Color, Overlay, OverlayFace, Symbol};
 
 /// Depths tested along a corner's ray before the crossing with a plane is bisected.
-const STEPS: usize = 400;
+const DEPTHS: usize = 400;
 /// Number of marked intermediate viewpoints per turn.
 const BETWEEN: u32 = 7;
 
@@ -80,8 +80,8 @@ fn crossing(subject: &Subject<'_>, pixel: DVec2, form: &LinearForm) -> Option<DV
     let at = |depth: f64| ray.at(depth).ok().map(|p| p.point);
     let value = |depth: f64| at(depth).map(|p| form.at(p));
     let far = 3.0 * subject.far;
-    let depth = |i: usize| far * (i as f64 / STEPS as f64).max(1e-5);
-    let (mut lo, mut hi) = (1..=STEPS)
+    let depth = |i: usize| far * (i as f64 / DEPTHS as f64).max(1e-5);
+    let (mut lo, mut hi) = (1..=DEPTHS)
         .map(|i| (depth(i - 1), depth(i)))
         .find(|&(a, b)| matches!((value(a), value(b)), (Some(u), Some(v)) if (u > 0.0) != (v > 0.0)))?;
     let rising = value(hi)? > 0.0;

@@ -9,7 +9,7 @@ use belvedere_core::plain::number;
 use belvedere_scene::{Color, Edge, Layer, LayerKind, OwnLayer, Palette, PaletteName, TerrainLayer, VolumeLayer};
 
 /// Steps of a bar of colours.
-const STEPS: usize = 64;
+const BAR_STEPS: usize = 64;
 /// Numbers at a bar.
 const MOST_TICKS: usize = 5;
 
@@ -91,13 +91,13 @@ fn of_layer(subject: &Subject<'_>, layer: &Layer) -> Vec<Row> {
 fn smooth(stops: &[(String, Color)]) -> Sign {
     let last = stops.len().saturating_sub(1).max(1) as f64;
     let color = |i: usize| {
-        let at = i as f64 / (STEPS - 1) as f64 * last;
+        let at = i as f64 / (BAR_STEPS - 1) as f64 * last;
         let k = (at as usize).min(stops.len().saturating_sub(2));
         let (a, b) = (stops[k].1, stops[(k + 1).min(stops.len() - 1)].1);
         mixed(a, b, at - k as f64)
     };
     let labels = stops.iter().enumerate().map(|(i, (name, _))| (i as f64 / last, name.clone())).collect();
-    Sign::Bar { colors: (0..STEPS).map(color).collect(), opacity: None, labels }
+    Sign::Bar { colors: (0..BAR_STEPS).map(color).collect(), opacity: None, labels }
 }
 
 fn mixed(a: Color, b: Color, share: f64) -> Color {
@@ -119,11 +119,11 @@ fn heights(terrain: &TerrainLayer) -> Option<Sign> {
     }
     let tint = GroundTint::new(&terrain.palette, range);
     let color = |i: usize| {
-        let height = low + (i as f64 + 0.5) / STEPS as f64 * (high - low);
+        let height = low + (i as f64 + 0.5) / BAR_STEPS as f64 * (high - low);
         encoded(tint.color(height, DVec2::ZERO))
     };
     let labels = ticks(low, high).into_iter().map(|v| ((v - low) / (high - low), format!("{} m", number(v))));
-    Some(Sign::Bar { colors: (0..STEPS).map(color).collect(), opacity: None, labels: labels.collect() })
+    Some(Sign::Bar { colors: (0..BAR_STEPS).map(color).collect(), opacity: None, labels: labels.collect() })
 }
 
 /// A linear colour as it is stored.
@@ -137,13 +137,13 @@ fn values(volume: &VolumeLayer) -> Sign {
     let points = volume.transfer.points();
     let [low, high] = [points.first(), points.last()].map(|p| p.map_or(0.0, |p| p.value));
     let high = if high > low { high } else { low + 1.0 };
-    let at = |i: usize| volume.transfer.at(low + (i as f64 + 0.5) / STEPS as f64 * (high - low));
+    let at = |i: usize| volume.transfer.at(low + (i as f64 + 0.5) / BAR_STEPS as f64 * (high - low));
     let color = |i: usize| {
         let [r, g, b, _] = at(i).map(|v| (255.0 * v).round().clamp(0.0, 255.0) as u8);
         Color::rgb(r, g, b)
     };
     let labels = ticks(low, high).into_iter().map(|v| ((v - low) / (high - low), number(v))).collect();
-    Sign::Bar { colors: (0..STEPS).map(color).collect(), opacity: Some((0..STEPS).map(|i| at(i)[3]).collect()), labels }
+    Sign::Bar { colors: (0..BAR_STEPS).map(color).collect(), opacity: Some((0..BAR_STEPS).map(|i| at(i)[3]).collect()), labels }
 }
 
 /// Round numbers within a range, at most five.
