@@ -25,7 +25,7 @@ pub(crate) fn animate(
 ) -> PyResult<String> {
     let asked: Animate = request::request("animate", asked)?;
     // With paper and pixels per inch no size is left open.
-    let sheet = Sheet::of(&asked.paper.document(), None, [1, 1]).map_err(|e| raised(&e))?;
+    let sheet = Sheet::of(&asked.paper.document(), None, [1, 1]).map_err(|e| raised(&e.into()))?;
     let mut request = film(&asked, sheet, out, overwrite).map_err(|e| raised(&e))?;
     let session = scene.session.clone().furnished(&asked.furnishing.wish());
     run(py, &ask, move |progress| {

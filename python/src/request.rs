@@ -65,7 +65,7 @@ impl Opening {
 /// A picture that Python asks for, with its furniture, and its paper wholly stated.
 pub(crate) fn picture(asked: &Render, session: &Session, progress: Progress) -> PyResult<PictureOptions> {
     // With paper and pixels per inch no size is left open.
-    let sheet = Sheet::of(&asked.paper.document(), None, [1, 1]).map_err(|e| raised(&e))?;
+    let sheet = Sheet::of(&asked.paper.document(), None, [1, 1]).map_err(|e| raised(&e.into()))?;
     let (options, _) = asked::picture(asked, session).map_err(|e| raised(&e))?;
     let options = PictureOptions { progress, ..options };
     Ok(sheet.map_or(options.clone(), |sheet| options.on(sheet)))

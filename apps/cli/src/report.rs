@@ -133,9 +133,11 @@ fn option_for(error: &BelvedereError) -> Option<&'static str> {
         BelvedereError::Render(belvedere::scene::RenderError::TooLarge { .. }) | BelvedereError::OnePiece { .. } => {
             " (--size, --samples, --max-mem)"
         }
-        BelvedereError::Paper { key: "paper", .. } => " (--paper)",
-        BelvedereError::Paper { key: "margin_mm", .. } => " (--margin-mm)",
-        BelvedereError::Paper { .. } => " (--dpi)",
+        BelvedereError::Paper(paper) => match paper.key {
+            "paper" => " (--paper)",
+            "margin_mm" => " (--margin-mm)",
+            _ => " (--dpi)",
+        },
         BelvedereError::RayEnd { .. } => "; give a larger --far",
         BelvedereError::NoRayEnd => "; give --far or camera.far",
         BelvedereError::FramesThere { resumable: true, .. } => {

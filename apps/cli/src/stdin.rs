@@ -76,8 +76,16 @@ impl Stdin {
         let folder = tempfile::tempdir().context("-: no temporary folder can be made")?;
         let _ = self.folder.set(folder);
         let mut bytes = Vec::new();
-        std::io::stdin().lock().take(LARGEST_INPUT + 1).read_to_end(&mut bytes).context("-: standard input cannot be read")?;
-        ensure!(bytes.len() as u64 <= LARGEST_INPUT, "-: standard input has more than {} GiB; name a file", LARGEST_INPUT >> 30);
+        std::io::stdin()
+            .lock()
+            .take(LARGEST_INPUT + 1)
+            .read_to_end(&mut bytes)
+            .context("-: standard input cannot be read")?;
+        ensure!(
+            bytes.len() as u64 <= LARGEST_INPUT,
+            "-: standard input has more than {} GiB; name a file",
+            LARGEST_INPUT >> 30
+        );
         ensure!(!bytes.is_empty(), "-: standard input is empty; send a file or the output of a program to it");
         Ok(bytes)
     }

@@ -306,12 +306,19 @@ impl Table {
         let per_step = (to - from) / Self::TABLE_STEPS as f64;
         let representations = styling.representations().len();
         let place = |i: usize| from + per_step * i as f64;
-        let ends = (0..=Self::TABLE_STEPS).flat_map(|i| styling.interval_ends(place(i)).into_iter().take(representations));
+        let ends =
+            (0..=Self::TABLE_STEPS).flat_map(|i| styling.interval_ends(place(i)).into_iter().take(representations));
         let near = |i: usize| {
             let (a, b) = (place(i) - 1e-6 * per_step, place(i + 1) + 1e-6 * per_step);
             knees.iter().any(|knee| a <= *knee && *knee <= b)
         };
-        Self { from, per_step, representations, ends: ends.collect(), has_knee: (0..Self::TABLE_STEPS).map(near).collect() }
+        Self {
+            from,
+            per_step,
+            representations,
+            ends: ends.collect(),
+            has_knee: (0..Self::TABLE_STEPS).map(near).collect(),
+        }
     }
 
     #[inline]

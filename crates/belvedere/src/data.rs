@@ -2,7 +2,7 @@
 
 mod tiles;
 
-use crate::record::{AreaRecord, InputFile, LayerNotes};
+use crate::record::{AreaRecord, InputFile};
 use crate::resolve::vectors::{FeatureKind, kind_of, kinds_of};
 use crate::resolve::{self, LayerRequest};
 use crate::scene_file::paths::{Roots, folder_of};
@@ -18,6 +18,7 @@ use belvedere_core::Warning;
 use belvedere_io::load_vectors;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::{join_table, split_table};
+use belvedere_overlay::notes::LayerNotes;
 use belvedere_scene::{Hidden, Layer, Scene, Unit};
 use std::collections::BTreeMap;
 use std::mem::take;

@@ -92,13 +92,8 @@ pub enum BelvedereError {
         reason: String,
     },
     /// A paper that a picture cannot have.
-    #[error("{reason}")]
-    Paper {
-        /// Key of `[print]` that is at fault.
-        key: &'static str,
-        /// The measured value, the limit, and what to do.
-        reason: String,
-    },
+    #[error(transparent)]
+    Paper(#[from] belvedere_overlay::sheet::PaperError),
     /// A renderer that does not exist.
     #[error("there is no renderer \"{name}\"; {advice}")]
     NoRenderer {

@@ -3,7 +3,6 @@
 use crate::BelvedereError;
 use belvedere_core::{Projection, View};
 pub use belvedere_io::InputFile;
-use belvedere_scene::Color;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -37,30 +36,6 @@ pub struct AreaRecord {
     pub areas: usize,
     /// Source of this choice.
     pub why: String,
-}
-
-/// What furniture tells of layers beside their styles.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct LayerNotes {
-    /// Classes of layers whose features are coloured by a property.
-    pub(crate) classes: Vec<ClassNote>,
-    /// Ids of layers and whom their files ask to be named.
-    pub(crate) credits: Vec<(String, String)>,
-}
-
-/// Classes of a layer.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct ClassNote {
-    /// Id of the layer.
-    pub(crate) layer: String,
-    /// The property.
-    pub(crate) property: String,
-    /// Names and colours of the classes, those that no feature has left out.
-    pub(crate) classes: Vec<(String, Color)>,
-    /// Whether the colours run into each other between the classes.
-    pub(crate) smooth: bool,
-    /// Colour of other features, if there are any; `None` within it = that of the layer.
-    pub(crate) others: Option<Option<Color>>,
 }
 
 /// The pinhole in numbers.

@@ -3,7 +3,7 @@
 use crate::guard::guarded;
 use crate::kept::Kept;
 use crate::names::PublicNames;
-use crate::record::{AreaRecord, InputFile, LayerNotes};
+use crate::record::{AreaRecord, InputFile};
 use crate::renderers::{self, Renderers, SharedRenderer};
 use crate::resolve::StripReport;
 use crate::resolve::constructor::{self, ConstructorReport};
@@ -19,6 +19,7 @@ use belvedere_core::Warning;
 use belvedere_core::{Pinhole, SpaceMap, View};
 use belvedere_disocclusion::{TerrainReport, TerrainSettings};
 use belvedere_io::{budget, split_table};
+use belvedere_overlay::notes::LayerNotes;
 use belvedere_scene::{Light, Progress, Scene, Stylisation};
 use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 use std::sync::Arc;

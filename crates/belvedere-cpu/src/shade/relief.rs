@@ -157,7 +157,8 @@ fn modelled([x, y, z]: [f32; 3]) -> [f32; 3] {
     [x * scale, y * scale, z * scale]
 }
 
-static TONES: LazyLock<Tones> = LazyLock::new(|| std::array::from_fn(|i| tone_of(i as f32 * BRIGHTEST / TONE_STEPS as f32)));
+static TONES: LazyLock<Tones> =
+    LazyLock::new(|| std::array::from_fn(|i| tone_of(i as f32 * BRIGHTEST / TONE_STEPS as f32)));
 
 /// Tone curve: 1 on level ground, softly limited above, lifted below so that shadows keep their relief. From a table, since powers
 /// cost as much as the rest of the shading.

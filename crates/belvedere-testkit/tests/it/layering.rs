@@ -72,6 +72,18 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
         &["ab_glyph_rasterizer", "glam", "harfrust", "rayon", "skrifa"],
     ),
     (
+        "belvedere-overlay",
+        &[
+            "belvedere-composite",
+            "belvedere-core",
+            "belvedere-disocclusion",
+            "belvedere-document",
+            "belvedere-scene",
+            "belvedere-sight",
+        ],
+        &["flate2", "glam", "pdf-writer", "rayon", "schemars", "serde", "thiserror"],
+    ),
+    (
         "belvedere-cpu",
         &["belvedere-composite", "belvedere-core", "belvedere-scene", "belvedere-sight"],
         &["glam", "pulp", "rayon", "thiserror", "tracing"],
@@ -87,10 +99,11 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
             "belvedere-disocclusion",
             "belvedere-document",
             "belvedere-io",
+            "belvedere-overlay",
             "belvedere-scene",
             "belvedere-sight",
         ],
-        &["flate2", "glam", "pdf-writer", "rayon", "schemars", "serde", "serde_json", "thiserror", "toml"],
+        &["glam", "rayon", "schemars", "serde", "serde_json", "thiserror", "toml"],
     ),
     ("belvedere-studio", &["belvedere"], &["rayon", "serde", "serde_json"]),
     (

@@ -11,15 +11,15 @@ mod region;
 #[cfg(test)]
 mod tests;
 
-use crate::bodies::refusal;
-use crate::overlays::highlight::border;
 use crate::scene_file::{ConstructorDoc, ConstructorKind, Fallback, FallbackKind, SourceDocument};
 use crate::targets;
 use crate::{BelvedereError, Session};
 use belvedere_composite::canvas::Canvas;
 use belvedere_construct::rays::{Target, TargetSight};
 use belvedere_core::{DVec2, DVec3, Pinhole, View, Warning, WarningKind};
+use belvedere_overlay::highlight::border;
 use belvedere_scene::{Color, Frame, LayerKind, Scene};
+use belvedere_sight::refusal;
 use in_sight::Judge;
 use occluders::{Extent, Part};
 use schemars::JsonSchema;

@@ -1,10 +1,10 @@
 //! Drawing of moving pictures.
 
 use super::rate::Quality;
-use crate::overlays::{grid, widths};
 use crate::{BelvedereError, Session, fallback, kept};
 use belvedere_core::View;
 use belvedere_io::budget;
+use belvedere_overlay::{grid, widths};
 use belvedere_scene::{Compositing, Frame, Instant, Layer, Progress, RenderJob, RenderOptions, Scene, Stylisation};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};

@@ -3,7 +3,7 @@
 
 use super::coarse;
 use super::rate::Quality;
-use crate::overlays::widths;
+use belvedere_overlay::widths;
 use belvedere_scene::{Layer, LayerKind, MeshLayer, MoleculeLayer, OwnLayer, Scene, VolumeModel};
 use std::sync::Arc;
 

@@ -2,10 +2,10 @@
 
 use super::AuxBuffer;
 use crate::BelvedereError;
-use crate::bodies::RigidLayers;
 use belvedere_core::{DVec3, View};
 use belvedere_io::open_exr::{self, Channel};
 use belvedere_scene::Frame;
+use belvedere_sight::RigidLayers;
 use std::path::Path;
 
 /// Displaced minus world position of every pixel, NaN where the pixel shows no surface.

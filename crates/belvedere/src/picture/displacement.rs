@@ -1,9 +1,9 @@
 //! Displacement of the points in a picture.
 
-use crate::bodies::RigidLayers;
-use crate::overlays::badge;
 use belvedere_core::{DVec2, DVec3, View};
+use belvedere_overlay::badge;
 use belvedere_scene::{Frame, PictureRows, PixelGrid, RenderError, Unit};
+use belvedere_sight::RigidLayers;
 use rayon::prelude::*;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -8,11 +8,8 @@ use super::plan::{self, Pass, Plan};
 use super::sidecar::{MoleculeRecord, OverlayRecord, Picture, SeeThroughRecord, Sidecar, TerrainRecord};
 use super::volume_record::VolumeRecord;
 use super::{furniture, nothing_seen, transparent, vectors};
-use crate::bodies::RigidLayers;
 use crate::fallback::{self, FallbackPicture, FallbackPlan, FallbackRecord};
 use crate::guard::guarded;
-use crate::overlays::furniture::FurnitureRecord;
-use crate::overlays::{camera, ghost, heat, highlight, thin};
 use crate::record::{self, InputFile, ViewRecord};
 use crate::scene_file::Document;
 use crate::vectors::{Furnish, VectorContent, VectorPicture};
@@ -20,8 +17,11 @@ use crate::{BelvedereError, CameraPicture, Session, kept};
 use belvedere_composite::canvas::Canvas;
 use belvedere_core::{View, Warning};
 use belvedere_io::budget;
+use belvedere_overlay::furniture::FurnitureRecord;
+use belvedere_overlay::{camera, ghost, heat, highlight, thin};
 use belvedere_scene::Instant;
 use belvedere_scene::{Frame, FrameStats, Progress, RenderJob, RenderOptions, Scene, Unit};
+use belvedere_sight::RigidLayers;
 
 impl Session {
     /// Draws the session's view, or its camera.

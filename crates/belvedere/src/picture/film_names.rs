@@ -2,10 +2,10 @@
 
 use super::options::PictureOptions;
 use super::plan::{self, Pass, Plan};
-use crate::overlays::furniture::with_distances;
 use crate::{BelvedereError, Session};
 use belvedere_composite::marks::{Marks, NameMemory, Patience};
 use belvedere_composite::traced_marks::next_names;
+use belvedere_overlay::furniture::with_distances;
 use belvedere_scene::Progress;
 
 /// Whether the names of a film of a session can be placed beforehand: whether it has any, and every frame is one drawing of the scene.

@@ -2,10 +2,10 @@
 
 use super::{Picture, PictureOptions, TargetPlace};
 use crate::fallback::in_sight::Judge;
-use crate::overlays::{contour, ring};
 use crate::{BelvedereError, Session};
 use belvedere_construct::rays::{BendReport, Target};
 use belvedere_core::{DVec3, View};
+use belvedere_overlay::{contour, ring};
 use belvedere_scene::{Frame, Light, Progress, RenderJob, RenderOptions, Scene};
 
 /// Draws scenes in the quality of a session's pictures without marks and shadows, to tell what is seen where.

@@ -1,8 +1,8 @@
 //! The warning about a picture that shows nothing of any layer, as of an eye whose position is given in degrees.
 
 use crate::fallback::has_volumes;
-use crate::overlays::length;
 use belvedere_core::{DVec3, View, Warning, WarningKind};
+use belvedere_overlay::length;
 use belvedere_scene::{Crs, Frame, Scene, Unit};
 
 /// The warning; `None` where the picture shows something, and for volumes, through which one may see.

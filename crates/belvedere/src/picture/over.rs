@@ -5,10 +5,10 @@ use super::options::PictureOptions;
 use super::plan::Plan;
 use super::sidecar::OverlayRecord;
 use crate::Session;
-use crate::overlays::highlight::HighlightRecord;
-use crate::overlays::{badge, curve_inset, heat, highlight};
 use crate::scene_file::Inset;
 use belvedere_composite::canvas::Canvas;
+use belvedere_overlay::highlight::HighlightRecord;
+use belvedere_overlay::{badge, curve_inset, heat, highlight};
 
 /// Distance between legends, pixels.
 const GAP: f64 = 10.0;

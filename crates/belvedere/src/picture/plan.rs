@@ -2,15 +2,15 @@
 
 use super::options::PictureOptions;
 use super::{AuxBuffer, furniture};
-use crate::bodies::RigidLayers;
-use crate::overlays::furniture::{Plan as Furniture, with_distances};
-use crate::overlays::{grid, highlight, thin, widths};
 use crate::scene_file::HighlightMark;
 use crate::vectors::VectorContent;
 use crate::{BelvedereError, Session};
 use belvedere_core::View;
 use belvedere_disocclusion::report::Covered;
+use belvedere_overlay::furniture::{Plan as Furniture, with_distances};
+use belvedere_overlay::{grid, highlight, thin, widths};
 use belvedere_scene::{Aux, Frame, Progress, RenderJob, RenderOptions, Scene, Stylisation};
+use belvedere_sight::RigidLayers;
 use std::borrow::Cow;
 
 /// A drawing of the scene for a picture.
@@ -76,7 +76,8 @@ impl<'a> Plan<'a> {
         progress: &'a Progress,
     ) -> Result<Self, BelvedereError> {
         let stated = &session.resolved.overlay;
-        let (highlight, heatmap) = highlight::chosen((&request.highlight, request.heatmap), stated)?;
+        let (highlight, heatmap) =
+            highlight::chosen((&request.highlight, request.heatmap), stated).map_err(BelvedereError::Highlight)?;
         let grid = request.grid.or(grid::stated(stated));
         let wanted = Wanted {
             ghost: (request.ghost || stated.ghost) && view.is_bent(),

@@ -4,7 +4,6 @@ use super::solving::{Prepared, Solving};
 use super::wall::{self, WallReport};
 use super::{centreline, path};
 use crate::BelvedereError;
-use crate::bodies::refusal;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{ConstructorDoc, ConstructorKind, SourceDocument, StageDoc};
 use crate::targets;
@@ -19,6 +18,7 @@ use belvedere_core::{EarthCurvature, Stage, View};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_io::InputFile;
 use belvedere_scene::{LayerKind, Scene};
+use belvedere_sight::refusal;
 use serde::{Deserialize, Serialize};
 
 /// Time for which a film shows a probe after all of its turns are complete, seconds.

@@ -3,7 +3,7 @@
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
 use super::{areas, boxes, builtin, by_property, city, dem, edge, fonts, mesh, molecule, named, sea, vectors, volume};
-use crate::record::{AreaRecord, LayerNotes};
+use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
     AutoOrLength, HeightUnit, LayerDoc, LineDoc, Origin, PaletteDoc, Paths, PointLayerDoc, PositionDoc, RouteDoc,
@@ -18,6 +18,7 @@ use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
 use belvedere_io::{DrapeRequest, split_table};
 use belvedere_io::{InputFile, Loaded};
+use belvedere_overlay::notes::LayerNotes;
 use belvedere_scene::{
     Climate, Contours, Crs, DistanceMarkers, Drape, Drawing, FontFile, Heightfield, Layer, LayerKind, LineFeature,
     LineLayer, Palette, PaletteName, PointLayer, PointStyle, Symbol, TerrainLayer, drape_polyline,

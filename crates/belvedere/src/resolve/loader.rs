@@ -3,7 +3,7 @@
 use super::builtin;
 use super::color::{color, optional_color};
 use crate::city_ground::OwnGround;
-use crate::record::{AreaRecord, LayerNotes};
+use crate::record::AreaRecord;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{LayerDoc, Origin, Paths};
 use crate::{BelvedereError, OpenOptions};
@@ -11,6 +11,7 @@ use belvedere_core::Warning;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
 use belvedere_io::{CityFile, InputFile, IoError, Loaded};
+use belvedere_overlay::notes::LayerNotes;
 use belvedere_scene::{Color, Drawing, LayerKind};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

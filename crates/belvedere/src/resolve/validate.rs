@@ -2,7 +2,6 @@
 
 use super::color::{Complaint, color, optional_color};
 use crate::BelvedereError;
-use crate::overlays::highlight;
 use crate::print::Sheet;
 use crate::scene_file::Fallback;
 use crate::scene_file::{
@@ -10,6 +9,7 @@ use crate::scene_file::{
     SourceDocument, StageDoc, SwitchOrLength, suggestion,
 };
 use belvedere_core::plain::number;
+use belvedere_overlay::highlight;
 use belvedere_scene::Unit;
 use std::collections::HashSet;
 
@@ -44,10 +44,7 @@ pub(crate) fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
         within("grid", spacing, 0.0, 1e9).map_err(|(key, reason)| source.error(&["overlay", key], reason))?;
     }
     if let Some(doc) = &source.document.print {
-        Sheet::of(doc, None, source.document.camera.image).map_err(|e| match e {
-            BelvedereError::Paper { key, reason } => source.error(&["print", key], reason).into(),
-            other => other,
-        })?;
+        Sheet::of(doc, None, source.document.camera.image).map_err(|e| source.error(&["print", e.key], e.reason))?;
     }
     if let Some(doc) = &source.document.furniture {
         furniture(doc, &ids).map_err(|(key, reason)| source.error(&["furniture", key], reason))?;

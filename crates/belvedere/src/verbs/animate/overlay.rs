@@ -3,10 +3,10 @@
 use super::clock::RouteTimes;
 use crate::Session;
 use crate::film::{DrawnGround, Following};
-use crate::overlays::{INK, PAPER};
 use crate::scene_file::AnimationDoc;
 use belvedere_composite::canvas::{Canvas, text_size};
 use belvedere_core::{DVec2, View, Warning, WarningKind};
+use belvedere_overlay::{INK, PAPER};
 use belvedere_scene::{Color, Frame, Scene};
 use serde::{Deserialize, Serialize};
 
