@@ -1,10 +1,6 @@
 //! Cameras of the frames of an animation.
 
 use crate::film::{Adjustment, Following, FollowingBends, RouteLine};
-use crate::resolve::constructor;
-use crate::resolve::solving::Memory;
-use crate::resolve::solving::Solving;
-use crate::resolve::{stages, validate};
 use crate::scene_file::{
     self, AnimationDoc, CameraDoc, Document, PointDoc, PresetsDoc, RaysStageDoc, SplitDoc, StageDoc, SweepDoc, TurnDoc,
     TurntableDoc,
@@ -14,6 +10,10 @@ use crate::{BelvedereError, Session};
 use belvedere_construct::{Flight, FlightOptions};
 use belvedere_core::presets::BendFrame;
 use belvedere_core::{DVec2, DVec3};
+use belvedere_resolve::constructor;
+use belvedere_resolve::solving::Memory;
+use belvedere_resolve::solving::Solving;
+use belvedere_resolve::{stages, validate};
 use belvedere_scene::{LayerKind, Progress, Scene};
 use glam::DQuat;
 use serde::Deserialize;

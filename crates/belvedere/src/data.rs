@@ -3,8 +3,6 @@
 mod tiles;
 
 use crate::record::{AreaRecord, InputFile};
-use crate::resolve::vectors::{FeatureKind, kind_of, kinds_of};
-use crate::resolve::{self, LayerRequest};
 use crate::scene_file::paths::{Roots, folder_of};
 use crate::scene_file::request::Stated;
 use crate::scene_file::{
@@ -19,6 +17,8 @@ use belvedere_io::load_vectors;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::{join_table, split_table};
 use belvedere_overlay::notes::LayerNotes;
+use belvedere_resolve::vectors::{FeatureKind, kind_of, kinds_of};
+use belvedere_resolve::{self, LayerRequest};
 use belvedere_scene::{Hidden, Layer, Scene, Unit};
 use std::collections::BTreeMap;
 use std::mem::take;
@@ -156,7 +156,7 @@ impl DataFiles {
             text: text.as_ref(),
             ..LayerRequest::new(&Origin::MEMORY, &layers, crs, &roots)
         };
-        let loaded = resolve::load(request, &options)?;
+        let loaded = belvedere_resolve::load(request, &options)?;
         let (inputs, warnings, areas, original) = (loaded.inputs, loaded.warnings, loaded.areas, loaded.original);
         let notes = loaded.notes;
         let scene = Scene {
@@ -167,7 +167,7 @@ impl DataFiles {
             drawings: loaded.drawings,
             ..Scene::default()
         };
-        resolve::fill_surfaces(&mut layers, &scene);
+        belvedere_resolve::fill_surfaces(&mut layers, &scene);
         Ok(Data { scene: Arc::new(scene), warnings, original, rivers, areas, notes, inputs, layers, text, roots })
     }
 }

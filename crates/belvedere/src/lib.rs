@@ -145,14 +145,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod advice;
 pub mod answers;
 mod camera_path;
-mod city_blocks;
-mod city_ground;
 pub mod city_map;
 mod data;
-mod error;
 pub mod export;
 pub mod fallback;
 mod film;
@@ -161,7 +157,6 @@ mod kept;
 pub mod live;
 mod names;
 mod open;
-mod options;
 pub mod output;
 pub mod pick;
 pub mod picture;
@@ -169,14 +164,10 @@ pub mod placed;
 pub mod places;
 pub mod record;
 pub mod renderers;
-mod resolve;
 mod session;
-pub mod targets;
 pub mod threads;
-pub mod trust;
 pub mod verbs;
 
-pub use advice::Advice;
 pub use belvedere_builtin as builtin;
 pub use belvedere_composite as composite;
 pub use belvedere_construct as construct;
@@ -193,17 +184,14 @@ pub use belvedere_overlay::camera::CameraPicture;
 pub use belvedere_overlay::furniture::{CompassRecord, FurnitureRecord, ScaleRecord};
 pub use belvedere_overlay::highlight::{GhostRecord, HighlightRecord, PartRecord};
 pub use belvedere_overlay::{sheet as print, vectors};
+pub use belvedere_resolve::{Advice, BelvedereError, Needs, OpenOptions, Trust, by_property, targets, trust};
 pub use belvedere_scene as scene;
 pub use belvedere_sight as sight;
 pub use data::{DataFiles, LARGEST_HOLE};
-pub use error::BelvedereError;
-pub use options::{Needs, OpenOptions};
 pub use picture::{DisplacementReport, Picture, PictureOptions, Sidecar};
 pub use renderers::SharedRenderer;
 pub use request::RendererName;
-pub use resolve::by_property;
 pub use session::Session;
-pub use trust::Trust;
 
 /// Version of the program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -1,12 +1,6 @@
 //! Opens scene files and documents as sessions.
 
 use crate::guard::guarded;
-use crate::options::show_molecules;
-use crate::resolve::constructor;
-use crate::resolve::motion::Motions;
-use crate::resolve::solving::Memory;
-use crate::resolve::solving::Solving;
-use crate::resolve::{self, LayerRequest, hidden, representations, validate};
 use crate::scene_file::camera::set_camera;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
@@ -17,6 +11,12 @@ use crate::{BelvedereError, Needs, OpenOptions, Session};
 use belvedere_construct::views::outline;
 use belvedere_core::{Aabb, DVec3, Navigation, Pinhole, Projection, Warning, WarningKind};
 use belvedere_io::crs::utm_epsg;
+use belvedere_resolve::constructor;
+use belvedere_resolve::motion::Motions;
+use belvedere_resolve::show_molecules;
+use belvedere_resolve::solving::Memory;
+use belvedere_resolve::solving::Solving;
+use belvedere_resolve::{self, LayerRequest, hidden, representations, validate};
 use belvedere_scene::{Crs, Scene};
 use std::path::Path;
 use std::sync::Arc;
@@ -53,7 +53,11 @@ impl Session {
         allowed.extend(source.of_files.iter().flatten().cloned());
         document.camera.image = options.image.unwrap_or(document.camera.image);
         if options.sky.is_some() || options.haze.is_some() {
-            resolve::check_air(&LightDoc { sky: options.sky.clone(), haze: options.haze, ..LightDoc::default() })?;
+            belvedere_resolve::check_air(&LightDoc {
+                sky: options.sky.clone(),
+                haze: options.haze,
+                ..LightDoc::default()
+            })?;
             let light = document.light.get_or_insert_default();
             light.sky = options.sky.clone().or(light.sky.take());
             light.haze = options.haze.or(light.haze);
@@ -73,7 +77,7 @@ impl Session {
         for layer in &mut document.layer {
             match (layer, options) {
                 (LayerDoc::Area(area), OpenOptions { area_style: Some(kind), .. }) => {
-                    resolve::restyle(&mut area.style, *kind);
+                    belvedere_resolve::restyle(&mut area.style, *kind);
                 }
                 (LayerDoc::Terrain(terrain), OpenOptions { sea, contours, edge, .. }) => {
                     let style = &mut terrain.style;
@@ -97,7 +101,7 @@ impl Session {
             words: &document.title,
             ..LayerRequest::new(&source.origin, &document.layer, &document.crs, &roots)
         };
-        let mut loaded = resolve::load(request, options)?;
+        let mut loaded = belvedere_resolve::load(request, options)?;
         let (title, crs, unit) = (document.title.clone(), loaded.crs, document.unit);
         let representations = representations::of(&source, &roots)?;
         let (layers, fonts, drawings) = (loaded.layers, loaded.fonts, loaded.drawings);
@@ -107,7 +111,7 @@ impl Session {
             show_all(&mut source.document, &scene)?;
             loaded.warnings.push(Warning::new(WarningKind::Assumed, NO_VIEW));
         }
-        resolve::fill_surfaces(&mut source.document.layer, &scene);
+        belvedere_resolve::fill_surfaces(&mut source.document.layer, &scene);
         let (mut scene, mut inputs) = (Arc::new(scene), loaded.inputs);
         let motions = Motions::read(&source, &roots, &scene, &mut inputs)?.map(Arc::new);
         if let Some(motions) = &motions {

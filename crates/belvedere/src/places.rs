@@ -7,11 +7,11 @@
 //! Where the place as written lies farther from the ground than the ground is large, and with its two numbers exchanged it lies on the
 //! ground or near it, the exchanged place is taken, and a warning says so.
 
-use crate::resolve::ground::Ground;
 pub use crate::scene_file::place::{Place, PlaceHeight, PlacePosition};
 use crate::{BelvedereError, Session};
 use belvedere_core::{DVec2, DVec3, Warning, WarningKind};
 use belvedere_io::terrain::OriginalTerrain;
+use belvedere_resolve::ground::Ground;
 use belvedere_scene::{Crs, Scene};
 use std::fmt;
 

@@ -3,6 +3,7 @@
 use crate::BelvedereError;
 use belvedere_core::{Projection, View};
 pub use belvedere_io::InputFile;
+pub use belvedere_resolve::AreaRecord;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -23,19 +24,6 @@ pub(crate) fn inputs(files: &[InputFile]) -> Result<Vec<InputFile>, BelvedereErr
         }
     }
     Ok(out)
-}
-
-/// Surface that the areas of a layer are drawn as, and its source.
-#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
-pub struct AreaRecord {
-    /// Id of the layer.
-    pub layer: String,
-    /// Surface: water, forest, glacier, park, outline, plain.
-    pub kind: &'static str,
-    /// Number of areas.
-    pub areas: usize,
-    /// Source of this choice.
-    pub why: String,
 }
 
 /// The pinhole in numbers.

@@ -89,6 +89,22 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
         &["glam", "pulp", "rayon", "thiserror", "tracing"],
     ),
     (
+        "belvedere-resolve",
+        &[
+            "belvedere-builtin",
+            "belvedere-composite",
+            "belvedere-construct",
+            "belvedere-core",
+            "belvedere-disocclusion",
+            "belvedere-document",
+            "belvedere-io",
+            "belvedere-overlay",
+            "belvedere-scene",
+            "belvedere-sight",
+        ],
+        &["glam", "rayon", "schemars", "serde", "serde_json", "thiserror", "toml"],
+    ),
+    (
         "belvedere",
         &[
             "belvedere-builtin",
@@ -100,6 +116,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
             "belvedere-document",
             "belvedere-io",
             "belvedere-overlay",
+            "belvedere-resolve",
             "belvedere-scene",
             "belvedere-sight",
         ],

@@ -1,11 +1,11 @@
 //! Visible share of a target in a picture, pixel by pixel.
 
 use super::{Draw, SAME_DEPTH, occluders};
-use crate::resolve::constructor;
-use crate::targets;
 use crate::{BelvedereError, Session};
 use belvedere_construct::rays::Target;
 use belvedere_core::{DVec2, DVec3, View};
+use belvedere_resolve::constructor;
+use belvedere_resolve::targets;
 use belvedere_scene::{Frame, Scene};
 
 /// Number of the part of a city's mesh that is its level ground.

@@ -12,12 +12,12 @@ mod region;
 mod tests;
 
 use crate::scene_file::{ConstructorDoc, ConstructorKind, Fallback, FallbackKind, SourceDocument};
-use crate::targets;
 use crate::{BelvedereError, Session};
 use belvedere_composite::canvas::Canvas;
 use belvedere_construct::rays::{Target, TargetSight};
 use belvedere_core::{DVec2, DVec3, Pinhole, View, Warning, WarningKind};
 use belvedere_overlay::highlight::border;
+use belvedere_resolve::targets;
 use belvedere_scene::{Color, Frame, LayerKind, Scene};
 use belvedere_sight::refusal;
 use in_sight::Judge;

@@ -1,10 +1,10 @@
 //! The representations that the sections of a document name, kept while nothing changes that they depend on.
 
 use crate::BelvedereError;
-use crate::resolve::representations;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{Document, PresetsDoc, SourceDocument, StageDoc};
 use belvedere_core::presets::BUILTIN_NAMES;
+use belvedere_resolve::representations;
 use belvedere_scene::Representation;
 use std::collections::BTreeMap;
 

@@ -4,9 +4,9 @@ use super::moving::quick;
 use super::rate::Quality;
 use super::thin::Thin;
 use crate::placed::Place;
-use crate::resolve::solving::Memory;
 use crate::scene_file::{Document, camera};
 use crate::{BelvedereError, OpenOptions, Session};
+use belvedere_resolve::solving::Memory;
 use belvedere_scene::{Frame, LayerKind, Progress};
 use std::sync::Arc;
 

@@ -2,11 +2,11 @@
 
 use super::options::PictureOptions;
 use crate::Session;
-use crate::resolve::ground::Ground;
 use crate::scene_file::Corner;
 use belvedere_core::{DVec2, View};
 use belvedere_overlay::furniture::{self, Plan, Subject};
 use belvedere_overlay::{curve_inset, heat};
+use belvedere_resolve::ground::Ground;
 use belvedere_scene::{Scene, Unit};
 
 /// Sizes that the mark of bent pictures, the legend of the heat map and that of highlights may take.

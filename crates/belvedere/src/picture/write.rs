@@ -132,7 +132,7 @@ impl Picture {
         let solved = self.view.ground();
         let (Some(solved), Some(_)) = (solved, &self.sidecar.disocclusion) else { return Ok(None) };
         let path = delta_path(out);
-        crate::resolve::delta::write(&path, solved.grid(), self.crs, overwrite)?;
+        belvedere_resolve::delta::write(&path, solved.grid(), self.crs, overwrite)?;
         let mut this = self.clone();
         for stage in this.sidecar.scene.iter_mut().flat_map(|scene| &mut scene.stage) {
             if let StageDoc::TerrainDisocclusion(doc) = stage {

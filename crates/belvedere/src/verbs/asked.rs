@@ -4,7 +4,7 @@ use crate::picture::{PictureOptions, THRESHOLDS};
 use crate::print::Sheet;
 use crate::renderers;
 use crate::request::{Animate, Drawing, Outside, Paper, Render};
-use crate::scene_file::{Document, PaletteDoc, SourceDocument, SwitchOrLength};
+use crate::scene_file::{Document, SourceDocument, SwitchOrLength};
 use crate::verbs::animate::AnimateRequest;
 use crate::{Advice, BelvedereError, CameraPicture, OpenOptions, Session};
 use belvedere_core::Warning;
@@ -134,23 +134,4 @@ pub fn film(
         overwrite,
         part: asked.part.map(|[first, last]| first..=last),
     })
-}
-
-impl OpenOptions {
-    /// The options with what a picture is asked to show otherwise than its scene says.
-    pub fn showing(self, asked: &Render) -> Self {
-        let air = &asked.air;
-        Self {
-            palette: asked.palette.as_deref().map(PaletteDoc::of),
-            sky: air.sky.clone(),
-            haze: air.haze,
-            furniture: Some(air.furnishing.wish()),
-            area_style: asked.area_style,
-            sea: asked.no_sea.then_some(false),
-            // A straight picture does not need the ground solved.
-            unsolved: asked.drawing.straight,
-            molecule: asked.molecules.clone(),
-            ..self.airy(air)
-        }
-    }
 }

@@ -9,7 +9,6 @@ pub use volume::VolumeInfo;
 
 use crate::BelvedereError;
 use crate::guard::guarded;
-use crate::resolve::builtin;
 use crate::scene_file::VerticalUnit;
 use belvedere_core::DVec2;
 use belvedere_core::{Warning, WarningKind};
@@ -19,6 +18,7 @@ use belvedere_io::vector::{Geometry, Vectors};
 use belvedere_io::{GeoTiff, Limits, Loaded};
 use belvedere_io::{LiftedBy, load_vectors};
 use belvedere_io::{join_table, split_table};
+use belvedere_resolve::builtin;
 use belvedere_scene::Progress;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -319,7 +319,7 @@ impl InfoRequest {
     fn terrain(&self, path: &Path) -> Result<TerrainRequest, BelvedereError> {
         let code = |text: &String| {
             let reason = format!("source_crs \"{text}\" is not known; give EPSG:n");
-            crate::resolve::ground::epsg(text).ok_or_else(|| belvedere_io::IoError::format(path, reason))
+            belvedere_resolve::ground::epsg(text).ok_or_else(|| belvedere_io::IoError::format(path, reason))
         };
         Ok(TerrainRequest {
             source_crs: self.source_crs.as_ref().map(code).transpose()?,

@@ -1,9 +1,9 @@
 //! Times along the route of a film, from the GPX files of its layer.
 
 use crate::film::RouteLine;
-use crate::resolve::ground::Ground;
 use crate::scene_file::LayerDoc;
 use crate::{Session, scene_file};
+use belvedere_resolve::ground::Ground;
 
 /// Distance along the route and time, both rising.
 #[derive(Debug, Clone, PartialEq)]

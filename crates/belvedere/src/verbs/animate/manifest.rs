@@ -5,10 +5,10 @@ use crate::camera_path::CameraPath;
 use crate::output;
 use crate::picture::{DisplacementReport, PictureOptions};
 use crate::record::{self, InputFile, ViewRecord};
-use crate::resolve::constructor::ConstructorReport;
 use crate::scene_file::{AnimationDoc, Document};
 use crate::{BelvedereError, Session};
 use belvedere_disocclusion::TerrainReport;
+use belvedere_resolve::constructor::ConstructorReport;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 

@@ -1,9 +1,9 @@
 //! Bends of target tracking, planned over all frames of a film before the first is drawn.
 
 use crate::camera_path::CameraPath;
-use crate::resolve::constructor;
 use crate::{BelvedereError, Session};
 use belvedere_construct::rays::{FilmPlanner, PlannedBend};
+use belvedere_resolve::constructor;
 use belvedere_scene::Progress;
 
 /// The bend of every frame: to the left and right where that shows the whole target throughout, else also up and diagonally.

@@ -3,8 +3,6 @@
 mod read;
 
 use crate::answers;
-use crate::city_blocks;
-use crate::city_ground::Bases;
 use crate::city_map::overview::{Panel, overview};
 use crate::city_map::{MapPicture, bounds, map_picture};
 use crate::guard::guarded;
@@ -17,6 +15,8 @@ use belvedere_core::DVec2;
 use belvedere_core::Warning;
 use belvedere_io::city_write::{BlockFigures, write_city_json};
 use belvedere_io::png;
+use belvedere_resolve::city_blocks;
+use belvedere_resolve::city_ground::Bases;
 use belvedere_scene::Progress;
 use belvedere_scene::city::City;
 use schemars::JsonSchema;

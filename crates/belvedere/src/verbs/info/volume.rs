@@ -1,9 +1,9 @@
 //! Description of a volume file.
 
 use crate::BelvedereError;
-use crate::resolve::volume::{made, one_value};
 use belvedere_core::Warning;
 use belvedere_io::{Number, VolumeRequest, load_volume};
+use belvedere_resolve::volume::{made, one_value};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::Path;

@@ -6,7 +6,8 @@ use crate::scene_file::{
     Document, FurnitureWish, LayerDoc, LightDoc, OneOrTwo, OverlayDoc, PlaneDoc, ReliefStageDoc, StageDoc,
     StylisationDoc,
 };
-use crate::{BelvedereError, OpenOptions, Session, resolve};
+use crate::{BelvedereError, OpenOptions, Session};
+use belvedere_resolve as resolve;
 use belvedere_scene::{Crs, Edge, Heightfield, LayerKind, Relief, Scene, Sky};
 use std::sync::Arc;
 

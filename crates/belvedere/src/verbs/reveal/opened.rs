@@ -6,15 +6,15 @@ use super::request::{IMAGE, Request};
 use super::subject::{self, Meant, Targets};
 use crate::picture::TargetPlace;
 use crate::places::{Place, PlaceHeight};
-use crate::resolve::ground::unbent;
 use crate::scene_file::EarthDoc;
-use crate::targets;
 use crate::verbs::MODELS_FOV_Y_DEG;
 use crate::{Advice, BelvedereError, OpenOptions, Session};
 use belvedere_construct::rays::{Sidestep, TargetSight};
 use belvedere_construct::views::{self, Content, Refit};
 use belvedere_construct::{ConstructError, RevealMemory, RevealOptions, Revealed};
 use belvedere_core::{DVec3, Pinhole, Projection, View, Warning};
+use belvedere_resolve::ground::unbent;
+use belvedere_resolve::targets;
 use belvedere_scene::Unit;
 
 /// See the module.

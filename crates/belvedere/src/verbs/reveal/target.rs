@@ -9,9 +9,7 @@ use super::opened::Opened;
 use super::request::Request;
 use crate::fallback::has_volumes;
 use crate::picture::{PictureOptions, TargetPlace};
-use crate::resolve::rays::sidestep_stage;
 use crate::scene_file::{CameraDoc, ConstructorDoc, ConstructorKind, Document, StageDoc};
-use crate::targets;
 use crate::verbs::spline_stage;
 use crate::{Advice, BelvedereError, Session};
 use belvedere_construct::Revealed;
@@ -20,6 +18,8 @@ use belvedere_construct::rays::{BendReport, Sidestep, Target, TargetSight};
 use belvedere_construct::reveal::{Choice, thresholds};
 use belvedere_construct::views::RefitRecord;
 use belvedere_core::{Pinhole, View};
+use belvedere_resolve::rays::sidestep_stage;
+use belvedere_resolve::targets;
 
 /// Draws the target of a request.
 pub(super) fn reveal(request: &Request<'_>) -> Result<RevealAnswer, BelvedereError> {

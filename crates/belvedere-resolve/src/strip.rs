@@ -1,0 +1,136 @@
+//! Stages that unroll a strip along a route.
+
+use super::context::{StageContext, plane};
+use crate::BelvedereError;
+use belvedere_core::map::spline::default_pivot;
+use belvedere_core::map::strip::{SmoothedRoute, Strip, StripError};
+use belvedere_core::{DVec2, Stage};
+use belvedere_core::{Warning, WarningKind};
+use belvedere_document::{StageDoc, StripStageDoc, Table};
+use serde::Serialize;
+
+/// Default half width as a share of the route's length in plan.
+const WIDTH: f64 = 0.1;
+
+/// Report of a strip.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StripReport {
+    /// Length of the smoothed route, scene units.
+    pub length_m: f64,
+    /// Largest distance from it that is drawn, scene units.
+    pub half_width_m: f64,
+    /// Its least radius of curvature, scene units; `None` if it is straight.
+    pub least_radius_m: Option<f64>,
+    /// Standard deviation of the average that smoothed it, scene units.
+    pub smoothing_m: f64,
+    /// Largest distance of the route from the smoothed one, scene units.
+    pub smoothed_off_m: f64,
+    /// Position in plan of that largest distance, scene units.
+    pub smoothed_off_at: [f64; 2],
+}
+
+/// The stage, its document and its report.
+pub(super) fn resolve(
+    context: &StageContext<'_>,
+    doc: &StripStageDoc,
+    warnings: &mut Vec<Warning>,
+    at: Table<'_>,
+) -> Result<(Stage, StageDoc, StripReport), BelvedereError> {
+    let (points, named) = route(context, doc, at)?;
+    let length: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
+    let half_width = doc.half_width_m.unwrap_or(WIDTH * length);
+    let fail = |e: StripError| at.error(&[key(&e, named)], words(&e));
+    let route = SmoothedRoute::new(&points, half_width, doc.smoothing_m).map_err(fail)?;
+    let anchor = match doc.anchor {
+        Some(anchor) => DVec2::from_array(anchor),
+        None => looked_at(context),
+    };
+    let report = StripReport {
+        length_m: route.curve.length(),
+        half_width_m: half_width,
+        least_radius_m: Some(1.0 / route.curve.largest_curvature()).filter(|r| r.is_finite()),
+        smoothing_m: route.smoothing,
+        smoothed_off_m: route.off,
+        smoothed_off_at: route.off_at.to_array(),
+    };
+    if route.off > half_width {
+        let text = format!(
+            "stage strip: the route itself leaves the strip: at ({:.1}, {:.1}) it is {:.1} from the smoothed route, the half width is {half_width:.1}; \
+             what lies outside is not drawn: take a narrower strip, which needs less smoothing, or a route with fewer turns",
+            route.off_at.x, route.off_at.y, route.off
+        );
+        let warning = Warning::new(WarningKind::Hidden, text).about("strip").with("off_m", route.off);
+        warnings.push(warning.with("half_width_m", half_width));
+    }
+    let share = doc.share.unwrap_or(1.0);
+    let strip = Strip::new(route.curve, half_width, share, anchor).map_err(fail)?;
+    let document = StripStageDoc {
+        half_width_m: Some(half_width),
+        share: Some(share),
+        anchor: Some(strip.anchor().to_array()),
+        smoothing_m: Some(route.smoothing),
+        ..doc.clone()
+    };
+    Ok((Stage::Strip(strip), StageDoc::Strip(document), report))
+}
+
+/// The route in plan, and the key that names it.
+fn route(
+    context: &StageContext<'_>,
+    doc: &StripStageDoc,
+    at: Table<'_>,
+) -> Result<(Vec<DVec2>, &'static str), BelvedereError> {
+    let id = match (&doc.along, &doc.path) {
+        (Some(id), None) => id,
+        (None, Some(path)) => return Ok((path.iter().copied().map(DVec2::from_array).collect(), "path")),
+        (along, _) => {
+            let given = if along.is_some() { "both are given" } else { "neither is given" };
+            return Err(at.error(&["along"], format!("a strip needs along or path, {given}; give exactly one")).into());
+        }
+    };
+    let layers = &context.source.document.layer;
+    let Some(layer) = context.scene.layers.iter().find(|l| l.id == *id) else {
+        let ids: Vec<&str> = layers.iter().map(|l| l.id()).collect();
+        let hint = belvedere_document::suggestion(id, &ids);
+        return Err(at.error(&["along"], format!("a strip along \"{id}\": there is no such layer ({hint})")).into());
+    };
+    let Some(line) = layer.kind.lines() else {
+        return Err(at
+            .error(&["along"], format!("a strip along \"{id}\": the layer is no line; name a layer of kind line"))
+            .into());
+    };
+    let gap = context.ground.terrain.map_or(1.0, |t| 20.0 * t.spacing().max_element());
+    Ok((line.longest_chain(gap).iter().map(|p| p.truncate()).collect(), "along"))
+}
+
+/// Point that the camera looks at, in plan.
+fn looked_at(context: &StageContext<'_>) -> DVec2 {
+    let pinhole = &context.camera.pinhole;
+    let met = || {
+        let at = Table { origin: &context.source.origin, list: "stage", index: 0 };
+        plane(context, None, at).map_or(pinhole.eye, |(plane, _)| default_pivot(pinhole, &plane))
+    };
+    context.camera.look_at.unwrap_or_else(met).truncate()
+}
+
+/// The error with the keys of the document.
+fn words(error: &StripError) -> String {
+    let text = error.to_string();
+    match error {
+        StripError::Range { key: short, .. } => text.replacen(short, key(error, short), 1),
+        _ => text,
+    }
+}
+
+/// Key of the document to which an error refers.
+fn key(error: &StripError, route: &'static str) -> &'static str {
+    match error {
+        StripError::Range { key: "half_width", .. } | StripError::Radius { .. } | StripError::Overlap { .. } => {
+            "half_width_m"
+        }
+        StripError::Range { key: "smoothing", .. } => "smoothing_m",
+        StripError::Range { key, .. } => key,
+        StripError::TooFine { .. } => "half_width_m",
+        _ => route,
+    }
+}
