@@ -75,6 +75,11 @@ impl Field {
         Ok(Self { cols, rows, north_west, spacing, heights, void, range })
     }
 
+    /// Grid coordinates of the node with an index, row-major.
+    pub fn node(&self, i: usize) -> DVec2 {
+        DVec2::new((i % self.cols) as f64, (i / self.cols) as f64)
+    }
+
     /// Columns.
     pub fn cols(&self) -> usize {
         self.cols

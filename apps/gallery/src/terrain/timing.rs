@@ -94,8 +94,7 @@ impl PaperGrid {
     }
 
     fn summits(&self) -> impl Iterator<Item = DVec2> + '_ {
-        let cols = self.field.cols();
-        self.cells.summits().iter().map(move |&i| DVec2::new((i as usize % cols) as f64, (i as usize / cols) as f64))
+        self.cells.summits().iter().map(|&i| self.field.node(i as usize))
     }
 }
 

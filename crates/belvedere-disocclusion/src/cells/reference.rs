@@ -17,20 +17,12 @@ pub(super) fn partition(field: &Field, keep: usize) -> (Vec<u32>, BTreeMap<u32, 
         let inside = all.filter(move |&(x, y)| (x, y) != (c, r) && x >= 0 && y >= 0 && x < w && y < h);
         inside.map(move |(x, y)| (y * w + x) as usize).filter(|&j| !field.void()[j])
     };
-    let metres = |i: usize, j: usize| {
-        let d = |k: usize| belvedere_core::DVec2::new((k % cols) as f64, (k / cols) as f64) * field.spacing();
-        (d(i) - d(j)).length()
-    };
+    let metres = |i: usize, j: usize| (field.node(i) * field.spacing() - field.node(j) * field.spacing()).length();
     let step_up = |i: usize| {
         let up = touching(i).filter(|&j| higher(j, i)).map(|j| ((heights[j] - heights[i]) * (1.0 / metres(i, j)), j));
         up.max_by(|a, b| a.partial_cmp(b).unwrap()).map(|(_, j)| j)
     };
-    let summit = |mut i: usize| {
-        while let Some(j) = step_up(i) {
-            i = j;
-        }
-        i
-    };
+    let summit = |i: usize| std::iter::successors(Some(i), |&i| step_up(i)).last().unwrap_or(i);
     let region: BTreeMap<usize, usize> = nodes.iter().map(|&i| (i, summit(i))).collect();
 
     let mut saddles: BTreeMap<(usize, usize), usize> = BTreeMap::new();
@@ -63,11 +55,9 @@ pub(super) fn partition(field: &Field, keep: usize) -> (Vec<u32>, BTreeMap<u32, 
     ranked.sort_by(|&a, &b| (persistence(b), heights[b], b).partial_cmp(&(persistence(a), heights[a], a)).unwrap());
     let endless = ranked.iter().filter(|&&s| !died.contains_key(&s)).count();
     ranked.truncate(keep.max(endless));
-    let follow = |mut s: usize| {
-        while !ranked.contains(&s) {
-            s = died[&s].1;
-        }
-        s as u32
+    let follow = |s: usize| {
+        let mut into = std::iter::successors(Some(s), |s| Some(died[s].1));
+        into.find(|s| ranked.contains(s)).unwrap() as u32
     };
     let labels = (0..heights.len()).map(|i| region.get(&i).map_or(NO_CELL, |&s| follow(s))).collect();
     (labels, ranked.iter().map(|&s| (s as u32, persistence(s))).collect())

@@ -13,6 +13,7 @@ use super::waters::Waters;
 use crate::DisocclusionError;
 use crate::points::{RequiredFeature, required_features};
 use crate::rivers::RiverLine;
+use crate::smooth::SmoothError;
 use crate::spikes::{Spike, without_spikes};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Heightfield, Scene};
@@ -184,20 +185,9 @@ impl Prepared {
         let limited = (with_qp && settings.limits).then(|| Arc::new(LimitedTerrain::new(&level, &grid)));
         let cells = (settings.mode != SolverMode::Qp).then(|| {
             let keep = settings.cells.unwrap_or_else(|| Cells::default_count(&level));
-            let cells = Cells::new(&level, keep);
-            let blocks = BlockMaxima::new(&level);
-            Arc::new((cells, blocks))
+            Arc::new((Cells::new(&level, keep), BlockMaxima::new(&level)))
         });
-        let smooth = match &cells {
-            Some(parts) => {
-                let summit =
-                    |&i: &u32| DVec2::new((i as usize % level.cols()) as f64, (i as usize / level.cols()) as f64);
-                let rows: Vec<DVec2> =
-                    points.iter().map(|p| p.grid).chain(parts.0.summits().iter().map(summit)).collect();
-                Some(SmoothPass::new(grid.clone(), weights.w, settings.rows_weight, &rows)?)
-            }
-            None => None,
-        };
+        let smooth = cells.as_ref().map(|parts| smooth_pass(settings, weights.w, &grid, &points, (&level, &parts.0)));
         let made = |weights| {
             program(&level, &grid, weights, options(settings, false), &waters)
                 .map(|solver| Program { solver, foreign: false })
@@ -223,7 +213,7 @@ impl Prepared {
             check,
             limited,
             cells,
-            smooth,
+            smooth: smooth.transpose()?,
             still,
             moving,
         })
@@ -258,6 +248,19 @@ impl Prepared {
     pub(super) fn weights(&self) -> Weights {
         self.weights.on(&self.grid)
     }
+}
+
+/// The smooth pass, with elevation rows at the reference points and at the summits of the cells.
+pub(super) fn smooth_pass(
+    settings: &TerrainSettings,
+    w: f64,
+    grid: &Hierarchy,
+    points: &[ReferencePoint],
+    (field, cells): (&Field, &Cells),
+) -> Result<SmoothPass, SmoothError> {
+    let summits = cells.summits().iter().map(|&i| field.node(i as usize));
+    let rows: Vec<DVec2> = points.iter().map(|p| p.grid).chain(summits).collect();
+    SmoothPass::new(grid.clone(), w, settings.rows_weight, &rows)
 }
 
 /// Ground is cleared from this distance to a point on, grid cells: ground right before a point hides it too.

@@ -258,6 +258,7 @@ fn drop_at(earth: &EarthCurvature, p: DVec2) -> f64 {
 }
 
 /// Result of the passes.
+#[derive(Default)]
 struct Outcome {
     /// Displacement at the nodes of the solver's grid.
     coarse: Vec<f64>,

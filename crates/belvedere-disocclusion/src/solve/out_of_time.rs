@@ -7,13 +7,12 @@
 
 use super::super::metrics::{Judge, share_seen};
 use super::super::visibility_qp::{Candidate, QpProblem, QpSolver};
-use super::super::{BlockMaxima, Cells, Hierarchy, Naive, ReferencePoint, SmoothPass, SolverMode, TerrainSettings};
+use super::super::{BlockMaxima, Cells, Hierarchy, ReferencePoint, SolverMode, TerrainSettings};
 use super::ground::Ground;
-use super::memory::Prepared;
+use super::memory::{Prepared, smooth_pass};
 use super::passes::Passes;
 use super::{Outcome, PointsInView, Taken, delta_of, reporting};
 use crate::DisocclusionError;
-use belvedere_core::DVec2;
 
 /// Each solution demands one of this many candidates; the solutions are made in this order.
 const SAMPLES: [usize; 3] = [32, 8, 3];
@@ -152,17 +151,9 @@ impl Passes<'_> {
         let settings = TerrainSettings { mode: SolverMode::Paper, ..self.settings.clone() };
         let cells = Cells::new(field, settings.cells.unwrap_or_else(|| Cells::default_count(field)));
         let blocks = BlockMaxima::new(field);
-        let point = |&i: &usize| {
-            let p = prepared.points[i];
-            ReferencePoint { ground: field.surface_at(p.grid).unwrap_or(p.ground), ..p }
-        };
-        let points: Vec<ReferencePoint> = in_view.points.iter().map(point).collect();
-        let naive = Naive::new(field, &cells, Some(&blocks), &settings, self.eye, &points);
-        let summit = |&i: &u32| DVec2::new((i as usize % field.cols()) as f64, (i as usize / field.cols()) as f64);
-        let rows: Vec<DVec2> =
-            prepared.points.iter().map(|p| p.grid).chain(cells.summits().iter().map(summit)).collect();
+        let naive = self.naive(prepared, in_view, &settings, (&cells, &blocks));
         let w = settings.smoothness_on(&prepared.despiked);
-        let mut pass = SmoothPass::new(prepared.grid.clone(), w, settings.rows_weight, &rows)?;
+        let mut pass = smooth_pass(&settings, w, &prepared.grid, &prepared.points, (field, &cells))?;
         Ok(Some(pass.run(&naive.displacement(field, &cells), None, None).u))
     }
 }

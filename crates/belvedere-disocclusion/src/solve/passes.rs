@@ -1,10 +1,13 @@
 //! The passes of one frame, in the order of the mode.
 
 use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult, QpSolver};
-use super::super::{BlockMaxima, Field, Hierarchy, Naive, ReferencePoint, Smoother, SolverMode, TerrainSettings};
+use super::super::{
+    BlockMaxima, Cells, Field, Hierarchy, Naive, ReferencePoint, Smoother, SolverMode, TerrainSettings,
+};
 use super::agreement::Agreement;
 use super::fallback::{self, Fallback};
 use super::ground::Ground;
+use super::limits::LimitedTerrain;
 use super::memory::{self, Prepared, Weights};
 use super::waters::Waters;
 use super::{Outcome, PointsInView, QpReport, TerrainTimes, scales, since};
@@ -19,20 +22,6 @@ const PROGRAM_TIME: f64 = 0.6;
 
 /// Ground that sinks below the limits by more than this share of the relief is not refined.
 const FAR_BEYOND: f64 = 0.2;
-
-/// Arguments of the solution on finer grids.
-struct Finer<'a> {
-    /// The solver's grid.
-    coarse: &'a Hierarchy,
-    /// The undisplaced ground with its change of detail, at every node.
-    ground: &'a [f64],
-    detail: Option<&'a [f64]>,
-    weights: Weights,
-    waters: &'a Waters,
-    options: QpOptions,
-    /// Points by which the result is judged.
-    check: &'a [Candidate],
-}
 
 pub(super) struct Passes<'a> {
     pub(super) settings: &'a TerrainSettings,
@@ -56,20 +45,7 @@ impl Passes<'_> {
         in_view: &PointsInView<'_>,
         times: &mut TerrainTimes,
     ) -> Result<Outcome, DisocclusionError> {
-        let mut done = Outcome {
-            coarse: vec![0.0; prepared.grid.nodes()],
-            full: None,
-            fine: None,
-            limited: None,
-            fallbacks: Vec::new(),
-            greedy: None,
-            greedy_unresolved: Vec::new(),
-            qp: None,
-            qp_unresolved: Vec::new(),
-            stopped: false,
-            taken: None,
-            rows: Vec::new(),
-        };
+        let mut done = Outcome { coarse: vec![0.0; prepared.grid.nodes()], ..Outcome::default() };
         let (mut detail, mut samples) = (None, Vec::new());
         if prepared.cells.is_some() {
             detail = self.paper(prepared, in_view, &mut done, times)?;
@@ -146,14 +122,10 @@ impl Passes<'_> {
         self.progress.tick("greedy pass", 0.2)?;
         let began = Instant::now();
         let field = self.field;
-        // On a curved earth the ground under the points, and what bounds it, differs with the eye.
+        // On a curved earth what bounds the ground differs with the eye.
         let own = self.lowered.then(|| BlockMaxima::new(field));
-        let point = |&i: &usize| {
-            let p = prepared.points[i];
-            ReferencePoint { ground: field.surface_at(p.grid).unwrap_or(p.ground), ..p }
-        };
-        let points: Vec<ReferencePoint> = in_view.points.iter().map(point).collect();
-        let naive = Naive::new(field, cells, Some(own.as_ref().unwrap_or(blocks)), self.settings, self.eye, &points);
+        let blocks = own.as_ref().unwrap_or(blocks);
+        let naive = self.naive(prepared, in_view, self.settings, (cells, blocks));
         done.greedy = Some(*naive.counters());
         done.greedy_unresolved = naive.unresolved().iter().map(|&k| in_view.points[k]).collect();
         times.greedy_ms = since(began);
@@ -173,6 +145,23 @@ impl Passes<'_> {
         done.coarse = u;
         times.smooth_ms = since(began);
         Ok(detail)
+    }
+
+    /// The greedy pass for the points in view.
+    pub(super) fn naive(
+        &self,
+        prepared: &Prepared,
+        in_view: &PointsInView<'_>,
+        settings: &TerrainSettings,
+        (cells, blocks): (&Cells, &BlockMaxima),
+    ) -> Naive {
+        // On a curved earth the ground under a point differs with the eye.
+        let point = |&i: &usize| {
+            let p = prepared.points[i];
+            ReferencePoint { ground: self.field.surface_at(p.grid).unwrap_or(p.ground), ..p }
+        };
+        let points: Vec<ReferencePoint> = in_view.points.iter().map(point).collect();
+        Naive::new(self.field, cells, Some(blocks), settings, self.eye, &points)
     }
 
     /// The displacement next to that of the smooth pass under which no river runs uphill.
@@ -225,129 +214,198 @@ impl Passes<'_> {
         let check = if self.frame.is_some() { Vec::new() } else { prepared.check_in_view(in_view) };
         let Some(program) = (if warm { &mut prepared.moving } else { &mut prepared.still }) else { return Ok(()) };
         let qp = &mut program.solver;
-        let mut ground: Cow<'_, [f64]> = match &detail {
+        let ground: Cow<'_, [f64]> = match &detail {
             Some(detail) => self.field.heights().iter().zip(detail).map(|(h, d)| h + d).collect(),
             None => self.field.heights().into(),
         };
         // The solver was made for the undisplaced ground; bounds for other ground take time.
-        let mut foreign = self.lowered || detail.is_some();
+        let foreign = self.lowered || detail.is_some();
         if foreign || program.foreign {
             qp.set_heights(&ground)?;
         }
         let (asked, sight) = (&in_view.candidates[..], &*in_view.sight);
         let wider = [asked, &in_view.entering[..]].concat();
-        let mut problem = QpProblem { candidates: &wider, sight, target: target.as_deref(), ceilings: None };
-        qp.set_options(memory::options(self.settings, false));
-        let mut result = qp.solve_with(&problem, self.progress)?;
-        self.progress.tick("quadratic program", 0.9)?;
-        if fallback::stuck(&result) > 0 && wider.len() > asked.len() {
-            // Points beside the picture must not keep points in it from being shown.
-            problem = QpProblem { candidates: asked, ..problem };
-            result = qp.solve_with(&problem, self.progress)?;
-        }
-        // If a lake sinks with all its banks, the limits fill up most of it again: that is not worth another solution.
-        let in_vain = prepared.limited.as_ref().is_some_and(|limited| {
-            !prepared.waters.lakes.is_empty()
-                && limited.beyond(&prepared.grid, &result.u) > FAR_BEYOND * self.field.relief()
-        });
-        if self.stuck(&result) && !in_vain {
-            let mut cut = fallback::cut_detail(self.field, &ground, &prepared.grid, &result.active);
-            prepared.waters.clear(&mut cut, self.field);
-            let lower: Vec<f64> = ground.iter().zip(&cut).map(|(h, c)| h + c).collect();
-            qp.set_heights(&lower)?;
-            foreign = true;
-            let next = qp.solve_with(&problem, self.progress)?;
-            if fallback::stuck(&next) < fallback::stuck(&result) {
-                (result, ground) = (next, lower.into());
-                let before = detail.take().unwrap_or_else(|| vec![0.0; cut.len()]);
-                *detail = Some(before.iter().zip(cut).map(|(d, c)| d + c).collect());
-                done.fallbacks.push(Fallback::Detail);
-            } else {
-                qp.set_heights(&ground)?;
-            }
-        }
-        let mut from_guard = false;
-        if self.stuck(&result) && !in_vain {
-            qp.set_options(memory::options(self.settings, true));
-            let next = qp.solve_with(&problem, self.progress)?;
-            from_guard = fallback::stuck(&next) < fallback::stuck(&result);
-            if from_guard {
-                result = next;
-                done.fallbacks.push(Fallback::Guard);
-            }
-        }
-        let mut hidden = 0;
-        let options = memory::options(self.settings, from_guard);
-        if fallback::stuck(&result) == 0 && !in_vain && (self.frame.is_none() || detail.is_some()) {
-            let (field, grid, detail) = (self.field, &prepared.grid, detail.as_deref());
-            let (waters, progress) = (&*prepared.waters, self.progress);
-            let agreement = Agreement { field, grid, detail, waters, check: &check, options, progress };
-            (result, hidden) = agreement.reach(qp, &ground, &problem, result)?;
-            foreign = true;
-        }
-        program.foreign = foreign;
-        done.coarse.clone_from(&result.u);
-        if self.unfinished(&result, hidden) && !in_vain {
-            let (coarse, detail) = (&prepared.grid, detail.as_deref());
-            let waters = &*prepared.waters;
-            let grids = Finer { coarse, ground: &ground, detail, weights, waters, options, check: &check };
-            result = self.on_finer_grids(&grids, qp, &problem, (result, hidden), done)?;
-        }
-        done.qp = Some(QpReport::of(&result, in_view.candidates.len()));
+        let problem = QpProblem { candidates: &wider, sight, target: target.as_deref(), ceilings: None };
+        let options = memory::options(self.settings, false);
+        qp.set_options(options);
+        let result = qp.solve_with(&problem, self.progress)?;
+        let (grid, waters) = (&prepared.grid, &*prepared.waters);
+        let mut solution = Solution {
+            passes: self,
+            grid,
+            waters,
+            weights,
+            check,
+            options,
+            asked,
+            problem,
+            ground,
+            detail,
+            foreign,
+            result,
+            hidden: 0,
+        };
+        solution.fall_back(qp, prepared.limited.as_deref(), done)?;
+        program.foreign = solution.foreign;
+        let result = solution.result;
+        done.qp = Some(QpReport::of(&result, asked.len()));
         done.stopped = result.stopped || (fallback::stuck(&result) > 0 && self.progress.is_late());
         done.qp_unresolved = result.unresolved;
         done.rows = result.active;
         times.qp_ms = since(began);
         Ok(())
     }
+}
+
+/// A solution of the quadratic program, which fallbacks replace.
+struct Solution<'a> {
+    passes: &'a Passes<'a>,
+    /// The solver's grid.
+    grid: &'a Hierarchy,
+    waters: &'a Waters,
+    weights: Weights,
+    /// Points by which the result is judged.
+    check: Vec<Candidate>,
+    options: QpOptions,
+    /// Points in the picture.
+    asked: &'a [Candidate],
+    problem: QpProblem<'a>,
+    /// The undisplaced ground with its change of detail, at every node.
+    ground: Cow<'a, [f64]>,
+    detail: &'a mut Option<Vec<f64>>,
+    /// Whether the solver holds other ground than that it was made for.
+    foreign: bool,
+    result: QpResult,
+    /// Points that lakes hide.
+    hidden: usize,
+}
+
+impl Solution<'_> {
+    /// Tries the fallbacks in their order, and makes the program agree with the judge.
+    fn fall_back(
+        &mut self,
+        qp: &mut QpSolver,
+        limited: Option<&LimitedTerrain>,
+        done: &mut Outcome,
+    ) -> Result<(), DisocclusionError> {
+        self.passes.progress.tick("quadratic program", 0.9)?;
+        if fallback::stuck(&self.result) > 0 && self.problem.candidates.len() > self.asked.len() {
+            // Points beside the picture must not keep points in it from being shown.
+            self.problem.candidates = self.asked;
+            self.result = qp.solve_with(&self.problem, self.passes.progress)?;
+        }
+        // If a lake sinks with all its banks, the limits fill up most of it again: that is not worth another solution.
+        let far = FAR_BEYOND * self.passes.field.relief();
+        let sinks = |limited: &LimitedTerrain| limited.beyond(self.grid, &self.result.u) > far;
+        let in_vain = !self.waters.lakes.is_empty() && limited.is_some_and(sinks);
+        if !in_vain {
+            self.cut_detail(qp, done)?;
+            self.leave_guard(qp, done)?;
+            self.agree(qp)?;
+        }
+        done.coarse.clone_from(&self.result.u);
+        if in_vain { Ok(()) } else { self.refine(qp, done) }
+    }
+
+    /// Cuts down the detail around rows with slack, if candidates are unresolved and that helps.
+    fn cut_detail(&mut self, qp: &mut QpSolver, done: &mut Outcome) -> Result<(), DisocclusionError> {
+        if !self.stuck() {
+            return Ok(());
+        }
+        let field = self.passes.field;
+        let mut cut = fallback::cut_detail(field, &self.ground, self.grid, &self.result.active);
+        self.waters.clear(&mut cut, field);
+        let lower: Vec<f64> = self.ground.iter().zip(&cut).map(|(h, c)| h + c).collect();
+        qp.set_heights(&lower)?;
+        self.foreign = true;
+        if !self.improve(qp)? {
+            return Ok(qp.set_heights(&self.ground)?);
+        }
+        self.ground = lower.into();
+        let before = self.detail.take().unwrap_or_else(|| vec![0.0; cut.len()]);
+        *self.detail = Some(before.iter().zip(cut).map(|(d, c)| d + c).collect());
+        done.fallbacks.push(Fallback::Detail);
+        Ok(())
+    }
+
+    /// Leaves ground nearer to a point than the guard as it is, if candidates are unresolved and that helps.
+    fn leave_guard(&mut self, qp: &mut QpSolver, done: &mut Outcome) -> Result<(), DisocclusionError> {
+        if self.stuck() {
+            let options = memory::options(self.passes.settings, true);
+            qp.set_options(options);
+            if self.improve(qp)? {
+                self.options = options;
+                done.fallbacks.push(Fallback::Guard);
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves again; whether fewer candidates are unresolved than before. If not, the solution stays.
+    fn improve(&mut self, qp: &mut QpSolver) -> Result<bool, DisocclusionError> {
+        let next = qp.solve_with(&self.problem, self.passes.progress)?;
+        let better = fallback::stuck(&next) < fallback::stuck(&self.result);
+        if better {
+            self.result = next;
+        }
+        Ok(better)
+    }
+
+    /// Makes the program agree with the judge, once no candidate is unresolved.
+    fn agree(&mut self, qp: &mut QpSolver) -> Result<(), DisocclusionError> {
+        if fallback::stuck(&self.result) == 0 && (self.passes.frame.is_none() || self.detail.is_some()) {
+            let result = std::mem::take(&mut self.result);
+            (self.result, self.hidden) = self.agreement(self.grid).reach(qp, &self.ground, &self.problem, result)?;
+            self.foreign = true;
+        }
+        Ok(())
+    }
+
+    fn agreement<'b>(&'b self, grid: &'b Hierarchy) -> Agreement<'b> {
+        Agreement {
+            field: self.passes.field,
+            grid,
+            detail: self.detail.as_deref(),
+            waters: self.waters,
+            check: &self.check,
+            options: self.options,
+            progress: self.passes.progress,
+        }
+    }
 
     /// Whether candidates are unresolved and there is time for another fallback.
-    fn stuck(&self, result: &QpResult) -> bool {
-        fallback::stuck(result) > 0 && !self.progress.should_end()
+    fn stuck(&self) -> bool {
+        fallback::stuck(&self.result) > 0 && !self.passes.progress.should_end()
     }
 
-    /// The same, also if lakes hide points: small lakes are not level on the program's grid.
-    fn unfinished(&self, result: &QpResult, hidden: usize) -> bool {
-        fallback::stuck(result) + hidden > 0 && !self.progress.should_end()
-    }
-
-    /// Solves again on finer and finer grids until no candidate is missed; returns the best result. Each begins with the rows of the one
-    /// before.
-    fn on_finer_grids(
-        &self,
-        grids: &Finer<'_>,
-        solver: &QpSolver,
-        problem: &QpProblem<'_>,
-        (mut best, mut hidden): (QpResult, usize),
-        done: &mut Outcome,
-    ) -> Result<QpResult, DisocclusionError> {
-        let Finer { coarse, ground, detail, weights, waters, options, check } = *grids;
-        let mut before = (Cow::Borrowed(solver), coarse.clone(), best.u.clone());
-        for grid in fallback::finer(coarse, self.field) {
-            if !self.unfinished(&best, hidden) {
+    /// Solves again on finer and finer grids while candidates are unresolved or lakes hide points, for small lakes are not level on the
+    /// program's grid. Each begins with the rows of the one before.
+    fn refine(&mut self, solver: &QpSolver, done: &mut Outcome) -> Result<(), DisocclusionError> {
+        let Passes { field, progress, .. } = *self.passes;
+        let mut before = (Cow::Borrowed(solver), self.grid.clone(), self.result.u.clone());
+        for grid in fallback::finer(self.grid, field) {
+            if fallback::stuck(&self.result) + self.hidden == 0 || progress.should_end() {
                 break;
             }
-            self.progress.tick("quadratic program on a finer grid", 0.7)?;
+            progress.tick("quadratic program on a finer grid", 0.7)?;
             let nodes = grid.cols().max(grid.rows());
-            let target = problem.target.map(|t| fallback::resampled(coarse, t, &grid));
-            let mut finer = memory::program(self.field, &grid, weights, options, waters)?;
-            finer.set_heights(ground)?;
+            let target = self.problem.target.map(|t| fallback::resampled(self.grid, t, &grid));
+            let mut finer = memory::program(field, &grid, self.weights, self.options, self.waters)?;
+            finer.set_heights(&self.ground)?;
             finer.begin_from(&before.0, &fallback::resampled(&before.1, &before.2, &grid));
-            let problem = QpProblem { target: target.as_deref(), ..*problem };
-            let mut next = finer.solve_with(&problem, self.progress)?;
+            let problem = QpProblem { target: target.as_deref(), ..self.problem };
+            let mut next = finer.solve_with(&problem, progress)?;
             let mut left = 0;
             if fallback::stuck(&next) == 0 {
-                let (field, progress) = (self.field, self.progress);
-                (next, left) = Agreement { field, grid: &grid, detail, waters, check, options, progress }
-                    .reach(&mut finer, ground, &problem, next)?;
+                (next, left) = self.agreement(&grid).reach(&mut finer, &self.ground, &problem, next)?;
             }
             before = (Cow::Owned(finer), grid.clone(), next.u.clone());
-            if (fallback::stuck(&next), left) < (fallback::stuck(&best), hidden) {
+            if (fallback::stuck(&next), left) < (fallback::stuck(&self.result), self.hidden) {
                 done.fine = Some((grid, next.u.clone()));
-                (best, hidden) = (next, left);
+                (self.result, self.hidden) = (next, left);
                 done.fallbacks.push(Fallback::FinerGrid { nodes });
             }
         }
-        Ok(best)
+        Ok(())
     }
 }
