@@ -12,8 +12,8 @@ use super::shown::Shown;
 use super::{Outcome, PointsInView, since};
 use crate::DisocclusionError;
 use crate::rivers::RIVER_TOLERANCE_M;
+use belvedere_core::View;
 use belvedere_core::grid::Grid;
-use belvedere_core::{DVec2, View};
 use belvedere_scene::{Instant, Progress};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -63,73 +63,102 @@ pub(super) fn too_many(progress: &Progress, judge: &Judge<'_>, all: &[ReferenceP
     began.elapsed().mul_f64(3.0 * every as f64) > left.mul_f64(0.5)
 }
 
+/// The points of a report, and what is known of them.
+struct Verdicts {
+    shown: Shown,
+    /// Indices of the reference points in the picture.
+    asked: Vec<usize>,
+    dense: Vec<ReferencePoint>,
+    /// See [`TerrainReport::judged_every`].
+    every: usize,
+    judged: Judged,
+    /// Visible shares and that in view, in the order of the report.
+    shares: [f64; 5],
+}
+
+impl Verdicts {
+    fn of(c: &Context<'_>, stopped: bool) -> Result<Self, DisocclusionError> {
+        let (field, prepared, in_view, guard) = (c.field, c.prepared, c.in_view, c.settings.guard);
+        let shown = Shown::after(c.base, c.delta, c.in_plan)?;
+        let required = |asked: &[usize]| asked.iter().map(|&i| prepared.points[i]).collect::<Vec<_>>();
+        let mut asked = in_view.points.clone();
+        asked.retain(|&i| shown.holds(field, &prepared.points[i]));
+        let all = prepared.dense_in_view(in_view, c.in_plan);
+        let undisplaced = Judge::still(field, &*in_view.sight);
+        let few = !c.traced || stopped || too_many(c.progress, &undisplaced, &all, guard);
+        let in_view_amounts = amounts(&all);
+        let (may_show, every) = sampled(all, few);
+        let dense = shown.of(field, &may_show);
+        let judged = judged(&Deformation {
+            field,
+            delta: c.delta,
+            previous: c.previous,
+            cells: prepared.cells.as_ref().map(|parts| &parts.0),
+            points: &required(&asked),
+            dense: &dense,
+            sight: &*in_view.sight,
+            traced: c.traced,
+            guard,
+        });
+        let undisplaced = undisplaced.prepared(dense.len());
+        let shown_before = Shown::before(c.base, c.in_plan)?;
+        let whole = [amounts(&may_show), in_view_amounts, amounts(prepared.all_dense())];
+        let before = |points: &[ReferencePoint]| {
+            let points = shown_before.of(field, points);
+            let verdicts = undisplaced.judge(&points, guard);
+            (share_seen(&points, &verdicts), shares_of_whole((&points, &verdicts), whole))
+        };
+        let (visible_dense_before, [visible_whole_before, _]) = before(&may_show);
+        let [visible_whole, in_view] = shares_of_whole((&dense, &judged.of_dense), whole);
+        let visible_before = before(&required(&c.in_view.points)).0;
+        let shares = [visible_before, visible_dense_before, in_view, visible_whole, visible_whole_before];
+        Ok(Self { shown, asked, dense, every, judged, shares })
+    }
+
+    /// Whether the judge agrees that all is seen that was promised; where only some points were judged, each of them.
+    fn agree(&self) -> bool {
+        let Judged { metrics, points, dense, .. } = &self.judged;
+        metrics.visible_dense >= AGREES
+            && dense.len() as f64 <= (1.0 - AGREES) * self.dense.len() as f64
+            && (self.every == 1 || points.is_empty() && dense.is_empty())
+    }
+}
+
 pub(super) fn report(
     c: &Context<'_>,
     done: &Outcome,
-    mut times: TerrainTimes,
+    times: TerrainTimes,
     began: Instant,
 ) -> Result<TerrainReport, DisocclusionError> {
-    let (field, prepared, in_view, guard) = (c.field, c.prepared, c.in_view, c.settings.guard);
-    let shown = Shown::after(c.base, c.delta, c.in_plan)?;
-    let asked: Vec<usize> =
-        in_view.points.iter().copied().filter(|&i| shown.holds(field, &prepared.points[i])).collect();
-    let points: Vec<ReferencePoint> = asked.iter().map(|&i| prepared.points[i]).collect();
-    let all = prepared.dense_in_view(in_view, c.in_plan);
-    let undisplaced = Judge::still(field, &*in_view.sight);
-    let few = !c.traced || done.stopped || too_many(c.progress, &undisplaced, &all, guard);
-    let in_view_amounts = amounts(&all);
-    let (may_show, every) = sampled(all, few);
-    let dense = shown.of(field, &may_show);
-    let of = Deformation {
-        field,
-        delta: c.delta,
-        previous: c.previous,
-        cells: prepared.cells.as_ref().map(|parts| &parts.0),
-        points: &points,
-        dense: &dense,
-        sight: &*in_view.sight,
-        traced: c.traced,
-        guard,
-    };
-    let judgement = judged(&of);
-    let metrics = judgement.metrics;
-    let undisplaced = undisplaced.prepared(dense.len());
-    let shown_before = Shown::before(c.base, c.in_plan)?;
-    let whole = [amounts(&may_show), in_view_amounts, amounts(prepared.all_dense())];
-    let before = |points: &[ReferencePoint]| {
-        let points = shown_before.of(field, points);
-        let verdicts = undisplaced.judge(&points, guard);
-        (share_seen(&points, &verdicts), shares_of_whole((&points, &verdicts), whole))
-    };
-    let (visible_dense_before, [visible_whole_before, _]) = before(&may_show);
-    let [visible_whole, in_view_share] = shares_of_whole((&dense, &judgement.of_dense), whole);
-    let named = unresolved(c, done, &shown, (&asked, &judgement));
-    let hidden = hidden(c, done, &judgement, (&dense, every));
-    let guards = c.settings.mode != SolverMode::Paper;
+    let (field, prepared, waters) = (c.field, c.prepared, &c.prepared.waters);
+    let verdicts = Verdicts::of(c, done.stopped)?;
+    let [visible_before, visible_dense_before, in_view, visible_whole, visible_whole_before] = verdicts.shares;
+    let named = unresolved(c, done, &verdicts);
+    let hidden = hidden(c, done, &verdicts);
     let stated_m = stated_spacing(field.cols(), field.rows(), field.spacing());
     let w = c.settings.smoothness(stated_m);
-    let moved = |i: usize| {
-        let node = DVec2::new((i % field.cols()) as f64, (i / field.cols()) as f64);
-        c.delta.sample(field.scene_from_grid(node)).unwrap_or(0.0)
-    };
-    let rivers = match &prepared.waters.rivers {
+    let moved = |i: usize| c.delta.sample(field.scene_from_grid(field.node(i))).unwrap_or(0.0);
+    let rivers = match &waters.rivers {
         rivers if rivers.is_empty() => Vec::new(),
         rivers => rivers.report(&(0..field.heights().len()).map(moved).collect::<Vec<_>>()),
     };
-    let downhill = rivers.iter().all(|river| river.excess_m <= RIVER_TOLERANCE_M);
-    let promised = guards && !in_view.candidates.is_empty() && named.program_met && !done.stopped && downhill;
-    let mut out = TerrainReport {
+    let promised = c.settings.mode != SolverMode::Paper
+        && !c.in_view.candidates.is_empty()
+        && named.program_met
+        && !done.stopped
+        && rivers.iter().all(|river| river.excess_m <= RIVER_TOLERANCE_M);
+    Ok(TerrainReport {
         parameters: TerrainSettings { w: Some(w), detail: Some(c.settings.detail()), ..c.settings.clone() },
         w,
         smoothing_length_m: c.settings.smoothing_length(stated_m),
         solver_grid: [prepared.grid.cols(), prepared.grid.rows()],
-        points: points.len(),
-        asked: in_view.candidates.len(),
-        metrics,
-        judged_every: every,
-        visible_before: before(&in_view.points.iter().map(|&i| prepared.points[i]).collect::<Vec<_>>()).0,
+        points: verdicts.asked.len(),
+        asked: c.in_view.candidates.len(),
+        metrics: verdicts.judged.metrics,
+        judged_every: verdicts.every,
+        visible_before,
         visible_dense_before,
-        in_view: in_view_share,
+        in_view,
         visible_whole,
         visible_whole_before,
         greedy: done.greedy,
@@ -138,37 +167,30 @@ pub(super) fn report(
         fallbacks: done.fallbacks.clone(),
         limited: done.limited,
         spikes: prepared.spikes.clone(),
-        lakes: prepared.waters.lakes.report(moved),
+        lakes: waters.lakes.report(moved),
         rivers,
-        guaranteed: promised
-            && metrics.visible_dense >= AGREES
-            && judgement.dense.len() as f64 <= (1.0 - AGREES) * dense.len() as f64
-            && (every == 1 || judgement.points.is_empty() && judgement.dense.is_empty())
-            && (done.limited.is_none() || hidden.is_empty()),
+        guaranteed: promised && verdicts.agree() && (done.limited.is_none() || hidden.is_empty()),
         promised,
         out_of_time: done.stopped,
         taken: done.taken,
         unresolved: named.runs,
         hidden,
-        covered: covered(c, &judgement, &dense),
-        times,
-    };
-    times.report_ms = since(began);
-    out.times = times;
-    Ok(out)
+        covered: covered(c, &verdicts),
+        times: TerrainTimes { report_ms: since(began), ..times },
+    })
 }
 
-fn covered(c: &Context<'_>, judgement: &Judged, dense: &[ReferencePoint]) -> Vec<Covered> {
+fn covered(c: &Context<'_>, verdicts: &Verdicts) -> Vec<Covered> {
     if c.settings.slack_price.is_none() {
         return Vec::new();
     }
     let place = |&(i, hides): &(usize, Hides)| {
-        let (p, over_m) = (&dense[i], hides.over());
+        let (p, over_m) = (&verdicts.dense[i], hides.over());
         let at = c.field.scene_from_grid(p.grid).to_array();
         let is_covered = over_m.is_finite() && !matches!(hides, Hides::Facets(_));
         is_covered.then_some(Covered { at, lift_m: p.lift, over_m })
     };
-    judgement.dense.iter().filter_map(place).collect()
+    verdicts.judged.dense.iter().filter_map(place).collect()
 }
 
 /// The energy is half the sum of multipliers times what their rows ask for.
@@ -191,14 +213,9 @@ fn costliest(prepared: &Prepared, rows: &[SolvedRow]) -> Vec<FeatureCost> {
 }
 
 /// Dense points that are hidden although no listed point stands for them.
-fn hidden(
-    c: &Context<'_>,
-    done: &Outcome,
-    judgement: &Judged,
-    (dense, every): (&[ReferencePoint], usize),
-) -> Vec<UnresolvedRun> {
-    let mut runs = Runs::new(c.field, CHECK_CELLS * every as f64);
-    for (i, hides) in &judgement.dense {
+fn hidden(c: &Context<'_>, done: &Outcome, verdicts: &Verdicts) -> Vec<UnresolvedRun> {
+    let mut runs = Runs::new(c.field, CHECK_CELLS * verdicts.every as f64);
+    for (i, hides) in &verdicts.judged.dense {
         let reason = match *hides {
             Hides::Facets(over_m) => UnresolvedReason::Facets { over_m },
             // At a price `covered` names it.
@@ -211,7 +228,7 @@ fn hidden(
             Hides::Ground(over_m) if c.settings.mode == SolverMode::Paper => UnresolvedReason::Smoothed { over_m },
             Hides::Ground(over_m) => UnresolvedReason::Between { over_m },
         };
-        runs.put(&dense[*i], reason);
+        runs.put(&verdicts.dense[*i], reason);
     }
     runs.out
 }
@@ -222,8 +239,7 @@ struct Named {
     program_met: bool,
 }
 
-/// * `asked`: indices of the reference points that were judged.
-fn unresolved(c: &Context<'_>, done: &Outcome, shown: &Shown, (asked, judgement): (&[usize], &Judged)) -> Named {
+fn unresolved(c: &Context<'_>, done: &Outcome, known: &Verdicts) -> Named {
     let mut runs = Runs::new(c.field, c.settings.spacing);
     let in_view = |u: &&Unusable| c.in_view.wedge.contains(c.field.scene_from_grid(u.grid));
     for u in c.prepared.unusable.iter().filter(in_view) {
@@ -260,13 +276,13 @@ fn unresolved(c: &Context<'_>, done: &Outcome, shown: &Shown, (asked, judgement)
     let verdicts = judge(c.field, c.delta, &*c.in_view.sight).prepared(points.len()).judge(&points, c.settings.guard);
     let mut program_met = true;
     for (k, ((point, reason), verdict)) in said.into_iter().zip(verdicts).enumerate() {
-        if verdict.hides().is_some() && shown.holds(c.field, &point) {
+        if verdict.hides().is_some() && known.shown.holds(c.field, &point) {
             runs.put(&point, reason);
             program_met &= k < by_program;
         }
     }
-    for &(k, hides) in &judgement.points {
-        let (i, over_m) = (asked[k], hides.over());
+    for &(k, hides) in &known.judged.points {
+        let (i, over_m) = (known.asked[k], hides.over());
         if c.settings.slack_price.is_none() && !named.contains(&i) {
             let reason = match c.settings.mode {
                 _ if matches!(hides, Hides::Facets(_)) => UnresolvedReason::Facets { over_m },
