@@ -121,69 +121,49 @@ impl Limits {
     /// Raises the displaced ground until it keeps the limits, lakes are level and no river runs uphill; without rivers the result is
     /// the least such ground.
     fn keep(&self, field: &Field, waters: &Waters, u: &mut [f64]) -> Option<LimitsReport> {
-        let (h, lakes) = (field.heights(), &waters.lakes);
+        let (h, lakes, ways) = (field.heights(), &waters.lakes, Ways::over(field));
         let solid = |i: usize| !field.void()[i];
-        let ways = Ways::over(field);
         let mut ground: Vec<f64> = h.par_iter().zip(&*u).map(|(h, u)| (h + u).max(self.floor.min(*h))).collect();
-        let lake_of: BTreeMap<u32, &[u32]> =
-            lakes.nodes().flat_map(|lake| lake.iter().map(move |n| (*n, lake))).collect();
         for lake in lakes.nodes() {
-            let highest = lake.iter().map(|n| ground[*n as usize] - h[*n as usize]).fold(f64::MIN, f64::max);
+            let highest = highest(lake, |n| ground[n] - h[n]);
             lake.iter().for_each(|n| ground[*n as usize] = h[*n as usize] + highest);
         }
         let allowed = |i: usize, j: usize, d: f64| (self.slope * d).max((h[i] - h[j]).abs());
-        let short = |ground: &[f64], i: usize| {
-            ways.from(i).any(|(j, d)| solid(j) && ground[j] < ground[i] - allowed(i, j, d) - KEPT)
-        };
+        let around = |i: usize| ways.from(i).filter(|(j, _)| solid(*j));
+        let short = |i: usize| around(i).any(|(j, d)| ground[j] < ground[i] - allowed(i, j, d) - KEPT);
         let all = (0..h.len()).into_par_iter().with_min_len(4096);
-        let steep: Vec<Node> = all.filter(|&i| solid(i) && short(&ground, i)).map(|i| Node(ground[i], i)).collect();
-        let mut open = BinaryHeap::from(steep);
-        let lift = |ground: &mut [f64], open: &mut BinaryHeap<Node>, j: usize, least: f64| {
-            ground[j] = least;
-            open.push(Node(least, j));
-            for &k in lake_of.get(&(j as u32)).into_iter().copied().flatten() {
-                let k = k as usize;
-                let with = h[k] + (least - h[j]);
-                if k != j && ground[k] < with {
-                    ground[k] = with;
-                    open.push(Node(with, k));
-                }
-            }
-        };
+        let steep: Vec<Node> = all.filter(|&i| solid(i) && short(i)).map(|i| Node(ground[i], i)).collect();
+        let lake_of = lakes.nodes().flat_map(|lake| lake.iter().map(move |n| (*n, lake))).collect();
+        let mut rising = Rising { h, lake_of, ground, open: BinaryHeap::from(steep) };
         for _ in 0..RIVER_ROUNDS {
-            while let Some(Node(height, i)) = open.pop() {
-                if height < ground[i] {
+            while let Some(Node(height, i)) = rising.open.pop() {
+                if height < rising.ground[i] {
                     continue;
                 }
-                for (j, d) in ways.from(i).filter(|(j, _)| solid(*j)) {
-                    let least = height - allowed(i, j, d);
-                    if ground[j] < least {
-                        lift(&mut ground, &mut open, j, least);
-                    }
-                }
+                around(i).for_each(|(j, d)| rising.lift(j, height - allowed(i, j, d)));
             }
             if waters.rivers.is_empty() {
                 break;
             }
-            let mut moved: Vec<f64> = ground.iter().zip(h).map(|(z, h)| z - h).collect();
+            let mut moved: Vec<f64> = rising.ground.iter().zip(h).map(|(z, h)| z - h).collect();
             let mut raised = Vec::new();
             waters.rivers.raise(&mut moved, &mut raised);
             if raised.is_empty() {
                 break;
             }
-            raised.into_iter().for_each(|n| lift(&mut ground, &mut open, n, h[n] + moved[n]));
+            raised.into_iter().for_each(|n| rising.put(n, h[n] + moved[n]));
         }
         let (mut held, mut most, mut nodes) = (0usize, 0.0f64, 0usize);
         for i in (0..h.len()).filter(|&i| solid(i)) {
-            let raised = ground[i] - h[i] - u[i];
+            let raised = rising.ground[i] - h[i] - u[i];
             nodes += 1;
             if raised > KEPT {
                 (held, most) = (held + 1, most.max(raised));
-                u[i] = ground[i] - h[i];
+                u[i] = rising.ground[i] - h[i];
             }
         }
         for lake in lakes.nodes() {
-            let highest = lake.iter().map(|n| u[*n as usize]).fold(f64::MIN, f64::max);
+            let highest = highest(lake, |n| u[n]);
             lake.iter().for_each(|n| u[*n as usize] = highest);
         }
         (held > 0).then(|| LimitsReport {
@@ -192,6 +172,42 @@ impl Limits {
             held_share: held as f64 / nodes as f64,
             held_most_m: most,
         })
+    }
+}
+
+fn highest(lake: &[u32], of: impl Fn(usize) -> f64) -> f64 {
+    lake.iter().map(|n| of(*n as usize)).fold(f64::MIN, f64::max)
+}
+
+/// Ground that rises, and the nodes that may stand too high over their neighbours.
+struct Rising<'a> {
+    /// Heights of the undisplaced ground.
+    h: &'a [f64],
+    lake_of: BTreeMap<u32, &'a [u32]>,
+    ground: Vec<f64>,
+    open: BinaryHeap<Node>,
+}
+
+impl Rising<'_> {
+    /// Raises a node to a height, if it is lower, and the rest of its lake with it.
+    #[inline]
+    fn lift(&mut self, j: usize, least: f64) {
+        if self.ground[j] < least {
+            self.put(j, least);
+        }
+    }
+
+    fn put(&mut self, j: usize, height: f64) {
+        self.ground[j] = height;
+        self.open.push(Node(height, j));
+        for &k in self.lake_of.get(&(j as u32)).into_iter().copied().flatten() {
+            let k = k as usize;
+            let with = self.h[k] + (height - self.h[j]);
+            if k != j && self.ground[k] < with {
+                self.ground[k] = with;
+                self.open.push(Node(with, k));
+            }
+        }
     }
 }
 
