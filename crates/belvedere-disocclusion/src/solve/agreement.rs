@@ -64,13 +64,10 @@ impl Agreement<'_> {
         problem: &QpProblem<'_>,
         result: QpResult,
     ) -> Result<(QpResult, usize), DisocclusionError> {
-        // With a price of slack the program leaves points covered on purpose.
-        if self.options.slack_price.is_some() {
-            return Ok((result, 0));
-        }
         // A lake that sinks by more than the relief is filled up again by the limits; no more solutions then.
         let in_vain = |u: &[f64]| !self.waters.lakes.is_empty() && u.iter().any(|u| *u < -self.field.relief());
-        if in_vain(&result.u) {
+        // With a price of slack the program leaves points covered on purpose.
+        if self.options.slack_price.is_some() || in_vain(&result.u) {
             return Ok((result, 0));
         }
         let mut told = ground.to_vec();
@@ -110,13 +107,11 @@ impl Agreement<'_> {
                 break;
             }
             found = self.hidden(problem, &next)?;
-            let (rounds, added) = (best.rounds + next.rounds, best.added + next.added);
+            let (rounds, added, kept) = (best.rounds + next.rounds, best.added + next.added, best.kept);
             if found.len() < fewest {
-                fewest = found.len();
-                best = QpResult { rounds, added, kept: best.kept, ..next };
-            } else {
-                (best.rounds, best.added) = (rounds, added);
+                (fewest, best) = (found.len(), next);
             }
+            best = QpResult { rounds, added, kept, ..best };
         }
         best.stopped |= self.progress.is_late() && fewest > 0;
         Ok((best, if self.waters.lakes.is_empty() { 0 } else { fewest }))

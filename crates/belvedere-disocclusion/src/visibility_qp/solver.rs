@@ -213,12 +213,10 @@ impl QpSolver {
         self.take_up(&mut frame);
         out.kept = frame.pool.rows.len();
         let depth = self.depth(&frame);
-        let mut missed = Vec::new();
-        let (mut effort, mut stalled, mut first) = (Effort::Within(ROUGH), 0, 0.0f64);
+        let (mut missed, mut effort, mut stalled, mut first) = (Vec::new(), Effort::Within(ROUGH), 0, 0.0f64);
         while out.rounds < o.rounds {
             let settled = self.settle(&mut frame, effort);
-            let size = fineness(out.rounds + 1).min(KNOWN) * self.surface.lattice.step;
-            missed = frame.missed(&self.surface, Some(size));
+            missed = frame.missed(&self.surface, Some(fineness(out.rounds + 1).min(KNOWN) * self.surface.lattice.step));
             out.rounds += 1;
             out.stopped = progress.should_end();
             if out.stopped {
@@ -227,22 +225,18 @@ impl QpSolver {
             let all = missed.iter().map(|(_, touch)| touch.excess).fold(0.0, f64::max);
             first = first.max(all);
             frame.tell(out.rounds, all, first);
-            let deepest = self.surface.u.iter().copied().fold(0.0, f64::min);
-            if deepest < -depth && frame.soft == 0.0 {
+            if frame.soft == 0.0 && self.surface.u.iter().any(|u| *u < -depth) {
                 self.soften(&mut frame);
                 continue;
             }
             let new = frame.thinned(&self.surface, &missed, out.rounds);
             let worst = new.iter().map(|row| row.at(&self.surface.u) - row.bound).fold(0.0, f64::max);
             let large = frame.pool.is_large(&self.metric);
-            effort = if large && out.kept == 0 && worst > COARSE * first {
-                Effort::Rough(ROUGH_SHARE * worst)
-            } else if large && all > FINE && !new.is_empty() {
-                Effort::Within((ROUGH_SHARE * worst).max(ALMOST))
-            } else if !large && worst > FINE {
-                Effort::Within((ROUGH_SHARE * worst).min(ROUGH))
-            } else {
-                Effort::Exact
+            effort = match large {
+                true if out.kept == 0 && worst > COARSE * first => Effort::Rough(ROUGH_SHARE * worst),
+                true if all > FINE && !new.is_empty() => Effort::Within((ROUGH_SHARE * worst).max(ALMOST)),
+                false if worst > FINE => Effort::Within((ROUGH_SHARE * worst).min(ROUGH)),
+                _ => Effort::Exact,
             };
             stalled = if new.is_empty() { stalled + 1 } else { 0 };
             if new.is_empty() && (settled || stalled > STALLED) {
@@ -250,13 +244,12 @@ impl QpSolver {
             }
             self.push(&mut frame, new);
         }
-        if !missed.is_empty() && !out.stopped {
-            // All of them are reported.
-            missed = frame.missed(&self.surface, None);
-        }
         if o.slack_price.is_some() {
             // Positions that are still missed were left hidden at their price.
             missed.clear();
+        } else if !missed.is_empty() && !out.stopped {
+            // All of them are reported.
+            missed = frame.missed(&self.surface, None);
         }
         self.report(&frame, &missed, depth, &mut out);
         self.kept = frame.pool.kept(|i| problem.candidates[i].id);
