@@ -7,7 +7,7 @@ use belvedere::core::{DVec2, DVec3, View};
 use belvedere::scene_file::TurnDoc;
 use belvedere_studio::{sharpness_at, sharpness_knob};
 use eframe::egui::{
-    Color32, CursorIcon, FontId, Id, Pos2, Rect, Role, Sense, Stroke, TextureId, Ui, WidgetInfo, pos2, vec2,
+    Align2, Color32, CursorIcon, FontId, Id, Pos2, Rect, Role, Sense, Stroke, TextureId, Ui, WidgetInfo, pos2, vec2,
 };
 
 /// A part of a turn that can be dragged.
@@ -50,6 +50,53 @@ const APART: f32 = 14.0;
 /// Step of the arrow keys, points.
 const NUDGE: f32 = 4.0;
 
+/// The picture on the screen.
+struct Picture<'a> {
+    view: &'a View,
+    rect: Rect,
+}
+
+impl Picture<'_> {
+    fn at(&self, p: DVec3) -> Option<Pos2> {
+        let (pixel, [w, h]) = (self.view.project(p).ok()?.pixel, self.view.pinhole().image.map(|n| n as f32));
+        Some(self.rect.min + vec2((pixel.x as f32) / w * self.rect.width(), (pixel.y as f32) / h * self.rect.height()))
+    }
+
+    /// The point at height `z`: points keep their height, which cannot be seen from above.
+    fn back(&self, p: Pos2, z: f64) -> DVec3 {
+        let (rect, [w, h]) = (self.rect, self.view.pinhole().image.map(|n| n as f32));
+        let pixel = [(p.x - rect.left()) / rect.width() * w, (p.y - rect.top()) / rect.height() * h];
+        let (start, direction) = self.view.pinhole().line(DVec2::from(pixel.map(f64::from)));
+        let along = (z - start.z) / direction.z;
+        start + along * direction
+    }
+
+    /// The parts of a turn, in the order of their colours, with names and places.
+    fn parts(&self, turn: &TurnDoc) -> [(Part, &'static str, Option<DVec3>); COLORS.len()] {
+        let [viewpoint, t0, t1, t2] = [turn.viewpoint, turn.t0, turn.t1, turn.t2].map(DVec3::from_array);
+        let reach = 0.25 * t0.distance(t2).max(1e-6);
+        let towards = |from: DVec3, dir: [f64; 3]| from + 4.0 * reach * DVec3::from_array(dir).normalize_or_zero();
+        let apart = |a: DVec3, b: DVec3| self.at(a).zip(self.at(b)).is_some_and(|(a, b)| a.distance(b) > APART);
+        let line = turn.line.map(|line| DVec3::from_array(line.point));
+        let along = turn.line.zip(line).map(|(doc, line)| (line, towards(line, doc.dir)));
+        let along = along.filter(|(line, along)| apart(*line, *along)).map(|(_, along)| along);
+        let sharpness = match turn.m {
+            Sharpness::Value(value) => value,
+            _ => 1.0,
+        };
+        [
+            (Part::Viewpoint, later("Viewpoint of turn {0}"), Some(viewpoint)),
+            (Part::First, later("First plane of turn {0}"), Some(t0)),
+            (Part::Bend, later("Bend point of turn {0}"), Some(t1)),
+            (Part::Last, later("Last plane of turn {0}"), Some(t2)),
+            (Part::Normal, later("Bend direction of turn {0}"), turn.normal.map(|normal| towards(t1, normal))),
+            (Part::Line, later("Pivot line of turn {0}"), line),
+            (Part::LineDirection, later("Direction of the pivot line of turn {0}"), along),
+            (Part::Sharpness, later("Sharpness of turn {0}"), Some(sharpness_knob(turn, sharpness))),
+        ]
+    }
+}
+
 /// Shows the picture with handles.
 ///
 /// * `view`: view of the picture, from above and in parallel projection.
@@ -66,54 +113,20 @@ pub(crate) fn overhead(
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, tr("Camera from above")));
     let painter = ui.painter_at(rect);
     painter.image(texture, rect, Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0)), Color32::WHITE);
-    let at = |p: DVec3| {
-        let pixel = view.project(p).ok()?.pixel;
-        Some(rect.min + vec2((pixel.x as f32) / w * rect.width(), (pixel.y as f32) / h * rect.height()))
-    };
-    let back = |p: Pos2, z: f64| {
-        let pixel = DVec2::new(
-            f64::from((p.x - rect.left()) / rect.width() * w),
-            f64::from((p.y - rect.top()) / rect.height() * h),
-        );
-        let (start, direction) = view.pinhole().line(pixel);
-        // The point keeps its height, which cannot be seen from above.
-        let along = (z - start.z) / direction.z;
-        start + along * direction
-    };
+    let picture = Picture { view, rect };
     let mut edit = None;
     for (i, turn) in turns.iter().enumerate() {
-        let reach = 0.25 * DVec3::from_array(turn.t0).distance(DVec3::from_array(turn.t2)).max(1e-6);
-        let normal =
-            turn.normal.map(|n| DVec3::from_array(turn.t1) + 4.0 * reach * DVec3::from_array(n).normalize_or_zero());
-        let line = turn.line.map(|line| DVec3::from_array(line.point));
-        let along = turn
-            .line
-            .map(|line| DVec3::from_array(line.point) + 4.0 * reach * DVec3::from_array(line.dir).normalize_or_zero());
-        let apart = |a: DVec3, b: DVec3| at(a).zip(at(b)).is_some_and(|(a, b)| a.distance(b) > APART);
-        let along = along.filter(|&along| line.is_some_and(|line| apart(line, along)));
-        if let (Some(a), Some(b)) = (line.and_then(at), along.and_then(at)) {
-            painter.line_segment([a, b], Stroke::new(1.5, COLORS[5]));
+        let parts = picture.parts(turn).map(|(part, name, p)| (part, name, p.and_then(|p| Some((p, picture.at(p)?)))));
+        let spot = |part: Part| parts[part as usize].2.map(|(_, spot)| spot);
+        for (from, to, width, of) in
+            [(Part::Line, Part::LineDirection, 1.5, Part::Line), (Part::Bend, Part::Sharpness, 1.0, Part::Sharpness)]
+        {
+            if let (Some(a), Some(b)) = (spot(from), spot(to)) {
+                painter.line_segment([a, b], Stroke::new(width, COLORS[of as usize]));
+            }
         }
-        let sharpness = match turn.m {
-            Sharpness::Value(value) => value,
-            _ => 1.0,
-        };
-        let knob = sharpness_knob(turn, sharpness);
-        if let (Some(a), Some(b)) = (at(DVec3::from_array(turn.t1)), at(knob)) {
-            painter.line_segment([a, b], Stroke::new(1.0, COLORS[7]));
-        }
-        let parts = [
-            (Part::Viewpoint, later("Viewpoint of turn {0}"), Some(DVec3::from_array(turn.viewpoint))),
-            (Part::First, later("First plane of turn {0}"), Some(DVec3::from_array(turn.t0))),
-            (Part::Bend, later("Bend point of turn {0}"), Some(DVec3::from_array(turn.t1))),
-            (Part::Last, later("Last plane of turn {0}"), Some(DVec3::from_array(turn.t2))),
-            (Part::Normal, later("Bend direction of turn {0}"), normal),
-            (Part::Line, later("Pivot line of turn {0}"), line),
-            (Part::LineDirection, later("Direction of the pivot line of turn {0}"), along),
-            (Part::Sharpness, later("Sharpness of turn {0}"), Some(knob)),
-        ];
         for ((part, name, place), color) in parts.into_iter().zip(COLORS) {
-            let Some((place, spot)) = place.and_then(|p| Some((p, at(p)?))) else { continue };
+            let Some((place, spot)) = place else { continue };
             let label = fill(tr(name), &[&(i + 1)]);
             // A part outside the picture has its handle at the edge.
             let handle = rect.shrink(8.0).clamp(spot);
@@ -122,21 +135,13 @@ pub(crate) fn overhead(
             response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
             painter.circle(handle, if response.hovered() { 7.0 } else { 5.5 }, color, Stroke::new(1.5, Color32::WHITE));
             if part == Part::Viewpoint {
-                painter.text(
-                    handle + vec2(9.0, 0.0),
-                    eframe::egui::Align2::LEFT_CENTER,
-                    format!("V{}", i + 1),
-                    FontId::proportional(12.0),
-                    color,
-                );
+                let (at, font) = (handle + vec2(9.0, 0.0), FontId::proportional(12.0));
+                painter.text(at, Align2::LEFT_CENTER, format!("V{}", i + 1), font, color);
             }
-            if response.dragged() {
-                let to = back(spot + response.drag_delta(), place.z);
-                edit = Some(OverheadEdit { turn: i, part, to, begins: response.drag_started() });
-            }
-            if let Some([x, y]) = nudged(ui, &response) {
-                let to = back(spot + NUDGE * vec2(x as f32, -y as f32), place.z);
-                edit = Some(OverheadEdit { turn: i, part, to, begins: true });
+            let pressed = nudged(ui, &response).map(|[x, y]| (NUDGE * vec2(x as f32, -y as f32), true));
+            let dragged = response.dragged().then(|| (response.drag_delta(), response.drag_started()));
+            if let Some((by, begins)) = pressed.or(dragged) {
+                edit = Some(OverheadEdit { turn: i, part, to: picture.back(spot + by, place.z), begins });
             }
             response.on_hover_cursor(CursorIcon::Move).on_hover_text(label);
         }
