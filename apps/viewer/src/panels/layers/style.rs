@@ -1,12 +1,13 @@
 //! Style of a layer.
 
+use super::fields::Reading;
 use super::paint::{color, opacity, opacity_of_solid};
 use super::{by_property, fields, marks};
 use crate::language::{fill, heard, later, tr};
 use crate::model::Model;
 use belvedere::scene::Hidden;
 use belvedere::scene::molecule::Representation;
-use belvedere::scene_file::{LayerDoc, MoleculeStyleDoc, PaletteDoc, PaletteName};
+use belvedere::scene_file::{ColorByDoc, LayerDoc, MoleculeStyleDoc, PaletteDoc, PaletteName};
 use eframe::egui::{ComboBox, DragValue, TextWrapMode, Ui};
 
 /// Shows the style of a layer.
@@ -17,78 +18,17 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDo
     let id = layer.id().to_owned();
     // The words beside a field or a list go on below where the panel is narrow.
     ui.style_mut().wrap_mode = Some(TextWrapMode::Wrap);
-    // Scopes around what appears once a file is read: the controls below keep their identities, and so their clicks.
-    match &mut next {
-        LayerDoc::Terrain(l) => {
-            palette(ui, &id, &mut l.style.palette);
-            ui.checkbox(&mut l.style.sea, fill(tr("sea of {0}"), &[&id]));
-        }
-        LayerDoc::Line(l) => {
-            let reading = fields::of(ui, model, layer);
-            color(ui, &fill(tr("colour of {0}"), &[&id]), &mut l.style.color);
-            ui.scope(|ui| by_property::colors(ui, &id, &reading, &mut l.style.color_by, &l.style.color));
-            opacity(ui, &id, &mut l.style.color);
-            width(ui, &fill(tr("width of {0}, pixels"), &[&id]), &mut l.style.width_px);
-            let words = [fill(tr("width of {0} by"), &[&id]), tr("nothing: one width").to_owned()];
-            ui.scope(|ui| by_property::sizes(ui, words, &reading, &mut l.style.width_by));
-            marks::casing(ui, &id, &mut l.style.casing);
-            marks::distances(ui, &id, &mut l.style.distance_markers_m);
-            labels(ui, &id, (&mut l.style.labels, &mut l.style.label_px));
-            ui.scope(|ui| l.style.labels.then(|| by_property::names(ui, &id, &reading, &mut l.name_field)));
-            hidden(ui, &id, &mut l.style.hidden);
-        }
-        LayerDoc::Area(l) => {
-            let mut text = l.style.color.clone().unwrap_or_else(|| "#8fb4cc".into());
-            if color(ui, &fill(tr("colour of {0}"), &[&id]), &mut text) | opacity(ui, &id, &mut text) {
-                l.style.color = Some(text.clone());
-            }
-            let reading = fields::of(ui, model, layer);
-            ui.scope(|ui| by_property::colors(ui, &id, &reading, &mut l.style.color_by, &text));
-            marks::outline(ui, &id, &mut l.style.outline);
-            width(ui, &fill(tr("outline of {0}, pixels"), &[&id]), &mut l.style.width_px);
-            labels(ui, &id, (&mut l.style.labels, &mut l.style.label_px));
-            ui.scope(|ui| l.style.labels.then(|| by_property::names(ui, &id, &reading, &mut l.name_field)));
-        }
-        LayerDoc::Point(l) => {
-            let reading = fields::of(ui, model, layer);
-            marks::symbol(ui, &id, &mut l.style.symbol);
-            color(ui, &fill(tr("colour of {0}"), &[&id]), &mut l.style.color);
-            ui.scope(|ui| by_property::colors(ui, &id, &reading, &mut l.style.color_by, &l.style.color));
-            opacity(ui, &id, &mut l.style.color);
-            width(ui, &fill(tr("size of {0}, pixels"), &[&id]), &mut l.style.size_px);
-            let words = [fill(tr("size of {0} by"), &[&id]), tr("nothing: one size").to_owned()];
-            ui.scope(|ui| by_property::sizes(ui, words, &reading, &mut l.style.size_by));
-            marks::casing(ui, &id, &mut l.style.casing);
-            labels(ui, &id, (&mut l.style.labels, &mut l.style.label_px));
-            ui.scope(|ui| l.style.labels.then(|| by_property::names(ui, &id, &reading, &mut l.name_field)));
-            hidden(ui, &id, &mut l.style.hidden);
-        }
-        LayerDoc::Boxes(l) => {
-            color(ui, &fill(tr("colour of {0}"), &[&id]), &mut l.style.color);
-        }
-        LayerDoc::Mesh(l) => {
-            color(ui, &fill(tr("colour of {0}"), &[&id]), &mut l.style.color);
-            occlusion(ui, &id, &mut l.style.ambient_occlusion);
-        }
-        LayerDoc::City(l) => {
-            color(ui, &fill(tr("roofs of {0}"), &[&id]), &mut l.style.roof);
-            color(ui, &fill(tr("walls of {0}"), &[&id]), &mut l.style.wall);
-            color(ui, &fill(tr("ground of {0}"), &[&id]), &mut l.style.ground);
-            occlusion(ui, &id, &mut l.style.ambient_occlusion);
-        }
-        LayerDoc::Molecule(l) => molecule(ui, &id, &mut l.style),
-        LayerDoc::Volume(l) => super::volume::show(ui, model, &id, &mut l.transfer),
-    }
+    controls(ui, model, &id, layer, &mut next);
     if let Some(opacity) = next.opacity_mut() {
         opacity_of_solid(ui, &id, opacity);
     }
     // Changes are applied when the pointer is released, since a layer is read again for each new style.
-    if next == *layer {
-        ui.data_mut(|data| data.remove::<Pending>(key));
-    } else if ui.input(|input| input.pointer.any_down()) {
+    if next != *layer && ui.input(|input| input.pointer.any_down()) {
         ui.data_mut(|data| data.insert_temp(key, Pending(next)));
-    } else {
-        ui.data_mut(|data| data.remove::<Pending>(key));
+        return;
+    }
+    ui.data_mut(|data| data.remove::<Pending>(key));
+    if next != *layer {
         // What is typed in a field is one gesture.
         let field = ui.memory(|memory| memory.focused()).filter(|_| ui.ctx().text_edit_focused());
         if field.is_none() {
@@ -96,6 +36,72 @@ pub(super) fn show(ui: &mut Ui, model: &mut Model, index: usize, layer: &LayerDo
         }
         model.edit_on(field.unwrap_or(key), |document| document.layer[index] = next);
     }
+}
+
+/// The controls of a layer. Scopes stand around what appears once a file is read: the controls below keep their identities, and so
+/// their clicks.
+fn controls(ui: &mut Ui, model: &mut Model, id: &str, layer: &LayerDoc, next: &mut LayerDoc) {
+    match next {
+        LayerDoc::Terrain(l) => {
+            palette(ui, id, &mut l.style.palette);
+            ui.checkbox(&mut l.style.sea, fill(tr("sea of {0}"), &[&id]));
+        }
+        LayerDoc::Line(l) => {
+            let reading = fields::of(ui, model, layer);
+            colors(ui, id, &reading, (&mut l.style.color, &mut l.style.color_by));
+            width(ui, &fill(tr("width of {0}, pixels"), &[&id]), &mut l.style.width_px);
+            let words = [fill(tr("width of {0} by"), &[&id]), tr("nothing: one width").to_owned()];
+            ui.scope(|ui| by_property::sizes(ui, words, &reading, &mut l.style.width_by));
+            marks::casing(ui, id, &mut l.style.casing);
+            marks::distances(ui, id, &mut l.style.distance_markers_m);
+            names(ui, id, &reading, (&mut l.style.labels, &mut l.style.label_px, &mut l.name_field));
+            hidden(ui, id, &mut l.style.hidden);
+        }
+        LayerDoc::Area(l) => {
+            let mut text = l.style.color.clone().unwrap_or_else(|| "#8fb4cc".into());
+            if color(ui, &fill(tr("colour of {0}"), &[&id]), &mut text) | opacity(ui, id, &mut text) {
+                l.style.color = Some(text.clone());
+            }
+            let reading = fields::of(ui, model, layer);
+            ui.scope(|ui| by_property::colors(ui, id, &reading, &mut l.style.color_by, &text));
+            marks::outline(ui, id, &mut l.style.outline);
+            width(ui, &fill(tr("outline of {0}, pixels"), &[&id]), &mut l.style.width_px);
+            names(ui, id, &reading, (&mut l.style.labels, &mut l.style.label_px, &mut l.name_field));
+        }
+        LayerDoc::Point(l) => {
+            let reading = fields::of(ui, model, layer);
+            marks::symbol(ui, id, &mut l.style.symbol);
+            colors(ui, id, &reading, (&mut l.style.color, &mut l.style.color_by));
+            width(ui, &fill(tr("size of {0}, pixels"), &[&id]), &mut l.style.size_px);
+            let words = [fill(tr("size of {0} by"), &[&id]), tr("nothing: one size").to_owned()];
+            ui.scope(|ui| by_property::sizes(ui, words, &reading, &mut l.style.size_by));
+            marks::casing(ui, id, &mut l.style.casing);
+            names(ui, id, &reading, (&mut l.style.labels, &mut l.style.label_px, &mut l.name_field));
+            hidden(ui, id, &mut l.style.hidden);
+        }
+        LayerDoc::Boxes(l) => {
+            color(ui, &fill(tr("colour of {0}"), &[&id]), &mut l.style.color);
+        }
+        LayerDoc::Mesh(l) => {
+            color(ui, &fill(tr("colour of {0}"), &[&id]), &mut l.style.color);
+            occlusion(ui, id, &mut l.style.ambient_occlusion);
+        }
+        LayerDoc::City(l) => {
+            color(ui, &fill(tr("roofs of {0}"), &[&id]), &mut l.style.roof);
+            color(ui, &fill(tr("walls of {0}"), &[&id]), &mut l.style.wall);
+            color(ui, &fill(tr("ground of {0}"), &[&id]), &mut l.style.ground);
+            occlusion(ui, id, &mut l.style.ambient_occlusion);
+        }
+        LayerDoc::Molecule(l) => molecule(ui, id, &mut l.style),
+        LayerDoc::Volume(l) => super::volume::show(ui, model, id, &mut l.transfer),
+    }
+}
+
+/// The colour of a layer, or a property that gives it, and its opacity.
+fn colors(ui: &mut Ui, id: &str, reading: &Reading, (text, by): (&mut String, &mut Option<ColorByDoc>)) {
+    color(ui, &fill(tr("colour of {0}"), &[&id]), text);
+    ui.scope(|ui| by_property::colors(ui, id, reading, by, text));
+    opacity(ui, id, text);
 }
 
 /// A style that is applied when the pointer is released.
@@ -127,8 +133,8 @@ fn occlusion(ui: &mut Ui, id: &str, value: &mut Option<f64>) {
     });
 }
 
-/// Whether names are written, and how large.
-fn labels(ui: &mut Ui, id: &str, (on, size): (&mut bool, &mut f64)) {
+/// Whether names are written, how large, and from which property.
+fn names(ui: &mut Ui, id: &str, reading: &Reading, (on, size, field): (&mut bool, &mut f64, &mut Option<String>)) {
     ui.horizontal_wrapped(|ui| {
         ui.checkbox(on, fill(tr("names of {0}"), &[&id]));
         if *on {
@@ -137,7 +143,17 @@ fn labels(ui: &mut Ui, id: &str, (on, size): (&mut bool, &mut f64)) {
                 .labelled_by(label.id);
         }
     });
+    ui.scope(|ui| on.then(|| by_property::names(ui, id, reading, field)));
 }
+
+const REPRESENTATIONS: [Representation; 6] = [
+    Representation::BallAndStick,
+    Representation::SpaceFilling,
+    Representation::Sticks,
+    Representation::Ribbon,
+    Representation::Surface,
+    Representation::Auto,
+];
 
 fn molecule(ui: &mut Ui, id: &str, style: &mut MoleculeStyleDoc) {
     let name = |one: Representation| match one {
@@ -151,15 +167,7 @@ fn molecule(ui: &mut Ui, id: &str, style: &mut MoleculeStyleDoc) {
     ComboBox::from_label(fill(tr("atoms of {0}"), &[&id])).selected_text(name(style.representation)).show_ui(
         ui,
         |ui| {
-            let all = [
-                Representation::BallAndStick,
-                Representation::SpaceFilling,
-                Representation::Sticks,
-                Representation::Ribbon,
-                Representation::Surface,
-                Representation::Auto,
-            ];
-            for one in all {
+            for one in REPRESENTATIONS {
                 ui.selectable_value(&mut style.representation, one, name(one));
             }
         },
