@@ -31,7 +31,41 @@ impl Unsaved {
     }
 }
 
+/// Shows a question and its answers with their help, the last of which changes nothing: it is also that of the Escape key and of a click
+/// beside.
+///
+/// * `has_focus`: whether the keyboard is at the answers already; it begins at the first, which loses nothing.
+pub(super) fn ask<T: Copy>(
+    ctx: &Context,
+    id: Id,
+    [heading, words]: [&str; 2],
+    answers: &[(&str, &str, T)],
+    has_focus: &mut bool,
+) -> Option<T> {
+    let mut given = None;
+    let modal = Modal::new(id).show(ctx, |ui| {
+        ui.set_max_width(340.0);
+        ui.heading(heading);
+        ui.label(words);
+        ui.add_space(8.0);
+        ui.horizontal_wrapped(|ui| {
+            for (words, help, answer) in answers {
+                let button = ui.add(Button::new(*words));
+                if !std::mem::replace(has_focus, true) {
+                    button.request_focus();
+                }
+                let button = if help.is_empty() { button } else { button.on_hover_text(*help) };
+                given = if button.clicked() { Some(*answer) } else { given };
+            }
+        });
+    });
+    let is_cancelled = modal.backdrop_response.clicked() || ctx.input(|input| input.key_pressed(Key::Escape));
+    let cancel = answers.last().filter(|_| is_cancelled);
+    cancel.map(|(.., answer)| *answer).or(given)
+}
+
 /// The user's answer.
+#[derive(Clone, Copy)]
 enum Answer {
     Save,
     Discard,
@@ -86,7 +120,6 @@ impl Viewer {
     /// Shows the question and acts on the answer.
     pub(super) fn question(&mut self, ctx: &Context) {
         let Some(unsaved) = &mut self.unsaved else { return };
-        let mut answer = None;
         let title = match self.model.editor.document().title.as_str() {
             "" => tr("This scene"),
             title => title,
@@ -97,30 +130,14 @@ impl Viewer {
                 [tr("save, then open the other scene"), tr("open the other scene; the changes are lost")]
             }
         };
-        let modal = Modal::new(Id::unique("unsaved")).show(ctx, |ui| {
-            ui.set_max_width(340.0);
-            ui.heading(tr("Save the changes?"));
-            ui.label(fill(tr("{0} has changes that are in no file."), &[&title]));
-            ui.add_space(8.0);
-            ui.horizontal_wrapped(|ui| {
-                let save = ui.add(Button::new(tr("Save")));
-                if !std::mem::replace(&mut unsaved.has_focus, true) {
-                    save.request_focus();
-                }
-                if save.on_hover_text(saving).clicked() {
-                    answer = Some(Answer::Save);
-                }
-                if ui.button(tr("Discard changes")).on_hover_text(discarding).clicked() {
-                    answer = Some(Answer::Discard);
-                }
-                if ui.button(tr("Cancel")).clicked() || ui.input(|input| input.key_pressed(Key::Escape)) {
-                    answer = Some(Answer::Cancel);
-                }
-            });
-        });
-        if modal.backdrop_response.clicked() {
-            answer = Some(Answer::Cancel);
-        }
+        let answers = [
+            (tr("Save"), saving, Answer::Save),
+            (tr("Discard changes"), discarding, Answer::Discard),
+            (tr("Cancel"), "", Answer::Cancel),
+        ];
+        let words = fill(tr("{0} has changes that are in no file."), &[&title]);
+        let answer =
+            ask(ctx, Id::unique("unsaved"), [tr("Save the changes?"), &words], &answers, &mut unsaved.has_focus);
         let Some(answer) = answer else { return };
         let Some(Unsaved { next, .. }) = self.unsaved.take() else { return };
         ctx.request_repaint();
