@@ -163,12 +163,9 @@ impl Viewer {
             }
             None => (None, None),
         };
-        let first = builtin(0);
+        let woken = wake.clone();
         let mut viewer = Self {
-            model: Model::new(first, {
-                let wake = wake.clone();
-                move || wake.call()
-            }),
+            model: Model::new(builtin(0), move || woken.call()),
             wake,
             panels: Panels::default(),
             picture: PictureView::default(),
@@ -202,34 +199,41 @@ impl Viewer {
             times: Times::default(),
         };
         viewer.model.system_dialogs = opening.system_dialogs;
-        match left {
-            Some(left) if opening.files.is_empty() => {
-                viewer.take_up(left);
-                notes.push(tr("The last session did not end as it should; here is its last state.").into());
-            }
-            Some(mut left) if left.editor.is_changed() => {
-                // What an earlier session left stays.
-                let kept = files::free_name(&opening.state.clone().unwrap_or_default(), "recovered", "toml");
-                notes.push(match left.editor.save(&kept) {
-                    Ok(()) => {
-                        let words = tr("The last session did not end as it should; its unsaved scene is kept in {0}.");
-                        fill(words, &[&kept.display()])
-                    }
-                    Err(e) => {
-                        let words =
-                            tr("The last session did not end as it should; its unsaved scene could not be kept: {0}.");
-                        fill(words, &[&e])
-                    }
-                });
-            }
-            Some(_) | None => viewer.welcome.open = opening.files.is_empty() && opening.left.is_none(),
-        }
+        notes.extend(viewer.put_left(left, opening));
         let is_resumed = opening.left.as_deref().is_some_and(|text| viewer.resume(text));
         if !is_resumed && !opening.files.is_empty() {
             viewer.open(opening.files.clone());
         }
         notes.into_iter().for_each(|note| viewer.model.notices.error(note));
         viewer
+    }
+
+    /// Takes up what an instance left that did not end properly, keeps it in a file if others are opened, or else welcomes. Returns what
+    /// the user should know.
+    fn put_left(&mut self, left: Option<belvedere_studio::Recovered>, opening: &Opening) -> Option<String> {
+        match left {
+            Some(left) if opening.files.is_empty() => {
+                self.take_up(left);
+                Some(tr("The last session did not end as it should; here is its last state.").into())
+            }
+            Some(mut left) if left.editor.is_changed() => {
+                // What an earlier session left stays.
+                let kept = files::free_name(&opening.state.clone().unwrap_or_default(), "recovered", "toml");
+                let [is_kept, is_lost] = [
+                    tr("The last session did not end as it should; its unsaved scene is kept in {0}."),
+                    tr("The last session did not end as it should; its unsaved scene could not be kept: {0}."),
+                ];
+                Some(
+                    left.editor
+                        .save(&kept)
+                        .map_or_else(|e| fill(is_lost, &[&e]), |()| fill(is_kept, &[&kept.display()])),
+                )
+            }
+            Some(_) | None => {
+                self.welcome.open = opening.files.is_empty() && opening.left.is_none();
+                None
+            }
+        }
     }
 
     /// The document as it is.

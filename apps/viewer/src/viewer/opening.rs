@@ -74,45 +74,36 @@ impl Viewer {
         self.model.opening = None;
     }
 
+    /// Takes what was opened in the background, or tells how far that is.
+    fn take_opened(&mut self, ctx: &Context) {
+        let Some(pending) = &self.pending else { return };
+        if let Ok(at) = pending.at.try_lock()
+            && !at.0.is_empty()
+        {
+            let share = format!("{:.0}", 100.0 * at.1);
+            self.model.opening = Some(fill(tr("opening: {0}, {1} %"), &[&heard(&at.0), &share]));
+        }
+        ctx.request_repaint_after_secs(0.1);
+        let opened = match pending.opened.try_recv() {
+            Err(TryRecvError::Empty) => return,
+            opened => opened,
+        };
+        (self.pending, self.model.opening) = (None, None);
+        match opened {
+            Ok(Ok(Opened::Scene(scene))) => self.go_on_to(ctx, Next::Show(Box::new((*scene).into()))),
+            Ok(Ok(Opened::Layers(layers, folders))) => self.model.editor.add_layers(layers, folders),
+            Ok(Err(Refusal::Reason(reason))) => self.model.notices.error(reason),
+            Ok(Err(Refusal::Asks(consent))) => self.consent = Some(consent),
+            Err(_) => self
+                .model
+                .notices
+                .error(tr("the file could not be opened: internal error; please report this with the file")),
+        }
+    }
+
     /// Takes the files that were chosen, dropped or opened in the background.
     pub(super) fn arrivals(&mut self, ctx: &Context) {
-        if let Some(pending) = &self.pending {
-            if let Ok(at) = pending.at.try_lock()
-                && !at.0.is_empty()
-            {
-                let share = format!("{:.0}", 100.0 * at.1);
-                self.model.opening = Some(fill(tr("opening: {0}, {1} %"), &[&heard(&at.0), &share]));
-            }
-            ctx.request_repaint_after_secs(0.1);
-            match pending.opened.try_recv() {
-                Ok(Ok(Opened::Scene(scene))) => {
-                    self.pending = None;
-                    self.go_on_to(ctx, Next::Show(Box::new((*scene).into())));
-                }
-                Ok(Ok(Opened::Layers(layers, folders))) => {
-                    self.model.editor.add_layers(layers, folders);
-                    self.pending = None;
-                }
-                Ok(Err(Refusal::Reason(reason))) => {
-                    self.model.notices.error(reason);
-                    self.pending = None;
-                }
-                Ok(Err(Refusal::Asks(consent))) => {
-                    self.consent = Some(consent);
-                    self.pending = None;
-                }
-                Err(TryRecvError::Disconnected) => {
-                    self.model
-                        .notices
-                        .error(tr("the file could not be opened: internal error; please report this with the file"));
-                    self.pending = None;
-                }
-                Err(TryRecvError::Empty) => {}
-            }
-            if self.pending.is_none() {
-                self.model.opening = None;
-            }
-        }
+        self.take_opened(ctx);
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
         if !dropped.is_empty() {
             self.dropped = Some(files::dropped(&dropped));

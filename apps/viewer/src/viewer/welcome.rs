@@ -11,7 +11,7 @@ use belvedere::scene::{Progress, RenderOptions};
 use belvedere::scene_file::{self, OverlayDoc};
 use belvedere_studio::{THREADS, beside};
 use eframe::egui::{
-    self, Align2, Button, ColorImage, Context, Id, Image, TextureHandle, TextureOptions, Vec2, Window, vec2,
+    self, Align2, Button, ColorImage, Context, Id, Image, TextureHandle, TextureOptions, Ui, Vec2, Window, vec2,
 };
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -111,6 +111,33 @@ impl Welcome {
         }
     }
 
+    /// Shows the cards; returns the number of the built-in scene that was clicked.
+    fn cards(&self, ui: &mut Ui, columns: usize) -> Option<usize> {
+        let mut chosen = None;
+        egui::Grid::new("cards").num_columns(columns).spacing([8.0, 8.0]).show(ui, |ui| {
+            for (card, (scene, name, what)) in CARDS.iter().enumerate() {
+                ui.vertical(|ui| {
+                    ui.set_width(CARD.x);
+                    let button = match &self.pictures[card] {
+                        Some(texture) => Button::image(Image::new((texture.id(), CARD)).alt_text(tr(name))),
+                        None => Button::new(tr(name)).fill(theme::blank(ui.visuals().dark_mode)),
+                    };
+                    let response = ui.add(button.min_size(CARD).frame_when_inactive(false));
+                    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, tr(name)));
+                    if response.clicked() {
+                        chosen = Some(*scene);
+                    }
+                    ui.strong(tr(name));
+                    ui.label(tr(what));
+                });
+                if (card + 1) % columns == 0 {
+                    ui.end_row();
+                }
+            }
+        });
+        chosen
+    }
+
     fn take(&mut self, ctx: &Context) {
         let Some((inbox, _)) = &self.drawing else { return };
         for (card, bytes) in inbox.try_iter() {
@@ -185,29 +212,7 @@ impl Viewer {
             });
             ui.separator();
             ui.label(tr("Or begin with an example:"));
-            egui::Grid::new("cards").num_columns(columns).spacing([8.0, 8.0]).show(ui, |ui| {
-                for (card, (scene, name, what)) in CARDS.iter().enumerate() {
-                    ui.vertical(|ui| {
-                        ui.set_width(CARD.x);
-                        let button = match &self.welcome.pictures[card] {
-                            Some(texture) => {
-                                Button::image(Image::new((texture.id(), CARD)).alt_text(tr(name))).min_size(CARD)
-                            }
-                            None => Button::new(tr(name)).min_size(CARD).fill(theme::blank(ui.visuals().dark_mode)),
-                        };
-                        let response = ui.add(button.frame_when_inactive(false));
-                        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, tr(name)));
-                        if response.clicked() {
-                            chosen = Some(*scene);
-                        }
-                        ui.strong(tr(name));
-                        ui.label(tr(what));
-                    });
-                    if (card + 1) % columns == 0 {
-                        ui.end_row();
-                    }
-                }
-            });
+            chosen = self.welcome.cards(ui, columns);
         });
         self.welcome.open = open;
         if let Some(scene) = chosen {
