@@ -7,6 +7,7 @@ use belvedere::core::DVec3;
 use belvedere::live::Judged;
 use belvedere::scene_file::{LayerDoc, SolverMode, StageDoc, TerrainStageDoc};
 use eframe::egui::{ComboBox, Id, Ui};
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 const KIND: &str = "terrain_disocclusion";
@@ -51,6 +52,9 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
     });
 }
 
+/// A value of the stage that the document may leave out.
+type ValueOf = fn(&mut TerrainStageDoc) -> &mut Option<f64>;
+
 fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {
     let put = |model: &mut Model, by: Id, change: &dyn Fn(&mut TerrainStageDoc)| {
         let mut next = stage.clone();
@@ -83,31 +87,25 @@ fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {
             _ => None,
         })
     });
-    let usual = resolved.unwrap_or_default();
     let moved = stage.adjust_viewpoint.unwrap_or(1.0);
     let help = tr("left: the camera moves a little where that saves ground; right: only the ground moves");
     if let Some((by, value)) = slider(ui, model, tr("camera or ground"), moved, 0.0..=1.0, help) {
         put(model, by, &|stage| stage.adjust_viewpoint = (value < 1.0).then_some(value));
     }
-    let w = stage.w.or(usual.w).unwrap_or_default();
-    if let Some((by, value)) = slider(ui, model, tr("smoothness w"), w, 0.02..=2.0, tr("smaller: wider and gentler")) {
-        put(model, by, &|stage| stage.w = Some(value));
-    }
-    let eta = stage.eta.or(usual.eta).unwrap_or_default();
-    if let Some((by, value)) =
-        slider(ui, model, tr("weight eta"), eta, 0.0..=1.0, tr("mountains that are kept, against those that are moved"))
-    {
-        put(model, by, &|stage| stage.eta = Some(value));
-    }
-    let rise = stage.rise_limit_m.or(usual.rise_limit_m).unwrap_or_default();
-    if let Some((by, value)) =
-        slider(ui, model, tr("rise at most, m"), rise, 0.0..=2000.0, tr("most that the ground may rise"))
-    {
-        put(model, by, &|stage| stage.rise_limit_m = Some(value));
-    }
-    let margin = stage.margin_m.or(usual.margin_m).unwrap_or_default();
-    if let Some((by, value)) = slider(ui, model, tr("clearance, m"), margin, 0.0..=50.0, tr("of the lines of sight")) {
-        put(model, by, &|stage| stage.margin_m = Some(value));
+    let rows: [(&str, RangeInclusive<f64>, &str, ValueOf); 4] = [
+        (tr("smoothness w"), 0.02..=2.0, tr("smaller: wider and gentler"), |stage| &mut stage.w),
+        (tr("weight eta"), 0.0..=1.0, tr("mountains that are kept, against those that are moved"), |stage| {
+            &mut stage.eta
+        }),
+        (tr("rise at most, m"), 0.0..=2000.0, tr("most that the ground may rise"), |stage| &mut stage.rise_limit_m),
+        (tr("clearance, m"), 0.0..=50.0, tr("of the lines of sight"), |stage| &mut stage.margin_m),
+    ];
+    let (mut stated, mut usual) = (stage.clone(), resolved.unwrap_or_default());
+    for (name, range, help, of) in rows {
+        let now = of(&mut stated).or(*of(&mut usual)).unwrap_or_default();
+        if let Some((by, value)) = slider(ui, model, name, now, range, help) {
+            put(model, by, &|stage| *of(stage) = Some(value));
+        }
     }
     if ui.button(tr("Usual values")).clicked() {
         model.begin_gesture();
