@@ -73,9 +73,8 @@ fn curve(ui: &mut Ui, id: Id, volume: &VolumeLayer, points: &[TransferPoint]) ->
     let bars = histogram(ui, id, volume, [low, span]);
     let width = room.width() / BARS as f32;
     for (i, share) in bars.iter().enumerate() {
-        let left = room.left() + i as f32 * width;
-        let bar =
-            Rect::from_min_max(pos2(left, room.bottom() - share * room.height()), pos2(left + width, room.bottom()));
+        let [left, top] = [room.left() + i as f32 * width, room.bottom() - share * room.height()];
+        let bar = Rect::from_min_max(pos2(left, top), pos2(left + width, room.bottom()));
         painter.rect_filled(bar, 0.0, Color32::from_rgb(196, 202, 210));
     }
     let line: Vec<Pos2> = points.iter().map(at).collect();
@@ -88,9 +87,7 @@ fn curve(ui: &mut Ui, id: Id, volume: &VolumeLayer, points: &[TransferPoint]) ->
         let fill = Color32::from_rgb(color.r, color.g, color.b);
         painter.circle(*spot, if own.hovered() { 6.5 } else { 5.0 }, fill, Stroke::new(1.2, Color32::from_gray(30)));
         if own.double_clicked() && points.len() > 2 {
-            let mut fewer = points.to_vec();
-            fewer.remove(i);
-            next = Some(fewer);
+            next = Some([&points[..i], &points[i + 1..]].concat());
         } else if own.dragged()
             && let Some(to) = own.interact_pointer_pos()
         {
@@ -110,14 +107,10 @@ fn curve(ui: &mut Ui, id: Id, volume: &VolumeLayer, points: &[TransferPoint]) ->
         && let Some(to) = whole.interact_pointer_pos()
     {
         let (value, opacity) = back(to);
-        let [r, g, b] = {
-            let [r, g, b, _] = volume.transfer.at(value).map(|c| (255.0 * c.clamp(0.0, 1.0)).round() as u8);
-            [r, g, b]
-        };
-        let mut more = points.to_vec();
-        let place = more.partition_point(|p| p.value < value);
-        more.insert(place, TransferPoint { value, color: belvedere::scene::Color::rgb(r, g, b), opacity });
-        next = Some(more);
+        let [r, g, b, _] = volume.transfer.at(value).map(|c| (255.0 * c.clamp(0.0, 1.0)).round() as u8);
+        let new = TransferPoint { value, color: belvedere::scene::Color::rgb(r, g, b), opacity };
+        let (before, after) = points.split_at(points.partition_point(|p| p.value < value));
+        next = Some([before, &[new], after].concat());
     }
     next
 }

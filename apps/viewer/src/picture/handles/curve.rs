@@ -54,13 +54,11 @@ pub(super) fn show(
         let name = fill(tr("Control point {0} in the picture"), &[&(i + 1)]);
         let response = handle(ui, (rect, control(i)), at, (&name, INK));
         let [u, v] = stated[i];
-        let way = || {
-            let one = |k: i32| {
-                let by = REACH * f64::from(k) / f64::from(PLACES);
-                Some((v + by, at_height(point.y + by)?))
-            };
-            Way((-PLACES..=PLACES).filter_map(one).collect())
+        let one = |k: i32| {
+            let by = REACH * f64::from(k) / f64::from(PLACES);
+            Some((v + by, at_height(point.y + by)?))
         };
+        let way = || Way((-PLACES..=PLACES).filter_map(one).collect());
         let wanted = dragged(ui, &response, at, way).map(|v| (v, response.drag_started()));
         let pressed = nudged(ui, &response).map(|[_, up]| (v + STEP * up, true));
         if let Some((to, begins)) = wanted.or(pressed) {
