@@ -58,11 +58,11 @@ fn plot(chart: &Chart, canvas: ChartCanvas<'_>) -> Result<(), Box<dyn std::error
     let area = canvas.into_drawing_area();
     area.fill(&WHITE)?;
     let all = || chart.curves.iter().flat_map(|c| &c.points).filter(|p| p.0.is_finite() && p.1.is_finite());
-    let (mut x, mut y) = ([f64::INFINITY, f64::NEG_INFINITY], [f64::INFINITY, f64::NEG_INFINITY]);
-    for (px, py) in all() {
-        (x, y) = ([x[0].min(*px), x[1].max(*px)], [y[0].min(*py), y[1].max(*py)]);
-    }
-    let [x, y] = [x, y].map(|[lo, hi]| if lo < hi { [lo, hi] } else { [0.0, 1.0] });
+    let bounds = |of: fn(&(f64, f64)) -> f64| {
+        let [lo, hi] = all().map(of).fold([f64::INFINITY, f64::NEG_INFINITY], |[lo, hi], v| [lo.min(v), hi.max(v)]);
+        if lo < hi { [lo, hi] } else { [0.0, 1.0] }
+    };
+    let (x, y) = (bounds(|p| p.0), bounds(|p| p.1));
     let room = 0.04 * (y[1] - y[0]);
     let low = if y[0] >= 0.0 && y[0] < 0.2 * y[1] { 0.0 } else { y[0] - room };
     // Dots on the frame would be cut in two.
@@ -99,13 +99,8 @@ fn plot(chart: &Chart, canvas: ChartCanvas<'_>) -> Result<(), Box<dyn std::error
             continue;
         }
         drawn.label(&curve.name).legend(move |(x, y)| {
-            let box_of = |half: i32| {
-                Rectangle::new(
-                    [(x + if dots { 6 } else { 0 }, y - half), (x + if dots { 14 } else { 20 }, y + half)],
-                    color.filled(),
-                )
-            };
-            box_of(if dots { 4 } else { 3 })
+            let ([left, right], half) = if dots { ([6, 14], 4) } else { ([0, 20], 3) };
+            Rectangle::new([(x + left, y - half), (x + right, y + half)], color.filled())
         });
     }
     axes.configure_series_labels()
