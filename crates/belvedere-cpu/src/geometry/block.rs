@@ -4,6 +4,7 @@ use crate::cache::lock;
 use crate::geometry::grid::{Nodes, ScreenExtent};
 use crate::screen::{Screen, ScreenVertex};
 use belvedere_core::Aabb;
+use belvedere_scene::Progress;
 use belvedere_sight::sections::{Sections, Shown};
 use std::sync::Mutex;
 
@@ -171,6 +172,7 @@ pub(crate) struct Job<'a> {
     pub(crate) tolerance_px: f64,
     pub(crate) spare: &'a BufferPool,
     pub(crate) sections: Option<&'a Sections<'a>>,
+    pub(crate) progress: &'a Progress,
 }
 
 impl Job<'_> {

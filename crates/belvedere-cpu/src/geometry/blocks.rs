@@ -15,7 +15,7 @@ use crate::raster::band::Band;
 use crate::raster::cells::SIDE;
 use crate::screen::Screen;
 use belvedere_core::Aabb;
-use belvedere_scene::{LayerKind, Progress, RenderJob};
+use belvedere_scene::{LayerKind, RenderJob};
 use belvedere_sight::LayerPart;
 use belvedere_sight::pass::InView;
 use belvedere_sight::sections::{Exposure, Sections, Shown};
@@ -30,43 +30,77 @@ pub(crate) const CELL_BITS: u32 = 11;
 /// Parts between two reports of progress.
 const REPORTED: usize = 32;
 
-/// Whether a part is still wanted; after a cancellation the rest is left out, and the caller's next report ends the frame.
-fn goes_on(progress: &Progress, part: usize) -> bool {
-    if part.is_multiple_of(REPORTED) { progress.tick("project", 0.0).is_ok() } else { !progress.is_cancelled() }
+impl Job<'_> {
+    /// Whether a part is still wanted; after a cancellation the rest is left out, and the caller's next report ends the frame.
+    fn goes_on(&self, part: usize) -> bool {
+        if part.is_multiple_of(REPORTED) {
+            self.progress.tick("project", 0.0).is_ok()
+        } else {
+            !self.progress.is_cancelled()
+        }
+    }
+
+    /// Adds blocks of ground.
+    fn ground(&self, ground: &DetailSelector<'_>, choice: &mut Selection, out: &mut Vec<Block>) {
+        ground.choose(choice);
+        let (choice, &DetailSelector { hf, tree, view, locator, .. }) = (&*choice, ground);
+        let whole = choice.list.iter().filter(|c| c.held.whole).map(|c| choice.held(&c.held)[0]);
+        let joined = JoinedPasses::new(view, locator.passes, whole);
+        let joined = &joined;
+        let drawn = choice.list.par_iter().enumerate().filter(|(k, _)| self.goes_on(*k));
+        out.par_extend(drawn.flat_map_iter(|(_, c)| {
+            let bounds = tree.bounds(hf, c.level, c.block);
+            let shown = bounds.map_or(Shown::Everything, |b| self.shown(&b));
+            let seen_in = bounds.filter(|_| !c.held.whole);
+            let passes = joined.of(choice.held(&c.held), c.held.whole).filter(move |_| shown != Shown::Nothing);
+            let seen =
+                passes.filter(move |pass| seen_in.is_none_or(|b| pass.plain.in_view(self.screen, &b) != InView::No));
+            let thin = shown == Shown::Partly;
+            seen.filter_map(move |pass| self.terrain_block(pass, hf, &tree.sparse, (c, bounds), thin))
+        }));
+    }
+
+    /// Blocks of boxes or triangles. Each part of a layer is drawn once per record that shows it, or once for all of its records if they
+    /// displace it as one map, and once per segment that shows what the records leave out.
+    /// * `bounds`: bounds of the parts.
+    /// * `draw`: draws the part with a number by a pass.
+    fn soups(
+        &self,
+        locator: &Locator<'_>,
+        bounds: &[Aabb],
+        draw: impl Fn(&Pass<'_>, usize) -> Option<Block> + Sync,
+    ) -> Vec<Block> {
+        let locate = |bounds: &Aabb| {
+            let mut list = Vec::new();
+            let all = locator.all(&mut list);
+            let Held { records, segments, whole } = locator.locate(bounds, &all, &mut list);
+            let mut held = list[records].to_vec();
+            if whole && !held.iter().any(|&record| locator.shows(record, bounds)) {
+                held.clear();
+            } else if !whole {
+                held.retain(|&record| locator.shows(record, bounds));
+            }
+            (held, list[segments].to_vec(), whole)
+        };
+        let located: Vec<(Vec<u32>, Vec<u32>, bool)> = bounds.par_iter().map(locate).collect();
+        let together = located.iter().filter(|(_, _, whole)| *whole).map(|(held, ..)| &held[..]);
+        let joined = JoinedPasses::new(locator.view, locator.passes, together);
+        let parts = located.par_iter().enumerate();
+        parts
+            .filter(|(k, _)| self.goes_on(*k))
+            .flat_map_iter(|(k, (held, segments, whole))| {
+                joined.of([held, segments], *whole).filter_map(|pass| draw(pass, k)).collect::<Vec<_>>()
+            })
+            .collect()
+    }
 }
 
-/// Blocks of boxes or triangles. Each part of a layer is drawn once per record that shows it, or once for all of its records if they
-/// displace it as one map, and once per segment that shows what the records leave out.
-/// * `bounds`: bounds of the parts.
-/// * `draw`: draws the part with a number by a pass.
-fn soups(
-    locator: &Locator<'_>,
-    bounds: &[Aabb],
-    progress: &Progress,
-    draw: impl Fn(&Pass<'_>, usize) -> Option<Block> + Sync,
-) -> Vec<Block> {
-    let locate = |bounds: &Aabb| {
-        let mut list = Vec::new();
-        let all = locator.all(&mut list);
-        let Held { records, segments, whole } = locator.locate(bounds, &all, &mut list);
-        let mut held = list[records].to_vec();
-        if whole && !held.iter().any(|&record| locator.shows(record, bounds)) {
-            held.clear();
-        } else if !whole {
-            held.retain(|&record| locator.shows(record, bounds));
-        }
-        (held, list[segments].to_vec(), whole)
-    };
-    let located: Vec<(Vec<u32>, Vec<u32>, bool)> = bounds.par_iter().map(locate).collect();
-    let together = located.iter().filter(|(_, _, whole)| *whole).map(|(held, ..)| &held[..]);
-    let joined = JoinedPasses::new(locator.view, locator.passes, together);
-    let parts = located.par_iter().enumerate();
-    parts
-        .filter(|(k, _)| goes_on(progress, *k))
-        .flat_map_iter(|(k, (held, segments, whole))| {
-            joined.of([held, segments], *whole).filter_map(|pass| draw(pass, k)).collect::<Vec<_>>()
-        })
-        .collect()
+fn triangles_of(kind: &LayerKind) -> u64 {
+    match kind {
+        LayerKind::Terrain(t) => 2 * ((t.heightfield.cols() - 1) * (t.heightfield.rows() - 1)) as u64,
+        LayerKind::Boxes(b) => 12 * b.boxes.len() as u64,
+        kind => kind.triangles().map_or(0, |m| m.mesh.triangles().len() as u64),
+    }
 }
 
 /// All blocks of a frame; kept between frames so that its memory is reused.
@@ -103,53 +137,27 @@ impl Blocks {
             if sections.is_some_and(|s| s.of_layer(i) == Shown::Nothing) {
                 continue;
             }
-            let job = Job { layer: i as u32, screen, tolerance_px, spare: &self.spare, sections };
+            let job = Job { layer: i as u32, screen, tolerance_px, spare: &self.spare, sections, progress };
+            let carried = bodies.and_then(|bodies| bodies.carried.layer(i));
             match &layer.kind {
                 LayerKind::Terrain(t) => {
-                    let hf = &t.heightfield;
-                    let tree = detail.get(hf, (), || Arc::new(Tree::new(hf)));
-                    let chooser = DetailSelector {
-                        hf,
-                        tree: &tree,
-                        view,
-                        locator: &locator,
-                        tolerance_px,
-                        lod_px: options.lod_px,
-                    };
-                    chooser.choose(&mut self.choice);
-                    let choice = &self.choice;
-                    let whole = choice.list.iter().filter(|c| c.held.whole).map(|c| choice.held(&c.held)[0]);
-                    let joined = JoinedPasses::new(view, passes, whole);
-                    let (job, tree) = (&job, &tree);
-                    let drawn = choice.list.par_iter().enumerate().filter(|(k, _)| goes_on(progress, *k));
-                    let drawn = drawn.flat_map_iter(|(_, c)| {
-                        let bounds = tree.bounds(hf, c.level, c.block);
-                        let shown = bounds.map_or(Shown::Everything, |b| job.shown(&b));
-                        let seen_in = bounds.filter(|_| !c.held.whole);
-                        let passes =
-                            joined.of(choice.held(&c.held), c.held.whole).filter(move |_| shown != Shown::Nothing);
-                        let seen = passes
-                            .filter(move |pass| seen_in.is_none_or(|b| pass.plain.in_view(screen, &b) != InView::No));
-                        let thin = shown == Shown::Partly;
-                        seen.filter_map(move |pass| job.terrain_block(pass, hf, &tree.sparse, (c, bounds), thin))
-                    });
-                    self.list.par_extend(drawn);
+                    let (hf, lod_px) = (&t.heightfield, options.lod_px);
+                    let tree = &detail.get(hf, (), || Arc::new(Tree::new(hf)));
+                    let ground = DetailSelector { hf, tree, view, locator: &locator, tolerance_px, lod_px };
+                    job.ground(&ground, &mut self.choice, &mut self.list);
                 }
                 LayerKind::Boxes(b) => {
-                    let carried = bodies.and_then(|bodies| bodies.carried.layer(i));
                     let locator = body_locator.as_ref().filter(|_| carried.is_some()).unwrap_or(&locator);
                     let parts = box_chunks(b, carried);
-                    self.list
-                        .par_extend(soups(locator, &parts, progress, |pass, k| job.box_block(pass, b, carried, k)));
+                    self.list.par_extend(job.soups(locator, &parts, |pass, k| job.box_block(pass, b, carried, k)));
                 }
                 kind => {
                     let Some(mesh) = kind.triangles().map(|m| &m.mesh) else { continue };
                     let mut draw = |locator: &Locator<'_>, drawn: Drawn<'_>| {
-                        let parts = drawn.chunks();
-                        self.list
-                            .par_extend(soups(locator, &parts, progress, |pass, k| job.mesh_block(pass, drawn, k)));
+                        let soups = job.soups(locator, &drawn.chunks(), |pass, k| job.mesh_block(pass, drawn, k));
+                        self.list.par_extend(soups);
                     };
-                    match (bodies.and_then(|bodies| bodies.carried.layer(i)), &body_locator) {
+                    match (carried, &body_locator) {
                         (Some(carried), Some(body_locator)) => {
                             if !carried.holds_all() {
                                 draw(&locator, Drawn::Loose(mesh, carried));
@@ -160,11 +168,7 @@ impl Blocks {
                     }
                 }
             }
-            self.triangles_in += match &layer.kind {
-                LayerKind::Terrain(t) => 2 * ((t.heightfield.cols() - 1) * (t.heightfield.rows() - 1)) as u64,
-                LayerKind::Boxes(b) => 12 * b.boxes.len() as u64,
-                kind => kind.triangles().map_or(0, |m| m.mesh.triangles().len() as u64),
-            };
+            self.triangles_in += triangles_of(&layer.kind);
         }
         self.number();
     }
