@@ -236,15 +236,13 @@ impl<'a> TerrainShade<'a> {
             return None;
         }
         let print = print();
-        let areas = areas.into_iter().map(|(a, border)| {
-            let paint = a.paint_of(border.feature);
-            (a, paint, border.inside / print.along(border.across))
+        let areas = areas.into_iter().filter_map(|(a, border)| {
+            let inside = border.inside / print.along(border.across);
+            let shown = if inside > -0.5 { self.share_of(shader, a, xy) } else { 0.0 };
+            (shown > 0.0).then(|| (a, a.paint_of(border.feature), inside, shown))
         });
-        let areas = areas.filter(|(_, _, inside)| *inside > -0.5);
-        let areas = areas.map(|(a, paint, inside)| (a, paint, inside, self.share_of(shader, a, xy)));
-        let areas: Vec<_> = areas.filter(|(.., shown)| *shown > 0.0).collect();
-        let drapes = self.drapes.iter().map(|d| d.at(xy, &print)).filter(|(_, alpha)| *alpha > 0.0);
-        let drapes: Vec<_> = drapes.collect();
+        let areas: Vec<_> = areas.collect();
+        let drapes: Vec<_> = self.drapes.iter().map(|d| d.at(xy, &print)).filter(|(_, alpha)| *alpha > 0.0).collect();
         let sun = self.sun_on(shader, xy, &print);
         if drapes.is_empty() && areas.is_empty() && sun >= 1.0 {
             return None;
@@ -276,15 +274,20 @@ impl<'a> TerrainShade<'a> {
                 _ => water *= 1.0 - share,
             }
         }
-        if water > 0.0 {
-            let down = -shader.sky.sine(pixel);
-            let mirror = 0.03 + 0.55 * (1.0 - down.clamp(0.0, 1.0)).powi(5);
-            let reflected = shader.sky.towards(0.15 + 0.5 * down.clamp(0.0, 1.0));
-            light = light.lerp(Rgb::splat(0.6 + 0.4 * sun), water);
-            return Some(((albedo * light).lerp(reflected, water * mirror), id));
-        }
-        Some((albedo * light, id))
+        let color = if water > 0.0 { mirrored(shader, pixel, (albedo, light), sun, water) } else { albedo * light };
+        Some((color, id))
     }
+}
+
+/// Colour of ground that mirrors the sky.
+/// * `sun`: see [`TerrainShade::light_of`]; `water`: share of water on it.
+#[inline]
+fn mirrored(shader: &Shader<'_>, pixel: [f32; 2], (albedo, light): (Rgb, Rgb), sun: f32, water: f32) -> Rgb {
+    let down = -shader.sky.sine(pixel);
+    let mirror = 0.03 + 0.55 * (1.0 - down.clamp(0.0, 1.0)).powi(5);
+    let reflected = shader.sky.towards(0.15 + 0.5 * down.clamp(0.0, 1.0));
+    let light = light.lerp(Rgb::splat(0.6 + 0.4 * sun), water);
+    (albedo * light).lerp(reflected, water * mirror)
 }
 
 /// Colour of an area at a point.
