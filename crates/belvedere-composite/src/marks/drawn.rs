@@ -50,9 +50,7 @@ fn of(symbol: Symbol) -> Vec<Vec<DVec2>> {
             let side = |sign: f64| {
                 let bow = |radius: f64, from: f64, to: f64| arc([sign * 1.55, 0.0], radius, from, to);
                 let middle = if sign > 0.0 { TAU / 2.0 } else { 0.0 };
-                let mut out = bow(1.35, middle - 0.9, middle + 0.9);
-                out.extend(bow(0.9, middle + 1.1, middle - 1.1));
-                out
+                [bow(1.35, middle - 0.9, middle + 0.9), bow(0.9, middle + 1.1, middle - 1.1)].concat()
             };
             vec![side(-1.0), side(1.0)]
         }
@@ -89,12 +87,9 @@ fn of(symbol: Symbol) -> Vec<Vec<DVec2>> {
         Symbol::Parking => {
             let bow = |radius: f64, from: f64, to: f64| arc([0.08, -0.22], radius, from, to);
             let quarter = TAU / 4.0;
-            let mut letter = ring(&[[-0.42, 0.62], [-0.42, -0.66]]);
-            letter.extend(bow(0.44, -quarter, quarter));
-            letter.extend(ring(&[[-0.14, 0.22], [-0.14, 0.62]]));
-            let mut eye = ring(&[[-0.14, -0.4]]);
-            eye.extend(bow(0.18, -quarter, quarter));
-            eye.push(DVec2::new(-0.14, -0.04));
+            let (stem, foot) = (ring(&[[-0.42, 0.62], [-0.42, -0.66]]), ring(&[[-0.14, 0.22], [-0.14, 0.62]]));
+            let letter = [stem, bow(0.44, -quarter, quarter), foot].concat();
+            let eye = [ring(&[[-0.14, -0.4]]), bow(0.18, -quarter, quarter), ring(&[[-0.14, -0.04]])].concat();
             vec![ring(&[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]), hole(letter), eye]
         }
         Symbol::Ring => vec![circle(1.0), hole(circle(0.52))],

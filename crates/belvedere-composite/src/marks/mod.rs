@@ -137,7 +137,6 @@ impl Marks {
             (_, Some(names)) => Choice::Given(names),
             _ => Choice::Free,
         };
-        let names_alone = matches!(purpose, Purpose::Names(_));
         let fonts = Fonts::with(&job.scene.fonts);
         let sight = LineOfSight { scene: job.scene, sight };
         let builder = MarkBuilder {
@@ -154,40 +153,17 @@ impl Marks {
             fonts: &fonts,
             skyline: &skyline,
             keep: matches!(purpose, Purpose::Shapes),
+            names_alone: matches!(purpose, Purpose::Names(_)),
             choice,
         };
-        let overlay = &job.options.overlay;
-        let mut requests: Vec<LabelRequest> = Vec::new();
-        let mut points = PointMarks::default();
-        let (mut sheets, mut symbols): (Vec<StrokeLayer>, Vec<StrokeLayer>) = Default::default();
+        let mut placed = Placed::default();
         for (i, layer) in job.scene.layers.iter().enumerate() {
-            let (id, first) = (i as u32 + 1, requests.len());
-            match &layer.kind {
-                LayerKind::Line(l) => {
-                    let l = &*builder.shown_lines(i, l);
-                    if !names_alone {
-                        sheets.extend(builder.line_sheets(l, id));
-                    }
-                    sheets.extend(builder.distances(l, id, &mut requests));
-                    requests.extend(builder.line_names(l, id));
-                }
-                LayerKind::Area(a) => {
-                    if !names_alone {
-                        sheets.extend(builder.outlines(a, id));
-                    }
-                    requests.extend(builder.area_names(i, a));
-                }
-                LayerKind::Point(p) => {
-                    symbols.extend(builder.points(&builder.shown_points(i, p), id, &mut points));
-                    requests.append(&mut points.requests);
-                }
-                LayerKind::Molecule(m) => requests.extend(builder.residue_names(m)),
-                _ => {}
-            }
-            requests[first..].iter_mut().for_each(|request| request.layer = id);
+            builder.layer(i, &layer.kind, &mut placed);
         }
+        let Placed { mut sheets, mut symbols, points, mut requests } = placed;
         sheets.append(&mut symbols);
-        let with_text = |l: &&OverlayLine| !names_alone || !l.label.is_empty();
+        let overlay = &job.options.overlay;
+        let with_text = |l: &&OverlayLine| !builder.names_alone || !l.label.is_empty();
         sheets.extend(overlay.over.iter().filter(with_text).map(|l| builder.overlay_line(l, &mut requests)));
         sheets.extend(overlay.points.iter().map(|p| builder.overlay_point(p, &mut requests)));
         let under = overlay.under.iter().filter(with_text).map(|l| builder.overlay_line(l, &mut requests)).collect();
@@ -255,6 +231,15 @@ enum Purpose<'a> {
     Names(Choice<'a>),
 }
 
+/// Marks of the layers.
+#[derive(Default)]
+struct Placed {
+    sheets: Vec<StrokeLayer>,
+    symbols: Vec<StrokeLayer>,
+    points: PointMarks,
+    requests: Vec<LabelRequest>,
+}
+
 /// Rays of a picture that is not drawn yet.
 struct NoSight;
 
@@ -282,6 +267,8 @@ struct MarkBuilder<'a> {
     skyline: &'a Skyline,
     /// Whether lines are kept as shapes.
     keep: bool,
+    /// Whether nothing but names is wanted.
+    names_alone: bool,
     choice: Choice<'a>,
 }
 
@@ -322,6 +309,34 @@ impl MarkBuilder<'_> {
     /// The screen of a coarse picture; `None` for any other.
     fn coarse(&self) -> Option<&Screen> {
         (self.tolerance_px >= COARSE_PX).then_some(self.screen)
+    }
+
+    /// Adds the marks of a layer.
+    fn layer(&self, i: usize, kind: &LayerKind, out: &mut Placed) {
+        let (id, first) = (i as u32 + 1, out.requests.len());
+        match kind {
+            LayerKind::Line(l) => {
+                let l = &*self.shown_lines(i, l);
+                if !self.names_alone {
+                    out.sheets.extend(self.line_sheets(l, id));
+                }
+                out.sheets.extend(self.distances(l, id, &mut out.requests));
+                out.requests.extend(self.line_names(l, id));
+            }
+            LayerKind::Area(a) => {
+                if !self.names_alone {
+                    out.sheets.extend(self.outlines(a, id));
+                }
+                out.requests.extend(self.area_names(i, a));
+            }
+            LayerKind::Point(p) => {
+                out.symbols.extend(self.points(&self.shown_points(i, p), id, &mut out.points));
+                out.requests.append(&mut out.points.requests);
+            }
+            LayerKind::Molecule(m) => out.requests.extend(self.residue_names(m)),
+            _ => {}
+        }
+        out.requests[first..].iter_mut().for_each(|request| request.layer = id);
     }
 
     fn line_sheets(&self, layer: &LineLayer, id: u32) -> Vec<StrokeLayer> {

@@ -45,62 +45,50 @@ impl MarkBuilder<'_> {
             .filter(|name| !name.is_empty())
             .map(|name| (name, Wanted { width: wide(name), held: self.choice.held_line(id, name) }))
             .collect();
-        let stretches: Vec<(&str, (Color, f64), Option<Stretch>)> = layer
-            .features
-            .par_iter()
-            .enumerate()
-            .filter_map(|(i, f)| Some((i, f, wanted.get(f.name.trim())?)))
-            .map(|(i, f, wanted)| {
-                let own = f.style.unwrap_or_default();
-                let look = (own.color.unwrap_or(layer.color), half_px * own.scale.max(0.0));
-                let line = path::drape(self.scene, &f.points, layer.lift_m, self.coarse());
-                (f.name.trim(), look, self.best(&line, style, (i as u32, wanted)))
-            })
-            .collect();
-        let mut best: HashMap<&str, ((Color, f64), Stretch)> = HashMap::new();
-        for (name, look, stretch) in stretches {
-            let Some(stretch) = stretch else { continue };
-            let Some(wanted) = wanted.get(name) else { continue };
-            match best.get_mut(name) {
-                Some(found) if wanted.prefers(&stretch, &found.1) => *found = (look, stretch),
-                Some(_) => {}
-                None => {
-                    best.insert(name, (look, stretch));
-                }
+        let found = layer.features.par_iter().enumerate().filter_map(|(i, f)| {
+            let (name, wanted) = wanted.get_key_value(f.name.trim())?;
+            let own = f.style.unwrap_or_default();
+            let line = path::drape(self.scene, &f.points, layer.lift_m, self.coarse());
+            let stretch = self.best(&line, style, (i as u32, wanted))?;
+            let (color, half_px) = (own.color.unwrap_or(layer.color), half_px * own.scale.max(0.0));
+            Some(Named { name, wanted, color, half_px, stretch })
+        });
+        let mut best: HashMap<&str, Named<'_>> = HashMap::new();
+        for next in found.collect::<Vec<_>>() {
+            if best.get(next.name).is_none_or(|best| next.wanted.prefers(&next.stretch, &best.stretch)) {
+                best.insert(next.name, next);
             }
         }
-        let mut names: Vec<(&str, &Wanted, (Color, f64), Stretch)> = best
-            .into_iter()
-            .filter_map(|(name, (look, stretch))| Some((name, wanted.get(name)?, look, stretch)))
-            .filter(|(_, wanted, _, stretch)| wanted.has_room(stretch))
-            .collect();
+        let mut names: Vec<Named<'_>> = best.into_values().filter(|n| n.wanted.has_room(&n.stretch)).collect();
         // Names of lines with longer visible stretches are placed first.
-        names.sort_by(|a, b| b.3.length.total_cmp(&a.3.length).then(a.0.cmp(b.0)));
-        let request = |(name, wanted, (color, half), stretch): (&str, &Wanted, (Color, f64), Stretch)| {
-            let side = self.casing_of(half);
-            let letters = Letters { width: wanted.width, size_px, gap: side + self.density };
-            let held = wanted.on(&stretch);
-            let middle = held.map_or(0.5, |(share, _)| share);
-            let anchor = if held.is_some() { wanted.anchor() } else { Some(stretch.anchor(middle)) };
-            let runs = held.and_then(|(share, side)| match side {
-                NameSide::Along { upper } => Some((share, upper)),
-                _ => None,
-            });
-            let along = baselines(&stretch.points, letters, runs).into_iter().map(|along| Baseline {
-                // What is held stays held, though the end of the stretch may push it along.
-                anchor: if along.held { anchor } else { Some(stretch.anchor(along.middle)) },
-                points: along.points,
-                upper: along.upper,
-            });
-            LabelRequest {
-                marker: [side; 2],
-                along: along.collect(),
-                anchor,
-                ..LabelRequest::new(name, stretch.at(middle), size_px, darker(color))
-            }
-            .clear_of(stretch.points, side)
-        };
-        names.into_iter().map(request).collect()
+        names.sort_by(|a, b| b.stretch.length.total_cmp(&a.stretch.length).then(a.name.cmp(b.name)));
+        names.into_iter().map(|named| self.line_name(named, size_px)).collect()
+    }
+
+    fn line_name(&self, named: Named<'_>, size_px: f64) -> LabelRequest {
+        let Named { name, wanted, color, half_px, stretch } = named;
+        let side = self.casing_of(half_px);
+        let letters = Letters { width: wanted.width, size_px, gap: side + self.density };
+        let held = wanted.on(&stretch);
+        let middle = held.map_or(0.5, |(share, _)| share);
+        let anchor = if held.is_some() { wanted.anchor() } else { Some(stretch.anchor(middle)) };
+        let runs = held.and_then(|(share, side)| match side {
+            NameSide::Along { upper } => Some((share, upper)),
+            _ => None,
+        });
+        let along = baselines(&stretch.points, letters, runs).into_iter().map(|along| Baseline {
+            // What is held stays held, though the end of the stretch may push it along.
+            anchor: if along.held { anchor } else { Some(stretch.anchor(along.middle)) },
+            points: along.points,
+            upper: along.upper,
+        });
+        LabelRequest {
+            marker: [side; 2],
+            along: along.collect(),
+            anchor,
+            ..LabelRequest::new(name, stretch.at(middle), size_px, darker(color))
+        }
+        .clear_of(stretch.points, side)
     }
 
     /// The stretch that a name holds, or else the longest.
@@ -119,6 +107,15 @@ impl MarkBuilder<'_> {
             false => next,
         })
     }
+}
+
+/// A name and the stretch that bears it, of a line with this colour and half width.
+struct Named<'a> {
+    name: &'a str,
+    wanted: &'a Wanted,
+    color: Color,
+    half_px: f64,
+    stretch: Stretch,
 }
 
 /// What is known of a name before its stretch is found.
