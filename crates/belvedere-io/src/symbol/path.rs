@@ -86,13 +86,11 @@ impl Scanner<'_> {
 
 /// The rings of path data, each closed implicitly.
 pub(super) fn rings(data: &str) -> Result<Vec<Vec<DVec2>>, String> {
-    let mut rest = Scanner { text: data };
+    let mut pen = Pen { rest: Scanner { text: data }, at: DVec2::ZERO, handles: [None; 2] };
     let mut out: Vec<Vec<DVec2>> = Vec::new();
-    let (mut at, mut start, mut command) = (DVec2::ZERO, DVec2::ZERO, None);
-    // Handle of the curve before, which smooth curves mirror: of cubic and of quadratic ones.
-    let mut handles: [Option<DVec2>; 2] = [None; 2];
-    while !rest.is_done() {
-        command = match rest.command() {
+    let (mut start, mut command) = (DVec2::ZERO, None);
+    while !pen.rest.is_done() {
+        command = match pen.rest.command() {
             Some(given) => Some(given),
             // Further pairs of a move are lines.
             None => command.map(|c| match c {
@@ -104,61 +102,73 @@ pub(super) fn rings(data: &str) -> Result<Vec<Vec<DVec2>>, String> {
         let Some(c) = command.filter(|c| out.last().is_some() || matches!(c, 'M' | 'm')) else {
             return Err("the path does not begin with M; write it anew".into());
         };
-        let from = if c.is_ascii_lowercase() { at } else { DVec2::ZERO };
-        let mut line: Vec<DVec2> = Vec::new();
-        let mut next = [None; 2];
-        match c.to_ascii_uppercase() {
-            'M' => {
-                at = rest.point(from)?;
-                start = at;
-                out.push(vec![at]);
+        let line = pen.drawn(c, start)?;
+        match c {
+            'M' | 'm' => start = pen.at,
+            // What follows without a move begins where the ring began.
+            'Z' | 'z' => command = None,
+            _ => {
+                out.last_mut().into_iter().for_each(|ring| ring.extend(&line));
+                continue;
             }
-            'Z' => {
-                at = start;
-                // What follows without a move begins where the ring began.
-                command = None;
-                out.push(vec![at]);
-            }
-            'L' => line.push(rest.point(from)?),
-            'H' => line.push(DVec2::new(from.x + rest.number()?, at.y)),
-            'V' => line.push(DVec2::new(at.x, from.y + rest.number()?)),
-            'C' | 'S' => {
-                let mirrored = handles[0].map_or(at, |handle| 2.0 * at - handle);
-                let a = if c.eq_ignore_ascii_case(&'C') { rest.point(from)? } else { mirrored };
+        }
+        out.push(line);
+    }
+    // Moves that nothing follows.
+    out.retain(|ring| ring.len() >= 2);
+    Ok(out)
+}
+
+/// Path data as it is read.
+struct Pen<'a> {
+    rest: Scanner<'a>,
+    at: DVec2,
+    /// Handle of the curve before, which smooth curves mirror: of cubic and of quadratic ones.
+    handles: [Option<DVec2>; 2],
+}
+
+impl Pen<'_> {
+    /// What a command adds, which ends where the pen is after it.
+    ///
+    /// * `start`: of the ring.
+    fn drawn(&mut self, command: char, start: DVec2) -> Result<Vec<DVec2>, String> {
+        let (at, rest) = (self.at, &mut self.rest);
+        let from = if command.is_ascii_lowercase() { at } else { DVec2::ZERO };
+        let mirrored = self.handles.map(|handle| handle.map_or(at, |handle| 2.0 * at - handle));
+        self.handles = [None; 2];
+        let line: Vec<DVec2> = match command.to_ascii_uppercase() {
+            'M' | 'L' => vec![rest.point(from)?],
+            'Z' => vec![start],
+            'H' => vec![DVec2::new(from.x + rest.number()?, at.y)],
+            'V' => vec![DVec2::new(at.x, from.y + rest.number()?)],
+            c @ ('C' | 'S') => {
+                let a = if c == 'C' { rest.point(from)? } else { mirrored[0] };
                 let (b, end) = (rest.point(from)?, rest.point(from)?);
+                self.handles[0] = Some(b);
                 let at_share = |t: f64| {
                     let u = 1.0 - t;
                     u * u * u * at + 3.0 * u * u * t * a + 3.0 * u * t * t * b + t * t * t * end
                 };
-                line.extend(pieces().map(at_share));
-                next[0] = Some(b);
+                pieces().map(at_share).collect()
             }
-            'Q' | 'T' => {
-                let mirrored = handles[1].map_or(at, |handle| 2.0 * at - handle);
-                let a = if c.eq_ignore_ascii_case(&'Q') { rest.point(from)? } else { mirrored };
+            c @ ('Q' | 'T') => {
+                let a = if c == 'Q' { rest.point(from)? } else { mirrored[1] };
                 let end = rest.point(from)?;
+                self.handles[1] = Some(a);
                 let at_share = |t: f64| (1.0 - t) * (1.0 - t) * at + 2.0 * (1.0 - t) * t * a + t * t * end;
-                line.extend(pieces().map(at_share));
-                next[1] = Some(a);
+                pieces().map(at_share).collect()
             }
             'A' => {
                 let radii = DVec2::new(rest.number()?, rest.number()?);
                 let turn = rest.number()?.to_radians();
                 let flags = [rest.flag()?, rest.flag()?];
-                let end = rest.point(from)?;
-                line.extend(arc(at, end, radii.abs(), turn, flags));
+                arc(at, rest.point(from)?, radii.abs(), turn, flags)
             }
             other => return Err(format!("the command {other} of a path is not known; write the path anew")),
-        }
-        handles = next;
-        if let (Some(last), Some(ring)) = (line.last().copied(), out.last_mut()) {
-            at = last;
-            ring.extend(line);
-        }
+        };
+        self.at = line.last().copied().unwrap_or(at);
+        Ok(line)
     }
-    // Moves that nothing follows.
-    out.retain(|ring| ring.len() >= 2);
-    Ok(out)
 }
 
 fn pieces() -> impl Iterator<Item = f64> {
