@@ -199,10 +199,9 @@ fn in_scene(
     if sea == 0 || open || made_up > 1e-12 {
         warn_about_voids(first, void_samples, void_share, made_up, left_open, &mut warnings);
     }
-    let crs = target.crs;
     let value = LoadedTerrain {
         heightfield,
-        crs,
+        crs: target.crs,
         void_share,
         void_samples,
         filled_share,

@@ -30,36 +30,28 @@ pub(super) fn city(vectors: Vectors) -> Result<Loaded<CityFile>, IoError> {
     for (number, feature) in vectors.features.iter().enumerate() {
         match &feature.geometry {
             Geometry::Points(_) => points += 1,
-            Geometry::Lines(lines) => match way_class(&feature.properties)
-                .or((!told_ways).then_some(WayClass::Residential))
-            {
-                Some(class) => {
-                    let flat = |line: &Vec<Vertex>| line.iter().map(|v| v.xy).collect();
-                    let name = feature.name.clone();
-                    city.ways.extend(lines.iter().map(|line| Way { name: name.clone(), class, points: flat(line) }));
-                }
-                None => unknown += 1,
-            },
-            Geometry::Polygons(polygons) => {
-                let polygons: Vec<Polygon> = polygons
-                    .iter()
-                    .filter_map(|rings| {
-                        let rings = rings.iter().map(|ring| ring.iter().map(|v| v.xy).collect());
-                        plan::polygon(rings, &mut repairs)
-                    })
-                    .collect();
-                if polygons.is_empty() {
+            Geometry::Lines(lines) => {
+                let usual = (!told_ways).then_some(WayClass::Residential);
+                let Some(class) = way_class(&feature.properties).or(usual) else {
+                    unknown += 1;
                     continue;
-                }
+                };
+                let flat = |line: &Vec<Vertex>| line.iter().map(|v| v.xy).collect();
+                let name = feature.name.clone();
+                city.ways.extend(lines.iter().map(|line| Way { name: name.clone(), class, points: flat(line) }));
+            }
+            Geometry::Polygons(polygons) => {
+                let flat = |rings: &Vec<Vec<Vertex>>| {
+                    plan::polygon(rings.iter().map(|ring| ring.iter().map(|v| v.xy).collect()), &mut repairs)
+                };
+                let polygons: Vec<Polygon> = polygons.iter().filter_map(flat).collect();
                 match cover(&feature.properties) {
+                    _ if polygons.is_empty() => {}
                     Some(cover) if !is_building(feature) => {
                         city.areas.push(CityArea { name: feature.name.clone(), cover, polygons });
                     }
                     _ if is_building(feature) || !told => {
-                        let mut building = building(feature, polygons, &mut repairs);
-                        if building.id.is_empty() {
-                            building.id = format!("feature/{}", number + 1);
-                        }
+                        let building = building(feature, number, polygons, &mut repairs);
                         let (id, name) = (building.id.clone(), building.name.clone());
                         about.push(CityAbout { id, name, attributes: feature.properties.clone() });
                         city.buildings.push(building);
@@ -72,12 +64,10 @@ pub(super) fn city(vectors: Vectors) -> Result<Loaded<CityFile>, IoError> {
     let path = vectors.path.clone();
     if city == City::default() {
         let count = vectors.features.len();
-        return Err(IoError::format(
-            &path,
-            format!(
-                "none of its {count} features is a building, way or land cover; they need properties such as building, highway or landuse"
-            ),
-        ));
+        let reason = format!(
+            "none of its {count} features is a building, way or land cover; they need properties such as building, highway or landuse"
+        );
+        return Err(IoError::format(&path, reason));
     }
     let say = |count: usize, what: &str| Warning::counted(WarningKind::Ignored, count, what);
     let warnings = repairs
@@ -86,9 +76,9 @@ pub(super) fn city(vectors: Vectors) -> Result<Loaded<CityFile>, IoError> {
         .chain(say(points, "points were left out"))
         .map(|w| w.in_file(&path));
     let (warnings, reference) = (warnings.collect(), vectors.crs.name().to_owned());
-    let format = vectors.format.to_owned();
     let crs = Some(vectors.crs).filter(|crs| !crs.is_local());
-    let file = CityFile { path, format, crs, reference, lods: vec!["0".into()], city, about };
+    let file =
+        CityFile { path, format: vectors.format.to_owned(), crs, reference, lods: vec!["0".into()], city, about };
     Ok(Loaded::new(file, warnings))
 }
 
@@ -102,10 +92,10 @@ fn is_building(feature: &VectorFeature) -> bool {
         || (cover(p).is_none() && ["height", "levels"].iter().any(|k| p.text(k).is_some()))
 }
 
-fn building(feature: &VectorFeature, footprint: Vec<Polygon>, repairs: &mut Repairs) -> Building {
+fn building(feature: &VectorFeature, number: usize, footprint: Vec<Polygon>, repairs: &mut Repairs) -> Building {
     let about = &feature.properties;
     let (height_m, height_source) = attributes::height(about, repairs);
-    let id = IDS.iter().find_map(|k| about.text(k)).unwrap_or_default();
+    let id = IDS.iter().find_map(|k| about.text(k)).unwrap_or_else(|| format!("feature/{}", number + 1));
     let name = if feature.name.is_empty() { attributes::name(about) } else { feature.name.clone() };
     let landmark = attributes::is_landmark(about);
     Building { id, name, landmark, footprint, base_m: None, height_m, height_source, faces: Vec::new() }

@@ -279,6 +279,7 @@ fn projection(system: &Node, angle_rad: f64) -> Result<String, CrsError> {
     let method = system.child(&["PROJECTION"]).map(Node::name);
     let method = method.ok_or_else(|| text_error("it has no EPSG code and no PROJECTION element of WKT 1"))?;
     let plain = plain(method);
+    let unsupported = |reason: String| CrsError::Unsupported { name: system.name().to_owned(), reason };
     let proj = match plain.as_str() {
         "transversemercator" | "gausskruger" | "transversemercatorsouthorientated" => "tmerc",
         "lambertconformalconic" | "lambertconformalconic1sp" | "lambertconformalconic2sp" => "lcc",
@@ -305,18 +306,12 @@ fn projection(system: &Node, angle_rad: f64) -> Result<String, CrsError> {
         "hotineobliquemercatorazimuthcenter"
         | "obliquemercator"
         | "hotineobliquemercatorvariantb"
-        | "rectifiedskeworthomorphiccenter" => "omerc",
-        "rectifiedskeworthomorphicnaturalorigin"
+        | "rectifiedskeworthomorphiccenter"
+        | "rectifiedskeworthomorphicnaturalorigin"
         | "hotineobliquemercator"
         | "hotineobliquemercatorazimuthnaturalorigin"
         | "hotineobliquemercatorvarianta" => "omerc",
-        _ => {
-            let name = system.name().to_owned();
-            return Err(CrsError::Unsupported {
-                name,
-                reason: format!("the projection method {method} is not supported"),
-            });
-        }
+        _ => return Err(unsupported(format!("the projection method {method} is not supported"))),
     };
     let value = |names: &[&str]| {
         let named = |c: &&Node| c.is(&["PARAMETER"]) && names.iter().any(|n| c.name().eq_ignore_ascii_case(n));
@@ -326,9 +321,7 @@ fn projection(system: &Node, angle_rad: f64) -> Result<String, CrsError> {
         return Ok(oblique(&plain, &value, angle_rad, unit(system).unwrap_or(1.0)));
     }
     if proj == "krovak" && value(&["X_Scale"]).is_some_and(|x| x > 0.0) {
-        let name = system.name().to_owned();
-        let reason = "its Krovak axes run south and west".to_owned();
-        return Err(CrsError::Unsupported { name, reason });
+        return Err(unsupported("its Krovak axes run south and west".to_owned()));
     }
     let mut out = format!("+proj={proj}");
     if plain == "transversemercatorsouthorientated" {

@@ -156,8 +156,8 @@ fn side(container: &Container, ifd: &Ifd, number: u16, what: &str) -> Result<usi
 impl Layout {
     pub(super) fn new(container: &Container, ifd: &Ifd) -> Result<Self, String> {
         let one = |number: u16, default: u64| Ok::<_, String>(container.uint_tag(ifd, number)?.unwrap_or(default));
-        let width = side(container, ifd, tag::WIDTH, "width")?;
-        let height = side(container, ifd, tag::HEIGHT, "height")?;
+        let side = |number: u16, what: &str| side(container, ifd, number, what);
+        let (width, height) = (side(tag::WIDTH, "width")?, side(tag::HEIGHT, "height")?);
         let bands = one(tag::SAMPLES_PER_PIXEL, 1)?;
         if bands == 0 || bands > 65535 {
             return Err(format!("has {bands} samples per pixel, 1 to 65535 are possible"));
@@ -176,10 +176,7 @@ impl Layout {
         let predictor = one(tag::PREDICTOR, 1)?;
         let tiled = ifd.has(tag::TILE_WIDTH);
         let [chunk_width, chunk_height] = if tiled {
-            [
-                side(container, ifd, tag::TILE_WIDTH, "tile width")?,
-                side(container, ifd, tag::TILE_HEIGHT, "tile height")?,
-            ]
+            [side(tag::TILE_WIDTH, "tile width")?, side(tag::TILE_HEIGHT, "tile height")?]
         } else {
             let rows = one(tag::ROWS_PER_STRIP, u64::MAX)?;
             if rows == 0 {

@@ -48,31 +48,20 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
     if let Some(refused) = builder.pictures.refused.take() {
         return Err(IoError::format(path, refused));
     }
-    let Builder {
-        mut out,
-        normals,
-        vertex_colors,
-        base,
-        painted,
-        smooth,
-        skipped,
-        see_through,
-        texturing,
-        mut pictures,
-        ..
-    } = builder;
-    out.normals = smooth.then_some(normals);
+    let Builder { mut out, mut pictures, see_through, skipped, .. } = builder;
+    out.normals = builder.smooth.then_some(builder.normals);
     let textured = !pictures.textures.is_empty();
-    out.texturing = textured.then(|| Texturing { textures: std::mem::take(&mut pictures.textures), ..texturing });
+    out.texturing =
+        textured.then(|| Texturing { textures: std::mem::take(&mut pictures.textures), ..builder.texturing });
     files.append(&mut pictures.files);
     if out.names.iter().all(String::is_empty) {
         out.names.clear();
         out.parts.clear();
     }
-    out.colors = if painted {
-        MeshColors::PerVertex(vertex_colors)
-    } else if textured || base.iter().any(|c| *c != Color::rgb(255, 255, 255)) {
-        MeshColors::PerTriangle(base)
+    out.colors = if builder.painted {
+        MeshColors::PerVertex(builder.vertex_colors)
+    } else if textured || builder.base.iter().any(|c| *c != Color::rgb(255, 255, 255)) {
+        MeshColors::PerTriangle(builder.base)
     } else {
         MeshColors::Layer
     };

@@ -56,9 +56,8 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
     }
     let odd = odd.into_inner();
     if let Some(first) = odd.first() {
-        let count = odd.len();
-        let text = format!("{count} lines of its materials are not read, the first is {first:?}");
-        warnings.push(Warning::new(WarningKind::Ignored, text).with("count", count as f64).in_file(path));
+        let text = format!("{} lines of its materials are not read, the first is {first:?}", odd.len());
+        warnings.push(Warning::new(WarningKind::Ignored, text).with("count", odd.len() as f64).in_file(path));
     }
     let mut materials = Materials::new(path, materials.unwrap_or_default(), limits);
     let mut builder = Builder::default();
