@@ -219,49 +219,29 @@ impl PresetDocument {
         }
         let at = Edited { preset: &mut self.presets[index], label: &label };
         match change {
-            PresetChange::MovePoint(number, to) => at.with_points()?.move_point(*number, *to),
-            PresetChange::AddPoint(t) => at.with_points()?.add_point(*t),
-            PresetChange::RemovePoint(number) => at.with_points()?.remove_point(*number),
-            PresetChange::Corner(number) => at.with_points()?.toggle_corner(*number),
-            PresetChange::Soften(share) => at.with_points()?.soften(*share),
-            PresetChange::Angles(count) => at.give_angles(*count),
-            PresetChange::Turn(number, degrees) => at.turn(*number, *degrees),
-            PresetChange::MoveTag(number, to) => at.move_tag(*number, *to),
-            PresetChange::PlaceTag(number, u) => at.place_tag(*number, *u),
-            PresetChange::TagWidth(number, delta) => at.widen_tag(*number, *delta),
-            PresetChange::Section(number, id) => at.assign(*number, id),
-            PresetChange::Split(number) => at.split(*number),
-            PresetChange::Merge(number) => at.merge(*number),
-            PresetChange::Range([s, e]) => {
-                (at.preset.s, at.preset.e) = (*s, *e);
-                Ok(())
-            }
-            PresetChange::Phi(phi) => {
-                at.preset.phi = *phi;
-                Ok(())
-            }
-            PresetChange::Tau(tau) => {
-                at.preset.tau = *tau;
-                Ok(())
-            }
-            PresetChange::Fade([a, b]) => {
-                (at.preset.a, at.preset.b) = (*a, *b);
-                Ok(())
-            }
-            PresetChange::FieldOfView(fov) => {
-                at.preset.fov_y_deg = *fov;
-                Ok(())
-            }
-            PresetChange::Mirror => {
-                at.mirror();
-                Ok(())
-            }
-            PresetChange::Rename(name) => {
-                at.preset.name.clone_from(name);
-                Ok(())
-            }
-            PresetChange::Duplicate { .. } | PresetChange::Remove => Ok(()),
+            PresetChange::MovePoint(number, to) => at.with_points()?.move_point(*number, *to)?,
+            PresetChange::AddPoint(t) => at.with_points()?.add_point(*t)?,
+            PresetChange::RemovePoint(number) => at.with_points()?.remove_point(*number)?,
+            PresetChange::Corner(number) => at.with_points()?.toggle_corner(*number)?,
+            PresetChange::Soften(share) => at.with_points()?.soften(*share)?,
+            PresetChange::Angles(count) => at.give_angles(*count)?,
+            PresetChange::Turn(number, degrees) => at.turn(*number, *degrees)?,
+            PresetChange::MoveTag(number, to) => at.move_tag(*number, *to)?,
+            PresetChange::PlaceTag(number, u) => at.place_tag(*number, *u)?,
+            PresetChange::TagWidth(number, delta) => at.widen_tag(*number, *delta)?,
+            PresetChange::Section(number, id) => at.assign(*number, id)?,
+            PresetChange::Split(number) => at.split(*number)?,
+            PresetChange::Merge(number) => at.merge(*number)?,
+            PresetChange::Range([s, e]) => (at.preset.s, at.preset.e) = (*s, *e),
+            PresetChange::Phi(phi) => at.preset.phi = *phi,
+            PresetChange::Tau(tau) => at.preset.tau = *tau,
+            PresetChange::Fade([a, b]) => (at.preset.a, at.preset.b) = (*a, *b),
+            PresetChange::FieldOfView(fov) => at.preset.fov_y_deg = *fov,
+            PresetChange::Mirror => at.mirror(),
+            PresetChange::Rename(name) => at.preset.name.clone_from(name),
+            PresetChange::Duplicate { .. } | PresetChange::Remove => {}
         }
+        Ok(())
     }
 }
 
