@@ -5,7 +5,7 @@
 
 use super::{Shown, Sidestep, Target, TargetSight};
 use crate::ConstructError;
-use belvedere_core::{DVec3, View};
+use belvedere_core::{DVec3, Pinhole, View};
 use belvedere_scene::{Progress, Scene, Unit};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -108,11 +108,12 @@ pub fn bend_around_by(
     let (scene, target) = (sight.scene(), sight.target());
     let Shown { share: visible_straight, light: light_straight } = sight.shown(base, 0.0);
     let straight = sight.share(base, options.grow_px);
+    let in_frame = sight.in_frame(base);
     let mut report = BendReport {
         visible_straight,
         visible: visible_straight,
-        in_frame_straight: sight.in_frame(base),
-        in_frame: sight.in_frame(base),
+        in_frame_straight: in_frame,
+        in_frame,
         light_straight,
         light_best: light_straight,
         motion: 0.0,
@@ -131,20 +132,9 @@ pub fn bend_around_by(
     let mut best: Option<Candidate> = None;
     for (i, start) in STARTS.into_iter().enumerate() {
         progress.tick("bending rays around what hides the target", i as f64 / STARTS.len() as f64)?;
-        let sidesteps = WIDTHS.into_iter().flat_map(|width| {
-            let end = (start + width) * depth;
-            REACHES.into_iter().flat_map(move |reach| {
-                (0..DIRECTIONS).map(move |k| {
-                    let angle = std::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
-                    let (sin, cos) = angle.sin_cos();
-                    let offset = reach * depth * (cos * pinhole.right + sin * pinhole.down);
-                    Sidestep { offset, planes: [start * depth, 0.5 * (start * depth + end), end] }
-                })
-            })
-        });
         let stands = |s: &Sidestep| (pinhole.eye + s.offset).z >= floor;
         let has_room = |s: &Sidestep| s.planes[2] <= last && s.planes[0] > 1.001 * pinhole.near;
-        let possible: Vec<Sidestep> = sidesteps.filter(|s| has_room(s) && stands(s)).collect();
+        let possible: Vec<Sidestep> = sidesteps(pinhole, start, depth).filter(|s| has_room(s) && stands(s)).collect();
         report.tried += possible.len();
         // Those of one step are compared with the best of the steps before: the same on any number of threads.
         let least = best.as_ref().map_or(straight, |b| b.score().max(straight));
@@ -166,6 +156,21 @@ pub fn bend_around_by(
         report.in_frame = sight.in_frame(&best.view);
     }
     Ok(BendFound { bent: bent.map(|b| (b.view, b.sidestep)), report })
+}
+
+/// The bends whose planes begin at a share of the depth of the target.
+fn sidesteps(pinhole: &Pinhole, start: f64, depth: f64) -> impl Iterator<Item = Sidestep> {
+    WIDTHS.into_iter().flat_map(move |width| {
+        let end = (start + width) * depth;
+        REACHES.into_iter().flat_map(move |reach| {
+            (0..DIRECTIONS).map(move |k| {
+                let angle = std::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
+                let (sin, cos) = angle.sin_cos();
+                let offset = reach * depth * (cos * pinhole.right + sin * pinhole.down);
+                Sidestep { offset, planes: [start * depth, 0.5 * (start * depth + end), end] }
+            })
+        })
+    })
 }
 
 /// A bend judged; `None` if it is not possible, or its score is not above `least`.
@@ -191,7 +196,7 @@ fn turned(base: &View, sidestep: &Sidestep, center: DVec3) -> Option<View> {
     let share = sidestep.planes[1] / way.dot(root.forward);
     let aim = viewpoint + share * way;
     let up = -root.down;
-    let pinhole = belvedere_core::Pinhole::look_at(root.eye, aim, up, root.projection, root.image, root.near, root.far);
+    let pinhole = Pinhole::look_at(root.eye, aim, up, root.projection, root.image, root.near, root.far);
     View::new(pinhole.ok()?, base.stages().to_vec()).ok()
 }
 

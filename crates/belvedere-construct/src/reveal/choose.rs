@@ -74,40 +74,23 @@ pub(super) fn promising(
     let tried = eyes.len();
     let samples = evaluator.samples.len();
     let stride = coarse_stride(samples, stride_for(samples, options));
-    let mut composed: Vec<(f64, Base)> = eyes
-        .into_par_iter()
-        .enumerate()
-        .filter_map(|(i, eye)| {
-            // When time is up, the other eyes are left out, but not the most usual ones.
-            if i >= EYES_AT_LEAST && progress.should_end() {
-                return None;
-            }
-            let stages = options.earth_radius.map(|radius| {
-                let refraction = EarthCurvature::REFRACTION;
-                Stage::EarthCurvature(EarthCurvature { eye: eye.pinhole.eye, radius, refraction })
-            });
-            let view = View::new(eye.pinhole.clone(), stages.into_iter().collect()).ok()?;
-            let (straight, taste) = (evaluator.composed(&view, stride), taste(&eye, options));
-            let score = composition(&straight).max(frame(&straight) - BENT) + taste;
-            Some((score, Base { view, straight, heading_deg: eye.heading_deg, taste }))
-        })
-        .collect();
-    composed.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut composed = best_first(eyes, progress, |eye: Eye| {
+        let stages = options.earth_radius.map(|radius| {
+            let refraction = EarthCurvature::REFRACTION;
+            Stage::EarthCurvature(EarthCurvature { eye: eye.pinhole.eye, radius, refraction })
+        });
+        let view = View::new(eye.pinhole.clone(), stages.into_iter().collect()).ok()?;
+        let (straight, taste) = (evaluator.composed(&view, stride), taste(&eye, options));
+        let score = composition(&straight).max(frame(&straight) - BENT) + taste;
+        Some((score, Base { view, straight, heading_deg: eye.heading_deg, taste }))
+    });
     composed.truncate(LOOKED_FROM);
-    let mut evaluated: Vec<(f64, Base)> = composed
-        .into_par_iter()
-        .enumerate()
-        .filter_map(|(i, (_, base))| {
-            if i >= EYES_AT_LEAST && progress.should_end() {
-                return None;
-            }
-            let straight = evaluator.evaluate(&base.view, stride);
-            Some((promise(&straight, base.taste), Base { straight, ..base }))
-        })
-        .collect();
-    evaluated.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let evaluated = best_first(composed, progress, |base: Base| {
+        let straight = evaluator.evaluate(&base.view, stride);
+        Some((promise(&straight, base.taste), Base { straight, ..base }))
+    });
     let (mut kept, mut others): (Vec<Base>, Vec<Base>) = Default::default();
-    for (_, base) in evaluated {
+    for base in evaluated {
         let apart = |k: &&Base| {
             let turn = (k.heading_deg - base.heading_deg).rem_euclid(360.0);
             turn.min(360.0 - turn) < ALIKE_DEG
@@ -125,6 +108,15 @@ pub(super) fn promising(
     let least = kept.iter().map(score_straight).fold(f64::NEG_INFINITY, f64::max);
     kept.extend(others.into_iter().take(STRAIGHT_KEPT).filter(|base| score_straight(base) > least));
     Ok(kept)
+}
+
+/// Cameras with a score, the best first. When time is up, the rest are left out, but not the first ones, which are the most usual.
+fn best_first<T: Send>(of: Vec<T>, progress: &Progress, scored: impl Fn(T) -> Option<(f64, Base)> + Sync) -> Vec<Base> {
+    let in_time = |i: usize| i < EYES_AT_LEAST || !progress.should_end();
+    let all = of.into_par_iter().enumerate().filter_map(|(i, one)| if in_time(i) { scored(one) } else { None });
+    let mut all: Vec<(f64, Base)> = all.collect();
+    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    all.into_iter().map(|(_, base)| base).collect()
 }
 
 /// Score of the straight picture as the answer.

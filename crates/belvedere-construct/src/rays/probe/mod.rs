@@ -350,15 +350,22 @@ fn search(
         }
     }
     let Some((_, chain)) = best else { return Ok(None) };
-    // All points decide whether it is better than no turn at all.
-    let Some(view) = chain.view(base, f64::INFINITY) else { return Ok(None) };
-    let verdict = judge.verdict(&view, 1);
-    let score = verdict.score - price_of(&chain, pinhole.eye);
     let found = Found { cells: voxels.size(), cell_m: voxels.cell(), reach_m: region.reach, tried };
-    let first = chain.points[0].distance(pinhole.eye);
+    Ok(kept(chain, base, judge, found))
+}
+
+/// A chain judged by all points, which decide whether it is better than no turn at all.
+fn kept(chain: Chain, base: &View, judge: &Judge<'_>, found: Found) -> Option<Kept> {
+    let (view, eye) = (chain.view(base, f64::INFINITY)?, base.pinhole().eye);
+    let verdict = judge.verdict(&view, 1);
+    let score = verdict.score - price_of(&chain, eye);
+    if !(score > 0.0 && verdict.gained > verdict.lost) {
+        return None;
+    }
+    let first = chain.points[0].distance(eye);
     let gained = |k: usize| chain.view(base, k as f64).map_or(0.0, |view| judge.verdict(&view, 1).gained);
-    let gained_by_turn = (1..=chain.turns(pinhole.eye)).map(gained).collect();
-    Ok((score > 0.0 && verdict.gained > verdict.lost).then_some(Kept { chain, score, first, gained_by_turn, found }))
+    let gained_by_turn = (1..=chain.turns(eye)).map(gained).collect();
+    Some(Kept { chain, score, first, gained_by_turn, found })
 }
 
 fn price_of(chain: &Chain, eye: DVec3) -> f64 {
