@@ -206,7 +206,7 @@ impl<'a> DisplacedGround<'a> {
 
     /// The same over one cell.
     fn in_cell(&self, line: &GridLine, (z, dz): (f64, f64), cell: [usize; 2], part: [f64; 2], worst: &mut Excess) {
-        let cols = self.field.cols();
+        let (cols, corner) = (self.field.cols(), DVec2::new(cell[0] as f64, cell[1] as f64));
         let nw = cell[1] * cols + cell[0];
         let nodes = [nw, nw + 1, nw + cols, nw + cols + 1];
         let mut heights = nodes.map(|i| self.field.heights()[i]);
@@ -221,7 +221,6 @@ impl<'a> DisplacedGround<'a> {
         if most(heights) + rise - low <= worst.over {
             return;
         }
-        let corner = DVec2::new(cell[0] as f64, cell[1] as f64);
         if self.faceted {
             let moved = moved.unwrap_or_else(|| self.at_corners(cell));
             heights.iter_mut().zip(moved).for_each(|(height, moved)| *height += moved);
@@ -256,9 +255,8 @@ impl<'a> DisplacedGround<'a> {
                 let after = over_at(b);
                 if !self.faceted {
                     // A bilinear displacement is a parabola along a line.
-                    let middle = over_at(0.5 * (a + b));
-                    let (bend, rise) = (before + after - 2.0 * middle, after - before);
-                    let top = 0.5 - 0.25 * rise / bend;
+                    let bend = before + after - 2.0 * over_at(0.5 * (a + b));
+                    let top = 0.5 - 0.25 * (after - before) / bend;
                     if bend < 0.0 && top > 0.0 && top < 1.0 {
                         over_at(a + top * (b - a));
                     }
