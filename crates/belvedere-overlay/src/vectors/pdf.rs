@@ -11,6 +11,7 @@ use flate2::{Compression, write::ZlibEncoder};
 use pdf_writer::types::{
     CidFontType, FontFlags, LineCapStyle, LineJoinStyle, SystemInfo, TextRenderingMode, UnicodeCmap,
 };
+use pdf_writer::writers::Resources;
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -394,10 +395,44 @@ impl Drawing {
         };
         let [catalog, pages, sheet, content, info] = std::array::from_fn(|_| id());
         let [font, cid, descriptor, file, unicode, image] = std::array::from_fn(|_| id());
-        let groups: Vec<Ref> = self.layers.iter().map(|_| id()).collect();
-        let states: Vec<Ref> = self.alphas.iter().map(|_| id()).collect();
-        let drawn: Vec<Ref> = (0..self.drawn.fonts()).map(|_| id()).collect();
+        let parts = Parts {
+            font: (!self.glyphs.is_empty()).then_some(font),
+            image: page.raster.is_some().then_some(image),
+            groups: self.layers.iter().map(|_| id()).collect(),
+            states: self.alphas.iter().map(|_| id()).collect(),
+            drawn: (0..self.drawn.fonts()).map(|_| id()).collect(),
+        };
         let mut pdf = Pdf::new();
+        self.layers_of(&mut pdf, (catalog, pages), &parts.groups);
+        pdf.pages(pages).kids([sheet]).count(1);
+        let mut leaf = pdf.page(sheet);
+        leaf.parent(pages).media_box(Rect::new(0.0, 0.0, paper[0] as f32, paper[1] as f32)).contents(content);
+        self.resources(leaf.resources(), &parts);
+        leaf.finish();
+        for (alpha, state) in self.alphas.iter().zip(&parts.states) {
+            let alpha = f32::from(*alpha) / 1000.0;
+            pdf.ext_graphics(*state).stroking_alpha(alpha).non_stroking_alpha(alpha);
+        }
+        let painted = deflated(&std::mem::replace(&mut self.content, Content::new()).finish());
+        pdf.stream(content, &painted).filter(Filter::FlateDecode);
+        if let Some(png) = page.raster {
+            surfaces(&mut pdf, image, png, page.size);
+        }
+        if parts.font.is_some() {
+            self.font(&mut pdf, [font, cid, descriptor, file, unicode]);
+        }
+        self.drawn.write(&mut pdf, &parts.drawn, id);
+        let mut document = pdf.document_info(info);
+        document.producer(TextStr(page.description));
+        if !page.title.is_empty() {
+            document.title(TextStr(page.title));
+        }
+        document.finish();
+        pdf.finish()
+    }
+
+    /// The catalog with the list of layers, and each layer.
+    fn layers_of(&self, pdf: &mut Pdf, (catalog, pages): (Ref, Ref), groups: &[Ref]) {
         let mut root = pdf.catalog(catalog);
         root.pages(pages);
         let mut optional = root.insert(Name(b"OCProperties")).dict();
@@ -413,64 +448,32 @@ impl Drawing {
             let mut dict = pdf.indirect(*group).dict();
             dict.pair(Name(b"Type"), Name(b"OCG")).pair(Name(b"Name"), TextStr(label));
         }
-        pdf.pages(pages).kids([sheet]).count(1);
-        let mut leaf = pdf.page(sheet);
-        leaf.parent(pages).media_box(Rect::new(0.0, 0.0, paper[0] as f32, paper[1] as f32)).contents(content);
-        let mut resources = leaf.resources();
+    }
+
+    /// What the page refers to by name.
+    fn resources(&self, mut resources: Resources<'_>, parts: &Parts) {
         let mut properties = resources.insert(Name(b"Properties")).dict();
-        for (number, group) in groups.iter().enumerate() {
+        for (number, group) in parts.groups.iter().enumerate() {
             properties.pair(Name(format!("L{number}").as_bytes()), *group);
         }
         properties.finish();
         let mut alphas = resources.ext_g_states();
-        for (alpha, state) in self.alphas.iter().zip(&states) {
+        for (alpha, state) in self.alphas.iter().zip(&parts.states) {
             alphas.pair(Name(format!("A{alpha}").as_bytes()), *state);
         }
         alphas.finish();
-        if page.raster.is_some() {
+        if let Some(image) = parts.image {
             resources.x_objects().pair(Name(b"Surfaces"), image);
         }
-        if !self.glyphs.is_empty() || !drawn.is_empty() {
+        if parts.font.is_some() || !parts.drawn.is_empty() {
             let mut fonts = resources.fonts();
-            if !self.glyphs.is_empty() {
+            if let Some(font) = parts.font {
                 fonts.pair(Name(b"F"), font);
             }
-            for (number, font) in drawn.iter().enumerate() {
+            for (number, font) in parts.drawn.iter().enumerate() {
                 fonts.pair(Name(DrawnLetters::name(number).as_bytes()), *font);
             }
-            fonts.finish();
         }
-        resources.finish();
-        leaf.finish();
-        for (alpha, state) in self.alphas.iter().zip(&states) {
-            let alpha = f32::from(*alpha) / 1000.0;
-            pdf.ext_graphics(*state).stroking_alpha(alpha).non_stroking_alpha(alpha);
-        }
-        let painted = deflated(&std::mem::replace(&mut self.content, Content::new()).finish());
-        pdf.stream(content, &painted).filter(Filter::FlateDecode);
-        if let Some(png) = page.raster {
-            let data = image_data(png);
-            let mut surfaces = pdf.image_xobject(image, &data);
-            surfaces.filter(Filter::FlateDecode);
-            surfaces.width(page.size[0] as i32).height(page.size[1] as i32);
-            surfaces.color_space().device_rgb();
-            surfaces.bits_per_component(8);
-            // The filters of PNG are predictors of PDF.
-            let mut parameters = surfaces.insert(Name(b"DecodeParms")).dict();
-            parameters.pair(Name(b"Predictor"), 15).pair(Name(b"Colors"), 3).pair(Name(b"BitsPerComponent"), 8);
-            parameters.pair(Name(b"Columns"), page.size[0] as i32);
-        }
-        if !self.glyphs.is_empty() {
-            self.font(&mut pdf, [font, cid, descriptor, file, unicode]);
-        }
-        self.drawn.write(&mut pdf, &drawn, id);
-        let mut document = pdf.document_info(info);
-        document.producer(TextStr(page.description));
-        if !page.title.is_empty() {
-            document.title(TextStr(page.title));
-        }
-        document.finish();
-        pdf.finish()
     }
 
     fn font(&self, pdf: &mut Pdf, [font, cid, descriptor, file, unicode]: [Ref; 5]) {
@@ -529,4 +532,28 @@ fn image_data(png: &[u8]) -> Vec<u8> {
         rest = after.get(length + 4..).unwrap_or_default();
     }
     data
+}
+/// Numbers of the objects that the page refers to.
+struct Parts {
+    /// Letters of the embedded font, if there are any.
+    font: Option<Ref>,
+    /// The raster of the surfaces.
+    image: Option<Ref>,
+    groups: Vec<Ref>,
+    states: Vec<Ref>,
+    drawn: Vec<Ref>,
+}
+
+/// The raster of the surfaces.
+fn surfaces(pdf: &mut Pdf, image: Ref, png: &[u8], [width, height]: [usize; 2]) {
+    let data = image_data(png);
+    let mut surfaces = pdf.image_xobject(image, &data);
+    surfaces.filter(Filter::FlateDecode);
+    surfaces.width(width as i32).height(height as i32);
+    surfaces.color_space().device_rgb();
+    surfaces.bits_per_component(8);
+    // The filters of PNG are predictors of PDF.
+    let mut parameters = surfaces.insert(Name(b"DecodeParms")).dict();
+    parameters.pair(Name(b"Predictor"), 15).pair(Name(b"Colors"), 3).pair(Name(b"BitsPerComponent"), 8);
+    parameters.pair(Name(b"Columns"), width as i32);
 }
