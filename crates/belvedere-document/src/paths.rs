@@ -2,7 +2,7 @@
 
 use super::{Document, LayerDoc, PaletteDoc, Paths, PresetsDoc, StageDoc, SymbolDoc, names_a_preset_file};
 use crate::DocumentError;
-use belvedere_io::{fs, join_table, split_table};
+use belvedere_io::{arrays, fs, join_table, split_table};
 use std::path::{Component, Path, PathBuf};
 
 impl LayerDoc {
@@ -23,13 +23,25 @@ impl LayerDoc {
 }
 
 impl Document {
-    /// Calls `change` with every name of a file in the document; built-in scenes are no files.
+    /// Calls `change` with every name of a file in the document; built-in scenes and arrays are no files.
     pub fn for_each_path(&mut self, change: &mut dyn FnMut(&mut String)) {
-        let mut one = |name: &mut String| {
-            if !name.starts_with("builtin:") {
+        self.for_each_source(&mut |name| {
+            if !name.starts_with("builtin:") && !arrays::is_name(name) {
                 change(name);
             }
-        };
+        });
+    }
+
+    /// Calls `change` with every name of an array in memory, `array:NAME`.
+    pub fn for_each_array(&mut self, change: &mut dyn FnMut(&mut String)) {
+        self.for_each_source(&mut |name| {
+            if arrays::is_name(name) {
+                change(name);
+            }
+        });
+    }
+
+    fn for_each_source(&mut self, mut one: &mut dyn FnMut(&mut String)) {
         for layer in &mut self.layer {
             match layer {
                 LayerDoc::Terrain(l) => {
@@ -264,6 +276,9 @@ fn check_name(name: &str) -> Result<(), String> {
         .split_once(':')
         .map(|(s, _)| s)
         .filter(|s| s.len() > 1 && s.bytes().all(|b| b.is_ascii_alphanumeric() || b"+-.".contains(&b)));
+    if arrays::is_name(name) {
+        return Err("names an array in memory where a file is needed; give the path of a file".into());
+    }
     if let Some(scheme) = scheme {
         return Err(format!("is a {scheme}: address; download it and give the path of the file"));
     }

@@ -82,7 +82,7 @@ pub(crate) fn sha256_of_chunks<E>(mut next: impl FnMut(&mut [u8]) -> Result<usiz
     }
 }
 
-fn hexadecimal(hasher: Sha256) -> String {
+pub(crate) fn hexadecimal(hasher: Sha256) -> String {
     hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 

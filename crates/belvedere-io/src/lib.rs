@@ -1,5 +1,6 @@
 //! Loaders and writers, one file per format: bytes in, [`Loaded`] values and warnings out.
 
+pub mod arrays;
 pub mod atomic;
 mod base64;
 pub mod budget;
@@ -34,6 +35,7 @@ mod text;
 pub mod vector;
 pub mod volume;
 
+pub use arrays::Arrays;
 pub use city::{CityFile, load_city};
 pub use drape::{DrapeRequest, load_drape};
 pub use error::{Fault, IoError, LiftedBy, json_fault, said};

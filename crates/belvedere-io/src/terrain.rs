@@ -4,6 +4,7 @@
 //! bilinearly to an axis-aligned metric grid of about the source's spacing, and the error at the source's own samples is
 //! measured and bounded (see [`ResampleError`]). Voids stay voids unless they are filled, and filled nodes are marked.
 
+mod array;
 mod bilinear;
 mod fill;
 mod frame;
@@ -20,7 +21,7 @@ mod survey;
 mod thin;
 
 use crate::crs::{CoordinateSystem, Transform, utm_epsg};
-use crate::{Fault, IoError, Limits, Loaded};
+use crate::{Arrays, Fault, IoError, Limits, Loaded};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Crs, Heightfield, HeightfieldError, NodeState, Progress};
 use glam::DVec2;
@@ -57,6 +58,8 @@ pub struct TerrainRequest {
     /// Makes holes at the edge that are sea ground at 0, marked [`NodeState::Filled`]: those of at least 100 nodes and a
     /// twentieth of the ground, of whose shore nine of ten nodes stand 0 to 30 m high, and half not above 10 m.
     pub sea: bool,
+    /// Sources in memory, which paths `array:NAME` mean.
+    pub arrays: Arrays,
     /// Memory for decoded samples.
     pub limits: Limits,
     /// Most nodes of the heightfield; larger sources are thinned out.
@@ -81,6 +84,7 @@ impl Default for TerrainRequest {
             fill_voids: false,
             largest_hole: 1.0,
             sea: false,
+            arrays: Arrays::default(),
             limits: Limits::default(),
             max_nodes: 16_000_000,
             source_crs: None,
@@ -132,7 +136,7 @@ const UTM_MAX_HALF_WIDTH_DEG: f64 = 20.0;
 /// Resampling errors above this give a warning, metres; smaller ones are within the accuracy of global elevation models.
 const WARN_P99_M: f64 = 16.0;
 
-/// Loads one or several rasters (GeoTIFF, `.hgt`, zipped `.hgt`, ESRI ASCII) as the terrain of a scene. Where several
+/// Loads one or several rasters (GeoTIFF, `.hgt`, zipped `.hgt`, ESRI ASCII, arrays of the request) as the terrain of a scene. Where several
 /// overlap, the first one that has data wins.
 ///
 /// # Errors

@@ -7,14 +7,17 @@ mod mmcif;
 mod pdb;
 mod sites;
 mod structure;
+mod table;
 
 pub use assembly::{Assemblies, Assembly, MOST_COPIES};
+pub use table::{AtomColumns, AtomTable};
 
 use crate::formats::Reader;
 use crate::packed::content;
 use crate::{InputFile, IoError, Limits, Loaded, budget, fs};
 use belvedere_core::DVec3;
 use belvedere_scene::Molecule;
+use sites::{Found, Sites};
 use std::path::Path;
 
 /// Bytes at the peak of reading per byte of text: 12 were measured on mmCIF, 10 on PDB; names of chains in assemblies take one more.
@@ -78,12 +81,19 @@ fn load(path: &Path, model: Option<usize>, frames: bool, limits: &Limits) -> Res
     let number = model.unwrap_or(1);
     let (format, read) =
         if is_cif { ("mmCIF", mmcif::read(&text, number, frames)) } else { ("PDB", pdb::read(&text, number, frames)) };
-    let (molecule, found) = read.and_then(|sites| sites.finish(model)).map_err(|e| other_kind(path, bad(e)))?;
-    let warnings = found.warnings.into_iter().map(|w| w.in_file(path)).collect();
-    let (models, alternates, named_bonds) = (found.models, found.alternates, found.named_bonds);
-    let (assemblies, frames) = (found.assemblies, found.frames);
-    let value = MoleculeFile { format, molecule, models, assemblies, frames, alternates, named_bonds };
-    Ok(Loaded::new(value, warnings).with_file(file))
+    let read = read.and_then(|sites| MoleculeFile::of(sites, format, model, path));
+    let loaded = read.map_err(|e| other_kind(path, bad(e)))?;
+    Ok(loaded.with_file(file))
+}
+
+impl MoleculeFile {
+    /// The content of atom lines that were read.
+    fn of(sites: Sites, format: &'static str, model: Option<usize>, path: &Path) -> Result<Loaded<Self>, String> {
+        let (molecule, found) = sites.finish(model)?;
+        let Found { models, alternates, named_bonds, assemblies, frames, warnings } = found;
+        let warnings = warnings.into_iter().map(|w| w.in_file(path)).collect();
+        Ok(Loaded::new(Self { format, molecule, models, assemblies, frames, alternates, named_bonds }, warnings))
+    }
 }
 
 /// The error of a file, or that it holds no molecule but something else.

@@ -4,36 +4,71 @@ use super::TerrainRequest;
 use super::samples::{Heights, as_requested, check_shape, heights, may_be_customary, void_absurd};
 use super::sentinels::{self, MILD, Outermost};
 use super::thin::{Rows, thinned_size, thinning};
-use crate::{GeoTiff, IoError, RasterInfo};
+use crate::{GeoTiff, IoError, Raster, RasterInfo};
 use belvedere_scene::Progress;
+use std::ops::Range;
 
 /// Samples of a band, unless a strip or a row of tiles has more.
 const BAND: usize = 4 << 20;
 
-/// The heights of a level of the file, thinned to at most `most_nodes`; at any time a band of it is in memory. What is thinned is the same
+/// A raster that gives some of its rows at a time.
+pub(super) trait Banded {
+    /// Everything but the samples.
+    fn info(&self) -> RasterInfo;
+    /// Columns of the source, of which the raster may be a reduced copy.
+    fn full_width(&self) -> usize;
+    /// Rows that are stored together.
+    fn rows_together(&self) -> usize;
+    /// Rows of all columns.
+    fn rows(&self, rows: Range<usize>, progress: &Progress) -> Result<Raster, IoError>;
+}
+
+/// A level of a file.
+pub(super) struct Level<'a> {
+    pub(super) tiff: &'a GeoTiff,
+    pub(super) level: usize,
+}
+
+impl Banded for Level<'_> {
+    fn info(&self) -> RasterInfo {
+        self.tiff.level_info(self.level).unwrap_or_else(|| self.tiff.info().clone())
+    }
+
+    fn full_width(&self) -> usize {
+        self.tiff.info().width
+    }
+
+    fn rows_together(&self) -> usize {
+        self.tiff.rows_together(self.level)
+    }
+
+    fn rows(&self, rows: Range<usize>, progress: &Progress) -> Result<Raster, IoError> {
+        self.tiff.read_window(self.level, 0..self.info().width, rows, progress)
+    }
+}
+
+/// The heights of a raster, thinned to at most `most_nodes`; at any time a band of it is in memory. What is thinned is the same
 /// as of the raster read whole.
 pub(super) fn read(
-    tiff: &GeoTiff,
-    level: usize,
+    source: &dyn Banded,
     request: &TerrainRequest,
     most_nodes: usize,
     progress: &Progress,
 ) -> Result<Heights, IoError> {
-    read_by(BAND, tiff, level, request, most_nodes, progress)
+    read_by(BAND, source, request, most_nodes, progress)
 }
 
 fn read_by(
     samples: usize,
-    tiff: &GeoTiff,
-    level: usize,
+    source: &dyn Banded,
     request: &TerrainRequest,
     most_nodes: usize,
     progress: &Progress,
 ) -> Result<Heights, IoError> {
-    let info = as_requested(tiff.level_info(level).unwrap_or_else(|| tiff.info().clone()), request);
+    let info = as_requested(source.info(), request);
     check_shape(&info)?;
     let every = thinning(info.width, info.height, most_nodes).unwrap_or(1);
-    let bands = Bands { tiff, level, info: &info, every, samples, request, progress };
+    let bands = Bands { source, info: &info, every, samples, request, progress };
     let (mut values, mut stored) = (Vec::new(), Vec::new());
     let pass = loop {
         let pass = bands.pass(&values)?;
@@ -48,7 +83,7 @@ fn read_by(
         stored.push(as_stored);
     };
     let (cols, rows) = thinned_size([info.width, info.height], every);
-    let factor = tiff.info().width as f64 / info.width as f64 * every as f64;
+    let factor = source.full_width() as f64 / info.width as f64 * every as f64;
     Ok(Heights {
         every,
         cols,
@@ -64,8 +99,7 @@ fn read_by(
 }
 
 struct Bands<'a> {
-    tiff: &'a GeoTiff,
-    level: usize,
+    source: &'a dyn Banded,
     info: &'a RasterInfo,
     every: usize,
     /// Samples of a band.
@@ -91,7 +125,7 @@ impl Bands<'_> {
     fn pass(&self, voids: &[f32]) -> Result<Pass, IoError> {
         let (cols, rows, k) = (self.info.width, self.info.height, self.every);
         let (out_cols, out_rows) = thinned_size([cols, rows], k);
-        let together = self.tiff.rows_together(self.level);
+        let together = self.source.rows_together();
         let band = (self.samples / cols).max(1).next_multiple_of(together).min(rows.next_multiple_of(together));
         let stored = self.info.bands as u64 * self.info.sample_type.size() as u64;
         let peak = (cols * (band + 2 * k)) as u64 * (stored + 8) + (out_cols * out_rows * 4) as u64;
@@ -122,8 +156,8 @@ impl Bands<'_> {
     }
 
     /// Heights of rows, and what they add to the pass.
-    fn band(&self, rows: std::ops::Range<usize>, voids: &[f32], out: &mut Pass) -> Result<Vec<f32>, IoError> {
-        let mut raster = self.tiff.read_window(self.level, 0..self.info.width, rows, self.progress)?;
+    fn band(&self, rows: Range<usize>, voids: &[f32], out: &mut Pass) -> Result<Vec<f32>, IoError> {
+        let mut raster = self.source.rows(rows, self.progress)?;
         raster.info = as_requested(raster.info, self.request);
         let mut heights = heights(&raster);
         out.absurd += void_absurd(&mut heights);
@@ -171,7 +205,8 @@ mod tests {
             let k = thinning(cols, rows, most_nodes).expect("too many");
             let (want, out_cols, out_rows) = thin(&whole, cols, rows, k);
             for samples in [1, 5 * cols, 64 * cols, 1 << 20] {
-                let read = read_by(samples, &tiff, 0, &request, most_nodes, &progress).expect("read");
+                let read =
+                    read_by(samples, &Level { tiff: &tiff, level: 0 }, &request, most_nodes, &progress).expect("read");
                 assert_eq!([read.cols, read.rows, read.every], [out_cols, out_rows, k]);
                 assert_eq!(bits(&read.heights), bits(&want), "every {k}, {samples} samples together");
                 assert_eq!([read.voids, read.absurd], [voids, absurd]);

@@ -1,6 +1,6 @@
 //! Samples of a raster as heights in metres.
 
-use super::TerrainRequest;
+use super::{TerrainRequest, sentinels};
 use crate::{IoError, Photometric, Raster, RasterInfo, Samples};
 use belvedere_core::Warning;
 use rayon::prelude::*;
@@ -26,6 +26,18 @@ pub(super) struct Heights {
     pub(super) absurd: usize,
     /// What is said of customary values that are taken as voids.
     pub(super) customary: Option<Warning>,
+}
+
+impl Heights {
+    /// The heights of a raster that was read whole.
+    pub(super) fn whole(info: RasterInfo, mut heights: Vec<f32>, factor: f64, request: &TerrainRequest) -> Self {
+        let absurd = void_absurd(&mut heights);
+        let unit = info.vertical_unit_m as f32;
+        let customary = may_be_customary(&info, request).then(|| sentinels::void(&mut heights, unit)).flatten();
+        let voids = heights.iter().filter(|h| h.is_nan()).count();
+        let (cols, rows, samples) = (info.width, info.height, heights.len());
+        Self { info, every: 1, cols, rows, heights, factor, samples, voids, absurd, customary }
+    }
 }
 
 /// As the request says it in place of the file.
@@ -70,7 +82,7 @@ pub(super) fn heights(raster: &Raster) -> Vec<f32> {
         }
         Samples::F32(v) if plain => {
             let nodata = nodata.map(|n| n as f32);
-            v.par_iter().map(|&h| if Some(h) == nodata || !h.is_finite() { f32::NAN } else { h * unit }).collect()
+            v.par_iter().map(|&h| height_of(h, nodata, unit)).collect()
         }
         _ => {
             let width = info.width;
@@ -78,6 +90,11 @@ pub(super) fn heights(raster: &Raster) -> Vec<f32> {
             (0..width * info.height).into_par_iter().with_min_len(4096).map(height).collect()
         }
     }
+}
+
+/// Metres of a stored height; NaN = void.
+pub(super) fn height_of(stored: f32, nodata: Option<f32>, unit: f32) -> f32 {
+    if Some(stored) == nodata || !stored.is_finite() { f32::NAN } else { stored * unit }
 }
 
 /// Makes samples beyond the largest height void; returns their number.

@@ -1,9 +1,10 @@
 //! Reading the sources of a terrain: samples as heights in metres, voids as NaN.
 
-use super::samples::{Heights, MAX_HEIGHT_M, as_requested, check_shape, heights, may_be_customary, void_absurd};
+use super::in_bands::{self, Level};
+use super::samples::{Heights, MAX_HEIGHT_M, as_requested, check_shape, heights};
 use super::stated_system::{is_of_another_body, stated_system};
 use super::thin::{thin, thinning};
-use super::{CrsChoice, TerrainRequest, frame, in_bands, sentinels};
+use super::{CrsChoice, TerrainRequest, array, frame};
 use crate::crs::CoordinateSystem;
 use crate::formats::{Reader, ends};
 use crate::fs::File;
@@ -86,9 +87,13 @@ fn read_one(
     most_nodes: usize,
     progress: &Progress,
 ) -> Result<Loaded<SourceGrid>, IoError> {
-    let path = &meant(path, &request.limits)?;
+    let array = request.arrays.find(path)?;
+    let path = &array.map_or_else(|| meant(path, &request.limits), |_| Ok(path.to_owned()))?;
     let _work = budget::work_on(path);
-    let Loaded { value: read, mut warnings, files } = read_heights(path, request, most_nodes, progress)?;
+    let Loaded { value: read, mut warnings, files } = match array {
+        Some(array) => array::read(array, request, most_nodes, progress)?,
+        None => read_heights(path, request, most_nodes, progress)?,
+    };
     let Heights { info, cols, rows, heights, every, factor, .. } = read;
     let bands = info.bands - usize::from(info.alpha.band().is_some());
     if bands > 1 {
@@ -137,15 +142,8 @@ fn read_heights(
     };
     raster.info = as_requested(raster.info, request);
     check_shape(&raster.info)?;
-    let mut heights = heights(&raster);
-    let info = raster.info;
-    let absurd = void_absurd(&mut heights);
-    let unit = info.vertical_unit_m as f32;
-    let customary = may_be_customary(&info, request).then(|| sentinels::void(&mut heights, unit)).flatten();
-    let voids = heights.iter().filter(|h| h.is_nan()).count();
-    let (cols, rows, samples) = (info.width, info.height, heights.len());
-    let value = Heights { info, every: 1, cols, rows, heights, factor, samples, voids, absurd, customary };
-    Ok(Loaded { value, warnings, files })
+    let heights = heights(&raster);
+    Ok(Loaded { value: Heights::whole(raster.info, heights, factor, request), warnings, files })
 }
 
 /// A source of at most `budget` nodes; `factor`: ratio of its spacing to that of the file.
@@ -222,7 +220,8 @@ fn read_tiff(
     // the largest level within the budget, else the smallest there is
     let level = (0..levels).find(|&l| nodes(l) <= budget).unwrap_or(levels - 1);
     if nodes(level) > budget {
-        let (heights, file) = rayon::join(|| in_bands::read(&tiff, level, request, budget, progress), || tiff.input());
+        let (heights, file) =
+            rayon::join(|| in_bands::read(&Level { tiff: &tiff, level }, request, budget, progress), || tiff.input());
         return Ok(Loaded::new(Source::InBands(heights?), warnings).with_file(file?));
     }
     // Samples, heights, and marks of heights that were looked at.

@@ -1,9 +1,9 @@
 //! GeoJSON (RFC 7946, and the `crs` member of its 2008 draft).
 
-use super::{Geometry, VectorFeature, Vectors, Vertex, certainly_not_degrees, name_of, not_degrees, shorten, vertex};
+use super::collected::Collected;
+use super::{Geometry, Vectors, Vertex, shorten, vertex};
 use crate::crs::{CoordinateSystem, CrsError};
 use crate::{IoError, Loaded};
-use belvedere_core::{Warning, WarningKind};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -14,55 +14,23 @@ const REMEDY: &str = "correct it, or export the file again";
 
 #[derive(Default)]
 struct Reader {
-    features: Vec<VectorFeature>,
-    without_geometry: usize,
-    null_members: usize,
-    short_lines: usize,
-    one_position: usize,
-    short_rings: usize,
+    found: Collected,
 }
 
 pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> {
     let fail = |reason: String| IoError::format(path, reason);
     let records = records(text).map_err(fail)?;
-    let (crs, mut stated) = system_of(&records).map_err(fail)?;
+    let (crs, stated) = system_of(&records).map_err(fail)?;
     let mut reader = Reader::default();
     for (k, record) in records.iter().enumerate() {
         let place = |e: String| if records.len() > 1 { format!("record {k}: {e}") } else { e };
         reader.read_root(record).map_err(|e| fail(place(e)))?;
     }
-    let mut warnings = Vec::new();
-    let mut warn = |count: usize, what: &str| {
-        warnings.extend(Warning::counted(WarningKind::Ignored, count, what).map(|w| w.in_file(path)));
-    };
-    warn(reader.without_geometry, "features without geometry were dropped");
-    warn(reader.null_members, "members that are null where a feature, geometry or position is needed were dropped");
-    warn(reader.short_lines, "lines of fewer than 2 points were dropped");
-    warn(reader.one_position, "lines of one position only were dropped, a line needs 2 that differ");
-    warn(reader.short_rings, "polygon rings of fewer than 3 points were dropped");
-    if reader.features.is_empty() {
-        let found = [
-            (reader.without_geometry, "features without geometry"),
-            (reader.short_lines, "lines of fewer than 2 points"),
-            (reader.short_rings, "rings of fewer than 3 points"),
-            (reader.one_position, "lines of one position only"),
-        ];
-        let found: Vec<String> =
-            found.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
-        let found = if found.is_empty() { "no feature at all".to_owned() } else { found.join(", ") };
-        return Err(fail(format!("GeoJSON holds no usable geometry ({found}); choose another file")));
-    }
-    let mut crs = crs;
-    if let Some(reason) = not_degrees(&reader.features).filter(|_| crs.is_geographic()) {
-        if stated || !certainly_not_degrees(&reader.features) {
-            let crs = if stated { crs.name() } else { "longitude and latitude, the default" };
-            return Err(fail(format!("{reason}, but the file's system is {crs}; correct them, or its \"crs\" member")));
-        }
-        (crs, stated) = (CoordinateSystem::local(), false);
-    }
+    let warnings = reader.found.told(path, "GeoJSON holds").map_err(fail)?;
+    let (crs, stated) = reader.found.system(crs, stated).map_err(fail)?;
     let layer = records.first().and_then(|r| r.get("name")).and_then(Value::as_str).map(shorten).unwrap_or_default();
     let format = if records.len() > 1 { "GeoJSONSeq" } else { "GeoJSON" };
-    let value = Vectors { path: path.into(), format, layer, crs, crs_stated: stated, features: reader.features };
+    let value = Vectors { path: path.into(), format, layer, crs, crs_stated: stated, features: reader.found.features };
     Ok(Loaded::new(value, warnings))
 }
 
@@ -145,7 +113,7 @@ impl Reader {
             Some("FeatureCollection") => {
                 let features = root.get("features").and_then(Value::as_array);
                 let features = features.ok_or("FeatureCollection has no array \"features\"; it is damaged")?;
-                self.null_members += features.iter().filter(|f| f.is_null()).count();
+                self.found.null_members += features.iter().filter(|f| f.is_null()).count();
                 let there = features.iter().enumerate().filter(|(_, f)| !f.is_null());
                 there.into_iter().try_for_each(|(k, f)| self.read_feature(f).map_err(|e| format!("feature {k}: {e}")))
             }
@@ -173,7 +141,7 @@ impl Reader {
         match feature.get("geometry").filter(|g| !is_nothing(g)) {
             Some(geometry) => self.read_geometry(geometry, &properties, 0),
             None => {
-                self.without_geometry += 1;
+                self.found.without_geometry += 1;
                 Ok(())
             }
         }
@@ -189,12 +157,12 @@ impl Reader {
             if depth >= MAX_DEPTH {
                 return Err(format!("geometry collections nest deeper than {MAX_DEPTH}; {REMEDY}"));
             }
-            self.null_members += members.iter().filter(|m| m.is_null()).count();
+            self.found.null_members += members.iter().filter(|m| m.is_null()).count();
             let mut there = members.iter().filter(|m| !m.is_null());
             return there.try_for_each(|m| self.read_geometry(m, properties, depth + 1));
         }
         if g.get("coordinates").is_some_and(Value::is_null) {
-            self.without_geometry += 1;
+            self.found.without_geometry += 1;
             return Ok(());
         }
         let c = g.get("coordinates").ok_or_else(|| format!("{kind} has no \"coordinates\"; {REMEDY}"))?;
@@ -210,16 +178,7 @@ impl Reader {
                 return Err(format!("type {other:?} is no GeoJSON; convert the file to GeoJSON, GPX or a shapefile"));
             }
         };
-        if geometry.vertices().next().is_none() {
-            self.without_geometry += 1;
-            return Ok(());
-        }
-        self.features.push(VectorFeature {
-            style: None,
-            name: name_of(properties),
-            properties: properties.clone(),
-            geometry,
-        });
+        self.found.add(geometry, properties.clone());
         Ok(())
     }
 
@@ -229,7 +188,7 @@ impl Reader {
             p.is_null() || p.as_array().is_some_and(|a| a.iter().take(2).any(Value::is_null) && !a.is_empty())
         };
         let list = array(v)?;
-        self.null_members += list.iter().filter(|p| is_null(p)).count();
+        self.found.null_members += list.iter().filter(|p| is_null(p)).count();
         list.iter().filter(|p| !is_null(p)).map(position).collect()
     }
 
@@ -237,17 +196,11 @@ impl Reader {
         let mut out = Vec::new();
         for line in lines {
             if line.is_null() {
-                self.null_members += 1;
+                self.found.null_members += 1;
                 continue;
             }
             let line = self.positions(line)?;
-            if line.len() >= 2 && line.iter().all(|v| v.xy == line[0].xy) {
-                self.one_position += 1;
-            } else if line.len() >= 2 {
-                out.push(line);
-            } else {
-                self.short_lines += 1;
-            }
+            out.extend(self.found.line(line));
         }
         Ok(out)
     }
@@ -257,21 +210,15 @@ impl Reader {
         for polygon in polygons {
             let mut rings = Vec::new();
             if polygon.is_null() {
-                self.null_members += 1;
+                self.found.null_members += 1;
                 continue;
             }
             for (k, ring) in array(polygon)?.iter().enumerate() {
-                let mut ring = if ring.is_null() { Vec::new() } else { self.positions(ring)? };
-                if ring.len() > 1 && ring.first().map(|v| v.xy) == ring.last().map(|v| v.xy) {
-                    ring.pop();
-                }
-                if ring.len() >= 3 {
-                    rings.push(ring);
-                } else {
-                    self.short_rings += 1;
-                    if k == 0 {
-                        break; // without an outer ring its holes mean nothing
-                    }
+                let ring = if ring.is_null() { Vec::new() } else { self.positions(ring)? };
+                match self.found.ring(ring) {
+                    Some(ring) => rings.push(ring),
+                    None if k == 0 => break, // without an outer ring its holes mean nothing
+                    None => {}
                 }
             }
             if !rings.is_empty() {

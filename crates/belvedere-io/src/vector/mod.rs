@@ -1,6 +1,8 @@
 //! Lines, areas and points: GPX, GeoJSON, shapefiles and GeoPackages, and how they are laid on the terrain.
 
 mod area_kind;
+mod array;
+mod collected;
 mod geojson;
 #[cfg(feature = "geopackage")]
 mod geopackage;
@@ -11,15 +13,18 @@ mod phantom;
 mod place_kind;
 mod rings;
 mod shapefile;
+mod text;
 
 #[cfg(feature = "geopackage")]
 pub use geopackage::{FeatureTable, write_geopackage};
 
 pub use area_kind::{AreaKind, area_kind};
+pub use array::{FeatureArray, Shape};
 pub use gpx::track_times;
 pub use names::name_field;
 pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
 pub use place_kind::{number, place_kind, stated_height, stated_people};
+pub use text::FeatureText;
 
 use crate::crs::CoordinateSystem;
 use crate::formats::Reader;
@@ -168,15 +173,19 @@ pub(crate) fn load(path: &Path, other: Other<'_>) -> Result<Loaded<Vectors>, IoE
         (_, Some(_)) => path.to_owned(),
         (file, None) => content_for(file, MAX_BYTES, Reader::Features)?,
     };
-    let mut loaded = load_known(&path, other).map_err(explain)?;
+    without_phantoms(&path, load_known(&path, other).map_err(explain)?)
+}
+
+/// The features without positions that nobody was at.
+fn without_phantoms(path: &Path, mut loaded: Loaded<Vectors>) -> Result<Loaded<Vectors>, IoError> {
     let mut found = Phantoms::default();
     phantom::drop_zeros(&mut loaded.value, &mut found);
     if loaded.value.format != "GPX" {
         phantom::drop_excursions(&mut loaded.value, &mut found);
     }
-    loaded.warnings.extend(found.say().map(|said| said.in_file(&path)));
+    loaded.warnings.extend(found.say().map(|said| said.in_file(path)));
     if loaded.value.features.is_empty() {
-        return Err(IoError::format(&path, "holds nothing but positions at exactly 0, 0; choose another file"));
+        return Err(IoError::format(path, "holds nothing but positions at exactly 0, 0; choose another file"));
     }
     Ok(loaded)
 }

@@ -5,6 +5,7 @@ mod nifti;
 mod nrrd;
 mod number;
 mod raw;
+mod voxels;
 mod vti;
 mod vti_header;
 mod vti_stream;
@@ -12,6 +13,7 @@ mod vtk;
 
 pub use number::{ByteOrder, Number};
 pub use raw::RawLayout;
+pub use voxels::Voxels;
 
 use crate::formats::Reader;
 use crate::packed::content;

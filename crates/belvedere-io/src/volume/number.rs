@@ -2,6 +2,7 @@
 
 use belvedere_scene::VoxelValues;
 use serde::Serialize;
+use std::borrow::Cow;
 
 /// Order of the bytes of a sample.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -114,7 +115,8 @@ impl Number {
     }
 
     /// Decodes samples from bytes, a whole number of samples.
-    pub(super) fn decode(self, bytes: Vec<u8>, order: ByteOrder) -> (VoxelValues, Changed) {
+    pub(super) fn decode<'b>(self, bytes: impl Into<Cow<'b, [u8]>>, order: ByteOrder) -> (VoxelValues, Changed) {
+        let bytes = bytes.into();
         macro_rules! each {
             ($t:ty, $to:expr) => {{
                 const N: usize = size_of::<$t>();
@@ -127,7 +129,7 @@ impl Number {
         }
         let whole = Changed::default();
         match self {
-            Self::UInt8 => (VoxelValues::U8(bytes), whole),
+            Self::UInt8 => (VoxelValues::U8(bytes.into_owned()), whole),
             Self::Int8 => (VoxelValues::I16(each!(i8, i16::from)), whole),
             Self::Int16 => (VoxelValues::I16(each!(i16, |v| v)), whole),
             Self::UInt16 => (VoxelValues::U16(each!(u16, |v| v)), whole),
