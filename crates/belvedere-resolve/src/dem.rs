@@ -1,4 +1,4 @@
-//! Terrain from files.
+//! Terrain from files and arrays.
 
 use super::loader::Loader;
 use crate::BelvedereError;
@@ -13,7 +13,7 @@ pub(super) fn load(
     doc: &TerrainDoc,
     wanted: Option<Crs>,
 ) -> Result<(Heightfield, Crs), BelvedereError> {
-    let files = loader.files(index, "source", &doc.source)?;
+    let files = loader.sources(index, &doc.source)?;
     let crs = match wanted {
         None => CrsChoice::Auto,
         Some(Crs::Epsg(code)) => CrsChoice::Epsg(code),
@@ -33,6 +33,7 @@ pub(super) fn load(
         nodata: doc.nodata,
         vertical_unit_m: doc.vertical_unit.map(VerticalUnit::metres),
         sea: doc.style.sea,
+        arrays: loader.options.arrays.clone(),
         limits: loader.options.limits(),
         ..TerrainRequest::default()
     };

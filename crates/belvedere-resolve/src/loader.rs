@@ -8,6 +8,7 @@ use crate::{BelvedereError, OpenOptions};
 use belvedere_core::Warning;
 use belvedere_document::paths::Roots;
 use belvedere_document::{LayerDoc, Origin, Paths};
+use belvedere_io::arrays::{self, Array};
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
 use belvedere_io::{CityFile, InputFile, IoError, Loaded};
@@ -57,6 +58,21 @@ impl Loader<'_> {
         Ok(self.roots.resolve(name).map_err(|e| self.origin.refusal(&["layer", &index.to_string(), key], &about, e))?)
     }
 
+    /// The file or the array (`array:NAME`) that the source of a layer names.
+    pub(super) fn source(&self, index: usize, name: &str) -> Result<PathBuf, BelvedereError> {
+        if arrays::is_name(name) { Ok(PathBuf::from(name)) } else { self.file(index, "source", name) }
+    }
+
+    /// The files and arrays that the source of a layer names.
+    pub(super) fn sources(&self, index: usize, paths: &Paths) -> Result<Vec<PathBuf>, BelvedereError> {
+        self.some(index, "source", paths)?.iter().map(|name| self.source(index, name)).collect()
+    }
+
+    /// The value of an array; keeps its record.
+    pub(super) fn of_array<T>(&mut self, index: usize, array: &Array, loaded: Loaded<T>) -> T {
+        self.take(index, loaded.with_file(array.record().clone()))
+    }
+
     /// An error in words, in which files of the scene's folder are named relative to it.
     pub(super) fn shown(&self, error: &dyn std::fmt::Display) -> String {
         let text = error.to_string();
@@ -97,10 +113,14 @@ impl Loader<'_> {
 
     /// The files that a key names.
     pub(super) fn files(&self, index: usize, key: &str, paths: &Paths) -> Result<Vec<PathBuf>, BelvedereError> {
-        if paths.as_slice().is_empty() {
-            return Err(self.fail(index, key, format!("{key} is an empty list; name at least one file")));
+        self.some(index, key, paths)?.iter().map(|name| self.file(index, key, name)).collect()
+    }
+
+    fn some<'p>(&self, index: usize, key: &str, paths: &'p Paths) -> Result<&'p [String], BelvedereError> {
+        match paths.as_slice() {
+            [] => Err(self.fail(index, key, format!("{key} is an empty list; name at least one file"))),
+            names => Ok(names),
         }
-        paths.as_slice().iter().map(|name| self.file(index, key, name)).collect()
     }
 
     /// The value read for a layer; keeps its warnings and files.

@@ -93,7 +93,7 @@ pub(super) fn with_ambient_occlusion(
     Ok(mesh)
 }
 
-/// All files of the layer joined into one.
+/// All files and arrays of the layer joined into one.
 fn source(loader: &mut Loader<'_>, index: usize, doc: &MeshDoc) -> Result<MeshFile, BelvedereError> {
     if let Paths::One(name) = &doc.source
         && builtin::is_name(name)
@@ -101,10 +101,13 @@ fn source(loader: &mut Loader<'_>, index: usize, doc: &MeshDoc) -> Result<MeshFi
         return loader.builtin(index, name, |kind| kind.mesh().map(|layer| of_mesh(&layer.mesh)));
     }
     let mut all: Option<MeshFile> = None;
-    for path in loader.files(index, "source", &doc.source)? {
-        loader.options.progress.tick("reading meshes", 0.0)?;
-        let loaded = load_mesh(&path, &loader.options.limits())?;
-        let file = loader.take(index, loaded);
+    let options = loader.options;
+    for path in loader.sources(index, &doc.source)? {
+        options.progress.tick("reading meshes", 0.0)?;
+        let file = match options.arrays.find(&path)? {
+            Some(array) => loader.of_array(index, array, array.triangles()?.mesh(&path, &options.limits())?),
+            None => loader.take(index, load_mesh(&path, &options.limits())?),
+        };
         match &mut all {
             Some(all) => join(all, file),
             None => all = Some(file),

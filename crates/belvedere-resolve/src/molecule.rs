@@ -88,7 +88,7 @@ fn source(
             loader.builtin(index, &doc.source, |kind| kind.molecule().map(|layer| Molecule::clone(&layer.molecule)))?;
         return Ok((molecule, Vec::new()));
     }
-    let path = loader.file(index, "source", &doc.source)?;
+    let path = loader.source(index, &doc.source)?;
     loader.options.progress.tick("reading molecules", 0.0)?;
     if doc.model == Some(0) {
         return Err(loader.fail(index, "model", "model is 0, models are counted from 1"));
@@ -106,12 +106,15 @@ fn source(
             return Err(loader.fail(index, "models_per_s", reason));
         }
     }
-    let limits = loader.options.limits();
-    let loaded = match doc.models_per_s {
-        Some(_) => load_frames(&path, &limits)?,
-        None => load_model(&path, doc.model, &limits)?,
+    let (options, limits) = (loader.options, loader.options.limits());
+    let file = match (options.arrays.find(&path)?, doc.models_per_s) {
+        (Some(array), rate) => {
+            let loaded = array.atoms()?.molecule(&path, (doc.model, rate.is_some()), &limits)?;
+            loader.of_array(index, array, loaded)
+        }
+        (None, Some(_)) => loader.take(index, load_frames(&path, &limits)?),
+        (None, None) => loader.take(index, load_model(&path, doc.model, &limits)?),
     };
-    let file = loader.take(index, loaded);
     if doc.models_per_s.is_some() {
         return Ok((file.molecule, file.frames));
     }

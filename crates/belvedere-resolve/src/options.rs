@@ -4,7 +4,7 @@ use crate::trust::Trust;
 use crate::{Advice, BelvedereError};
 use belvedere_document::request::{Air, Molecules, Render, given_of};
 use belvedere_document::{FurnitureWish, LayerDoc, PaletteDoc, SurfaceDoc, SwitchOrLength, SwitchOrVisibility};
-use belvedere_io::Limits;
+use belvedere_io::{Arrays, Limits};
 use belvedere_scene::{Edge, Progress};
 use std::path::PathBuf;
 
@@ -29,6 +29,8 @@ pub struct OpenOptions {
     pub trust: Trust,
     /// Single files that may be read, canonical paths.
     pub allow_files: Vec<PathBuf>,
+    /// Arrays in memory, which sources `array:NAME` of layers and of [`crate::DataFiles`] mean.
+    pub arrays: Arrays,
     /// Parts of the scene to load.
     pub needs: Needs,
     /// Size of the picture instead of the scene's, pixels.

@@ -13,9 +13,10 @@ use belvedere_io::load_vectors;
 use belvedere_io::vector::{
     AreaKind, Geometry, Vectors, Vertex, area_kind, areas_on_terrain, lines_on_terrain, points_on_terrain,
 };
-use belvedere_io::{IoError, Loaded};
+use belvedere_io::{Arrays, IoError, Loaded};
 use belvedere_scene::{AreaFeature, AreaSurface, Crs, Heightfield, LineFeature, PointFeature};
 use std::mem::take;
+use std::path::Path;
 
 /// Main kind of the features of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -130,6 +131,14 @@ fn names(paths: &Paths, file: &str) -> bool {
     paths.as_slice().iter().any(|name| name == file)
 }
 
+/// The features of a file or of an array.
+pub(crate) fn read(path: &Path, arrays: &Arrays) -> Result<Loaded<Vectors>, IoError> {
+    match arrays.find(path)? {
+        Some(array) => Ok(array.features()?.with_file(array.record().clone())),
+        None => load_vectors(path),
+    }
+}
+
 type OnTerrain<T> = fn(&Vectors, Crs, Option<&Heightfield>) -> Result<Loaded<Vec<T>>, IoError>;
 
 fn all<T>(
@@ -140,14 +149,14 @@ fn all<T>(
     on_terrain: OnTerrain<T>,
     mut inspect: impl FnMut(&Vectors),
 ) -> Result<Vec<T>, BelvedereError> {
-    let mut read = Vec::new();
-    for (name, file) in paths.as_slice().iter().zip(loader.files(index, "source", paths)?) {
+    let mut all = Vec::new();
+    for (name, file) in paths.as_slice().iter().zip(loader.sources(index, paths)?) {
         loader.options.progress.tick("reading features", 0.0)?;
         let known = loader.vectors.get_mut(&file).map(|known| {
             // Warnings are given once.
             Loaded { value: known.value.clone(), warnings: take(&mut known.warnings), files: take(&mut known.files) }
         });
-        let vectors = known.map_or_else(|| load_vectors(&file), Ok)?;
+        let vectors = known.map_or_else(|| read(&file, &loader.options.arrays), Ok)?;
         let mut vectors = loader.take(index, vectors);
         loader.note(index, left_out(loader, index, name, &vectors));
         inspect(&vectors);
@@ -159,13 +168,13 @@ fn all<T>(
             kept(&mut vectors, &select).map_err(|reason| loader.fail(index, "select", reason))?;
         }
         stand(loader, index, &mut vectors, ground.crs);
-        read.push(vectors);
+        all.push(vectors);
     }
-    named::tell(loader, index, &mut read)?;
+    named::tell(loader, index, &mut all)?;
     // Classes are those of all files together.
-    by_property::style(loader, index, &mut read)?;
+    by_property::style(loader, index, &mut all)?;
     let mut features = Vec::new();
-    for vectors in read {
+    for vectors in all {
         let found = on_terrain(&vectors, ground.crs, ground.terrain)?;
         features.extend(loader.take(index, found));
     }

@@ -15,10 +15,13 @@ pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &VolumeDoc) -> R
         loader.builtin(index, &doc.source, |kind| kind.volume().map(|layer| Volume::clone(&layer.volume)))?
     } else {
         let request = request(loader, index, doc)?;
-        let path = loader.file(index, "source", &doc.source)?;
-        loader.options.progress.tick("reading volumes", 0.0)?;
-        let loaded = load_volume(&path, &request)?;
-        let file = loader.take(index, loaded);
+        let path = loader.source(index, &doc.source)?;
+        let options = loader.options;
+        options.progress.tick("reading volumes", 0.0)?;
+        let file = match options.arrays.find(&path)? {
+            Some(array) => loader.of_array(index, array, array.voxels()?.volume(&path, &request.limits)?),
+            None => loader.take(index, load_volume(&path, &request)?),
+        };
         made(file).map_err(|e| loader.fail(index, "source", e))?
     };
     let volume = match &doc.transform {

@@ -13,11 +13,11 @@ use crate::session::{Description, Loaded};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_core::View;
 use belvedere_core::Warning;
-use belvedere_io::load_vectors;
+use belvedere_io::arrays::{self, Arrays};
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::{join_table, split_table};
 use belvedere_overlay::notes::LayerNotes;
-use belvedere_resolve::vectors::{FeatureKind, kind_of, kinds_of};
+use belvedere_resolve::vectors::{self, FeatureKind, kind_of, kinds_of};
 use belvedere_resolve::{self, LayerRequest};
 use belvedere_scene::{Hidden, Layer, Scene, Unit};
 use std::collections::BTreeMap;
@@ -31,7 +31,7 @@ pub const LARGEST_HOLE: f64 = 0.03;
 /// Colour of lines of rivers.
 const RIVER_COLOR: &str = "#2b7bba";
 
-/// Files of a terrain and of features that must be seen on it.
+/// Files of a terrain and of features that must be seen on it; any of them may be an array, `array:NAME` of [`OpenOptions::arrays`].
 #[derive(Debug, Clone, Default)]
 pub struct DataFiles {
     /// Terrain: a file, a folder of tiles, or `builtin:massif?seed=7`.
@@ -76,6 +76,7 @@ pub(crate) struct Data {
     layers: Vec<LayerDoc>,
     text: Option<TextDoc>,
     roots: Roots,
+    arrays: Arrays,
 }
 
 impl DataFiles {
@@ -106,14 +107,14 @@ impl DataFiles {
         if tiles.features.is_empty() {
             return Err(tiles::without_features(&self.dem, &self.features));
         }
-        let mut vectors = BTreeMap::new();
+        let mut known = BTreeMap::new();
         for (i, name) in tiles.features.iter().enumerate() {
             let source = locate(name, &mut roots)?;
             let mut kinds = vec![FeatureKind::Lines];
             if !source.starts_with("builtin:") {
-                let read = load_vectors(Path::new(&source))?;
+                let read = vectors::read(Path::new(&source), &options.arrays)?;
                 kinds = kinds_of(&read.value);
-                vectors.insert(PathBuf::from(&source), read);
+                known.insert(PathBuf::from(&source), read);
             }
             for (k, kind) in kinds.into_iter().enumerate() {
                 let id =
@@ -138,11 +139,11 @@ impl DataFiles {
         let mut rivers = Vec::new();
         for (i, name) in self.rivers.iter().enumerate() {
             let source = locate(name, &mut roots)?;
-            let read = load_vectors(Path::new(&source))?;
+            let read = vectors::read(Path::new(&source), &options.arrays)?;
             if !kinds_of(&read.value).contains(&FeatureKind::Lines) {
                 return Err(belvedere_io::IoError::format(Path::new(name), "holds no lines; rivers are lines").into());
             }
-            vectors.insert(PathBuf::from(&source), read);
+            known.insert(PathBuf::from(&source), read);
             let id = format!("rivers{}", i + 1);
             layers.push(LayerDoc::Line(river_layer(id.clone(), Paths::One(source))));
             rivers.push(id);
@@ -151,7 +152,7 @@ impl DataFiles {
         let mut options = OpenOptions { area_style: self.area_style.or(options.area_style), ..options.clone() };
         let text = text_of(take(&mut options.fonts), &mut roots.files)?;
         let request = LayerRequest {
-            vectors,
+            vectors: known,
             keep_original,
             text: text.as_ref(),
             ..LayerRequest::new(&Origin::MEMORY, &layers, crs, &roots)
@@ -168,7 +169,20 @@ impl DataFiles {
             ..Scene::default()
         };
         belvedere_resolve::fill_surfaces(&mut layers, &scene);
-        Ok(Data { scene: Arc::new(scene), warnings, original, rivers, areas, notes, inputs, layers, text, roots })
+        let arrays = options.arrays;
+        Ok(Data {
+            scene: Arc::new(scene),
+            warnings,
+            original,
+            rivers,
+            areas,
+            notes,
+            inputs,
+            layers,
+            text,
+            roots,
+            arrays,
+        })
     }
 }
 
@@ -197,8 +211,8 @@ impl Data {
             animation: None,
         };
         let (source, resolved) = (SourceDocument::new(document.clone()), document);
-        let Self { scene, areas, notes, inputs, warnings, roots, .. } = self;
-        let loaded = Loaded { scene, motions: None, areas, notes, inputs, warnings };
+        let Self { scene, areas, notes, inputs, warnings, roots, arrays, .. } = self;
+        let loaded = Loaded { scene, motions: None, areas, notes, inputs, arrays, warnings };
         Session::of_view(loaded, view, Description { source, resolved, roots })
     }
 }
@@ -222,9 +236,9 @@ pub(crate) fn text_of(fonts: Vec<PathBuf>, allowed: &mut Vec<PathBuf>) -> Result
     Ok((!names.is_empty()).then(|| TextDoc { fonts: Some(tiles::paths(names)), ..TextDoc::default() }))
 }
 
-/// The absolute path of a file that the user named, whose folder is then allowed; built-in names stay.
+/// The absolute path of a file that the user named, whose folder is then allowed; names of built-in scenes and arrays stay.
 pub(crate) fn locate(name: &str, roots: &mut Roots) -> Result<String, BelvedereError> {
-    if name.starts_with("builtin:") {
+    if name.starts_with("builtin:") || arrays::is_name(name) {
         return Ok(name.to_owned());
     }
     let (file, table) = split_table(Path::new(name));
@@ -244,10 +258,11 @@ pub(crate) fn ground_files(dem: &str) -> Result<Vec<String>, BelvedereError> {
 }
 
 /// A layer of the features of a file, with an id from its name.
-pub(crate) fn features_of(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
-    let kind = kind_of(&load_vectors(path)?.value);
+pub(crate) fn features_of(path: &Path, arrays: &Arrays, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
+    let kind = kind_of(&vectors::read(path, arrays)?.value);
     let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
     let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("features");
+    let stem = stem.strip_prefix(arrays::SCHEME).unwrap_or(stem);
     let taken = |id: &str| others.iter().any(|layer| layer.id() == id);
     let id = (1..).map(|k| if k == 1 { stem.to_owned() } else { format!("{stem}-{k}") }).find(|id| !taken(id));
     Ok(feature_layer(id.unwrap_or_default(), Paths::One(name.to_owned()), kind))

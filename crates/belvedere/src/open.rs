@@ -124,6 +124,7 @@ impl Session {
             motions,
             areas: loaded.areas,
             notes: loaded.notes,
+            arrays: options.arrays.clone(),
             inputs: source.input().cloned().into_iter().chain(inputs).collect(),
             warnings: loaded.warnings,
         };

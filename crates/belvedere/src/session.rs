@@ -12,7 +12,7 @@ use crate::{BelvedereError, OpenOptions};
 use belvedere_core::Warning;
 use belvedere_core::{Pinhole, SpaceMap, View};
 use belvedere_disocclusion::{TerrainReport, TerrainSettings};
-use belvedere_io::{budget, split_table};
+use belvedere_io::{Arrays, arrays, budget, split_table};
 use belvedere_overlay::notes::LayerNotes;
 use belvedere_resolve::StripReport;
 use belvedere_resolve::constructor::{self, ConstructorReport};
@@ -45,6 +45,8 @@ pub(crate) struct Loaded {
     /// What furniture tells of the layers.
     pub(crate) notes: LayerNotes,
     pub(crate) inputs: Vec<InputFile>,
+    /// Arrays in memory that the document may name.
+    pub(crate) arrays: Arrays,
     pub(crate) warnings: Vec<Warning>,
 }
 
@@ -339,14 +341,20 @@ impl Session {
         &self.loaded.areas
     }
 
-    /// Files that were read, the scene file first.
+    /// Files that were read, the scene file first, and arrays under their names `array:NAME`.
     pub fn inputs(&self) -> Vec<InputFile> {
         self.loaded.inputs.iter().chain(&self.resolved.inputs).cloned().collect()
     }
 
     /// Paths of the input files.
     pub fn input_paths(&self) -> Vec<PathBuf> {
-        self.inputs().into_iter().map(|file| file.path).collect()
+        let is_file = |path: &PathBuf| !path.to_str().is_some_and(arrays::is_name);
+        self.inputs().into_iter().map(|file| file.path).filter(is_file).collect()
+    }
+
+    /// Arrays in memory that its document may name.
+    pub fn arrays(&self) -> &Arrays {
+        &self.loaded.arrays
     }
 
     /// The scene file; `None` for a session from memory.
@@ -399,6 +407,30 @@ impl Session {
     pub fn resolved_for(&self, path: &Path) -> Option<Document> {
         let description = self.resolved.description.as_ref()?;
         Some(description.resolved.seen_from(&folder_of(path), &description.roots))
+    }
+
+    /// As [`Session::resolved_for`], with the arrays of the document as files beside `path`, which are written; and the paths of these.
+    ///
+    /// # Errors
+    /// [`BelvedereError::Io`] for a file that cannot be written, or exists without `overwrite`.
+    pub fn resolved_with_arrays(
+        &self,
+        path: &Path,
+        overwrite: bool,
+    ) -> Result<Option<(Document, Vec<PathBuf>)>, BelvedereError> {
+        let (Some(mut document), arrays) = (self.resolved_for(path), self.arrays()) else { return Ok(None) };
+        let mut named = Vec::new();
+        document.for_each_array(&mut |source| {
+            let name = source.strip_prefix(arrays::SCHEME).unwrap_or_default().to_owned();
+            if let Some(file) = arrays.file_name(&name) {
+                *source = file;
+                named.push(name);
+            }
+        });
+        named.sort();
+        named.dedup();
+        let named: Vec<&str> = named.iter().map(String::as_str).collect();
+        Ok(Some((document, arrays.write(&named, &folder_of(path), overwrite)?)))
     }
 
     /// Files that this session may read and that lie outside the folder of a scene file at `path`, canonical paths: a copy of the scene there

@@ -11,7 +11,7 @@ use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, Document, EarthDoc, LayerDoc, SourceDocument};
 use crate::{Advice, BelvedereError, OpenOptions, Session, Trust};
 use belvedere_io::formats::Reader;
-use belvedere_io::{GeoTiff, Limits, fs, join_table, split_table};
+use belvedere_io::{Arrays, GeoTiff, Limits, fs, join_table, split_table};
 use belvedere_scene::Progress;
 use std::path::{Path, PathBuf};
 
@@ -119,7 +119,7 @@ pub fn open_beside(
         if is_scene || !matches!(info::describe(name, progress)?, FileInfo::Features(_)) {
             return open_trusted(paths, allowed, trust, progress).map(|scene| Opened::Scene(Box::new(scene)));
         }
-        layers.push(features_of(&path, &layers)?);
+        layers.push(features_of(&path, &Arrays::default(), &layers)?);
         folders.extend(path.parent().map(Path::to_owned));
     }
     let new = layers.split_off(current.layer.len());

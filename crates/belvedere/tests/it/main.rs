@@ -1,5 +1,6 @@
 //! Tests of the library as its users see it: its examples, and the names of its types.
 
+mod arrays;
 mod bands;
 mod by_property;
 mod escapes;

@@ -90,7 +90,10 @@ impl RevealFiles {
             let frame = picture.straight.as_ref().unwrap_or(&picture.frame);
             draw(path, [frame.width, frame.height], &frame.color, &title[..1])?;
         }
-        if let Some((path, document)) = self.scene.as_ref().and_then(|path| Some((path, session.resolved_for(path)?))) {
+        if let Some(path) = &self.scene
+            && let Some((document, arrays)) = session.resolved_with_arrays(path, overwrite)?
+        {
+            written.extend(arrays);
             let document = Document { print: picture.sidecar.print.map(|sheet| sheet.document()), ..document };
             output::write_text(path, &document_toml(&document)?, overwrite)?;
             written.push(path.clone());

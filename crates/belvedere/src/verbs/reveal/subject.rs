@@ -15,9 +15,9 @@ use belvedere_core::{DVec2, DVec3};
 use belvedere_io::city::{is_city, is_meant};
 use belvedere_io::formats::Reader;
 use belvedere_io::load_vectors;
-use belvedere_io::{Limits, join_table, load_city, split_table};
+use belvedere_io::{Arrays, Limits, arrays, join_table, load_city, split_table};
 use belvedere_resolve::targets;
-use belvedere_resolve::vectors::{FeatureKind, kinds_of};
+use belvedere_resolve::vectors::{self, FeatureKind, kinds_of};
 use belvedere_scene::molecule::Selection;
 use belvedere_scene::{LayerKind, Scene};
 use std::mem::take;
@@ -119,7 +119,7 @@ pub(super) fn open(request: &Request<'_>) -> Result<(Session, Meant), BelvedereE
         return Ok((Session::open(file, &options)?, named()));
     }
     let mut options = options.clone();
-    let mut map = Map { see: see.to_owned(), ..Map::default() };
+    let mut map = Map { see: see.to_owned(), arrays: options.arrays.clone(), ..Map::default() };
     let mut models: Vec<LayerDoc> = Vec::new();
     // A file that is given as data, too, is read once.
     let is_given = |seen: &PathBuf| {
@@ -130,6 +130,11 @@ pub(super) fn open(request: &Request<'_>) -> Result<(Session, Meant), BelvedereE
     for file in files.iter().chain(seen.as_ref()) {
         if file.to_str().is_some_and(|name| name.starts_with("builtin:")) {
             models.push(layer(file, &models)?);
+            continue;
+        }
+        if let Some(array) = options.arrays.find(file)? {
+            let list = if array.heights().is_ok() { &mut map.grounds } else { &mut map.features };
+            list.push(file.clone());
             continue;
         }
         let (whole, table) = split_table(file);
@@ -238,7 +243,8 @@ pub fn hold_a_city(files: &[PathBuf]) -> bool {
         // Footprints, unless an elevation model follows.
         let features = |file: &PathBuf| {
             let is_builtin = file.to_str().is_some_and(|name| name.starts_with("builtin:"));
-            !is_builtin && split_table(file).0.is_file() && matches!(kind_of(file), Ok(Kind::Features))
+            let is_array = file.to_str().is_some_and(arrays::is_name);
+            is_array || !is_builtin && split_table(file).0.is_file() && matches!(kind_of(file), Ok(Kind::Features))
         };
         return files.iter().all(features);
     }
@@ -259,6 +265,7 @@ struct Map {
     cities: Vec<PathBuf>,
     grounds: Vec<PathBuf>,
     features: Vec<PathBuf>,
+    arrays: Arrays,
 }
 
 fn text(path: &Path) -> Result<String, BelvedereError> {
@@ -272,7 +279,7 @@ impl Map {
             return Ok(());
         }
         if let Some(first) = self.features.first()
-            && kinds_of(&load_vectors(first)?.value).contains(&FeatureKind::Areas)
+            && kinds_of(&vectors::read(first, &self.arrays)?.value).contains(&FeatureKind::Areas)
         {
             self.cities.push(self.features.remove(0));
         }
@@ -304,11 +311,11 @@ impl Map {
         }
         let first = layers.len();
         for path in &self.features {
-            for kind in kinds_of(&load_vectors(path)?.value) {
+            for kind in kinds_of(&vectors::read(path, &self.arrays)?.value) {
                 let (id, source) = (layer_id(path, &layers), text(path)?);
                 // In a city areas are drawn by their outlines, which lines of the same file hold already.
                 match kind {
-                    FeatureKind::Points => layers.push(features_of(path, &layers)?),
+                    FeatureKind::Points => layers.push(features_of(path, &self.arrays, &layers)?),
                     _ if layers[first..].iter().any(|l| draws(l, &source)) => {}
                     _ => layers.push(lines(id, &source, (None, true), LineStyleDoc::default())),
                 }
@@ -365,7 +372,7 @@ impl Map {
             }
         }
         for path in &self.features {
-            if load_vectors(path)?.value.features.iter().any(|f| is_meant(see, &f.name, &f.properties)) {
+            if vectors::read(path, &self.arrays)?.value.features.iter().any(|f| is_meant(see, &f.name, &f.properties)) {
                 let source = text(path)?;
                 for l in layers.iter_mut().filter(|l| draws(l, &source)) {
                     if let LayerDoc::Line(line) = l {
@@ -415,7 +422,8 @@ fn lines(id: String, source: &str, (select, must_see): (Option<&str>, bool), sty
 /// An id from the name of a file that no other layer has.
 fn layer_id(path: &Path, others: &[LayerDoc]) -> String {
     let name = split_table(path).0.file_name().and_then(|name| name.to_str()).unwrap_or("city");
-    let stem = name.split('.').next().filter(|stem| !stem.is_empty()).unwrap_or("city");
+    let stem = name.strip_prefix(arrays::SCHEME).unwrap_or(name).split('.').next();
+    let stem = stem.filter(|stem| !stem.is_empty()).unwrap_or("city");
     let taken = |id: &str| others.iter().any(|l| l.id() == id);
     let id = (1..).map(|k| if k == 1 { stem.to_owned() } else { format!("{stem}-{k}") }).find(|id| !taken(id));
     id.unwrap_or_default()
