@@ -1,21 +1,23 @@
-"""Terrain and features of a call as files for the engine."""
+"""Terrain and features of a call as sources for the engine: files, and arrays by name."""
 
 from __future__ import annotations
 
 import os
-from typing import Any, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Mapping, Sequence
 
 import numpy as np
 
 from . import _rasters, _vectors
 from ._ask import number
 from ._crs import Crs, crs_of
-from ._folder import Folder
 from ._masks import joined
 from .errors import InputError
 
+if TYPE_CHECKING:
+    from ._native import NativeArrays
 
-def files_of(
+
+def sources_of(
     dem: object,
     routes: object,
     *,
@@ -26,11 +28,11 @@ def files_of(
     nodata: object,
     features_crs: object,
     fill_voids: bool | None,
-    folder: Folder,
+    arrays: NativeArrays,
     rivers: object = None,
     drape: object = None,
 ) -> dict[str, Any]:
-    """Files of terrain and features, as the engine takes them; arrays are written into ``folder``."""
+    """Sources of terrain and features, as the engine takes them; arrays are added to ``arrays``."""
     files: dict[str, Any] = {}
     terrain_crs: Crs | None = None
     if isinstance(dem, (str, os.PathLike)):
@@ -39,18 +41,15 @@ def files_of(
     else:
         source = dem if _rasters.is_raster(dem) else np.asanyarray(joined("heights", dem))
         heights = _rasters.heights_of(source, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata)
-        path = folder.file("terrain.tif")
-        _rasters.write_geotiff(path, heights)
-        terrain_crs, files["data"] = heights.crs, os.fspath(path)
+        _rasters.add_heights(arrays, "terrain", heights)
+        terrain_crs, files["data"] = heights.crs, "array:terrain"
         if terrain_crs.code is None:
             files["crs"] = "local"
-        else:
-            files["source_crs"] = str(terrain_crs)
         # Holes of an array are what the caller masked.
         fill_voids = bool(fill_voids)
     files["keep_voids"], files["fill_voids"] = fill_voids is False, fill_voids is True
-    files["features"] = [_file_of("features", i, source, features_crs, terrain_crs, folder) for i, source in enumerate(_several(routes))]
-    files["rivers"] = [_file_of("rivers", i, source, features_crs, terrain_crs, folder) for i, source in enumerate(_several(rivers))]
+    files["features"] = [_source_of("features", i, source, features_crs, terrain_crs, arrays) for i, source in enumerate(_several(routes))]
+    files["rivers"] = [_source_of("rivers", i, source, features_crs, terrain_crs, arrays) for i, source in enumerate(_several(rivers))]
     if drape is not None:
         files["drape"] = [_path("drape", picture) for picture in _several(drape)]
     return files
@@ -82,16 +81,16 @@ def _several(routes: object) -> list[object]:
     return [routes]
 
 
-def _file_of(what: str, i: int, source: object, crs: object, terrain: Crs | None, folder: Folder) -> str:
+def _source_of(what: str, i: int, source: object, crs: object, terrain: Crs | None, arrays: NativeArrays) -> str:
     if isinstance(source, (str, os.PathLike)):
         if crs is not None and what == "features":
             raise InputError("features_crs is that of arrays; a file states the system of its coordinates itself")
         return os.fspath(source)
-    collection, stated = _vectors.features_of(source, "line", crs)
+    features, stated = _vectors.features_of(source, "line", crs)
     if stated is None and not (isinstance(source, Mapping) and "type" in source):
         if terrain is None:
             raise InputError(f"nothing says in which system the coordinates of the {what} are; give features_crs='EPSG:n' (4326 for longitude and latitude)")
         stated = terrain
-    path = folder.file(f"{what}{i + 1}.geojson")
-    _vectors.write_geojson(path, collection, stated)
-    return os.fspath(path)
+    name = f"{what}{i + 1}"
+    _vectors.add_features(arrays, name, features, stated)
+    return f"array:{name}"

@@ -1,4 +1,4 @@
-"""The folder in which the arrays of a scene lie as files, until the scene is forgotten."""
+"""Temporary folders, such as those of pages."""
 
 from __future__ import annotations
 

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Mapping, Sequence, TypeVar
 
 import numpy as np
 
 from . import _data, _models, _rasters, _vectors
 from ._crs import Crs, crs_of
-from ._folder import Folder
 from ._masks import joined
 from .errors import InputError
+
+if TYPE_CHECKING:
+    from ._native import NativeArrays
 
 S = TypeVar("S", bound="Layers")
 
@@ -21,8 +22,7 @@ class Layers:
     """The part of :class:`belvedere.Scene` that adds layers."""
 
     _document: dict[str, Any]
-    _folder: Folder | None
-    _base: Path | None
+    _arrays: NativeArrays
     _roots: list[str]
     _array_crs: Crs | None
 
@@ -61,14 +61,12 @@ class Layers:
                 return self._add("terrain", id, style, {**stated, **keys}, source=self._given(heights))
             heights = np.asanyarray(joined("heights", heights))
         found = _rasters.heights_of(heights, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata)
-        path = self._new_file(id, ".tif")
-        _rasters.write_geotiff(path, found)
-        if found.crs.code is not None:
-            keys.setdefault("source_crs", str(found.crs))
-        elif self._document.get("crs", "auto") == "auto":
+        name = self._new_array(id)
+        _rasters.add_heights(self._arrays, name, found)
+        if found.crs.code is None and self._document.get("crs", "auto") == "auto":
             self._document["crs"] = "local"
         self._array_crs = self._array_crs or found.crs
-        return self._add("terrain", id, style, keys, source=self._source(path))
+        return self._add("terrain", id, style, keys, source=f"array:{name}")
 
     def add_lines(self: S, lines: object, *, id: str = "lines", crs: object = None, must_see: bool = False,
                   style: Mapping[str, Any] | None = None, **keys: Any) -> S:  # fmt: skip
@@ -102,9 +100,9 @@ class Layers:
         keys = {"must_see": must_see, **keys}
         if isinstance(vertices, (str, os.PathLike)):
             return self._add("mesh", id, style, keys, source=self._given(vertices))
-        path = self._new_file(id, ".ply")
-        _models.write_ply(path, vertices, faces, colors)
-        return self._add("mesh", id, style, keys, source=self._source(path))
+        name = self._new_array(id)
+        _models.add_triangles(self._arrays, name, vertices, faces, colors)
+        return self._add("mesh", id, style, keys, source=f"array:{name}")
 
     def add_volume(self: S, values: object, *, spacing: object = 1.0, origin: object = 0.0, id: str = "volume", must_see: bool = False,
                    **keys: Any) -> S:  # fmt: skip
@@ -119,9 +117,9 @@ class Layers:
         self._document.setdefault("unit", "voxel")
         if isinstance(values, (str, os.PathLike)):
             return self._add("volume", id, None, keys, source=self._given(values))
-        path = self._new_file(id, ".nrrd")
-        _models.write_nrrd(path, values, spacing, origin)
-        return self._add("volume", id, None, keys, source=self._source(path))
+        name = self._new_array(id)
+        _models.add_voxels(self._arrays, name, values, spacing, origin)
+        return self._add("volume", id, None, keys, source=f"array:{name}")
 
     def add_atoms(self: S, elements: Sequence[str] | str | os.PathLike[str], positions: object = None, *, names: Sequence[str] | None = None,
                   residues: Sequence[str] | None = None, chains: Sequence[str] | None = None, numbers: Sequence[int] | None = None,
@@ -135,9 +133,9 @@ class Layers:
         self._document.setdefault("unit", "angstrom")
         if isinstance(elements, (str, os.PathLike)):
             return self._add("molecule", id, style, keys, source=self._given(elements))
-        path = self._new_file(id, ".cif")
-        _models.write_mmcif(path, elements, positions, names, residues, chains, numbers)
-        return self._add("molecule", id, style, keys, source=self._source(path))
+        name = self._new_array(id)
+        _models.add_atoms(self._arrays, name, elements, positions, names, residues, chains, numbers)
+        return self._add("molecule", id, style, keys, source=f"array:{name}")
 
     def add_layer(self: S, kind: str, *, id: str, **keys: Any) -> S:
         """Adds a layer of any kind by the keys of scene files, such as ``add_layer("boxes", id="houses", source="houses.csv")``."""
@@ -154,12 +152,12 @@ class Layers:
             if crs is not None:
                 raise InputError("crs is that of arrays; a file states the system of its coordinates itself")
             return self._add(kind, id, style, keys, source=self._given(source))
-        collection, stated = _vectors.features_of(source, kind, crs)
+        features, stated = _vectors.features_of(source, kind, crs)
         if stated is None and not (isinstance(source, Mapping) and "type" in source):
             stated = self._own_crs(kind)
-        path = self._new_file(id, ".geojson")
-        _vectors.write_geojson(path, collection, stated)
-        return self._add(kind, id, style, keys, source=self._source(path))
+        name = self._new_array(id)
+        _vectors.add_features(self._arrays, name, features, stated)
+        return self._add(kind, id, style, keys, source=f"array:{name}")
 
     def _own_crs(self, kind: str) -> Crs:
         stated = self._document.get("crs", "auto")
@@ -185,18 +183,9 @@ class Layers:
         self._roots.append(os.path.dirname(name))
         return name
 
-    def _new_file(self, id: str, ending: str) -> Path:
+    def _new_array(self, id: str) -> str:
         self._changed()
-        if self._folder is None:
-            self._folder = Folder()
-        if self._base is not None and os.fspath(self._folder.path) not in self._roots:
-            self._roots.append(os.fspath(self._folder.path))
-        stem = "".join(c if c.isalnum() or c in "-_" else "_" for c in str(id)) or "layer"
-        path = self._folder.file(stem + ending)
-        if path.exists():
+        name = "".join(c if c.isalnum() or c in "-_" else "_" for c in str(id)) or "layer"
+        if name in self._arrays.names():
             raise InputError(f"there is a layer {id!r} already; give id= another name")
-        return path
-
-    def _source(self, path: Path) -> str:
-        """The name of an array's file in the document: bare where its folder is that of the scene."""
-        return path.name if self._base is None else os.fspath(path)
+        return name

@@ -1,25 +1,24 @@
-"""Meshes, volumes and atoms from arrays as PLY, NRRD and mmCIF for the loaders of the engine."""
+"""Meshes, volumes and atoms from arrays for the engine."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any, Sequence
+from typing import TYPE_CHECKING, Any, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._masks import data_of, joined, mask_of, masked_count
-from .errors import FileError, InputError
+from .errors import InputError
 
-#: Names of NRRD for the types of voxels.
-_NRRD = {
-    "int8": "int8", "uint8": "uint8", "int16": "int16", "uint16": "uint16",
-    "int32": "int32", "uint32": "uint32", "float32": "float", "float64": "double",
-}  # fmt: skip
+if TYPE_CHECKING:
+    from ._native import NativeArrays
+
+#: Types of voxels that are drawn.
+_NUMBERS = ("int8", "uint8", "int16", "uint16", "int32", "uint32", "float32", "float64")
 
 
-def write_ply(path: Path, vertices: object, faces: object, colors: object = None) -> None:
-    """Triangles as binary PLY."""
+def add_triangles(arrays: NativeArrays, name: str, vertices: object, faces: object, colors: object = None) -> None:
+    """Hands triangles over under a name."""
     points = rows_of("vertices", vertices, 3)
     faces = joined("faces", faces)
     if masked_count(faces):
@@ -31,14 +30,7 @@ def write_ply(path: Path, vertices: object, faces: object, colors: object = None
     if low < 0 or high >= len(points):
         wrong = low if low < 0 else high
         raise InputError(f"a face names vertex {wrong}, and there are {len(points)}, from 0; correct the faces")
-    fields: list[Any] = [("x", "<f8"), ("y", "<f8"), ("z", "<f8")]
-    properties = "property double x\nproperty double y\nproperty double z\n"
-    if colors is not None:
-        fields += [("r", "u1"), ("g", "u1"), ("b", "u1")]
-        properties += "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-    table = np.zeros(len(points), fields)
-    for i, name in enumerate("xyz"):
-        table[name] = points[:, i]
+    rgb = None
     if colors is not None:
         colors = joined("colors", colors)
         if masked_count(colors):
@@ -46,19 +38,11 @@ def write_ply(path: Path, vertices: object, faces: object, colors: object = None
         rgb = np.asarray(colors)
         if rgb.dtype != np.uint8 or rgb.ndim != 2 or rgb.shape[0] != len(points) or rgb.shape[1] not in (3, 4):
             raise InputError(f"colors of type {rgb.dtype} and shape {rgb.shape} do not suit; give uint8 of the shape ({len(points)}, 3)")
-        for i, name in enumerate("rgb"):
-            table[name] = rgb[:, i]
-    triangles = np.zeros(len(indices), [("n", "u1"), ("v", "<i4", 3)])
-    triangles["n"], triangles["v"] = 3, indices
-    head = (
-        f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\n{properties}"
-        f"element face {len(indices)}\nproperty list uchar int vertex_indices\nend_header\n"
-    )
-    _write(path, head.encode(), table.tobytes(), triangles.tobytes())
+    arrays.add_triangles(name, _bytes(points, "<f8"), _bytes(indices, "<u4"), None if rgb is None else rgb[:, :3].tobytes())
 
 
-def write_nrrd(path: Path, values: object, spacing: object, origin: object) -> None:
-    """Voxels as NRRD; ``values[k, j, i]``: x runs along the last axis."""
+def add_voxels(arrays: NativeArrays, name: str, values: object, spacing: object, origin: object) -> None:
+    """Hands voxels over under a name; ``values[k, j, i]``: x runs along the last axis."""
     values = joined("voxels", values)
     data, holes = data_of(values), mask_of(values)
     if data.ndim != 3 or min(data.shape) < 2:
@@ -70,28 +54,23 @@ def write_nrrd(path: Path, values: object, spacing: object, origin: object) -> N
         if low < -(2**31) or high >= 2**31:
             raise InputError(f"voxels reach from {low} to {high}, more than 32 bits hold; give float64")
         data = data.astype(np.int32)
-    name = _NRRD.get(data.dtype.newbyteorder("=").name)
-    if name is None:
+    number = data.dtype.newbyteorder("=").name
+    if number not in _NUMBERS:
         raise InputError(f"voxels of type {data.dtype} are not numbers that are drawn; give integers or floats")
     if holes is not None and holes.any():
         if data.dtype.kind != "f":
             raise InputError(f"{int(holes.sum())} voxels of type {data.dtype} are masked, and integers have no hole; give values.filled(v) or floats")
         data = np.where(holes, np.nan, data)
-    dx, dy, dz = _three("spacing", spacing)
-    if min(dx, dy, dz) <= 0:
+    steps, start = _three("spacing", spacing), _three("origin", origin)
+    if min(steps) <= 0:
         raise InputError(f"spacing={spacing!r} is not a distance between voxels; give numbers above 0")
-    x, y, z = _three("origin", origin)
     nz, ny, nx = data.shape
-    head = (
-        f"NRRD0004\ntype: {name}\ndimension: 3\nspace dimension: 3\nsizes: {nx} {ny} {nz}\n"
-        f"space directions: ({dx!r},0,0) (0,{dy!r},0) (0,0,{dz!r})\nspace origin: ({x!r},{y!r},{z!r})\n"
-        "endian: little\nencoding: raw\n\n"
-    )
-    _write(path, head.encode(), np.ascontiguousarray(data, data.dtype.newbyteorder("<")).tobytes())
+    arrays.add_voxels(name, _bytes(data, data.dtype.newbyteorder("<")), number, (nx, ny, nz), steps, start)
 
 
-def write_mmcif(
-    path: Path,
+def add_atoms(
+    arrays: NativeArrays,
+    name: str,
     elements: Sequence[str],
     positions: object,
     names: Sequence[str] | None = None,
@@ -99,28 +78,21 @@ def write_mmcif(
     chains: Sequence[str] | None = None,
     numbers: Sequence[int] | None = None,
 ) -> None:
-    """Atoms as mmCIF."""
+    """Hands atoms over under a name."""
     points = rows_of("positions", positions, 3)
     count = len(points)
     symbols = [str(e) for e in elements]
-    columns = {
-        "elements": symbols,
-        "names": symbols if names is None else [str(v) for v in names],
-        "residues": ["UNK"] * count if residues is None else [str(v) for v in residues],
-        "chains": ["A"] * count if chains is None else [str(v) for v in chains],
-        "numbers": ["1"] * count if numbers is None else [str(int(v)) for v in numbers],
-    }
-    for what, column in columns.items():
-        if len(column) != count:
-            raise InputError(f"{what} has {len(column)} entries for {count} positions; give one for each atom")
-        for value in column:
-            if not value or any(c.isspace() or c in "'\"#_;$[]" for c in value[:1]) or any(c.isspace() for c in value):
-                raise InputError(f"{what} holds {value!r}; give words of letters and digits")
-    keys = ["group_PDB", "id", "type_symbol", "label_atom_id", "label_comp_id", "label_asym_id", "label_seq_id", "Cartn_x", "Cartn_y", "Cartn_z"]
-    lines = ["data_atoms", "loop_", *(f"_atom_site.{key}" for key in keys)]
-    rows = zip(columns["elements"], columns["names"], columns["residues"], columns["chains"], columns["numbers"], points.tolist())
-    lines += [f"ATOM {i + 1} {e} {n} {r} {c} {s} {x!r} {y!r} {z!r}" for i, (e, n, r, c, s, (x, y, z)) in enumerate(rows)]
-    _write(path, ("\n".join(lines) + "\n#\n").encode())
+    words = (
+        symbols,
+        symbols if names is None else [str(v) for v in names],
+        ["UNK"] * count if residues is None else [str(v) for v in residues],
+        ["A"] * count if chains is None else [str(v) for v in chains],
+    )
+    of_residues = [1] * count if numbers is None else [int(v) for v in numbers]
+    beyond = next((n for n in of_residues if not -(2**31) <= n < 2**31), None)
+    if beyond is not None:
+        raise InputError(f"numbers holds {beyond}, more than 32 bits hold; give numbers of residues")
+    arrays.add_atoms(name, _bytes(points, "<f8"), words, of_residues)
 
 
 def rows_of(what: str, values: object, columns: int) -> NDArray[np.float64]:
@@ -152,10 +124,5 @@ def _three(what: str, value: object) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _write(path: Path, *parts: bytes) -> None:
-    try:
-        with open(path, "wb") as out:
-            for part in parts:
-                out.write(part)
-    except OSError as error:
-        raise FileError(f"{path}: {error.strerror}") from error
+def _bytes(array: NDArray[Any], dtype: Any) -> bytes:
+    return array.astype(dtype, copy=False).tobytes()

@@ -1,15 +1,12 @@
-"""Heights from arrays, rasterio datasets and xarray, with their holes, as GeoTIFF for the loader of the engine.
+"""Heights from arrays, rasterio datasets and xarray, with their holes, for the engine.
 
 Masks and no-data become holes, never heights.
 """
 
 from __future__ import annotations
 
-import os
-import struct
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Sequence
+from typing import TYPE_CHECKING, Any, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +15,10 @@ from ._ask import number
 from ._crs import Crs, crs_of
 from ._masks import data_of, mask_of
 from ._xarray import Stored, is_xarray, of_xarray
-from .errors import FileError, InputError
+from .errors import InputError
+
+if TYPE_CHECKING:
+    from ._native import NativeArrays
 
 
 @dataclass(frozen=True)
@@ -78,25 +78,27 @@ def _floats(stored: Stored, nodata: Sequence[object]) -> NDArray[np.float32]:
         raise InputError(f"heights have the shape {data.shape}; give rows and columns, at least 2 x 2")
     if data.dtype.itemsize > 8:
         data = data.astype(np.float64)
-    grid = data.astype(np.float64 if data.dtype.kind == "f" and data.dtype.itemsize == 8 else np.float32)
-    holes = ~np.isfinite(grid) if mask is None else ~np.isfinite(grid) | mask
+    grid = data.astype(np.float64 if data.dtype.kind == "f" and data.dtype.itemsize == 8 else np.float32, copy=False)
+    valid = np.isfinite(grid)
+    if mask is not None:
+        valid &= ~mask
     for value in nodata:
         try:
             void = float(value)  # type: ignore[arg-type]
         except (TypeError, ValueError):
             raise InputError(f"nodata={value!r} is not a number; give the value that stands for no data") from None
         # Compared as stored: a float32 of -3.4028235e38 is that of a float64 only after both are rounded alike.
-        holes |= data == (np.asarray(void).astype(data.dtype) if data.dtype.kind == "f" else void)
+        valid &= data != (np.asarray(void).astype(data.dtype) if data.dtype.kind == "f" else void)
     if (stored.scale, stored.offset) != (1.0, 0.0):
         grid = grid.astype(np.float64) * stored.scale + stored.offset
-    beyond = np.abs(np.where(holes, 0.0, grid)).max()
+    beyond = max(grid.max(initial=0.0, where=valid), -grid.min(initial=0.0, where=valid))
     if beyond > 1e30:
         raise InputError(f"a height is {beyond:g} m; if that stands for no data, give nodata=")
-    if holes.all():
-        raise InputError(f"none of the {holes.size} heights is a number that is not masked; check mask and nodata")
-    out = grid.astype(np.float32)
-    out[holes] = np.nan
-    return out
+    if valid.all():
+        return grid.astype(np.float32, copy=False)
+    if not valid.any():
+        raise InputError(f"none of the {valid.size} heights is a number that is not masked; check mask and nodata")
+    return np.where(valid, grid, np.nan).astype(np.float32, copy=False)
 
 
 def _affine(transform: object, spacing: object, origin: Sequence[float] | None, shape: tuple[int, ...]) -> tuple[float, ...]:
@@ -133,48 +135,8 @@ def _north_up(grid: NDArray[np.float32], affine: tuple[float, ...], crs: Crs) ->
     return Heights(np.ascontiguousarray(grid), (a, b, c, d, e, f), crs)
 
 
-_NODATA = -3.0e38
-_DOUBLE, _SHORT, _LONG, _ASCII = 12, 3, 4, 2
-
-
-def write_geotiff(path: Path, heights: Heights) -> None:
-    """Writes heights as a GeoTIFF of one strip, uncompressed; the coordinate system is told beside it."""
+def add_heights(arrays: NativeArrays, name: str, heights: Heights) -> None:
+    """Hands heights over under a name."""
     rows, columns = heights.values.shape
-    samples = np.where(np.isnan(heights.values), np.float32(_NODATA), heights.values).astype("<f4", copy=False)
-    a, b, c, d, e, f = heights.transform
-    nodata = f"{np.float32(_NODATA)!s}\0".encode()
-    entries: list[tuple[int, int, int, bytes]] = [
-        (256, _LONG, 1, struct.pack("<I", columns)),
-        (257, _LONG, 1, struct.pack("<I", rows)),
-        (258, _SHORT, 1, struct.pack("<H", 32)),
-        (259, _SHORT, 1, struct.pack("<H", 1)),
-        (262, _SHORT, 1, struct.pack("<H", 1)),
-        (273, _LONG, 1, b""),
-        (277, _SHORT, 1, struct.pack("<H", 1)),
-        (278, _LONG, 1, struct.pack("<I", rows)),
-        (279, _LONG, 1, struct.pack("<I", samples.nbytes)),
-        (339, _SHORT, 1, struct.pack("<H", 3)),
-        (34264, _DOUBLE, 16, struct.pack("<16d", a, b, 0, c, d, e, 0, f, 0, 0, 0, 0, 0, 0, 0, 1)),
-        (42113, _ASCII, len(nodata), nodata),
-    ]
-    if samples.nbytes > 0xF000_0000:
-        raise InputError(f"{rows} x {columns} heights are more than a file of 4 GB holds; give them as files, in tiles")
-    after = 8 + 2 + 12 * len(entries) + 4
-    values = b"".join(value + b"\0" * (-len(value) % 8) for *_, value in entries if len(value) > 4)
-    data_at = after + len(values) + (-(after + len(values)) % 16)
-    directory, at = b"", after
-    for tag, kind, count, value in entries:
-        if tag == 273:
-            value = struct.pack("<I", data_at)
-        if len(value) > 4:
-            directory += struct.pack("<HHII", tag, kind, count, at)
-            at += len(value) + (-len(value) % 8)
-        else:
-            directory += struct.pack("<HHI", tag, kind, count) + value.ljust(4, b"\0")
-    head = struct.pack("<2sHIH", b"II", 42, 8, len(entries)) + directory + struct.pack("<I", 0) + values
-    try:
-        with open(path, "wb") as out:
-            out.write(head.ljust(data_at, b"\0"))
-            out.write(samples.data)
-    except OSError as error:
-        raise FileError(f"{os.fspath(path)}: {error.strerror}") from error
+    samples = heights.values.astype("<f4", copy=False).tobytes()
+    arrays.add_heights(name, samples, columns, rows, heights.transform, heights.crs.code)

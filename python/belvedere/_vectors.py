@@ -1,47 +1,65 @@
-"""Lines, areas and points from arrays, GeoJSON, shapely and GeoPandas as GeoJSON for the loader of the engine."""
+"""Lines, areas and points from arrays, GeoJSON, shapely and GeoPandas for the engine."""
 
 from __future__ import annotations
 
 import json
 import math
-from pathlib import Path
-from typing import Any, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._crs import Crs, crs_of
 from ._masks import joined, masked_count
-from .errors import FileError, InputError
+from .errors import InputError
+
+if TYPE_CHECKING:
+    from ._native import NativeArrays
 
 _LEAST = {"line": 2, "area": 3, "point": 1}
 
 
-def features_of(source: object, kind: str, crs: object) -> tuple[dict[str, Any], Crs | None]:
-    """A GeoJSON feature collection and the stated system; ``kind`` says what arrays are: line, area or point."""
+@dataclass(frozen=True)
+class Features:
+    """A GeoJSON collection, or names and positions of features of one kind: line, area or point."""
+
+    kind: str
+    collection: dict[str, Any] | None
+    parts: Sequence[tuple[str, NDArray[np.float64]]] = ()
+
+
+def features_of(source: object, kind: str, crs: object) -> tuple[Features, Crs | None]:
+    """Features and the stated system; ``kind`` says what arrays are."""
     interface = source if isinstance(source, Mapping) and "type" in source else getattr(source, "__geo_interface__", None)
     stated = None if crs is None else crs_of(crs)
     if interface is not None:
         if stated is None and getattr(source, "crs", None) is not None:
             stated = crs_of(source.crs)  # type: ignore[attr-defined]
-        return _collection(interface), stated
-    features = [_feature(name, parts, kind) for name, parts in _named(source, kind)]
-    if not features:
+        return Features(kind, _collection(interface)), stated
+    # Heights are those of the ground.
+    parts = [(name, _points(f"{kind} {name!r}" if name else f"the {kind}", part, _LEAST[kind])[:, :2]) for name, part in _named(source, kind)]
+    if not parts:
         raise InputError(f"there is no {kind}; give at least one")
-    return {"type": "FeatureCollection", "features": features}, stated
+    return Features(kind, None, parts), stated
 
 
-def write_geojson(path: Path, collection: dict[str, Any], crs: Crs | None) -> None:
-    """Writes a collection with its system."""
+def add_features(arrays: NativeArrays, name: str, features: Features, crs: Crs | None) -> None:
+    """Hands features with their system over under a name."""
+    if features.collection is None:
+        positions = np.concatenate([part for _, part in features.parts]).astype("<f8", copy=False).tobytes()
+        counts = [len(part) for _, part in features.parts]
+        arrays.add_features(name, features.kind, positions, [n for n, _ in features.parts], counts, None if crs is None else crs.code)
+        return
+    collection = features.collection
     if crs is not None:
-        name = "local" if crs.code is None else f"urn:ogc:def:crs:EPSG::{crs.code}"
-        collection = {**collection, "crs": {"type": "name", "properties": {"name": name}}}
+        system = "local" if crs.code is None else f"urn:ogc:def:crs:EPSG::{crs.code}"
+        collection = {**collection, "crs": {"type": "name", "properties": {"name": system}}}
     try:
-        path.write_text(json.dumps(collection, default=str, allow_nan=False), encoding="utf-8")
+        text = json.dumps(collection, default=str, allow_nan=False)
     except ValueError:
         raise InputError("a coordinate is not finite; leave such points out") from None
-    except OSError as error:
-        raise FileError(f"{path}: {error.strerror}") from error
+    arrays.add_collection(name, text)
 
 
 def _collection(interface: Mapping[str, Any]) -> dict[str, Any]:
@@ -118,16 +136,3 @@ def _points(what: str, source: Any, least: int) -> NDArray[np.float64]:
     if bad.size:
         raise InputError(f"{what}: point {bad[0]} of {len(points)} is not finite; leave such points out")
     return points
-
-
-def _feature(name: str, parts: Any, kind: str) -> dict[str, Any]:
-    points = _points(f"{kind} {name!r}" if name else f"the {kind}", parts, _LEAST[kind])
-    # Heights are those of the ground.
-    rows: Sequence[Any] = points[:, :2].tolist()
-    if kind == "area":
-        geometry = {"type": "Polygon", "coordinates": [[*rows, rows[0]] if rows[0] != rows[-1] else rows]}
-    elif kind == "line":
-        geometry = {"type": "LineString", "coordinates": rows}
-    else:
-        geometry = {"type": "Point", "coordinates": rows[0]}
-    return {"type": "Feature", "properties": {"name": name} if name else {}, "geometry": geometry}

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from . import _native, _png
 from ._ask import Progress, asked
-from ._folder import Folder, Named
 from ._json import text
 from .errors import InputError
 from .reports import Note, Shares, notes_of
@@ -85,10 +84,10 @@ def drafts(
             raise TypeError(f"drafts() chooses views and takes no {name}")
     if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or not 1 <= count <= 24:
         raise InputError(f"count={count!r} is not a number of drafts; give 1 to 24")
-    folder = Folder()
-    request = text("drafts", _request(dem, routes, folder, **options))
-    with asked(threads, progress, time_limit_s) as ask, Named(os.fspath(folder.path)):
-        numbers, width, colors = _native.drafts(request, opening(), int(count), ask)
+    arrays = _native.NativeArrays()
+    request = text("drafts", _request(dem, routes, arrays, **options))
+    with asked(threads, progress, time_limit_s) as ask:
+        numbers, width, colors = _native.drafts(request, opening(), arrays, int(count), ask)
     found = json.loads(numbers)
     return Drafts(tuple(map(_draft, found["drafts"])), np.frombuffer(colors, np.uint8).reshape(-1, width, 3), tuple(notes_of(found["warnings"])))
 

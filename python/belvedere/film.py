@@ -94,7 +94,7 @@ def animate(
         }
     )
     paper: dict[str, Any] = {name: request.pop(name) for name in ("paper", "dpi", "margin_mm") if name in request}
-    with asked(threads, progress) as ask, scene._named():
+    with asked(threads, progress) as ask:
         sheet, pixels = scene._sheet(size_of(size), paper)
         # The ground is solved for every frame, not on opening.
         native = scene._open({"unsolved": True, "size": pixels}, ask)

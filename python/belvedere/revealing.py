@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Any, Mapping, Sequence
 
 from . import _native
 from ._ask import Progress, asked, number
-from ._data import files_of
+from ._data import sources_of
 from ._drawing import furniture_of, given, strengths_of
-from ._folder import Folder, Named
 from ._json import place, text
 from ._json import size as size_of
 from .errors import InputError
@@ -24,16 +23,16 @@ from .viewing import View
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from ._native import NativeReveal
+    from ._native import NativeArrays, NativeReveal
     from ._requests import RevealOptions
 
 
 class Revealed:
     """A picture in which something is visible, and how it was found. In a notebook it shows the picture."""
 
-    def __init__(self, native: NativeReveal, folder: Folder, samples: int | None) -> None:
+    def __init__(self, native: NativeReveal, arrays: NativeArrays, samples: int | None) -> None:
         self._native = native
-        self._folder = folder
+        self._arrays = arrays
         self._drawn = given({"samples": samples, **(json.loads(native.paper()) or {})})
 
     @cached_property
@@ -47,7 +46,7 @@ class Revealed:
     @cached_property
     def scene(self) -> Scene:
         """The scene in the view that was found."""
-        return Scene._of_native(self._native.scene(), self._folder)
+        return Scene._of_native(self._native.scene(), self._arrays)
 
     @cached_property
     def report(self) -> RevealReport:
@@ -84,8 +83,8 @@ class Revealed:
     ) -> list[Path]:
         """Writes the picture (PNG) with its record and, if it is bent, the pair beside it (``NAME.pair.png``); returns the paths.
 
-        * ``before``: the straight picture. ``report``: figures, JSON. ``scene``: a scene file of the same picture (its arrays go with
-          ``revealed.scene.save``).
+        * ``before``: the straight picture. ``report``: figures, JSON. ``scene``: a scene file of the same picture, with its arrays as files beside
+          it.
         """
         b, r, s = (None if name is None else os.fspath(name) for name in (before, report, scene))
         return [Path(name) for name in self._native.save(os.fspath(path), b, r, s, overwrite)]
@@ -161,9 +160,9 @@ def reveal(
     >>> found.report.bent.visible > found.report.straight.visible
     True
     """
-    folder = Folder()
+    arrays = _native.NativeArrays()
     request = _request(
-        dem, routes, folder, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata, features_crs=features_crs,
+        dem, routes, arrays, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata, features_crs=features_crs,
         fill_voids=fill_voids, size=size, light=light, stylise=stylise, mark=mark, furniture=furniture, sea=sea, rivers=rivers, drape=drape,
         scene_crs=scene_crs, **options,
     )  # fmt: skip
@@ -174,9 +173,9 @@ def reveal(
         look=place("look_at", look_at),
         fov=None if fov_y_deg is None else number("fov_y_deg", fov_y_deg),
     )
-    with asked(threads, progress, time_limit_s) as ask, Named(os.fspath(folder.path)):
-        native = _native.reveal(text("reveal", request), opening(fonts, seed), ask)
-        return Revealed(native, folder, request.get("samples"))
+    with asked(threads, progress, time_limit_s) as ask:
+        native = _native.reveal(text("reveal", request), opening(fonts, seed), arrays, ask)
+        return Revealed(native, arrays, request.get("samples"))
 
 
 def opening(fonts: Sequence[str | os.PathLike[str]] = (), seed: int | None = None) -> str:
@@ -187,7 +186,7 @@ def opening(fonts: Sequence[str | os.PathLike[str]] = (), seed: int | None = Non
 def _request(
     dem: object,
     routes: object,
-    folder: Folder,
+    arrays: NativeArrays,
     *,
     transform: object = None,
     spacing: object = None,
@@ -210,12 +209,12 @@ def _request(
     """The request as the engine takes it, but for the view and a target."""
     if routes is None and not isinstance(dem, (str, os.PathLike)):
         raise InputError("routes are missing: nothing says what must be seen; give routes, areas or points")
-    files = files_of(
+    files = sources_of(
         dem, routes, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata, features_crs=features_crs,
-        fill_voids=fill_voids, folder=folder, rivers=rivers, drape=drape,
+        fill_voids=fill_voids, arrays=arrays, rivers=rivers, drape=drape,
     )  # fmt: skip
     return {
-                **files,
+        **files,
         **({} if scene_crs is None else {"crs": scene_crs}),
         **options,
         **_light_of(light),

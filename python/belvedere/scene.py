@@ -5,7 +5,6 @@ from __future__ import annotations
 import copy
 import json
 import os
-import shutil
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Mapping, Sequence, cast
@@ -17,7 +16,6 @@ from . import _native, viewing
 from ._ask import Ask, Progress, asked, number
 from ._crs import Crs, crs_of
 from ._drawing import OF_SCENE, drawing, given, picture
-from ._folder import Folder, Named
 from ._layers import Layers
 from ._masks import joined, masked_count
 from ._json import size as _size
@@ -30,7 +28,7 @@ from .reports import MeasureReport, Note, Picked, notes_of
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from ._native import NativePicture, NativeScene
+    from ._native import NativeArrays, NativePicture, NativeScene
     from ._requests import RenderOptions
 
 __all__ = ["Scene", "Projected", "Displaced", "Rays", "MISSES"]
@@ -111,7 +109,7 @@ class Scene(Layers):
             self._document["camera"] = camera_document(camera)
         self._file: Path | None = None
         self._base: Path | None = None
-        self._folder: Folder | None = None
+        self._arrays: NativeArrays = _native.NativeArrays()
         self._roots: list[str] = []
         self._seed: int | None = None
         #: What is said of data that are opened without a scene file.
@@ -191,12 +189,12 @@ class Scene(Layers):
         return _native.builtin_names()
 
     @classmethod
-    def _of_native(cls, native: NativeScene, folder: Folder | None = None) -> Scene:
+    def _of_native(cls, native: NativeScene, arrays: NativeArrays) -> Scene:
         scene = cls()
         scene._document = json.loads(native.resolved(None) or "{}")
         scene._base = Path(os.path.abspath("."))
         # Those that were read may be read again.
-        scene._folder, scene._roots = folder, sorted({os.path.dirname(os.path.realpath(p)) for p in native.input_paths})
+        scene._arrays, scene._roots = arrays, sorted({os.path.dirname(os.path.realpath(p)) for p in native.input_paths})
         scene._natives = {None: native}
         return scene
 
@@ -260,14 +258,11 @@ class Scene(Layers):
         if self._file is None and "camera" not in self._document:
             self.overview()
         document = self._document_for(out)
-        files = [] if self._folder is None else sorted(p for p in self._folder.path.iterdir() if p.suffix != ".json")
-        there = [out, *(out.parent / f.name for f in files)]
-        taken = [p for p in there if p.exists()]
+        taken = [p for p in (out, *(out.parent / name for _, name in self._arrays.files())) if p.exists()]
         if taken and not overwrite:
             raise FileError(f"{taken[0]} exists; give overwrite=True, or another name")
+        self._arrays.write(os.fspath(out.parent), overwrite)
         try:
-            for file in files:
-                shutil.copyfile(file, out.parent / file.name)
             out.write_text(_text("the scene", document), encoding="utf-8")
         except OSError as error:
             raise FileError(f"{out}: {error.strerror or error}") from error
@@ -362,8 +357,7 @@ class Scene(Layers):
             options.update(sheet)
             of_scene = {name: options[name] for name in OF_SCENE if name in options}
             native = self._open({"size": pixels, "shows": of_scene}, ask) if of_scene else self._sized(pixels, ask)
-            with self._named():
-                drawn = native.render(_text("render", options), None, ask)
+            drawn = native.render(_text("render", options), None, ask)
         silent: Ask = (ask[0], ask[1], None)
         again: Callable[[Mapping[str, Any], str | None], NativePicture]
         again = lambda changed, vectors: native.render(_text("render", {**options, **changed}), vectors, silent)
@@ -383,7 +377,7 @@ class Scene(Layers):
 
         * ``spacing_m``: largest distance between samples of a line, scene units; by default an eighth of the cell of the terrain.
         """
-        with asked(threads, progress, time_limit_s) as ask, self._named():
+        with asked(threads, progress, time_limit_s) as ask:
             request = given({"spacing": None if spacing_m is None else number("spacing_m", spacing_m), "renderer": str(renderer)})
             return MeasureReport.of(json.loads(self._sized(_size(size), ask).measure(_text("measure", request), ask)))
 
@@ -428,7 +422,7 @@ class Scene(Layers):
     def pick(self, pixels: object, *, size: tuple[int, int] | None = None, threads: int | None = None, progress: Progress = None) -> list[Picked | None]:
         """What is seen at pixels ``(n, 2)``, origin at the outer corner of the top-left pixel; ``None`` where only sky is seen."""
         data, _ = _bytes("pixels", pixels, 2)
-        with asked(threads, progress) as ask, self._named():
+        with asked(threads, progress) as ask:
             found = json.loads(_native.pick(self._sized(_size(size), ask), data, ask))
         return [None if one is None else Picked.of(one) for one in found]
 
@@ -456,24 +450,21 @@ class Scene(Layers):
         return self._document
 
     def _document_for(self, out: Path) -> dict[str, Any]:
-        """The document for a scene file at ``out``: files are named from its folder, those of arrays bare."""
+        """The document for a scene file at ``out``: files are named from its folder, arrays by the files that they are written as."""
         there = os.path.realpath(out.parent)
         if self._file is None and (self._base is None or os.path.realpath(self._base) == there):
             document = copy.deepcopy(self._document)
         else:
             with asked() as ask:
                 document = json.loads(self._opened(ask).resolved(os.fspath(out)) or "{}")
-        arrays = None if self._folder is None else os.fspath(self._folder.path)
+        arrays = {f"array:{name}": file for name, file in self._arrays.files()}
 
         def named(value: Any) -> Any:
             if isinstance(value, dict):
                 return {key: named(item) for key, item in value.items()}
             if isinstance(value, list):
                 return [named(item) for item in value]
-            if isinstance(value, str) and arrays is not None:
-                folder, name = os.path.split(os.path.normpath(os.path.join(there, value)))
-                return name if folder == arrays else value
-            return value
+            return arrays.get(value, value) if isinstance(value, str) else value
 
         return cast("dict[str, Any]", named(document))
 
@@ -482,8 +473,7 @@ class Scene(Layers):
         asked = {key: value for key, value in asked.items() if value is not None}
         if not asked and (size is not None or (self._file is None and not self._document.get("print"))):
             return {}, size
-        with self._named():
-            found = _native.sheet(*self._described(), _text("paper", asked), size)
+        found = _native.sheet(*self._described(), _text("paper", asked), size)
         return ({}, size) if found is None else (given(json.loads(found[0])), found[1])
 
     def _sized(self, size: list[int] | None, ask: Ask) -> NativeScene:
@@ -492,8 +482,7 @@ class Scene(Layers):
         key = (size[0], size[1])
         if key not in self._natives:
             if None in self._natives and not self._natives[None].is_framed():
-                with self._named():
-                    native = self._natives[None].resized(size, ask)
+                native = self._natives[None].resized(size, ask)
             else:
                 native = self._open({"size": size}, ask)
             # One other size is kept.
@@ -519,18 +508,14 @@ class Scene(Layers):
 
     def _text_of(self, document: Mapping[str, Any]) -> tuple[str, str]:
         """The path that a document would have as a scene file, and its text."""
-        base = self._base or (self._folder.path if self._folder is not None else Path(os.path.abspath(".")))
+        base = self._base or Path(os.path.abspath("."))
         return os.fspath(base / "scene.json"), _text("the scene", document)
 
     def _native_of(self, path: str, text: str | None, options: Mapping[str, Any], ask: Ask) -> NativeScene:
         opening = _text("options", {**options, "allow_roots": self._roots, "seed": self._seed, "data": self._said})
-        with self._named():
-            if text is None:
-                return _native.NativeScene.open(path, opening, ask)
-            return _native.NativeScene.from_text(path, text, opening, ask)
-
-    def _named(self) -> Named:
-        return Named(None if self._folder is None else os.fspath(self._folder.path))
+        if text is None:
+            return _native.NativeScene.open(path, opening, self._arrays, ask)
+        return _native.NativeScene.from_text(path, text, opening, self._arrays, ask)
 
 
 def _bytes(what: str, values: object, columns: int) -> tuple[bytes, int]:

@@ -13,9 +13,8 @@ from numpy.typing import NDArray
 
 from . import _native
 from ._ask import Progress, asked, number
-from ._data import files_of
+from ._data import sources_of
 from ._drawing import given
-from ._folder import Folder, Named
 from ._json import place, text
 from .errors import InputError
 from .reports import GroundReport, Note, notes_of
@@ -24,16 +23,16 @@ from .scene import Scene
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from ._native import NativeGround
+    from ._native import NativeArrays, NativeGround
     from ._requests import DisoccludeOptions
 
 
 class Ground:
     """Displaced heights, their displacement, and the report of the solver."""
 
-    def __init__(self, native: NativeGround, folder: Folder) -> None:
+    def __init__(self, native: NativeGround, arrays: NativeArrays) -> None:
         self._native = native
-        self._folder = folder
+        self._arrays = arrays
 
     @cached_property
     def heights(self) -> NDArray[np.float64]:
@@ -82,7 +81,7 @@ class Ground:
     @cached_property
     def scene(self) -> Scene:
         """Terrain and features in the view of the solver."""
-        return Scene._of_native(self._native.scene(), self._folder)
+        return Scene._of_native(self._native.scene(), self._arrays)
 
     def save(
         self,
@@ -143,10 +142,10 @@ def disocclude(
     """
     if grid not in ("input", "scene"):
         raise InputError(f"grid={grid!r} is no grid; give 'input' or 'scene'")
-    folder = Folder()
-    files = files_of(
+    arrays = _native.NativeArrays()
+    files = sources_of(
         dem, features, transform=transform, spacing=spacing, origin=origin, crs=crs, nodata=nodata, features_crs=features_crs,
-        fill_voids=bool(fill_voids), folder=folder, rivers=rivers,
+        fill_voids=bool(fill_voids), arrays=arrays, rivers=rivers,
     )  # fmt: skip
     del files["keep_voids"]
     request = given(
@@ -163,5 +162,5 @@ def disocclude(
             **options,
         }
     )
-    with asked(threads, progress, time_limit_s) as ask, Named(os.fspath(folder.path)):
-        return Ground(_native.disocclude(text("disocclude", request), ask), folder)
+    with asked(threads, progress, time_limit_s) as ask:
+        return Ground(_native.disocclude(text("disocclude", request), arrays, ask), arrays)

@@ -143,9 +143,8 @@ def pack(
     file = scene._file
     if file is None or scene._seed is not None:
         file = scene.save(folder.file("scene.json"))
-    roots = [*scene._roots, *([] if scene._folder is None else [os.fspath(scene._folder.path)])]
     with asked(threads, progress) as ask, Named(os.fspath(folder.path)):
-        _native.pack(os.fspath(file), roots, os.fspath(application), _REMEDY, os.fspath(out), overwrite, ask)
+        _native.pack(os.fspath(file), scene._roots, os.fspath(application), _REMEDY, os.fspath(out), overwrite, ask)
     return Path(os.fspath(out))
 
 

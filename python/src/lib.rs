@@ -1,6 +1,7 @@
 //! The extension module `belvedere._native`: a thin layer of PyO3 over the facade. Arrays come and go as bytes, options and reports as JSON; what
 //! users call is Python, `../belvedere`.
 
+mod arrays;
 mod builtin;
 mod errors;
 mod film;
@@ -20,6 +21,8 @@ use pyo3::prelude::*;
 /// Functions and classes that the Python layer calls.
 #[pymodule(name = "_native")]
 mod native {
+    #[pymodule_export]
+    use super::arrays::NativeArrays;
     #[pymodule_export]
     use super::builtin::{builtin_names, builtin_scene};
     #[pymodule_export]

@@ -1,6 +1,7 @@
 //! Options that Python gives as JSON.
 
 use crate::errors::{raised, wrong};
+use belvedere::io::Arrays;
 use belvedere::picture::PictureOptions;
 use belvedere::print::Sheet;
 use belvedere::request::{self, OfData, Render, Request};
@@ -44,12 +45,13 @@ pub(crate) struct Opening {
 
 impl Opening {
     /// The options of the facade.
-    pub(crate) fn options(self, progress: Progress) -> OpenOptions {
+    pub(crate) fn options(self, arrays: Arrays, progress: Progress) -> OpenOptions {
         let options = OpenOptions {
             allow_roots: self.allow_roots,
             image: self.size,
             seed: self.seed,
             fonts: self.fonts,
+            arrays,
             unsolved: self.unsolved,
             max_bytes: Some(belvedere::io::budget::bytes()),
             progress,

@@ -1,10 +1,12 @@
 //! `reveal`: terrain and features, or a part of models and cities, to a picture in which they are visible.
 
+use crate::arrays::NativeArrays;
 use crate::errors::wrong;
 use crate::picture::NativePicture;
 use crate::request::{self, Opening};
 use crate::scene::NativeScene;
 use crate::work::{Ask, run};
+use belvedere::io::Arrays;
 use belvedere::picture::PictureOptions;
 use belvedere::request::Reveal;
 use belvedere::verbs;
@@ -19,8 +21,8 @@ fn asked_for(what: &str, asked: &str, open: &str) -> PyResult<(Reveal, Opening)>
     Ok((request::request(what, asked)?, request::read("options", open)?))
 }
 
-fn setting(open: Opening, progress: belvedere::scene::Progress) -> Setting {
-    Setting { open: open.options(progress), picture: PictureOptions::default(), to_file: None }
+fn setting(open: Opening, arrays: Arrays, progress: belvedere::scene::Progress) -> Setting {
+    Setting { open: open.options(arrays, progress), picture: PictureOptions::default(), to_file: None }
 }
 
 /// Views from several sides: their numbers and warnings as JSON, and width and colours (RGB) of the sheet.
@@ -29,12 +31,13 @@ pub(crate) fn drafts(
     py: Python<'_>,
     asked: &str,
     open: &str,
+    arrays: &NativeArrays,
     count: usize,
     ask: Ask,
 ) -> PyResult<(String, usize, Py<PyBytes>)> {
-    let (asked, open) = asked_for("drafts", asked, open)?;
+    let ((asked, open), arrays) = (asked_for("drafts", asked, open)?, arrays.now());
     let (numbers, width, colors) = run(py, &ask, move |progress| {
-        let found = verbs::reveal::drafts(&asked, count, &setting(open, progress))?;
+        let found = verbs::reveal::drafts(&asked, count, &setting(open, arrays, progress))?;
         let (width, _, colors) = found.sheet();
         let numbers = serde_json::json!({ "drafts": found.drafts, "warnings": found.warnings });
         Ok((output::json(&numbers)?, width, colors))
@@ -104,10 +107,16 @@ impl NativeReveal {
 
 /// Chooses a view (unless it is given) and a bend, and draws the picture.
 #[pyfunction]
-pub(crate) fn reveal(py: Python<'_>, asked: &str, open: &str, ask: Ask) -> PyResult<NativeReveal> {
-    let (asked, open) = asked_for("reveal", asked, open)?;
+pub(crate) fn reveal(
+    py: Python<'_>,
+    asked: &str,
+    open: &str,
+    arrays: &NativeArrays,
+    ask: Ask,
+) -> PyResult<NativeReveal> {
+    let ((asked, open), arrays) = (asked_for("reveal", asked, open)?, arrays.now());
     let (answer, report) = run(py, &ask, move |progress| {
-        let answer = verbs::reveal::reveal(&asked, &setting(open, progress))?;
+        let answer = verbs::reveal::reveal(&asked, &setting(open, arrays, progress))?;
         let report = answers::in_file("reveal", &[], &answer.document())?;
         Ok((answer, report))
     })?;

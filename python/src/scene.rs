@@ -1,5 +1,6 @@
 //! Scenes: opened, drawn, measured.
 
+use crate::arrays::NativeArrays;
 use crate::errors::{raised, wrong};
 use crate::picture::NativePicture;
 use crate::request::{self, Opening};
@@ -50,20 +51,28 @@ pub(crate) struct NativeScene {
 impl NativeScene {
     /// Opens a scene file, or data that can be drawn without one.
     #[staticmethod]
-    fn open(py: Python<'_>, path: PathBuf, options: &str, ask: Ask) -> PyResult<Self> {
+    fn open(py: Python<'_>, path: PathBuf, options: &str, arrays: &NativeArrays, ask: Ask) -> PyResult<Self> {
         let mut opening: Opening = request::read("options", options)?;
-        let said = std::mem::take(&mut opening.data);
+        let (said, arrays) = (std::mem::take(&mut opening.data), arrays.now());
         let session = run(py, &ask, move |progress| {
-            Session::from_document(scene_or_data(&path, &said)?, &opening.options(progress))
+            Session::from_document(scene_or_data(&path, &said)?, &opening.options(arrays, progress))
         })?;
         Ok(Self { session })
     }
 
     /// Opens a scene of a text; `path` is the scene file that it would be.
     #[staticmethod]
-    fn from_text(py: Python<'_>, path: PathBuf, text: String, options: &str, ask: Ask) -> PyResult<Self> {
-        let opening: Opening = request::read("options", options)?;
-        let session = run(py, &ask, move |progress| Session::from_text(&path, &text, &opening.options(progress)))?;
+    fn from_text(
+        py: Python<'_>,
+        path: PathBuf,
+        text: String,
+        options: &str,
+        arrays: &NativeArrays,
+        ask: Ask,
+    ) -> PyResult<Self> {
+        let (opening, arrays): (Opening, _) = (request::read("options", options)?, arrays.now());
+        let session =
+            run(py, &ask, move |progress| Session::from_text(&path, &text, &opening.options(arrays, progress)))?;
         Ok(Self { session })
     }
 

@@ -1,5 +1,6 @@
 //! The terrain solver alone.
 
+use crate::arrays::NativeArrays;
 use crate::errors::{raised, wrong};
 use crate::picture::filled;
 use crate::request::{self, Opening};
@@ -116,10 +117,10 @@ fn values<'py>(py: Python<'py>, raster: &Raster) -> PyResult<Bound<'py, PyByteAr
 
 /// Moves ground so that features are visible from the eye.
 #[pyfunction]
-pub(crate) fn disocclude(py: Python<'_>, asked: &str, ask: Ask) -> PyResult<NativeGround> {
-    let asked: Disocclude = request::request("disocclude", asked)?;
+pub(crate) fn disocclude(py: Python<'_>, asked: &str, arrays: &NativeArrays, ask: Ask) -> PyResult<NativeGround> {
+    let (asked, arrays): (Disocclude, _) = (request::request("disocclude", asked)?, arrays.now());
     let (found, report) = run(py, &ask, move |progress| {
-        let found = verb::disocclude(&asked, &Opening::default().options(progress))?;
+        let found = verb::disocclude(&asked, &Opening::default().options(arrays, progress))?;
         let report = answers::in_file("disocclude", &[], &found.document())?;
         Ok((found, report))
     })?;

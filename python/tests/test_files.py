@@ -114,8 +114,9 @@ def test_warnings_and_reports_are_those_of_the_command_line(scene: belvedere.Sce
     assert [w.text for w in belvedere.reports.MeasureReport.of({**measured.raw, "warnings": [more]}).warnings] == [more["text"]]
 
 
-def test_a_name_of_several_points_is_one_feature_each() -> None:
+def test_a_name_of_several_points_is_one_feature_each(tmp_path: Path) -> None:
     scene = belvedere.Scene().add_terrain(hills(), spacing=CELL).add_points({"huts": [[300, 300], [600, 600]], "top": [900, 900]})
-    document = json.loads((scene._folder.path / "points.geojson").read_text())  # type: ignore[union-attr]
+    scene.save(tmp_path / "scene.json")
+    document = json.loads((tmp_path / "points.geojson").read_text())
     found = [(f["properties"]["name"], f["geometry"]["coordinates"]) for f in document["features"]]
     assert found == [("huts", [300, 300]), ("huts", [600, 600]), ("top", [900, 900])]

@@ -20,9 +20,8 @@ def written(folder: Path) -> Path:
     """A file with 777 in a hole, which it does not call no data, nor does it state a system."""
     heights = hills()
     heights[20:30, 30:50] = 777.0
-    path = folder / "heights.tif"
-    _rasters.write_geotiff(path, _rasters.heights_of(heights, transform=NORTH_UP))
-    return path
+    belvedere.Scene().add_terrain(heights, transform=NORTH_UP, id="heights").save(folder / "scene.json")
+    return folder / "heights.tif"
 
 
 def test_no_data_and_system_that_are_given_with_a_file_are_kept(tmp_path: Path) -> None:

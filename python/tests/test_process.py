@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from pathlib import Path
@@ -143,13 +144,17 @@ def test_too_large_pictures_are_refused(scene: belvedere.Scene) -> None:
         belvedere.set_memory_limit(0)
 
 
-def test_temporary_files_go_with_the_scene() -> None:
-    scene = belvedere.Scene().add_terrain(hills(), spacing=CELL)
-    assert scene._folder is not None
-    path = scene._folder.path
-    assert path.is_dir()
-    del scene
-    assert not path.exists()
+def test_arrays_need_no_files(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*_: object, **__: object) -> None:
+        raise AssertionError("a temporary folder is made")
+
+    monkeypatch.setattr(tempfile, "mkdtemp", refused)
+    camera = belvedere.Camera((1200.0, -1500.0, 900.0), (1200.0, 1000.0, 300.0))
+    scene = belvedere.Scene(camera=camera).add_terrain(hills(), spacing=CELL).add_lines(ROUTE)
+    scene.add_mesh(np.eye(3) * 50 + [1200, 900, 500], [[0, 1, 2]])
+    assert scene.render(size=(64, 36)).id.any()
+    found = belvedere.reveal(hills(), ROUTE, spacing=CELL, eye=(1200.0, -1500.0, 900.0), look_at=(1200.0, 1000.0, 300.0), size=(64, 36))
+    assert [i["path"] for i in found.picture.record["inputs"]] == ["array:terrain", "array:features1"]
 
 
 def test_a_picture_of_an_array_takes_little_time() -> None:
