@@ -21,7 +21,7 @@ from ._masks import joined, masked_count
 from ._json import size as _size
 from ._json import text as _text
 from .camera import Camera, camera_document
-from .errors import Error, FileError, InputError
+from .errors import FileError, InputError
 from .picture import Picture
 from .reports import MeasureReport, Note, Picked, notes_of
 

@@ -84,7 +84,7 @@ def test_later_changes_of_an_array_do_not_change_the_scene() -> None:
 
 def test_a_document_alone_has_no_arrays() -> None:
     scene = belvedere.Scene().add_terrain(hills(), spacing=CELL)
-    with pytest.raises(belvedere.FileError, match="array:ground: there is no such array, none is in memory"):
+    with pytest.raises(belvedere.Error, match="array:ground: there is no such array, none is in memory"):
         belvedere.Scene.from_document(scene.document).bounds
     with pytest.raises(belvedere.InputError, match="already"):
         scene.add_mesh(np.eye(3), [[0, 1, 2]], id="ground")

@@ -28,6 +28,7 @@ pub mod png;
 pub mod ramp;
 pub mod raster;
 mod recognise;
+mod shared_bytes;
 pub mod symbol;
 mod table;
 pub mod terrain;

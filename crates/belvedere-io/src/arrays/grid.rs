@@ -1,8 +1,8 @@
 //! Heights of a grid.
 
-use super::SharedBytes;
 use crate::crs::CoordinateSystem;
 use crate::raster::{Affine, CrsKind, Raster, RasterInfo, SampleType, Samples, SourceCrs};
+use crate::shared_bytes::SharedBytes;
 use serde_json::json;
 use std::ops::Range;
 use std::path::Path;

@@ -7,6 +7,8 @@ mod written;
 pub use grid::HeightGrid;
 pub use triangles::Triangles;
 
+pub use crate::shared_bytes::SharedBytes;
+
 use crate::molecule::AtomTable;
 use crate::vector::{FeatureArray, FeatureText, Vectors};
 use crate::volume::Voxels;
@@ -22,24 +24,6 @@ pub const SCHEME: &str = "array:";
 /// Whether a source names an array.
 pub fn is_name(source: &str) -> bool {
     source.starts_with(SCHEME)
-}
-
-/// Bytes that their owner shares: numbers are little-endian, rows follow one another without gaps.
-#[derive(Clone)]
-pub struct SharedBytes(Arc<dyn AsRef<[u8]> + Send + Sync>);
-
-impl<T: AsRef<[u8]> + Send + Sync + 'static> From<T> for SharedBytes {
-    fn from(owner: T) -> Self {
-        Self(Arc::new(owner))
-    }
-}
-
-impl std::ops::Deref for SharedBytes {
-    type Target = [u8];
-
-    fn deref(&self) -> &[u8] {
-        (*self.0).as_ref()
-    }
 }
 
 /// What an array holds.
@@ -239,17 +223,4 @@ impl PartialEq for Arrays {
     fn eq(&self, other: &Self) -> bool {
         self.0.values().map(|array| &array.record).eq(other.0.values().map(|array| &array.record))
     }
-}
-
-/// Numbers of their bytes.
-pub(crate) fn f64s(bytes: &[u8]) -> impl Iterator<Item = f64> + '_ {
-    bytes.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b))
-}
-
-/// Positions of their bytes.
-pub(crate) fn positions(bytes: &[u8]) -> impl Iterator<Item = glam::DVec3> + '_ {
-    bytes.as_chunks::<24>().0.iter().map(|b| {
-        let mut numbers = f64s(b);
-        glam::DVec3::from_array(std::array::from_fn(|_| numbers.next().unwrap_or_default()))
-    })
 }

@@ -1,6 +1,6 @@
 //! Triangles of their vertices.
 
-use super::{SharedBytes, positions};
+use crate::shared_bytes::{SharedBytes, positions};
 use crate::{IoError, Limits, Loaded, MeshFile};
 use belvedere_scene::{Color, MeshColors};
 use serde_json::json;

@@ -2,7 +2,7 @@
 
 use super::MoleculeFile;
 use super::sites::{Site, Sites};
-use crate::arrays::{SharedBytes, positions};
+use crate::shared_bytes::{SharedBytes, positions};
 use crate::{IoError, Limits, Loaded};
 use belvedere_scene::molecule::{Element, Residue};
 use serde_json::json;

@@ -2,8 +2,8 @@
 
 use super::collected::Collected;
 use super::{Geometry, Vectors, Vertex, without_phantoms};
-use crate::arrays::{SharedBytes, f64s};
 use crate::crs::CoordinateSystem;
+use crate::shared_bytes::{SharedBytes, f64s};
 use crate::{IoError, Loaded, budget};
 use glam::DVec2;
 use serde_json::{Value, json};

@@ -1,7 +1,7 @@
 //! Voxels in memory.
 
 use super::{ByteOrder, Number, VolumeFile, odd_values};
-use crate::arrays::SharedBytes;
+use crate::shared_bytes::SharedBytes;
 use crate::{IoError, Limits, Loaded};
 use glam::{DMat3, DVec3};
 use serde_json::json;
