@@ -132,7 +132,7 @@ fn names(paths: &Paths, file: &str) -> bool {
 }
 
 /// The features of a file or of an array.
-pub(crate) fn read(path: &Path, arrays: &Arrays) -> Result<Loaded<Vectors>, IoError> {
+pub fn read(path: &Path, arrays: &Arrays) -> Result<Loaded<Vectors>, IoError> {
     match arrays.find(path)? {
         Some(array) => Ok(array.features()?.with_file(array.record().clone())),
         None => load_vectors(path),
