@@ -13,6 +13,7 @@ use crate::session::{Description, Loaded};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_core::View;
 use belvedere_core::Warning;
+use belvedere_io::Vectors;
 use belvedere_io::arrays::{self, Arrays};
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::{join_table, split_table};
@@ -82,72 +83,7 @@ pub(crate) struct Data {
 impl DataFiles {
     /// Reads the files, each once.
     pub(crate) fn load(&self, keep_original: bool, options: &OpenOptions) -> Result<Data, BelvedereError> {
-        let mut roots = Roots::default();
-        let tiles = tiles::of(&self.dem, &self.features)?;
-        let ground = tiles.ground.iter().map(|name| locate(name, &mut roots)).collect::<Result<_, _>>()?;
-        let drape = self.drape.iter().map(|name| locate(name, &mut roots)).collect::<Result<Vec<_>, _>>()?;
-        let palette = self.palette.located(&mut roots.allowed)?;
-        let mut layers = vec![LayerDoc::Terrain(TerrainDoc {
-            id: "ground".into(),
-            source: tiles::paths(ground),
-            fill_voids: !self.keep_voids,
-            largest_hole: (!self.keep_voids && !self.fill_all_voids).then_some(LARGEST_HOLE),
-            source_crs: self.stated.raster.source_crs.clone(),
-            nodata: self.stated.raster.nodata,
-            vertical_unit: self.stated.raster.vertical_unit,
-            drape: (!drape.is_empty()).then(|| tiles::paths(drape)),
-            style: TerrainStyleDoc {
-                palette,
-                sea: !self.no_sea,
-                contours: options.contours,
-                edge: options.edge.unwrap_or_default(),
-                ..TerrainStyleDoc::default()
-            },
-        })];
-        if tiles.features.is_empty() {
-            return Err(tiles::without_features(&self.dem, &self.features));
-        }
-        let mut known = BTreeMap::new();
-        for (i, name) in tiles.features.iter().enumerate() {
-            let source = locate(name, &mut roots)?;
-            let mut kinds = vec![FeatureKind::Lines];
-            if !source.starts_with("builtin:") {
-                let read = vectors::read(Path::new(&source), &options.arrays)?;
-                kinds = kinds_of(&read.value);
-                known.insert(PathBuf::from(&source), read);
-            }
-            for (k, kind) in kinds.into_iter().enumerate() {
-                let id =
-                    if k == 0 { format!("features{}", i + 1) } else { format!("features{}-{}", i + 1, kind.plural()) };
-                let mut layer = feature_layer(id, Paths::One(source.clone()), kind);
-                if let LayerDoc::Line(LineDoc { name_field, .. })
-                | LayerDoc::Area(AreaDoc { name_field, .. })
-                | LayerDoc::Point(PointLayerDoc { name_field, .. }) = &mut layer
-                    && !source.starts_with("builtin:")
-                {
-                    name_field.clone_from(&self.stated.name_field);
-                }
-                if self.labels {
-                    write_names(&mut layer);
-                }
-                if let Some(hidden) = self.hidden {
-                    draw_hidden(&mut layer, hidden);
-                }
-                layers.push(layer);
-            }
-        }
-        let mut rivers = Vec::new();
-        for (i, name) in self.rivers.iter().enumerate() {
-            let source = locate(name, &mut roots)?;
-            let read = vectors::read(Path::new(&source), &options.arrays)?;
-            if !kinds_of(&read.value).contains(&FeatureKind::Lines) {
-                return Err(belvedere_io::IoError::format(Path::new(name), "holds no lines; rivers are lines").into());
-            }
-            known.insert(PathBuf::from(&source), read);
-            let id = format!("rivers{}", i + 1);
-            layers.push(LayerDoc::Line(river_layer(id.clone(), Paths::One(source))));
-            rivers.push(id);
-        }
+        let Layers { mut layers, known, rivers, mut roots } = self.layers(options)?;
         let crs = self.crs.as_deref().unwrap_or("auto");
         let mut options = OpenOptions { area_style: self.area_style.or(options.area_style), ..options.clone() };
         let text = text_of(take(&mut options.fonts), &mut roots.files)?;
@@ -183,6 +119,100 @@ impl DataFiles {
             roots,
             arrays,
         })
+    }
+}
+
+/// The layers of files.
+struct Layers {
+    layers: Vec<LayerDoc>,
+    /// Features that were read to tell their kinds.
+    known: BTreeMap<PathBuf, belvedere_io::Loaded<Vectors>>,
+    /// Ids of rivers.
+    rivers: Vec<String>,
+    roots: Roots,
+}
+
+impl DataFiles {
+    fn layers(&self, options: &OpenOptions) -> Result<Layers, BelvedereError> {
+        let mut roots = Roots::default();
+        let tiles = tiles::of(&self.dem, &self.features)?;
+        let ground = self.ground(&tiles.ground, options, &mut roots)?;
+        if tiles.features.is_empty() {
+            return Err(tiles::without_features(&self.dem, &self.features));
+        }
+        let mut out = Layers { layers: vec![ground], known: BTreeMap::new(), rivers: Vec::new(), roots };
+        for (i, name) in tiles.features.iter().enumerate() {
+            let source = locate(name, &mut out.roots)?;
+            let is_builtin = source.starts_with("builtin:");
+            let kinds = if is_builtin { vec![FeatureKind::Lines] } else { out.kinds(&source, &options.arrays)? };
+            for (k, kind) in kinds.into_iter().enumerate() {
+                let part = if k == 0 { String::new() } else { format!("-{}", kind.plural()) };
+                let mut layer = feature_layer(format!("features{}{part}", i + 1), Paths::One(source.clone()), kind);
+                self.describe(&mut layer, is_builtin);
+                out.layers.push(layer);
+            }
+        }
+        for (i, name) in self.rivers.iter().enumerate() {
+            let source = locate(name, &mut out.roots)?;
+            if !out.kinds(&source, &options.arrays)?.contains(&FeatureKind::Lines) {
+                return Err(belvedere_io::IoError::format(Path::new(name), "holds no lines; rivers are lines").into());
+            }
+            let id = format!("rivers{}", i + 1);
+            out.layers.push(LayerDoc::Line(river_layer(id.clone(), Paths::One(source))));
+            out.rivers.push(id);
+        }
+        Ok(out)
+    }
+
+    /// The layer of elevation models.
+    fn ground(&self, tiles: &[String], options: &OpenOptions, roots: &mut Roots) -> Result<LayerDoc, BelvedereError> {
+        let mut located =
+            |names: &[String]| names.iter().map(|name| locate(name, roots)).collect::<Result<Vec<_>, _>>();
+        let (source, drape) = (located(tiles)?, located(&self.drape)?);
+        Ok(LayerDoc::Terrain(TerrainDoc {
+            id: "ground".into(),
+            source: tiles::paths(source),
+            fill_voids: !self.keep_voids,
+            largest_hole: (!self.keep_voids && !self.fill_all_voids).then_some(LARGEST_HOLE),
+            source_crs: self.stated.raster.source_crs.clone(),
+            nodata: self.stated.raster.nodata,
+            vertical_unit: self.stated.raster.vertical_unit,
+            drape: (!drape.is_empty()).then(|| tiles::paths(drape)),
+            style: TerrainStyleDoc {
+                palette: self.palette.located(&mut roots.allowed)?,
+                sea: !self.no_sea,
+                contours: options.contours,
+                edge: options.edge.unwrap_or_default(),
+                ..TerrainStyleDoc::default()
+            },
+        }))
+    }
+
+    /// Puts what is asked of all features into the layer of some.
+    fn describe(&self, layer: &mut LayerDoc, is_builtin: bool) {
+        if let LayerDoc::Line(LineDoc { name_field, .. })
+        | LayerDoc::Area(AreaDoc { name_field, .. })
+        | LayerDoc::Point(PointLayerDoc { name_field, .. }) = layer
+            && !is_builtin
+        {
+            name_field.clone_from(&self.stated.name_field);
+        }
+        if self.labels {
+            write_names(layer);
+        }
+        if let Some(hidden) = self.hidden {
+            draw_hidden(layer, hidden);
+        }
+    }
+}
+
+impl Layers {
+    /// Kinds of the features of a file or array, which is read.
+    fn kinds(&mut self, source: &str, arrays: &Arrays) -> Result<Vec<FeatureKind>, BelvedereError> {
+        let read = vectors::read(Path::new(source), arrays)?;
+        let kinds = kinds_of(&read.value);
+        self.known.insert(PathBuf::from(source), read);
+        Ok(kinds)
     }
 }
 

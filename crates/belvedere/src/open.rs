@@ -18,7 +18,7 @@ use belvedere_resolve::solving::Memory;
 use belvedere_resolve::solving::Solving;
 use belvedere_resolve::{self, LayerRequest, hidden, representations, validate};
 use belvedere_scene::{Crs, Scene};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 impl Session {
@@ -48,46 +48,9 @@ impl Session {
     }
 
     fn opened(mut source: SourceDocument, options: &OpenOptions) -> Result<Self, BelvedereError> {
-        let document = &mut source.document;
         let mut allowed = options.allow_roots.clone();
         allowed.extend(source.of_files.iter().flatten().cloned());
-        document.camera.image = options.image.unwrap_or(document.camera.image);
-        if options.sky.is_some() || options.haze.is_some() {
-            belvedere_resolve::check_air(&LightDoc {
-                sky: options.sky.clone(),
-                haze: options.haze,
-                ..LightDoc::default()
-            })?;
-            let light = document.light.get_or_insert_default();
-            light.sky = options.sky.clone().or(light.sky.take());
-            light.haze = options.haze.or(light.haze);
-        }
-        if let Some(wish) = &options.furniture {
-            wish.put_into(&mut document.furniture);
-        }
-        if let Some(palette) = &options.palette {
-            let palette = palette.located(&mut allowed)?;
-            for layer in &mut document.layer {
-                if let LayerDoc::Terrain(terrain) = layer {
-                    terrain.style.palette = palette.clone();
-                }
-            }
-        }
-        show_molecules(&options.molecule, &mut document.layer)?;
-        for layer in &mut document.layer {
-            match (layer, options) {
-                (LayerDoc::Area(area), OpenOptions { area_style: Some(kind), .. }) => {
-                    belvedere_resolve::restyle(&mut area.style, *kind);
-                }
-                (LayerDoc::Terrain(terrain), OpenOptions { sea, contours, edge, .. }) => {
-                    let style = &mut terrain.style;
-                    style.sea = sea.unwrap_or(style.sea);
-                    style.contours = contours.or(style.contours);
-                    style.edge = edge.unwrap_or(style.edge);
-                }
-                _ => {}
-            }
-        }
+        change(&mut source.document, options, &mut allowed)?;
         validate::document(&source)?;
         hidden::check(&source)?;
         let scene_dir = source.path().and_then(Path::parent).map(Path::to_owned).unwrap_or_default();
@@ -130,6 +93,43 @@ impl Session {
         };
         Self::of_document(loaded, source, roots, (!options.unsolved).then_some(&mut solving))
     }
+}
+
+/// Puts what is asked for instead of what a document says into it.
+///
+/// * `allowed`: takes the folder of a palette.
+fn change(document: &mut Document, options: &OpenOptions, allowed: &mut Vec<PathBuf>) -> Result<(), BelvedereError> {
+    document.camera.image = options.image.unwrap_or(document.camera.image);
+    if options.sky.is_some() || options.haze.is_some() {
+        let asked = LightDoc { sky: options.sky.clone(), haze: options.haze, ..LightDoc::default() };
+        belvedere_resolve::check_air(&asked)?;
+        let light = document.light.get_or_insert_default();
+        light.sky = asked.sky.or(light.sky.take());
+        light.haze = asked.haze.or(light.haze);
+    }
+    if let Some(wish) = &options.furniture {
+        wish.put_into(&mut document.furniture);
+    }
+    let palette = options.palette.as_ref().map(|palette| palette.located(allowed)).transpose()?;
+    show_molecules(&options.molecule, &mut document.layer)?;
+    for layer in &mut document.layer {
+        match layer {
+            LayerDoc::Area(area) => {
+                if let Some(kind) = options.area_style {
+                    belvedere_resolve::restyle(&mut area.style, kind);
+                }
+            }
+            LayerDoc::Terrain(terrain) => {
+                let style = &mut terrain.style;
+                style.palette = palette.clone().unwrap_or_else(|| std::mem::take(&mut style.palette));
+                style.sea = options.sea.unwrap_or(style.sea);
+                style.contours = options.contours.or(style.contours);
+                style.edge = options.edge.unwrap_or(style.edge);
+            }
+            _ => {}
+        }
+    }
+    Ok(())
 }
 
 /// Said of a document whose camera was found.
