@@ -16,7 +16,7 @@ use belvedere_core::Warning;
 use belvedere_io::Vectors;
 use belvedere_io::arrays::{self, Arrays};
 use belvedere_io::terrain::OriginalTerrain;
-use belvedere_io::{join_table, split_table};
+use belvedere_io::{Known, join_table, split_table};
 use belvedere_overlay::notes::LayerNotes;
 use belvedere_resolve::vectors::{self, FeatureKind, kind_of, kinds_of};
 use belvedere_resolve::{self, LayerRequest};
@@ -287,9 +287,9 @@ pub(crate) fn ground_files(dem: &str) -> Result<Vec<String>, BelvedereError> {
     Ok(tiles::of(dem, &[])?.ground)
 }
 
-/// A layer of the features of a file, with an id from its name.
-pub(crate) fn features_of(path: &Path, arrays: &Arrays, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
-    let kind = kind_of(&vectors::read(path, arrays)?.value);
+/// A layer of the features of a file or array, with an id from its name.
+pub(crate) fn features_of(known: &Known, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
+    let (kind, path) = (kind_of(known.features()?), &known.path);
     let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
     let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("features");
     let stem = stem.strip_prefix(arrays::SCHEME).unwrap_or(stem);

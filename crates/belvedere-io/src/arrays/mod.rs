@@ -9,6 +9,7 @@ pub use triangles::Triangles;
 
 pub use crate::shared_bytes::SharedBytes;
 
+use crate::formats::Reader;
 use crate::molecule::AtomTable;
 use crate::vector::{FeatureArray, FeatureText, Vectors};
 use crate::volume::Voxels;
@@ -89,6 +90,17 @@ impl Array {
     /// Its record among the inputs, under the name `array:NAME`.
     pub fn record(&self) -> &InputFile {
         &self.record
+    }
+
+    /// The loader of files of the same content.
+    pub fn reader(&self) -> Reader {
+        match self.content {
+            Content::Heights(_) => Reader::Terrain,
+            Content::Voxels(_) => Reader::Volume,
+            Content::Triangles(_) => Reader::Mesh,
+            Content::Atoms(_) => Reader::Molecule,
+            Content::Features(_) | Content::Collection(_) => Reader::Features,
+        }
     }
 
     /// Heights.

@@ -344,7 +344,7 @@ fn geotiff(path: &Path, name: &str, request: &TerrainRequest, progress: &Progres
         corners: info.corners(),
         warnings: opened.warnings,
     };
-    if is_picture(info) {
+    if belvedere_io::is_picture(info) {
         return Ok(FileInfo::Picture(picture));
     }
     match terrain(path, request, progress) {
@@ -357,11 +357,6 @@ fn geotiff(path: &Path, name: &str, request: &TerrainRequest, progress: &Progres
         }
         answer => answer,
     }
-}
-
-/// Whether a raster holds colours rather than heights.
-pub(super) fn is_picture(info: &belvedere_io::RasterInfo) -> bool {
-    info.bands >= 3 || matches!(info.photometric, belvedere_io::Photometric::Palette(_))
 }
 
 fn terrain(path: &Path, request: &TerrainRequest, progress: &Progress) -> Result<FileInfo, BelvedereError> {

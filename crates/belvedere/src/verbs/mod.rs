@@ -24,4 +24,4 @@ mod written_ground;
 mod written_rivers;
 
 pub(crate) use found_view::{MODELS_FOV_Y_DEG, provisional_camera, spline_stage};
-pub use reveal::{CitySee, hold_a_city};
+pub use reveal::CitySee;

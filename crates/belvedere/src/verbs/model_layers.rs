@@ -2,7 +2,8 @@
 
 use crate::scene_file::{CityDoc, LayerDoc, MeshDoc, MoleculeDoc, Paths, TerrainDoc, TerrainStyleDoc, VolumeDoc};
 use crate::{Advice, BelvedereError, OpenOptions};
-use belvedere_io::formats::{self, Reader};
+use belvedere_io::arrays::SCHEME;
+use belvedere_io::formats::Reader;
 use belvedere_scene::Unit;
 use belvedere_scene::molecule::Representation;
 use std::path::Path;
@@ -16,24 +17,22 @@ pub(super) fn unit_of(layers: &[LayerDoc]) -> Unit {
     }
 }
 
-/// The layer of a file, chosen by the ending of its name.
-pub(super) fn layer(path: &Path, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
+/// The layer of built-in data, by their name, or of a file or array.
+///
+/// * `known`: the loader that reads a file.
+pub(super) fn layer(path: &Path, known: Option<Reader>, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
     let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
     let file = path.file_name().and_then(|n| n.to_str()).unwrap_or_default().to_ascii_lowercase();
     let file = file.strip_suffix(".gz").unwrap_or(&file);
     let (builtin, file) = file.strip_prefix("builtin:").map_or((false, file), |name| (true, name));
+    let file = file.strip_prefix(SCHEME).unwrap_or(file);
     let stem = file.split(['.', '?']).next().unwrap_or(file);
     let taken = |id: &str| others.iter().any(|l| l.id() == id);
     let id = (1..).map(|k| if k == 1 { stem.to_owned() } else { format!("{stem}-{k}") }).find(|id| !taken(id));
     let id = id.unwrap_or_default();
     // Names of cities that tell nothing else may hold them.
     let is_city = file.ends_with(".jsonl") || file.ends_with(".gml");
-    let by_name = formats::of_name(Path::new(file)).and_then(|format| format.reader);
-    // Archives and names that tell nothing.
-    let by_content =
-        || belvedere_io::inside(path).and_then(|p| belvedere_io::readable(&p)).ok().flatten().and_then(|f| f.reader);
-    let reader = if builtin { by_name } else { by_name.or_else(by_content) };
-    match reader {
+    match known {
         _ if builtin && stem == "dna" => Ok(LayerDoc::Molecule(MoleculeDoc::of(id, name))),
         _ if builtin && (stem == "engine" || stem == "tube") => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
         _ if is_city || (builtin && stem == "town") => Ok(LayerDoc::City(CityDoc::of(id, name))),

@@ -1,6 +1,5 @@
 //! Opens files of any kind as one scene.
 
-use super::info::{self, FileInfo};
 use super::model_layers::{ground, layer, unit_of};
 use super::reveal::reveal;
 use crate::data::{features_of, ground_files, locate};
@@ -11,7 +10,7 @@ use crate::scene_file::paths::Roots;
 use crate::scene_file::{self, Document, EarthDoc, LayerDoc, SourceDocument};
 use crate::{Advice, BelvedereError, OpenOptions, Session, Trust};
 use belvedere_io::formats::Reader;
-use belvedere_io::{Arrays, GeoTiff, Limits, fs, join_table, split_table};
+use belvedere_io::{Arrays, Known, fs, split_table};
 use belvedere_scene::Progress;
 use std::path::{Path, PathBuf};
 
@@ -50,18 +49,16 @@ pub fn open_trusted(
     }
     let (mut grounds, mut features, mut models) = (Vec::new(), Vec::new(), Vec::new());
     for path in paths {
-        let (file, table) = split_table(path);
-        let real = join_table(fs::canonicalize(file).map_err(|e| belvedere_io::IoError::os(file, e))?, table);
-        let name = real.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?.to_owned();
-        match info::describe(&name, progress)? {
-            FileInfo::Terrain(_) => grounds.push(name),
-            FileInfo::Features(_) => features.push(name),
-            FileInfo::Mesh(_) | FileInfo::City(_) | FileInfo::Molecule(_) | FileInfo::Volume(_) => models.push(real),
-            FileInfo::Unread(unread) => {
-                return Err(BelvedereError::Target(format!("{name} is {}: {}", unread.format, unread.note)));
-            }
-            FileInfo::Picture(_) | FileInfo::Raster(_) | FileInfo::Builtin(_) => {
-                return Err(BelvedereError::Target(format!("{name} makes no scene; {REMEDY}")));
+        let known = Known::of(path, &Arrays::default())?;
+        let name = known.path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?.to_owned();
+        match known.reader {
+            Some(Reader::Terrain) => grounds.push(name),
+            Some(Reader::Features) => features.push(name),
+            Some(Reader::Mesh | Reader::City | Reader::Molecule | Reader::Volume) => models.push(known),
+            None => {
+                return Err(BelvedereError::Target(
+                    known.refusal()?.unwrap_or_else(|| format!("{name} makes no scene; {REMEDY}")),
+                ));
             }
         }
     }
@@ -78,8 +75,8 @@ pub fn open_trusted(
         }
         ([_, ..], true, true) => shown(vec![ground(grounds)], &place, &options)?,
         ([], true, false) => {
-            let layers = models.iter().try_fold(Vec::new(), |mut layers, path| {
-                layers.push(layer(path, &layers)?);
+            let layers = models.iter().try_fold(Vec::new(), |mut layers, known: &Known| {
+                layers.push(layer(&known.path, known.reader, &layers)?);
                 Ok::<_, BelvedereError>(layers)
             })?;
             shown(layers, &place, &options)?
@@ -113,14 +110,12 @@ pub fn open_beside(
     let has_terrain = current.layer.iter().any(|layer| matches!(layer, LayerDoc::Terrain(_)));
     let (mut layers, mut folders) = (current.layer.clone(), Vec::new());
     for path in paths.iter().filter(|_| has_terrain) {
-        let path = fs::canonicalize(path).map_err(|e| belvedere_io::IoError::os(path, e))?;
-        let is_scene = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) || is_json_scene(&path);
-        let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
-        if is_scene || !matches!(info::describe(name, progress)?, FileInfo::Features(_)) {
+        let known = Known::of(path, &Arrays::default())?;
+        if known.reader != Some(Reader::Features) {
             return open_trusted(paths, allowed, trust, progress).map(|scene| Opened::Scene(Box::new(scene)));
         }
-        layers.push(features_of(&path, &Arrays::default(), &layers)?);
-        folders.extend(path.parent().map(Path::to_owned));
+        layers.push(features_of(&known, &layers)?);
+        folders.extend(split_table(&known.path).0.parent().map(Path::to_owned));
     }
     let new = layers.split_off(current.layer.len());
     match new.is_empty() {
@@ -212,44 +207,25 @@ pub fn scene_of_data(path: &Path) -> Result<Option<SourceDocument>, BelvedereErr
     let mut roots = Roots::default();
     // A file that is not there is told by whoever reads it as a scene.
     let Ok(file) = locate(name, &mut roots) else { return Ok(None) };
-    let layer = match reader(&file)? {
+    let reader = match file.strip_prefix("builtin:") {
+        Some(built_in) if ["massif", "canyon"].iter().any(|ground| built_in.starts_with(ground)) => {
+            Some(Reader::Terrain)
+        }
+        Some(_) => Some(Reader::Mesh),
+        None => Known::of(Path::new(&file), &Arrays::default())?.reader,
+    };
+    let layer = match reader {
         Some(Reader::Terrain) => {
             let tiles = ground_files(&file)?.iter().map(|tile| locate(tile, &mut roots)).collect::<Result<_, _>>()?;
             ground(tiles)
         }
-        Some(Reader::City | Reader::Mesh | Reader::Molecule | Reader::Volume) => layer(Path::new(&file), &[])?,
+        Some(Reader::City | Reader::Mesh | Reader::Molecule | Reader::Volume) => layer(Path::new(&file), reader, &[])?,
         Some(Reader::Features) | None => return Ok(None),
     };
     let mut source = whole(vec![layer], roots.allowed);
     let title = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
     source.document.title = title.trim_start_matches("builtin:").split(['.', '?']).next().unwrap_or_default().into();
     Ok(Some(source))
-}
-
-/// The loader of data, told by their name and their beginning; `None` for scene files, pictures and unknown formats.
-fn reader(file: &str) -> Result<Option<Reader>, BelvedereError> {
-    let path = Path::new(file);
-    if let Some(built_in) = file.strip_prefix("builtin:") {
-        let is_ground = ["massif", "canyon"].iter().any(|ground| built_in.starts_with(ground));
-        return Ok(Some(if is_ground { Reader::Terrain } else { Reader::Mesh }));
-    }
-    if path.is_dir() {
-        return Ok(Some(Reader::Terrain));
-    }
-    if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("toml")) {
-        return Ok(None);
-    }
-    let meant = belvedere_io::inside(path)?;
-    if belvedere_io::city::is_city(&meant)? {
-        return Ok(Some(Reader::City));
-    }
-    match belvedere_io::readable(&meant)? {
-        Some(format) if format.name == "GeoTIFF" => {
-            let tiff = GeoTiff::open(&meant, Limits::default())?.value;
-            Ok(format.reader.filter(|_| !info::is_picture(tiff.info())))
-        }
-        format => Ok(format.and_then(|format| format.reader)),
-    }
 }
 
 #[cfg(test)]

@@ -20,8 +20,7 @@ pub use belvedere_construct::views::RefitRecord;
 pub use drafts::{Draft, DraftsAnswer, MOST_DRAFTS, drafts};
 pub use files::RevealFiles;
 pub use names::CitySee;
-pub use request::{IMAGE, Setting, is_of_models, sheet};
-pub use subject::hold_a_city;
+pub use request::{IMAGE, Setting, sheet};
 
 use crate::BelvedereError;
 use crate::guard::guarded;

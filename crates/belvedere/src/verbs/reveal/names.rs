@@ -7,7 +7,7 @@ use belvedere_io::{CityFile, Limits, load_city};
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Most names of a list.
 const LISTED: usize = 40;
@@ -80,7 +80,7 @@ impl CitySee {
 }
 
 /// What can be named in cities, in words, with the nearest name to `see`.
-pub(super) fn known_names(cities: &[PathBuf], see: &str) -> Result<String, BelvedereError> {
+pub(super) fn known_names(cities: &[&Path], see: &str) -> Result<String, BelvedereError> {
     let of = |path: &Path| Ok::<_, BelvedereError>(CitySee::of(&load_city(path, None, &Limits::default())?.value));
     let all: Vec<CitySee> = cities.iter().map(|path| of(path)).collect::<Result<_, _>>()?;
     let names =

@@ -1,7 +1,7 @@
 //! What is asked for, read: one request for terrain with features, cities and models.
 
 use super::appearance::Appearance;
-use super::hold_a_city;
+use super::subject::{Given, hold_a_city};
 use crate::picture::PictureOptions;
 use crate::places::Place;
 use crate::print::Sheet;
@@ -36,6 +36,8 @@ impl From<OpenOptions> for Setting {
 #[derive(Clone)]
 pub(super) struct Request<'a> {
     pub(super) asked: &'a Reveal,
+    /// Terrain, models or a city, and features.
+    pub(super) given: Vec<Given>,
     /// Whether a part of models or of a city is asked for.
     pub(super) models: bool,
     pub(super) open: OpenOptions,
@@ -53,7 +55,9 @@ pub(super) struct Request<'a> {
 
 impl<'a> Request<'a> {
     pub(super) fn of(asked: &'a Reveal, setting: &Setting) -> Result<Self, BelvedereError> {
-        let models = is_of_models(asked);
+        let files = [&asked.data].into_iter().chain(&asked.features).map(PathBuf::from);
+        let given: Vec<Given> = files.map(|name| Given::of(name, &setting.open.arrays)).collect();
+        let models = asked.see.is_some() || hold_a_city(&given);
         check(asked, models)?;
         let (sheet, _) = sheet(asked)?;
         renderers::check(&asked.renderer)?;
@@ -62,6 +66,7 @@ impl<'a> Request<'a> {
         let open = OpenOptions { molecule: asked.appearance.molecules.clone(), ..setting.open.clone() };
         Ok(Self {
             asked,
+            given,
             models,
             open: open.airy(&asked.appearance.air),
             picture: match sheet {
@@ -100,16 +105,6 @@ impl<'a> Request<'a> {
     pub(super) fn data(&self) -> DataFiles {
         data(self.asked)
     }
-
-    /// The files of models, cities and what lies beside them.
-    pub(super) fn files(&self) -> Vec<PathBuf> {
-        files(self.asked)
-    }
-}
-
-/// Whether a part of models or of a city is asked for rather than features of terrain.
-pub fn is_of_models(asked: &Reveal) -> bool {
-    asked.see.is_some() || hold_a_city(&files(asked))
 }
 
 /// Paper of the picture, and its size in pixels.
@@ -120,10 +115,6 @@ pub fn sheet(asked: &Reveal) -> Result<(Option<Sheet>, [u32; 2]), BelvedereError
     let shape = asked.size.or_else(|| size_of_scene(Path::new(&asked.data))).unwrap_or(IMAGE);
     let sheet = Sheet::asked(&asked.paper.document(), None, asked.size, shape)?;
     Ok((sheet, sheet.map_or(shape, |sheet| sheet.pixels())))
-}
-
-fn files(asked: &Reveal) -> Vec<PathBuf> {
-    [&asked.data].into_iter().chain(&asked.features).map(PathBuf::from).collect()
 }
 
 /// Size of the picture of a scene file; `None` for other data.

@@ -12,16 +12,16 @@ use belvedere_construct::rays::Target;
 use belvedere_construct::reveal::thresholds;
 use belvedere_construct::sample_features;
 use belvedere_core::{DVec2, DVec3};
-use belvedere_io::city::{is_city, is_meant};
+use belvedere_io::city::is_meant;
 use belvedere_io::formats::Reader;
-use belvedere_io::load_vectors;
-use belvedere_io::{Arrays, Limits, arrays, join_table, load_city, split_table};
+use belvedere_io::{Arrays, Known, Limits, arrays, load_city, split_table};
 use belvedere_resolve::targets;
-use belvedere_resolve::vectors::{self, FeatureKind, kinds_of};
+use belvedere_resolve::vectors::{FeatureKind, kinds_of};
 use belvedere_scene::molecule::Selection;
 use belvedere_scene::{LayerKind, Scene};
 use std::mem::take;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Number of the part of a city that is its level ground.
 const GROUND: u32 = 0;
@@ -106,53 +106,48 @@ fn length(kind: &LayerKind) -> f64 {
 
 /// Opens the files with a provisional camera.
 pub(super) fn open(request: &Request<'_>) -> Result<(Session, Meant), BelvedereError> {
-    let (files, see, options) = (request.files(), request.see(), &request.open);
+    let (see, options) = (request.see(), &request.open);
     let named = || Meant::Named(see.to_owned());
-    if let [file] = &files[..]
-        && is_scene(file)?
+    if let [Given::Known(file)] = &request.given[..]
+        && file.may_be_scene()
     {
         if request.asked.transfer.is_some() {
             let text = "a scene file states its transfer functions itself; leave {} out";
             return Err(BelvedereError::Argument(Advice::new(text, &["transfer"])));
         }
         let options = OpenOptions { image: request.image.or(options.image), ..options.clone() };
-        return Ok((Session::open(file, &options)?, named()));
+        return Ok((Session::open(&file.name, &options)?, named()));
     }
     let mut options = options.clone();
-    let mut map = Map { see: see.to_owned(), arrays: options.arrays.clone(), ..Map::default() };
+    let mut map = Map { see: see.to_owned(), ..Map::default() };
     let mut models: Vec<LayerDoc> = Vec::new();
     // A file that is given as data, too, is read once.
-    let is_given = |seen: &PathBuf| {
-        let table = |path: &Path| split_table(path).1.map(str::to_owned);
-        files.iter().any(|file| same_file(file, seen) && table(file) == table(seen))
-    };
-    let seen = seen_file(see).filter(|seen| !is_given(seen));
-    for file in files.iter().chain(seen.as_ref()) {
-        if file.to_str().is_some_and(|name| name.starts_with("builtin:")) {
-            models.push(layer(file, &models)?);
-            continue;
-        }
-        if let Some(array) = options.arrays.find(file)? {
-            let list = if array.heights().is_ok() { &mut map.grounds } else { &mut map.features };
-            list.push(file.clone());
-            continue;
-        }
-        let (whole, table) = split_table(file);
-        let path = belvedere_io::fs::canonicalize(whole).map_err(|e| belvedere_io::IoError::os(whole, e))?;
-        options.allow_roots.extend(path.parent().map(Path::to_owned));
-        let path = join_table(path, table);
-        match kind_of(&path)? {
-            Kind::City => map.cities.push(path),
-            Kind::Ground => map.grounds.push(path),
-            Kind::Features => map.features.push(path),
-            Kind::Model => models.push(layer(&path, &models)?),
+    let is_given = |seen: &Given| request.given.iter().any(|given| given.is_same(seen));
+    let seen = seen_file(see).map(|file| Given::of(file, &options.arrays)).filter(|seen| !is_given(seen));
+    for given in request.given.iter().chain(seen.as_ref()) {
+        let known = match given {
+            Given::Builtin(name) => {
+                models.push(layer(name, None, &models)?);
+                continue;
+            }
+            Given::Known(known) => known.clone(),
+            Given::Unknown(name) => Arc::new(Known::of(name, &options.arrays)?),
+        };
+        options.allow_roots.extend(split_table(&known.path).0.parent().map(Path::to_owned));
+        match known.reader {
+            Some(Reader::City) => map.cities.push(known),
+            Some(Reader::Terrain) => map.grounds.push(known),
+            Some(Reader::Features) => map.features.push(known),
+            Some(Reader::Mesh | Reader::Molecule | Reader::Volume) | None => {
+                models.push(layer(&known.path, known.reader, &models)?);
+            }
         }
     }
     map.take_footprints(&models)?;
     let is_city = !map.cities.is_empty() || matches!(models[..], [LayerDoc::City(_), ..]);
-    if !is_city && let Some(path) = map.grounds.iter().chain(&map.features).next() {
+    if !is_city && let Some(known) = map.grounds.iter().chain(&map.features).next() {
         // The error names what can be looked into.
-        layer(path, &models)?;
+        layer(&known.path, None, &models)?;
     }
     let (layers, meant, crs) = match is_city {
         true => {
@@ -185,15 +180,6 @@ pub(super) fn open(request: &Request<'_>) -> Result<(Session, Meant), BelvedereE
     Ok((Session::from_document(SourceDocument::new(document), &options)?, meant))
 }
 
-/// Whether a file is a scene: TOML, or JSON of no other kind that is read.
-fn is_scene(path: &Path) -> Result<bool, BelvedereError> {
-    let ends = |ending: &str| path.extension().is_some_and(|e| e == ending);
-    if ends("toml") || !ends("json") {
-        return Ok(ends("toml"));
-    }
-    Ok(!is_city(path)? && belvedere_io::readable(path)?.is_none())
-}
-
 /// What must be seen as titles and reports name it: a file by its name alone.
 pub(super) fn shown_name(see: &str) -> &str {
     let file = seen_file(see).is_some().then(|| Path::new(see).file_name().and_then(|name| name.to_str()));
@@ -206,66 +192,61 @@ fn seen_file(see: &str) -> Option<PathBuf> {
     is_file.then(|| PathBuf::from(see))
 }
 
-enum Kind {
-    City,
-    Ground,
-    Features,
-    Model,
+/// Data that a request names.
+#[derive(Clone)]
+pub(super) enum Given {
+    /// Built-in data.
+    Builtin(PathBuf),
+    /// A file, folder or array.
+    Known(Arc<Known>),
+    /// What cannot be read; it is asked again for the error.
+    Unknown(PathBuf),
 }
 
-fn kind_of(path: &Path) -> Result<Kind, BelvedereError> {
-    if split_table(path).1.is_some() {
-        return Ok(Kind::Features);
-    }
-    if path.is_dir() {
-        return Ok(Kind::Ground);
-    }
-    let inside = belvedere_io::inside(path)?;
-    if is_city(&inside)? {
-        return Ok(Kind::City);
-    }
-    Ok(match belvedere_io::readable(&inside)?.and_then(|format| format.reader) {
-        Some(Reader::City) => Kind::City,
-        Some(Reader::Terrain) => Kind::Ground,
-        Some(Reader::Features) => Kind::Features,
-        _ => Kind::Model,
-    })
-}
-
-/// Whether files are those of a city, or footprints and features, beside which features and elevation models may be given. Files that
-/// cannot be read are none.
-pub fn hold_a_city(files: &[PathBuf]) -> bool {
-    if let [first, _, ..] = files
-        && split_table(first).0.is_file()
-        && matches!(kind_of(first), Ok(Kind::Features))
-        && load_vectors(first).is_ok_and(|v| kinds_of(&v.value).contains(&FeatureKind::Areas))
-    {
-        // Footprints, unless an elevation model follows.
-        let features = |file: &PathBuf| {
-            let is_builtin = file.to_str().is_some_and(|name| name.starts_with("builtin:"));
-            let is_array = file.to_str().is_some_and(arrays::is_name);
-            is_array || !is_builtin && split_table(file).0.is_file() && matches!(kind_of(file), Ok(Kind::Features))
-        };
-        return files.iter().all(features);
-    }
-    for file in files {
-        let is_builtin = file.to_str().is_some_and(|name| name.starts_with("builtin:"));
-        let is_town = file.to_str().is_some_and(|name| name.starts_with("builtin:town"));
-        if is_town || !is_builtin && split_table(file).0.exists() && matches!(kind_of(file), Ok(Kind::City)) {
-            return true;
+impl Given {
+    pub(super) fn of(name: PathBuf, arrays: &Arrays) -> Self {
+        if name.to_str().is_some_and(|name| name.starts_with("builtin:")) {
+            return Self::Builtin(name);
+        }
+        match Known::of(&name, arrays) {
+            Ok(known) => Self::Known(Arc::new(known)),
+            Err(_) => Self::Unknown(name),
         }
     }
-    false
+
+    fn reader(&self) -> Option<Reader> {
+        match self {
+            Self::Builtin(name) => name.to_str()?.starts_with("builtin:town").then_some(Reader::City),
+            Self::Known(known) => known.reader,
+            Self::Unknown(_) => None,
+        }
+    }
+
+    fn is_same(&self, other: &Self) -> bool {
+        matches!((self, other), (Self::Known(a), Self::Known(b)) if a.path == b.path)
+    }
+}
+
+/// Whether data are those of a city, or footprints and features, beside which features and elevation models may be given.
+pub(super) fn hold_a_city(given: &[Given]) -> bool {
+    let has_areas = |known: &Known| known.features().is_ok_and(|v| kinds_of(v).contains(&FeatureKind::Areas));
+    if let [Given::Known(first), _, ..] = given
+        && first.reader == Some(Reader::Features)
+        && has_areas(first)
+    {
+        // Footprints, unless an elevation model follows.
+        return given.iter().all(|given| given.reader() == Some(Reader::Features));
+    }
+    given.iter().any(|given| given.reader() == Some(Reader::City))
 }
 
 /// The files of a scene with a city.
 #[derive(Default)]
 struct Map {
     see: String,
-    cities: Vec<PathBuf>,
-    grounds: Vec<PathBuf>,
-    features: Vec<PathBuf>,
-    arrays: Arrays,
+    cities: Vec<Arc<Known>>,
+    grounds: Vec<Arc<Known>>,
+    features: Vec<Arc<Known>>,
 }
 
 fn text(path: &Path) -> Result<String, BelvedereError> {
@@ -279,7 +260,7 @@ impl Map {
             return Ok(());
         }
         if let Some(first) = self.features.first()
-            && kinds_of(&vectors::read(first, &self.arrays)?.value).contains(&FeatureKind::Areas)
+            && kinds_of(first.features()?).contains(&FeatureKind::Areas)
         {
             self.cities.push(self.features.remove(0));
         }
@@ -290,13 +271,13 @@ impl Map {
     fn layers(self, models: Vec<LayerDoc>) -> Result<(Vec<LayerDoc>, Meant), BelvedereError> {
         let mut layers: Vec<LayerDoc> = Vec::new();
         if !self.grounds.is_empty() {
-            layers.push(ground(self.grounds.iter().map(|path| text(path)).collect::<Result<_, _>>()?));
+            layers.push(ground(self.grounds.iter().map(|known| text(&known.path)).collect::<Result<_, _>>()?));
         }
         layers.extend(models);
-        for path in &self.cities {
-            let id = layer_id(path, &layers);
+        for city in &self.cities {
+            let (id, path) = (layer_id(&city.path, &layers), &city.path);
             layers.push(LayerDoc::City(CityDoc::of(id, &text(path)?)));
-            if is_city(&belvedere_io::inside(path)?)? && holds_streets(path) {
+            if city.reader == Some(Reader::City) && holds_streets(city) {
                 let id = format!("{}-streets", layers.last().map_or("", LayerDoc::id));
                 let style = LineStyleDoc {
                     color: STREETS.into(),
@@ -310,12 +291,12 @@ impl Map {
             }
         }
         let first = layers.len();
-        for path in &self.features {
-            for kind in kinds_of(&vectors::read(path, &self.arrays)?.value) {
-                let (id, source) = (layer_id(path, &layers), text(path)?);
+        for known in &self.features {
+            for kind in kinds_of(known.features()?) {
+                let (id, source) = (layer_id(&known.path, &layers), text(&known.path)?);
                 // In a city areas are drawn by their outlines, which lines of the same file hold already.
                 match kind {
-                    FeatureKind::Points => layers.push(features_of(path, &self.arrays, &layers)?),
+                    FeatureKind::Points => layers.push(features_of(known, &layers)?),
                     _ if layers[first..].iter().any(|l| draws(l, &source)) => {}
                     _ => layers.push(lines(id, &source, (None, true), LineStyleDoc::default())),
                 }
@@ -328,12 +309,13 @@ impl Map {
     /// What must be seen; the layers from `first` on are those of features.
     fn meant(&self, layers: &mut Vec<LayerDoc>, first: usize) -> Result<Meant, BelvedereError> {
         let see = self.see.as_str();
+        let cities: Vec<&Path> = self.cities.iter().map(|city| city.path.as_path()).collect();
         if see.is_empty() {
             return match layers.len() > first {
                 true => Ok(Meant::Features),
                 false => {
                     let text = "nothing is named that must be seen; give {} WHAT or a file of routes: ";
-                    let advice = Advice::new(text, &["see"]).then(known_names(&self.cities, "")?);
+                    let advice = Advice::new(text, &["see"]).then(known_names(&cities, "")?);
                     Err(BelvedereError::Argument(advice))
                 }
             };
@@ -341,9 +323,9 @@ impl Map {
         if see.parse::<Place>().is_ok_and(|place| place.has_height()) {
             return Ok(Meant::Named(see.to_owned()));
         }
-        let file = seen_file(see);
-        let is_file = |path: &PathBuf| file.as_ref().is_some_and(|file| same_file(file, path));
-        let of_file = self.features.iter().find(|path| is_file(path)).map(|path| text(path)).transpose()?;
+        let file = seen_file(see).and_then(|file| belvedere_io::fs::canonicalize(split_table(&file).0).ok());
+        let is_file = |known: &&Arc<Known>| file.as_ref().is_some_and(|file| split_table(&known.path).0 == file);
+        let of_file = self.features.iter().find(is_file).map(|known| text(&known.path)).transpose()?;
         let chosen = |l: &LayerDoc| l.id() == see || of_file.as_ref().is_some_and(|source| draws(l, source));
         if let Some(k) = layers.iter().position(chosen) {
             layers.iter_mut().for_each(|l| l.set_must_see(false));
@@ -354,7 +336,7 @@ impl Map {
             return Ok(if is_features { Meant::Features } else { Meant::Solid(layers[k].id().to_owned()) });
         }
         layers.iter_mut().for_each(|l| l.set_must_see(false));
-        for path in &self.cities {
+        for path in self.cities.iter().map(|city| &city.path) {
             let file = load_city(path, None, &Limits::default())?.value;
             let drawn = |id: &str| {
                 file.city.buildings.iter().any(|b| b.id == id) || file.city.structures.iter().any(|s| s.id == id)
@@ -371,9 +353,9 @@ impl Map {
                 }
             }
         }
-        for path in &self.features {
-            if vectors::read(path, &self.arrays)?.value.features.iter().any(|f| is_meant(see, &f.name, &f.properties)) {
-                let source = text(path)?;
+        for known in &self.features {
+            if known.features()?.features.iter().any(|f| is_meant(see, &f.name, &f.properties)) {
+                let source = text(&known.path)?;
                 for l in layers.iter_mut().filter(|l| draws(l, &source)) {
                     if let LayerDoc::Line(line) = l {
                         (line.select, line.must_see) = (Some(see.to_owned()), true);
@@ -382,12 +364,12 @@ impl Map {
                 return Ok(Meant::Features);
             }
         }
-        for path in &self.cities {
-            let Ok(vectors) = load_vectors(path) else { continue };
-            let of_map = vectors.value.features.iter().filter(|f| !is_building(&f.properties));
+        for city in &self.cities {
+            let Ok(vectors) = city.features() else { continue };
+            let of_map = vectors.features.iter().filter(|f| !is_building(&f.properties));
             if of_map.into_iter().any(|f| is_meant(see, &f.name, &f.properties)) {
                 let style = LineStyleDoc { width_px: 4.0, ..LineStyleDoc::default() };
-                layers.push(lines("seen".into(), &text(path)?, (Some(see), true), style));
+                layers.push(lines("seen".into(), &text(&city.path)?, (Some(see), true), style));
                 return Ok(Meant::Features);
             }
         }
@@ -396,14 +378,9 @@ impl Map {
         }
         Err(BelvedereError::Target(format!(
             "\"{see}\" is no building, street or area of these files; {}",
-            known_names(&self.cities, see)?
+            known_names(&cities, see)?
         )))
     }
-}
-
-fn same_file(a: &Path, b: &Path) -> bool {
-    let of = |path: &Path| belvedere_io::fs::canonicalize(split_table(path).0).ok();
-    of(a).is_some_and(|a| of(b) == Some(a))
 }
 
 fn draws(layer: &LayerDoc, source: &str) -> bool {
@@ -430,7 +407,6 @@ fn layer_id(path: &Path, others: &[LayerDoc]) -> String {
 }
 
 /// Whether a map holds streets.
-fn holds_streets(path: &Path) -> bool {
-    let is_street = |f: &belvedere_io::vector::VectorFeature| f.properties.contains_key("highway");
-    load_vectors(path).is_ok_and(|vectors| vectors.value.features.iter().any(is_street))
+fn holds_streets(map: &Known) -> bool {
+    map.features().is_ok_and(|map| map.features.iter().any(|feature| feature.properties.contains_key("highway")))
 }
