@@ -13,7 +13,7 @@ use crate::language::{later, tr};
 use crate::menu::Bookmark;
 use crate::model::Model;
 use belvedere::scene_file::{Document, StageDoc};
-use eframe::egui::{DragValue, Id, ScrollArea, Slider, Ui};
+use eframe::egui::{ComboBox, DragValue, Id, ScrollArea, Slider, Ui};
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 
@@ -93,6 +93,16 @@ pub(crate) fn set_stage(document: &mut Document, stage: StageDoc) {
     document.stage.retain(|other| other.kind() != stage.kind());
     let at = document.stage.iter().take_while(|other| rank(other) < rank(&stage)).count();
     document.stage.insert(at, stage);
+}
+
+/// A list of values with their names, of which one is chosen.
+pub(crate) fn choice<T: PartialEq + Copy>(ui: &mut Ui, label: &str, chosen: &mut T, all: &[(T, &'static str)]) {
+    let shown = all.iter().find(|(one, _)| one == chosen).map_or("", |(_, name)| tr(name));
+    ComboBox::from_label(label).selected_text(shown).show_ui(ui, |ui| {
+        for (one, name) in all {
+            ui.selectable_value(chosen, *one, tr(name));
+        }
+    });
 }
 
 /// Width of the number and the name beside a slider, points.

@@ -1,8 +1,8 @@
 //! Curved rays: turns by hand, constructors that find them.
 
-use super::{number, set_stage, slider};
+use super::{choice, number, set_stage, slider};
 use crate::handles::Handles;
-use crate::language::{fill, tr};
+use crate::language::{fill, later, tr};
 use crate::model::{Model, Tool};
 use belvedere::core::DVec3;
 use belvedere::core::map::curved_rays::{Model as RayModel, Sharpness};
@@ -296,19 +296,15 @@ fn turns(ui: &mut Ui, model: &mut Model) {
 }
 
 fn ray_model(ui: &mut Ui, model: &mut Model, stage: &RaysStageDoc) {
-    let name = |one: RayModel| match one {
-        RayModel::Modified => tr("modified"),
-        RayModel::Original => tr("original"),
-        RayModel::C0 => "C0",
-        RayModel::C2 => "C2",
-        RayModel::Circular => tr("circular"),
-    };
+    let all = [
+        (RayModel::Modified, later("modified")),
+        (RayModel::Original, later("original")),
+        (RayModel::C0, "C0"),
+        (RayModel::C2, "C2"),
+        (RayModel::Circular, later("circular")),
+    ];
     let mut chosen = stage.model;
-    ComboBox::from_label(tr("Model of the transition")).selected_text(name(chosen)).show_ui(ui, |ui| {
-        for one in [RayModel::Modified, RayModel::Original, RayModel::C0, RayModel::C2, RayModel::Circular] {
-            ui.selectable_value(&mut chosen, one, name(one));
-        }
-    });
+    choice(ui, tr("Model of the transition"), &mut chosen, &all);
     if chosen != stage.model {
         let next = RaysStageDoc { model: chosen, ..stage.clone() };
         model.edit(|document| set_stage(document, StageDoc::CurvedRays(next)));

@@ -1,12 +1,12 @@
 //! Terrain disocclusion: required features, limits of the displacement, what stays hidden.
 
-use super::{percent, set_stage, slider};
-use crate::language::{fill, tr};
+use super::{choice, percent, set_stage, slider};
+use crate::language::{fill, later, tr};
 use crate::model::Model;
 use belvedere::core::DVec3;
 use belvedere::live::Judged;
 use belvedere::scene_file::{LayerDoc, SolverMode, StageDoc, TerrainStageDoc};
-use eframe::egui::{ComboBox, Id, Ui};
+use eframe::egui::{Id, Ui};
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
@@ -52,6 +52,12 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
     });
 }
 
+const MODES: [(SolverMode, &str); 3] = [
+    (SolverMode::Qp, later("a quadratic program")),
+    (SolverMode::PaperQp, later("as published, then a quadratic program")),
+    (SolverMode::Paper, later("as published")),
+];
+
 /// A value of the stage that the document may leave out.
 type ValueOf = fn(&mut TerrainStageDoc) -> &mut Option<f64>;
 
@@ -65,17 +71,8 @@ fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {
         ui.label(tr("The ground was solved before and comes from a file; uncheck and check to solve it here."));
         return;
     }
-    let name = |mode: SolverMode| match mode {
-        SolverMode::Paper => tr("as published"),
-        SolverMode::PaperQp => tr("as published, then a quadratic program"),
-        SolverMode::Qp => tr("a quadratic program"),
-    };
     let mut mode = stage.mode.unwrap_or(SolverMode::Qp);
-    ComboBox::from_label(tr("Solver")).selected_text(name(mode)).show_ui(ui, |ui| {
-        for one in [SolverMode::Qp, SolverMode::PaperQp, SolverMode::Paper] {
-            ui.selectable_value(&mut mode, one, name(one));
-        }
-    });
+    choice(ui, tr("Solver"), &mut mode, &MODES);
     if mode != stage.mode.unwrap_or(SolverMode::Qp) {
         model.begin_gesture();
         put(model, Id::unique("solver"), &|stage| stage.mode = Some(mode));

@@ -1,5 +1,6 @@
 //! Style of a layer.
 
+use super::super::choice;
 use super::fields::Reading;
 use super::paint::{color, opacity, opacity_of_solid};
 use super::{by_property, fields, marks};
@@ -146,32 +147,16 @@ fn names(ui: &mut Ui, id: &str, reading: &Reading, (on, size, field): (&mut bool
     ui.scope(|ui| on.then(|| by_property::names(ui, id, reading, field)));
 }
 
-const REPRESENTATIONS: [Representation; 6] = [
-    Representation::BallAndStick,
-    Representation::SpaceFilling,
-    Representation::Sticks,
-    Representation::Ribbon,
-    Representation::Surface,
-    Representation::Auto,
-];
-
 fn molecule(ui: &mut Ui, id: &str, style: &mut MoleculeStyleDoc) {
-    let name = |one: Representation| match one {
-        Representation::BallAndStick => tr("balls and sticks"),
-        Representation::SpaceFilling => tr("space filling"),
-        Representation::Sticks => tr("sticks"),
-        Representation::Ribbon => tr("ribbons"),
-        Representation::Surface => tr("smooth surface"),
-        Representation::Auto => tr("auto"),
-    };
-    ComboBox::from_label(fill(tr("atoms of {0}"), &[&id])).selected_text(name(style.representation)).show_ui(
-        ui,
-        |ui| {
-            for one in REPRESENTATIONS {
-                ui.selectable_value(&mut style.representation, one, name(one));
-            }
-        },
-    );
+    let all = [
+        (Representation::BallAndStick, later("balls and sticks")),
+        (Representation::SpaceFilling, later("space filling")),
+        (Representation::Sticks, later("sticks")),
+        (Representation::Ribbon, later("ribbons")),
+        (Representation::Surface, later("smooth surface")),
+        (Representation::Auto, later("auto")),
+    ];
+    choice(ui, &fill(tr("atoms of {0}"), &[&id]), &mut style.representation, &all);
     let is_own = style.color.starts_with('#');
     let shown = if is_own { tr("one colour").to_owned() } else { heard(&style.color) };
     ComboBox::from_label(fill(tr("coloured by, {0}"), &[&id])).selected_text(shown).show_ui(ui, |ui| {
@@ -188,17 +173,13 @@ fn molecule(ui: &mut Ui, id: &str, style: &mut MoleculeStyleDoc) {
 }
 
 fn hidden(ui: &mut Ui, id: &str, value: &mut Hidden) {
-    let name = |hidden: Hidden| match hidden {
-        Hidden::Show => tr("show"),
-        Hidden::Fade => tr("fade"),
-        Hidden::Dash => tr("dash"),
-        Hidden::Cut => tr("cut"),
-    };
-    ComboBox::from_label(fill(tr("where {0} is hidden"), &[&id])).selected_text(name(*value)).show_ui(ui, |ui| {
-        for one in [Hidden::Show, Hidden::Fade, Hidden::Dash, Hidden::Cut] {
-            ui.selectable_value(value, one, name(one));
-        }
-    });
+    let all = [
+        (Hidden::Show, later("show")),
+        (Hidden::Fade, later("fade")),
+        (Hidden::Dash, later("dash")),
+        (Hidden::Cut, later("cut")),
+    ];
+    choice(ui, &fill(tr("where {0} is hidden"), &[&id]), value, &all);
 }
 
 fn palette(ui: &mut Ui, id: &str, value: &mut PaletteDoc) {
