@@ -309,47 +309,27 @@ pub(super) fn ahead(field: &Field, points: &[ReferencePoint], eye: DVec2, ahead_
 
 /// Ranges of the parameters.
 pub(super) fn check(settings: &TerrainSettings) -> Result<(), DisocclusionError> {
-    let bad =
-        |key: &'static str, value: f64, range: &'static str| Err(DisocclusionError::Setting { key, value, range });
     let s = settings;
-    let in_range = |v: f64, low: f64, high: f64| v >= low && v <= high;
-    if s.cells == Some(0) {
-        return bad("cells", 0.0, "at least 1");
-    }
-    if !in_range(s.solver_nodes as f64, 2.0, 4097.0) {
-        return bad("solver_nodes", s.solver_nodes as f64, "in 2..=4097");
-    }
-    for (key, value) in [("spacing", s.spacing), ("candidates", s.candidates)] {
-        if !in_range(value, 0.02, 1e4) {
-            return bad(key, value, "in 0.02..=10000 cells");
-        }
-    }
-    if !in_range(s.guard, 0.0, 1e3) {
-        return bad("guard", s.guard, "in 0..=1000 cells");
-    }
-    if let Some(w) = s.w.filter(|w| !in_range(*w, 1e-4, MOST_W)) {
-        return bad("w", w, "in 0.0001..=10000");
-    }
-    let weights = [("eta", s.eta), ("mu", s.mu), ("mu_dev", s.mu_dev), ("rows_weight", s.rows_weight)];
-    for (key, value) in weights {
-        if !in_range(value, 0.0, 1e6) {
-            return bad(key, value, "in 0..=1000000");
-        }
-    }
-    let lengths = [("lift_m", s.lift_m.unwrap_or(0.0)), ("margin_m", s.margin_m), ("gamma_time_s", s.gamma_time_s)];
-    for (key, value) in lengths {
-        if !in_range(value, 0.0, 1e4) {
-            return bad(key, value, "in 0..=10000");
-        }
-    }
-    if !(s.rise_limit_m >= 0.0) {
-        return bad("rise_limit_m", s.rise_limit_m, "0 or more");
-    }
-    if let Some(price) = s.slack_price.filter(|p| !in_range(*p, 1e-9, 1e9)) {
-        return bad("slack_price", price, "in 0.000000001..=1000000000");
-    }
-    match s.ahead_m {
-        Some(v) if !(v > 0.0) => bad("ahead_m", v, "greater than 0"),
-        _ => Ok(()),
+    let ranges = [
+        ("cells", s.cells.map_or(1.0, |n| n as f64), [1.0, f64::INFINITY], "at least 1"),
+        ("solver_nodes", s.solver_nodes as f64, [2.0, 4097.0], "in 2..=4097"),
+        ("spacing", s.spacing, [0.02, 1e4], "in 0.02..=10000 cells"),
+        ("candidates", s.candidates, [0.02, 1e4], "in 0.02..=10000 cells"),
+        ("guard", s.guard, [0.0, 1e3], "in 0..=1000 cells"),
+        ("w", s.w.unwrap_or(1.0), [1e-4, MOST_W], "in 0.0001..=10000"),
+        ("eta", s.eta, [0.0, 1e6], "in 0..=1000000"),
+        ("mu", s.mu, [0.0, 1e6], "in 0..=1000000"),
+        ("mu_dev", s.mu_dev, [0.0, 1e6], "in 0..=1000000"),
+        ("rows_weight", s.rows_weight, [0.0, 1e6], "in 0..=1000000"),
+        ("lift_m", s.lift_m.unwrap_or(0.0), [0.0, 1e4], "in 0..=10000"),
+        ("margin_m", s.margin_m, [0.0, 1e4], "in 0..=10000"),
+        ("gamma_time_s", s.gamma_time_s, [0.0, 1e4], "in 0..=10000"),
+        ("rise_limit_m", s.rise_limit_m, [0.0, f64::INFINITY], "0 or more"),
+        ("slack_price", s.slack_price.unwrap_or(1.0), [1e-9, 1e9], "in 0.000000001..=1000000000"),
+        ("ahead_m", s.ahead_m.unwrap_or(1.0), [0f64.next_up(), f64::INFINITY], "greater than 0"),
+    ];
+    match ranges.into_iter().find(|(_, value, [low, high], _)| !(low..=high).contains(&value)) {
+        Some((key, value, _, range)) => Err(DisocclusionError::Setting { key, value, range }),
+        None => Ok(()),
     }
 }
