@@ -4,6 +4,7 @@ use super::super::visibility_qp::{QpResult, SolvedRow, Unresolved};
 use super::{LimitsReport, Outcome, QpReport, Taken};
 
 /// A displacement that can be used when time is up.
+#[derive(Default)]
 pub(super) struct Ground {
     pub(super) taken: Taken,
     pub(super) coarse: Vec<f64>,
@@ -18,16 +19,7 @@ pub(super) struct Ground {
 
 impl Ground {
     pub(super) fn plain(taken: Taken, coarse: Vec<f64>) -> Self {
-        Self {
-            taken,
-            coarse,
-            detail: None,
-            full: None,
-            limited: None,
-            qp: None,
-            unresolved: Vec::new(),
-            rows: Vec::new(),
-        }
+        Self { taken, coarse, ..Self::default() }
     }
 
     /// The greedy and the smooth pass, with the change of detail at every node.

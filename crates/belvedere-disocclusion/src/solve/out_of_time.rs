@@ -66,34 +66,31 @@ impl Passes<'_> {
             (done.coarse.as_slice(), done.full.as_deref()),
             done.fine.as_ref(),
         )?;
-        let mut best =
-            (self.share_unmoved(in_view, &points)?, Ground::plain(Taken::Unmoved, vec![0.0; done.coarse.len()]));
-        let mut kept = false;
+        // No ground: the unfinished one.
+        let unmoved = Ground::plain(Taken::Unmoved, vec![0.0; done.coarse.len()]);
+        let mut best = (self.share_unmoved(in_view, &points)?, Some(unmoved));
         let before = self.last.map(|u| Ground::plain(Taken::FrameBefore, u.to_vec()));
         for mut ground in before.into_iter().chain(samples) {
             let share = self.share_limited(prepared, in_view, &points, &mut ground)?;
             if share > best.0 + WORTH {
-                best = (share, ground);
+                best = (share, Some(ground));
             }
         }
         if unfinished > best.0 + WORTH {
-            (best.0, kept) = (unfinished, true);
+            best = (unfinished, None);
         }
-        if best.0 < ENOUGH && self.frame.is_none() {
-            let pass = self.single_pass(prepared, in_view)?;
-            if let Some(mut ground) = pass.map(|u| Ground::plain(Taken::SinglePass, u)) {
-                let share = self.share_limited(prepared, in_view, &points, &mut ground)?;
-                if share > best.0 + WORTH {
-                    (best, kept) = ((share, ground), false);
-                }
+        if best.0 < ENOUGH
+            && self.frame.is_none()
+            && let Some(u) = self.single_pass(prepared, in_view)?
+        {
+            let mut ground = Ground::plain(Taken::SinglePass, u);
+            let share = self.share_limited(prepared, in_view, &points, &mut ground)?;
+            if share > best.0 + WORTH {
+                best = (share, Some(ground));
             }
         }
-        if kept {
-            done.taken = Some(Taken::Unfinished);
-            return Ok(());
-        }
-        done.taken = Some(best.1.taken);
-        best.1.put(done);
+        done.taken = Some(best.1.as_ref().map_or(Taken::Unfinished, |ground| ground.taken));
+        best.1.into_iter().for_each(|ground| ground.put(done));
         Ok(())
     }
 

@@ -244,11 +244,12 @@ pub struct UnresolvedRun {
 }
 
 /// The ground that was taken where time was up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(tag = "ground", rename_all = "snake_case")]
 pub enum Taken {
     /// The undisplaced ground: no other showed more.
+    #[default]
     Unmoved,
     /// The ground of the frame before.
     FrameBefore,
