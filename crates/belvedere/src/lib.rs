@@ -23,7 +23,7 @@
 //! ```
 //!
 //! A scene file describes the same and more, and is opened by [`Session::open`]. Terrain and routes straight from files become a
-//! bent picture by [`verbs::asked::reveal`], or moved ground by [`verbs::disocclude`]; what verbs are asked is plain data of [`request`].
+//! bent picture by [`verbs::reveal::reveal`], or moved ground by [`verbs::disocclude`]; what verbs are asked is plain data of [`request`].
 //! Everything that a call takes or gives has its name in this crate: [`core`] (views and stages), [`scene`] (layers, frames), [`io`] (loaders),
 //! [`construct`], [`disocclusion`], [`cpu`] (renderers), [`builtin`] (generated scenes).
 //!

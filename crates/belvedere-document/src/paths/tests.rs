@@ -42,9 +42,19 @@ fn files_of_another_drive_have_no_relative_name() {
 #[test]
 fn addresses_and_devices_are_always_refused() {
     let roots = Roots { scene_dir: env!("CARGO_MANIFEST_DIR").into(), allowed: vec!["/".into()], files: vec![] };
-    for name in
-        ["file:///etc/passwd", "http://x/y.tif", "HTTPS://x", "s3:x", "CON", "a/nul.tif", "com1.txt", "", "a\0b", "src"]
-    {
+    for name in [
+        "file:///etc/passwd",
+        "http://x/y.tif",
+        "HTTPS://x",
+        "s3:x",
+        "array:x",
+        "CON",
+        "a/nul.tif",
+        "com1.txt",
+        "",
+        "a\0b",
+        "src",
+    ] {
         assert!(roots.resolve(name).is_err(), "{name:?} was accepted");
     }
     assert!(roots.resolve("/dev/zero").is_err());
