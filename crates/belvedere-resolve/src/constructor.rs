@@ -230,7 +230,7 @@ fn tracking(
 }
 
 /// Adds a frame of a film to the plan of its target tracking; `base` is the view without the turns of the tracking. Does nothing for
-/// other constructors, and for views that [`construct`] refuses.
+/// other constructors, and for views that the constructor refuses.
 pub fn plan_frame(
     source: &SourceDocument,
     scene: &Scene,

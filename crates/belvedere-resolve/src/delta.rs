@@ -39,7 +39,7 @@ pub(super) fn read(path: &Path, bytes: Vec<u8>, crs: Crs) -> Result<Grid, String
     Grid::new(DVec2::new(x, y), spacing, cols, rows, values).map_err(|e| format!("{shown}: {e}"))
 }
 
-/// Writes a grid of height changes so that [`read`] returns the same values.
+/// Writes a grid of height changes so that reading it returns the same values.
 pub fn write(path: &Path, grid: &Grid, crs: Crs, overwrite: bool) -> Result<(), BelvedereError> {
     let mut info = RasterInfo::new(path, grid.cols(), grid.rows(), SampleType::F64);
     let (start, step) = (grid.north_west(), grid.spacing());

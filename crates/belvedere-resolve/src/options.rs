@@ -29,7 +29,7 @@ pub struct OpenOptions {
     pub trust: Trust,
     /// Single files that may be read, canonical paths.
     pub allow_files: Vec<PathBuf>,
-    /// Arrays in memory, which sources `array:NAME` of layers and of [`crate::DataFiles`] mean.
+    /// Arrays in memory, which sources `array:NAME` of layers and of data files mean.
     pub arrays: Arrays,
     /// Parts of the scene to load.
     pub needs: Needs,
