@@ -66,6 +66,8 @@ struct Gathered<'n> {
     faces: Vec<(String, NamedFace<'n>)>,
     /// Ids within the object: references to them would show a face twice.
     own: HashSet<&'n str>,
+    /// References that lead nowhere.
+    lost: usize,
 }
 
 /// The ids of the rings of a face, possibly empty, whether they are reversed, and the face.
@@ -93,13 +95,13 @@ impl<'n> Document<'n> {
     }
 
     fn shown(&self, object: &'n Node, pictures: &mut PictureList) -> Result<Shown, String> {
-        let mut gathered = Gathered { faces: Vec::new(), own: HashSet::new() };
+        let mut gathered = Gathered { faces: Vec::new(), own: HashSet::new(), lost: 0 };
         object.walk(&mut |node| {
             gathered.own.insert(&node.id);
         });
         let at = At { lod: "0".into(), surface: None, dimension: None, reversed: false, hops: 0 };
         self.gather(object, &at, &mut gathered)?;
-        let mut shown = Shown::default();
+        let mut shown = Shown { lost: gathered.lost, ..Shown::default() };
         for (lod, (rings, mut face)) in gathered.faces {
             self.looks.dress(&rings, &mut face, pictures);
             shown.faces.entry(Lod::of_text(&lod)).or_default().push(face);
@@ -142,17 +144,21 @@ impl<'n> Document<'n> {
         }
         match self.ids.get(node.href.as_str()) {
             Some(target) => self.gather(target, &At { hops: at.hops + 1, ..at.clone() }, out),
-            None => Err(format!("line {}: \"#{}\" leads nowhere", node.line, node.href)),
+            None => {
+                out.lost += 1;
+                Ok(())
+            }
         }
     }
 
     /// Gathers a shape that is used at several positions, moved to its position.
     fn implicit(&self, node: &'n Node, at: &At, out: &mut Gathered<'n>) -> Result<(), String> {
         let Some(shape) = node.child("relativeGMLGeometry") else { return Ok(()) };
-        let mut there = Gathered { faces: Vec::new(), own: HashSet::new() };
+        let mut there = Gathered { faces: Vec::new(), own: HashSet::new(), lost: 0 };
         let plain = At { dimension: None, ..at.clone() };
         Self { north_first: false, ids: self.ids.clone(), looks: Looks::default(), ..*self }
             .gather(shape, &plain, &mut there)?;
+        out.lost += there.lost;
         let matrix = match node.child("transformationMatrix") {
             Some(matrix) => numbers(matrix)?,
             None => DMat4::IDENTITY.to_cols_array().to_vec(),

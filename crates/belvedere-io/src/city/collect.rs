@@ -16,6 +16,8 @@ use std::path::Path;
 #[derive(Default)]
 pub(super) struct Shown {
     pub(super) faces: BTreeMap<Lod, Vec<CityFace>>,
+    /// References to surfaces that lead nowhere.
+    pub(super) lost: usize,
 }
 
 /// A level of detail, in the order of its numbers.
@@ -54,6 +56,7 @@ impl<'l> Collector<'l> {
     ///
     /// * `kind`: as CityJSON names it.
     pub(super) fn add(&mut self, id: &str, kind: &str, about: &impl Attributes, shown: Shown) {
+        self.repairs.lost += shown.lost;
         for lod in shown.faces.keys() {
             self.lods.insert(lod.clone());
         }
@@ -63,6 +66,7 @@ impl<'l> Collector<'l> {
             return;
         };
         self.clean(&mut faces);
+        self.repairs.inside_out += usize::from(cover(kind, about).is_none() && plan::turn_outwards(&mut faces));
         self.about.push(CityAbout { id: id.clone(), name: name.clone(), attributes: about.all() });
         let structure = match kind {
             "Building" | "BuildingPart" | "BuildingUnit" => return self.building(id, name, about, faces),

@@ -50,7 +50,7 @@ impl Node {
             let value = || attribute.value.to_string();
             match attribute.key.local_name().as_ref() {
                 "id" => node.id = value(),
-                "href" | "uri" | "ring" => node.href = value().trim_start_matches('#').to_owned(),
+                "href" | "uri" | "ring" => node.href = value().trim().trim_start_matches('#').trim().to_owned(),
                 "srsName" => node.srs = value().trim().to_owned(),
                 "srsDimension" => node.dimension = value().trim().parse().ok(),
                 "orientation" => node.reversed = value().trim() == "-",

@@ -9,6 +9,8 @@ use glam::{DVec2, DVec3};
 const FARTHEST: f64 = 1e8;
 /// Height of a storey, metres.
 const STOREY_M: f64 = 2.5;
+/// Share of the box around a solid that it fills at least, for its volume to have a sign: rounding leaves less.
+const LEAST_FILLED: f64 = 1e-6;
 /// Buildings higher than this give a warning, metres: the file may have other units.
 const HIGHEST_M: f64 = 2000.0;
 
@@ -33,6 +35,10 @@ pub(super) struct Repairs {
     pub(super) holes: usize,
     /// Solids higher than the limit.
     pub(super) tall: usize,
+    /// Solids whose faces look inwards.
+    pub(super) inside_out: usize,
+    /// References to surfaces that lead nowhere.
+    pub(super) lost: usize,
 }
 
 impl Repairs {
@@ -48,6 +54,8 @@ impl Repairs {
             of(Repaired, self.heights, "heights that are no numbers of metres in 0..2000 were not believed"),
             of(Inexact, self.about, "heights are stated as approximate, such as ~18, and are taken as they stand"),
             of(Assumed, self.several, "heights are lists or ranges, such as 5;7; the largest of each is taken"),
+            of(Repaired, self.inside_out, "solids were inside out and are turned"),
+            of(Ignored, self.lost, "references to surfaces lead nowhere and were left out"),
             of(Suspect, self.tall, "buildings are higher than 2000 m by their shape; check the unit of their heights"),
         ]
         .into_iter()
@@ -132,6 +140,29 @@ pub(super) fn surface_of(rings: &[Vec<DVec3>]) -> Surface {
         up if up < -0.35 => Surface::Ground,
         _ => Surface::Wall,
     }
+}
+
+/// Turns the faces of a solid that is inside out, by the sign of its volume; whether it was. Kinds that faces have by their direction
+/// alone are told anew; those that a file states stay.
+pub(super) fn turn_outwards(faces: &mut [CityFace]) -> bool {
+    let all = || faces.iter().flat_map(|f| f.rings.iter().flatten()).copied();
+    let (low, high) = all().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+    // Over its lowest level a solid without a floor has a volume, too.
+    let foot = (0.5 * (low + high)).with_z(low.z);
+    let above = |ring: &Vec<DVec3>| ring.first().map_or(0.0, |p| normal(ring).dot(*p - foot));
+    let volume: f64 = faces.iter().flat_map(|f| &f.rings).map(above).sum::<f64>() / 6.0;
+    if volume > -LEAST_FILLED * (high - low).element_product() || faces.is_empty() {
+        return false;
+    }
+    let is_stated = faces.iter().any(|f| f.surface != surface_of(&f.rings));
+    for face in faces {
+        face.rings.iter_mut().for_each(|ring| ring.reverse());
+        face.picture.iter_mut().flat_map(|picture| &mut picture.rings).for_each(|ring| ring.reverse());
+        if !is_stated {
+            face.surface = surface_of(&face.rings);
+        }
+    }
+    true
 }
 
 /// Footprint, height of the ground and height over it of a solid's faces.

@@ -86,6 +86,35 @@ fn templates_stand_where_instances_put_them() {
 }
 
 #[test]
+fn solids_that_are_inside_out_are_those_that_are_not() {
+    for semantics in [false, true] {
+        let cube = cube(semantics);
+        let mut inverted = cube.clone();
+        let shell = &mut inverted["CityObjects"]["part"]["geometry"][0]["boundaries"][0];
+        for face in shell.as_array_mut().expect("faces") {
+            face[0].as_array_mut().expect("a ring").reverse();
+        }
+        let [right, turned] = [&cube, &inverted].map(|value| load(value).expect("read"));
+        let said = |w: &belvedere_core::Warning| w.text().contains("1 solids were inside out and are turned");
+        assert!(turned.warnings.iter().any(said) && !right.warnings.iter().any(said), "{:?}", turned.warnings);
+        let [right, turned] =
+            [right, turned].map(|loaded| loaded.value.city.buildings.into_iter().next().expect("one"));
+        assert_eq!((right.height_m, right.base_m), (10.0, Some(3.0)), "with semantics: {semantics}");
+        assert_eq!((turned.height_m, turned.base_m, turned.height_source), (10.0, Some(3.0), HeightSource::Shape));
+        assert_eq!(right.faces.len(), turned.faces.len());
+        for (a, b) in right.faces.iter().zip(&turned.faces) {
+            let area = |ring: &[belvedere_core::DVec3]| {
+                (1..ring.len() - 1)
+                    .map(|k| (ring[k] - ring[0]).cross(ring[k + 1] - ring[0]))
+                    .sum::<belvedere_core::DVec3>()
+            };
+            assert_eq!(a.surface, b.surface, "with semantics: {semantics}");
+            assert!(area(&a.rings[0]).distance(area(&b.rings[0])) < 1e-9, "with semantics: {semantics}");
+        }
+    }
+}
+
+#[test]
 fn broken_models_are_one_clear_error_or_a_counted_repair() {
     let broken = |change: fn(&mut Value), expected: &str| {
         let mut city = cube(true);

@@ -170,7 +170,6 @@ fn broken_documents_end_in_one_sentence() {
         ("20 0 17", "20 NaN 17", "\"NaN\" in posList is no finite number"),
         ("20 0 17", "20 zero 17", "no finite number"),
         ("20 0 17", "20 17", "does not divide into positions of 3"),
-        ("#roof", "#nowhere", "\"#nowhere\" leads nowhere"),
         ("</bldg:Building>", "</bldg:House>", "no well-formed XML"),
         ("core:cityObjectMember", "core:nothing", "no geometry that is read"),
     ] {
@@ -184,6 +183,20 @@ fn broken_documents_end_in_one_sentence() {
     assert!(load_text(&deep, None).unwrap_err().contains("deeper than 200"));
     let flat = load_text(&whole.replace(WALL, "0 0 5 20 0 5 0 0 5"), None).unwrap();
     assert!(flat.warnings.iter().any(|w| w.text().contains("1 rings")), "{:?}", flat.warnings);
+}
+
+#[test]
+fn a_reference_that_leads_nowhere_costs_its_surface_alone_and_blanks_before_its_name_do_not_count() {
+    let whole = format!("{HEAD}{}</core:CityModel>", house());
+    let faces = |text: &str| {
+        let loaded = load_text(text, None).expect("read");
+        let said = loaded.warnings.iter().any(|w| w.text().contains("1 references to surfaces lead nowhere"));
+        (loaded.value.city.buildings[0].faces.len(), said)
+    };
+    let (all, said) = faces(&whole);
+    assert!(!said && all > 2, "{all}");
+    assert_eq!(faces(&whole.replace("\"#roof\"", "\"# roof \"")), (all, false));
+    assert_eq!(faces(&whole.replace("\"#roof\"", "\"#nowhere\"")), (all - 1, true));
 }
 
 #[test]
