@@ -109,13 +109,13 @@ source = \"array:lake\"
 ";
 
 fn model(kind: &str, eye: [f64; 3], at: [f64; 3]) -> String {
-    let (name, more) = match kind {
-        "mesh" => ("cube", ""),
-        "molecule" => ("atoms", ""),
-        _ => ("ball", "transfer = \"solid\"\n"),
+    let (name, unit, more) = match kind {
+        "mesh" => ("cube", "metre", ""),
+        "molecule" => ("atoms", "angstrom", ""),
+        _ => ("ball", "voxel", "transfer = \"solid\"\n"),
     };
     format!(
-        "crs = \"local\"\ncamera = {{ eye = {eye:?}, look_at = {at:?}, image = [96, 64], near = 0.1 }}\n[[layer]]\nkind = \"{kind}\"\nid = \"{name}\"\n\
+        "crs = \"local\"\nunit = \"{unit}\"\ncamera = {{ eye = {eye:?}, look_at = {at:?}, image = [96, 64], near = 0.1 }}\n[[layer]]\nkind = \"{kind}\"\nid = \"{name}\"\n\
          source = \"array:{name}\"\n{more}"
     )
 }
