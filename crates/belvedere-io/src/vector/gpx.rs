@@ -44,6 +44,8 @@ struct Parser {
     alone_as: (String, BTreeMap<String, String>),
     phantoms: Phantoms,
     elements: [usize; 3],
+    /// Where and why the file cannot be read further, although what is whole before that place is.
+    broken: Option<String>,
     /// Longitude, latitude and time of every point of a track that has a time.
     timed: Vec<(DVec2, f64)>,
 }
@@ -95,6 +97,11 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
         "segments, tracks or routes of a single point each were joined to lines",
     );
     warnings.extend(parser.phantoms.say().map(|found| found.in_file(path)));
+    warnings.extend(parser.broken.map(|damage| {
+        let points: usize = parser.features.iter().map(|feature| feature.geometry.vertices().count()).sum();
+        let text = format!("{damage}; what is whole before is drawn, {points} points");
+        Warning::new(WarningKind::Repaired, text).with("points", points as f64).in_file(path)
+    }));
     let crs = CoordinateSystem::wgs84().map_err(|e| IoError::format(path, e.to_string()))?;
     let value = Vectors {
         path: path.into(),
@@ -108,14 +115,40 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
 }
 
 impl Parser {
+    /// Reads a file; of a damaged one what is whole before the damage.
     fn read(&mut self, text: &str) -> Result<(), String> {
+        let damage = self.walk(text)?;
+        if let Some(damage) = damage {
+            // The open point is not whole; what it belongs to is, up to there.
+            self.point = None;
+            let is_point = |name: &String| matches!(name.as_str(), "trkpt" | "rtept" | "wpt");
+            if let Some(first) = self.open.iter().position(is_point) {
+                self.open.truncate(first);
+            }
+            while !self.open.is_empty() {
+                self.end();
+            }
+            self.broken = Some(damage);
+        }
+        self.end_alone();
+        match &self.broken {
+            Some(damage) if self.features.is_empty() => Err(format!("{damage}, get it again")),
+            _ => Ok(()),
+        }
+    }
+
+    /// Reads all elements; why not all could be read, if some were.
+    fn walk(&mut self, text: &str) -> Result<Option<String>, String> {
         let mut reader = Reader::from_str(text);
+        // Names of places are written with a bare &.
+        reader.config_mut().allow_dangling_amp = true;
         let mut root_seen = false;
         loop {
             let at = reader.buffer_position();
-            let event = reader
-                .read_event()
-                .map_err(|e| format!("is no well-formed XML near byte {at} ({e}); it is damaged"))?;
+            let event = match reader.read_event() {
+                Ok(event) => event,
+                Err(e) => return Ok(Some(format!("is no well-formed XML near byte {at} ({e}); it is damaged"))),
+            };
             match event {
                 Event::Start(e) => {
                     if !root_seen && e.local_name().as_ref() != "gpx" {
@@ -146,10 +179,9 @@ impl Parser {
                 _ => {}
             }
         }
-        self.end_alone();
         match self.open.last() {
-            Some(open) => Err(format!("ends inside <{open}>; the file is cut off, get it again")),
-            None if root_seen => Ok(()),
+            Some(open) => Ok(Some(format!("ends inside <{open}>; the file is cut off"))),
+            None if root_seen => Ok(None),
             None => Err("holds no XML element; it is no GPX".into()),
         }
     }

@@ -200,6 +200,34 @@ fn geojson_states_its_system_or_is_in_degrees() {
 }
 
 #[test]
+fn of_a_track_that_is_cut_off_or_damaged_what_is_whole_before_is_read() {
+    let dir = tempfile::tempdir().unwrap();
+    let point = |k: usize| format!("<trkpt lat='46.{k:03}' lon='8.1'><ele>{k}</ele></trkpt>");
+    let points: String = (0..100).map(point).collect();
+    let whole = format!("<gpx><trk><name>Rock &amp; Ice</name><trkseg>{points}</trkseg></trk></gpx>");
+    let read = |text: &str| {
+        let loaded = load_vectors(&write(&dir, "a.gpx", text)).map_err(|e| e.to_string())?;
+        let count: usize = loaded.value.features.iter().map(|f| f.geometry.vertices().count()).sum();
+        let said = loaded.warnings.iter().find(|w| w.text().contains("what is whole before is drawn"));
+        let said = said.map(|w| (w.kind(), w.text().contains(&format!("{count} points"))));
+        Ok::<_, String>((count, said, loaded.value.features[0].name.clone()))
+    };
+    assert_eq!(read(&whole), Ok((100, None, "Rock & Ice".into())));
+    let said = Some((belvedere_core::WarningKind::Repaired, true));
+    let first = whole.find("<trkseg>").unwrap() + "<trkseg>".len();
+    for at in (first + 3 * point(0).len()..whole.len() - 1).step_by(37) {
+        let left = ((at - first) / point(0).len()).min(100);
+        let (count, told, name) = read(&whole[..at]).unwrap_or_else(|e| panic!("cut at {at}: {e}"));
+        assert!(count.abs_diff(left) <= 1 && told == said && name == "Rock & Ice", "cut at {at}: {count} of {left}");
+    }
+    let (count, told, _) = read(&whole.replacen(&point(60), "<trkpt lat='46.1' lon='8.1'></ele></trkpt>", 1)).unwrap();
+    assert_eq!((count, told), (60, said), "a wrong end inside");
+    let bare = whole.replace("&amp;", "&");
+    assert_eq!(read(&bare), Ok((100, None, "Rock & Ice".into())), "a bare &");
+    assert!(read(&whole[..first + 5]).unwrap_err().contains("ends inside"));
+}
+
+#[test]
 fn other_and_broken_files_are_one_clear_error() {
     let dir = tempfile::tempdir().unwrap();
     let cases: [(&str, &[u8], &str); 12] = [
