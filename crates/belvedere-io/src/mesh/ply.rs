@@ -161,6 +161,17 @@ pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshF
                     }
                 }
             }
+            // Scanners write strips of triangles, parted by -1.
+            "tristrips" => {
+                for strip in items.iter().flat_map(|item| item.corners.split(|v| *v == -1)) {
+                    for (k, t) in strip.windows(3).enumerate() {
+                        let corners = if k % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
+                        if t[0] != t[1] && t[1] != t[2] && t[0] != t[2] {
+                            out.triangles.push(triangle(corners).map_err(bad)?);
+                        }
+                    }
+                }
+            }
             _ => {}
         }
     }
@@ -202,6 +213,20 @@ mod tests {
         );
         let text = head + &rows.join("\n") + "\n3 0 1 2\n";
         read(Path::new("t.ply"), text.as_bytes(), &Limits::default()).expect("a mesh").value
+    }
+
+    #[test]
+    fn strips_of_triangles_turn_with_every_corner_and_are_parted_by_minus_one() {
+        let head = "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\n\
+            element tristrips 1\nproperty list int int vertex_indices\nend_header\n";
+        let text = format!("{head}0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n10 0 1 2 3 4 -1 0 2 2 4\n");
+        let mesh = read(Path::new("t.ply"), text.as_bytes(), &Limits::default()).expect("a mesh").value;
+        assert_eq!(mesh.triangles, [[0, 1, 2], [2, 1, 3], [2, 3, 4]], "strips that fold back have no area");
+        let up = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
+            (b - a).cross(c - a).z
+        };
+        assert!(mesh.triangles.iter().all(|t| up(t) < 0.0), "all face one side");
     }
 
     #[test]
