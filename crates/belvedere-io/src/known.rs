@@ -9,7 +9,7 @@ use crate::{
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-/// A file, a folder of tiles or an array that was asked what it is.
+/// A file, a folder or archive of tiles, or an array that was asked what it is.
 #[derive(Debug)]
 pub struct Known {
     /// As it was named.
@@ -43,6 +43,7 @@ impl Known {
             Some(_) => (path.clone(), Some(Reader::Features)),
             None if path.is_dir() => (path.clone(), Some(Reader::Terrain)),
             None if is_scene => (path.clone(), None),
+            None if !packed::tiles(&path)?.is_empty() => (path.clone(), Some(Reader::Terrain)),
             None => {
                 let inner = packed::inside(&path)?;
                 let reader = reader_of(&inner)?;

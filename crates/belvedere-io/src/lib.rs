@@ -49,7 +49,7 @@ pub use known::{Known, is_picture};
 pub use loaded::Loaded;
 pub use mesh::{MeshFile, load_mesh};
 pub use molecule::{MoleculeFile, load_frames, load_model, load_molecule};
-pub use packed::inside;
+pub use packed::{inside, tiles};
 pub use ramp::load_ramp;
 pub use raster::{Affine, Alpha, CrsKind, Limits, Photometric, Raster, RasterInfo, SampleType, Samples, SourceCrs};
 pub use recognise::{Recognised, readable, recognise};

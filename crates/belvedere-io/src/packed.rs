@@ -76,6 +76,22 @@ pub(crate) fn content_for(path: &Path, most: u64, reader: Reader) -> Result<Path
     content(path, most, &|p| reader.reads(p)).or_else(|_| content(path, most, &|p| reader.may_read(p)))
 }
 
+/// The elevation models of an archive that holds several and nothing else that is read, by name; else none.
+///
+/// # Errors
+/// [`IoError::Os`].
+pub fn tiles(path: &Path) -> Result<Vec<PathBuf>, IoError> {
+    let mut names = names_in(path).map_err(|e| IoError::os(path, e))?.unwrap_or_default();
+    let is_read = |name: &String| {
+        let name = Path::new(name);
+        formats::of_name(name).is_some_and(|format| format.reader.is_some()) && !ends(name, &[".txt"])
+    };
+    names.retain(is_read);
+    names.sort();
+    let are_tiles = names.len() > 1 && names.iter().all(|name| Reader::Terrain.reads(Path::new(name)));
+    Ok(names.into_iter().filter(|_| are_tiles).map(|name| path.join(name)).collect())
+}
+
 /// The file that a name stands for, for any loader. Files whose names tell a format that is read come before others, and pictures, which
 /// may belong to a model, last.
 ///

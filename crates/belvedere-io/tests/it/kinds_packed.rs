@@ -1,8 +1,9 @@
 //! Every kind of file is also read from gzip and ZIP, whatever else is in the archive, and other archives are errors.
 
 use crate::support_files::Folder;
+use belvedere_io::formats::Reader;
+use belvedere_io::{Arrays, Known, inside, load_vectors, load_volume};
 use belvedere_io::{Limits, TerrainRequest, VolumeRequest, load_city, load_mesh, load_molecule, load_terrain};
-use belvedere_io::{inside, load_vectors, load_volume};
 use belvedere_scene::Progress;
 use std::io::Write;
 use std::path::Path;
@@ -172,5 +173,27 @@ fn archives_do_not_grow_beyond_the_limits() {
         assert!(bytes.len() < 1 << 17);
         let error = load_mesh(&folder.file(name, &bytes), &limits).expect_err(name).to_string();
         assert!(error.contains("more than 1 MiB"), "{error}");
+    }
+}
+
+#[test]
+fn an_archive_of_elevation_models_alone_is_a_folder_of_tiles() {
+    let folder = Folder::new();
+    let tile = |west: usize| {
+        let head = format!("ncols 2\nnrows 2\nxllcorner {}\nyllcorner 5196000\ncellsize 60\n", 680_000 + 120 * west);
+        format!("{head}{west} 2\n3 4\n").into_bytes()
+    };
+    let tiles = [("in/b.asc", tile(1)), ("in/a.asc", tile(0)), ("in/readme.txt", b"notes".to_vec())];
+    let path = folder.file("tiles.zip", &zip(&tiles));
+    let found = belvedere_io::tiles(&path).expect("an archive");
+    assert_eq!(found, [path.join("in/a.asc"), path.join("in/b.asc")]);
+    let known = Known::of(&path, &Arrays::default()).expect("known");
+    assert_eq!((known.reader, &known.path), (Some(Reader::Terrain), &path.canonicalize().expect("a path")));
+    let ground = load_terrain(&found, &TerrainRequest::default(), &Progress::silent()).expect("one terrain");
+    assert_eq!((ground.value.heightfield.cols(), ground.value.heightfield.rows()), (4, 2));
+    let mixed = [("a.asc", tile(0)), ("b.asc", tile(1)), ("c.gpx", GPX.into())];
+    for entries in [&mixed[..], &mixed[..1]] {
+        let path = folder.file("other.zip", &zip(entries));
+        assert_eq!(belvedere_io::tiles(&path).expect("an archive"), Vec::<std::path::PathBuf>::new());
     }
 }

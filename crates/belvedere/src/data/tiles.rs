@@ -1,4 +1,4 @@
-//! Terrain in several files: tiles named one by one, or all of a folder.
+//! Terrain in several files: tiles named one by one, or all of a folder or an archive.
 
 use crate::BelvedereError;
 use crate::scene_file::Paths;
@@ -24,10 +24,17 @@ pub(super) fn of(dem: &str, features: &[String]) -> Result<Tiles, BelvedereError
     let is_ground =
         |name: &&String| !name.starts_with("builtin:") && Reader::Terrain.reads(split_table(Path::new(name)).0);
     let (more, features): (Vec<&String>, Vec<&String>) = features.iter().partition(is_ground);
+    let is_file = || Path::new(dem).is_file();
     let mut ground = match Path::new(dem).is_dir() {
         true => in_folder(Path::new(dem))?,
-        false => vec![dem.to_owned()],
+        false if is_file() => {
+            belvedere_io::tiles(Path::new(dem))?.iter().map(|path| text(path)).collect::<Result<_, _>>()?
+        }
+        false => Vec::new(),
     };
+    if ground.is_empty() {
+        ground.push(dem.to_owned());
+    }
     ground.extend(more.into_iter().cloned());
     Ok(Tiles { ground, features: features.into_iter().cloned().collect() })
 }
@@ -49,17 +56,17 @@ pub(super) fn without_features(dem: &str, features: &[String]) -> BelvedereError
     }
 }
 
+fn text(path: &Path) -> Result<String, BelvedereError> {
+    path.to_str().map(str::to_owned).ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))
+}
+
 /// The elevation models of a folder, by name.
 fn in_folder(folder: &Path) -> Result<Vec<String>, BelvedereError> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(|e| IoError::os(folder, e))? {
         let path = entry.map_err(|e| IoError::os(folder, e))?.path();
         if path.is_file() && is_tile(&path) {
-            found.push(
-                path.to_str()
-                    .map(str::to_owned)
-                    .ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?,
-            );
+            found.push(text(&path)?);
         }
     }
     found.sort();
