@@ -5,16 +5,34 @@ use crate::scene_file::LayerDoc;
 use crate::{Session, scene_file};
 use belvedere_resolve::ground::Ground;
 
-/// Distance along the route and time, both rising.
+/// Distance along the route, rising, and time, which rises or falls all the way.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct RouteTimes(Vec<(f64, f64)>);
 
 /// Farthest that a timed point lies beside the route, as a share of its length.
 const BESIDE: f64 = 0.02;
 
+/// Why a route has no clock.
+const NO_TIMES: &str = "its files give no times along the route, so no clock is drawn";
+const UNSTEADY: &str = "its times do not follow each other along the route, so no clock is drawn";
+
 impl RouteTimes {
-    /// Times of the route of a line layer; `None` if its files give fewer than two.
-    pub(super) fn of(session: &Session, layer: &str, route: &RouteLine) -> Option<Self> {
+    /// Times of the route of a line layer.
+    ///
+    /// # Errors
+    /// In words, if its files give fewer than two, or times that go to and fro.
+    pub(super) fn of(session: &Session, layer: &str, route: &RouteLine) -> Result<Self, &'static str> {
+        let found = Self::found(session, layer, route).ok_or(NO_TIMES)?;
+        if found.is_steady() { Ok(found) } else { Err(UNSTEADY) }
+    }
+
+    /// Whether time rises or falls all the way.
+    fn is_steady(&self) -> bool {
+        let steps = || self.0.windows(2).map(|pair| pair[1].1 - pair[0].1);
+        steps().all(|step| step >= 0.0) || steps().all(|step| step <= 0.0)
+    }
+
+    fn found(session: &Session, layer: &str, route: &RouteLine) -> Option<Self> {
         let description = session.resolved.description.as_ref()?;
         let doc = description.resolved.layer.iter().find_map(|l| match l {
             LayerDoc::Line(line) if line.id == layer => Some(line),
@@ -59,6 +77,13 @@ impl RouteTimes {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn times_that_go_to_and_fro_are_no_clock() {
+        let of = |times: [f64; 4]| RouteTimes(times.iter().enumerate().map(|(i, t)| (i as f64, *t)).collect());
+        assert!(of([1.0, 2.0, 2.0, 9.0]).is_steady() && of([9.0, 4.0, 4.0, 1.0]).is_steady());
+        assert!(!of([1.0, 4.0, 2.0, 9.0]).is_steady());
+    }
 
     #[test]
     fn times_run_evenly_between_points() {

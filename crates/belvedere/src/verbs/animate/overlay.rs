@@ -50,11 +50,13 @@ impl FilmOverlay {
         let asked = |flag: Option<bool>| flag == Some(true);
         let mut warnings = Vec::new();
         let layer = animation.along.as_deref().unwrap_or_default();
-        let clock = asked(animation.clock).then(|| RouteTimes::of(session, layer, &following.route)).flatten();
-        if asked(animation.clock) && clock.is_none() {
-            let text = format!("layer \"{layer}\": its files give no times along the route, so no clock is drawn");
-            warnings.push(Warning::new(WarningKind::Fallback, text).about(layer));
-        }
+        let clock = match asked(animation.clock).then(|| RouteTimes::of(session, layer, &following.route)) {
+            Some(Err(reason)) => {
+                warnings.push(Warning::new(WarningKind::Fallback, format!("layer \"{layer}\": {reason}")).about(layer));
+                None
+            }
+            times => times.and_then(Result::ok),
+        };
         let length = following.route.length();
         let heights = (0..PROFILE).filter_map(|i| {
             let p = following.route.at(length * i as f64 / (PROFILE - 1) as f64)?;
