@@ -56,7 +56,7 @@ pub(super) fn partition(field: &Field, keep: usize) -> (Vec<u32>, BTreeMap<u32, 
     let endless = ranked.iter().filter(|&&s| !died.contains_key(&s)).count();
     ranked.truncate(keep.max(endless));
     let follow = |s: usize| {
-        let mut into = std::iter::successors(Some(s), |s| Some(died[s].1));
+        let mut into = std::iter::successors(Some(s), |s| died.get(s).map(|merged| merged.1));
         into.find(|s| ranked.contains(s)).unwrap() as u32
     };
     let labels = (0..heights.len()).map(|i| region.get(&i).map_or(NO_CELL, |&s| follow(s))).collect();
