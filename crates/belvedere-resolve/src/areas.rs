@@ -4,25 +4,11 @@ use super::ground::Ground;
 use super::loader::Loader;
 use super::{builtin, by_property, vectors};
 use crate::BelvedereError;
+use crate::record::AreaRecord;
 use belvedere_core::{Warning, WarningKind};
 use belvedere_document::{AreaDoc, AreaStyleDoc, LayerDoc, Paths, SurfaceDoc};
 use belvedere_io::vector::AreaKind;
 use belvedere_scene::{AreaLayer, AreaSurface, Color, LayerKind, Scene};
-use schemars::JsonSchema;
-use serde::Serialize;
-
-/// Surface that the areas of a layer are drawn as, and its source.
-#[derive(Debug, Clone, PartialEq, Eq, JsonSchema, Serialize)]
-pub struct AreaRecord {
-    /// Id of the layer.
-    pub layer: String,
-    /// Surface: water, forest, glacier, park, outline, plain.
-    pub kind: &'static str,
-    /// Number of areas.
-    pub areas: usize,
-    /// Source of this choice.
-    pub why: String,
-}
 
 /// An area layer.
 pub(super) fn layer(

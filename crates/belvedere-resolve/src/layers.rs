@@ -3,7 +3,7 @@
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
 use super::{areas, boxes, builtin, by_property, city, dem, edge, fonts, mesh, molecule, named, sea, vectors, volume};
-use crate::areas::AreaRecord;
+use crate::record::AreaRecord;
 use crate::{BelvedereError, Needs, OpenOptions};
 use belvedere_builtin::{RouteCost, least_cost_route, valley_route};
 use belvedere_core::DVec2;

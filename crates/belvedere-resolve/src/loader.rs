@@ -2,8 +2,8 @@
 
 use super::builtin;
 use super::color::{color, optional_color};
-use crate::areas::AreaRecord;
 use crate::city_ground::OwnGround;
+use crate::record::AreaRecord;
 use crate::{BelvedereError, OpenOptions};
 use belvedere_core::Warning;
 use belvedere_document::paths::Roots;

@@ -2,7 +2,7 @@
 
 use super::builtin;
 use super::loader::Loader;
-use crate::areas::AreaRecord;
+use crate::record::AreaRecord;
 use belvedere_document::TerrainDoc;
 use belvedere_scene::{AreaFeature, AreaLayer, AreaSurface, Hidden, Layer, LayerKind, Sea, TerrainLayer};
 

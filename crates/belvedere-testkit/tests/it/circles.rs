@@ -195,11 +195,10 @@ fn modules_import_each_other_in_one_direction() {
 }
 
 /// Verbs of the library that use another verb or live sessions, and why they still do.
-const ABOVE_OTHERS: [(&str, &str); 4] = [
+const ABOVE_OTHERS: [(&str, &str); 3] = [
     // One request is handed to the verb that answers it.
     ("asked", "animate"),
-    // What is opened is told by its kind and shown by `reveal`; a page holds what is opened.
-    ("open_files", "info"),
+    // What is opened is shown by `reveal`; a page holds what is opened.
     ("open_files", "reveal"),
     ("pack", "open_files"),
 ];

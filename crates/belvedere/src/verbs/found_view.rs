@@ -1,9 +1,11 @@
 //! Parts of documents that say what was found, or is found later: the stage of a spline, a provisional camera.
 
-use super::reveal::IMAGE;
 use crate::scene_file::{CameraDoc, PlaneDoc, PointDoc, PresetsDoc, SplineStageDoc, StageDoc};
 use belvedere_construct::Revealed;
 use belvedere_core::{DVec3, Pinhole, Projection};
+
+/// Size of the picture unless given, pixels.
+pub const IMAGE: [u32; 2] = [1280, 720];
 
 /// Full vertical field of view of pictures of models unless given, degrees.
 pub(crate) const MODELS_FOV_Y_DEG: f64 = 30.0;

@@ -3,6 +3,7 @@
 pub mod animate;
 pub mod asked;
 pub mod check;
+mod city_names;
 pub mod disocclude;
 mod found_view;
 pub mod generalise;
@@ -23,5 +24,4 @@ mod shares;
 mod written_ground;
 mod written_rivers;
 
-pub(crate) use found_view::{MODELS_FOV_Y_DEG, provisional_camera, spline_stage};
-pub use reveal::CitySee;
+pub use city_names::CitySee;

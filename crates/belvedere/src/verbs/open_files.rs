@@ -139,7 +139,7 @@ fn whole(layers: Vec<LayerDoc>, folders: Vec<PathBuf>) -> SourceDocument {
     // Models have no place on the earth; ground and cities may, in degrees too.
     let is_placed = layers.iter().any(|layer| matches!(layer, LayerDoc::Terrain(_) | LayerDoc::City(_)));
     let crs = if is_placed { "auto" } else { "local" };
-    let provisional = super::provisional_camera();
+    let provisional = super::found_view::provisional_camera();
     let unit = unit_of(&layers);
     let document = Document { crs: crs.into(), unit, layer: layers, ..Document::seen_by(provisional) };
     SourceDocument::of_files(document, folders)

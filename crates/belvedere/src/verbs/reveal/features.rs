@@ -3,14 +3,14 @@
 use super::Technique;
 use super::answer::{FinalShares, Found, RevealAnswer, Tried};
 use super::appearance::{Taller, is_exaggeration, softly_ended};
-use super::request::{IMAGE, Request};
+use super::request::Request;
 use crate::data::Data;
 use crate::picture::{self, Picture, PictureOptions};
 use crate::places::PlaceFinder;
 use crate::scene_file::{CameraDoc, EarthDoc, StageDoc, TerrainStageDoc};
+use crate::verbs::found_view::{IMAGE, spline_stage};
 use crate::verbs::in_time;
 use crate::verbs::shares::shares as shares_of;
-use crate::verbs::spline_stage;
 use crate::{Advice, BelvedereError, Session};
 use belvedere_construct::measure::HiddenRun;
 use belvedere_construct::rays::{AroundOptions, Target, bend_around};

@@ -7,20 +7,20 @@ pub mod appearance;
 mod drafts;
 mod features;
 mod files;
+mod given;
 mod judge;
-mod names;
 mod opened;
 mod request;
 mod subject;
 mod target;
 
 pub use crate::scene_file::request::Technique;
+pub use crate::verbs::found_view::IMAGE;
 pub use answer::{FinalShares, Found, RevealAnswer, RevealedDocument, Tried};
 pub use belvedere_construct::views::RefitRecord;
 pub use drafts::{Draft, DraftsAnswer, MOST_DRAFTS, drafts};
 pub use files::RevealFiles;
-pub use names::CitySee;
-pub use request::{IMAGE, Setting, sheet};
+pub use request::{Setting, sheet};
 
 use crate::BelvedereError;
 use crate::guard::guarded;

@@ -2,12 +2,12 @@
 
 use super::Technique;
 use super::appearance::check_background;
-use super::request::{IMAGE, Request};
+use super::request::Request;
 use super::subject::{self, Meant, Targets};
 use crate::picture::TargetPlace;
 use crate::places::{Place, PlaceHeight};
 use crate::scene_file::EarthDoc;
-use crate::verbs::MODELS_FOV_Y_DEG;
+use crate::verbs::found_view::{IMAGE, MODELS_FOV_Y_DEG};
 use crate::{Advice, BelvedereError, OpenOptions, Session};
 use belvedere_construct::rays::{Sidestep, TargetSight};
 use belvedere_construct::views::{self, Content, Refit};

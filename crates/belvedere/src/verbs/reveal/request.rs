@@ -1,18 +1,16 @@
 //! What is asked for, read: one request for terrain with features, cities and models.
 
 use super::appearance::Appearance;
-use super::subject::{Given, hold_a_city};
+use super::given::{Given, hold_a_city};
 use crate::picture::PictureOptions;
 use crate::places::Place;
 use crate::print::Sheet;
 use crate::renderers;
 use crate::request::{Molecules, Reveal, Technique, given_of};
 use crate::scene_file::{self, PaletteDoc};
+use crate::verbs::found_view::IMAGE;
 use crate::{Advice, BelvedereError, DataFiles, OpenOptions};
 use std::path::{Path, PathBuf};
-
-/// Size of the picture unless given, pixels.
-pub const IMAGE: [u32; 2] = [1280, 720];
 
 /// What a request leaves to its caller.
 #[derive(Debug, Clone, Default)]

@@ -1,12 +1,13 @@
 //! `reveal --see`: the files of a request as one scene, and what is meant in it.
 
-use super::names::{is_building, known_names};
+use super::given::Given;
 use super::request::Request;
 use crate::data::{features_of, text_of};
 use crate::places::Place;
 use crate::scene_file::{CityDoc, Document, LayerDoc, LineDoc, LineStyleDoc, Paths, SourceDocument};
+use crate::verbs::city_names::{is_building, known_names};
+use crate::verbs::found_view::provisional_camera;
 use crate::verbs::model_layers::{ground, layer, set_transfer, unit_of};
-use crate::verbs::provisional_camera;
 use crate::{Advice, BelvedereError, OpenOptions, Session};
 use belvedere_construct::rays::Target;
 use belvedere_construct::reveal::thresholds;
@@ -14,7 +15,7 @@ use belvedere_construct::sample_features;
 use belvedere_core::{DVec2, DVec3};
 use belvedere_io::city::is_meant;
 use belvedere_io::formats::Reader;
-use belvedere_io::{Arrays, Known, Limits, arrays, load_city, split_table};
+use belvedere_io::{Known, Limits, arrays, load_city, split_table};
 use belvedere_resolve::targets;
 use belvedere_resolve::vectors::{FeatureKind, kinds_of};
 use belvedere_scene::molecule::Selection;
@@ -190,54 +191,6 @@ pub(super) fn shown_name(see: &str) -> &str {
 fn seen_file(see: &str) -> Option<PathBuf> {
     let is_file = !see.is_empty() && split_table(Path::new(see)).0.is_file();
     is_file.then(|| PathBuf::from(see))
-}
-
-/// Data that a request names.
-#[derive(Clone)]
-pub(super) enum Given {
-    /// Built-in data.
-    Builtin(PathBuf),
-    /// A file, folder or array.
-    Known(Arc<Known>),
-    /// What cannot be read; it is asked again for the error.
-    Unknown(PathBuf),
-}
-
-impl Given {
-    pub(super) fn of(name: PathBuf, arrays: &Arrays) -> Self {
-        if name.to_str().is_some_and(|name| name.starts_with("builtin:")) {
-            return Self::Builtin(name);
-        }
-        match Known::of(&name, arrays) {
-            Ok(known) => Self::Known(Arc::new(known)),
-            Err(_) => Self::Unknown(name),
-        }
-    }
-
-    fn reader(&self) -> Option<Reader> {
-        match self {
-            Self::Builtin(name) => name.to_str()?.starts_with("builtin:town").then_some(Reader::City),
-            Self::Known(known) => known.reader,
-            Self::Unknown(_) => None,
-        }
-    }
-
-    fn is_same(&self, other: &Self) -> bool {
-        matches!((self, other), (Self::Known(a), Self::Known(b)) if a.path == b.path)
-    }
-}
-
-/// Whether data are those of a city, or footprints and features, beside which features and elevation models may be given.
-pub(super) fn hold_a_city(given: &[Given]) -> bool {
-    let has_areas = |known: &Known| known.features().is_ok_and(|v| kinds_of(v).contains(&FeatureKind::Areas));
-    if let [Given::Known(first), _, ..] = given
-        && first.reader == Some(Reader::Features)
-        && has_areas(first)
-    {
-        // Footprints, unless an elevation model follows.
-        return given.iter().all(|given| given.reader() == Some(Reader::Features));
-    }
-    given.iter().any(|given| given.reader() == Some(Reader::City))
 }
 
 /// The files of a scene with a city.

@@ -10,7 +10,7 @@ use super::request::Request;
 use crate::fallback::has_volumes;
 use crate::picture::{PictureOptions, TargetPlace};
 use crate::scene_file::{CameraDoc, ConstructorDoc, ConstructorKind, Document, StageDoc};
-use crate::verbs::spline_stage;
+use crate::verbs::found_view::spline_stage;
 use crate::{Advice, BelvedereError, Session};
 use belvedere_construct::Revealed;
 use belvedere_construct::measure::Shares;

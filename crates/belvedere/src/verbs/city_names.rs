@@ -33,7 +33,7 @@ pub struct CitySee {
     pub kinds: BTreeMap<String, usize>,
 }
 
-pub(super) fn is_building(properties: &BTreeMap<String, String>) -> bool {
+pub(crate) fn is_building(properties: &BTreeMap<String, String>) -> bool {
     ["building", "building:part"].iter().any(|key| properties.get(*key).is_some_and(|value| value != "no"))
 }
 
@@ -80,7 +80,7 @@ impl CitySee {
 }
 
 /// What can be named in cities, in words, with the nearest name to `see`.
-pub(super) fn known_names(cities: &[&Path], see: &str) -> Result<String, BelvedereError> {
+pub(crate) fn known_names(cities: &[&Path], see: &str) -> Result<String, BelvedereError> {
     let of = |path: &Path| Ok::<_, BelvedereError>(CitySee::of(&load_city(path, None, &Limits::default())?.value));
     let all: Vec<CitySee> = cities.iter().map(|path| of(path)).collect::<Result<_, _>>()?;
     let names =
