@@ -17,7 +17,7 @@ pub(crate) fn sources() -> Vec<(String, String)> {
         for path in std::fs::read_dir(folder).expect("folder").flatten().map(|entry| entry.path()) {
             if path.is_dir() {
                 folders.push(path);
-            } else if path.extension().is_some_and(|ending| ending == "rs") {
+            } else if path.extension().is_some_and(|ending| ending == "rs") && !path.ends_with("tests.rs") {
                 files.push(path);
             }
         }
