@@ -66,7 +66,6 @@ impl<'l> Collector<'l> {
             return;
         };
         self.clean(&mut faces);
-        self.repairs.inside_out += usize::from(cover(kind, about).is_none() && plan::turn_outwards(&mut faces));
         self.about.push(CityAbout { id: id.clone(), name: name.clone(), attributes: about.all() });
         let structure = match kind {
             "Building" | "BuildingPart" | "BuildingUnit" => return self.building(id, name, about, faces),
@@ -161,7 +160,8 @@ impl<'l> Collector<'l> {
         });
     }
 
-    fn building(&mut self, id: String, name: String, about: &impl Attributes, faces: Vec<CityFace>) {
+    fn building(&mut self, id: String, name: String, about: &impl Attributes, mut faces: Vec<CityFace>) {
+        self.repairs.inside_out += usize::from(plan::turn_outwards(&mut faces));
         let (footprint, base, height) = plan::of_solid(&faces, &mut self.repairs);
         // A plan without height: its height comes from attributes.
         let (height_m, height_source, faces) = if height > 0.1 {

@@ -29,7 +29,7 @@ fn every_dependency_is_justified_in_one_line() {
 /// Most packages that a program is built from, our own included.
 const MOST: [(&str, usize); 2] = [("belvedere-cli", 204), ("belvedere-viewer", 344)];
 /// Most packages in the lock file, those of tests and other systems included.
-const MOST_LOCKED: usize = 560;
+const MOST_LOCKED: usize = 562;
 
 #[test]
 fn dependencies_do_not_grow_unnoticed() {
