@@ -4,6 +4,7 @@ use super::options::PictureOptions;
 use crate::Session;
 use crate::scene_file::Corner;
 use belvedere_core::{DVec2, View};
+use belvedere_io::arrays::SCHEME;
 use belvedere_overlay::furniture::{self, Plan, Subject};
 use belvedere_overlay::{curve_inset, heat};
 use belvedere_resolve::ground::Ground;
@@ -45,7 +46,9 @@ pub(super) fn plan(
     let scene_file = session.path();
     let mut files: Vec<String> = Vec::new();
     for input in session.inputs().iter().filter(|input| Some(input.path.as_path()) != scene_file) {
-        let name = names.file(&input.path);
+        // An array is named as the file that it is written as, so that a saved scene draws the same letters.
+        let array = input.path.to_str().and_then(|path| session.loaded.arrays.file_name(path.strip_prefix(SCHEME)?));
+        let name = array.unwrap_or_else(|| names.file(&input.path));
         if !files.contains(&name) {
             files.push(name);
         }
