@@ -3,8 +3,8 @@
 
 /// Visible share from which on nothing more is tried, and a goal counts as reached.
 ///
-/// Taste: the last hundredth of a route is its ends at the rim of the picture or a few pixels behind a wall. With 0.995 twice as little may
-/// stay hidden and pictures move more for it; with 0.98 a gap of a fiftieth of a route counts as none.
+/// Taste: a hundredth of a route is what one hardly misses. With 0.995 half as much may
+/// stay hidden, and pictures move more for it; with 0.98 a gap of a fiftieth of a route counts as none.
 pub const ENOUGH: f64 = 0.99;
 
 /// Visible share of what is in the frame from which on nothing counts as hidden, so that nothing is bent.
@@ -23,8 +23,8 @@ pub const LEAST_GAIN: f64 = 0.001;
 
 /// The same between two views of a target, whose shares are those of points.
 ///
-/// One of fifty points, as targets have them at least: a point more is chance. With 0.01 one of a hundred decides; with 0.04 a view must show
-/// two points more of the smallest targets.
+/// Taste: one of fifty points, a point more or less, is chance. With 0.01 one of a hundred decides; with 0.04 two of fifty must be shown in
+/// addition.
 pub const VIEW_GAIN: f64 = 0.02;
 
 /// Visible share for which a view of a target may move things by the whole picture.
@@ -35,8 +35,8 @@ pub const MOTION_PRICE: f64 = 0.1;
 
 /// Visible share of a target from which on further views are not searched for bends, after [`VIEWS_AT_LEAST`].
 ///
-/// Taste: views come in the order of what they show without a bend, and each search takes as long as the picture. With 1 - 2 * 0.2 fewer
-/// views are searched, with 0.9 more.
+/// Taste: views come in the order of what they show without a bend, so that later ones seldom show more with one. With 0.6 fewer views are
+/// searched, with 0.9 more.
 pub const MUCH: f64 = 0.8;
 
 /// Views of a target that are searched for bends in any case, unless one shows [`ENOUGH`]. Taste.
@@ -44,7 +44,7 @@ pub const VIEWS_AT_LEAST: usize = 3;
 
 /// Visible share that a spline must show in addition to curved rays, because it moves the whole picture, and they a part of it.
 ///
-/// Taste: three hundredths of a street are a house front. With half of it splines come more often, with double more seldom.
+/// Taste. With half of it splines come more often, with double more seldom.
 pub const SPLINE_GAIN: f64 = 0.03;
 
 /// Samples of features by which curved rays are chosen, at most. Time grows with them; half of them leave stretches of a seventieth of the
