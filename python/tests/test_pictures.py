@@ -76,8 +76,11 @@ def test_python_and_the_command_line_write_the_same_bytes(scene: belvedere.Scene
     ran = program("render", str(file), "--size", "160x90", "-o", str(tmp_path / "by_program.png"))
     assert ran.returncode == 0, ran.stderr
     wanted = (tmp_path / "by_program.png").read_bytes()
-    assert belvedere.Scene.open(file).render(size=(160, 90)).png() == wanted
-    assert scene.render(size=(160, 90)).png() == wanted
+    opened = belvedere.Scene.open(file).render(size=(160, 90))
+    assert opened.png() == wanted
+    # A scene of arrays draws the same pixels; its record names arrays as its inputs in place of files.
+    of_arrays = scene.render(size=(160, 90))
+    assert (of_arrays.rgba == opened.rgba).all() and b"array:ground" in of_arrays.png()
     # Also when the size changes after a picture was drawn, and on another number of threads.
     again = belvedere.Scene.open(file)
     again.render(size=(32, 24))
@@ -95,13 +98,18 @@ def test_a_built_in_scene_is_that_of_the_command_line(tmp_path: Path) -> None:
 
 def test_furniture_is_that_of_the_program(scene: belvedere.Scene, tmp_path: Path) -> None:
     words = ("--size", "480x270", "--title", "Over the hills", "--furniture", "compass,legend")
-    ran = program("render", str(scene.save(tmp_path / "scene.json")), *words, "-o", str(tmp_path / "a.png"))
+    file = scene.save(tmp_path / "scene.json")
+    ran = program("render", str(file), *words, "-o", str(tmp_path / "a.png"))
     assert ran.returncode == 0, ran.stderr
-    furnished = scene.render(size=(480, 270), furniture=["compass", "legend"], title="Over the hills")
-    assert furnished.record["furniture"]["title"] == "Over the hills"
-    assert furnished.record["furniture"]["compass"] is not None
-    assert furnished.png() == (tmp_path / "a.png").read_bytes()
-    assert scene.render(size=(480, 270)).png() != furnished.png()
+    opened, of_arrays = (
+        drawn.render(size=(480, 270), furniture=["compass", "legend"], title="Over the hills")
+        for drawn in (belvedere.Scene.open(file), scene)
+    )
+    assert of_arrays.record["furniture"]["title"] == "Over the hills"
+    assert of_arrays.record["furniture"]["compass"] is not None
+    assert opened.png() == (tmp_path / "a.png").read_bytes()
+    assert (of_arrays.rgba == opened.rgba).all()
+    assert (scene.render(size=(480, 270)).rgba != of_arrays.rgba).any()
     with pytest.raises(belvedere.InputError, match="no furniture; possible: title"):
         scene.render(size=(48, 27), furniture="north arrow")
 
