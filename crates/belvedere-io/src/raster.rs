@@ -3,6 +3,7 @@
 use crate::budget;
 use rayon::prelude::*;
 use std::borrow::Cow;
+use std::ops::Range;
 use std::path::PathBuf;
 
 /// Affine map of the plane: `x' = a[0] x + a[1] y + a[2]`, `y' = a[3] x + a[4] y + a[5]`.
@@ -298,6 +299,14 @@ impl RasterInfo {
             scaling: Vec::new(),
             overviews: Vec::new(),
         }
+    }
+
+    /// The same for a part of its columns and rows.
+    pub(crate) fn window(mut self, cols: &Range<usize>, rows: &Range<usize>) -> Self {
+        let (left, top) = (cols.start as f64, rows.start as f64);
+        self.pixel_to_model = self.pixel_to_model.map(|t| t.after_scale_and_shift(1.0, 1.0, left, top));
+        (self.width, self.height) = (cols.len(), rows.len());
+        self
     }
 
     /// Model coordinates of the four outer corners: top left, top right, bottom right, bottom left.

@@ -14,11 +14,13 @@ mod original;
 mod resample;
 mod samples;
 mod sea_voids;
+mod seam;
 mod sentinels;
 mod source;
 mod stated_system;
 mod survey;
 mod thin;
+mod together;
 
 use crate::crs::{CoordinateSystem, Transform, utm_epsg};
 use crate::{Arrays, Fault, IoError, Limits, Loaded};
@@ -136,8 +138,8 @@ const UTM_MAX_HALF_WIDTH_DEG: f64 = 20.0;
 /// Resampling errors above this give a warning, metres; smaller ones are within the accuracy of global elevation models.
 const WARN_P99_M: f64 = 16.0;
 
-/// Loads one or several rasters (GeoTIFF, `.hgt`, zipped `.hgt`, ESRI ASCII, arrays of the request) as the terrain of a scene. Where several
-/// overlap, the first one that has data wins.
+/// Loads one or several rasters (GeoTIFF, `.hgt`, zipped `.hgt`, ESRI ASCII, arrays of the request) as the terrain of a scene, in any
+/// order. Where several overlap the finest that has data is taken, blended over the others along its border.
 ///
 /// # Errors
 /// [`IoError::Os`], [`IoError::Format`] with one sentence that names the file and the remedy, [`IoError::Cancelled`].
@@ -162,13 +164,14 @@ fn in_scene(
     request: &TerrainRequest,
     progress: &Progress,
 ) -> Result<Loaded<LoadedTerrain>, IoError> {
-    let Loaded { value: sources, mut warnings, files } = sources;
+    let Loaded { value: mut sources, mut warnings, files } = sources;
+    together::arrange(&mut sources);
     let first = &sources[0].path.clone();
     let void_samples: usize = sources.iter().map(|s| s.voids).sum();
     let samples: usize = sources.iter().map(|s| s.samples).sum();
     let descriptions = sources.iter().map(SourceGrid::describe).collect();
     let target = choose_target(&sources, request, &mut warnings)?;
-    let merged = source::merge_aligned(sources, request.max_nodes, &mut warnings);
+    let merged = together::merge_aligned(sources, request.max_nodes, &mut warnings);
     let extent_deg = extent(&merged).map(|e| e.bounds);
     progress.tick("placing terrain", 0.0)?;
     let (mut grid, resample_error) = onto_scene_grid(&merged, &target, request, &mut warnings, progress)?;
@@ -413,7 +416,9 @@ fn extent(sources: &[SourceGrid]) -> Option<Extent> {
             }
         }
     }
-    out.map(|bounds| Extent { bounds })
+    // The west lies on this side of the antimeridian, whichever source is the first.
+    let turn = out.map_or(0.0, |[west, ..]| 360.0 * ((-180.0 - west) / 360.0).ceil().max(0.0));
+    out.map(|[west, south, east, north]| Extent { bounds: [west + turn, south, east + turn, north] })
 }
 
 /// The grid of the scene: exact where possible, resampled else.
@@ -430,7 +435,7 @@ fn onto_scene_grid(
         return Ok((grid, None));
     }
     let links = sources.iter().map(|s| Link::new(s, target.system.as_ref(), &s.path)).collect::<Result<Vec<_>, _>>()?;
-    let (grid, error) = resample::resample(sources, &links, request, progress)?;
+    let (grid, error) = resample::resample(sources, &links, request, warnings, progress)?;
     if let Some(e) = error
         && e.p99_m > request.max_error_p99_m.max(WARN_P99_M)
     {

@@ -323,6 +323,22 @@ impl Layout {
         (at != 0 && count != 0).then_some((at, count))
     }
 
+    /// Columns and rows of samples around all chunks that were not left out; `None` if all were.
+    pub(super) fn stored(&self) -> Option<[Range<usize>; 2]> {
+        let planes = if self.planar { self.bands } else { 1 };
+        let [across, down] = self.chunks;
+        let there = |row: usize, col: usize| (0..planes).any(|plane| self.chunk(plane, row, col).is_some());
+        let mut found: Option<[usize; 4]> = None;
+        for (row, col) in (0..down).flat_map(|r| (0..across).map(move |c| (r, c))).filter(|(r, c)| there(*r, *c)) {
+            let [left, top, right, bottom] = found.unwrap_or([col, row, col, row]);
+            found = Some([left.min(col), top.min(row), right.max(col), bottom.max(row)]);
+        }
+        let [left, top, right, bottom] = found?;
+        let (width, height) = (self.chunk_width, self.chunk_height);
+        let samples = |from: usize, to: usize, side: usize, all: usize| from * side..((to + 1) * side).min(all);
+        Some([samples(left, right, width, self.width), samples(top, bottom, height, self.height)])
+    }
+
     /// Positions in the file of the chunks of these columns and rows of chunks, in all planes.
     pub(super) fn positions(&self, cols: Range<usize>, rows: Range<usize>) -> impl Iterator<Item = u64> {
         let planes = if self.planar { self.bands } else { 1 };

@@ -143,6 +143,14 @@ impl GeoTiff {
         self.levels.get(level).map_or(1, |l| l.layout.chunk_height.clamp(1, l.layout.height.max(1)))
     }
 
+    /// Columns and rows of a level outside of which nothing is stored, because tiles or strips without data were left out; all of it in
+    /// files without a value for no data, where what is left out is 0.
+    pub(crate) fn stored(&self, level: usize) -> [Range<usize>; 2] {
+        let Some(Level { layout, .. }) = self.levels.get(level) else { return [0..0, 0..0] };
+        let all = || [0..layout.width, 0..layout.height];
+        if self.info.nodata.is_some() { layout.stored().unwrap_or_else(all) } else { all() }
+    }
+
     /// Type, compression and chunks for reports, such as `int16, deflate, 256 x 256 tiles`.
     pub fn encoding(&self) -> String {
         let Some(Level { layout, .. }) = self.levels.first() else { return String::new() };
@@ -180,7 +188,7 @@ impl GeoTiff {
             }
             IoError::format(&self.info.path, fault)
         };
-        let (Some(found), Some(mut info)) = (self.levels.get(level), self.level_info(level)) else {
+        let (Some(found), Some(info)) = (self.levels.get(level), self.level_info(level)) else {
             return Err(fail(format!("has {} levels, level {level} was asked for", self.levels.len()).into()));
         };
         if cols.is_empty() || rows.is_empty() || cols.end > info.width || rows.end > info.height {
@@ -201,10 +209,7 @@ impl GeoTiff {
                 _ => None,
             },
         };
-        let (left, top) = (cols.start as f64, rows.start as f64);
-        info.pixel_to_model = info.pixel_to_model.map(|t| t.after_scale_and_shift(1.0, 1.0, left, top));
-        (info.width, info.height) = (cols.len(), rows.len());
-        Ok(Raster { info, samples, mask })
+        Ok(Raster { info: info.window(&cols, &rows), samples, mask })
     }
 }
 

@@ -48,8 +48,8 @@ impl Banded for Rows<'_> {
         self.grid.info(self.path)
     }
 
-    fn full_width(&self) -> usize {
-        self.info().width
+    fn factor(&self) -> f64 {
+        1.0
     }
 
     fn rows_together(&self) -> usize {

@@ -89,6 +89,21 @@ impl Link {
         index.is_finite().then_some(index)
     }
 
+    /// Its nodes in the scene if they are an axis-aligned lattice there without a change of system, columns to the east and rows to the south.
+    pub(crate) fn lattice(&self, size: [usize; 2]) -> Option<Geometry> {
+        if self.transform.is_some() {
+            return None;
+        }
+        let [across, down] = size.map(|n| (n - 1) as f64);
+        let first = self.scene_from_index(DVec2::ZERO)?;
+        let along = self.scene_from_index(DVec2::new(across, 0.0))? - first;
+        let below = first - self.scene_from_index(DVec2::new(0.0, down))?;
+        let spacing = DVec2::new(along.x / across, below.y / down);
+        let skew = along.y.abs().max(below.x.abs());
+        let aligned = spacing.min_element() > 0.0 && skew <= 1e-6 * spacing.min_element();
+        aligned.then_some(Geometry { north_west: first, spacing })
+    }
+
     /// Lengths of one step along columns and rows in the scene, at the middle of the grid; (1, 1) if that has no image.
     pub(crate) fn spacing_at_centre(&self, source: &SourceGrid) -> DVec2 {
         let middle = 0.5 * DVec2::new(source.cols as f64 - 1.0, source.rows as f64 - 1.0);

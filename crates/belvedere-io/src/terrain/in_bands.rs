@@ -15,27 +15,58 @@ const BAND: usize = 4 << 20;
 pub(super) trait Banded {
     /// Everything but the samples.
     fn info(&self) -> RasterInfo;
-    /// Columns of the source, of which the raster may be a reduced copy.
-    fn full_width(&self) -> usize;
+    /// Ratio of its spacing to that of the source, of which the raster may be a reduced copy.
+    fn factor(&self) -> f64;
     /// Rows that are stored together.
     fn rows_together(&self) -> usize;
     /// Rows of all columns.
     fn rows(&self, rows: Range<usize>, progress: &Progress) -> Result<Raster, IoError>;
 }
 
-/// A level of a file.
+/// A part of a level of a file.
 pub(super) struct Level<'a> {
     pub(super) tiff: &'a GeoTiff,
     pub(super) level: usize,
+    /// Columns and rows of the part.
+    pub(super) part: [Range<usize>; 2],
+}
+
+impl<'a> Level<'a> {
+    /// All that is stored of a level.
+    pub(super) fn stored(tiff: &'a GeoTiff, level: usize) -> Self {
+        Self { tiff, level, part: tiff.stored(level) }
+    }
+
+    /// Number of samples.
+    pub(super) fn samples(&self) -> usize {
+        let [cols, rows] = &self.part;
+        cols.len().saturating_mul(rows.len())
+    }
+
+    fn whole(&self) -> RasterInfo {
+        self.tiff.level_info(self.level).unwrap_or_else(|| self.tiff.info().clone())
+    }
+
+    /// Reads it whole.
+    pub(super) fn read(&self, progress: &Progress) -> Result<Raster, IoError> {
+        let [cols, rows] = self.part.clone();
+        self.tiff.read_window(self.level, cols, rows, progress)
+    }
+
+    /// Ratio of its spacing to that of the file.
+    pub(super) fn factor(&self) -> f64 {
+        self.tiff.info().width as f64 / self.whole().width as f64
+    }
 }
 
 impl Banded for Level<'_> {
     fn info(&self) -> RasterInfo {
-        self.tiff.level_info(self.level).unwrap_or_else(|| self.tiff.info().clone())
+        let [cols, rows] = &self.part;
+        self.whole().window(cols, rows)
     }
 
-    fn full_width(&self) -> usize {
-        self.tiff.info().width
+    fn factor(&self) -> f64 {
+        Level::factor(self)
     }
 
     fn rows_together(&self) -> usize {
@@ -43,7 +74,8 @@ impl Banded for Level<'_> {
     }
 
     fn rows(&self, rows: Range<usize>, progress: &Progress) -> Result<Raster, IoError> {
-        self.tiff.read_window(self.level, 0..self.info().width, rows, progress)
+        let [cols, all] = self.part.clone();
+        self.tiff.read_window(self.level, cols, all.start + rows.start..all.start + rows.end, progress)
     }
 }
 
@@ -83,7 +115,7 @@ fn read_by(
         stored.push(as_stored);
     };
     let (cols, rows) = thinned_size([info.width, info.height], every);
-    let factor = source.full_width() as f64 / info.width as f64 * every as f64;
+    let factor = source.factor() * every as f64;
     Ok(Heights {
         every,
         cols,
@@ -205,8 +237,7 @@ mod tests {
             let k = thinning(cols, rows, most_nodes).expect("too many");
             let (want, out_cols, out_rows) = thin(&whole, cols, rows, k);
             for samples in [1, 5 * cols, 64 * cols, 1 << 20] {
-                let read =
-                    read_by(samples, &Level { tiff: &tiff, level: 0 }, &request, most_nodes, &progress).expect("read");
+                let read = read_by(samples, &Level::stored(&tiff, 0), &request, most_nodes, &progress).expect("read");
                 assert_eq!([read.cols, read.rows, read.every], [out_cols, out_rows, k]);
                 assert_eq!(bits(&read.heights), bits(&want), "every {k}, {samples} samples together");
                 assert_eq!([read.voids, read.absurd], [voids, absurd]);

@@ -2,10 +2,12 @@
 
 use super::bilinear::Bilinear;
 use super::grid_map::{Geometry, GridMap, Link};
+use super::seam::drawn_over;
 use super::source::SourceGrid;
 use super::{ResampleError, TerrainRequest};
 use crate::IoError;
 use crate::crs::CoordinateSystem;
+use belvedere_core::Warning;
 use belvedere_scene::Progress;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -104,6 +106,7 @@ pub(super) fn resample(
     sources: &[SourceGrid],
     links: &[Link],
     request: &TerrainRequest,
+    warnings: &mut Vec<Warning>,
     progress: &Progress,
 ) -> Result<(SceneGrid, Option<ResampleError>), IoError> {
     let mut planned = plan(sources, links, 1.0)?;
@@ -118,7 +121,7 @@ pub(super) fn resample(
         }
     }
     progress.tick("resampling terrain", 0.0)?;
-    Ok(at_spacing(planned, sources, links, request.max_error_p99_m))
+    Ok(at_spacing(planned, sources, links, request.max_error_p99_m, warnings))
 }
 
 /// 99th percentile of the possible error of resampling to the same spacing at a sample, metres, from second differences `d`:
@@ -176,16 +179,19 @@ fn at_spacing(
     sources: &[SourceGrid],
     links: &[Link],
     bound_m: f64,
+    warnings: &mut Vec<Warning>,
 ) -> (SceneGrid, Option<ResampleError>) {
     let geometry = grid.geometry;
     let mut maps_inputs = Vec::new();
     for link in links {
         maps_inputs.push(move |index: DVec2| link.index_from_scene(geometry.scene_from_index(index)));
     }
-    let margin = if sources.len() > 1 { 0.5 } else { EDGE_MARGIN };
-    for (k, (source, exact)) in sources.iter().zip(&maps_inputs).enumerate() {
-        let map = GridMap::new(grid.cols, grid.rows, MAP_TOLERANCE, exact);
-        draw(&mut grid, source, &map, margin, k == 0);
+    let map = |exact| GridMap::new(grid.cols, grid.rows, MAP_TOLERANCE, exact);
+    if let ([source], [exact]) = (sources, maps_inputs.as_slice()) {
+        grid.heights = drawn(&grid, source, &map(exact));
+    } else {
+        let maps: Vec<GridMap<'_>> = maps_inputs.iter().map(|exact| map(exact)).collect();
+        grid.heights = drawn_over([grid.cols, grid.rows], sources, &maps, warnings);
     }
     let ([source], [link], [back]) = (sources, links, maps_inputs.as_slice()) else {
         return (grid, None);
@@ -233,11 +239,26 @@ fn plan(sources: &[SourceGrid], links: &[Link], factor: f64) -> Result<SceneGrid
         );
         return Err(IoError::format(&sources[0].path, reason));
     }
+    if let Some(lattice) = sources.first().zip(links.first()).and_then(|(s, l)| l.lattice([s.cols, s.rows]))
+        && sources.len() > 1
+    {
+        return Ok(on_lattice(lattice, min, max));
+    }
     // the overhang is shared by both sides
     let overhang = 0.5 * ((size - 1.0) * spacing - (max - min));
     let north_west = DVec2::new(min.x - overhang.x, max.y + overhang.y);
     let (cols, rows) = ((size.x as usize).max(2), (size.y as usize).max(2));
     Ok(SceneGrid { geometry: Geometry { north_west, spacing }, cols, rows, heights: Vec::new() })
+}
+
+/// A grid over an extent whose nodes are those of a lattice, so that the finest source keeps its samples.
+fn on_lattice(lattice: Geometry, min: DVec2, max: DVec2) -> SceneGrid {
+    const ROUNDING: f64 = 1e-6;
+    let [first, last] = [DVec2::new(min.x, max.y), DVec2::new(max.x, min.y)].map(|p| lattice.index_from_scene(p));
+    let (first, last) = ((first + ROUNDING).floor(), (last - ROUNDING).ceil());
+    let [cols, rows] = (last - first + 1.0).to_array().map(|n| (n as usize).max(2));
+    let north_west = lattice.scene_from_index(first);
+    SceneGrid { geometry: Geometry { north_west, ..lattice }, cols, rows, heights: Vec::new() }
 }
 
 /// A coarser plan with at most `max_nodes`.
@@ -287,28 +308,18 @@ fn round_down(v: f64) -> f64 {
     if rounded > 0.0 && rounded.is_finite() { rounded } else { v }
 }
 
-/// Bilinear heights of one source on the nodes that have none yet.
-fn draw(grid: &mut SceneGrid, source: &SourceGrid, map: &GridMap<'_>, margin: f64, first: bool) {
-    let cols = grid.cols;
-    let heights = Bilinear::new(&source.heights, [source.cols, source.rows], margin);
-    if first {
-        grid.heights = vec![f32::INFINITY; cols * grid.rows];
-    }
-    grid.heights.par_chunks_exact_mut(cols).enumerate().for_each_init(
-        || vec![DVec2::ZERO; cols],
+/// Bilinear heights of a source on the nodes of a grid.
+fn drawn(grid: &SceneGrid, source: &SourceGrid, map: &GridMap<'_>) -> Vec<f32> {
+    let of_source = Bilinear::new(&source.heights, [source.cols, source.rows], EDGE_MARGIN);
+    let mut heights = vec![f32::INFINITY; grid.cols * grid.rows];
+    heights.par_chunks_exact_mut(grid.cols).enumerate().for_each_init(
+        || vec![DVec2::ZERO; grid.cols],
         |indices, (r, row)| {
             map.row(r, indices);
-            for (h, &index) in row.iter_mut().zip(indices.iter()) {
-                if !h.is_finite() {
-                    let new = heights.at(index);
-                    // a void inside an earlier source stays one where this source has nothing
-                    if new.is_finite() || h.is_infinite() {
-                        *h = new;
-                    }
-                }
-            }
+            row.iter_mut().zip(indices.iter()).for_each(|(h, &index)| *h = of_source.at(index));
         },
     );
+    heights
 }
 
 /// Source minus scene at every sample of the source that has both; NaN elsewhere.

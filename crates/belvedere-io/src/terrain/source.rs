@@ -1,6 +1,6 @@
 //! Reading the sources of a terrain: samples as heights in metres, voids as NaN.
 
-use super::in_bands::{self, Level};
+use super::in_bands::{self, Banded, Level};
 use super::samples::{Heights, MAX_HEIGHT_M, as_requested, check_shape, heights};
 use super::stated_system::{is_of_another_body, stated_system};
 use super::thin::{thin, thinning};
@@ -215,25 +215,29 @@ fn read_tiff(
 ) -> Result<Loaded<Source>, IoError> {
     let Loaded { value: tiff, warnings, .. } = GeoTiff::open(path, request.limits)?;
     check_shape(tiff.info())?;
-    let nodes = |level: usize| tiff.level_info(level).map_or(usize::MAX, |i| i.width.saturating_mul(i.height));
-    let levels = tiff.levels();
-    // the largest level within the budget, else the smallest there is
-    let level = (0..levels).find(|&l| nodes(l) <= budget).unwrap_or(levels - 1);
-    if nodes(level) > budget {
-        let (heights, file) =
-            rayon::join(|| in_bands::read(&Level { tiff: &tiff, level }, request, budget, progress), || tiff.input());
-        return Ok(Loaded::new(Source::InBands(heights?), warnings).with_file(file?));
+    // the largest level within the budget, else the smallest there is; what was left out of the file costs nothing
+    let levels = (0..tiff.levels()).map(|level| Level::stored(&tiff, level));
+    let (mut fitting, mut smallest) = (None, None);
+    for level in levels {
+        if level.samples() <= budget {
+            fitting = Some(level);
+            break;
+        }
+        smallest = Some(level);
     }
+    let Some(level) = fitting else {
+        let level = smallest.unwrap_or_else(|| Level::stored(&tiff, 0));
+        let (heights, file) = rayon::join(|| in_bands::read(&level, request, budget, progress), || tiff.input());
+        return Ok(Loaded::new(Source::InBands(heights?), warnings).with_file(file?));
+    };
     // Samples, heights, and marks of heights that were looked at.
-    let info = tiff.level_info(level).unwrap_or_else(|| tiff.info().clone());
+    let info = level.info();
     let stored = info.bands as u64 * info.sample_type.size() as u64;
     let pixels = info.width as u64 * info.height as u64;
     let peak = pixels.saturating_mul(stored + 5);
     request.limits.check(peak).map_err(|reason| IoError::format(path, reason))?;
-    let (raster, file) = rayon::join(|| tiff.read(level, progress), || tiff.input());
-    let raster = raster?;
-    let factor = tiff.info().width as f64 / raster.info.width as f64;
-    Ok(Loaded::new(Source::Whole(raster, factor), warnings).with_file(file?))
+    let (raster, file) = rayon::join(|| level.read(progress), || tiff.input());
+    Ok(Loaded::new(Source::Whole(raster?, level.factor()), warnings).with_file(file?))
 }
 
 /// A warning if the unit of heights is not stated, so that metres are taken, and the plane has another unit.
@@ -276,95 +280,4 @@ fn warn_about_frame(path: &Path, heights: &[f32], cols: usize, rows: usize, warn
         let warning = warning.settled_by("nodata");
         warnings.push(warning.with("height_m", f64::from(value)).in_file(path));
     }
-}
-
-/// Joins sources that lie on one lattice (tiles with shared or touching edges) into one, so that no seam is left.
-/// The first source wins where several have data. Others are returned as they are.
-pub(super) fn merge_aligned(
-    sources: Vec<SourceGrid>,
-    max_nodes: usize,
-    warnings: &mut Vec<Warning>,
-) -> Vec<SourceGrid> {
-    if sources.len() < 2 {
-        return sources;
-    }
-    let Some(offsets) = sources.iter().map(|s| lattice_offset(&sources[0], s)).collect::<Option<Vec<_>>>() else {
-        return sources;
-    };
-    let min = |axis: usize| offsets.iter().map(|o| o[axis]).min().unwrap_or(0);
-    let (left, top) = (min(0), min(1));
-    let extent = |axis: usize, size: fn(&SourceGrid) -> usize| {
-        offsets.iter().zip(&sources).map(|(o, s)| o[axis] + size(s) as i64).max().unwrap_or(0)
-    };
-    let (cols, rows) = (extent(0, |s| s.cols) - left, extent(1, |s| s.rows) - top);
-    let (Ok(cols), Ok(rows)) = (usize::try_from(cols), usize::try_from(rows)) else { return sources };
-    if cols.checked_mul(rows).is_none_or(|n| n > max_nodes.saturating_mul(2)) {
-        return sources;
-    }
-    let mut heights = vec![f32::INFINITY; cols * rows];
-    let (mut differing, mut largest) = (0usize, 0.0f32);
-    for (source, [c0, r0]) in sources.iter().zip(&offsets) {
-        let (c0, r0) = ((c0 - left) as usize, (r0 - top) as usize);
-        for (r, row) in source.heights.chunks_exact(source.cols).enumerate() {
-            let start = (r0 + r) * cols + c0;
-            for (out, &new) in heights[start..start + row.len()].iter_mut().zip(row) {
-                if !out.is_finite() {
-                    if out.is_infinite() || new.is_finite() {
-                        *out = new;
-                    }
-                } else if new.is_finite() && new != *out {
-                    differing += 1;
-                    largest = largest.max((new - *out).abs());
-                }
-            }
-        }
-    }
-    let first = &sources[0];
-    if differing > 0 {
-        let text = format!(
-            "it differs from the sources after it at {differing} shared samples, by up to {largest:.1} m; the first source wins"
-        );
-        let warning = Warning::new(WarningKind::Repaired, text).with("count", differing as f64);
-        warnings.push(warning.with("largest_m", f64::from(largest)).in_file(&first.path));
-    }
-    let merged = SourceGrid {
-        path: first.path.clone(),
-        cols,
-        rows,
-        heights,
-        model_from_index: first.model_from_index.after_scale_and_shift(1.0, 1.0, left as f64, top as f64),
-        system: first.system.clone(),
-        is_elsewhere: first.is_elsewhere,
-        samples: sources.iter().map(|s| s.samples).sum(),
-        voids: sources.iter().map(|s| s.voids).sum(),
-    };
-    vec![merged]
-}
-
-/// Columns and rows from the first node of `a` to that of `b` if both lie on one lattice.
-fn lattice_offset(a: &SourceGrid, b: &SourceGrid) -> Option<[i64; 2]> {
-    if a.system != b.system {
-        return None;
-    }
-    let inverse = a.model_from_index.inverse()?;
-    let place = |c: f64, r: f64| {
-        let [x, y] = b.model_from_index.apply(c, r);
-        inverse.apply(x, y)
-    };
-    let (last_c, last_r) = ((b.cols - 1) as f64, (b.rows - 1) as f64);
-    let mut start = place(0.0, 0.0);
-    let mut turn = 0.0;
-    if a.system.as_ref().is_some_and(CoordinateSystem::is_geographic) {
-        // neighbours across the antimeridian are 360 degrees apart in the files
-        let around = 360.0 / a.model_from_index.0[0].abs();
-        turn = around * (start[0] / around).round();
-        start[0] -= turn;
-    }
-    let start = start.map(f64::round);
-    // every corner must fall on the node it should, to a hundredth of a cell
-    let on_lattice = [(0.0, 0.0), (last_c, 0.0), (0.0, last_r), (last_c, last_r)].iter().all(|&(c, r)| {
-        let p = place(c, r);
-        (p[0] - turn - start[0] - c).abs() < 0.01 && (p[1] - start[1] - r).abs() < 0.01
-    });
-    (on_lattice && start.iter().all(|v| v.abs() < 1e9)).then(|| [start[0] as i64, start[1] as i64])
 }
