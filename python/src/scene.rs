@@ -34,8 +34,10 @@ pub(crate) fn sheet(
     size: Option<[u32; 2]>,
 ) -> PyResult<Option<(String, [u32; 2])>> {
     let asked: Paper = request::request("paper", asked)?;
-    let source =
-        text.map_or_else(|| scene_or_data(&path, &Default::default()), |text| Ok(scene_file::parse(&path, text)?));
+    let source = text.map_or_else(
+        || scene_or_data(std::slice::from_ref(&path), &Default::default()),
+        |text| Ok(scene_file::parse(&path, text)?),
+    );
     let document = source.map_err(|e| raised(&e))?.document;
     let (sheet, _) = asked::paper((&asked, size), &document).map_err(|e| raised(&e))?;
     sheet.map(|s| Ok((output::json(&s.document()).map_err(|e| raised(&e))?, s.pixels()))).transpose()
@@ -55,7 +57,10 @@ impl NativeScene {
         let mut opening: Opening = request::read("options", options)?;
         let (said, arrays) = (std::mem::take(&mut opening.data), arrays.now());
         let session = run(py, &ask, move |progress| {
-            Session::from_document(scene_or_data(&path, &said)?, &opening.options(arrays, progress))
+            Session::from_document(
+                scene_or_data(std::slice::from_ref(&path), &said)?,
+                &opening.options(arrays, progress),
+            )
         })?;
         Ok(Self { session })
     }

@@ -30,7 +30,7 @@ pub(crate) fn animate(args: &AnimateArgs, context: &Context) -> anyhow::Result<G
     if let (Some(film), None) = (&film, &asked.part) {
         output::check(film, std::slice::from_ref(&args.scene), overwrite || asked.resume)?;
     }
-    let source = context.stdin.drawable(&args.scene, &asked.data)?;
+    let source = context.stdin.drawable(std::slice::from_ref(&args.scene), &asked.data)?;
     let (sheet, size) = asked::paper((&asked.paper, asked.drawing.size), &source.document)?;
     let mut request = asked::film(asked, sheet, args.out.clone(), overwrite)?;
     request.picture = context.running(request.picture);

@@ -17,9 +17,10 @@ use std::path::{Path, PathBuf};
 /// A picture.
 #[derive(Debug, Args)]
 pub(crate) struct RenderArgs {
-    /// Scene file, TOML or JSON; or data of which all is shown from the south: an elevation model, a folder of its tiles, a city, a mesh, a
-    /// molecule or a volume; - = standard input
-    scene: PathBuf,
+    /// Scene file, TOML or JSON; or data of which all is shown from the south: elevation models or folders of their tiles in any order, routes,
+    /// areas and points on them, cities, meshes, molecules, volumes; - = standard input
+    #[arg(required = true, value_name = "SCENE|DATA")]
+    scene: Vec<PathBuf>,
     /// Output: PNG, TIFF, JPEG, WebP, SVG or PDF, as its name ends, and OUT.png.json, its record; - = a PNG on standard output alone
     #[arg(short, long, value_name = "OUT.png")]
     out: PathBuf,
@@ -39,7 +40,7 @@ pub(crate) fn render(args: &RenderArgs, context: &Context) -> anyhow::Result<Goa
     if is_stdout(out) {
         files.clear();
     }
-    outputs::check(&files, std::slice::from_ref(&args.scene), context)?;
+    outputs::check(&files, &args.scene, context)?;
     let (session, request, said) = asked::opened(source, asked, context.options(Needs::Everything, None))?;
     outputs::check(&files, &session.input_paths(), context)?;
     let request = PictureOptions { vectors: vectors(out, args.vectors_only), ..context.running(request) };

@@ -113,7 +113,7 @@ fn in_options(error: &BelvedereError) -> String {
         }
         BelvedereError::Document(DocumentError::OtherKind { path, wanted: DocumentKind::Scene, .. }) => {
             let file = path.display();
-            match scene_of_data(path) {
+            match scene_of_data(std::slice::from_ref(path)) {
                 Ok(Some(source)) => {
                     format!("{error}; for a scene of it: belvedere show {file} -o {}.toml", source.document.title)
                 }
@@ -227,8 +227,13 @@ impl Context {
     }
 
     /// Opens a scene, or data that can be drawn without one.
-    pub(crate) fn open_drawable(&self, input: &Path, said: &OfData, options: &OpenOptions) -> anyhow::Result<Session> {
-        Ok(Session::from_document(self.stdin.drawable(input, said)?, options)?)
+    pub(crate) fn open_drawable(
+        &self,
+        input: &PathBuf,
+        said: &OfData,
+        options: &OpenOptions,
+    ) -> anyhow::Result<Session> {
+        Ok(Session::from_document(self.stdin.drawable(std::slice::from_ref(input), said)?, options)?)
     }
 
     /// The options of the run.

@@ -32,8 +32,14 @@ impl Stdin {
     }
 
     /// A scene, or data that can be drawn without one, of which something is said.
-    pub(crate) fn drawable(&self, path: &Path, said: &OfData) -> anyhow::Result<SourceDocument> {
-        if is_stdin(path) { self.scene(path) } else { Ok(scene_or_data(path, said)?) }
+    pub(crate) fn drawable(&self, paths: &[PathBuf], said: &OfData) -> anyhow::Result<SourceDocument> {
+        match paths {
+            [path] if is_stdin(path) => self.scene(path),
+            paths => {
+                ensure!(!paths.iter().any(|path| is_stdin(path)), "-: standard input is a scene, which is drawn alone");
+                Ok(scene_or_data(paths, said)?)
+            }
+        }
     }
 
     /// A file of data: itself, or one that holds standard input.

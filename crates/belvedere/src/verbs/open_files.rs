@@ -149,19 +149,38 @@ fn whole(layers: Vec<LayerDoc>, folders: Vec<PathBuf>) -> SourceDocument {
 ///
 /// # Errors
 /// As [`scene_file::read`] and [`scene_of_data`]; [`BelvedereError::Argument`] where something is said of a scene file, which says it itself,
-/// or of data that have no such thing.
-pub fn scene_or_data(path: &Path, said: &OfData) -> Result<SourceDocument, BelvedereError> {
-    match scene_file::read(path) {
+/// or of data that have no such thing; [`BelvedereError::Target`] for a scene file among several files.
+pub fn scene_or_data(paths: &[PathBuf], said: &OfData) -> Result<SourceDocument, BelvedereError> {
+    let (read, path) = match paths {
+        [path] => (scene_file::read(path), path),
+        paths => match paths.iter().find(|path| scene_file::read(path).is_ok()) {
+            Some(path) => {
+                let text = format!("{} is a scene file, which is drawn alone; name its data in it", path.display());
+                return Err(BelvedereError::Target(text));
+            }
+            None => {
+                let first = paths.first().ok_or(BelvedereError::NoFeatures)?;
+                (scene_file::read(first), first)
+            }
+        },
+    };
+    match read {
         Err(error) => {
-            let mut source = scene_of_data(path)?.ok_or(error)?;
+            let found = scene_of_data(paths)?;
+            let mut source = found.ok_or_else(|| if paths.len() > 1 { undrawable(paths) } else { error.into() })?;
             say_of_data(&mut source.document, said)?;
             Ok(source)
         }
         Ok(source) => match given_of(said, &OfData::OPTIONS)[..] {
             [] => Ok(source),
-            ref options => Err(not_said(options, "for data alone, and a scene file says it itself")),
+            ref options => Err(not_said(options, &format!("for data alone, and {} says it itself", path.display()))),
         },
     }
+}
+
+fn undrawable(paths: &[PathBuf]) -> BelvedereError {
+    let names: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+    BelvedereError::Target(format!("{} make no picture together; {REMEDY}", names.join(", ")))
 }
 
 fn not_said(options: &[&'static str], what: &str) -> BelvedereError {
@@ -197,33 +216,48 @@ fn say_of_data(document: &mut Document, said: &OfData) -> Result<(), BelvedereEr
     Ok(())
 }
 
-/// The scene of one file of data that can be drawn without others, seen from the south: an elevation model, a folder of its tiles, a city, a
-/// mesh, a molecule, a volume, or a built-in one. `None` for scene files and all other data.
+/// The scene of data that can be drawn without a scene file, seen from the south: elevation models and folders of their tiles, which are one
+/// terrain; routes, areas and points on it; cities, meshes, molecules, volumes, and built-in ones. `None` for scene files, for data of
+/// other kinds, and for features without terrain.
 ///
 /// # Errors
 /// [`BelvedereError`] of a file that cannot be read.
-pub fn scene_of_data(path: &Path) -> Result<Option<SourceDocument>, BelvedereError> {
-    let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
+pub fn scene_of_data(paths: &[PathBuf]) -> Result<Option<SourceDocument>, BelvedereError> {
     let mut roots = Roots::default();
-    // A file that is not there is told by whoever reads it as a scene.
-    let Ok(file) = locate(name, &mut roots) else { return Ok(None) };
-    let reader = match file.strip_prefix("builtin:") {
-        Some(built_in) if ["massif", "canyon"].iter().any(|ground| built_in.starts_with(ground)) => {
-            Some(Reader::Terrain)
+    let (mut tiles, mut layers, mut features) = (Vec::new(), Vec::new(), Vec::new());
+    for path in paths {
+        let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
+        // A file that is not there is told by whoever reads it as a scene.
+        let Ok(file) = locate(name, &mut roots) else { return Ok(None) };
+        let known = match file.strip_prefix("builtin:") {
+            Some(_) => None,
+            None => Some(Known::of(Path::new(&file), &Arrays::default())?),
+        };
+        let built_in_ground = ["builtin:massif", "builtin:canyon"].iter().any(|ground| file.starts_with(ground));
+        match (known.as_ref().map(|known| known.reader), known) {
+            (None, _) if built_in_ground => tiles.push(file),
+            (None, _) => layers.push(layer(Path::new(&file), Some(Reader::Mesh), &layers)?),
+            (Some(Some(Reader::Terrain)), _) => {
+                let of_file = ground_files(&file)?;
+                tiles.extend(of_file.iter().map(|tile| locate(tile, &mut roots)).collect::<Result<Vec<_>, _>>()?);
+            }
+            (Some(Some(Reader::Features)), Some(known)) => features.push(known),
+            (Some(None), _) => return Ok(None),
+            (Some(reader), _) => layers.push(layer(Path::new(&file), reader, &layers)?),
         }
-        Some(_) => Some(Reader::Mesh),
-        None => Known::of(Path::new(&file), &Arrays::default())?.reader,
-    };
-    let layer = match reader {
-        Some(Reader::Terrain) => {
-            let tiles = ground_files(&file)?.iter().map(|tile| locate(tile, &mut roots)).collect::<Result<_, _>>()?;
-            ground(tiles)
-        }
-        Some(Reader::City | Reader::Mesh | Reader::Molecule | Reader::Volume) => layer(Path::new(&file), reader, &[])?,
-        Some(Reader::Features) | None => return Ok(None),
-    };
-    let mut source = whole(vec![layer], roots.allowed);
-    let title = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    }
+    if tiles.is_empty() && !features.is_empty() {
+        return Ok(None);
+    }
+    if !tiles.is_empty() {
+        layers.insert(0, ground(tiles));
+    }
+    for known in &features {
+        layers.push(features_of(known, &layers)?);
+    }
+    let mut source = whole(layers, roots.allowed);
+    let title = paths.first().map(|path| path.file_name().unwrap_or(path.as_os_str()).to_string_lossy());
+    let title = title.unwrap_or_default();
     source.document.title = title.trim_start_matches("builtin:").split(['.', '?']).next().unwrap_or_default().into();
     Ok(Some(source))
 }

@@ -91,7 +91,7 @@ fn a_camera_that_is_given_stays_and_a_field_of_view_that_is_given_too() {
 
 /// How far outside its picture, in shares of half of it, the farthest point lies of those that must be in it, seen alone from a file.
 fn farthest(file: &Path, wanted: &dyn Fn(&Session) -> Vec<DVec3>) -> f64 {
-    let source = scene_of_data(file).expect("read").expect("a scene");
+    let source = scene_of_data(&[file.to_path_buf()]).expect("read").expect("a scene");
     let session = Session::from_document(source, &OpenOptions::default()).expect("opened");
     let pinhole = session.view().pinhole();
     let half = pinhole.center_px();

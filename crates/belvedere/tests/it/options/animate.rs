@@ -10,7 +10,7 @@ use belvedere::verbs::open_files::scene_or_data;
 use belvedere::{BelvedereError, OpenOptions, Session};
 use serde_json::{Value, json};
 use std::cell::Cell;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Options that another test tries.
 const ELSEWHERE: [(&str, &str); 5] = [
@@ -58,7 +58,7 @@ fn rows() -> Vec<(&'static str, Does)> {
 /// The record of a film, and the bytes of its frames.
 fn filmed(scene: &str, out: &Path, asked: &Value) -> Result<(f64, Vec<Vec<u8>>), BelvedereError> {
     let asked: Animate = read(&asked.to_string()).expect("a request");
-    let source = scene_or_data(Path::new(scene), &asked.data)?;
+    let source = scene_or_data(&[PathBuf::from(scene)], &asked.data)?;
     let (sheet, image) = paper((&asked.paper, asked.drawing.size), &source.document)?;
     let furniture = Some(asked.furnishing.wish());
     let session =

@@ -10,7 +10,7 @@ use belvedere::verbs::measure::{MeasureOptions, measure};
 use belvedere::verbs::open_files::scene_or_data;
 use belvedere::{BelvedereError, OpenOptions, Session};
 use serde_json::{Value, json};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 #[test]
 fn every_option_of_measure_changes_its_answer() {
@@ -43,7 +43,7 @@ fn every_option_of_export_changes_its_answer_or_is_refused_with_a_reason() {
     ]);
     try_all(&options::<Export>(), &[], rows, &json!({}), |asked| {
         let asked: Export = read(&asked.to_string()).expect("a request");
-        let source = scene_or_data(Path::new(&scene), &asked.data)?;
+        let source = scene_or_data(&[PathBuf::from(&scene)], &asked.data)?;
         let session = Session::from_document(source, &OpenOptions { image: asked.size, ..OpenOptions::default() })?;
         Ok::<_, BelvedereError>(export(&session, &ExportOptions::of(&asked))?.glb)
     });

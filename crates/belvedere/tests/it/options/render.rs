@@ -7,7 +7,7 @@ use belvedere::verbs::asked::opened;
 use belvedere::verbs::open_files::scene_or_data;
 use belvedere::{BelvedereError, OpenOptions};
 use serde_json::{Value, json};
-use std::path::Path;
+use std::path::PathBuf;
 
 /// Options that another test tries.
 const ELSEWHERE: [(&str, &str); 4] = [
@@ -66,7 +66,7 @@ type Drawn = (usize, Vec<[u8; 3]>, Option<Vec<[u8; 3]>>, String);
 
 fn drawn(scene: &str, asked: &Value) -> Result<Drawn, BelvedereError> {
     let asked: Render = read(&asked.to_string()).expect("a request");
-    let source = scene_or_data(Path::new(scene), &asked.data)?;
+    let source = scene_or_data(&[PathBuf::from(scene)], &asked.data)?;
     let (session, options, _) = opened(source, &asked, OpenOptions::default())?;
     let picture = session.render(&options)?;
     let files = format!("{:?} {:?} {:?}", picture.sidecar.print, options.aux, options.aux_format);
