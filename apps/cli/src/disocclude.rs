@@ -7,7 +7,6 @@ use crate::report::{Context, is_stdout, print};
 use belvedere::Needs;
 use belvedere::request::Disocclude;
 use belvedere::verbs::disocclude::{self as verb, DisoccludeFiles};
-use belvedere::verbs::moved::MovedFeatures;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -71,7 +70,6 @@ fn ready(files: &DisoccludeFiles) -> anyhow::Result<()> {
     }
     if let Some(path) = &files.features {
         named(path, &["geojson", "json", "gpkg"], "moved features are written as GeoJSON and GeoPackage")?;
-        MovedFeatures::check_name(path)?;
     }
     anyhow::ensure!(!is_stdout(&files.out), "-o -: an elevation model is written to a file; name one");
     Ok(())

@@ -193,7 +193,6 @@ fn displace_features(args: &DisplaceArgs, context: &Context) -> anyhow::Result<G
     let out = outputs::file(args.out.as_ref());
     if let Some(out) = out {
         named(out, &["geojson", "json", "gpkg"], "moved features are written as GeoJSON and GeoPackage")?;
-        MovedFeatures::check_name(out)?;
     }
     let session = context.open(&args.scene, Needs::Everything, None)?;
     ready(out, &session.inputs().iter().map(|file| file.path.as_path()).collect::<Vec<_>>(), context)?;

@@ -98,7 +98,6 @@ impl CoordinateSystem {
     }
 
     /// Its well-known text (OGC 1), if its EPSG code is a usual one.
-    #[cfg(feature = "geopackage")]
     pub(crate) fn well_known_text(&self) -> Option<&'static str> {
         self.epsg.and_then(tables::well_known_text)
     }

@@ -89,11 +89,6 @@ const PLACED: &str = "gdal_translate -a_srs -a_ullr makes it a GeoTIFF";
 const WHOLE: &str = "give the .shp file beside it";
 const UNPACK: &str = "unpack it, or pack it as ZIP or gzip";
 
-#[cfg(feature = "geopackage")]
-const GEOPACKAGE: Option<Reader> = Some(Features);
-#[cfg(not(feature = "geopackage"))]
-const GEOPACKAGE: Option<Reader> = None;
-
 const fn read(
     reader: Reader,
     name: &'static str,
@@ -193,14 +188,7 @@ pub const FORMATS: &[Format] = &[
         "gdal_translate turns tiles of pictures into GeoTIFF, ogr2ogr those of features into GeoJSON",
     ),
     unread("DICOM", VOXELS, &[".dcm"], &[At(128, b"DICM")], AS_NRRD),
-    Format {
-        name: "GeoPackage",
-        holds: "map features in a database",
-        endings: &[".gpkg"],
-        marks: &[At(68, b"GPKG"), At(68, b"GP10")],
-        reader: GEOPACKAGE,
-        meanwhile: "a program built with the cargo feature geopackage reads it, and ogr2ogr or QGIS turn it into GeoJSON",
-    },
+    read(Features, "GeoPackage", "map features in a database", &[".gpkg"], &[At(68, b"GPKG"), At(68, b"GP10")]),
     unread("SQLite", "map features in a database", &[".sqlite"], &[At(0, b"SQLite format 3\0")], AS_GEOJSON),
     read(City, "OSM PBF", "a map of OpenStreetMap", &[".pbf"], &[At(6, b"OSMHeader")]),
     read(City, "OSM XML", "a map of OpenStreetMap", &[".osm"], &[Root("osm")]),

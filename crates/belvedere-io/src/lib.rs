@@ -30,6 +30,7 @@ pub mod ramp;
 pub mod raster;
 mod recognise;
 mod shared_bytes;
+mod sqlite;
 pub mod symbol;
 mod table;
 pub mod terrain;

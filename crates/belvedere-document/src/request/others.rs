@@ -28,7 +28,7 @@ pub struct Measure {
 #[serde(default)]
 pub struct Generalise {
     /// Buildings with their heights or storeys: CityJSON, CityGML, OSM PBF, or footprints as GeoJSON, shapefile or
-    /// GeoPackage (FILE.gpkg?table=NAME, where they are built in)
+    /// GeoPackage (FILE.gpkg?table=NAME)
     #[cfg_attr(feature = "clap", arg())]
     pub city: String,
     /// Streets, railways, rivers and land cover, if the city file has none: GeoJSON, shapefiles, OSM PBF,

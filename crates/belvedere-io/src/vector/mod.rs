@@ -4,7 +4,6 @@ mod area_kind;
 mod array;
 mod collected;
 mod geojson;
-#[cfg(feature = "geopackage")]
 mod geopackage;
 mod gpx;
 mod names;
@@ -15,7 +14,6 @@ mod rings;
 mod shapefile;
 mod text;
 
-#[cfg(feature = "geopackage")]
 pub use geopackage::{FeatureTable, write_geopackage};
 
 pub use area_kind::{AreaKind, area_kind};
@@ -32,7 +30,7 @@ use crate::packed::content_for;
 use crate::recognise::{explain, not_a};
 use crate::table::split_table;
 use crate::text::text_of;
-use crate::{InputFile, IoError, Loaded, budget, fs};
+use crate::{InputFile, IoError, Loaded, budget, fs, sqlite};
 use belvedere_scene::FeatureStyle;
 use glam::DVec2;
 use phantom::Phantoms;
@@ -207,11 +205,10 @@ fn load_known(path: &Path, other: Other<'_>) -> Result<Loaded<Vectors>, IoError>
     if let Some(loaded) = other(path, &bytes)? {
         return Ok(loaded.with_file(file));
     }
-    #[cfg(feature = "geopackage")]
-    if bytes.starts_with(geopackage::MAGIC) {
+    if bytes.starts_with(sqlite::MAGIC) {
         return Ok(geopackage::load(path, table, bytes)?.with_file(file));
     }
-    if let Some(table) = table.filter(|_| !bytes.starts_with(b"SQLite format 3\0")) {
+    if let Some(table) = table {
         return Err(IoError::format(
             path,
             format!("is no database, so it has no table \"{table}\"; it is damaged or something else"),

@@ -10,7 +10,6 @@ mod city_osm;
 mod city_pictures;
 mod crs;
 mod drape;
-#[cfg(feature = "geopackage")]
 mod geopackage;
 mod geotiff;
 mod geotiff_cloud;

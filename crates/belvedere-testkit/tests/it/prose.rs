@@ -9,9 +9,7 @@ use syn::visit::{self, Visit};
 use syn::{Attribute, Expr, ExprMethodCall, ItemFn, ItemMod, Lit, LitStr, Macro, Token, token};
 
 /// Texts of libraries that may name an option, by a part of them.
-const OPTIONS: [&str; 2] = [
-    // Of cargo, which builds the program.
-    "build it with --features geopackage",
+const OPTIONS: [&str; 1] = [
     // Title of the schema of what the program prints.
     "belvedere {verb} --json",
 ];

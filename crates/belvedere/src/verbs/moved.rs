@@ -142,28 +142,11 @@ impl MovedFeatures {
         path.extension().is_some_and(|e| e.eq_ignore_ascii_case(GEOPACKAGE))
     }
 
-    /// Refuses names of GeoPackages where this program cannot write them. Ask before long work.
-    ///
-    /// # Errors
-    /// [`BelvedereError::Output`].
-    pub fn check_name(path: &Path) -> Result<(), BelvedereError> {
-        if Self::is_geopackage(path) && !cfg!(feature = "geopackage") {
-            let reason =
-                "is a GeoPackage, which this program was built without; name the output .geojson, or build it with \
-                          --features geopackage"
-                    .into();
-            return Err(BelvedereError::Output { path: path.to_owned(), reason });
-        }
-        Ok(())
-    }
-
     /// Writes a GeoPackage where the name ends in `.gpkg`, else GeoJSON.
     ///
     /// # Errors
-    /// [`BelvedereError::Io`], [`BelvedereError::Output`] for a GeoPackage that this program cannot write.
+    /// [`BelvedereError::Io`].
     pub fn write(&self, path: &Path, overwrite: bool) -> Result<(), BelvedereError> {
-        Self::check_name(path)?;
-        #[cfg(feature = "geopackage")]
         if Self::is_geopackage(path) {
             return self.write_geopackage(path, overwrite);
         }
@@ -212,7 +195,6 @@ impl MovedFeatures {
     }
 
     /// A table for each layer, in the scene's coordinate system; the true positions are a column of JSON text.
-    #[cfg(feature = "geopackage")]
     fn write_geopackage(&self, path: &Path, overwrite: bool) -> Result<(), BelvedereError> {
         use belvedere_io::vector::{FeatureTable, write_geopackage};
         use belvedere_io::{Geometry, VectorFeature, Vertex};

@@ -4,7 +4,7 @@ use super::open_files::open_trusted;
 use crate::guard::guarded;
 use crate::placed::{Place, PlacedDocument};
 use crate::{BelvedereError, DocumentError, Trust, output};
-use belvedere_io::{InputFile, IoError, atomic, fs, split_table};
+use belvedere_io::{InputFile, IoError, atomic, fs, join_table, split_table};
 use belvedere_scene::Progress;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -247,13 +247,14 @@ impl Layout {
         Self { folders, files: BTreeMap::new() }
     }
 
-    /// Name of a file in the bundle, relative to the folder of the scene.
+    /// Name of a file in the bundle, relative to the folder of the scene, with its table.
     fn place(&mut self, file: &Path) -> Result<String, BelvedereError> {
-        let (file, _) = split_table(file);
-        if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("gpkg")) {
-            let reason = "is a GeoPackage, which pages do not read; turn it into GeoJSON, as by ogr2ogr";
-            return Err(IoError::format(file, reason).into());
-        }
+        let (file, table) = split_table(file);
+        let packed = PathBuf::from(self.place_file(file)?);
+        Ok(join_table(packed, table).display().to_string())
+    }
+
+    fn place_file(&mut self, file: &Path) -> Result<String, BelvedereError> {
         let real = fs::canonicalize(file).map_err(|e| IoError::os(file, e))?;
         if let Some(packed) = self.files.get(&real) {
             return Ok(packed.clone());

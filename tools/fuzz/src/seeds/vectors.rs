@@ -1,7 +1,9 @@
 //! Lines, areas and points.
 
 use super::{CORNER, degrees, square, walk};
-use rusqlite::{Connection, MAIN_DB, params};
+use belvedere::io::crs::CoordinateSystem;
+use belvedere::io::vector::{FeatureTable, write_geopackage};
+use belvedere::io::{Geometry, VectorFeature, Vertex};
 
 fn trackpoints(name: &str) -> String {
     let one = |(i, [x, y]): (usize, [f64; 2])| {
@@ -143,23 +145,17 @@ pub fn dbf() -> Vec<u8> {
 
 /// A package with a table of lines.
 pub fn geopackages() -> Vec<Vec<u8>> {
-    let mut database = Connection::open_in_memory().expect("memory");
-    let tables = "PRAGMA page_size = 512; PRAGMA application_id = 1196444487;
-        CREATE TABLE gpkg_contents (table_name TEXT PRIMARY KEY, data_type TEXT, identifier TEXT, srs_id INTEGER);
-        CREATE TABLE gpkg_geometry_columns (table_name TEXT, column_name TEXT, geometry_type_name TEXT, srs_id INTEGER, z INTEGER, m INTEGER);
-        CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT, srs_id INTEGER PRIMARY KEY, organization TEXT, organization_coordsys_id INTEGER, definition TEXT);
-        INSERT INTO gpkg_spatial_ref_sys VALUES ('UTM 32N', 32632, 'EPSG', 32632, 'undefined');
-        CREATE TABLE ways (fid INTEGER PRIMARY KEY, geom BLOB, name TEXT, height REAL);
-        INSERT INTO gpkg_contents VALUES ('ways', 'features', 'ways', 32632);
-        INSERT INTO gpkg_geometry_columns VALUES ('ways', 'geom', 'GEOMETRY', 32632, 0, 0);";
-    database.execute_batch(tables).expect("tables");
-    let mut blob =
-        [b"GP\0\x01".to_vec(), 32632i32.to_le_bytes().to_vec(), vec![1], 2u32.to_le_bytes().to_vec()].concat();
-    blob.extend(12u32.to_le_bytes());
-    blob.extend(le(&[], &flat()));
-    let insert = "INSERT INTO ways (geom, name, height) VALUES (?1, ?2, 12.5)";
-    for name in ["Weg", "Bach"] {
-        database.execute(insert, params![blob, name]).expect("a row");
-    }
-    vec![database.serialize(MAIN_DB).expect("bytes").to_vec()]
+    let line: Vec<Vertex> = flat().chunks(2).map(|p| Vertex { xy: [p[0], p[1]].into(), z: None }).collect();
+    let way = |name: &str| VectorFeature {
+        name: name.into(),
+        properties: [("name".to_owned(), name.to_owned())].into(),
+        style: None,
+        geometry: Geometry::Lines(vec![line.clone()]),
+    };
+    let ways = FeatureTable { name: "ways".into(), features: vec![way("Weg"), way("Bach")] };
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("a.gpkg");
+    let system = CoordinateSystem::from_epsg(32632).expect("a system");
+    write_geopackage(&path, &[ways], &system, false).expect("a package");
+    vec![std::fs::read(path).expect("bytes")]
 }

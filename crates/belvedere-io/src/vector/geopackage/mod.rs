@@ -1,24 +1,23 @@
-//! GeoPackage (OGC 12-128r19): tables of features in an SQLite database. Behind the feature `geopackage`, for SQLite is a C library.
+//! GeoPackage (OGC 12-128r19): tables of features in an SQLite database.
 //!
-//! The file is read once, whole, and the database opened in memory: nothing is written beside it, and the bytes read are those that were hashed.
+//! The file is read once, whole: nothing is written beside it, and the bytes read are those that were hashed.
 
 mod blob;
 mod database;
+mod wkb;
 mod write;
 
 pub use write::{FeatureTable, write_geopackage};
 
 use super::{Geometry, VectorFeature, Vectors, name_of, not_degrees, shorten, vertex};
 use crate::crs::{CoordinateSystem, CrsError, Transform};
+use crate::sqlite::Value;
 use crate::{IoError, Loaded, fs};
 use belvedere_core::{Warning, WarningKind};
 use blob::Odd;
-use database::{Database, Table, Value};
+use database::{Database, Table};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-
-/// First bytes of SQLite files.
-pub(super) const MAGIC: &[u8] = b"SQLite format 3\0";
 
 /// Reads a table of features, or all.
 ///
@@ -34,6 +33,7 @@ pub(super) fn load(path: &Path, table: Option<&str>, bytes: Vec<u8>) -> Result<L
     for table in &tables {
         let (mut read, odd) = rows(&database, table).map_err(|e| fail(format!("table \"{}\"{e}", table.name)))?;
         warnings.extend(odd.warnings(&table.name));
+        warnings.extend(computed(&database, table).map_err(|e| fail(format!("table \"{}\"{e}", table.name)))?);
         let own = system_of(&database, table, &read, &mut warnings).map_err(fail)?;
         let common = crs.get_or_insert_with(|| own.clone());
         if own != *common {
@@ -68,6 +68,17 @@ pub(super) fn load(path: &Path, table: Option<&str>, bytes: Vec<u8>) -> Result<L
     ))
 }
 
+/// Which columns of a table the file does not hold.
+fn computed(database: &Database, table: &Table) -> Result<Option<Warning>, String> {
+    let computed = database.computed(table)?;
+    let text = format!(
+        "columns of table \"{}\" that are computed when they are asked for were not read: {}; make them STORED",
+        table.name,
+        computed.join(", ")
+    );
+    Ok((!computed.is_empty()).then(|| Warning::new(WarningKind::Ignored, text).with("columns", computed.len() as f64)))
+}
+
 /// Whether a write-ahead log beside the file holds changes that are not yet in it.
 fn unwritten(path: &Path) -> Vec<Warning> {
     let beside = |ending: &str| {
@@ -98,14 +109,14 @@ fn chosen(tables: Vec<Table>, wanted: Option<&str>) -> Result<Vec<Table>, String
 /// The features of a table, and the oddities among them.
 fn rows(database: &Database, table: &Table) -> Result<(Vec<VectorFeature>, Odd), String> {
     let (mut features, mut odd) = (Vec::new(), Odd::default());
-    database.each_row(table, |place, blob, values| {
-        let Some(blob) = blob else {
+    database.each_row(table, |row| {
+        let Some(blob) = row.geometry else {
             odd.without_geometry += 1;
             return Ok(());
         };
-        let geometries = blob::geometries(blob, table.srs_id, &mut odd).map_err(|e| format!(", {place}: {e}"))?;
+        let geometries = blob::geometries(blob, table.srs_id, &mut odd).map_err(|e| format!(", {}: {e}", row.place))?;
         let properties: BTreeMap<String, String> =
-            values.iter().filter_map(|(name, value)| property(name, value)).collect();
+            row.values.iter().filter_map(|(name, value)| property(name, value)).collect();
         let name = name_of(&properties);
         let feature = |geometry: Geometry| VectorFeature {
             style: None,
@@ -121,7 +132,7 @@ fn rows(database: &Database, table: &Table) -> Result<(Vec<VectorFeature>, Odd),
 
 fn property(name: &str, value: &Value<'_>) -> Option<(String, String)> {
     let text = match value {
-        Value::Text(text) => shorten(&String::from_utf8_lossy(text)),
+        Value::Text(text) => shorten(text),
         Value::Integer(number) => number.to_string(),
         Value::Real(number) => number.to_string(),
         Value::Null | Value::Blob(_) => return None,

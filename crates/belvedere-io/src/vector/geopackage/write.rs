@@ -1,12 +1,12 @@
-//! GeoPackages of features: one table for each layer, made by SQLite in memory and written whole.
+//! GeoPackages of features: one table for each layer.
 
 use super::{Geometry, VectorFeature};
 use crate::IoError;
 use crate::atomic::write_atomic;
 use crate::crs::CoordinateSystem;
+use crate::sqlite::{NewDatabase, NewTable, Value};
 use crate::vector::Vertex;
 use glam::DVec2;
-use rusqlite::{Connection, MAIN_DB, params};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -38,21 +38,16 @@ pub fn write_geopackage(
 
 /// Number of a plane without georeference.
 const UNDEFINED_PLANE: i32 = -1;
-/// What every GeoPackage has.
-const TABLES: &str = "PRAGMA application_id = 1196444487;
-PRAGMA user_version = 10300;
-CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT NOT NULL, srs_id INTEGER NOT NULL PRIMARY KEY, organization TEXT NOT NULL,
-  organization_coordsys_id INTEGER NOT NULL, definition TEXT NOT NULL, description TEXT);
-CREATE TABLE gpkg_contents (table_name TEXT NOT NULL PRIMARY KEY, data_type TEXT NOT NULL, identifier TEXT UNIQUE, description TEXT DEFAULT '',
+const LAST_CHANGE: &str = "1970-01-01T00:00:00.000Z";
+const SYSTEMS: &str = "CREATE TABLE gpkg_spatial_ref_sys (srs_name TEXT NOT NULL, srs_id INTEGER NOT NULL PRIMARY KEY, organization TEXT NOT NULL,
+  organization_coordsys_id INTEGER NOT NULL, definition TEXT NOT NULL, description TEXT)";
+const CONTENTS: &str = "CREATE TABLE gpkg_contents (table_name TEXT NOT NULL PRIMARY KEY, data_type TEXT NOT NULL, identifier TEXT UNIQUE, description TEXT DEFAULT '',
   last_change DATETIME NOT NULL DEFAULT (strftime('%Y-%m-%dT%H:%M:%fZ','now')), min_x DOUBLE, min_y DOUBLE, max_x DOUBLE, max_y DOUBLE,
-  srs_id INTEGER, CONSTRAINT fk_gc_r_srs_id FOREIGN KEY (srs_id) REFERENCES gpkg_spatial_ref_sys(srs_id));
-CREATE TABLE gpkg_geometry_columns (table_name TEXT NOT NULL, column_name TEXT NOT NULL, geometry_type_name TEXT NOT NULL,
+  srs_id INTEGER, CONSTRAINT fk_gc_r_srs_id FOREIGN KEY (srs_id) REFERENCES gpkg_spatial_ref_sys(srs_id))";
+const COLUMNS: &str = "CREATE TABLE gpkg_geometry_columns (table_name TEXT NOT NULL, column_name TEXT NOT NULL, geometry_type_name TEXT NOT NULL,
   srs_id INTEGER NOT NULL, z TINYINT NOT NULL, m TINYINT NOT NULL, CONSTRAINT pk_geom_cols PRIMARY KEY (table_name, column_name),
   CONSTRAINT uk_gc_table_name UNIQUE (table_name), CONSTRAINT fk_gc_tn FOREIGN KEY (table_name) REFERENCES gpkg_contents(table_name),
-  CONSTRAINT fk_gc_srs FOREIGN KEY (srs_id) REFERENCES gpkg_spatial_ref_sys(srs_id));
-INSERT INTO gpkg_spatial_ref_sys VALUES ('Undefined Cartesian SRS', -1, 'NONE', -1, 'undefined', NULL),
-  ('Undefined geographic SRS', 0, 'NONE', 0, 'undefined', NULL);";
-const LAST_CHANGE: &str = "1970-01-01T00:00:00.000Z";
+  CONSTRAINT fk_gc_srs FOREIGN KEY (srs_id) REFERENCES gpkg_spatial_ref_sys(srs_id))";
 
 fn encode(tables: &[FeatureTable], crs: &CoordinateSystem) -> Result<Vec<u8>, String> {
     let srs_id = match crs.epsg() {
@@ -60,63 +55,105 @@ fn encode(tables: &[FeatureTable], crs: &CoordinateSystem) -> Result<Vec<u8>, St
         Some(code) => i32::try_from(code).map_err(|e| e.to_string())?,
         None => return Err(format!("coordinate system {crs} has no EPSG code to write; write GeoJSON")),
     };
-    let made = || {
-        let mut connection = Connection::open_in_memory()?;
-        connection.execute_batch(TABLES)?;
-        // Every GeoPackage lists WGS 84.
-        let wgs84 = CoordinateSystem::wgs84().ok();
-        for system in wgs84.iter().chain(Some(crs).filter(|c| c.epsg() != Some(4326))) {
-            let (Some(code), Some(text)) = (system.epsg(), system.well_known_text()) else { continue };
-            let sql = "INSERT INTO gpkg_spatial_ref_sys VALUES (?1, ?2, 'EPSG', ?2, ?3, NULL)";
-            connection.execute(sql, params![system.name(), code, text])?;
-        }
-        let transaction = connection.transaction()?;
-        tables.iter().try_for_each(|table| fill(&transaction, table, srs_id))?;
-        transaction.commit()?;
-        Ok(connection.serialize(MAIN_DB)?.to_vec())
-    };
     if srs_id > 0 && crs.well_known_text().is_none() {
         return Err(format!("the well-known text of {crs}, which a GeoPackage holds, is not known; write GeoJSON"));
     }
-    made().map_err(|e: rusqlite::Error| format!("cannot be written: SQLite says \"{e}\""))
+    let mut names =
+        BTreeSet::from(["gpkg_spatial_ref_sys", "gpkg_contents", "gpkg_geometry_columns"].map(str::to_owned));
+    for table in tables {
+        let name = table.name.to_ascii_lowercase();
+        if name.starts_with("sqlite_") || !names.insert(name) {
+            return Err(format!(
+                "cannot be written: table \"{}\" already exists, or is of SQLite; rename it",
+                table.name
+            ));
+        }
+    }
+    let mut database = NewDatabase { application: *b"GPKG", version: 10_300, tables: vec![systems(crs)] };
+    database.tables.push(NewTable {
+        name: "gpkg_contents".into(),
+        sql: CONTENTS.into(),
+        rows: (1..).zip(tables.iter().map(|table| contents(table, srs_id))).collect(),
+        unique: vec![vec![0], vec![2]],
+    });
+    database.tables.push(NewTable {
+        name: "gpkg_geometry_columns".into(),
+        sql: COLUMNS.into(),
+        rows: (1..).zip(tables.iter().map(|table| column(table, srs_id))).collect(),
+        unique: vec![vec![0, 1], vec![0]],
+    });
+    for table in tables {
+        database.tables.push(features(table, srs_id)?);
+    }
+    Ok(database.encode())
 }
 
-/// A name as SQL writes it.
-fn quoted(name: &str) -> String {
-    format!("\"{}\"", name.replace('"', "\"\""))
+fn text(text: &str) -> Value<'_> {
+    Value::Text(text.into())
 }
 
-fn fill(connection: &Connection, table: &FeatureTable, srs_id: i32) -> rusqlite::Result<()> {
-    let columns: BTreeSet<&String> = table.features.iter().flat_map(|f| f.properties.keys()).collect();
-    let name = quoted(&table.name);
-    let listed: String = columns.iter().map(|c| format!(", {} TEXT", quoted(c))).collect();
-    connection.execute_batch(&format!("CREATE TABLE {name} (fid INTEGER PRIMARY KEY NOT NULL, geom BLOB{listed})"))?;
+/// The table of systems, which lists WGS 84 and the undefined ones in every GeoPackage.
+fn systems(crs: &CoordinateSystem) -> NewTable<'static> {
+    let row = |name: &str, id: i64, organization: &'static str, definition: &'static str| {
+        let name = Value::Text(name.to_owned().into());
+        (id, vec![name, Value::Null, text(organization), Value::Integer(id), text(definition), Value::Null])
+    };
+    let mut rows = vec![
+        row("Undefined Cartesian SRS", UNDEFINED_PLANE.into(), "NONE", "undefined"),
+        row("Undefined geographic SRS", 0, "NONE", "undefined"),
+    ];
+    let wgs84 = CoordinateSystem::wgs84().ok();
+    for system in wgs84.iter().chain(Some(crs).filter(|c| c.epsg() != Some(4326))) {
+        let (Some(code), Some(definition)) = (system.epsg(), system.well_known_text()) else { continue };
+        rows.push(row(system.name(), code.into(), "EPSG", definition));
+    }
+    rows.sort_by_key(|(id, _)| *id);
+    NewTable { name: "gpkg_spatial_ref_sys".into(), sql: SYSTEMS.into(), rows, unique: Vec::new() }
+}
+
+/// The row of a table in the list of contents.
+fn contents(table: &FeatureTable, srs_id: i32) -> Vec<Value<'_>> {
     let [low, high] = extent(&table.features);
-    connection.execute(
-        "INSERT INTO gpkg_contents VALUES (?1, 'features', ?1, '', ?2, ?3, ?4, ?5, ?6, ?7)",
-        params![table.name, LAST_CHANGE, low.x, low.y, high.x, high.y, srs_id],
-    )?;
-    let kind = match table.features.first().map(|f| &f.geometry) {
+    let name = text(&table.name);
+    let mut row = vec![name.clone(), text("features"), name, text(""), text(LAST_CHANGE)];
+    row.extend([low.x, low.y, high.x, high.y].map(Value::Real));
+    row.push(Value::Integer(srs_id.into()));
+    row
+}
+
+/// The row of a table in the list of geometries, which have heights and no measures.
+fn column(table: &FeatureTable, srs_id: i32) -> Vec<Value<'_>> {
+    let mut row = vec![text(&table.name), text("geom"), text(kind(table))];
+    row.extend([srs_id.into(), 1, 0].map(Value::Integer));
+    row
+}
+
+fn kind(table: &FeatureTable) -> &'static str {
+    match table.features.first().map(|f| &f.geometry) {
         Some(Geometry::Lines(_)) => "MULTILINESTRING",
         Some(Geometry::Polygons(_)) => "MULTIPOLYGON",
         Some(Geometry::Points(_)) => "MULTIPOINT",
         None => "GEOMETRY",
-    };
-    connection.execute(
-        "INSERT INTO gpkg_geometry_columns VALUES (?1, 'geom', ?2, ?3, 1, 0)",
-        params![table.name, kind, srs_id],
-    )?;
-    let places: String = (2..columns.len() + 2).map(|i| format!(", ?{i}")).collect();
-    let names: String = columns.iter().map(|c| format!(", {}", quoted(c))).collect();
-    let mut insert = connection.prepare(&format!("INSERT INTO {name} (geom{names}) VALUES (?1{places})"))?;
-    for feature in &table.features {
-        insert.raw_bind_parameter(1, blob(feature, srs_id))?;
-        for (i, column) in columns.iter().enumerate() {
-            insert.raw_bind_parameter(i + 2, feature.properties.get(*column))?;
-        }
-        insert.raw_execute()?;
     }
-    Ok(())
+}
+
+/// The table of a layer.
+fn features(table: &FeatureTable, srs_id: i32) -> Result<NewTable<'_>, String> {
+    let columns: BTreeSet<&String> = table.features.iter().flat_map(|f| f.properties.keys()).collect();
+    let mut names = BTreeSet::from(["fid".to_owned(), "geom".to_owned()]);
+    if let Some(twice) = columns.iter().find(|column| !names.insert(column.to_ascii_lowercase())) {
+        return Err(format!("cannot be written: table \"{}\" has two columns \"{twice}\"; rename one", table.name));
+    }
+    let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
+    let listed: String = columns.iter().map(|c| format!(", {} TEXT", quoted(c))).collect();
+    let sql = format!("CREATE TABLE {} (fid INTEGER PRIMARY KEY NOT NULL, geom BLOB{listed})", quoted(&table.name));
+    let mut rows = Vec::new();
+    for (number, feature) in (1..).zip(&table.features) {
+        let mut row = vec![Value::Null, Value::Blob(blob(feature, srs_id).into())];
+        row.extend(columns.iter().map(|c| feature.properties.get(*c).map_or(Value::Null, |value| text(value))));
+        rows.push((number, row));
+    }
+    Ok(NewTable { name: table.name.clone(), sql, rows, unique: Vec::new() })
 }
 
 /// Smallest and largest position; zeros without a vertex.
