@@ -73,7 +73,7 @@ class Layers:
         """Adds lines on the ground.
 
         * ``lines``: an array ``(n, 2)`` of x, y, a list of them, a dictionary of them by name, GeoJSON, a geometry of shapely, a GeoDataFrame, or the
-          path of a file (GPX, GeoJSON, shapefile). Heights are those of the ground.
+          path of a file (GPX, KML, GeoJSON, shapefile, GeoPackage). Heights are those of the ground.
         * ``crs``: system of the coordinates; by default what the data states, else that of the scene.
         * ``must_see``: whether it is a required feature, for constructors and measures.
         """

@@ -2,6 +2,7 @@
 
 use anyhow::{Context as _, ensure};
 use belvedere::BelvedereError;
+use belvedere::io::formats::{self, Reader};
 use belvedere::request::OfData;
 use belvedere::scene_file::{self, SourceDocument};
 use belvedere::verbs::open_files::scene_or_data;
@@ -46,7 +47,7 @@ impl Stdin {
     pub(crate) fn data(&self, path: &Path) -> anyhow::Result<PathBuf> {
         self.kept(path, |bytes| {
             ending(bytes).context(
-                "-: standard input is no GPX, GeoJSON, CityJSON, CityGML, OpenStreetMap, GeoTIFF or ESRI ASCII; give a file",
+                "-: standard input is no GPX, KML, TCX, GeoJSON, FlatGeobuf, table with coordinates, CityJSON, CityGML, OpenStreetMap, GeoTIFF or ESRI ASCII; give a file",
             )
         })
     }
@@ -120,7 +121,10 @@ fn ending(bytes: &[u8]) -> Option<&'static str> {
         () if has("<gpx") => Some("gpx"),
         () if has("<osm") => Some("osm"),
         () if has("CityModel") => Some("gml"),
-        () => None,
+        () => {
+            let known = formats::readable_content(bytes).filter(|format| format.reader == Some(Reader::Features));
+            known.map(|format| format.endings[0].trim_start_matches('.'))
+        }
     }
 }
 
@@ -134,6 +138,7 @@ mod tests {
         assert_eq!(of("\u{feff}<?xml version='1.0'?>\n<gpx version='1.1'>"), Some("gpx"));
         assert_eq!([of(" {\"type\": 1}"), of("{\"type\":\"CityJSON\"}")], [Some("geojson"), Some("city.json")]);
         assert_eq!([of("NCOLS 3"), of("II*\0"), of("<osm>")], [Some("asc"), Some("tif"), Some("osm")]);
+        assert_eq!([of("<kml/>"), of("lon;lat\n1;2"), of("fgb\u{3}fgb\0")], [Some("kml"), Some("csv"), Some("fgb")]);
         assert_eq!([of("gpx"), of("<html>"), of("")], [None; 3]);
     }
 }

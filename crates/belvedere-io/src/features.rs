@@ -5,7 +5,7 @@ use crate::vector::{self, Vectors};
 use crate::{IoError, Loaded, recognise};
 use std::path::Path;
 
-/// Reads a GPX, GeoJSON, shapefile, file of OpenStreetMap or GeoPackage; the content decides which, not the name.
+/// Reads a GPX, TCX, KML, GeoJSON, shapefile, GeoPackage, FlatGeobuf, table with coordinates or file of OpenStreetMap; the content decides which, not the name.
 ///
 /// * `path`: for a GeoPackage optionally with the wanted table appended, see [`crate::split_table`]; by default all of its tables are read.
 ///

@@ -1,10 +1,11 @@
 //! The table of formats: name, marks in content and file name, and loader.
 
+use crate::columns;
 use crate::text::text_of;
 use quick_xml::{Reader as XmlReader, events::Event};
 use std::path::Path;
 
-use Mark::{At, Both, First, Json, Record, Root, Word};
+use Mark::{At, Both, Columns, First, Json, Record, Root, Word};
 use Reader::{City, Features, Mesh, Molecule, Terrain, Volume};
 
 /// The loader that reads a format.
@@ -57,6 +58,8 @@ enum Mark {
     Json(&'static str),
     /// A line that begins with one of these records, longer than 53 characters.
     Record(&'static [&'static str]),
+    /// A first line that names columns of coordinates.
+    Columns,
 }
 
 /// Number of first bytes that are examined.
@@ -114,7 +117,7 @@ pub const FORMATS: &[Format] = &[
     // Recognised by their first bytes.
     unread("LAS or LAZ", CLOUD, &[".las", ".laz"], &[At(0, b"LASF")], AS_DEM),
     unread("E57", CLOUD, &[".e57"], &[At(0, b"ASTM-E57")], AS_DEM),
-    unread("FlatGeobuf", FEATURES, &[".fgb"], &[At(0, b"fgb\x03")], AS_GEOJSON),
+    read(Features, "FlatGeobuf", FEATURES, &[".fgb"], &[At(0, b"fgb\x03")]),
     unread("HDF5 or netCDF-4", GRIDS, &[".h5", ".hdf5", ".nc4"], &[At(0, b"\x89HDF\r\n\x1a\n")], AS_GEOTIFF),
     unread("netCDF", GRIDS, &[".nc"], &[At(0, b"CDF\x01"), At(0, b"CDF\x02"), At(0, b"CDF\x05")], AS_GEOTIFF),
     unread("GRIB", GRIDS, &[".grib", ".grib2", ".grb"], &[At(0, b"GRIB")], AS_GEOTIFF),
@@ -203,7 +206,8 @@ pub const FORMATS: &[Format] = &[
     unread("VTK XML", MESH_OR_GRID, &[".vtp", ".vtu", ".vtr", ".vts"], &[Root("VTKFile")], AS_PLY),
     read(Volume, "legacy VTK", VOXELS, &[".vtk"], &[First("# vtk DataFile")]),
     read(Volume, "MetaImage", VOXELS, &[".mha", ".mhd"], &[Word("ObjectType = Image")]),
-    unread("KML", FEATURES, &[".kml"], &[Root("kml")], AS_GEOJSON),
+    read(Features, "KML", FEATURES, &[".kml", ".kmz"], &[Root("kml")]),
+    read(Features, "TCX", WATCH, &[".tcx"], &[Root("TrainingCenterDatabase")]),
     unread("COLLADA", TRIANGLES, &[".dae"], &[Root("COLLADA")], AS_GLTF),
     unread("GML", FEATURES, &[".gml"], &[Word("http://www.opengis.net/gml")], AS_GEOJSON),
     unread("USD", TRIANGLES, &[".usd", ".usda", ".usdc", ".usdz"], &[Word("#usda"), At(0, b"PXR-USDC")], AS_GLTF),
@@ -227,6 +231,7 @@ pub const FORMATS: &[Format] = &[
     read(Features, "GPX", FEATURES, &[".gpx"], &[]),
     read(Features, "GeoJSON", FEATURES, &[".geojson", ".geojsonl", ".geojsons", ".ndjson"], &[]),
     read(Features, "shapefile", FEATURES, &[".shp"], &[]),
+    read(Features, "CSV", "rows with coordinates", &[".csv", ".tsv"], &[]),
     read(Mesh, "OBJ", TRIANGLES, &[".obj"], &[]),
     read(Mesh, "PLY", TRIANGLES, &[".ply"], &[]),
     read(Mesh, "STL", TRIANGLES, &[".stl"], &[]),
@@ -246,9 +251,7 @@ pub const FORMATS: &[Format] = &[
     unread("SDF", ATOMS, &[".sdf"], &[], AS_PDB),
     unread("Mol2", ATOMS, &[".mol2"], &[], AS_PDB),
     unread("GROMACS coordinates", ATOMS, &[".gro"], &[], AS_PDB),
-    unread("KMZ", FEATURES, &[".kmz"], &[], AS_GEOJSON),
     unread("FIT", WATCH, &[".fit"], &[At(8, b".FIT")], AS_GPX),
-    unread("TCX", WATCH, &[".tcx"], &[Root("TrainingCenterDatabase")], AS_GPX),
     unread("IGC", WATCH, &[".igc"], &[], AS_GPX),
     unread("NMEA", WATCH, &[".nmea"], &[First("$GP"), First("$GN")], AS_GPX),
     unread("MapInfo", FEATURES, &[".tab", ".mif"], &[], AS_GEOJSON),
@@ -274,7 +277,6 @@ pub const FORMATS: &[Format] = &[
     unread("shapefile's index", SIDE, &[".shx"], &[], WHOLE),
     unread("shapefile's table", SIDE, &[".dbf"], &[], WHOLE),
     unread("SVG", "a drawing", &[".svg"], &[Root("svg")], "give the data behind it"),
-    unread("a table", "rows of text", &[".csv"], &[], "ogr2ogr or QGIS turn its coordinates into GeoJSON"),
     unread("well-known text", FEATURES, &[".wkt"], &[], AS_GEOJSON),
     unread("TopoJSON", FEATURES, &[".topojson"], &[Json("\"type\":\"Topology\"")], AS_GEOJSON),
     unread("ESRI JSON", FEATURES, &[], &[Json("\"geometryType\":\"esri")], AS_GEOJSON),
@@ -393,6 +395,7 @@ impl<'h> Head<'h> {
             First(word) => text.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word)),
             Json(member) => object.as_ref().is_some_and(|dense| dense.contains(member)),
             Root(name) => root.as_deref() == Some(name),
+            Columns => columns::has_coordinates(text),
             Word(word) => object.is_none() && text.contains(word),
             Record(records) => {
                 let is_record = |line: &str| line.len() > 53 && records.iter().any(|r| line.starts_with(r));
@@ -414,6 +417,7 @@ const READABLE: &[(&str, &[Mark])] = &[
     ("PLY", &[First("ply\n"), First("ply\r")]),
     ("STL", &[First("solid "), First("solid\t"), First("solid\n"), First("solid\r")]),
     ("OBJ", &[First("mtllib "), First("v ")]),
+    ("CSV", &[Columns]),
 ];
 
 /// The format of a file that is read, by its first bytes alone; `None` if they do not tell, or tell one that is not read.
@@ -427,7 +431,7 @@ pub fn readable_content(head: &[u8]) -> Option<&'static Format> {
 }
 
 /// Local name of the first element of an XML document that may be cut off.
-fn xml_root(text: &str) -> Option<String> {
+pub(crate) fn xml_root(text: &str) -> Option<String> {
     let mut reader = XmlReader::from_str(text);
     loop {
         match reader.read_event().ok()? {

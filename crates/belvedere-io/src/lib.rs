@@ -6,6 +6,7 @@ mod base64;
 pub mod budget;
 pub mod city;
 pub mod city_write;
+mod columns;
 pub mod credit;
 pub mod crs;
 pub mod drape;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// Names that an error lists.
 const LISTED: usize = 6;
 /// Endings of archives that are a format of their own and are not unpacked here.
-const WHOLE: [&str; 4] = [".raw.gz", ".kmz", ".3mf", ".usdz"];
+const WHOLE: [&str; 3] = [".raw.gz", ".3mf", ".usdz"];
 
 /// The file that `path` stands for: if it is a ZIP or gzip, the one file inside for which `reads` holds, else itself.
 ///
@@ -45,6 +45,8 @@ fn one_of(path: &Path, names: Vec<String>, reads: &dyn Fn(&Path) -> bool) -> Res
     match (fit.as_slice(), names.as_slice()) {
         ([one], _) => Ok((*one).clone()),
         ([], [one]) => Ok(one.clone()),
+        // The main document of a KMZ; others lie beside it in folders.
+        _ if let Some(main) = fit.iter().find(|name| name.eq_ignore_ascii_case("doc.kml")) => Ok((*main).clone()),
         ([], []) => bad("the archive holds no file; get it again".into()),
         ([], _) => bad(format!("the archive holds no file of this kind (it holds {})", listed(names.iter()))),
         (several, _) => {

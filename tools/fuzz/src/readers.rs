@@ -135,6 +135,21 @@ pub const READERS: &[Reader] = &[
         Scene("[[layer]]\nid=\"w\"\nkind=\"line\"\nsource=\"a.gpx\"\nstyle={labels=true,distance_markers_m=100}\n"),
     ),
     reader(
+        "kml",
+        "a.kml",
+        ground,
+        vectors::kml,
+        Scene("[[layer]]\nid=\"w\"\nkind=\"line\"\nsource=\"a.kml\"\nstyle={labels=true}\n"),
+    ),
+    reader("tcx", "a.tcx", ground, vectors::tcx, Scene("[[layer]]\nid=\"w\"\nkind=\"line\"\nsource=\"a.tcx\"\n")),
+    reader(
+        "csv",
+        "a.csv",
+        ground,
+        vectors::csv,
+        Scene("[[layer]]\nid=\"w\"\nkind=\"point\"\nsource=\"a.csv\"\nstyle={labels=true}\n"),
+    ),
+    reader(
         "geojson_lines",
         "a.geojson",
         ground,

@@ -16,7 +16,7 @@ pub struct Disocclude {
     /// Elevation model: GeoTIFF, .hgt, ESRI ASCII
     #[cfg_attr(feature = "clap", arg(value_name = "DEM"))]
     pub data: String,
-    /// Routes, areas or points: GPX, GeoJSON, shapefiles, GeoPackages; - = standard input
+    /// Routes, areas or points: GPX, KML, TCX, GeoJSON, shapefiles, GeoPackages, FlatGeobuf, CSV; - = standard input
     #[cfg_attr(feature = "clap", arg(required = true))]
     pub features: Vec<String>,
     /// Rivers that do not run uphill on the displaced ground: a file of lines, GPX, GeoJSON, shapefile; may be given several times

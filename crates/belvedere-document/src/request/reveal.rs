@@ -19,7 +19,7 @@ pub struct Reveal {
     /// also a model: OBJ, PLY, STL, glTF, PDB, mmCIF, VTI, VTK, NRRD, MetaImage, NIfTI, raw voxels, footprints, or a scene file
     #[cfg_attr(feature = "clap", arg(value_name = "DATA"))]
     pub data: String,
-    /// Routes, areas or points: GPX, GeoJSON, shapefiles, GeoPackages, or builtin:massif?seed=7; elevation models
+    /// Routes, areas or points: GPX, KML, TCX, GeoJSON, shapefiles, GeoPackages, FlatGeobuf, CSV, or builtin:massif?seed=7; elevation models
     /// among them are further tiles of the terrain; with --see more models; - = standard input (one of all data)
     #[cfg_attr(feature = "clap", arg())]
     pub features: Vec<String>,

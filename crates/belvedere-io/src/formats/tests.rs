@@ -72,7 +72,15 @@ fn contents_tell_what_is_read_without_a_name() {
     }
     let wide: Vec<u8> = "<?xml version=\"1.0\"?><gpx/>".encode_utf16().flat_map(u16::to_le_bytes).collect();
     assert_eq!(of(&wide), Some("GPX"));
-    for other in [&b"<kml/>"[..], b"hello", b"", b"MM\x40\0\0\0\x02\0", b"{\"a\":1}"] {
+    for (head, format) in [
+        (&b"<k:kml xmlns:k=\"x\">"[..], "KML"),
+        (b"<TrainingCenterDatabase>", "TCX"),
+        (b"fgb\x03fgb\0", "FlatGeobuf"),
+        (b"\xef\xbb\xbfname;Longitude;Latitude\r\n", "CSV"),
+    ] {
+        assert_eq!(of(head), Some(format), "{}", String::from_utf8_lossy(head));
+    }
+    for other in [&b"<dae/>"[..], b"hello, world", b"", b"MM\x40\0\0\0\x02\0", b"{\"a\":1}"] {
         assert_eq!(of(other), None, "{}", String::from_utf8_lossy(other));
     }
 }

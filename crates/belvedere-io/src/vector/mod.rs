@@ -1,36 +1,44 @@
-//! Lines, areas and points: GPX, GeoJSON, shapefiles and GeoPackages, and how they are laid on the terrain.
+//! Lines, areas and points: GPX, TCX, KML, GeoJSON, shapefiles, GeoPackages, FlatGeobuf and tables with coordinates, and how they are laid on
+//! the terrain.
 
 mod area_kind;
 mod array;
+mod beside;
 mod collected;
+mod csv;
+mod flatgeobuf;
 mod geojson;
 mod geopackage;
 mod gpx;
+mod kml;
 mod names;
 mod on_terrain;
 mod phantom;
 mod place_kind;
 mod rings;
 mod shapefile;
+mod tcx;
 mod text;
+mod tracks;
+mod wkt;
+mod xml;
 
 pub use geopackage::{FeatureTable, write_geopackage};
 
 pub use area_kind::{AreaKind, area_kind};
 pub use array::{FeatureArray, Shape};
-pub use gpx::track_times;
 pub use names::name_field;
 pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
 pub use place_kind::{number, place_kind, stated_height, stated_people};
 pub use text::FeatureText;
 
 use crate::crs::CoordinateSystem;
-use crate::formats::Reader;
+use crate::formats::{Reader, xml_root};
 use crate::packed::content_for;
 use crate::recognise::{explain, not_a};
 use crate::table::split_table;
 use crate::text::text_of;
-use crate::{InputFile, IoError, Loaded, budget, fs, sqlite};
+use crate::{InputFile, IoError, Loaded, budget, columns, fs, sqlite};
 use belvedere_scene::FeatureStyle;
 use glam::DVec2;
 use phantom::Phantoms;
@@ -102,7 +110,7 @@ pub struct VectorFeature {
 pub struct Vectors {
     /// The file, for messages.
     pub path: PathBuf,
-    /// Format, for messages: "GPX", "GeoJSON", "shapefile", "GeoPackage", or one of OpenStreetMap.
+    /// Format, for messages: "GPX", "TCX", "KML", "GeoJSON", "shapefile", "GeoPackage", "FlatGeobuf", "CSV", or one of OpenStreetMap.
     pub format: &'static str,
     /// Name of the layer that the file states, possibly empty.
     pub layer: String,
@@ -162,6 +170,19 @@ impl Vectors {
     }
 }
 
+/// Longitude and latitude, degrees, and time, seconds from 1970 on, of the points of all tracks that have a time, in the order of the file: of a
+/// GPX, TCX or KML.
+///
+/// # Errors
+/// A predicate for text that is none of these.
+pub fn track_times(text: &str) -> Result<Vec<(DVec2, f64)>, String> {
+    match xml_root(text).as_deref() {
+        Some("kml") => kml::times(text),
+        Some(tcx::ROOT) => tcx::times(text),
+        _ => gpx::times(text),
+    }
+}
+
 /// A reader of further formats: `None` for files of none of them.
 pub(crate) type Other<'a> = &'a dyn Fn(&Path, &[u8]) -> Result<Option<Loaded<Vectors>>, IoError>;
 
@@ -178,7 +199,7 @@ pub(crate) fn load(path: &Path, other: Other<'_>) -> Result<Loaded<Vectors>, IoE
 fn without_phantoms(path: &Path, mut loaded: Loaded<Vectors>) -> Result<Loaded<Vectors>, IoError> {
     let mut found = Phantoms::default();
     phantom::drop_zeros(&mut loaded.value, &mut found);
-    if loaded.value.format != "GPX" {
+    if !matches!(loaded.value.format, "GPX" | "TCX") {
         phantom::drop_excursions(&mut loaded.value, &mut found);
     }
     loaded.warnings.extend(found.say().map(|said| said.in_file(path)));
@@ -217,24 +238,45 @@ fn load_known(path: &Path, other: Other<'_>) -> Result<Loaded<Vectors>, IoError>
     if bytes.starts_with(&shapefile::MAGIC) {
         return Ok(shapefile::load(path, &bytes)?.with_file(file));
     }
-    let named = |ext: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(ext));
-    if named("shp") {
+    if bytes.starts_with(flatgeobuf::MAGIC) {
+        return Ok(flatgeobuf::load(path, &bytes)?.with_file(file));
+    }
+    if has_ending(path, "shp") {
         return Err(IoError::format(
             path,
             "does not begin like a shapefile (file code 9994); it is damaged or something else",
         ));
     }
+    let mut loaded = load_text(path, &bytes)?;
+    loaded.files.insert(0, file);
+    Ok(loaded)
+}
+
+fn has_ending(path: &Path, ending: &str) -> bool {
+    path.extension().is_some_and(|own| own.eq_ignore_ascii_case(ending))
+}
+
+/// Reads a format of text, by its beginning.
+fn load_text(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError> {
     let mut warnings = Vec::new();
-    let text = text_of(&bytes, &mut warnings);
+    let text = text_of(bytes, &mut warnings);
     let mut warnings: Vec<_> = warnings.into_iter().map(|w| w.in_file(path)).collect();
-    let loaded = match text.trim_start().chars().next() {
-        Some('<') => gpx::load(path, &text)?,
+    let is_table =
+        || ["csv", "tsv"].into_iter().any(|ending| has_ending(path, ending)) || columns::has_coordinates(&text);
+    let mut loaded = match text.trim_start().chars().next() {
+        Some('<') => match xml_root(&text).as_deref() {
+            Some("kml") => kml::load(path, &text)?,
+            Some(tcx::ROOT) => tcx::load(path, &text)?,
+            _ => gpx::load(path, &text)?,
+        },
         Some('{' | '[' | '\u{1e}') => geojson::load(path, &text)?,
-        None => return Err(IoError::format(path, "is empty; a GPX, GeoJSON or shapefile is needed")),
-        Some(_) => return Err(not_a(path, "routes, areas or points: GPX, GeoJSON or shapefile")),
+        None => return Err(IoError::format(path, "is empty; a GPX, KML, GeoJSON or shapefile is needed")),
+        Some(_) if is_table() => csv::load(path, &text)?,
+        Some(_) => return Err(not_a(path, "routes, areas or points: GPX, KML, TCX, GeoJSON, shapefile or CSV")),
     };
-    warnings.extend(loaded.warnings);
-    Ok(Loaded::new(loaded.value, warnings).with_file(file))
+    warnings.append(&mut loaded.warnings);
+    loaded.warnings = warnings;
+    Ok(loaded)
 }
 
 /// A position; `None` unless both numbers are finite.

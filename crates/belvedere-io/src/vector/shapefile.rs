@@ -1,21 +1,15 @@
 //! ESRI shapefiles: points, multipoints, polylines and polygons, with Z and M, names from the .dbf, system from the .prj.
 
-use super::{
-    Geometry, MAX_BYTES, TIMES, VectorFeature, Vectors, Vertex, certainly_not_degrees, name_of, not_degrees, rings,
-    shorten, vertex,
-};
-use crate::crs::CoordinateSystem;
-use crate::fs::{metadata, read_sidecar, sidecar};
-use crate::text::{table_encoding, text_of};
-use crate::{IoError, Loaded, budget};
+use super::beside::{SMALL, beside, system_of};
+use super::{Geometry, MAX_BYTES, VectorFeature, Vectors, Vertex, name_of, rings, shorten, vertex};
+use crate::text::table_encoding;
+use crate::{IoError, Loaded};
 use belvedere_core::{Warning, WarningKind};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// File code 9994, big-endian.
 pub(super) const MAGIC: [u8; 4] = [0, 0, 0x27, 0x0a];
-/// Largest file of a coordinate system or code page, bytes.
-const SMALL: u64 = 1 << 20;
 
 pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError> {
     let fail = |reason: String| IoError::format(path, reason);
@@ -57,47 +51,6 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError
     let warnings = warnings.into_iter().map(|w| w.in_file(path)).collect();
     let value = Vectors { path: path.into(), format: "shapefile", layer: String::new(), crs, crs_stated, features };
     Ok(Loaded::new(value, warnings))
-}
-
-/// Path and bytes of the file beside a shapefile that has this ending, if there is one.
-fn beside(path: &Path, ending: &str, most: u64) -> Result<Option<(PathBuf, Vec<u8>)>, IoError> {
-    let Some(file) = sidecar(path, ending) else { return Ok(None) };
-    let size = metadata(&file).map_or(0, |m| m.len()).min(most);
-    let asked = budget::ask(&format!("its .{ending}"), size.saturating_mul(TIMES));
-    // About the shapefile: a table alone is a file of another kind, and would be told to be one.
-    asked.map_err(|reason| IoError::format(path, reason))?;
-    read_sidecar(path, &file, most).map(|bytes| Some((file, bytes)))
-}
-
-/// The system, and whether a .prj states it.
-fn system_of(
-    path: &Path,
-    features: &[VectorFeature],
-    warnings: &mut Vec<Warning>,
-) -> Result<(CoordinateSystem, bool), IoError> {
-    let bad = not_degrees(features);
-    let stated = beside(path, "prj", SMALL)?.map(|(prj, bytes)| (prj, text_of(&bytes, &mut Vec::new())));
-    if let Some((prj, text)) = stated.filter(|(_, text)| !text.trim().is_empty()) {
-        let crs = CoordinateSystem::from_text(&text).map_err(|e| IoError::format(&prj, e.to_string()))?;
-        return match bad.filter(|_| crs.is_geographic()) {
-            Some(reason) => {
-                Err(IoError::format(path, format!("{reason}, but the .prj says {crs}; correct one of them")))
-            }
-            None => Ok((crs, true)),
-        };
-    }
-    if let Some(reason) = bad {
-        if !certainly_not_degrees(features) {
-            return Err(IoError::format(
-                path,
-                format!("has no .prj file and {reason}; add the .prj with its coordinate system"),
-            ));
-        }
-        return Ok((CoordinateSystem::local(), false));
-    }
-    let text = "has no .prj file; taken as longitude and latitude on WGS 84";
-    warnings.push(Warning::new(WarningKind::Assumed, text));
-    CoordinateSystem::wgs84().map(|crs| (crs, false)).map_err(|e| IoError::format(path, e.to_string()))
 }
 
 /// Numbers at byte offsets; `None` past the end.

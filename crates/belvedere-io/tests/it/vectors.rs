@@ -232,8 +232,8 @@ fn other_and_broken_files_are_one_clear_error() {
     let dir = tempfile::tempdir().unwrap();
     let cases: [(&str, &[u8], &str); 12] = [
         ("empty.gpx", b"", "is empty"),
-        ("a.kml", b"<kml><Document/></kml>", "is KML (map features), which this version does not read"),
-        ("b.gpx", b"<kml><Document/></kml>", "is KML (map features), which this version does not read"),
+        ("a.dae", b"<COLLADA><asset/></COLLADA>", "is COLLADA (triangles), which this version does not read"),
+        ("b.gpx", b"<COLLADA><asset/></COLLADA>", "is COLLADA (triangles), which this version does not read"),
         ("a.gpx", b"<gpx><trk><trkseg>", "ends inside <trkseg>"),
         ("a.gpx", b"<gpx><trk></gpx>", "well-formed"),
         ("a.gpx", b"<?xml version='1.0'?>", "no XML element"),

@@ -28,6 +28,57 @@ pub fn gpx() -> Vec<Vec<u8>> {
     ]
 }
 
+/// A line in a folder, an area with a hole and a track with times.
+pub fn kml() -> Vec<Vec<u8>> {
+    let tuples = |list: &[[f64; 2]], sign: &str| {
+        let one = |p: &[f64; 2]| degrees(p[0], p[1]).map(|n| format!("{n:.6}")).join(sign);
+        list.iter().map(|p| format!("{}{sign}905", one(p))).collect::<Vec<_>>()
+    };
+    let line = format!("<LineString><coordinates>{}</coordinates></LineString>", tuples(&walk(), ",").join(" "));
+    let ring = |half: f64| {
+        let ring = tuples(&square(280.0, 260.0, half), ",").join("\n");
+        format!("<LinearRing><coordinates>{ring}</coordinates></LinearRing>")
+    };
+    let (outer, inner) = (ring(120.0), ring(40.0));
+    let area = format!(
+        "<Polygon><outerBoundaryIs>{outer}</outerBoundaryIs><innerBoundaryIs>{inner}</innerBoundaryIs></Polygon>"
+    );
+    let times: String = (0..walk().len()).map(|k| format!("<when>2026-05-01T10:{k:02}:00Z</when>")).collect();
+    let coords: String = tuples(&walk(), " ").iter().map(|c| format!("<gx:coord>{c}</gx:coord>")).collect();
+    let data = "<ExtendedData><Data name=\"height\"><value>12.5</value></Data></ExtendedData>";
+    let text = format!(
+        "<kml xmlns:gx=\"g\"><Document><Folder><Placemark><name>Weg &amp; See</name>{data}<MultiGeometry>{line}{area}</MultiGeometry></Placemark></Folder>\
+         <Placemark><gx:Track>{times}{coords}</gx:Track></Placemark></Document></kml>"
+    );
+    vec![text.into_bytes()]
+}
+
+/// An activity of one lap.
+pub fn tcx() -> Vec<Vec<u8>> {
+    let one = |(k, [x, y]): (usize, [f64; 2])| {
+        let [lon, lat] = degrees(x, y);
+        format!(
+            "<Trackpoint><Time>2026-05-01T10:{k:02}:00Z</Time><Position><LatitudeDegrees>{lat:.6}</LatitudeDegrees>\
+             <LongitudeDegrees>{lon:.6}</LongitudeDegrees></Position><AltitudeMeters>{}</AltitudeMeters></Trackpoint>",
+            900 + k
+        )
+    };
+    let points: String = walk().into_iter().enumerate().map(one).collect();
+    let text = format!(
+        "<TrainingCenterDatabase><Activities><Activity Sport=\"Hiking\"><Lap><Track>{points}</Track></Lap></Activity></Activities></TrainingCenterDatabase>"
+    );
+    vec![text.into_bytes()]
+}
+
+/// Points by columns, and as well-known text.
+pub fn csv() -> Vec<Vec<u8>> {
+    let places: Vec<[String; 2]> = walk().iter().map(|p| degrees(p[0], p[1]).map(|n| format!("{n:.6}"))).collect();
+    let rows: String =
+        places.iter().map(|[lon, lat]| format!("\"Ort, {lon}\";{lat};{};905,5\n", lon.replace('.', ","))).collect();
+    let texts: String = places.iter().map(|[lon, lat]| format!("\"POINT Z ({lon} {lat} 905)\",Ort\n")).collect();
+    vec![format!("name;lat;lon;ele\n{rows}").into_bytes(), format!("WKT,name\n{texts}").into_bytes()]
+}
+
 fn positions(list: &[[f64; 2]], height: bool) -> String {
     let one = |p: &[f64; 2]| {
         let [lon, lat] = degrees(p[0], p[1]);
