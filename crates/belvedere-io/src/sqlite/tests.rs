@@ -20,7 +20,7 @@ impl Random {
             1 => Theirs::Integer(self.next(3) as i64),
             2 => Theirs::Integer((self.0 as i64) >> self.next(60)),
             3 => Theirs::Integer([i64::MIN, i64::MAX, -1, 128, -129, 1 << 47, -(1 << 47) - 1][self.next(7) as usize]),
-            4 => Theirs::Real(f64::from_bits(self.0)).clone(),
+            4 => Theirs::Real(f64::from_bits(self.0)),
             5 => Theirs::Real(self.next(100) as f64),
             6 => Theirs::Text("é x".repeat(size / 3)),
             7 => Theirs::Text(String::new()),
@@ -185,7 +185,9 @@ fn damaged_files_end_in_one_error() {
         assert!(text.contains("get it again") && text.contains("cut off"), "{cut}: {text}");
         // Without a count of pages in its header.
         let mut old = whole[..cut].to_vec();
-        old.get_mut(92..96).map(|bytes| bytes.fill(0));
+        if let Some(count) = old.get_mut(92..96) {
+            count.fill(0);
+        }
         let text = read(old, "t").expect_err("cut");
         assert!(text.contains("get"), "{cut}: {text}");
     }

@@ -174,7 +174,7 @@ impl Vectors {
 /// GPX, TCX or KML.
 ///
 /// # Errors
-/// A predicate for text that is none of these.
+/// A predicate for text of another format.
 pub fn track_times(text: &str) -> Result<Vec<(DVec2, f64)>, String> {
     match xml_root(text).as_deref() {
         Some("kml") => kml::times(text),

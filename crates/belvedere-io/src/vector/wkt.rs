@@ -14,7 +14,7 @@ pub(super) struct Shapes {
     pub(super) srid: Option<u32>,
 }
 
-/// The geometries of a text; `None` if it is none of these.
+/// The geometries of a text; `None` if it cannot be read.
 ///
 /// * `found`: counts lines and rings that are too short.
 pub(super) fn read(text: &str, found: &mut Collected) -> Option<Shapes> {

@@ -131,12 +131,11 @@ fn file(kind: u8, node: u16, code: i32, count: u64, features: &[Vec<u8>]) -> Vec
         crs,
     ]));
     let (mut level, mut nodes) = (count as usize, count as usize);
-    while node > 0 && count > 0 {
+    let mut is_top = node == 0 || count == 0;
+    while !is_top {
         level = level.div_ceil(usize::from(node));
         nodes += level;
-        if level == 1 {
-            break;
-        }
+        is_top = level == 1;
     }
     let index = vec![0xee; if node > 0 { 40 * nodes } else { 0 }];
     [b"fgb\x03fgb\x00".to_vec(), header, index, features.concat()].concat()

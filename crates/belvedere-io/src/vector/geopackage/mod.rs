@@ -4,6 +4,7 @@
 
 mod blob;
 mod database;
+mod odd;
 mod wkb;
 mod write;
 
@@ -14,8 +15,8 @@ use crate::crs::{CoordinateSystem, CrsError, Transform};
 use crate::sqlite::Value;
 use crate::{IoError, Loaded, fs};
 use belvedere_core::{Warning, WarningKind};
-use blob::Odd;
 use database::{Database, Table};
+use odd::Odd;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 

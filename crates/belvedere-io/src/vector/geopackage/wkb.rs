@@ -1,7 +1,7 @@
 //! Well-known binary: points, straight lines, polygons and collections of them, in both byte orders, with heights and measures (OGC
 //! 06-103r4, and the marks of PostGIS).
 
-use super::blob::Odd;
+use super::odd::Odd;
 use super::{Geometry, vertex};
 use crate::vector::Vertex;
 
@@ -123,15 +123,13 @@ impl Reader<'_, '_> {
 
     /// Two or three numbers; the third is the height unless it is a measure.
     fn position(&mut self, layout: Layout) -> Result<[f64; 3], String> {
-        let mut out = [f64::NAN; 3];
-        for k in 0..layout.numbers() {
+        let mut out = [f64::NAN; 4];
+        for number in out.iter_mut().take(layout.numbers()) {
             let bytes = self.bytes()?;
-            let number = if layout.little { f64::from_le_bytes(bytes) } else { f64::from_be_bytes(bytes) };
-            if k < if layout.has_height { 3 } else { 2 } {
-                out[k] = number;
-            }
+            *number = if layout.little { f64::from_le_bytes(bytes) } else { f64::from_be_bytes(bytes) };
         }
-        Ok(out)
+        let [x, y, z, _] = out;
+        Ok([x, y, if layout.has_height { z } else { f64::NAN }])
     }
 
     /// A point; an empty one is one of NaN.
