@@ -5,13 +5,16 @@ use super::tracks::number;
 use super::{Geometry, Vectors, beside, not_degrees, shorten, vertex, wkt};
 use crate::columns::{self, LOOKED_FOR, Layout, Place, Record, Records};
 use crate::crs::CoordinateSystem;
-use crate::{IoError, Loaded};
+use crate::{IoError, Loaded, budget};
 use belvedere_core::{Warning, WarningKind};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Most names that an error lists.
 const LISTED: usize = 12;
+/// Bytes that a feature takes, and each of its properties.
+const ROW_BYTES: usize = 900;
+const COLUMN_BYTES: usize = 100;
 
 /// Rows as features, and counts of what is left out.
 #[derive(Default)]
@@ -29,6 +32,9 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
     let fail = |reason: String| IoError::format(path, reason);
     let layout = columns::layout(text).ok_or_else(|| fail("holds no line of text".into()))?;
     let place = layout.place.ok_or_else(|| fail(without_columns(&layout.names)))?;
+    // Short rows take more room as features than as text.
+    let peak = text.lines().count().saturating_mul(ROW_BYTES + COLUMN_BYTES * layout.names.len());
+    budget::ask("the table", peak as u64).map_err(|reason| IoError::format(path, reason))?;
     let mut rows = Rows::default();
     for record in Records::new(text, layout.sign).skip(1) {
         rows.add(&layout, place, &record);
