@@ -119,6 +119,25 @@ impl Roots {
     /// # Errors
     /// [`DocumentError::Path`] if the name is refused or nothing is found.
     pub fn resolve(&self, name: &str) -> Result<PathBuf, DocumentError> {
+        self.find_of(name, "is not a regular file; give a file", fs::Metadata::is_file)
+    }
+
+    /// As [`Self::resolve`], also a folder, such as one of slices.
+    ///
+    /// # Errors
+    /// As [`Self::resolve`].
+    pub fn resolve_or_folder(&self, name: &str) -> Result<PathBuf, DocumentError> {
+        let is_either = |meta: &fs::Metadata| meta.is_file() || meta.is_dir();
+        self.find_of(name, "is neither a regular file nor a folder; give one of them", is_either)
+    }
+
+    /// * `otherwise`: the refusal of what `is_wanted` does not hold for.
+    fn find_of(
+        &self,
+        name: &str,
+        otherwise: &str,
+        is_wanted: impl Fn(&fs::Metadata) -> bool,
+    ) -> Result<PathBuf, DocumentError> {
         let refused = |reason: String, root_missing: bool| DocumentError::Path {
             name: super::doc_error::shorten(name),
             reason,
@@ -147,8 +166,8 @@ impl Roots {
             return Err(refused(format!("leads to {real}, outside the folder of the scene file; {outside}"), true));
         }
         match fs::metadata(&real) {
-            Ok(meta) if meta.is_file() => Ok(join_table(self.as_named(&found, &real).unwrap_or(real), table)),
-            _ => Err(refuse("is not a regular file; give a file".into())),
+            Ok(meta) if is_wanted(&meta) => Ok(join_table(self.as_named(&found, &real).unwrap_or(real), table)),
+            _ => Err(refuse(otherwise.into())),
         }
     }
 

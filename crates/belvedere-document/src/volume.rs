@@ -6,13 +6,13 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Voxels from a file: VTK XML ImageData (.vti), legacy VTK (.vtk), NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), NIfTI (.nii, .nii.gz),
-/// or raw samples (.raw, .raw.gz).
+/// MRC (.mrc, .map), NumPy (.npy), a TIFF stack (.tif), DICOM (.dcm), or raw samples (.raw, .raw.gz); or from a folder of slices or DICOM.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct VolumeDoc {
     /// Unique id within the scene.
     pub id: String,
-    /// A file, `builtin:engine` or `builtin:tube`.
+    /// A file, a folder of slices or of a series of DICOM, `builtin:engine` or `builtin:tube`.
     pub source: String,
     /// Name of the array in files that have several; by default the first of single values.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -40,7 +40,7 @@ pub struct VolumeDoc {
     /// Raw samples: their type, such as `uint8`, `int16`, `float32`; by default what the name tells.
     #[serde(rename = "type", skip_serializing_if = "Option::is_none")]
     pub sample_type: Option<String>,
-    /// Raw samples: distances along x, y, z, scene units, > 0; 1 by default.
+    /// Distances along x, y, z of raw samples and of other files that state none, scene units, > 0; 1 by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spacing: Option<[f64; 3]>,
     /// Raw samples of several bytes: whether the most significant comes first.

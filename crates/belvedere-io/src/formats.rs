@@ -81,7 +81,6 @@ const WATCH: &str = "the track of a watch";
 const UNPLACED: &str = "a picture without a georeference";
 
 const AS_PDB: &str = "turn it into PDB or mmCIF";
-const AS_NRRD: &str = "3D Slicer turns it into NRRD";
 const AS_GEOJSON: &str = "ogr2ogr or QGIS turn it into GeoJSON";
 const AS_GEOTIFF: &str = "gdal_translate turns it into GeoTIFF";
 const AS_DEM: &str = "grid its ground points into a GeoTIFF, as with pdal";
@@ -91,6 +90,9 @@ const AS_GPX: &str = "GPSBabel turns it into GPX";
 const PLACED: &str = "gdal_translate -a_srs -a_ullr makes it a GeoTIFF";
 const WHOLE: &str = "give the .shp file beside it";
 const UNPACK: &str = "unpack it, or pack it as ZIP or gzip";
+
+/// Name of TIFFs whose pages are a volume; their directories tell them from elevation models and pictures.
+pub(crate) const TIFF_STACK: &str = "TIFF stack";
 
 const fn read(
     reader: Reader,
@@ -180,7 +182,8 @@ pub const FORMATS: &[Format] = &[
     unread("ECW", "a picture", &[".ecw"], &[], AS_GEOTIFF),
     unread("NITF", "a picture", &[".ntf", ".nitf"], &[At(0, b"NITF0")], AS_GEOTIFF),
     unread("Surfer grid", RASTER, &[], &[At(0, b"DSBB"), At(0, b"DSRB"), At(0, b"DSAA")], AS_GEOTIFF),
-    unread("MRC", VOXELS, &[".mrc", ".map"], &[At(208, b"MAP ")], AS_NRRD),
+    read(Volume, "MRC", VOXELS, &[".mrc", ".map", ".ccp4", ".rec"], &[At(208, b"MAP ")]),
+    read(Volume, "NumPy array", VOXELS, &[".npy"], &[At(0, b"\x93NUMPY")]),
     unread("Arrow", "a table", &[".arrow", ".feather"], &[At(0, b"ARROW1")], AS_GEOJSON),
     unread("PMTiles", TILES, &[".pmtiles"], &[At(0, b"PMTiles")], AS_GEOJSON),
     unread(
@@ -190,7 +193,7 @@ pub const FORMATS: &[Format] = &[
         &[At(68, b"MPBX")],
         "gdal_translate turns tiles of pictures into GeoTIFF, ogr2ogr those of features into GeoJSON",
     ),
-    unread("DICOM", VOXELS, &[".dcm"], &[At(128, b"DICM")], AS_NRRD),
+    read(Volume, "DICOM", VOXELS, &[".dcm", ".dicom"], &[At(128, b"DICM")]),
     read(Features, "GeoPackage", "map features in a database", &[".gpkg"], &[At(68, b"GPKG"), At(68, b"GP10")]),
     unread("SQLite", "map features in a database", &[".sqlite"], &[At(0, b"SQLite format 3\0")], AS_GEOJSON),
     read(City, "OSM PBF", "a map of OpenStreetMap", &[".pbf"], &[At(6, b"OSMHeader")]),
@@ -225,6 +228,7 @@ pub const FORMATS: &[Format] = &[
         AS_GEOJSON,
     ),
     // Recognised by their names.
+    read(Volume, TIFF_STACK, VOXELS, &[".ome.tif", ".ome.tiff"], &[]),
     read(Terrain, "GeoTIFF", "elevation or a picture", &[".tif", ".tiff"], &[]),
     read(Terrain, "SRTM", "elevation", &[".hgt"], &[]),
     read(Terrain, "ESRI ASCII", "elevation", &[".asc", ".grd", ".txt"], &[]),
@@ -351,6 +355,11 @@ pub fn of_name(path: &Path) -> Option<&'static Format> {
     FORMATS.iter().rev().filter(|f| fit(f).is_some()).max_by_key(fit)
 }
 
+/// The format of a name.
+pub(crate) fn named(name: &str) -> Option<&'static Format> {
+    FORMATS.iter().find(|format| format.name == name)
+}
+
 /// The format of a file by its first bytes, at most 64 KiB of them.
 pub fn of_content(head: &[u8]) -> Option<&'static Format> {
     let head = Head::of(head);
@@ -427,7 +436,7 @@ pub fn readable_content(head: &[u8]) -> Option<&'static Format> {
     }
     let head = Head::of(head);
     let (name, _) = READABLE.iter().find(|(_, marks)| head.fits(marks))?;
-    FORMATS.iter().find(|format| format.name == *name)
+    named(name)
 }
 
 /// Local name of the first element of an XML document that may be cut off.

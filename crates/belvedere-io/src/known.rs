@@ -1,10 +1,10 @@
 //! What a file is: asked once, where its name comes in, and handed on.
 
-use crate::formats::{Format, Reader};
+use crate::formats::{self, Format, Reader};
 use crate::recognise::{self, recognise};
 use crate::{
     Arrays, GeoTiff, IoError, Limits, Loaded, Photometric, RasterInfo, Vectors, fs, join_table, load_vectors, packed,
-    split_table,
+    split_table, volume,
 };
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -41,7 +41,10 @@ impl Known {
         let is_scene = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
         let (inner, reader) = match table {
             Some(_) => (path.clone(), Some(Reader::Features)),
-            None if path.is_dir() => (path.clone(), Some(Reader::Terrain)),
+            None if path.is_dir() => {
+                let is_volume = volume::is_volume_folder(&path);
+                (path.clone(), Some(if is_volume { Reader::Volume } else { Reader::Terrain }))
+            }
             None if is_scene => (path.clone(), None),
             None if !packed::tiles(&path)?.is_empty() => (path.clone(), Some(Reader::Terrain)),
             None => {
@@ -90,10 +93,21 @@ fn reader_of(file: &Path) -> Result<Option<Reader>, IoError> {
     if recognise::of_content(file)?.as_ref().is_some_and(is_city) {
         return Ok(Some(Reader::City));
     }
-    let Some(format) = recognise::readable(file)? else { return Ok(None) };
+    let Some(format) = readable(file)? else { return Ok(None) };
     // A GeoTIFF that cannot be read is told by its loader.
     let holds_colors = || GeoTiff::open(file, Limits::default()).is_ok_and(|tiff| is_picture(tiff.value.info()));
     Ok(format.reader.filter(|_| format.name != "GeoTIFF" || !holds_colors()))
+}
+
+/// The format of a file that a loader reads: by its name, or by its first bytes where the name tells none. TIFFs are asked whether they are
+/// stacks.
+///
+/// # Errors
+/// [`IoError::Os`].
+pub fn readable(path: &Path) -> Result<Option<&'static Format>, IoError> {
+    let found = recognise::readable(path)?;
+    let is_stack = found.is_some_and(|format| format.name == "GeoTIFF") && volume::is_stack(path);
+    Ok(if is_stack { formats::named(formats::TIFF_STACK) } else { found })
 }
 
 /// Whether a raster holds colours rather than heights.

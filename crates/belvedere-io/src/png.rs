@@ -1,9 +1,9 @@
 //! PNG pictures with provenance in text chunks.
 
 use crate::fs::File;
-use crate::{Alpha, IoError, Limits, Photometric, Raster, RasterInfo, SampleType, Samples, atomic, budget};
+use crate::{Alpha, IoError, Limits, Photometric, Raster, RasterInfo, Samples, atomic, budget};
 use png::{BitDepth, ColorType, Compression, Encoder, Filter, PixelDimensions, SrgbRenderingIntent, Unit};
-use std::io::{self, BufReader, Write};
+use std::io::{self, BufRead, BufReader, Seek, Write};
 use std::path::Path;
 
 /// Longest keyword that the format allows, bytes.
@@ -153,14 +153,32 @@ pub fn write(
 /// # Errors
 /// [`IoError::Os`]; [`IoError::Format`] if it is damaged or larger than the limit.
 pub fn read(path: &Path, limits: &Limits) -> Result<Raster, IoError> {
+    let file = File::open(path).map_err(|e| IoError::os(path, e))?;
+    let wanted = png::Transformations::normalize_to_color8() | png::Transformations::ALPHA;
+    decoded(path, BufReader::new(file), wanted, limits)
+}
+
+/// Reads the bytes of a PNG as it is stored, of 8 or 16 bits, without an alpha band that is not there.
+///
+/// # Errors
+/// As [`read`].
+pub(crate) fn read_stored(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Raster, IoError> {
+    decoded(path, io::Cursor::new(bytes), png::Transformations::EXPAND, limits)
+}
+
+fn decoded(
+    path: &Path,
+    source: impl BufRead + Seek,
+    wanted: png::Transformations,
+    limits: &Limits,
+) -> Result<Raster, IoError> {
     let bad = |e: png::DecodingError| match e {
         png::DecodingError::IoError(e) if e.kind() != io::ErrorKind::UnexpectedEof => IoError::os(path, e),
         e => IoError::format(path, format!("the PNG cannot be read ({e}); it is damaged, get it again")),
     };
-    let file = File::open(path).map_err(|e| IoError::os(path, e))?;
     let bytes = usize::try_from(limits.max_bytes).unwrap_or(usize::MAX);
-    let mut decoder = png::Decoder::new_with_limits(BufReader::new(file), png::Limits { bytes });
-    decoder.set_transformations(png::Transformations::normalize_to_color8() | png::Transformations::ALPHA);
+    let mut decoder = png::Decoder::new_with_limits(source, png::Limits { bytes });
+    decoder.set_transformations(wanted);
     let mut reader = decoder.read_info().map_err(bad)?;
     let (width, height) = (reader.info().width as usize, reader.info().height as usize);
     // Samples, and colours made of them.
@@ -170,16 +188,19 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Raster, IoError> {
     samples.resize(size, 0);
     let frame = reader.next_frame(&mut samples).map_err(bad)?;
     samples.truncate(frame.buffer_size());
-    let mut info = RasterInfo::new(path, width, height, SampleType::U8);
+    let samples = match frame.bit_depth {
+        BitDepth::Sixteen => Samples::U16(samples.as_chunks::<2>().0.iter().map(|b| u16::from_be_bytes(*b)).collect()),
+        _ => Samples::U8(samples),
+    };
+    let mut info = RasterInfo::new(path, width, height, samples.sample_type());
     (info.bands, info.photometric, info.alpha) = match frame.color_type {
+        ColorType::Grayscale => (1, Photometric::Gray, Alpha::None),
         ColorType::GrayscaleAlpha => (2, Photometric::Gray, Alpha::Straight(1)),
+        ColorType::Rgb => (3, Photometric::Rgb([0, 1, 2]), Alpha::None),
         _ => (4, Photometric::Rgb([0, 1, 2]), Alpha::Straight(3)),
     };
     if samples.len() != width * height * info.bands {
-        return Err(IoError::format(
-            path,
-            format!("the PNG holds {} bytes of pixels, not what its size says", samples.len()),
-        ));
+        return Err(IoError::format(path, format!("the PNG holds {} samples, not what its size says", samples.len())));
     }
-    Ok(Raster { info, samples: Samples::U8(samples), mask: None })
+    Ok(Raster { info, samples, mask: None })
 }

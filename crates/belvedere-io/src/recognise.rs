@@ -51,7 +51,7 @@ fn head(path: &Path) -> Result<Vec<u8>, IoError> {
 ///
 /// # Errors
 /// [`IoError::Os`].
-pub fn readable(path: &Path) -> Result<Option<&'static Format>, IoError> {
+pub(crate) fn readable(path: &Path) -> Result<Option<&'static Format>, IoError> {
     let (path, _) = split_table(path);
     match formats::of_name(path).filter(|format| format.reader.is_some()) {
         Some(format) => Ok(Some(format)),

@@ -63,6 +63,16 @@ impl Loader<'_> {
         if arrays::is_name(name) { Ok(PathBuf::from(name)) } else { self.file(index, "source", name) }
     }
 
+    /// As [`Self::source`], also a folder.
+    pub(super) fn source_or_folder(&self, index: usize, name: &str) -> Result<PathBuf, BelvedereError> {
+        if arrays::is_name(name) {
+            return Ok(PathBuf::from(name));
+        }
+        let about = format!("layer \"{}\": ", self.id(index));
+        let found = self.roots.resolve_or_folder(name);
+        Ok(found.map_err(|e| self.origin.refusal(&["layer", &index.to_string(), "source"], &about, e))?)
+    }
+
     /// The files and arrays that the source of a layer names.
     pub(super) fn sources(&self, index: usize, paths: &Paths) -> Result<Vec<PathBuf>, BelvedereError> {
         self.some(index, "source", paths)?.iter().map(|name| self.source(index, name)).collect()

@@ -15,7 +15,7 @@ pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &VolumeDoc) -> R
         loader.builtin(index, &doc.source, |kind| kind.volume().map(|layer| Volume::clone(&layer.volume)))?
     } else {
         let request = request(loader, index, doc)?;
-        let path = loader.source(index, &doc.source)?;
+        let path = loader.source_or_folder(index, &doc.source)?;
         let options = loader.options;
         options.progress.tick("reading volumes", 0.0)?;
         let file = match options.arrays.find(&path)? {

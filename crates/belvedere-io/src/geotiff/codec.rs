@@ -1,6 +1,7 @@
 //! One chunk: decompression, predictor, byte order, unpacking.
 
 use super::layout::{Compression, Layout, Stored};
+use crate::half::half_to_f32;
 use flate2::{Decompress, FlushDecompress};
 use weezl::{BitOrder, LzwStatus, decode};
 use zune_jpeg::zune_core::{bytestream::ZCursor, colorspace::ColorSpace, options::DecoderOptions};
@@ -168,7 +169,7 @@ impl Scratch {
 }
 
 /// PackBits (TIFF 6.0, section 9). Returns the number of bytes written.
-fn unpack_bits(mut raw: &[u8], out: &mut [u8]) -> usize {
+pub(crate) fn unpack_bits(mut raw: &[u8], out: &mut [u8]) -> usize {
     let mut at = 0;
     while at < out.len() {
         let Some((&head, rest)) = raw.split_first() else { break };
@@ -251,18 +252,6 @@ fn undo_float_predictor(row: &mut [u8], bands: usize, sample: usize, spare: &mut
     }
 }
 
-/// IEEE 754 binary16 to binary32, exact.
-fn half_to_f32(half: u16) -> f32 {
-    let sign = if half >> 15 == 1 { -1.0 } else { 1.0 };
-    let (exponent, mantissa) = (i32::from(half >> 10 & 31), f32::from(half & 1023));
-    match exponent {
-        0 => sign * mantissa * 2f32.powi(-24),
-        31 if mantissa == 0.0 => sign * f32::INFINITY,
-        31 => f32::NAN,
-        _ => sign * (1024.0 + mantissa) * 2f32.powi(exponent - 25),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -276,15 +265,5 @@ mod tests {
         wanted.extend([0xAA; 10]);
         assert_eq!(out[..], wanted[..]);
         assert_eq!(unpack_bits(&packed[..8], &mut [0; 24]), 10, "a truncated literal ends it");
-    }
-
-    #[test]
-    fn halves() {
-        for (half, float) in
-            [(0x3C00, 1.0), (0xC000, -2.0), (0x7BFF, 65504.0), (0x0001, 5.960_464_5e-8), (0x3555, 0.333_251_95)]
-        {
-            assert_eq!(half_to_f32(half), float);
-        }
-        assert!(half_to_f32(0x7E00).is_nan() && half_to_f32(0xFC00) == f32::NEG_INFINITY);
     }
 }

@@ -13,10 +13,13 @@ pub(super) mod tag {
     pub(in super::super) const COMPRESSION: u16 = 259;
     pub(in super::super) const PHOTOMETRIC: u16 = 262;
     pub(in super::super) const FILL_ORDER: u16 = 266;
+    pub(in super::super) const DESCRIPTION: u16 = 270;
     pub(in super::super) const STRIP_OFFSETS: u16 = 273;
     pub(in super::super) const SAMPLES_PER_PIXEL: u16 = 277;
     pub(in super::super) const ROWS_PER_STRIP: u16 = 278;
     pub(in super::super) const STRIP_BYTES: u16 = 279;
+    pub(in super::super) const X_RESOLUTION: u16 = 282;
+    pub(in super::super) const Y_RESOLUTION: u16 = 283;
     pub(in super::super) const PLANAR: u16 = 284;
     pub(in super::super) const ARTIST: u16 = 315;
     pub(in super::super) const COPYRIGHT: u16 = 33432;
@@ -40,8 +43,10 @@ pub(super) mod tag {
     pub(in super::super) const GDAL_NODATA: u16 = 42113;
 }
 
-const MAX_DIRECTORIES: usize = 1024;
+const MAX_DIRECTORIES: usize = 16_384;
 const MAX_ENTRIES: u64 = 4096;
+/// Most entries of all directories together.
+const MAX_ALL_ENTRIES: usize = 1 << 20;
 
 /// Type, number and position of the values of a tag.
 #[derive(Debug, Clone, Copy)]
@@ -108,20 +113,21 @@ impl Container {
     pub(super) fn directories(&self) -> Result<(Vec<Ifd>, Option<Warning>), String> {
         let mut seen = BTreeSet::new();
         let mut found = Vec::new();
-        let mut at = self.first;
+        let (mut at, mut entries) = (self.first, 0);
         while at != 0 {
             if !seen.insert(at) {
                 return Err(format!(
                     "its directories form a loop through byte {at}; the file is damaged, write it again"
                 ));
             }
-            if found.len() == MAX_DIRECTORIES {
-                let text = format!("more than {MAX_DIRECTORIES} directories, the rest is ignored");
+            if found.len() == MAX_DIRECTORIES || entries > MAX_ALL_ENTRIES {
+                let text = format!("more than {} directories, the rest is ignored", found.len());
                 return Ok((found, Some(Warning::new(WarningKind::Ignored, text))));
             }
             match self.directory(at) {
                 Ok(ifd) => {
                     at = ifd.next;
+                    entries += ifd.entries.len();
                     found.push(ifd);
                 }
                 Err(reason) if found.is_empty() => return Err(reason),
@@ -188,6 +194,14 @@ impl Container {
             11 => Ok(Some(raw.chunks_exact(4).map(|b| f64::from(f32::from_bits(self.uint(b) as u32))).collect())),
             other => Err(format!("tag {number} has type {other}, floating-point numbers are needed")),
         }
+    }
+
+    /// First fraction of a tag.
+    pub(super) fn rational(&self, ifd: &Ifd, number: u16) -> Result<Option<f64>, String> {
+        let Some(entry) = ifd.entries.get(&number).filter(|entry| entry.kind == 5) else { return Ok(None) };
+        let raw = self.raw(number, &Entry { count: 1, ..*entry })?;
+        let (over, under) = raw.split_at(4);
+        Ok(Some(self.uint(over) as f64 / self.uint(under) as f64))
     }
 
     /// Text of a tag up to its first zero byte, damaged characters replaced.

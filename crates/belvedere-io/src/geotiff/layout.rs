@@ -121,7 +121,7 @@ impl Stored {
 }
 
 /// One image of a file: size, samples, chunks.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Layout {
     pub(super) width: usize,
     pub(super) height: usize,
@@ -280,6 +280,11 @@ impl Layout {
             }
         }
         Ok(())
+    }
+
+    /// The same, `by` bytes later in the file.
+    pub(super) fn moved(&self, by: u64) -> Self {
+        Self { offsets: self.offsets.iter().map(|at| at.saturating_add(by)).collect(), ..self.clone() }
     }
 
     /// `strip` or `tile`.

@@ -10,12 +10,16 @@ mod ifd;
 mod layout;
 mod meta;
 mod overview;
+mod pages;
 mod read;
 mod shared;
 mod source;
 mod write;
 
 pub use cloud::write_cloud_geotiff;
+pub(crate) use codec::unpack_bits;
+
+pub(crate) use pages::Pages;
 pub use write::write_geotiff;
 
 use crate::raster::{Limits, Raster, RasterInfo, SampleType, Samples};
@@ -99,12 +103,7 @@ impl GeoTiff {
     /// # Errors
     /// [`IoError`] if a part cannot be read.
     pub fn input(&self) -> Result<InputFile, IoError> {
-        let (path, source) = (&self.info.path, &self.container.source);
-        let (sha256, sampled) = source.sha256().map_err(|reason| IoError::format(path, reason))?;
-        if crate::fs::archive_of(path) != *path {
-            return Ok(InputFile::of(path, &[]));
-        }
-        Ok(InputFile { path: path.clone(), bytes: source.len(), sha256, sampled })
+        self.container.source.input(&self.info.path)
     }
 
     /// Whom the file asks to be named: its tag Copyright, else Artist.

@@ -1,7 +1,7 @@
 //! Bytes of a file at a position, from disk or memory.
 
 use crate::fs::File;
-use crate::{budget, input};
+use crate::{InputFile, IoError, budget, input};
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -40,12 +40,27 @@ impl Source {
         Ok(Self::bytes(bytes))
     }
 
+    /// A file whose parts are read where they are wanted.
+    pub(super) fn in_parts(path: &Path) -> std::io::Result<Self> {
+        let file = File::open(path)?;
+        Ok(Self { len: file.metadata()?.len(), inner: Inner::File(Mutex::new(file)) })
+    }
+
     pub(super) fn bytes(bytes: Vec<u8>) -> Self {
         Self { len: bytes.len() as u64, inner: Inner::Bytes(bytes) }
     }
 
     pub(super) fn len(&self) -> u64 {
         self.len
+    }
+
+    /// The record of the file `path`, whose bytes these are.
+    pub(super) fn input(&self, path: &Path) -> Result<InputFile, IoError> {
+        if crate::fs::archive_of(path) != *path {
+            return Ok(InputFile::of(path, &[]));
+        }
+        let (sha256, sampled) = self.sha256().map_err(|reason| IoError::format(path, reason))?;
+        Ok(InputFile { path: path.to_owned(), bytes: self.len, sha256, sampled })
     }
 
     /// sha256 of all the bytes, or of parts of a file of more than [`HASHED`] bytes, and whether it is of parts.

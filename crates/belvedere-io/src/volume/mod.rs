@@ -1,23 +1,34 @@
-//! Volumes of voxels: NRRD, MetaImage, NIfTI, VTK (XML ImageData and legacy structured points) and raw samples.
+//! Volumes of voxels: NRRD, MetaImage, NIfTI, VTK (XML ImageData and legacy structured points), MRC, NumPy, stacks
+//! of TIFF, folders of slices, DICOM and raw samples.
 
+mod dicom;
+mod folder;
 mod meta_image;
+mod mrc;
 mod nifti;
+mod npy;
 mod nrrd;
 mod number;
+mod ome;
+mod pile;
 mod raw;
+mod slice_picture;
+mod tiff_stack;
 mod voxels;
 mod vti;
 mod vti_header;
 mod vti_stream;
 mod vtk;
 
+pub(crate) use folder::is_volume_folder;
 pub use number::{ByteOrder, Number};
 pub use raw::RawLayout;
+pub(crate) use tiff_stack::is_stack;
 pub use voxels::Voxels;
 
-use crate::formats::Reader;
+use crate::formats::{self, Reader};
 use crate::packed::content;
-use crate::recognise::explain;
+use crate::recognise::{self, explain};
 use crate::{Fault, InputFile, IoError, Limits, Loaded, budget, fs};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::VoxelValues;
@@ -60,7 +71,7 @@ pub struct VolumeRequest {
     pub limits: Limits,
 }
 
-/// Reads a volume.
+/// Reads a volume: a file, or a folder of slices or of a series of DICOM.
 ///
 /// Samples of 8 and 16 bits stay what they are (signed bytes become 16 bits), all others become 32-bit floating point. Values that
 /// are not finite become the least value, with a warning.
@@ -69,31 +80,42 @@ pub struct VolumeRequest {
 /// [`IoError::Os`]; [`IoError::Format`] for a file that is damaged, larger than the limits allow, or of a kind that is not supported.
 /// Allocations are bounded by the size of the file.
 pub fn load_volume(path: &Path, request: &VolumeRequest) -> Result<Loaded<VolumeFile>, IoError> {
+    if path.is_dir() {
+        return folder::read(path, request);
+    }
     let path = &content(path, request.limits.max_bytes, &|p| Reader::Volume.reads(p))?;
-    let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let is_nrrd = crate::recognise::ending(path) == "nrrd";
+    let kind = recognise::readable(path)?.map_or("", |format| format.name);
+    match kind {
+        formats::TIFF_STACK => return tiff_stack::read(path, request),
+        "GeoTIFF" => return tiff_stack::read(path, request).map_err(explain),
+        _ => {}
+    }
+    if kind == dicom::NAME {
+        return dicom::read(path, std::slice::from_ref(path), request);
+    }
     let format = |fault: Fault| IoError::format(path, fault);
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
     let _work = budget::work_on(path);
     request.limits.ask("the volume", length).map_err(|e| IoError::format(path, e))?;
     let (bytes, file) = InputFile::read(path)?;
     let source = Source { path, bytes: &bytes, request };
-    let loaded = match () {
-        () if name.ends_with(".vti") => vti::read(&source).map_err(format)?,
-        () if name.ends_with(".vtk") => vtk::read(&source).map_err(format)?,
-        () if name.ends_with(".nii") => nifti::read(&source).map_err(format)?,
-        () if name.ends_with(".mha") || name.ends_with(".mhd") => meta_image::read(&source).map_err(explain)?,
-        () if is_nrrd || name.ends_with(".nhdr") => nrrd::read(&source).map_err(explain)?,
-        () if name.ends_with(".raw") || name.ends_with(".raw.gz") => raw::read(&source).map_err(format)?,
-        () => {
-            let wanted = "a volume that this version reads: VTK XML ImageData (.vti), legacy VTK (.vtk), NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), NIfTI (.nii, .nii.gz) or raw samples (.raw, .raw.gz)";
-            return Err(crate::recognise::not_a(path, wanted));
-        }
+    let mut loaded = match kind {
+        "VTK ImageData" => vti::read(&source).map_err(format)?,
+        "legacy VTK" => vtk::read(&source).map_err(format)?,
+        "NIfTI" => nifti::read(&source).map_err(format)?,
+        "MRC" => mrc::read(&source).map_err(format)?,
+        "NumPy array" => npy::read(&source).map_err(format)?,
+        "MetaImage" => meta_image::read(&source).map_err(explain)?,
+        "NRRD" => nrrd::read(&source).map_err(explain)?,
+        "raw samples" => raw::read(&source).map_err(format)?,
+        _ => return Err(recognise::not_a(path, WANTED)),
     };
-    let mut loaded = loaded;
     loaded.files.insert(0, file);
     Ok(loaded)
 }
+
+/// What a volume may be, for errors.
+const WANTED: &str = "a volume that this version reads: VTK XML ImageData (.vti), legacy VTK (.vtk), NRRD (.nrrd, .nhdr), MetaImage (.mha, .mhd), NIfTI (.nii, .nii.gz), MRC (.mrc, .map), NumPy (.npy), a TIFF stack (.tif), DICOM (.dcm), a folder of slices or raw samples (.raw, .raw.gz)";
 
 /// A file and the request for it.
 struct Source<'a> {
@@ -161,6 +183,15 @@ fn exactly(stream: impl Read, kind: &str, expected: usize) -> Result<Vec<u8>, Fa
         }
         _ => Ok(out),
     }
+}
+
+/// Axes of a file that states no spacing, by the request or of voxels of 1, which a warning says.
+fn unspaced(request: &VolumeRequest) -> (DMat3, Option<Warning>) {
+    if let Some(spacing) = request.raw.spacing {
+        return (DMat3::from_diagonal(DVec3::from_array(spacing)), None);
+    }
+    let text = "it states no spacing; 1 along each axis is assumed, spacing of its layer settles it";
+    (DMat3::IDENTITY, Some(Warning::new(WarningKind::Assumed, text).settled_by("spacing")))
 }
 
 /// Warnings about values that were changed.

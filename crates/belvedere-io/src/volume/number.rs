@@ -1,5 +1,6 @@
 //! Types of samples and their decoding.
 
+use crate::half::half_to_f32;
 use belvedere_scene::VoxelValues;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -28,6 +29,7 @@ pub enum Number {
     UInt32,
     Int64,
     UInt64,
+    Float16,
     Float32,
     Float64,
 }
@@ -70,6 +72,8 @@ const NAMES: &[(&str, Number)] = &[
     ("uint64_t", Number::UInt64),
     ("ulonglong", Number::UInt64),
     ("unsigned long long", Number::UInt64),
+    ("float16", Number::Float16),
+    ("half", Number::Float16),
     ("float32", Number::Float32),
     ("float", Number::Float32),
     ("float64", Number::Float64),
@@ -95,7 +99,7 @@ impl Number {
     pub fn bytes(self) -> usize {
         match self {
             Self::Int8 | Self::UInt8 => 1,
-            Self::Int16 | Self::UInt16 => 2,
+            Self::Int16 | Self::UInt16 | Self::Float16 => 2,
             Self::Int32 | Self::UInt32 | Self::Float32 => 4,
             Self::Int64 | Self::UInt64 | Self::Float64 => 8,
         }
@@ -107,6 +111,7 @@ impl Number {
             Self::UInt8 => 1,
             Self::Int8 => 3,
             Self::Int16 | Self::UInt16 => 4,
+            Self::Float16 => 6,
             Self::Float32 => 8,
             Self::Float64 => 12,
             Self::Int32 | Self::UInt32 => 16,
@@ -137,6 +142,7 @@ impl Number {
             Self::UInt32 => floats(each!(u32, f64::from)),
             Self::Int64 => floats(each!(i64, |v| v as f64)),
             Self::UInt64 => floats(each!(u64, |v| v as f64)),
+            Self::Float16 => finite(each!(u16, half_to_f32), 0),
             Self::Float32 => finite(each!(f32, |v| v), 0),
             Self::Float64 => finite(each!(f64, |v| v as f32), 0),
         }
@@ -169,7 +175,7 @@ impl Number {
                 Self::UInt32 => put!(u32),
                 Self::Int64 => put!(i64),
                 Self::UInt64 => put!(u64),
-                Self::Float32 => put!(f32),
+                Self::Float16 | Self::Float32 => put!(f32),
                 Self::Float64 => put!(f64),
             }
             found += 1;
@@ -177,7 +183,9 @@ impl Number {
         if found < count {
             return Err(format!("it has {found} values of {count}; it is cut off, or the dimensions are wrong"));
         }
-        Ok(self.decode(bytes, ByteOrder::Little))
+        // A text has no halves.
+        let stored = if self == Self::Float16 { Self::Float32 } else { self };
+        Ok(stored.decode(bytes, ByteOrder::Little))
     }
 }
 

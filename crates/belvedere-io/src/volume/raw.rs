@@ -11,7 +11,7 @@ pub struct RawLayout {
     pub dims: Option<[usize; 3]>,
     /// Type of the samples.
     pub number: Option<Number>,
-    /// Distances between samples; 1 where not given.
+    /// Distances between samples, also of other files that state none; 1 where not given.
     pub spacing: Option<[f64; 3]>,
     /// Order of the bytes; little-endian where not given.
     pub order: Option<ByteOrder>,

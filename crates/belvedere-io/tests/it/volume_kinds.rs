@@ -36,7 +36,7 @@ fn bytes(number: Number, big: bool) -> Vec<u8> {
             Number::Int32 | Number::UInt32 => v.to_le_bytes().to_vec(),
             Number::Int64 | Number::UInt64 => i64::from(v).to_le_bytes().to_vec(),
             Number::Float32 => (v as f32).to_le_bytes().to_vec(),
-            Number::Float64 => f64::from(v).to_le_bytes().to_vec(),
+            _ => f64::from(v).to_le_bytes().to_vec(),
         };
         if big { le.into_iter().rev().collect() } else { le }
     };

@@ -15,7 +15,7 @@ use belvedere_core::{Warning, WarningKind};
 use belvedere_io::formats::{self, Reader};
 use belvedere_io::terrain::{TerrainRequest, survey};
 use belvedere_io::vector::{Geometry, Vectors};
-use belvedere_io::{GeoTiff, Limits, Loaded};
+use belvedere_io::{Arrays, GeoTiff, Known, Limits, Loaded};
 use belvedere_io::{LiftedBy, load_vectors};
 use belvedere_io::{join_table, split_table};
 use belvedere_resolve::builtin;
@@ -274,6 +274,9 @@ fn described(name: &str, request: &InfoRequest, progress: &Progress) -> Result<F
     if name.starts_with("builtin:") {
         return built_in(name);
     }
+    if let Some(Reader::Volume) = folder_reader(Path::new(name))? {
+        return Ok(FileInfo::Volume(VolumeInfo::of(Path::new(name))?));
+    }
     let meant = match split_table(Path::new(name)) {
         (whole, Some(_)) => join_table(whole.to_owned(), split_table(Path::new(name)).1),
         (whole, None) => belvedere_io::inside(whole)?,
@@ -294,11 +297,8 @@ fn described(name: &str, request: &InfoRequest, progress: &Progress) -> Result<F
         return Ok(FileInfo::Unread(UnreadInfo { path: name, format: format.name, holds: format.holds, note }));
     }
     let plain = split_table(path).0;
-    match [Reader::Features, Reader::Mesh, Reader::Molecule, Reader::Volume, Reader::Terrain]
-        .into_iter()
-        .find(|reader| reader.may_read(plain))
-        .or(readable.and_then(|format| format.reader))
-    {
+    let by_name = || [Reader::Features, Reader::Terrain].into_iter().find(|reader| reader.may_read(plain));
+    match readable.and_then(|format| format.reader).or_else(by_name) {
         Some(Reader::Features) => return features(path, name_field.as_deref()),
         Some(Reader::Mesh) => return mesh(path),
         Some(Reader::Molecule) => return super::molecule_info::describe(path).map(FileInfo::Molecule),
@@ -313,6 +313,11 @@ fn described(name: &str, request: &InfoRequest, progress: &Progress) -> Result<F
         return geotiff(path, &name, &request, progress);
     }
     terrain(path, &request, progress)
+}
+
+/// The loader of a folder; `None` for anything else.
+fn folder_reader(path: &Path) -> Result<Option<Reader>, BelvedereError> {
+    Ok(if path.is_dir() { Known::of(path, &Arrays::default())?.reader } else { None })
 }
 
 impl InfoRequest {
