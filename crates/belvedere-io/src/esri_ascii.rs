@@ -5,6 +5,8 @@
 
 mod numbers;
 
+pub(crate) use numbers::plain;
+
 use crate::fs::{read_sidecar, sidecar};
 use crate::text::text_of;
 use crate::{
@@ -44,7 +46,7 @@ pub fn read(path: &Path, limits: &Limits) -> Result<Loaded<Raster>, IoError> {
     // The text, and of at least two bytes each the values.
     limits.check(length.saturating_mul(3)).map_err(|e| IoError::format(path, e))?;
     let (bytes, file) = InputFile::read(path)?;
-    let (text, odd_numbers) = numbers::plain(&bytes);
+    let (text, odd_numbers) = plain(&bytes);
     let mut words = text.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty()).peekable();
     let header = header(&mut words).map_err(bad)?;
     let missing = |what: &str| bad(format!("the header lacks {what}; it is no ESRI ASCII grid or is damaged"));

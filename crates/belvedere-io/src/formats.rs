@@ -5,7 +5,12 @@ use crate::text::text_of;
 use quick_xml::{Reader as XmlReader, events::Event};
 use std::path::Path;
 
-use Mark::{At, Both, Columns, First, Json, Record, Root, Word};
+mod lines;
+
+pub(crate) use lines::words;
+use lines::{begins_as_atoms, begins_as_points};
+
+use Mark::{At, Atoms, Both, Columns, First, Json, Points, Record, Root, Word};
 use Reader::{City, Features, Mesh, Molecule, Terrain, Volume};
 
 /// The loader that reads a format.
@@ -60,6 +65,10 @@ enum Mark {
     Record(&'static [&'static str]),
     /// A first line that names columns of coordinates.
     Columns,
+    /// A line with a whole number alone, one of any text, and one of an element and three numbers.
+    Atoms,
+    /// Lines of three numbers.
+    Points,
 }
 
 /// Number of first bytes that are examined.
@@ -117,7 +126,7 @@ const fn unread(
 /// Every format that is known. Where several fit a content or a name, the first one counts.
 pub const FORMATS: &[Format] = &[
     // Recognised by their first bytes.
-    unread("LAS or LAZ", CLOUD, &[".las", ".laz"], &[At(0, b"LASF")], AS_DEM),
+    read(Terrain, "LAS or LAZ", CLOUD, &[".las", ".laz"], &[At(0, b"LASF")]),
     unread("E57", CLOUD, &[".e57"], &[At(0, b"ASTM-E57")], AS_DEM),
     read(Features, "FlatGeobuf", FEATURES, &[".fgb"], &[At(0, b"fgb\x03")]),
     unread("HDF5 or netCDF-4", GRIDS, &[".h5", ".hdf5", ".nc4"], &[At(0, b"\x89HDF\r\n\x1a\n")], AS_GEOTIFF),
@@ -262,7 +271,9 @@ pub const FORMATS: &[Format] = &[
     unread("3MF", TRIANGLES, &[".3mf"], &[], AS_GLTF),
     unread("Blender", TRIANGLES, &[".blend"], &[At(0, b"BLENDER")], "export it as glTF"),
     unread("ArcInfo export", "map features or a grid", &[".e00"], &[], AS_GEOJSON),
-    unread("XYZ", "lines of coordinates", &[".xyz"], &[], AS_DEM),
+    unread("XYZ of atoms", ATOMS, &[], &[Atoms], AS_PDB),
+    read(Terrain, "XYZ", "a grid as lines of coordinates", &[".xyz"], &[Points]),
+    unread("LERC", RASTER, &[".lerc", ".lrc"], &[At(0, b"Lerc2 "), At(0, b"CntZImage ")], AS_GEOTIFF),
     unread("USGS DEM", RASTER, &[".dem"], &[], AS_GEOTIFF),
     unread("DTED", RASTER, &[".dt0", ".dt1", ".dt2"], &[At(0, b"UHL1")], AS_GEOTIFF),
     unread("ESRI BIL", RASTER, &[".bil"], &[], AS_GEOTIFF),
@@ -406,6 +417,8 @@ impl<'h> Head<'h> {
             Root(name) => root.as_deref() == Some(name),
             Columns => columns::has_coordinates(text),
             Word(word) => object.is_none() && text.contains(word),
+            Atoms => object.is_none() && begins_as_atoms(text),
+            Points => object.is_none() && begins_as_points(text),
             Record(records) => {
                 let is_record = |line: &str| line.len() > 53 && records.iter().any(|r| line.starts_with(r));
                 object.is_none() && text.lines().any(is_record)

@@ -21,6 +21,7 @@ mod half;
 pub mod hgt;
 mod input;
 mod known;
+mod las;
 mod loaded;
 pub mod mesh;
 pub mod molecule;
@@ -39,6 +40,7 @@ pub mod terrain;
 mod text;
 pub mod vector;
 pub mod volume;
+mod xyz;
 
 pub use arrays::Arrays;
 pub use city::{CityFile, load_city};

@@ -18,7 +18,7 @@ enum Style {
 }
 
 /// The text with blanks between numbers and decimal points in them, and one sentence if it is written otherwise.
-pub(super) fn plain(bytes: &[u8]) -> (Cow<'_, [u8]>, Option<String>) {
+pub(crate) fn plain(bytes: &[u8]) -> (Cow<'_, [u8]>, Option<String>) {
     let text = match bytes {
         [0xff, 0xfe, ..] | [0xfe, 0xff, ..] | [0, ..] | [_, 0, ..] => {
             Cow::Owned(text_of(bytes, &mut Vec::new()).into_bytes())

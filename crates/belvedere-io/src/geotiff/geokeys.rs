@@ -27,6 +27,11 @@ impl Keys {
         let directory = container.uints(ifd, tag::GEO_KEYS)?.unwrap_or_default();
         let doubles = container.floats(ifd, tag::GEO_DOUBLES)?.unwrap_or_default();
         let text = container.blob(ifd, tag::GEO_ASCII)?.unwrap_or_default();
+        Ok(Self::of(&directory, &doubles, &text))
+    }
+
+    /// * `directory`: four numbers for each key, behind a head of four; `doubles`, `text`: the values that do not fit into it.
+    fn of(directory: &[u64], doubles: &[f64], text: &[u8]) -> Self {
         let count = directory.get(3).map_or(0, |&n| n as usize);
         let mut keys = BTreeMap::new();
         for entry in directory.get(4..).unwrap_or(&[]).chunks_exact(4).take(count) {
@@ -47,7 +52,7 @@ impl Keys {
                 keys.insert(id, key);
             }
         }
-        Ok(Self(keys))
+        Self(keys)
     }
 
     /// A code; 0 ("undefined") counts as absent.
@@ -99,33 +104,49 @@ pub(super) fn georeference(container: &Container, ifd: &Ifd, info: &mut RasterIn
         // The tags of PixelIsPoint speak of sample positions, half a pixel inside the corner.
         if info.pixel_is_point { t.after_scale_and_shift(1.0, 1.0, -0.5, -0.5) } else { t }
     });
-    info.crs_kind = match keys.code(key::MODEL_TYPE) {
-        Some(1) => CrsKind::Projected,
-        Some(2) => CrsKind::Geographic,
-        Some(3) => CrsKind::Geocentric,
-        _ if keys.code(key::PROJECTED_CRS).is_some() => CrsKind::Projected,
-        _ if keys.code(key::GEODETIC_CRS).is_some_and(|c| c != USER_DEFINED) => CrsKind::Geographic,
-        _ => CrsKind::Unknown,
-    };
-    info.crs = crs(&keys, info.crs_kind);
-    info.linear_unit_m = match keys.code(key::LINEAR_UNIT) {
-        Some(USER_DEFINED) => keys.double(key::LINEAR_UNIT_SIZE).filter(|s| s.is_finite() && *s > 0.0),
-        Some(code) => unit_m(code),
-        None => None,
-    };
-    info.vertical_epsg = keys.code(key::VERTICAL).filter(|&c| c != USER_DEFINED);
-    info.vertical_unit_said = keys.code(key::VERTICAL_UNIT).is_some() || info.vertical_epsg.is_some();
-    info.vertical_unit_m = match (keys.code(key::VERTICAL_UNIT), info.vertical_epsg) {
-        (Some(code), _) => unit_m(code).unwrap_or_else(|| {
-            let text = format!("unit of heights (EPSG:{code}) is not known, metres are assumed");
-            warnings.push(Warning::new(WarningKind::Assumed, text).with("epsg", f64::from(code)));
-            1.0
-        }),
-        (None, Some(6360)) => US_FOOT_M,
-        (None, Some(8228)) => FOOT_M,
-        _ => 1.0,
-    };
+    keys.tell_system(info, &mut warnings);
     Ok(warnings)
+}
+
+/// Fills the coordinate system of `info` from GeoKeys outside of a TIFF, as LAS has them; returns warnings.
+///
+/// * `directory`, `doubles`, `text`: values of the tags 34735, 34736 and 34737.
+pub(crate) fn system_of_keys(directory: &[u64], doubles: &[f64], text: &[u8], info: &mut RasterInfo) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    Keys::of(directory, doubles, text).tell_system(info, &mut warnings);
+    warnings
+}
+
+impl Keys {
+    fn tell_system(&self, info: &mut RasterInfo, warnings: &mut Vec<Warning>) {
+        let keys = self;
+        info.crs_kind = match keys.code(key::MODEL_TYPE) {
+            Some(1) => CrsKind::Projected,
+            Some(2) => CrsKind::Geographic,
+            Some(3) => CrsKind::Geocentric,
+            _ if keys.code(key::PROJECTED_CRS).is_some() => CrsKind::Projected,
+            _ if keys.code(key::GEODETIC_CRS).is_some_and(|c| c != USER_DEFINED) => CrsKind::Geographic,
+            _ => CrsKind::Unknown,
+        };
+        info.crs = crs(keys, info.crs_kind);
+        info.linear_unit_m = match keys.code(key::LINEAR_UNIT) {
+            Some(USER_DEFINED) => keys.double(key::LINEAR_UNIT_SIZE).filter(|s| s.is_finite() && *s > 0.0),
+            Some(code) => unit_m(code),
+            None => None,
+        };
+        info.vertical_epsg = keys.code(key::VERTICAL).filter(|&c| c != USER_DEFINED);
+        info.vertical_unit_said = keys.code(key::VERTICAL_UNIT).is_some() || info.vertical_epsg.is_some();
+        info.vertical_unit_m = match (keys.code(key::VERTICAL_UNIT), info.vertical_epsg) {
+            (Some(code), _) => unit_m(code).unwrap_or_else(|| {
+                let text = format!("unit of heights (EPSG:{code}) is not known, metres are assumed");
+                warnings.push(Warning::new(WarningKind::Assumed, text).with("epsg", f64::from(code)));
+                1.0
+            }),
+            (None, Some(6360)) => US_FOOT_M,
+            (None, Some(8228)) => FOOT_M,
+            _ => 1.0,
+        };
+    }
 }
 
 pub(super) const FOOT_M: f64 = 0.3048;

@@ -18,7 +18,7 @@ mod write;
 
 pub use cloud::write_cloud_geotiff;
 pub(crate) use codec::unpack_bits;
-
+pub(crate) use geokeys::system_of_keys;
 pub(crate) use pages::Pages;
 pub use write::write_geotiff;
 

@@ -10,7 +10,7 @@ use crate::formats::{Reader, ends};
 use crate::fs::File;
 use crate::geotiff::is_tiff;
 use crate::packed::content;
-use crate::{Affine, GeoTiff, IoError, Limits, Loaded, Raster, RasterInfo, budget, esri_ascii, hgt};
+use crate::{Affine, GeoTiff, IoError, Limits, Loaded, Raster, RasterInfo, budget, esri_ascii, hgt, las, xyz};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Progress;
 use glam::DVec2;
@@ -198,13 +198,21 @@ fn read_raster(
     }
     let loaded = match extension.as_str() {
         "hgt" => hgt::read(path, &request.limits)?,
+        "xyz" => xyz::read(path, &request.limits)?,
+        "txt" if is_xyz(path)? => xyz::read(path, &request.limits)?,
         "asc" | "grd" | "txt" => esri_ascii::read(path, &request.limits)?,
+        "las" | "laz" => las::read(path, budget, &request.limits)?,
         _ => {
-            let wanted = "an elevation model: GeoTIFF, SRTM .hgt or ESRI ASCII .asc (all also in .zip and .gz)";
+            let wanted = "an elevation model: GeoTIFF, SRTM .hgt, ESRI ASCII .asc, XYZ on a grid, or points of LAS or LAZ (all also in .zip and .gz)";
             return Err(crate::recognise::not_a(path, wanted));
         }
     };
     Ok(loaded.map(|raster| Source::Whole(raster, 1.0)))
+}
+
+/// Whether a text is a grid as lines of coordinates.
+fn is_xyz(path: &Path) -> Result<bool, IoError> {
+    Ok(crate::recognise::of_content(path)?.is_some_and(|format| format.name == "XYZ"))
 }
 
 fn read_tiff(

@@ -27,6 +27,7 @@ mod molecules;
 mod open_exr;
 mod picture_files;
 mod png;
+mod point_clouds;
 mod rasters;
 mod support_files;
 mod terrain;
