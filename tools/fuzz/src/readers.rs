@@ -1,6 +1,6 @@
 //! The readers: bytes in, a result out, by the way that a user's file goes.
 
-use crate::seeds::{cities, documents, meshes, molecules, packages, rasters, tables, vectors, volumes};
+use crate::seeds::{cities, documents, meshes, molecules, packages, rasters, stacks, tables, vectors, volumes};
 use belvedere::scene::Progress;
 use belvedere::verbs::{info, preset};
 use belvedere::{BelvedereError, OpenOptions, PictureOptions, Session, Trust};
@@ -95,6 +95,20 @@ pub const READERS: &[Reader] = &[
         alone,
         rasters::srtm,
         Scene("[[layer]]\nid=\"g\"\nkind=\"terrain\"\nsource=\"N46E010.hgt\"\n"),
+    ),
+    reader(
+        "xyz",
+        "a.xyz",
+        alone,
+        rasters::xyz,
+        Scene("[[layer]]\nid=\"g\"\nkind=\"terrain\"\nsource=\"a.xyz\"\nsource_crs=\"EPSG:32632\"\n"),
+    ),
+    reader(
+        "las",
+        "a.las",
+        alone,
+        rasters::las,
+        Scene("[[layer]]\nid=\"g\"\nkind=\"terrain\"\nsource=\"a.las\"\nsource_crs=\"EPSG:32632\"\n"),
     ),
     reader(
         "projection_file",
@@ -298,6 +312,17 @@ pub const READERS: &[Reader] = &[
         Scene("[[layer]]\nid=\"v\"\nkind=\"volume\"\nsource=\"a.mha\"\n"),
     ),
     reader("nifti", "a.nii", alone, volumes::nifti, Scene("[[layer]]\nid=\"v\"\nkind=\"volume\"\nsource=\"a.nii\"\n")),
+    reader(
+        "tiff_stack",
+        "a.tif",
+        alone,
+        stacks::tiffs,
+        Scene("[[layer]]\nid=\"v\"\nkind=\"volume\"\nsource=\"a.tif\"\n"),
+    ),
+    reader("tiff_stack_described", "a.tif", alone, stacks::tiffs, Described),
+    reader("npy", "a.npy", alone, stacks::npy, Scene("[[layer]]\nid=\"v\"\nkind=\"volume\"\nsource=\"a.npy\"\n")),
+    reader("mrc", "a.mrc", alone, stacks::mrc, Scene("[[layer]]\nid=\"v\"\nkind=\"volume\"\nsource=\"a.mrc\"\n")),
+    reader("dicom", "a.dcm", alone, stacks::dicom, Scene("[[layer]]\nid=\"v\"\nkind=\"volume\"\nsource=\"a.dcm\"\n")),
     reader("vtk", "a.vtk", alone, volumes::vtk, Scene("[[layer]]\nid=\"v\"\nkind=\"volume\"\nsource=\"a.vtk\"\n")),
     reader(
         "raw",

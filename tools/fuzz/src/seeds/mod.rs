@@ -6,6 +6,7 @@ pub mod meshes;
 pub mod molecules;
 pub mod packages;
 pub mod rasters;
+pub mod stacks;
 pub mod tables;
 pub mod vectors;
 pub mod volumes;

@@ -39,6 +39,51 @@ pub fn ascii_grids() -> Vec<Vec<u8>> {
     vec![ascii_ground(), commas, ascii(|h| format!("{h:.3e}"), "\t", "\n"), [vec![0xff, 0xfe], wide].concat()]
 }
 
+/// Grids as lines of coordinates: with blanks, and with names and commas.
+pub fn xyz() -> Vec<Vec<u8>> {
+    let grid = |gap: &str, head: &str| {
+        let line = |i: usize| {
+            let (x, y) = (CORNER.x + STEP * (i % NODES) as f64, CORNER.y + STEP * (i / NODES) as f64);
+            format!("{x:.1}{gap}{y:.1}{gap}{:.2}\n", height(i))
+        };
+        (head.to_owned() + &(0..NODES * NODES).map(line).collect::<String>()).into_bytes()
+    };
+    vec![grid(" ", ""), grid(",", "x,y,z\n")]
+}
+
+/// Points of LAS, of an old and a new format.
+pub fn las() -> Vec<Vec<u8>> {
+    let cloud = |format: u8| {
+        let (head, record) = if format < 6 { (227usize, 20usize) } else { (375, 30) };
+        let mut out = vec![0u8; head];
+        let mut put = |at: usize, bytes: &[u8]| out[at..at + bytes.len()].copy_from_slice(bytes);
+        put(0, b"LASF");
+        put(24, &[1, if format < 6 { 2 } else { 4 }]);
+        put(94, &(head as u16).to_le_bytes());
+        put(96, &(head as u32).to_le_bytes());
+        put(104, &[format]);
+        put(105, &(record as u16).to_le_bytes());
+        let count = (NODES * NODES) as u32;
+        put(107, &count.to_le_bytes());
+        if format >= 6 {
+            put(247, &u64::from(count).to_le_bytes());
+        }
+        for (i, offset) in [CORNER.x, CORNER.y, 0.0].into_iter().enumerate() {
+            put(131 + 8 * i, &0.01f64.to_le_bytes());
+            put(155 + 8 * i, &offset.to_le_bytes());
+        }
+        for i in 0..NODES * NODES {
+            let at = [STEP * (i % NODES) as f64, STEP * (i / NODES) as f64, height(i)];
+            let mut point: Vec<u8> = at.iter().flat_map(|v| ((100.0 * v) as i32).to_le_bytes()).collect();
+            point.extend([0, 0, 9, 2, 2]);
+            point.resize(record, 0);
+            out.extend(point);
+        }
+        out
+    };
+    vec![cloud(0), cloud(6)]
+}
+
 /// Tiles of SRTM, of 13 and 16 samples along a side.
 pub fn srtm() -> Vec<Vec<u8>> {
     let tile = |side: usize| (0..side * side).flat_map(|i| (height(i % 100) as i16).to_be_bytes()).collect();
