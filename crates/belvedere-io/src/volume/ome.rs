@@ -44,12 +44,12 @@ struct Run {
 
 impl Ome {
     /// Of the description of a TIFF; `None` if it is no OME-XML with an image.
-    pub(super) fn of(text: &str) -> Option<Self> {
-        if !text.contains("<OME") && !text.contains(":OME") {
+    pub(super) fn of(description: &str) -> Option<Self> {
+        if !description.contains("<OME") && !description.contains(":OME") {
             return None;
         }
         let mut out = Self::default();
-        let mut reader = XmlReader::from_str(text);
+        let mut reader = XmlReader::from_str(description);
         let mut in_uuid = false;
         loop {
             match reader.read_event() {

@@ -76,16 +76,16 @@ impl Plan {
 
 /// What ImageJ says of a stack.
 struct ImageJ<'t> {
-    text: &'t str,
+    description: &'t str,
 }
 
 impl<'t> ImageJ<'t> {
-    fn of(text: &'t str) -> Option<Self> {
-        text.starts_with("ImageJ=").then_some(Self { text })
+    fn of(description: &'t str) -> Option<Self> {
+        description.starts_with("ImageJ=").then_some(Self { description })
     }
 
     fn get(&self, key: &str) -> Option<&'t str> {
-        self.text.lines().find_map(|line| line.trim().strip_prefix(key)?.strip_prefix('='))
+        self.description.lines().find_map(|line| line.trim().strip_prefix(key)?.strip_prefix('='))
     }
 
     /// A number of images, 1 where it is not stated.

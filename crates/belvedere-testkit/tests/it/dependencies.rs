@@ -27,9 +27,9 @@ fn every_dependency_is_justified_in_one_line() {
 }
 
 /// Most packages that a program is built from, our own included.
-const MOST: [(&str, usize); 2] = [("belvedere-cli", 204), ("belvedere-viewer", 344)];
+const MOST: [(&str, usize); 2] = [("belvedere-cli", 205), ("belvedere-viewer", 345)];
 /// Most packages in the lock file, those of tests and other systems included.
-const MOST_LOCKED: usize = 562;
+const MOST_LOCKED: usize = 563;
 
 #[test]
 fn dependencies_do_not_grow_unnoticed() {

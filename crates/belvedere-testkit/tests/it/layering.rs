@@ -25,6 +25,7 @@ const RULES: &[(&str, &[&str], &[&str])] = &[
             "gpx",
             "image-webp",
             "jpeg-encoder",
+            "laz",
             "ply-rs-bw",
             "png",
             "proj4rs",

@@ -9,9 +9,11 @@ use syn::visit::{self, Visit};
 use syn::{Attribute, Expr, ExprMethodCall, ItemFn, ItemMod, Lit, LitStr, Macro, Token, token};
 
 /// Texts of libraries that may name an option, by a part of them.
-const OPTIONS: [&str; 1] = [
+const OPTIONS: [&str; 2] = [
     // Title of the schema of what the program prints.
     "belvedere {verb} --json",
+    // Of another program.
+    "as with gdcmconv --raw",
 ];
 
 /// Decisions on a text, by file and part, that are right: the texts are contents of files or come from elsewhere without a kind.

@@ -13,6 +13,9 @@ const ITEM: u32 = 0xfffe_e000;
 const END_OF_ITEM: u32 = 0xfffe_e00d;
 const END_OF_SEQUENCE: u32 = 0xfffe_e0dd;
 
+/// The pixels.
+pub(super) const PIXELS: u32 = 0x7fe0_0010;
+
 /// Sequences that are read where a file does not state types.
 const SEQUENCES: [u32; 6] = [0x5200_9229, 0x5200_9230, 0x0028_9110, 0x0020_9113, 0x0020_9116, 0x0028_9145];
 /// Types with four bytes of length.
@@ -117,7 +120,7 @@ impl<'b> Parser<'b> {
             ));
         }
         let (kind, length) = self.header(tag)?;
-        if tag == super::image::PIXELS && length == OPEN {
+        if tag == PIXELS && length == OPEN {
             return self.fragments();
         }
         if kind == *b"SQ" || length == OPEN {

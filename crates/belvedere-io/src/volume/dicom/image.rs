@@ -1,7 +1,7 @@
 //! What one DICOM file says of its pixels, their meaning and place. Source: DICOM PS3.3 2024e, C.7.6 and C.7.6.16.
 
-use super::data_set::{Encoding, Parser, Value, View};
-use super::pixels::Packing;
+use super::data_set::{Encoding, PIXELS, Parser, Value, View};
+use super::packing::Packing;
 use crate::Fault;
 use crate::volume::{MOST_GROWTH, exactly};
 use flate2::read::DeflateDecoder;
@@ -10,7 +10,6 @@ use std::borrow::Cow;
 use std::io::Read;
 use std::ops::Range;
 
-pub(super) const PIXELS: u32 = 0x7fe0_0010;
 const TRANSFER_SYNTAX: u32 = 0x0002_0010;
 const MODALITY: u32 = 0x0008_0060;
 const SERIES_TITLE: u32 = 0x0008_103e;

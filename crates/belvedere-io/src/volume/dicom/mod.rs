@@ -4,6 +4,7 @@
 
 mod data_set;
 mod image;
+mod packing;
 mod pixels;
 mod values;
 

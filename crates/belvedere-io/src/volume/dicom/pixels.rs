@@ -1,56 +1,12 @@
 //! Pixels of DICOM: stored as they are, run lengths, JPEG. Source: DICOM PS3.5 2024e, sections 8 and annexes A, G.
 
-use super::data_set::Encoding;
 use super::image::{Image, Layout, Stored};
+use super::packing::Packing;
 use crate::geotiff::unpack_bits;
 use crate::volume::slice_picture;
 use crate::{Fault, Limits, Samples, budget};
 use std::borrow::Cow;
 use std::path::Path;
-
-/// How pixels are compressed.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Packing {
-    Plain,
-    RunLengths,
-    Jpeg,
-    /// Of a name that is not read.
-    Other(String),
-}
-
-impl Packing {
-    /// Of a transfer syntax, with the way in which its elements are stored.
-    pub(super) fn of(syntax: &str) -> (Self, Encoding) {
-        let little = Encoding { explicit: true, big_endian: false };
-        let Some(kind) = syntax.strip_prefix("1.2.840.10008.1.2") else {
-            return (Self::Other(format!("a private way ({syntax:.60})")), little);
-        };
-        let named = |name: &str| (Self::Other(name.to_owned()), little);
-        match kind {
-            "" => (Self::Plain, Encoding { explicit: false, big_endian: false }),
-            ".1" | ".1.99" => (Self::Plain, little),
-            ".2" => (Self::Plain, Encoding { explicit: true, big_endian: true }),
-            ".5" => (Self::RunLengths, little),
-            ".4.50" => (Self::Jpeg, little),
-            ".4.51" => named("JPEG of 12 bits"),
-            ".4.57" | ".4.70" => named("lossless JPEG"),
-            ".4.80" | ".4.81" => named("JPEG-LS"),
-            ".4.90" | ".4.91" | ".4.92" | ".4.93" => named("JPEG 2000"),
-            ".4.110" | ".4.111" | ".4.112" => named("JPEG XL"),
-            ".4.201" | ".4.202" | ".4.203" => named("High-Throughput JPEG 2000"),
-            kind if kind.starts_with(".4.10") => named("a film (MPEG)"),
-            other => named(&format!("an unknown way (1.2.840.10008.1.2{other:.40})")),
-        }
-    }
-
-    /// Why pixels are not read.
-    pub(super) fn refusal(&self) -> Option<String> {
-        let Self::Other(name) = self else { return None };
-        Some(format!(
-            "its pixels are compressed as {name}, which is not read; uncompressed ones, run lengths and JPEG of 8 bits are: convert it, as with gdcmconv --raw or dcmdjpeg"
-        ))
-    }
-}
 
 /// Decodes frame `index` to samples of 1, 2 or 4 bytes, little-endian, the samples of a pixel next to each other.
 ///
@@ -111,7 +67,7 @@ fn piece<'b>(
         (frames, pieces) if frames == pieces => of(index + 1).map(Cow::Borrowed),
         (1, 1..) => (1..pieces.len()).map(of).collect::<Result<Vec<_>, _>>().map(|all| Cow::Owned(all.concat())),
         (frames, pieces) => Err(format!(
-            "its {frames} frames lie in {pieces} pieces, one for each is read; convert it, as with gdcmconv --raw"
+            "its {frames} frames lie in {pieces} pieces, one for each is read; make it uncompressed, as with dcmdjpeg or gdcmconv"
         )),
     }
 }
