@@ -16,6 +16,7 @@ mod geopackage;
 mod geotiff;
 mod geotiff_cloud;
 mod geotiff_made;
+mod grounds;
 mod kinds_crs;
 mod kinds_files;
 mod kinds_packed;
