@@ -101,6 +101,24 @@ fn a_town_in_degrees_is_as_wide_as_it_is_on_the_earth() {
 }
 
 #[test]
+fn several_files_are_drawn_together_whatever_their_order() {
+    let place = Place::new();
+    hills("west.asc", 500_000.0, &place);
+    hills("east.asc", 501_200.0, &place);
+    // Across both tiles, near their middle.
+    place.write("way.geojson", r#"{"type":"LineString","coordinates":[[9.004,46.0552],[9.026,46.0555]]}"#);
+    let drawn = |files: &[&str]| {
+        let options = ["-o", "x.png", "--size", "120x90", "--source-crs", "EPSG:32632", "--overwrite"];
+        place.ok(&[&["render"], files, &options].concat());
+        pixels(&read(&place.path("x.png")))
+    };
+    let all = drawn(&["west.asc", "east.asc", "way.geojson"]);
+    assert!(all == drawn(&["way.geojson", "east.asc", "west.asc"]), "another order");
+    assert!(all != drawn(&["west.asc", "east.asc"]), "the way is drawn");
+    assert!(drawn(&["west.asc", "east.asc"]) != drawn(&["west.asc"]), "both tiles are drawn");
+}
+
+#[test]
 fn what_makes_no_picture_alone_is_an_error_that_helps() {
     let place = Place::new();
     place.write("way.geojson", r#"{"type":"LineString","coordinates":[[9,46],[9.01,46]]}"#);
@@ -109,7 +127,13 @@ fn what_makes_no_picture_alone_is_an_error_that_helps() {
     let error = place.fails(&["render", "way.geojson", "-o", "x.png"]);
     assert!(error.contains("not a scene document") && error.contains("belvedere info way.geojson"), "{error}");
     let error = place.fails(&["render", "hills.asc", "way.geojson", "-o", "x.png"]);
-    assert!(error.contains("way.geojson") && error.contains("reveal"), "{error}");
+    assert!(error.contains("way.geojson") && error.contains("--source-crs"), "{error}");
+    place.write("way2.geojson", r#"{"type":"LineString","coordinates":[[9,46],[9.02,46]]}"#);
+    let error = place.fails(&["render", "way.geojson", "way2.geojson", "-o", "x.png"]);
+    assert!(
+        error.contains("make no picture together") && error.contains("an elevation model together with"),
+        "{error}"
+    );
     let error = place.fails(&["check", "hills.asc"]);
     assert!(error.contains("belvedere show hills.asc -o hills.toml"), "{error}");
     let error = place.fails(&["render", "empty", "-o", "x.png"]);

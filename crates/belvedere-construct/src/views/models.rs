@@ -25,7 +25,7 @@ pub const MANY: usize = 200_000;
 
 /// Points that show how far the visible layers reach.
 /// * `most`: triangles of a layer by which that is told, at most about;
-/// * `cities`: ids of layers that stand on a plate, whose margin around them does not count.
+/// * `cities`: ids of layers of cities, of which buildings and structures count; of those without any, all but the margin of their plate.
 pub fn outline(scene: &Scene, most: usize, cities: &[&str]) -> Vec<DVec3> {
     let of = |layer: &Layer| -> Vec<DVec3> {
         match &layer.kind {
@@ -33,10 +33,17 @@ pub fn outline(scene: &Scene, most: usize, cities: &[&str]) -> Vec<DVec3> {
             LayerKind::Mesh(m) | LayerKind::Own(OwnLayer { surface: m, .. }) => {
                 let Aabb { min, max } = layer.bounds();
                 let is_inside = |p: &DVec3| p.cmpgt(min).all() && p.cmplt(max).all();
-                let on_plate = cities.contains(&layer.id.as_str());
-                reach(&m.mesh, most, &|p| !on_plate || is_inside(&p.with_z(0.5 * (min.z + max.z))))
+                // Part 0 is the ground and its cover.
+                let stands = |t: usize| m.mesh.part(t).is_some_and(|part| part > 0);
+                let is_city = cities.contains(&layer.id.as_str());
+                let has_buildings = is_city && (0..m.mesh.triangles().len()).any(stands);
+                reach(&m.mesh, most, &|t, p| match (is_city, has_buildings) {
+                    (false, _) => true,
+                    (true, true) => stands(t),
+                    (true, false) => is_inside(&p.with_z(0.5 * (min.z + max.z))),
+                })
             }
-            LayerKind::Molecule(m) => reach(&m.surface.mesh, most, &|_| true),
+            LayerKind::Molecule(m) => reach(&m.surface.mesh, most, &|_, _| true),
             _ => Target::around(layer.bounds()).points,
         }
     };
@@ -46,14 +53,15 @@ pub fn outline(scene: &Scene, most: usize, cities: &[&str]) -> Vec<DVec3> {
 
 /// Corners of triangles that tell how far a mesh reaches: of at most `most` triangles all, of more, where many views are tried, those of some.
 /// Else the first and the last along x in every cell of a lattice over y and z: no other lies farther out than a cell is wide.
-fn reach(mesh: &Mesh, most: usize, counts: &dyn Fn(&DVec3) -> bool) -> Vec<DVec3> {
+fn reach(mesh: &Mesh, most: usize, counts: &dyn Fn(usize, &DVec3) -> bool) -> Vec<DVec3> {
     let count = mesh.triangles().len();
-    let all = || (0..count).flat_map(|t| mesh.corners(t)).filter(counts);
+    let of = |t: usize| mesh.corners(t).into_iter().filter(move |p| counts(t, p));
+    let all = || (0..count).flat_map(of);
     if count <= most {
         return all().collect();
     }
     if most <= FEW {
-        return (0..count).step_by(count.div_ceil(most)).flat_map(|t| mesh.corners(t)).filter(counts).collect();
+        return (0..count).step_by(count.div_ceil(most)).flat_map(of).collect();
     }
     let (side, bounds) = ((most as f64 / 2.0).sqrt().floor(), mesh.bounds());
     let mut ends: Vec<Option<[DVec3; 2]>> = vec![None; (side * side) as usize];

@@ -53,11 +53,17 @@ fn names_of(folder: &Path) -> Result<Vec<String>, IoError> {
     Ok(names)
 }
 
+/// The path of a file of a folder, which is looked into only as a file beside it would name it: links may not lead out.
+fn path_in(folder: &Path, name: &str) -> Result<PathBuf, IoError> {
+    beside(&folder.join("a"), name).map_err(|reason| IoError::format(folder, reason))
+}
+
 fn held(folder: &Path) -> Result<Option<Held>, IoError> {
     let names = names_of(folder)?;
     let is_dicom = |name: &&String| {
         let known = formats::of_name(Path::new(name)).map(|format| format.name);
-        known == Some(dicom::NAME) || (known.is_none() && dicom::has_mark(&folder.join(name)))
+        let has_mark = || path_in(folder, name).is_ok_and(|path| dicom::has_mark(&path));
+        known == Some(dicom::NAME) || (known.is_none() && has_mark())
     };
     let series: Vec<String> = names.iter().filter(is_dicom).cloned().collect();
     if !series.is_empty() {
@@ -75,7 +81,7 @@ fn held(folder: &Path) -> Result<Option<Held>, IoError> {
     let Some(pictures) = pictures else { return Ok(None) };
     if is(&pictures[0], PICTURES[1]) {
         // Tiles of a map have places, and files of several pages are volumes themselves.
-        let first = Pages::open(&folder.join(&pictures[0]), Limits::default());
+        let first = path_in(folder, &pictures[0]).and_then(|path| Pages::open(&path, Limits::default()));
         if first.is_ok_and(|pages| pages.is_placed || pages.count() > 1) {
             return Ok(None);
         }
@@ -86,10 +92,7 @@ fn held(folder: &Path) -> Result<Option<Held>, IoError> {
 
 /// Reads the volume of a folder.
 pub(super) fn read(folder: &Path, request: &VolumeRequest) -> Result<Loaded<VolumeFile>, IoError> {
-    let path_of = |name: &String| {
-        // As a file of the folder would name it: links may not lead out.
-        beside(&folder.join("a"), name).map_err(|reason| IoError::format(folder, reason))
-    };
+    let path_of = |name: &String| path_in(folder, name);
     match held(folder)? {
         Some(Held::Dicom(names)) => {
             dicom::read(folder, &names.iter().map(path_of).collect::<Result<Vec<_>, _>>()?, request)

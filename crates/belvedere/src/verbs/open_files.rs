@@ -151,18 +151,21 @@ fn whole(layers: Vec<LayerDoc>, folders: Vec<PathBuf>) -> SourceDocument {
 /// As [`scene_file::read`] and [`scene_of_data`]; [`BelvedereError::Argument`] where something is said of a scene file, which says it itself,
 /// or of data that have no such thing; [`BelvedereError::Target`] for a scene file among several files.
 pub fn scene_or_data(paths: &[PathBuf], said: &OfData) -> Result<SourceDocument, BelvedereError> {
-    let (read, path) = match paths {
-        [path] => (scene_file::read(path), path),
-        paths => match paths.iter().find(|path| scene_file::read(path).is_ok()) {
-            Some(path) => {
-                let text = format!("{} is a scene file, which is drawn alone; name its data in it", path.display());
+    let read = match paths {
+        [path] => scene_file::read(path),
+        paths => {
+            if let Some(path) = paths.iter().find(|path| scene_file::read(path).is_ok()) {
+                let others: Vec<String> =
+                    paths.iter().filter(|other| *other != path).map(|other| other.display().to_string()).collect();
+                let text = format!(
+                    "{} is a scene file, which is drawn alone; leave out {}, or name data in the scene file",
+                    path.display(),
+                    others.join(" and ")
+                );
                 return Err(BelvedereError::Target(text));
             }
-            None => {
-                let first = paths.first().ok_or(BelvedereError::NoFeatures)?;
-                (scene_file::read(first), first)
-            }
-        },
+            scene_file::read(paths.first().ok_or(BelvedereError::NoFeatures)?)
+        }
     };
     match read {
         Err(error) => {
@@ -173,7 +176,7 @@ pub fn scene_or_data(paths: &[PathBuf], said: &OfData) -> Result<SourceDocument,
         }
         Ok(source) => match given_of(said, &OfData::OPTIONS)[..] {
             [] => Ok(source),
-            ref options => Err(not_said(options, &format!("for data alone, and {} says it itself", path.display()))),
+            ref options => Err(not_said(options, "for data alone, and a scene file says it itself")),
         },
     }
 }
@@ -195,6 +198,7 @@ fn say_of_data(document: &mut Document, said: &OfData) -> Result<(), BelvedereEr
     if !has_terrain && !wrong.is_empty() {
         return Err(not_said(&wrong, "for an elevation model, and this is none"));
     }
+    let has_place = has_terrain || document.layer.iter().any(|layer| matches!(layer, LayerDoc::City(_)));
     for layer in &mut document.layer {
         match layer {
             LayerDoc::Terrain(terrain) => {
@@ -202,7 +206,7 @@ fn say_of_data(document: &mut Document, said: &OfData) -> Result<(), BelvedereEr
                 (terrain.nodata, terrain.vertical_unit) = (raster.nodata, raster.vertical_unit);
             }
             LayerDoc::City(city) => city.crs = raster.source_crs.clone(),
-            _ if raster.source_crs.is_some() || said.crs.is_some() => {
+            _ if !has_place && (raster.source_crs.is_some() || said.crs.is_some()) => {
                 let wrong = given_of(said, &["crs", "source_crs"]);
                 return Err(not_said(&wrong, "for elevation models and cities, and this is neither"));
             }

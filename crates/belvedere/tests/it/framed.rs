@@ -193,3 +193,43 @@ fn a_picture_of_any_shape_holds_the_frame_and_gives_the_camera_back_unchanged() 
         }
     }
 }
+
+#[test]
+fn a_town_is_framed_by_its_buildings_and_not_by_its_water() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut vertices, mut objects) = (Vec::new(), Vec::new());
+    for k in 0..4 {
+        let [x, y, high] = [4000 + 25 * k, 300 + 11 * (k % 2), 8 + 3 * k];
+        let corners = [[0, 0], [12, 0], [12, 9], [0, 9]];
+        let first = vertices.len();
+        vertices.extend([0, high].iter().flat_map(|z| corners.map(|[dx, dy]| format!("[{},{},{z}]", x + dx, y + dy))));
+        let faces = [[3, 2, 1, 0], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+        let shell = faces.map(|f| format!("[[{}]]", f.map(|v| (first + v).to_string()).join(","))).join(",");
+        objects.push(format!(
+            r#""b{k}":{{"type":"Building","geometry":[{{"type":"Solid","lod":"1","boundaries":[[{shell}]]}}]}}"#
+        ));
+    }
+    let first = vertices.len();
+    vertices.extend(["[0,500,0]", "[9000,500,0]", "[9000,540,0]", "[0,540,0]"].map(String::from));
+    let ring: Vec<String> = (first..first + 4).map(|v| v.to_string()).collect();
+    let shape = format!(r#"{{"type":"MultiSurface","lod":"1","boundaries":[[[{}]]]}}"#, ring.join(","));
+    objects.push(format!(r#""canal":{{"type":"WaterBody","geometry":[{shape}]}}"#));
+    let text = format!(
+        r#"{{"type":"CityJSON","version":"2.0","transform":{{"scale":[1,1,1],"translate":[0,0,0]}},"CityObjects":{{{}}},"vertices":[{}]}}"#,
+        objects.join(","),
+        vertices.join(",")
+    );
+    let file = folder.path().join("town.city.json");
+    std::fs::write(&file, text).unwrap();
+    let of = |water: bool| {
+        farthest(&file, &move |session| {
+            let LayerKind::Mesh(layer) = &session.scene().layers[0].kind else { panic!("a mesh") };
+            let mesh = &layer.mesh;
+            let chosen = (0..mesh.triangles().len()).filter(|t| (mesh.part(*t) == Some(0)) == water);
+            chosen.flat_map(|t| mesh.corners(t)).collect()
+        })
+    };
+    let buildings = of(false);
+    assert!((0.8..1.0).contains(&buildings), "buildings fill their picture: {buildings}");
+    assert!(of(true) > 3.0, "the canal goes on beyond it");
+}
