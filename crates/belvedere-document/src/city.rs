@@ -1,6 +1,7 @@
 //! Layers of cities in the scene document.
 
 use super::common::{Paths, is_false, is_opaque};
+use belvedere_scene::city::Keep;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -28,6 +29,9 @@ pub struct CityDoc {
     /// kept in both. The streets are those of the files.
     #[serde(default, skip_serializing_if = "is_none")]
     pub loa: u8,
+    /// What blocks keep of their buildings: their mean height, or their volume, for which they are lower.
+    #[serde(default, skip_serializing_if = "is_height")]
+    pub keep: Keep,
     /// Added to all heights of the files, metres: between their datum and that of the terrain.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub height_offset_m: f64,
@@ -48,6 +52,10 @@ fn is_none(loa: &u8) -> bool {
     *loa == 0
 }
 
+fn is_height(keep: &Keep) -> bool {
+    *keep == Keep::Height
+}
+
 impl CityDoc {
     /// A file in the usual style.
     pub fn of(id: String, source: &str) -> Self {
@@ -59,6 +67,7 @@ impl CityDoc {
             crs: None,
             lod: None,
             loa: 0,
+            keep: Keep::Height,
             height_offset_m: 0.0,
             rigid: false,
             style: CityStyleDoc::default(),

@@ -140,7 +140,7 @@ pub(super) fn layer(
         loader.note(index, datum(&city, terrain));
     }
     if doc.loa > 0 {
-        city = abstraction(loader, index, &city, doc.loa, &stand)?;
+        city = abstraction(loader, index, &city, doc, &stand)?;
     }
     if let Stand::Terrain(terrain) = stand {
         let lost = leave_out_beyond(&mut city, terrain).map_err(|e| loader.fail(index, "source", e))?;
@@ -182,13 +182,13 @@ fn abstraction(
     loader: &mut Loader<'_>,
     index: usize,
     city: &City,
-    loa: u8,
+    doc: &CityDoc,
     stand: &Stand<'_>,
 ) -> Result<City, BelvedereError> {
     let progress = &loader.options.progress;
-    let mut found =
-        generalise(city, &GeneraliseSettings::default(), progress).map_err(|e| loader.fail(index, "loa", e))?;
-    let chosen = usize::from(loa > 1);
+    let settings = GeneraliseSettings { keep: doc.keep, ..GeneraliseSettings::default() };
+    let mut found = generalise(city, &settings, progress).map_err(|e| loader.fail(index, "loa", e))?;
+    let chosen = usize::from(doc.loa > 1);
     let level = &mut found.levels[chosen];
     match stand {
         // Volumes are those over the ground: without the feet of the walls.
@@ -197,7 +197,7 @@ fn abstraction(
     }
     found.measure(city);
     let [fine, coarse] = found.levels;
-    let mut level = if loa == 1 { fine } else { coarse };
+    let mut level = if doc.loa == 1 { fine } else { coarse };
     if let Stand::Terrain(terrain) = stand {
         city_blocks::stand_on_terrain(&mut level, city, terrain, city_blocks::FOOT_M);
         // Floors are hidden in the ground, so they are removed.

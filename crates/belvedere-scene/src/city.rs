@@ -3,6 +3,7 @@
 use crate::Texture;
 use belvedere_core::{DVec2, DVec3};
 use glam::Vec2;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// A city. Coordinates are those of the file after loading, and those of the scene once it is placed there.
@@ -18,6 +19,18 @@ pub struct City {
     pub areas: Vec<CityArea>,
     /// Pictures on faces.
     pub pictures: Vec<Arc<Texture>>,
+}
+
+/// What blocks of a level of abstraction keep of their buildings.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Keep {
+    /// Their mean height, weighted by area.
+    #[default]
+    Height,
+    /// Their volume: blocks are lower where they cover more ground than their buildings.
+    Volume,
 }
 
 /// A polygon in plan.

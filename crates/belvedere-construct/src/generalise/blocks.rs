@@ -2,7 +2,7 @@
 
 use super::settings::GeneraliseSettings;
 use super::shapes::{
-    Land, area, closed, common, filled_below, grown, one, parted, rectangle_round, shrunk, simplified, union,
+    Land, area, closed, common, filled_below, grown, one, parted, rectangle_round, shrunk, simplified, union, widened,
     without_specks,
 };
 use geo::{Area, BooleanOps, MultiPolygon};
@@ -47,6 +47,9 @@ const CHINK_M2: f64 = 25.0;
 const STRAY: f64 = 0.6;
 /// Least share of a piece of a block that buildings cover.
 const LEAST_BUILT: f64 = 0.05;
+/// Ground that a block may cover, over that of its buildings; and shares of the closed gaps at which it follows them beyond that.
+const MOST_GROUND: f64 = 1.5;
+const CLOSER: [f64; 3] = [1.0, 0.4, 0.15];
 
 /// Least distance of blocks from landmarks that buildings touch, metres.
 const BY_LANDMARKS_M: f64 = 0.2;
@@ -64,6 +67,8 @@ pub(super) struct Grain {
     pub hole_m2: f64,
     /// Share of its least rectangle that an outline must fill to be drawn as that rectangle.
     pub as_rectangle: f64,
+    /// Largest number of triangles of a block that follows its buildings closely, as a share of theirs.
+    pub triangles: f64,
 }
 
 impl Grain {
@@ -76,7 +81,14 @@ impl Grain {
             of_size: 0.04 + 0.08 * times,
             hole_m2: (2.0 * closing_m).powi(2),
             as_rectangle: 0.95 - 0.2 * times,
+            triangles: 0.4 / times,
         }
+    }
+
+    /// A grain that follows buildings more closely: courtyards stay open, and gaps that are wider than `share` of those that are closed.
+    fn finer(self, share: f64) -> Self {
+        let closing_m = share * self.closing_m;
+        Self { closing_m, simplify_m: share * self.simplify_m, hole_m2: CHINK_M2, ..self }
     }
 }
 
@@ -103,46 +115,98 @@ pub(super) struct Footprint {
 }
 
 /// Footprint of the block of a cell: all of its buildings but for slivers lie in it, each piece of it holds some, and it keeps clear
-/// of landmarks. A piece of the cell that is built well becomes part of the block as a whole.
-pub(super) fn footprint(site: &Site<'_>, grain: Grain, settings: &GeneraliseSettings) -> Footprint {
-    let joined = |lands: &[&Land]| union(lands.iter().map(|l| (*l).clone()).collect());
-    let (mut buildings, mut landmarks) = (joined(site.ordinary), joined(site.landmarks));
-    let mut ground = main_pieces(site.cell, settings.smallest_cell_m2);
-    if !landmarks.0.is_empty() {
-        ground = without_specks(ground.difference(&grown(&landmarks, settings.inset_m)));
-        buildings = without_specks(buildings.difference(&landmarks));
-        landmarks = simplified(&grown(&landmarks, BY_LANDMARKS_M), BY_LANDMARKS_M);
+/// of landmarks. A piece of the cell that is built well becomes part of the block as a whole, unless the block then covers more than
+/// [`MOST_GROUND`] times the ground of its buildings, which have `triangles`: then it follows them, as closely as its own triangles allow.
+pub(super) fn footprint(site: &Site<'_>, grain: Grain, triangles: usize, settings: &GeneraliseSettings) -> Footprint {
+    let ground = Ground::of(site, settings);
+    let ratio = |shape: &Footprint| area(&shape.land) / shape.built_m2.max(f64::MIN_POSITIVE);
+    let most = grain.triangles * triangles as f64;
+    let mut best = ground.footprint(grain, settings.sparse_below, settings);
+    let as_whole = ground.free.iter().any(|piece| ground.is_built(&one(piece.clone()), settings.sparse_below));
+    let closer = CLOSER.map(|share| grain.finer(share));
+    for grain in as_whole.then_some(grain).into_iter().chain(closer) {
+        if ratio(&best) <= MOST_GROUND {
+            break;
+        }
+        let shape = ground.footprint(grain, f64::INFINITY, settings);
+        if super::shapes::triangles(&shape.land) as f64 > most {
+            break;
+        }
+        if ratio(&shape) < ratio(&best) {
+            best = shape;
+        }
     }
-    let built_m2 = area(&buildings);
-    let standing = match site.finer {
-        [] => buildings.clone(),
-        finer => joined(finer),
-    };
-    let alone = ground.0.len() == 1;
-    let built = |piece: &Land| if alone { built_m2 } else { area(&common(piece, &buildings)) };
-    let built_well = |piece: &Land| built(piece) >= settings.sparse_below * area(piece);
-    let (well, other): (Vec<Land>, Vec<Land>) = ground.into_iter().map(one).partition(built_well);
-    let whole = union(well.iter().map(|piece| whole(piece, settings)).collect());
-    let rest = if well.is_empty() { buildings.clone() } else { buildings.difference(&union(well)) };
-    let rest = large_pieces(rest, LEFT_OUT_M2);
-    let mut land = whole;
-    if !rest.0.is_empty() {
-        let other = MultiPolygon(other.into_iter().flatten().collect());
-        let near = common(&closed(&standing, grain.closing_m), &other);
-        let followed = following(&union(vec![near, rest]), &other, &landmarks, grain);
-        land = if land.0.is_empty() { followed } else { union(vec![land, followed]) };
+    best
+}
+
+/// The ground of a cell and what stands on it.
+struct Ground {
+    /// Ground that a block may take.
+    free: Land,
+    /// Buildings that the block stands for, without landmarks.
+    buildings: Land,
+    /// Landmarks, a little larger.
+    landmarks: Land,
+    /// What the block is put together from: its buildings, or blocks of the finer level.
+    standing: Land,
+}
+
+impl Ground {
+    fn of(site: &Site<'_>, settings: &GeneraliseSettings) -> Self {
+        let joined = |lands: &[&Land]| union(lands.iter().map(|l| (*l).clone()).collect());
+        let (mut buildings, mut landmarks) = (joined(site.ordinary), joined(site.landmarks));
+        let mut free = main_pieces(site.cell, settings.smallest_cell_m2);
+        if !landmarks.0.is_empty() {
+            buildings = without_specks(buildings.difference(&landmarks));
+            landmarks = simplified(&widened(&landmarks, BY_LANDMARKS_M), BY_LANDMARKS_M);
+            free = without_specks(free.difference(&landmarks));
+        }
+        let standing = match site.finer {
+            [] => buildings.clone(),
+            finer => joined(finer),
+        };
+        Self { free, buildings, landmarks, standing }
     }
-    land = filled_below(&land, &landmarks, CHINK_M2);
-    let mut outside = buildings.difference(&land);
-    if outside.iter().any(|p| p.unsigned_area() > LEFT_OUT_M2) {
-        land = union(vec![land, grown(&large_pieces(outside, LEFT_OUT_M2), JOINT_M)]);
-        land = if landmarks.0.is_empty() { land } else { land.difference(&landmarks) };
-        land = simplified(&filled_below(&land, &landmarks, CHINK_M2), FINE * grain.simplify_m);
-        outside = buildings.difference(&land);
+
+    /// Whether buildings cover at least a share of a piece of the ground.
+    fn is_built(&self, piece: &Land, share: f64) -> bool {
+        let built =
+            || if self.free.0.len() == 1 { area(&self.buildings) } else { area(&common(piece, &self.buildings)) };
+        share.is_finite() && built() >= share * area(piece)
     }
-    let covered_m2 = built_m2 - area(&outside);
-    let land = occupied(parted(land), &buildings);
-    Footprint { land, built_m2, covered_m2 }
+
+    /// The footprint in which pieces become part of the block as a whole whose built share is at least `built_well`.
+    fn footprint(&self, grain: Grain, built_well: f64, settings: &GeneraliseSettings) -> Footprint {
+        let Self { free, buildings, landmarks, standing } = self;
+        let built_m2 = area(buildings);
+        let is_built = |piece: &Land| self.is_built(piece, built_well);
+        let (well, other): (Vec<Land>, Vec<Land>) = free.iter().cloned().map(one).partition(is_built);
+        let mut land = union(well.iter().map(|piece| whole(piece, settings)).collect());
+        let rest = if well.is_empty() { buildings.clone() } else { buildings.difference(&union(well)) };
+        let rest = large_pieces(rest, LEFT_OUT_M2);
+        if !rest.0.is_empty() {
+            let other = MultiPolygon(other.into_iter().flatten().collect());
+            let near = common(&closed(standing, grain.closing_m), &other);
+            let followed = following(&union(vec![near, rest]), &other, landmarks, grain);
+            land = if land.0.is_empty() { followed } else { union(vec![land, followed]) };
+        }
+        land = filled_below(&land, landmarks, CHINK_M2);
+        let mut outside = buildings.difference(&land);
+        if outside.iter().any(|p| p.unsigned_area() > LEFT_OUT_M2) {
+            land = union(vec![land, grown(&large_pieces(outside, LEFT_OUT_M2), JOINT_M)]);
+            land = if landmarks.0.is_empty() { land } else { land.difference(landmarks) };
+            land = simplified(&filled_below(&land, landmarks, CHINK_M2), FINE * grain.simplify_m);
+            outside = buildings.difference(&land);
+            let cut_off = large_pieces(outside.clone(), LEFT_OUT_M2);
+            if !cut_off.0.is_empty() {
+                land = union(vec![land, grown(&cut_off, JOINT_M)]);
+                land = if landmarks.0.is_empty() { land } else { land.difference(landmarks) };
+                outside = buildings.difference(&land);
+            }
+        }
+        let covered_m2 = built_m2 - area(&outside);
+        Footprint { land: occupied(parted(land), buildings), built_m2, covered_m2 }
+    }
 }
 
 /// Polygons larger than this, m^2.

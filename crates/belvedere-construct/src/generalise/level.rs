@@ -1,12 +1,13 @@
 //! One level of abstraction: cells, landmarks, blocks and their volumes, put together as a city.
 
 use super::blocks::{CellKind, Footprint, Grain, Site, footprint, kind};
-use super::landmarks::{Volume, landmarks, mean_height};
+use super::landmarks::{Usual, Volume, landmarks, mean_height};
 use super::report::{BlockReport, FailingCell, LevelReport, VOLUME_OFF};
 use super::settings::GeneraliseSettings;
 use super::shapes::{Land, area, polygons_of, triangles};
 use super::streets::Dividers;
-use belvedere_scene::city::{Building, City, CityArea, HeightSource, LandCover, Polygon, StructureKind};
+use super::volume::volume_m3;
+use belvedere_scene::city::{Building, City, CityArea, HeightSource, Keep, LandCover, Polygon, StructureKind};
 use geo::{Area, InteriorPoint, MultiPolygon};
 use rayon::prelude::*;
 
@@ -66,6 +67,8 @@ pub(super) struct Input<'a> {
     pub lands: Vec<Land>,
     /// Footprint areas and heights.
     pub volumes: Vec<Volume>,
+    /// What heights are usual in the town.
+    pub usual: Usual,
 }
 
 impl Input<'_> {
@@ -76,6 +79,11 @@ impl Input<'_> {
     /// Triangles of buildings as prisms.
     pub(super) fn triangles(&self, buildings: &[usize]) -> usize {
         buildings.iter().map(|i| triangles(&self.lands[*i])).sum()
+    }
+
+    /// Volume between the surfaces of buildings, m^3.
+    fn held(&self, buildings: &[usize]) -> f64 {
+        buildings.iter().map(|i| volume_m3(&self.city.buildings[self.places[*i]])).sum()
     }
 
     pub(super) fn volume_of(&self, buildings: &[usize]) -> f64 {
@@ -107,11 +115,6 @@ impl MadeBlock {
     fn covered_share(&self) -> f64 {
         (self.shape.covered_m2 / self.shape.built_m2.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0)
     }
-
-    /// Ground of its buildings, overlaps counted once, times its height.
-    fn covered_m3(&self) -> f64 {
-        self.shape.covered_m2 * self.height_m
-    }
 }
 
 /// Blocks of the finer level, each with the index of one of its buildings in [`Input`], and its landmarks.
@@ -128,7 +131,7 @@ pub(super) struct Plan<'a> {
     pub grain: Grain,
 }
 
-/// The level, its figures without volumes, and its blocks and landmarks for the next. Landmarks are some of the finer level's.
+/// The level, its figures without volumes, and its blocks and landmarks for the next.
 pub(super) fn level(
     plan: &Plan<'_>,
     input: &Input<'_>,
@@ -161,10 +164,8 @@ pub(super) fn level(
     let cells = lands.into_iter().zip(members).zip(finer).filter(|((l, m), _)| of_size(l, m));
     let cells: Vec<_> = cells.map(|((land, members), finer)| (land, members, finer)).collect();
     let dropped = found - cells.len();
-    let mut candidate = vec![plan.finer.is_none(); input.lands.len()];
-    plan.finer.iter().flat_map(|f| &f.landmarks).for_each(|i| candidate[*i] = true);
     let make_one = |(land, members, finer): (Land, Vec<usize>, Vec<&Land>)| {
-        make(input, land, &members, &finer, &|i| candidate[i], (plan.grain, settings))
+        make(input, land, &members, &finer, (plan.grain, settings))
     };
     let made: Vec<Made> = cells.into_par_iter().map(make_one).collect();
     let report = figures(plan.name, input, &made, &homeless, dividers, [merged, dropped]);
@@ -179,20 +180,23 @@ fn make(
     land: Land,
     members: &[usize],
     finer: &[&Land],
-    candidates: &impl Fn(usize) -> bool,
     (grain, settings): (Grain, &GeneraliseSettings),
 ) -> Made {
     let built: f64 = members.iter().map(|i| input.volumes[*i].area_m2).sum();
     let coverage = built / area(&land).max(f64::MIN_POSITIVE);
-    let landmarks = landmarks(&input.volumes, members, candidates);
+    let landmarks = landmarks(&input.volumes, members, input.usual, settings.keep);
     let ordinary: Vec<usize> = members.iter().copied().filter(|i| !landmarks.contains(i)).collect();
     let kind = kind(coverage, ordinary.len(), settings);
     let lands_of = |places: &[usize]| places.iter().map(|i| &input.lands[*i]).collect::<Vec<_>>();
     let block = (!ordinary.is_empty()).then(|| {
         let (ordinary_lands, landmark_lands) = (lands_of(&ordinary), lands_of(&landmarks));
         let site = Site { cell: &land, ordinary: &ordinary_lands, landmarks: &landmark_lands, finer };
-        let shape = footprint(&site, grain, settings);
-        MadeBlock { shape, height_m: mean_height(ordinary.iter().map(|i| input.volumes[*i])) }
+        let shape = footprint(&site, grain, input.triangles(&ordinary), settings);
+        let height_m = match settings.keep {
+            Keep::Height => mean_height(ordinary.iter().map(|i| input.volumes[*i])),
+            Keep::Volume => input.held(&ordinary) / area(&shape.land).max(f64::MIN_POSITIVE),
+        };
+        MadeBlock { shape, height_m }
     });
     let block = block.filter(|b| !b.shape.land.0.is_empty());
     Made { land, coverage, kind, ordinary, landmarks, block }
@@ -246,7 +250,9 @@ const LEAST_COVERED: f64 = 0.9;
 /// Report of a cell whose block misses some of the ground of its buildings, or stands for several at one place; without volumes.
 fn failing(input: &Input<'_>, cell: String, m: &Made) -> Option<FailingCell> {
     let held = input.volume_of(&m.ordinary) + input.volume_of(&m.landmarks);
-    let shown = m.block.as_ref().map_or(0.0, MadeBlock::covered_m3) + input.volume_of(&m.landmarks);
+    // Overlaps count once in the ground that is covered.
+    let mean_m = mean_height(m.ordinary.iter().map(|i| input.volumes[*i]));
+    let shown = m.block.as_ref().map_or(0.0, |b| b.shape.covered_m2 * mean_m) + input.volume_of(&m.landmarks);
     let covered_share = m.block.as_ref().map_or(f64::from(m.ordinary.is_empty()), MadeBlock::covered_share);
     let reason = if m.block.is_none() && !m.ordinary.is_empty() {
         "no room for a block"
@@ -286,6 +292,12 @@ fn cell_name(level: &str, number: usize) -> String {
     format!("{level}-{}", number + 1)
 }
 
+/// Name of a block: that of the largest of its buildings that has one.
+fn name_of(city: &City, buildings: &[usize]) -> String {
+    let named = buildings.iter().map(|i| &city.buildings[*i]).filter(|b| !b.name.is_empty());
+    named.max_by(|a, b| volume_m3(a).total_cmp(&volume_m3(b))).map(|b| b.name.clone()).unwrap_or_default()
+}
+
 fn assemble(name: &'static str, input: &Input<'_>, made: Vec<Made>, homeless: &[usize], dividers: &Dividers) -> Level {
     let from = input.city;
     let places = |list: &[usize]| list.iter().map(|i| input.places[*i]).collect::<Vec<_>>();
@@ -305,7 +317,7 @@ fn assemble(name: &'static str, input: &Input<'_>, made: Vec<Made>, homeless: &[
             let bases = ordinary.iter().filter_map(|i| from.buildings[*i].base_m);
             city.buildings.push(Building {
                 id: id.clone(),
-                name: String::new(),
+                name: name_of(from, &ordinary),
                 landmark: false,
                 footprint: polygons_of(&shape.land),
                 base_m: bases.min_by(f64::total_cmp),

@@ -36,7 +36,7 @@ use belvedere_scene::Instant;
 use belvedere_scene::Progress;
 use belvedere_scene::city::City;
 use blocks::Grain;
-use landmarks::Volume;
+use landmarks::{Usual, Volume, mark_tallest};
 use level::{Input, Plan};
 use rayon::prelude::*;
 
@@ -96,6 +96,7 @@ pub fn generalise(
     progress.tick("blocks", 1.0)?;
     let all: Vec<usize> = (0..input.volumes.len()).collect();
     let report = GeneraliseReport {
+        keep: settings.keep,
         buildings: city.buildings.len(),
         without_area: city.buildings.len() - input.lands.len(),
         volume_m3: 0.0,
@@ -146,8 +147,16 @@ fn tangled(city: &City) -> Option<Warning> {
 
 fn input<'a>(city: &'a City, notes: &mut Vec<Warning>) -> Result<Input<'a>, GeneraliseError> {
     let lands: Vec<shapes::Land> = city.buildings.par_iter().map(|b| shapes::land_of(&b.footprint)).collect();
-    let (mut input, mut bad_heights) =
-        (Input { city, places: Vec::new(), lands: Vec::new(), volumes: Vec::new() }, 0usize);
+    let (mut input, mut bad_heights) = (
+        Input {
+            city,
+            places: Vec::new(),
+            lands: Vec::new(),
+            volumes: Vec::new(),
+            usual: Usual::of(std::iter::empty()),
+        },
+        0usize,
+    );
     for (place, (land, building)) in lands.into_iter().zip(&city.buildings).enumerate() {
         let area_m2 = shapes::area(&land);
         if !(area_m2 > LEAST_AREA_M2) {
@@ -157,7 +166,7 @@ fn input<'a>(city: &'a City, notes: &mut Vec<Warning>) -> Result<Input<'a>, Gene
         bad_heights += usize::from(height_m != building.height_m);
         input.places.push(place);
         input.lands.push(land);
-        input.volumes.push(Volume { area_m2, height_m, tagged: building.landmark });
+        input.volumes.push(Volume { area_m2, height_m, tagged: building.landmark, tall: false });
     }
     let taken = "buildings have no usable height and are taken as 9 m high";
     notes.extend(Warning::counted(WarningKind::Assumed, bad_heights, taken));
@@ -171,5 +180,7 @@ fn input<'a>(city: &'a City, notes: &mut Vec<Warning>) -> Result<Input<'a>, Gene
     if input.lands.is_empty() {
         return Err(GeneraliseError::NoBuildings { buildings: city.buildings.len() });
     }
+    input.usual = Usual::of(input.volumes.iter().copied());
+    mark_tallest(&mut input.volumes, input.usual);
     Ok(input)
 }

@@ -1,12 +1,15 @@
 //! Report of a generalisation.
 
 use belvedere_core::{Warning, WarningKind};
+use belvedere_scene::city::Keep;
 use serde::Serialize;
 
 /// Figures of a generalisation.
 #[derive(Debug, Clone, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GeneraliseReport {
+    /// What blocks keep of their buildings.
+    pub keep: Keep,
     /// Buildings of the city.
     pub buildings: usize,
     /// Buildings without an outline that has an area, left out.
@@ -78,7 +81,7 @@ impl LevelReport {
         let built = self.built_area_m2 / self.block_area_m2.max(f64::MIN_POSITIVE);
         (!self.volume_kept).then(|| {
             format!(
-                "{} holds {:.0} % of the volume of the buildings, 90 to 110 are good; buildings cover {:.0} % of its blocks",
+                "{} holds {:.0} % of the volume of the buildings, 90 to 110 are good; buildings cover {:.0} % of its blocks, which may keep their volume instead of their height",
                 self.name,
                 100.0 * self.volume_share,
                 100.0 * built.min(1.0)

@@ -1,7 +1,7 @@
 //! Settings of a generalisation.
 
 use super::GeneraliseError;
-use belvedere_scene::city::WayClass;
+use belvedere_scene::city::{Keep, WayClass};
 
 /// Measures of a generalisation. The defaults are for towns mapped in metres.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +22,8 @@ pub struct GeneraliseSettings {
     pub simplify_m: f64,
     /// Street areas, which state no class, are main streets where they are at least this wide, metres, > 0.
     pub main_width_m: f64,
+    /// What blocks keep.
+    pub keep: Keep,
 }
 
 impl Default for GeneraliseSettings {
@@ -35,6 +37,7 @@ impl Default for GeneraliseSettings {
             inset_m: 2.0,
             simplify_m: 1.5,
             main_width_m: 12.0,
+            keep: Keep::Height,
         }
     }
 }

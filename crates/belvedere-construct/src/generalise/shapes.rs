@@ -87,6 +87,11 @@ pub(super) fn grown(land: &Land, by: f64) -> Land {
     land.buffer_with_style(BufferStyle::new(by).line_join(LineJoin::Round(ROUND)))
 }
 
+/// Everything within `by` metres of the land; corners stay corners.
+pub(super) fn widened(land: &Land, by: f64) -> Land {
+    land.buffer_with_style(BufferStyle::new(by).line_join(LineJoin::Miter(1.0)))
+}
+
 /// The land further than `by` metres inside; corners stay corners.
 pub(super) fn shrunk(land: &Land, by: f64) -> Land {
     if by <= 0.0 {

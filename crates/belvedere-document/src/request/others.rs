@@ -1,8 +1,9 @@
 //! Requests of few options: `measure`, `generalise`, `export`.
 
-#[cfg(feature = "clap")]
-use super::value;
 use super::{OfData, RendererName};
+#[cfg(feature = "clap")]
+use super::{args::one_of, value};
+use belvedere_scene::city::Keep;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -38,6 +39,9 @@ pub struct Generalise {
     /// Distance from buildings up to which ground counts as built-up, metres; 20 by default
     #[cfg_attr(feature = "clap", arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = value::number))]
     pub margin: Option<f64>,
+    /// What blocks keep of their buildings
+    #[cfg_attr(feature = "clap", arg(long, value_parser = one_of::<Keep>(), value_name = "WHAT", default_value = "height"))]
+    pub keep: Keep,
 }
 
 /// The displaced scene and its camera as GLB.

@@ -64,7 +64,7 @@ pub fn generalise(request: &Generalise, progress: &Progress) -> Result<Generalis
 fn generalised(request: &Generalise, progress: &Progress) -> Result<GeneralisedCity, BelvedereError> {
     progress.tick("read", 0.0)?;
     let roads: Vec<PathBuf> = request.roads.iter().map(PathBuf::from).collect();
-    let mut settings = GeneraliseSettings::default();
+    let mut settings = GeneraliseSettings { keep: request.keep, ..GeneraliseSettings::default() };
     settings.margin_m = request.margin.unwrap_or(settings.margin_m);
     let read::Read { city, epsg, inputs, warnings } = read::read(Path::new(&request.city), &roads)?;
     let mut generalised = belvedere_construct::generalise::generalise(&city, &settings, progress)?;

@@ -79,6 +79,7 @@ fn every_option_of_generalise_changes_its_answer_or_is_refused_with_a_reason() {
         ("city", IsRefused(json!("gone.geojson"), "gone.geojson")),
         ("roads", Changes(json!([ways]), json!({}))),
         ("margin", Changes(json!(60), json!({}))),
+        ("keep", Changes(json!("volume"), json!({}))),
     ];
     try_all(&options::<Generalise>(), &[], rows, &json!({ "city": houses }), |asked| {
         let asked: Generalise = read(&asked.to_string()).expect("a request");
