@@ -3,9 +3,8 @@
 /// Fewest nodes of such a sea, and their least share of the ground.
 const FEWEST: usize = 100;
 const LEAST_SHARE: f64 = 0.05;
-/// Range of the heights of nine of ten nodes of the shore, and upper bound of half of them, metres.
-const SHORE_M: [f32; 2] = [0.0, 30.0];
-const LOW_M: f32 = 10.0;
+/// Nine of ten nodes of its shore lie within this of the datum, metres.
+const SHORE_M: f32 = 5.0;
 
 /// Sets holes (NaN, joined along rows and columns) that are sea to height 0; returns their nodes. A hole is sea if it reaches
 /// the edge of the ground or of the data (beside infinite nodes), is large, and has a low shore.
@@ -42,7 +41,7 @@ pub(super) fn fill(cols: usize, heights: &mut [f32]) -> Vec<usize> {
                 }
             }
         }
-        if at_edge && hole.len() >= least && is_low(&mut shore) {
+        if at_edge && hole.len() >= least && is_low(&shore) {
             hole.iter().for_each(|i| heights[*i] = 0.0);
             filled.extend(hole);
         }
@@ -50,12 +49,9 @@ pub(super) fn fill(cols: usize, heights: &mut [f32]) -> Vec<usize> {
     filled
 }
 
-fn is_low(shore: &mut [f32]) -> bool {
-    let within = shore.iter().filter(|h| (SHORE_M[0]..=SHORE_M[1]).contains(*h)).count();
-    let middle = shore.len() / 2;
-    10 * within >= 9 * shore.len()
-        && !shore.is_empty()
-        && *shore.select_nth_unstable_by(middle, f32::total_cmp).1 <= LOW_M
+fn is_low(shore: &[f32]) -> bool {
+    let within = shore.iter().filter(|h| h.abs() <= SHORE_M).count();
+    !shore.is_empty() && 10 * within >= 9 * shore.len()
 }
 
 #[cfg(test)]
@@ -80,8 +76,11 @@ mod tests {
         let same = |_: usize, _: usize, h: f32| h;
         assert_eq!(sea(20, 2.0, same), 20 * SIDE);
         assert_eq!(sea(20, 45.0, same), 0, "a high shore");
-        assert_eq!(sea(20, 15.0, same), 0, "half the shore over 10 m");
-        assert_eq!(sea(20, -4.0, same), 0, "land below sea level");
+        assert_eq!(sea(20, 6.0, same), 0, "a shore over 5 m");
+        assert_eq!(sea(20, -4.0, same), 20 * SIDE, "low land");
+        assert_eq!(sea(20, -9.0, same), 0, "land below sea level");
+        let cliffs = |c: usize, r: usize, h: f32| if c == 20 && r % 8 == 0 { h + 30.0 } else { h };
+        assert_eq!(sea(20, 2.0, cliffs), 0, "an eighth of the shore is cliffs");
         assert_eq!(sea(2, 2.0, same), 0, "small");
         let dike = |c: usize, r: usize, h: f32| if c == 0 || r == 0 || r == SIDE - 1 { 2.0 } else { h };
         assert_eq!(sea(20, 2.0, dike), 0, "a hole inside the ground");

@@ -10,6 +10,9 @@ use belvedere_scene::{Edge, Heightfield, NodeState, TerrainLayer};
 
 /// Width of the edge as a share of the shorter side of the data.
 const SHARE: f64 = 0.05;
+/// Voids are a sea where this share of their shore lies within this share of the range of heights above the lowest.
+const LOW_SHORE: f64 = 0.9;
+const COAST: f64 = 0.15;
 /// Most cells along a side of the map of distances.
 const CELLS: usize = 384;
 
@@ -61,24 +64,39 @@ impl Border {
     }
 }
 
-/// Cells without data that reach the rim.
+/// Cells without data that reach the rim, but for seas: land does not fade at its coast.
 fn outside(ground: &Heightfield, [cols, rows]: [usize; 2]) -> Vec<bool> {
-    let states = ground.states();
-    let is_void = |c: usize, r: usize| {
-        let node = |i: usize, n: usize, all: usize| ((2 * i + 1) * (n - 1) / (2 * all)).min(n - 1);
-        let i = node(r, ground.rows(), rows) * ground.cols() + node(c, ground.cols(), cols);
-        states.get(i) == Some(&NodeState::Void)
-    };
-    let mut found = vec![false; cols * rows];
-    let mut open: Vec<[usize; 2]> = (0..cols).flat_map(|c| [[c, 0], [c, rows - 1]]).collect();
-    open.extend((0..rows).flat_map(|r| [[0, r], [cols - 1, r]]));
-    while let Some([c, r]) = open.pop() {
-        if found[r * cols + c] || !is_void(c, r) {
-            continue;
+    let node = |i: usize, n: usize, all: usize| ((2 * i + 1) * (n - 1) / (2 * all)).min(n - 1);
+    let node = |at: usize| node(at / cols, ground.rows(), rows) * ground.cols() + node(at % cols, ground.cols(), cols);
+    let is_void = |at: usize| ground.states().get(node(at)) == Some(&NodeState::Void);
+    let height = |at: usize| ground.heights().get(node(at)).map_or(f64::NAN, |h| f64::from(*h));
+    let [low, high] = [ground.bounds().min.z, ground.bounds().max.z];
+    let coast_m = low + COAST * (high - low);
+    let (mut seen, mut found) = (vec![false; cols * rows], vec![false; cols * rows]);
+    let rim = (0..cols)
+        .flat_map(|c| [c, (rows - 1) * cols + c])
+        .chain((0..rows).flat_map(|r| [r * cols, (r + 1) * cols - 1]));
+    for start in rim {
+        let (mut open, mut void, mut shore, mut low) = (vec![start], Vec::new(), 0usize, 0usize);
+        while let Some(at) = open.pop() {
+            if seen[at] {
+                continue;
+            }
+            if !is_void(at) {
+                // The same cell of the shore may be met from several sides.
+                shore += 1;
+                low += usize::from(height(at) < coast_m);
+                continue;
+            }
+            seen[at] = true;
+            void.push(at);
+            let (c, r) = (at % cols, at / cols);
+            open.extend([(c > 0).then(|| at - 1), (c + 1 < cols).then_some(at + 1)].into_iter().flatten());
+            open.extend([(r > 0).then(|| at - cols), (r + 1 < rows).then_some(at + cols)].into_iter().flatten());
         }
-        found[r * cols + c] = true;
-        open.extend([(c > 0).then(|| [c - 1, r]), (c + 1 < cols).then_some([c + 1, r])].into_iter().flatten());
-        open.extend([(r > 0).then(|| [c, r - 1]), (r + 1 < rows).then_some([c, r + 1])].into_iter().flatten());
+        if (low as f64) < LOW_SHORE * shore as f64 {
+            void.into_iter().for_each(|at| found[at] = true);
+        }
     }
     found
 }
@@ -163,6 +181,25 @@ mod tests {
         assert!((half - 0.5).abs() < 0.1, "{half}");
         let way: Vec<f32> = (0..60).map(|x| border.opacity(DVec2::new(f64::from(x), 300.0))).collect();
         assert!(way.windows(2).all(|w| w[0] <= w[1] && w[1] - w[0] < 0.08), "{way:?}");
+    }
+
+    #[test]
+    fn land_does_not_fade_at_its_coast() {
+        // Islands of 100 m in a sea without data, and the same heights cut by a slanted frame.
+        let side = 101;
+        let height = |c: usize, r: usize| 100.0 - 12.0 * ((c % 50) as f32 - 25.0).hypot((r % 50) as f32 - 25.0);
+        let ground = |void: &dyn Fn(usize, usize) -> bool| {
+            let nodes = (0..side * side).map(|i| (i % side, i / side));
+            let states = nodes.clone().map(|(c, r)| if void(c, r) { NodeState::Void } else { NodeState::Measured });
+            let heights = nodes.map(|(c, r)| height(c, r).max(0.0)).collect();
+            let corner = DVec2::new(0.0, 1000.0);
+            Heightfield::new(corner, DVec2::splat(10.0), side, side, heights, states.collect()).expect("ground")
+        };
+        let islands = Border::new(&ground(&|c, r| height(c, r) < 4.0));
+        assert_eq!(islands.opacity(DVec2::new(250.0, 750.0)), 1.0, "the top of an island");
+        assert_eq!(islands.opacity(DVec2::new(180.0, 750.0)), 1.0, "its shore");
+        let cut = Border::new(&ground(&|c, r| 3 * c < r + 60));
+        assert!(cut.opacity(DVec2::new(400.0, 400.0)) < 0.6, "a frame cuts through high land");
     }
 
     #[test]
