@@ -6,15 +6,21 @@ use std::path::{Path, PathBuf};
 const MOST_FILES: usize = 4000;
 /// Deepest folder below those of the system.
 const DEPTH: usize = 5;
-/// Words in names of files, the best first: plain letters of families that cover many scripts.
-const GOOD: [&str; 14] = [
-    "notosanscjk-regular",
+/// Beginnings of names of files, without signs between their letters, in the order in which fontconfig takes families of sans-serif
+/// letters (its files 60-latin, 65-nonlatin, 69-unifont and those that come with the fonts), and those of other systems between.
+const GOOD: [&str; 30] = [
+    "dejavusans",
+    "notosanscjk",
     "notosans",
-    "sourcehansans",
-    "wqy-zenhei",
-    "wqy-microhei",
-    "droidsansfallback",
-    "unifont",
+    "verdana",
+    "arialuni",
+    "nimbussans",
+    "tahoma",
+    "nachlieli",
+    "waree",
+    "loma",
+    "garuda",
+    "umpush",
     "msyh",
     "yugoth",
     "meiryo",
@@ -22,7 +28,20 @@ const GOOD: [&str; 14] = [
     "nirmala",
     "hiragino",
     "pingfang",
+    "sourcehansans",
+    "wqyzenhei",
+    "wqymicrohei",
+    "droidsansfallback",
+    "vlgothic",
+    "ipagothic",
+    "nanumgothic",
+    "lohit",
+    "meera",
+    "lklug",
+    "freesans",
 ];
+/// Fonts whose letters are drawn of pixels: taken only where no other font has a letter.
+const PIXELS: [&str; 3] = ["unifont", "wenquanyibitmapsong", "fixedsys"];
 /// Words in names of files whose letters are of a special cut, or whose signs are no letters.
 const SPECIAL: [&str; 22] = [
     "bold",
@@ -63,9 +82,11 @@ fn sorted(mut found: Vec<PathBuf>) -> Vec<PathBuf> {
     let name = |path: &Path| path.file_name().map(|name| name.to_string_lossy().to_lowercase()).unwrap_or_default();
     found.sort_by_cached_key(|path| {
         let name = name(path);
+        let letters: String = name.chars().filter(|c| c.is_alphanumeric()).collect();
+        let pixels = PIXELS.iter().any(|word| letters.starts_with(word));
         let special = SPECIAL.iter().any(|word| name.contains(word));
-        let good = GOOD.iter().position(|word| name.starts_with(word)).unwrap_or(GOOD.len());
-        (special, good, !name.contains("regular"), name, path.clone())
+        let good = GOOD.iter().position(|word| letters.starts_with(word)).unwrap_or(GOOD.len());
+        (pixels, special, good, !name.contains("regular"), name, path.clone())
     });
     found.dedup();
     found
@@ -121,6 +142,15 @@ mod tests {
         walk(folder.path(), DEPTH, &mut found);
         let names: Vec<String> =
             sorted(found).iter().filter_map(|p| Some(p.file_name()?.to_string_lossy().into_owned())).collect();
+        let order = |names: &[&str]| -> Vec<String> {
+            let files = names.iter().map(PathBuf::from).collect();
+            sorted(files).iter().map(|p| p.to_string_lossy().into_owned()).collect()
+        };
+        let files =
+            ["unifont.otf", "FreeSans.ttf", "Abc.ttf", "Lohit-Devanagari.ttf", "DejaVuSans.ttf", "FreeSansBold.ttf"];
+        let right =
+            ["DejaVuSans.ttf", "Lohit-Devanagari.ttf", "FreeSans.ttf", "Abc.ttf", "FreeSansBold.ttf", "unifont.otf"];
+        assert_eq!(order(&files), right, "a text font before a font of pixels");
         assert_eq!(names, ["NotoSansArabic-Regular.ttf", "a.TTC", "Zebra.otf", "NotoSansArabic-Bold.ttf"]);
         walk(&folder.path().join("absent"), DEPTH, &mut Vec::new());
     }

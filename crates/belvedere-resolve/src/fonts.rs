@@ -73,7 +73,7 @@ fn given(loader: &mut Loader<'_>, text: Option<&TextDoc>) -> Result<Vec<FontFile
             return Err(IoError::format(&path, reason).into());
         }
         let (bytes, record) = InputFile::read(&path)?;
-        let count = fonts_in(&bytes, &BTreeSet::new()).len();
+        let count = fonts_in(&bytes, &BTreeSet::new(), false).len();
         let bytes = Arc::new(bytes);
         let faces = (0..count as u32).map(|index| FontFile { name: name_of(&path), bytes: bytes.clone(), index });
         let faces: Vec<FontFile> = faces.collect();
@@ -88,29 +88,28 @@ fn given(loader: &mut Loader<'_>, text: Option<&TextDoc>) -> Result<Vec<FontFile
     Ok(fonts)
 }
 
-/// Fonts of the system for letters, each with letters that those before lack.
+/// Fonts of the system for letters, each with letters that those before lack: first those that set their scripts by rules.
 fn of_system(loader: &mut Loader<'_>, mut lacking: BTreeSet<char>) -> Vec<FontFile> {
+    let files = belvedere_io::system_fonts();
     let mut fonts = Vec::new();
-    let mut searched = 0;
-    for path in belvedere_io::system_fonts() {
-        let Ok(size) = belvedere_io::fs::metadata(&path).map(|meta| meta.len()) else { continue };
-        if size > MAX_BYTES || searched + size > MAX_SEARCHED || loader.options.progress.is_cancelled() {
-            continue;
-        }
-        searched += size;
-        let Ok(bytes) = belvedere_io::fs::read(&path) else { continue };
-        let faces = fonts_in(&bytes, &lacking);
-        let Some((index, drawn)) = faces.into_iter().enumerate().rev().max_by_key(|(_, drawn)| drawn.len()) else {
-            continue;
-        };
-        if drawn.is_empty() {
-            continue;
-        }
-        lacking.retain(|letter| !drawn.contains(letter));
-        loader.inputs.push(InputFile::of(&path, &bytes));
-        fonts.push(FontFile { name: name_of(&path), bytes: Arc::new(bytes), index: index as u32 });
-        if lacking.is_empty() {
-            break;
+    for shaped in [true, false] {
+        let mut searched = 0;
+        for path in &files {
+            if lacking.is_empty() || loader.options.progress.is_cancelled() {
+                break;
+            }
+            let Ok(size) = belvedere_io::fs::metadata(path).map(|meta| meta.len()) else { continue };
+            if size > MAX_BYTES || searched + size > MAX_SEARCHED {
+                continue;
+            }
+            searched += size;
+            let Ok(bytes) = belvedere_io::fs::read(path) else { continue };
+            let faces = fonts_in(&bytes, &lacking, shaped);
+            let best = faces.into_iter().enumerate().rev().max_by_key(|(_, drawn)| drawn.len());
+            let Some((index, drawn)) = best.filter(|(_, drawn)| !drawn.is_empty()) else { continue };
+            lacking.retain(|letter| !drawn.contains(letter));
+            loader.inputs.push(InputFile::of(path, &bytes));
+            fonts.push(FontFile { name: name_of(path), bytes: Arc::new(bytes), index: index as u32 });
         }
     }
     fonts

@@ -5,6 +5,7 @@ use harfrust::{FontRef, GlyphId, ShaperData, ShaperInstance};
 use skrifa::MetadataProvider;
 use skrifa::instance::{Location, LocationRef, Size};
 use skrifa::outline::{DrawSettings, OutlinePen};
+use skrifa::raw::TableProvider;
 use skrifa::string::StringId;
 use std::collections::BTreeSet;
 use std::sync::{Arc, LazyLock};
@@ -176,11 +177,48 @@ pub(super) fn is_plain(c: char) -> bool {
         || matches!(c, '\u{200b}'..='\u{200f}' | '\u{61c}' | '\u{2060}' | '\u{fe00}'..='\u{fe0f}' | '\u{feff}')
 }
 
-/// Fonts of a file and how many of `letters` each draws; empty for files that are no fonts.
-pub fn fonts_in(bytes: &[u8], letters: &BTreeSet<char>) -> Vec<BTreeSet<char>> {
+/// Fonts of a file and which of `letters` each draws; empty for files that are no fonts. With `shaped`, only letters for whose script
+/// the font has rules of joining and placing, where the script needs such rules.
+pub fn fonts_in(bytes: &[u8], letters: &BTreeSet<char>, shaped: bool) -> Vec<BTreeSet<char>> {
     let faces = (0..MOST_FACES).map_while(|index| FontRef::from_index(bytes, index).ok());
-    let drawn = |face: FontRef<'_>| letters.iter().copied().filter(|c| draws(&face, *c)).collect();
+    let drawn = |face: FontRef<'_>| {
+        let scripts = scripts(&face);
+        let sets = |c: &char| draws(&face, *c) && (!shaped || has_rules(&scripts, *c));
+        letters.iter().copied().filter(sets).collect()
+    };
     // A file of one font gives it for every number.
     let one = !bytes.starts_with(b"ttcf");
     faces.take(if one { 1 } else { MOST_FACES as usize }).map(drawn).collect()
+}
+
+/// Scripts whose letters change with their neighbours: first and last letter, and the tags of their rules.
+/// Source: the registry of script tags of OpenType.
+const JOINED: [(char, char, [&[u8; 4]; 2]); 15] = [
+    ('\u{600}', '\u{6ff}', [b"arab", b"arab"]),
+    ('\u{700}', '\u{74f}', [b"syrc", b"syrc"]),
+    ('\u{750}', '\u{77f}', [b"arab", b"arab"]),
+    ('\u{900}', '\u{97f}', [b"dev2", b"deva"]),
+    ('\u{980}', '\u{9ff}', [b"bng2", b"beng"]),
+    ('\u{a00}', '\u{a7f}', [b"gur2", b"guru"]),
+    ('\u{a80}', '\u{aff}', [b"gjr2", b"gujr"]),
+    ('\u{b00}', '\u{b7f}', [b"ory2", b"orya"]),
+    ('\u{b80}', '\u{bff}', [b"tml2", b"taml"]),
+    ('\u{c00}', '\u{c7f}', [b"tel2", b"telu"]),
+    ('\u{c80}', '\u{cff}', [b"knd2", b"knda"]),
+    ('\u{d00}', '\u{d7f}', [b"mlm2", b"mlym"]),
+    ('\u{d80}', '\u{dff}', [b"sinh", b"sinh"]),
+    ('\u{1000}', '\u{109f}', [b"mym2", b"mymr"]),
+    ('\u{1780}', '\u{17ff}', [b"khmr", b"khmr"]),
+];
+
+/// Tags of the scripts for which a font has rules of substitution.
+fn scripts(face: &FontRef<'_>) -> Vec<[u8; 4]> {
+    let list = face.gsub().and_then(|table| table.script_list());
+    list.map(|list| list.script_records().iter().map(|record| record.script_tag().to_be_bytes()).collect())
+        .unwrap_or_default()
+}
+
+fn has_rules(scripts: &[[u8; 4]], letter: char) -> bool {
+    let joined = JOINED.iter().find(|(first, last, _)| (*first..=*last).contains(&letter));
+    joined.is_none_or(|(_, _, tags)| tags.iter().any(|tag| scripts.contains(tag)))
 }
