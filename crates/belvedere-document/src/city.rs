@@ -1,5 +1,6 @@
 //! Layers of cities in the scene document.
 
+use super::ColorByDoc;
 use super::common::{Paths, is_false, is_opaque};
 use belvedere_scene::city::Keep;
 use schemars::JsonSchema;
@@ -83,6 +84,10 @@ pub struct CityStyleDoc {
     pub roof: String,
     /// Colour of walls.
     pub wall: String,
+    /// Colours of buildings and blocks by a property of the file's buildings, by `height`, `use` or `population`: roofs in the colour of
+    /// their class, walls lighter. Blocks show the sum of counts, the mean of other numbers, and the text that most of their volume has.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color_by: Option<ColorByDoc>,
     /// Colour of the ground between, in scenes without terrain.
     pub ground: String,
     /// Opacity, 0..=1: below 1 what is behind is seen through (the ground between stays opaque), at 0 the layer is not drawn.
@@ -96,6 +101,6 @@ pub struct CityStyleDoc {
 impl Default for CityStyleDoc {
     fn default() -> Self {
         let [roof, wall, ground] = ["#ba6e56", "#ece4d6", "#e8e5dc"].map(str::to_owned);
-        Self { roof, wall, ground, opacity: 1.0, ambient_occlusion: None }
+        Self { roof, wall, color_by: None, ground, opacity: 1.0, ambient_occlusion: None }
     }
 }

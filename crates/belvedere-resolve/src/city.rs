@@ -6,7 +6,9 @@ use super::ground::{Ground, epsg};
 use super::loader::Loader;
 use super::mesh::{wanted, with_ambient_occlusion};
 use crate::BelvedereError;
+use crate::by_property;
 use crate::city_blocks;
+use crate::city_colors::{self, Values};
 use crate::city_ground::{Bases, OwnGround};
 use belvedere_construct::generalise::{GeneraliseSettings, LevelReport, generalise};
 use belvedere_core::DVec2;
@@ -15,7 +17,7 @@ use belvedere_document::{CityDoc, LayerDoc, Paths};
 use belvedere_io::city::{CityAbout, CityColors, plate_extent, reproject};
 use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::{CityFile, load_city};
-use belvedere_scene::{City, Crs, HeightSource, LayerKind, RigidParts, Surface};
+use belvedere_scene::{City, Color, Crs, HeightSource, LayerKind, RigidParts, Surface};
 use std::collections::HashSet;
 
 /// Widest city, with its rim, metres.
@@ -100,10 +102,11 @@ pub(super) fn layer(
     ground: &Ground<'_>,
 ) -> Result<LayerKind, BelvedereError> {
     let style = &doc.style;
-    let colors = CityColors {
+    let mut colors = CityColors {
         roof: loader.color(index, &style.roof)?,
         wall: loader.color(index, &style.wall)?,
         ground: loader.color(index, &style.ground)?,
+        buildings: Vec::new(),
     };
     let (mut city, mut about) = (City::default(), Vec::new());
     let stated = stated(loader, index, doc)?;
@@ -139,11 +142,27 @@ pub(super) fn layer(
     if let Stand::Terrain(terrain) = stand {
         loader.note(index, datum(&city, terrain));
     }
+    let mut values = match &style.color_by {
+        Some(by) => {
+            Some(Values::of(by, &city, &about).map_err(|c| by_property::complain(loader, index, "color_by", c))?)
+        }
+        None => None,
+    };
     if doc.loa > 0 {
-        city = abstraction(loader, index, &city, doc, &stand)?;
+        let sizes = values.as_ref().map(|_| city_colors::sizes(&city.buildings)).unwrap_or_default();
+        let (level, members) = abstraction(loader, index, &city, doc, &stand)?;
+        values = values.map(|values| values.joined(&members, &sizes));
+        city = level;
+    }
+    if let (Some(values), Some(by)) = (&values, &style.color_by) {
+        let found = values.colors(by, loader.id(index));
+        let (of, note) = found.map_err(|c| by_property::complain(loader, index, "color_by", c))?;
+        colors.buildings = of;
+        loader.notes.classes.push(note);
     }
     if let Stand::Terrain(terrain) = stand {
-        let lost = leave_out_beyond(&mut city, terrain).map_err(|e| loader.fail(index, "source", e))?;
+        let lost =
+            leave_out_beyond(&mut city, &mut colors.buildings, terrain).map_err(|e| loader.fail(index, "source", e))?;
         let undrawn = "areas of land cover are not drawn on terrain; use layers of kind area";
         let undrawn = Warning::counted(WarningKind::Ignored, city.areas.len(), undrawn);
         loader.note(index, lost.into_iter().chain(undrawn));
@@ -177,14 +196,14 @@ fn meant(city: &City, about: &[CityAbout], select: &str) -> Vec<u32> {
     if whole.is_empty() { select.split(',').flat_map(of).collect() } else { whole }
 }
 
-/// A city at a level of abstraction.
+/// A city at a level of abstraction, and for each of its buildings those of `city` that it stands for.
 fn abstraction(
     loader: &mut Loader<'_>,
     index: usize,
     city: &City,
     doc: &CityDoc,
     stand: &Stand<'_>,
-) -> Result<City, BelvedereError> {
+) -> Result<(City, Vec<Vec<usize>>), BelvedereError> {
     let progress = &loader.options.progress;
     let settings = GeneraliseSettings { keep: doc.keep, ..GeneraliseSettings::default() };
     let mut found = generalise(city, &settings, progress).map_err(|e| loader.fail(index, "loa", e))?;
@@ -219,7 +238,7 @@ fn abstraction(
     );
     // Areas of the city stay on the ground, with green cells over them.
     let areas = city.areas.iter().cloned().chain(level.city.areas).collect();
-    Ok(City { areas, ..level.city })
+    Ok((City { areas, ..level.city }, level.members))
 }
 
 /// Adds `first` to the picture numbers of faces.
@@ -241,15 +260,23 @@ fn without_height(city: &City) -> Option<Warning> {
     })
 }
 
-/// Removes buildings that have neither a ground height of their own nor terrain under them; returns a warning.
+/// Removes buildings that have neither a ground height of their own nor terrain under them, and their `colors`; returns a warning.
 ///
 /// # Errors
 /// If no building is left.
-fn leave_out_beyond(city: &mut City, terrain: &dyn Fn(DVec2) -> Option<f64>) -> Result<Option<Warning>, String> {
+fn leave_out_beyond(
+    city: &mut City,
+    colors: &mut Vec<Option<Color>>,
+    terrain: &dyn Fn(DVec2) -> Option<f64>,
+) -> Result<Option<Warning>, String> {
     let under =
         |b: &belvedere_scene::Building| b.footprint.iter().flat_map(|p| &p.outer).any(|xy| terrain(*xy).is_some());
     let before = city.buildings.len();
-    city.buildings.retain(|b| b.base_m.is_some() || under(b));
+    let stays: Vec<bool> = city.buildings.iter().map(|b| b.base_m.is_some() || under(b)).collect();
+    let mut each = stays.iter();
+    city.buildings.retain(|_| each.next() == Some(&true));
+    let mut each = stays.iter();
+    colors.retain(|_| each.next() == Some(&true));
     let lost = before - city.buildings.len();
     if lost > 0 && city.buildings.is_empty() && city.structures.is_empty() {
         return Err(format!(

@@ -9,6 +9,7 @@ mod camera;
 mod centreline;
 mod city;
 pub mod city_blocks;
+mod city_colors;
 pub mod city_ground;
 mod city_mesh;
 pub mod color;

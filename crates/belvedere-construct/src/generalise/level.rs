@@ -20,6 +20,8 @@ pub struct Level {
     pub city: City,
     /// Data of each block.
     pub blocks: Vec<Block>,
+    /// For each building of `city` those that it stands for, indices in the list of the city that was generalised.
+    pub members: Vec<Vec<usize>>,
     /// All cells.
     pub cells: Vec<Cell>,
     /// Ground of streets, railways and water that divides the cells, as far as it reaches.
@@ -307,7 +309,7 @@ fn assemble(name: &'static str, input: &Input<'_>, made: Vec<Made>, homeless: &[
         areas: from.areas.clone(),
         ..City::default()
     };
-    let (mut blocks, mut cells, mut own_shape) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut blocks, mut members, mut cells, mut own_shape) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (number, made) in made.into_iter().enumerate() {
         let polygons = polygons_of(&made.land);
         let (id, ordinary) = (cell_name(name, number), places(&made.ordinary));
@@ -326,6 +328,7 @@ fn assemble(name: &'static str, input: &Input<'_>, made: Vec<Made>, homeless: &[
                 faces: Vec::new(),
             });
             blocks.push(Block { cell: number, coverage, count: ordinary.len() });
+            members.push(ordinary.clone());
         }
         if made.kind == CellKind::Green {
             city.areas.push(CityArea { name: String::new(), cover: LandCover::Green, polygons: polygons.clone() });
@@ -343,7 +346,8 @@ fn assemble(name: &'static str, input: &Input<'_>, made: Vec<Made>, homeless: &[
         });
     }
     own_shape.extend(places(homeless));
+    members.extend(own_shape.iter().map(|i| vec![*i]));
     city.buildings.extend(own_shape.into_iter().map(|i| Building { landmark: true, ..from.buildings[i].clone() }));
     let streets = polygons_of(&MultiPolygon(dividers.land.0.clone()));
-    Level { name, city, blocks, cells, streets }
+    Level { name, city, blocks, members, cells, streets }
 }

@@ -11,7 +11,7 @@ use earcut::Earcut;
 use glam::{DVec2, DVec3, Vec2};
 
 /// Colours of a city.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct CityColors {
     /// Roofs.
     pub roof: Color,
@@ -19,13 +19,29 @@ pub struct CityColors {
     pub wall: Color,
     /// The ground between, where there is no terrain.
     pub ground: Color,
+    /// Colours of the roofs of single buildings, in the order of the city; walls are lighter. `None`, and beyond the end: as all others.
+    pub buildings: Vec<Option<Color>>,
 }
 
 impl Default for CityColors {
     fn default() -> Self {
-        Self { roof: Color::rgb(186, 110, 86), wall: Color::rgb(236, 228, 214), ground: Color::rgb(232, 229, 220) }
+        let [roof, wall, ground] =
+            [[186, 110, 86], [236, 228, 214], [232, 229, 220]].map(|[r, g, b]| Color::rgb(r, g, b));
+        Self { roof, wall, ground, buildings: Vec::new() }
     }
 }
+
+impl CityColors {
+    /// Colours of roof and wall of a building.
+    fn of(&self, building: usize) -> [Color; 2] {
+        let Some(own) = self.buildings.get(building).copied().flatten() else { return [self.roof, self.wall] };
+        let lighter = |v: u8| v + ((f32::from(255 - v)) * LIGHTER) as u8;
+        [own, Color { r: lighter(own.r), g: lighter(own.g), b: lighter(own.b), ..own }]
+    }
+}
+
+/// How much lighter walls are than coloured roofs, share of the way to white.
+const LIGHTER: f32 = 0.55;
 
 /// The ground reaches beyond the city by this share of its size.
 const MARGIN: f64 = 0.15;
@@ -77,18 +93,20 @@ pub fn surface(city: &City, colors: &CityColors, ground: CityGround<'_>) -> Mesh
             area.polygons.iter().for_each(|p| out.ground(p, ground, cover(area.cover)));
         }
     }
-    for building in &city.buildings {
+    for (number, building) in city.buildings.iter().enumerate() {
+        let [roof, wall] = colors.of(number);
         out.part(if building.name.is_empty() { building.id.clone() } else { building.name.clone() });
         if building.faces.is_empty() {
             let [base, top] = stands(building, ground);
-            out.extruded(building, base, top, colors);
+            out.extruded(building, base, top, [roof, wall]);
         } else {
             // Without a base of its own, the heights of a building's surfaces are over the ground.
             let base = if building.base_m.is_some() { 0.0 } else { stands(building, ground)[0] };
-            building.faces.iter().for_each(|face| out.face(face, base, color_of(face.surface, colors)));
+            let color = |face: &CityFace| if face.surface == Surface::Roof { roof } else { wall };
+            building.faces.iter().for_each(|face| out.face(face, base, color(face)));
             if let (Some(base), CityGround::Draped(field, _)) = (building.base_m, ground) {
                 let floors = building.faces.iter().filter(|f| f.surface == Surface::Ground);
-                floors.for_each(|floor| out.down_to(floor, base, field, colors.wall));
+                floors.for_each(|floor| out.down_to(floor, base, field, wall));
             }
         }
     }
@@ -103,10 +121,6 @@ pub fn surface(city: &City, colors: &CityColors, ground: CityGround<'_>) -> Mesh
     }
     let texturing = Some(out.worn).filter(|worn| !worn.textures.is_empty());
     MeshFile { colors: MeshColors::PerTriangle(out.colors), texturing, ..out.mesh }
-}
-
-fn color_of(surface: Surface, colors: &CityColors) -> Color {
-    if surface == Surface::Roof { colors.roof } else { colors.wall }
 }
 
 fn cover(cover: LandCover) -> Color {
@@ -279,16 +293,16 @@ impl Builder {
     }
 
     /// Walls over the footprint, and a flat roof.
-    fn extruded(&mut self, building: &Building, base: f64, top: f64, colors: &CityColors) {
+    fn extruded(&mut self, building: &Building, base: f64, top: f64, [roof, wall]: [Color; 2]) {
         for polygon in &building.footprint {
-            self.flat(polygon, top, colors.roof);
+            self.flat(polygon, top, roof);
             for ring in std::iter::once(&polygon.outer).chain(&polygon.holes) {
                 for (k, a) in ring.iter().enumerate() {
                     let b = ring[(k + 1) % ring.len()];
                     let first = self.mesh.positions.len() as u32;
                     self.mesh.positions.extend([a.extend(base), b.extend(base), b.extend(top), a.extend(top)]);
-                    self.triangle([first, first + 1, first + 2], colors.wall);
-                    self.triangle([first, first + 2, first + 3], colors.wall);
+                    self.triangle([first, first + 1, first + 2], wall);
+                    self.triangle([first, first + 2, first + 3], wall);
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 use super::Subject;
 use super::block::{Row, Sign};
+use crate::notes::ClassNote;
 use belvedere_composite::color::{Rgb, encode};
 use belvedere_composite::tint::GroundTint;
 use belvedere_core::DVec2;
@@ -54,6 +55,7 @@ fn of_layer(subject: &Subject<'_>, layer: &Layer) -> Vec<Row> {
             let fill = boxes.boxes.first().map(|b| b.color);
             return fill.map(|fill| row(Sign::Area { fill, outline: None })).into_iter().collect();
         }
+        LayerKind::Mesh(_) if classes(subject, layer).is_some() => Box::new(|fill| Sign::Area { fill, outline: None }),
         LayerKind::Mesh(mesh) | LayerKind::Own(OwnLayer { surface: mesh, .. }) => {
             let fill = if mesh.mesh.triangles().is_empty() {
                 None
@@ -69,10 +71,10 @@ fn of_layer(subject: &Subject<'_>, layer: &Layer) -> Vec<Row> {
         LayerKind::Line(line) => line.color,
         LayerKind::Area(area) => area.fill,
         LayerKind::Point(point) => point.color,
+        LayerKind::Mesh(mesh) => mesh.color,
         _ => return Vec::new(),
     };
-    let note = subject.notes.classes.iter().find(|note| note.layer == layer.id && !note.classes.is_empty());
-    let Some(note) = note else { return vec![row(sample(own))] };
+    let Some(note) = classes(subject, layer) else { return vec![row(sample(own))] };
     let mut rows = vec![Row { sign: Sign::Heading, words: format!("{words}: {}", note.property), inset: false }];
     if note.smooth {
         let bar = smooth(&note.classes);
@@ -85,6 +87,11 @@ fn of_layer(subject: &Subject<'_>, layer: &Layer) -> Vec<Row> {
         rows.push(Row { sign: sample(others.unwrap_or(own)), words: "other".into(), inset: true });
     }
     rows
+}
+
+/// Classes of a layer whose features or buildings are coloured by a property.
+fn classes<'a>(subject: &'a Subject<'_>, layer: &Layer) -> Option<&'a ClassNote> {
+    subject.notes.classes.iter().find(|note| note.layer == layer.id && !note.classes.is_empty())
 }
 
 /// A bar that runs through colours at equal distances.

@@ -68,6 +68,9 @@ pub(super) fn key_of(layer: &LayerDoc) -> Option<&'static str> {
 
 /// Checks the tables of a layer without its files.
 pub(super) fn check_layer(layer: &LayerDoc) -> Result<(), (&'static str, Complaint)> {
+    if let LayerDoc::City(city) = layer {
+        return city.style.color_by.as_ref().map_or(Ok(()), check).map_err(|complaint| ("color_by", complaint));
+    }
     let Some(stated) = stated(layer) else { return Ok(()) };
     stated.color.map_or(Ok(()), check).map_err(|complaint| ("color_by", complaint))?;
     stated.size.map_or(Ok(()), |(key, size)| check_size(size).map_err(|complaint| (key, complaint)))
@@ -77,10 +80,7 @@ pub(super) fn check_layer(layer: &LayerDoc) -> Result<(), (&'static str, Complai
 pub(super) fn style(loader: &mut Loader<'_>, index: usize, files: &mut [Vectors]) -> Result<(), BelvedereError> {
     let layers = loader.layers;
     let Some(stated) = layers.get(index).and_then(stated) else { return Ok(()) };
-    let fail = |loader: &Loader<'_>, table: &str, (key, reason): Complaint| {
-        let keys = ["layer", &index.to_string(), "style", table, key];
-        loader.origin.error(&keys, format!("layer \"{}\": {table}: {reason}", loader.id(index)))
-    };
+    let fail = |loader: &Loader<'_>, table: &str, complaint| complain(loader, index, table, complaint);
     if let Some(doc) = stated.color {
         let note = color_features(doc, stated.draws, files);
         let mut note = note.map_err(|complaint| fail(loader, "color_by", complaint))?;
@@ -91,6 +91,12 @@ pub(super) fn style(loader: &mut Loader<'_>, index: usize, files: &mut [Vectors]
         size_features(doc, stated, files).map_err(|complaint| fail(loader, table, complaint))?;
     }
     Ok(())
+}
+
+/// The error of a table of a layer's style.
+pub(super) fn complain(loader: &Loader<'_>, index: usize, table: &str, (key, reason): Complaint) -> BelvedereError {
+    let keys = ["layer", &index.to_string(), "style", table, key];
+    loader.origin.error(&keys, format!("layer \"{}\": {table}: {reason}", loader.id(index))).into()
 }
 
 fn color_features(doc: &ColorByDoc, draws: Draws, files: &mut [Vectors]) -> Result<ClassNote, Complaint> {

@@ -7,10 +7,10 @@ use crate::placed::{Place, PlacedDocument};
 use crate::request::Reveal;
 use crate::request::{OfData, given_of};
 use crate::scene_file::paths::Roots;
-use crate::scene_file::{self, Document, EarthDoc, LayerDoc, SourceDocument};
+use crate::scene_file::{self, Document, EarthDoc, LayerDoc, Paths, SourceDocument};
 use crate::{Advice, BelvedereError, OpenOptions, Session, Trust};
 use belvedere_io::formats::Reader;
-use belvedere_io::{Arrays, Known, fs, split_table};
+use belvedere_io::{Arrays, Known, Limits, fs, load_city, split_table};
 use belvedere_scene::Progress;
 use std::path::{Path, PathBuf};
 
@@ -221,8 +221,8 @@ fn say_of_data(document: &mut Document, said: &OfData) -> Result<(), BelvedereEr
 }
 
 /// The scene of data that can be drawn without a scene file, seen from the south: elevation models and folders of their tiles, which are one
-/// terrain; routes, areas and points on it; cities, meshes, molecules, volumes, and built-in ones. `None` for scene files, for data of
-/// other kinds, and for features without terrain.
+/// terrain; routes, areas and points on it; cities, footprints of buildings with their streets, meshes, molecules, volumes, and built-in
+/// ones. `None` for scene files, for data of other kinds, and for other features without terrain.
 ///
 /// # Errors
 /// [`BelvedereError`] of a file that cannot be read.
@@ -251,7 +251,8 @@ pub fn scene_of_data(paths: &[PathBuf]) -> Result<Option<SourceDocument>, Belved
         }
     }
     if tiles.is_empty() && !features.is_empty() {
-        return Ok(None);
+        let Some(town) = town(&std::mem::take(&mut features), &layers)? else { return Ok(None) };
+        layers.push(town);
     }
     if !tiles.is_empty() {
         layers.insert(0, ground(tiles));
@@ -264,6 +265,18 @@ pub fn scene_of_data(paths: &[PathBuf]) -> Result<Option<SourceDocument>, Belved
     let title = title.unwrap_or_default();
     source.document.title = title.trim_start_matches("builtin:").split(['.', '?']).next().unwrap_or_default().into();
     Ok(Some(source))
+}
+
+/// Files of features of which one holds buildings as a city; `None` if none does, or if one cannot be read as a part of a city.
+fn town(features: &[Known], others: &[LayerDoc]) -> Result<Option<LayerDoc>, BelvedereError> {
+    let buildings =
+        |known: &Known| Some(load_city(&known.path, None, &Limits::default()).ok()?.value.city.buildings.len());
+    let Some(counts) = features.iter().map(buildings).collect::<Option<Vec<usize>>>() else { return Ok(None) };
+    let Some(first) = counts.iter().position(|count| *count > 0) else { return Ok(None) };
+    let LayerDoc::City(mut city) = layer(&features[first].path, Some(Reader::City), others)? else { return Ok(None) };
+    let names: Option<Vec<String>> = features.iter().map(|known| Some(known.path.to_str()?.to_owned())).collect();
+    city.source = Paths::Many(names.unwrap_or_default());
+    Ok(Some(LayerDoc::City(city)))
 }
 
 #[cfg(test)]

@@ -154,3 +154,59 @@ fn what_is_wrong_is_told_with_its_line_and_a_remedy() {
         assert!(said.to_string().contains("has no properties; remove it"), "{said}");
     }
 }
+
+/// Six houses in two rows with a street between, seen straight down: their uses and the keys of the city's layer.
+fn houses(folder: &Path, uses: [&str; 6], keys: &str) -> Result<Session, belvedere::BelvedereError> {
+    let house = |(i, usage): (usize, &str)| {
+        let [x, y] = [500_000.0 + 40.0 * (i / 2) as f64, 5_000_000.0 + 60.0 * (i % 2) as f64];
+        let [far, north] = [x + 20.0, y + 20.0];
+        format!(
+            r#"{{"type": "Feature", "properties": {{"id": "h{i}", "height": {}, "building": "{usage}"}}, "geometry": {{"type": "Polygon",
+            "coordinates": [[[{x}, {y}], [{far}, {y}], [{far}, {north}], [{x}, {north}], [{x}, {y}]]]}}}}"#,
+            8 + i
+        )
+    };
+    let street = r#"{"type": "Feature", "properties": {"highway": "primary"}, "geometry": {"type": "LineString",
+        "coordinates": [[499900, 5000040], [500300, 5000040]]}}"#;
+    let all: Vec<String> = uses.into_iter().enumerate().map(house).chain([street.to_owned()]).collect();
+    let crs = r#""crs": {"type": "name", "properties": {"name": "urn:ogc:def:crs:EPSG::32632"}}"#;
+    let text = format!(r#"{{"type": "FeatureCollection", {crs}, "features": [{}]}}"#, all.join(","));
+    std::fs::write(folder.join("town.geojson"), text).expect("features");
+    let scene = "format = 1\ncrs = \"EPSG:32632\"\n[camera]\neye = [500050, 5000039.9, 400]\nlook_at = [500050, 5000040, 0]\n\
+        image = [200, 200]\n[[layer]]\nkind = \"city\"\nid = \"town\"\nsource = \"town.geojson\"\n";
+    let path = folder.join("scene.toml");
+    std::fs::write(&path, format!("{scene}{keys}\n")).expect("scene");
+    Session::open(&path, &OpenOptions::default())
+}
+
+/// Pixels of a strong red and of a strong blue, as light may dim them.
+fn red_and_blue(session: &Session) -> [usize; 2] {
+    let picture = session.render(&PictureOptions::default()).expect("picture");
+    let strong = |of: fn(&[u8; 3]) -> [u8; 2]| {
+        let is = |pixel: &&[u8; 3]| of(pixel)[0] > 60 && u16::from(of(pixel)[0]) > 3 * u16::from(of(pixel)[1]);
+        picture.frame.color.iter().filter(is).count()
+    };
+    [strong(|p| [p[0], p[2]]), strong(|p| [p[2], p[0]])]
+}
+
+#[test]
+fn buildings_have_the_colour_of_their_use_and_blocks_that_of_most_of_their_volume() {
+    let folder = tempfile::tempdir().expect("folder");
+    let uses = ["shop", "house", "house", "house", "shop", "yes"];
+    let by = r##"color_by = { property = "use", values = { shop = "#ff0000", house = "#0000ff" } }"##;
+    let drawn = |keys: &str| red_and_blue(&houses(folder.path(), uses, keys).expect("a town"));
+    assert_eq!(drawn(""), [0, 0], "roofs of one colour without it");
+    let [red, blue] = drawn(&format!("style = {{ {by} }}"));
+    assert!(
+        red > 100 && (1.3..1.7).contains(&(blue as f64 / red as f64)),
+        "two shops and three houses: {red} and {blue}"
+    );
+    // South of the street shop, house and shop: most is shop; north of it two houses and one of unknown use.
+    let [red, blue] = drawn(&format!("loa = 1\nstyle = {{ {by} }}"));
+    assert!(red > 300 && (0.6..1.6).contains(&(blue as f64 / red as f64)), "a block of each: {red} and {blue}");
+    let style = r#"style = { color_by = { property = "colour of the door" } }"#;
+    let refused = houses(folder.path(), uses, style).expect_err("no such property").to_string();
+    assert!(refused.contains("no building has the property \"colour of the door\""), "{refused}");
+    let style = r#"style = { color_by = { property = "height", classes = 99 } }"#;
+    assert!(houses(folder.path(), uses, style).expect_err("99 classes").to_string().contains("classes is 99"));
+}
