@@ -1,6 +1,7 @@
 //! The table of formats: name, marks in content and file name, and loader.
 
 use crate::columns;
+use crate::sqlite::MAGIC;
 use crate::text::text_of;
 use quick_xml::{Reader as XmlReader, events::Event};
 use std::path::Path;
@@ -10,7 +11,7 @@ mod lines;
 pub(crate) use lines::words;
 use lines::{begins_as_atoms, begins_as_points};
 
-use Mark::{At, Atoms, Both, Columns, First, Json, Points, Record, Root, Word};
+use Mark::{At, Atoms, Both, Columns, Database, First, Json, Points, Record, Root, Word};
 use Reader::{City, Features, Mesh, Molecule, Terrain, Volume};
 
 /// The loader that reads a format.
@@ -53,6 +54,8 @@ enum Mark {
     At(usize, &'static [u8]),
     /// Bytes at two offsets.
     Both([(usize, &'static [u8]); 2]),
+    /// A word in the schema of an SQLite database.
+    Database(&'static str),
     /// The first word of a text, in any case.
     First(&'static str),
     /// A word among the first of a text.
@@ -83,7 +86,7 @@ const RASTER: &str = "a raster";
 const CLOUD: &str = "a cloud of points";
 const GRIDS: &str = "grids of science";
 const MESH_OR_GRID: &str = "a mesh or grid of science";
-const TILES: &str = "tiles of a map";
+const TILES: &str = "tiles of heights";
 const SIDE: &str = "a part of a shapefile";
 const PACKED: &str = "packed files";
 const WATCH: &str = "the track of a watch";
@@ -194,14 +197,8 @@ pub const FORMATS: &[Format] = &[
     read(Volume, "MRC", VOXELS, &[".mrc", ".map", ".ccp4", ".rec"], &[At(208, b"MAP ")]),
     read(Volume, "NumPy array", VOXELS, &[".npy"], &[At(0, b"\x93NUMPY")]),
     unread("Arrow", "a table", &[".arrow", ".feather"], &[At(0, b"ARROW1")], AS_GEOJSON),
-    unread("PMTiles", TILES, &[".pmtiles"], &[At(0, b"PMTiles")], AS_GEOJSON),
-    unread(
-        "MBTiles",
-        TILES,
-        &[".mbtiles"],
-        &[At(68, b"MPBX")],
-        "gdal_translate turns tiles of pictures into GeoTIFF, ogr2ogr those of features into GeoJSON",
-    ),
+    read(Terrain, "PMTiles", TILES, &[".pmtiles"], &[At(0, b"PMTiles")]),
+    read(Terrain, "MBTiles", TILES, &[".mbtiles"], &[At(68, b"MPBX"), Database("tile_column")]),
     read(Volume, "DICOM", VOXELS, &[".dcm", ".dicom"], &[At(128, b"DICM")]),
     read(Features, "GeoPackage", "map features in a database", &[".gpkg"], &[At(68, b"GPKG"), At(68, b"GP10")]),
     unread("SQLite", "map features in a database", &[".sqlite"], &[At(0, b"SQLite format 3\0")], AS_GEOJSON),
@@ -412,6 +409,9 @@ impl<'h> Head<'h> {
         marks.iter().any(|mark| match mark {
             At(offset, mark) => at(*offset, mark),
             Both(places) => places.iter().all(|(offset, mark)| at(*offset, mark)),
+            Database(word) => {
+                at(0, MAGIC) && bytes.windows(word.len()).any(|w| w.eq_ignore_ascii_case(word.as_bytes()))
+            }
             First(word) => text.get(..word.len()).is_some_and(|start| start.eq_ignore_ascii_case(word)),
             Json(member) => object.as_ref().is_some_and(|dense| dense.contains(member)),
             Root(name) => root.as_deref() == Some(name),

@@ -13,7 +13,7 @@ pub(super) fn load(
     doc: &TerrainDoc,
     wanted: Option<Crs>,
 ) -> Result<(Heightfield, Crs), BelvedereError> {
-    let files = loader.sources(index, &doc.source)?;
+    let files = loader.sources_or_folders(index, &doc.source)?;
     let crs = match wanted {
         None => CrsChoice::Auto,
         Some(Crs::Epsg(code)) => CrsChoice::Epsg(code),

@@ -78,6 +78,11 @@ impl Loader<'_> {
         self.some(index, "source", paths)?.iter().map(|name| self.source(index, name)).collect()
     }
 
+    /// As [`Self::sources`], also folders.
+    pub(super) fn sources_or_folders(&self, index: usize, paths: &Paths) -> Result<Vec<PathBuf>, BelvedereError> {
+        self.some(index, "source", paths)?.iter().map(|name| self.source_or_folder(index, name)).collect()
+    }
+
     /// The value of an array; keeps its record.
     pub(super) fn of_array<T>(&mut self, index: usize, array: &Array, loaded: Loaded<T>) -> T {
         self.take(index, loaded.with_file(array.record().clone()))

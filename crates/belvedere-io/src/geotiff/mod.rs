@@ -20,6 +20,7 @@ pub use cloud::write_cloud_geotiff;
 pub(crate) use codec::unpack_bits;
 pub(crate) use geokeys::system_of_keys;
 pub(crate) use pages::Pages;
+pub(crate) use source::Source;
 pub use write::write_geotiff;
 
 use crate::raster::{Limits, Raster, RasterInfo, SampleType, Samples};
@@ -28,7 +29,6 @@ use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Progress;
 use ifd::{Container, Ifd, tag};
 use layout::Layout;
-use source::Source;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 

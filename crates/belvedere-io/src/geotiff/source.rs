@@ -14,7 +14,7 @@ const HASHED: u64 = 2 << 30;
 
 /// Where the bytes come from. Reads may come from many threads.
 #[derive(Debug)]
-pub(super) struct Source {
+pub(crate) struct Source {
     len: u64,
     inner: Inner,
 }
@@ -26,7 +26,7 @@ enum Inner {
 }
 
 impl Source {
-    pub(super) fn open(path: &Path) -> std::io::Result<Self> {
+    pub(crate) fn open(path: &Path) -> std::io::Result<Self> {
         let file = File::open(path)?;
         let meta = file.metadata()?;
         if meta.is_dir() {
@@ -41,21 +41,21 @@ impl Source {
     }
 
     /// A file whose parts are read where they are wanted.
-    pub(super) fn in_parts(path: &Path) -> std::io::Result<Self> {
+    pub(crate) fn in_parts(path: &Path) -> std::io::Result<Self> {
         let file = File::open(path)?;
         Ok(Self { len: file.metadata()?.len(), inner: Inner::File(Mutex::new(file)) })
     }
 
-    pub(super) fn bytes(bytes: Vec<u8>) -> Self {
+    pub(crate) fn bytes(bytes: Vec<u8>) -> Self {
         Self { len: bytes.len() as u64, inner: Inner::Bytes(bytes) }
     }
 
-    pub(super) fn len(&self) -> u64 {
+    pub(crate) fn len(&self) -> u64 {
         self.len
     }
 
     /// The record of the file `path`, whose bytes these are.
-    pub(super) fn input(&self, path: &Path) -> Result<InputFile, IoError> {
+    pub(crate) fn input(&self, path: &Path) -> Result<InputFile, IoError> {
         if crate::fs::archive_of(path) != *path {
             return Ok(InputFile::of(path, &[]));
         }
@@ -64,7 +64,7 @@ impl Source {
     }
 
     /// sha256 of all the bytes, or of parts of a file of more than [`HASHED`] bytes, and whether it is of parts.
-    pub(super) fn sha256(&self) -> Result<(String, bool), String> {
+    pub(crate) fn sha256(&self) -> Result<(String, bool), String> {
         let sampled = self.len > HASHED;
         Ok((if sampled { self.sha256_of_parts()? } else { self.sha256_of_all()? }, sampled))
     }
@@ -99,7 +99,7 @@ impl Source {
     }
 
     /// Replaces the content of `out` by `count` bytes from `at` on. `what` names them in the message.
-    pub(super) fn read_into(&self, at: u64, count: u64, what: &str, out: &mut Vec<u8>) -> Result<(), String> {
+    pub(crate) fn read_into(&self, at: u64, count: u64, what: &str, out: &mut Vec<u8>) -> Result<(), String> {
         let end = at.checked_add(count).filter(|&end| end <= self.len);
         let (Some(end), Ok(size)) = (end, usize::try_from(count)) else {
             return Err(format!(
@@ -124,7 +124,7 @@ impl Source {
     }
 
     /// As [`Self::read_into`], into a new vector.
-    pub(super) fn read(&self, at: u64, count: u64, what: &str) -> Result<Vec<u8>, String> {
+    pub(crate) fn read(&self, at: u64, count: u64, what: &str) -> Result<Vec<u8>, String> {
         let mut out = Vec::new();
         self.read_into(at, count, what, &mut out)?;
         Ok(out)

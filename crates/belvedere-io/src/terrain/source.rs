@@ -10,6 +10,7 @@ use crate::formats::{Reader, ends};
 use crate::fs::File;
 use crate::geotiff::is_tiff;
 use crate::packed::content;
+use crate::pyramid::{self, Pyramid};
 use crate::{Affine, GeoTiff, IoError, Limits, Loaded, Raster, RasterInfo, budget, esri_ascii, hgt, las, xyz};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Progress;
@@ -78,6 +79,9 @@ pub(super) fn read_all(
 
 /// The raster inside an archive, or the file itself.
 pub(crate) fn meant(path: &Path, limits: &Limits) -> Result<PathBuf, IoError> {
+    if path.is_dir() {
+        return Ok(path.to_owned());
+    }
     content(path, limits.max_bytes, &|p| Reader::Terrain.reads(p) && !ends(p, &[".txt"]))
 }
 
@@ -188,6 +192,9 @@ fn read_raster(
     budget: usize,
     progress: &Progress,
 ) -> Result<Loaded<Source>, IoError> {
+    if path.is_dir() || pyramid::is_pyramid(path) {
+        return read_pyramid(path, request, budget, progress);
+    }
     let mut magic = [0u8; 4];
     let mut file = File::open(path).map_err(|e| IoError::os(path, e))?;
     let got = file.read(&mut magic).map_err(|e| IoError::os(path, e))?;
@@ -203,7 +210,7 @@ fn read_raster(
         "asc" | "grd" | "txt" => esri_ascii::read(path, &request.limits)?,
         "las" | "laz" => las::read(path, budget, &request.limits)?,
         _ => {
-            let wanted = "an elevation model: GeoTIFF, SRTM .hgt, ESRI ASCII .asc, XYZ on a grid, or points of LAS or LAZ (all also in .zip and .gz)";
+            let wanted = "an elevation model: GeoTIFF, SRTM .hgt, ESRI ASCII .asc, XYZ on a grid, points of LAS or LAZ, or tiles of heights as .mbtiles, .pmtiles or a folder (all also in .zip and .gz)";
             return Err(crate::recognise::not_a(path, wanted));
         }
     };
@@ -246,6 +253,23 @@ fn read_tiff(
     request.limits.check(peak).map_err(|reason| IoError::format(path, reason))?;
     let (raster, file) = rayon::join(|| level.read(progress), || tiff.input());
     Ok(Loaded::new(Source::Whole(raster?, level.factor()), warnings).with_file(file?))
+}
+
+fn read_pyramid(
+    path: &Path,
+    request: &TerrainRequest,
+    budget: usize,
+    progress: &Progress,
+) -> Result<Loaded<Source>, IoError> {
+    let Loaded { value: pyramid, mut warnings, mut files } = Pyramid::open(path, request.limits)?;
+    let last = pyramid.levels() - 1;
+    let level = (0..last).find(|level| pyramid.samples(*level) <= budget).unwrap_or(last);
+    let raster = pyramid.read(level, progress)?;
+    let (of_tiles, damaged) = pyramid.left_behind();
+    files.extend(of_tiles);
+    warnings.extend(damaged);
+    let factor = (level as f64).exp2();
+    Ok(Loaded { value: Source::Whole(raster, factor), warnings, files })
 }
 
 /// A warning if the unit of heights is not stated, so that metres are taken, and the plane has another unit.

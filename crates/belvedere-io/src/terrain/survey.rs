@@ -5,6 +5,7 @@ use super::{LoadedTerrain, TerrainRequest, in_scene};
 use crate::crs::CoordinateSystem;
 use crate::fs::File;
 use crate::geotiff::is_tiff;
+use crate::pyramid::{self, Pyramid};
 use crate::raster::Affine;
 use crate::{GeoTiff, IoError, Loaded};
 use belvedere_scene::Progress;
@@ -30,13 +31,13 @@ pub struct TerrainSurvey {
     pub ground: LoadedTerrain,
 }
 
-/// Surveys one raster. Of a GeoTIFF with more samples than `max_nodes` of the request, heights and voids are those of the thinned ground,
+/// Surveys one raster. Of a GeoTIFF or a pyramid of tiles with more samples than `max_nodes` of the request, heights and voids are those of the thinned ground,
 /// and a warning says so.
 ///
 /// # Errors
 /// As [`super::load_terrain`].
 pub fn survey(path: &Path, request: &TerrainRequest, progress: &Progress) -> Result<Loaded<TerrainSurvey>, IoError> {
-    let larger = larger_geotiff(path, request)?;
+    let larger = larger(path, request)?;
     let most_nodes = if larger.is_some() { request.max_nodes } else { usize::MAX };
     let reading = TerrainRequest { max_nodes: most_nodes, ..request.clone() };
     let Loaded { value: mut sources, mut warnings, files } =
@@ -55,9 +56,14 @@ pub fn survey(path: &Path, request: &TerrainRequest, progress: &Progress) -> Res
     Ok(Loaded { value, warnings, files })
 }
 
-/// Size and map from samples to the model of a GeoTIFF that has more samples than the request takes.
-fn larger_geotiff(path: &Path, request: &TerrainRequest) -> Result<Option<([usize; 2], Affine)>, IoError> {
+/// Size and map from samples to the model of a GeoTIFF or a pyramid that has more samples than the request takes.
+fn larger(path: &Path, request: &TerrainRequest) -> Result<Option<([usize; 2], Affine)>, IoError> {
     let path = &source::meant(path, &request.limits).map_err(crate::recognise::explain)?;
+    if path.is_dir() || pyramid::is_pyramid(path) {
+        let pyramid = Pyramid::open(path, request.limits)?.value;
+        let info = pyramid.info(0);
+        return Ok((pyramid.samples(0) > request.max_nodes).then(|| ([info.width, info.height], node_map(&info))));
+    }
     let mut magic = [0u8; 4];
     let got = File::open(path).and_then(|mut file| file.read(&mut magic)).map_err(|e| IoError::os(path, e))?;
     if !is_tiff(&magic[..got]) {

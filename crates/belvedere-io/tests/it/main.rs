@@ -29,6 +29,8 @@ mod open_exr;
 mod picture_files;
 mod png;
 mod point_clouds;
+mod pyramid_writer;
+mod pyramids;
 mod rasters;
 mod support_files;
 mod terrain;

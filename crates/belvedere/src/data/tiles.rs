@@ -60,8 +60,11 @@ fn text(path: &Path) -> Result<String, BelvedereError> {
     path.to_str().map(str::to_owned).ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))
 }
 
-/// The elevation models of a folder, by name.
+/// The elevation models of a folder, by name; a pyramid of tiles is one.
 fn in_folder(folder: &Path) -> Result<Vec<String>, BelvedereError> {
+    if belvedere_io::is_pyramid(folder) {
+        return Ok(vec![text(folder)?]);
+    }
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).map_err(|e| IoError::os(folder, e))? {
         let path = entry.map_err(|e| IoError::os(folder, e))?.path();
@@ -71,8 +74,7 @@ fn in_folder(folder: &Path) -> Result<Vec<String>, BelvedereError> {
     }
     found.sort();
     if found.is_empty() {
-        let reason =
-            "is a folder without elevation models (GeoTIFF, .hgt, ESRI ASCII); name a folder of tiles, or a file";
+        let reason = "is a folder without elevation models (GeoTIFF, .hgt, ESRI ASCII, or tiles zoom/column/row.png); name a folder of tiles, or a file";
         return Err(IoError::format(folder, reason).into());
     }
     Ok(found)

@@ -277,6 +277,9 @@ fn described(name: &str, request: &InfoRequest, progress: &Progress) -> Result<F
     if let Some(Reader::Volume) = folder_reader(Path::new(name))? {
         return Ok(FileInfo::Volume(VolumeInfo::of(Path::new(name))?));
     }
+    if Path::new(name).is_dir() && belvedere_io::is_pyramid(Path::new(name)) {
+        return terrain(Path::new(name), &request.terrain(Path::new(name))?, progress);
+    }
     let meant = match split_table(Path::new(name)) {
         (whole, Some(_)) => join_table(whole.to_owned(), split_table(Path::new(name)).1),
         (whole, None) => belvedere_io::inside(whole)?,
