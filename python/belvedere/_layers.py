@@ -126,7 +126,7 @@ class Layers:
                   id: str = "atoms", must_see: bool = False, style: Mapping[str, Any] | None = None, **keys: Any) -> S:  # fmt: skip
         """Adds atoms; the scene is measured in angstrom.
 
-        * ``elements``: symbols, one for each atom, and ``positions``: ``(n, 3)``, angstrom; or the path of a file (PDB, mmCIF) alone.
+        * ``elements``: symbols, one for each atom, and ``positions``: ``(n, 3)``, angstrom; or the path of a file (PDB, mmCIF, XYZ) alone.
         * ``names``, ``residues``, ``chains``, ``numbers`` (of residues): what selections such as ``select="chain B"`` mean.
         """
         keys = {"must_see": must_see, **keys}

@@ -47,8 +47,8 @@ class RevealOptions(TypedDict, total=False):
     #: White margin of the paper on every side, millimetres; PNG, TIFF, JPEG and WebP leave it out
     margin_mm: float | None
 
-    #: Model of a file of molecules that holds several, from 1
-    model: int | None
+    #: Model of a file of molecules that holds several, from 1, or all
+    model: int | Literal["all"] | None
 
     #: Property that holds the names of features, instead of the one that looks most like a name
     name_field: str | None
@@ -123,8 +123,8 @@ class RenderOptions(TypedDict, total=False):
     #: Haze: on (the default: dims the farther part of the view), off, or the visibility in kilometres
     haze: bool | float | None
 
-    #: Model of a file of molecules that holds several, from 1
-    model: int | None
+    #: Model of a file of molecules that holds several, from 1, or all
+    model: int | Literal["all"] | None
 
     #: Draw the sea as ordinary ground
     no_sea: bool

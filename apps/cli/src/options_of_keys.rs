@@ -53,6 +53,7 @@ impl Told for Warning {
             Some("vertical_unit") => " (--vertical-unit)",
             Some("fonts") => " (--font)",
             Some("assembly") => " (--assembly)",
+            Some("model") => " (--model)",
             Some("limits") => " (--no-limits)",
             Some("ground_nodes") => " (--nodes)",
             Some("grid") => " (--grid scene)",

@@ -57,7 +57,7 @@ pub use layers::{
     RouteDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, VerticalUnit,
 };
 pub use mesh::{MeshDoc, MeshStyleDoc};
-pub use molecule::{MoleculeDoc, MoleculeStyleDoc, PaintDoc};
+pub use molecule::{AllWord, ModelsDoc, MoleculeDoc, MoleculeStyleDoc, PaintDoc};
 pub use node::{Node, Value};
 pub use overlay::{AutoOrLength, AutoWord, HighlightMark, Inset, OverlayDoc, SwitchOrLength};
 pub use palette::{PaletteDoc, PaletteName};

@@ -5,7 +5,7 @@ use belvedere_scene::molecule::Representation;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Atoms from a file: PDB or mmCIF. The scene is measured in angstrom.
+/// Atoms from a file: PDB, mmCIF or XYZ. The scene is measured in angstrom.
 ///
 /// Selections are written in short words: `chain A,B`, `copy 2-5`, `resi 12-18`, `resn DA`, `name P`, `element FE`, `atom 1234`, `water`, `hetero`,
 /// `hydrogen`, `all`, `none`, joined by `and`, `or`, `not` and parentheses.
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 pub struct MoleculeDoc {
     /// Unique id within the scene.
     pub id: String,
-    /// A file (.pdb, .ent, .cif, .mmcif, each also .gz), or `builtin:dna?pairs=12&seed=7`.
+    /// A file (.pdb, .ent, .cif, .mmcif, .xyz, each also .gz), or `builtin:dna?pairs=12&seed=7`.
     pub source: String,
     /// Whether constructors and measures work for it: for the atoms of `select`, or else for all that are drawn.
     #[serde(default)]
@@ -26,9 +26,9 @@ pub struct MoleculeDoc {
     /// `A-2`. By default, and as `asymmetric`, the atoms of the file alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub assembly: Option<String>,
-    /// Model of the file, from 1; by default the first.
+    /// Model of the file, from 1, or `all`: all of them side by side, chain `A` of model 2 as `A-2`; by default the first.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub model: Option<usize>,
+    pub model: Option<ModelsDoc>,
     /// Shows the models of the file one after the other in films, so many per second; the last one stays. Pictures show the first.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub models_per_s: Option<f64>,
@@ -38,6 +38,37 @@ pub struct MoleculeDoc {
     /// Placement.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub transform: Option<TransformDoc>,
+}
+
+/// The number of a model, from 1, or `all`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged, expecting = "the number of a model or \"all\" was expected")]
+pub enum ModelsDoc {
+    /// A number.
+    Number(usize),
+    /// The word `all`.
+    All(AllWord),
+}
+
+/// The word `all`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum AllWord {
+    /// All there are.
+    All,
+}
+
+impl std::str::FromStr for ModelsDoc {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.trim() {
+            "all" => Ok(Self::All(AllWord::All)),
+            number => {
+                number.parse().map(Self::Number).map_err(|_| "give the number of a model, from 1, or all".to_owned())
+            }
+        }
+    }
 }
 
 impl MoleculeDoc {

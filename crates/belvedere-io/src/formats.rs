@@ -8,8 +8,9 @@ use std::path::Path;
 
 mod lines;
 
+pub(crate) use lines::begins_as_atoms;
+use lines::begins_as_points;
 pub(crate) use lines::words;
-use lines::{begins_as_atoms, begins_as_points};
 
 use Mark::{At, Atoms, Both, Columns, Database, First, Json, Points, Record, Root, Word};
 use Reader::{City, Features, Mesh, Molecule, Terrain, Volume};
@@ -268,8 +269,8 @@ pub const FORMATS: &[Format] = &[
     unread("3MF", TRIANGLES, &[".3mf"], &[], AS_GLTF),
     unread("Blender", TRIANGLES, &[".blend"], &[At(0, b"BLENDER")], "export it as glTF"),
     unread("ArcInfo export", "map features or a grid", &[".e00"], &[], AS_GEOJSON),
-    unread("XYZ of atoms", ATOMS, &[], &[Atoms], AS_PDB),
     read(Terrain, "XYZ", "a grid as lines of coordinates", &[".xyz"], &[Points]),
+    read(Molecule, "XYZ of atoms", ATOMS, &[".xyz"], &[Atoms]),
     unread("LERC", RASTER, &[".lerc", ".lrc"], &[At(0, b"Lerc2 "), At(0, b"CntZImage ")], AS_GEOTIFF),
     unread("USGS DEM", RASTER, &[".dem"], &[], AS_GEOTIFF),
     unread("DTED", RASTER, &[".dt0", ".dt1", ".dt2"], &[At(0, b"UHL1")], AS_GEOTIFF),
@@ -318,6 +319,7 @@ impl Format {
         match self.reader {
             None => self.meanwhile.to_owned(),
             Some(City) => "it is read by layers of kind city".to_owned(),
+            Some(Molecule) => "it is read by layers of kind molecule".to_owned(),
             Some(_) => format!("it is read if its name ends in {}", self.endings[0]),
         }
     }

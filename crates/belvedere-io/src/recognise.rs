@@ -54,6 +54,11 @@ fn head(path: &Path) -> Result<Vec<u8>, IoError> {
 pub(crate) fn readable(path: &Path) -> Result<Option<&'static Format>, IoError> {
     let (path, _) = split_table(path);
     match formats::of_name(path).filter(|format| format.reader.is_some()) {
+        // Grids and atoms share an ending.
+        Some(format) if format.endings == [".xyz"] => {
+            let held = formats::of_content(&head(path)?).filter(|held| held.endings == format.endings);
+            Ok(Some(held.unwrap_or(format)))
+        }
         Some(format) => Ok(Some(format)),
         None => Ok(formats::readable_content(&head(path)?)),
     }
@@ -86,6 +91,9 @@ pub(crate) fn explain(error: IoError) -> IoError {
     if let (Some(named), Some(held)) = (by_name.filter(|f| f.reader.is_some()), formats::readable_content(&head))
         && named.reader != held.reader
     {
+        if named.endings == held.endings {
+            return IoError::format(path, format!("holds {} ({}); {}", held.name, held.holds, held.advice()));
+        }
         let reason = format!(
             "holds {} ({}), but its name says {}; rename it so that it ends in {}",
             held.name, held.holds, named.name, held.endings[0]

@@ -7,8 +7,8 @@ use super::mesh::turn;
 use crate::BelvedereError;
 use belvedere_core::DVec3;
 use belvedere_core::{Warning, WarningKind};
-use belvedere_document::{MoleculeDoc, TransformDoc};
-use belvedere_io::{load_frames, load_model};
+use belvedere_document::{ModelsDoc, MoleculeDoc, TransformDoc};
+use belvedere_io::{Models, load_frames, load_model};
 use belvedere_scene::molecule::{ModelTransform, MoleculeColor, MoleculeFilm, Paint, Representation, Selection};
 use belvedere_scene::{LayerKind, Molecule, MoleculeLayer, MoleculeStyle};
 
@@ -90,13 +90,20 @@ fn source(
     }
     let path = loader.source(index, &doc.source)?;
     loader.options.progress.tick("reading molecules", 0.0)?;
-    if doc.model == Some(0) {
+    if doc.model == Some(ModelsDoc::Number(0)) {
         return Err(loader.fail(index, "model", "model is 0, models are counted from 1"));
+    }
+    if matches!(doc.model, Some(ModelsDoc::All(_))) && doc.assembly.as_deref().is_some_and(|id| id != ASYMMETRIC) {
+        let reason = "an assembly is made of one model; name one as model, or leave assembly out";
+        return Err(loader.fail(index, "assembly", reason));
     }
     if let Some(rate) = doc.models_per_s {
         let reason = match rate > 0.0 && rate.is_finite() {
             false => format!("models_per_s is {rate}, it must be greater than 0"),
-            true if doc.model.is_some() => "model chooses one, models_per_s shows all; leave one of them out".into(),
+            true if doc.model.is_some() => {
+                "model chooses what stands still, models_per_s shows all one after the other; leave one of them out"
+                    .into()
+            }
             true if doc.assembly.as_deref().is_some_and(|id| id != ASYMMETRIC) => {
                 "models of a film are those of the file, not of an assembly; leave assembly or models_per_s out".into()
             }
@@ -106,14 +113,19 @@ fn source(
             return Err(loader.fail(index, "models_per_s", reason));
         }
     }
+    let models = match doc.model {
+        None => Models::First,
+        Some(ModelsDoc::Number(number)) => Models::Number(number),
+        Some(ModelsDoc::All(_)) => Models::All,
+    };
     let (options, limits) = (loader.options, loader.options.limits());
     let file = match (options.arrays.find(&path)?, doc.models_per_s) {
         (Some(array), rate) => {
-            let loaded = array.atoms()?.molecule(&path, (doc.model, rate.is_some()), &limits)?;
+            let loaded = array.atoms()?.molecule(&path, (models, rate.is_some()), &limits)?;
             loader.of_array(index, array, loaded)
         }
         (None, Some(_)) => loader.take(index, load_frames(&path, &limits)?),
-        (None, None) => loader.take(index, load_model(&path, doc.model, &limits)?),
+        (None, None) => loader.take(index, load_model(&path, models, &limits)?),
     };
     if doc.models_per_s.is_some() {
         return Ok((file.molecule, file.frames));

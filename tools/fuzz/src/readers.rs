@@ -104,6 +104,13 @@ pub const READERS: &[Reader] = &[
         Scene("[[layer]]\nid=\"g\"\nkind=\"terrain\"\nsource=\"a.xyz\"\nsource_crs=\"EPSG:32632\"\n"),
     ),
     reader(
+        "pmtiles",
+        "a.pmtiles",
+        alone,
+        rasters::pmtiles,
+        Scene("[[layer]]\nid=\"g\"\nkind=\"terrain\"\nsource=\"a.pmtiles\"\n"),
+    ),
+    reader(
         "las",
         "a.las",
         alone,
@@ -295,6 +302,13 @@ pub const READERS: &[Reader] = &[
     reader("gltf", "a.gltf", alone, meshes::gltf, Scene("[[layer]]\nid=\"m\"\nkind=\"mesh\"\nsource=\"a.gltf\"\n")),
     reader("glb", "a.glb", alone, meshes::glb, Scene("[[layer]]\nid=\"m\"\nkind=\"mesh\"\nsource=\"a.glb\"\n")),
     reader("pdb", "a.pdb", alone, molecules::pdb, Scene("[[layer]]\nid=\"m\"\nkind=\"molecule\"\nsource=\"a.pdb\"\n")),
+    reader(
+        "xyz-atoms",
+        "b.xyz",
+        alone,
+        molecules::xyz,
+        Scene("[[layer]]\nid=\"m\"\nkind=\"molecule\"\nsource=\"b.xyz\"\nmodel=\"all\"\n"),
+    ),
     reader(
         "mmcif",
         "a.cif",

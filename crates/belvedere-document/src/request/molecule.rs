@@ -2,6 +2,7 @@
 
 #[cfg(feature = "clap")]
 use super::args::one_of;
+use crate::ModelsDoc;
 use belvedere_scene::molecule::Representation;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -21,9 +22,9 @@ pub struct Molecules {
     /// the file alone
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME"))]
     pub assembly: Option<String>,
-    /// Model of a file of molecules that holds several, from 1
-    #[cfg_attr(feature = "clap", arg(long, value_name = "N"))]
-    pub model: Option<usize>,
+    /// Model of a file of molecules that holds several, from 1, or all
+    #[cfg_attr(feature = "clap", arg(long, value_name = "N|all"))]
+    pub model: Option<ModelsDoc>,
 }
 
 impl Molecules {

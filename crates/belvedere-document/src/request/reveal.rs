@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 #[serde(default)]
 pub struct Reveal {
     /// Terrain: GeoTIFF, .hgt, ESRI ASCII, a folder of tiles, or builtin:massif?seed=7; or a city: CityJSON, CityGML, OSM PBF or XML; with --see
-    /// also a model: OBJ, PLY, STL, glTF, PDB, mmCIF, VTI, VTK, NRRD, MetaImage, NIfTI, raw voxels, footprints, or a scene file
+    /// also a model: OBJ, PLY, STL, glTF, PDB, mmCIF, XYZ, VTI, VTK, NRRD, MetaImage, NIfTI, raw voxels, footprints, or a scene file
     #[cfg_attr(feature = "clap", arg(value_name = "DATA"))]
     pub data: String,
     /// Routes, areas or points: GPX, KML, TCX, GeoJSON, shapefiles, GeoPackages, FlatGeobuf, CSV, or builtin:massif?seed=7; elevation models

@@ -21,7 +21,7 @@ pub(crate) fn words(line: &str) -> impl Iterator<Item = &str> {
 }
 
 /// Whether a text begins as a list of atoms: their number, a comment, and an element with its place.
-pub(super) fn begins_as_atoms(text: &str) -> bool {
+pub(crate) fn begins_as_atoms(text: &str) -> bool {
     let mut lines = text.lines();
     let is_count = lines.next().is_some_and(|line| line.trim().parse::<u32>().is_ok());
     let is_atom = |line: &str| {

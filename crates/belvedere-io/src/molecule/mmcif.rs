@@ -1,5 +1,6 @@
 //! mmCIF: the loop of atom sites, the bonds of `struct_conn` that share electrons, and what [`super::categories`] reads.
 
+use super::Models;
 use super::categories;
 use super::cif::{BONDS, SITES, Table, tables};
 use super::sites::{Site, Sites};
@@ -7,8 +8,8 @@ use belvedere_scene::molecule::{Element, Residue};
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// * `number`: of the model whose atoms are read, from 1; `frames`: whether the places of all models are read, too.
-pub(super) fn read(text: &str, number: usize, frames: bool) -> Result<Sites, String> {
+/// * `wanted`: models whose atoms are read; `frames`: whether the places of all models are read, too.
+pub(super) fn read(text: &str, wanted: Models, frames: bool) -> Result<Sites, String> {
     let tables = tables(text)?;
     let sites = tables.of(SITES);
     let mut out = Sites::default();
@@ -27,13 +28,14 @@ pub(super) fn read(text: &str, number: usize, frames: bool) -> Result<Sites, Str
                 |at| at + 1,
             ),
         };
-        if at == number || frames {
+        if wanted.has(at) || frames {
             let running = out.sites.len() as i64 + 1;
-            let site = column.site(row, running).map_err(|e| format!("line {line}: {e}"))?;
+            let mut site = column.site(row, running).map_err(|e| format!("line {line}: {e}"))?;
             if frames {
                 out.place(at, site.position);
             }
-            if at == number {
+            if wanted.has(at) {
+                site.model = at;
                 out.sites.push(site);
             }
         }
@@ -110,6 +112,7 @@ impl Columns {
         let guess = if text(self.element).is_none() { Element::from_symbol(&letters) } else { None };
         Ok(Site {
             serial: text(self.serial).and_then(|t| t.parse().ok()).unwrap_or(running),
+            model: 1,
             element: stated.or(guess).unwrap_or(Element::UNKNOWN),
             name,
             asym: text(self.asym).unwrap_or("").to_owned(),

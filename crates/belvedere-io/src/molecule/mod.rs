@@ -1,4 +1,4 @@
-//! Molecules: PDB and mmCIF, plain or gzipped.
+//! Molecules: PDB, mmCIF and XYZ, plain or gzipped.
 
 mod assembly;
 mod categories;
@@ -8,6 +8,7 @@ mod pdb;
 mod sites;
 mod structure;
 mod table;
+mod xyz;
 
 pub use assembly::{Assemblies, Assembly, MOST_COPIES};
 pub use table::{AtomColumns, AtomTable};
@@ -23,12 +24,35 @@ use std::path::Path;
 /// Bytes at the peak of reading per byte of text: 12 were measured on mmCIF, 10 on PDB; names of chains in assemblies take one more.
 const PEAK: u64 = 13;
 
+/// Which models of a file are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Models {
+    /// The first; a warning says that there are more.
+    #[default]
+    First,
+    /// One by its place in the file, from 1.
+    Number(usize),
+    /// All of them, side by side as one molecule: chain `A` of model k > 1 as `A-k`.
+    All,
+}
+
+impl Models {
+    /// Whether a model, from 1, is read.
+    fn has(self, model: usize) -> bool {
+        match self {
+            Self::First => model == 1,
+            Self::Number(number) => model == number,
+            Self::All => true,
+        }
+    }
+}
+
 /// Content of a molecule file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MoleculeFile {
     /// Name of the format.
     pub format: &'static str,
-    /// Atoms of the model that is read, each at its location of highest occupancy, and their bonds.
+    /// Atoms of the model or models that are read, each at its location of highest occupancy, and their bonds.
     pub molecule: Molecule,
     /// Models in the file.
     pub models: usize,
@@ -48,7 +72,7 @@ pub struct MoleculeFile {
 /// # Errors
 /// [`IoError::Os`]; [`IoError::Format`] for a file that is damaged, too large for `limits`, or has no atom.
 pub fn load_molecule(path: &Path, limits: &Limits) -> Result<Loaded<MoleculeFile>, IoError> {
-    load(path, None, false, limits)
+    load(path, Models::First, false, limits)
 }
 
 /// [`load_molecule`] with the places of the atoms in all models, which must hold the same atoms: [`MoleculeFile::frames`].
@@ -56,18 +80,18 @@ pub fn load_molecule(path: &Path, limits: &Limits) -> Result<Loaded<MoleculeFile
 /// # Errors
 /// As [`load_molecule`]; [`IoError::Format`] if the models differ in their number of atoms.
 pub fn load_frames(path: &Path, limits: &Limits) -> Result<Loaded<MoleculeFile>, IoError> {
-    load(path, None, true, limits)
+    load(path, Models::First, true, limits)
 }
 
-/// [`load_molecule`] of a model by its place in the file, from 1; `None` = the first.
+/// [`load_molecule`] of some of the models of a file.
 ///
 /// # Errors
 /// As [`load_molecule`]; [`IoError::Format`] if there are fewer models.
-pub fn load_model(path: &Path, model: Option<usize>, limits: &Limits) -> Result<Loaded<MoleculeFile>, IoError> {
-    load(path, model, false, limits)
+pub fn load_model(path: &Path, models: Models, limits: &Limits) -> Result<Loaded<MoleculeFile>, IoError> {
+    load(path, models, false, limits)
 }
 
-fn load(path: &Path, model: Option<usize>, frames: bool, limits: &Limits) -> Result<Loaded<MoleculeFile>, IoError> {
+fn load(path: &Path, models: Models, frames: bool, limits: &Limits) -> Result<Loaded<MoleculeFile>, IoError> {
     let path = &content(path, limits.max_bytes, &|p| Reader::Molecule.reads(p))?;
     let bad = |reason: String| IoError::format(path, reason);
     let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
@@ -78,18 +102,20 @@ fn load(path: &Path, model: Option<usize>, frames: bool, limits: &Limits) -> Res
     let text = String::from_utf8_lossy(&bytes);
     let name = path.file_name().map(|n| n.to_string_lossy().to_lowercase()).unwrap_or_default();
     let is_cif = name.contains(".cif") || name.contains(".mmcif") || crate::recognise::ending(path) == "cif";
-    let number = model.unwrap_or(1);
-    let (format, read) =
-        if is_cif { ("mmCIF", mmcif::read(&text, number, frames)) } else { ("PDB", pdb::read(&text, number, frames)) };
-    let read = read.and_then(|sites| MoleculeFile::of(sites, format, model, path));
+    let (format, read) = match () {
+        () if xyz::is_atoms(&bytes) => ("XYZ", xyz::read(&text, models, frames)),
+        () if is_cif => ("mmCIF", mmcif::read(&text, models, frames)),
+        () => ("PDB", pdb::read(&text, models, frames)),
+    };
+    let read = read.and_then(|sites| MoleculeFile::of(sites, format, models, path));
     let loaded = read.map_err(|e| other_kind(path, bad(e)))?;
     Ok(loaded.with_file(file))
 }
 
 impl MoleculeFile {
     /// The content of atom lines that were read.
-    fn of(sites: Sites, format: &'static str, model: Option<usize>, path: &Path) -> Result<Loaded<Self>, String> {
-        let (molecule, found) = sites.finish(model)?;
+    fn of(sites: Sites, format: &'static str, models: Models, path: &Path) -> Result<Loaded<Self>, String> {
+        let (molecule, found) = sites.finish(models)?;
         let Found { models, alternates, named_bonds, assemblies, frames, warnings } = found;
         let warnings = warnings.into_iter().map(|w| w.in_file(path)).collect();
         Ok(Loaded::new(Self { format, molecule, models, assemblies, frames, alternates, named_bonds }, warnings))
@@ -99,8 +125,12 @@ impl MoleculeFile {
 /// The error of a file, or that it holds no molecule but something else.
 fn other_kind(path: &Path, error: IoError) -> IoError {
     let readable = crate::recognise::readable(path).ok().flatten();
+    // What a name tells that grids share does not explain it.
+    if readable.is_some_and(|format| format.name == "XYZ of atoms") {
+        return error;
+    }
     match readable.filter(|format| format.reader != Some(Reader::Molecule)) {
-        Some(_) => crate::recognise::not_a(path, "a molecule: PDB or mmCIF"),
+        Some(_) => crate::recognise::not_a(path, "a molecule: PDB, mmCIF or XYZ"),
         None => crate::recognise::explain(error),
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! Format: wwPDB, version 3.3, and its variants by simulation programs: no chains, no elements, numbers that overflow their columns.
 
+use super::Models;
 use super::assembly::Described;
 use super::sites::{Site, Sites};
 use super::structure::{Place, Stretch};
@@ -13,8 +14,8 @@ use std::collections::HashMap;
 /// Columns of a line of an atom up to its coordinates.
 const NEEDED: usize = 54;
 
-/// * `model`: that whose atoms are read, from 1; `frames`: whether the places of all models are read, too.
-pub(super) fn read(text: &str, model: usize, frames: bool) -> Result<Sites, String> {
+/// * `models`: those whose atoms are read; `frames`: whether the places of all models are read, too.
+pub(super) fn read(text: &str, models: Models, frames: bool) -> Result<Sites, String> {
     let mut out = Sites::default();
     let mut remarks = Remarks::default();
     let (mut guessed, mut renumbered) = (0, 0);
@@ -22,9 +23,11 @@ pub(super) fn read(text: &str, model: usize, frames: bool) -> Result<Sites, Stri
         let record = columns(line, 0, 6).trim_end();
         match record {
             "MODEL" => out.models += 1,
-            "ATOM" | "HETATM" if out.models.max(1) == model => {
+            "ATOM" | "HETATM" if models.has(out.models.max(1)) => {
                 let number = out.sites.len() as i64 + 1;
-                let (site, odd) = site(line, record == "HETATM", number).map_err(|e| format!("line {}: {e}", i + 1))?;
+                let (mut site, odd) =
+                    site(line, record == "HETATM", number).map_err(|e| format!("line {}: {e}", i + 1))?;
+                site.model = out.models.max(1);
                 guessed += usize::from(odd.element);
                 renumbered += usize::from(odd.serial);
                 if frames {
@@ -183,6 +186,7 @@ fn site(line: &str, hetero: bool, running: i64) -> Result<(Site, Odd), String> {
     let odd = Odd { element: stated.is_none(), serial: serial.is_none() };
     let site = Site {
         serial: serial.unwrap_or(running),
+        model: 1,
         asym: residue.chain.clone(),
         name: field(12, 16).to_owned(),
         element,

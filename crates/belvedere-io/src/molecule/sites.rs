@@ -1,16 +1,21 @@
 //! Assembles a molecule from the atom lines of a file: residues, alternate locations, models.
 
+use super::Models;
 use super::assembly::{Assemblies, Described};
 use super::structure::{self, Stretch};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Molecule;
 use belvedere_scene::molecule::{Atom, Element, Residue};
 use glam::DVec3;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
+
+const NO_ATOM: &str = "it holds no atom; a file of coordinates is needed";
 
 /// One atom line of a file.
 pub(super) struct Site {
     pub(super) serial: i64,
+    /// Its model, from 1.
+    pub(super) model: usize,
     /// Chain as the assemblies of the file name it.
     pub(super) asym: String,
     pub(super) name: String,
@@ -22,7 +27,7 @@ pub(super) struct Site {
     pub(super) occupancy: f64,
 }
 
-/// All atom lines of one model, named bonds, number of models and warnings.
+/// All atom lines of the models that are read, named bonds, number of models and warnings.
 #[derive(Default)]
 pub(super) struct Sites {
     pub(super) sites: Vec<Site>,
@@ -63,18 +68,61 @@ impl Sites {
         }
     }
 
-    /// Assembles the molecule of a model; `None` = the first one, with a warning if there are more.
-    pub(super) fn finish(self, model: Option<usize>) -> Result<(Molecule, Found), String> {
-        let Self { sites, bonds, orders, named_orders, structure, assemblies, models, frames, mut warnings } = self;
-        if let Some(model) = model.filter(|model| *model > models) {
+    /// Assembles the molecule of a model, or of all; of the first one with a warning if there are more.
+    pub(super) fn finish(self, wanted: Models) -> Result<(Molecule, Found), String> {
+        let models = self.models;
+        if let Models::Number(model) = wanted
+            && model > models
+        {
             return Err(format!("it holds {models} models, there is no model {model}; name one in 1..={models}"));
         }
-        if sites.is_empty() {
-            return Err("it holds no atom; a file of coordinates is needed".into());
+        if wanted == Models::All && models > 1 {
+            return self.finish_all();
         }
-        if models > 1 && model.is_none() && frames.is_empty() {
-            let text = format!("it holds {models} models; the first is taken");
-            warnings.push(Warning::new(WarningKind::Ignored, text).with("models", models as f64));
+        let is_silent = wanted != Models::First || !self.frames.is_empty();
+        let (molecule, mut found) = self.finish_one()?;
+        if models > 1 && !is_silent {
+            let text = format!("it holds {models} models; the first is taken, model = \"all\" draws all of them");
+            let warning = Warning::new(WarningKind::Ignored, text).with("models", models as f64);
+            found.warnings.insert(0, warning.settled_by("model"));
+        }
+        Ok((molecule, found))
+    }
+
+    /// Every model on its own, so that models over one another share no bonds; what the file names is of each of them.
+    fn finish_all(self) -> Result<(Molecule, Found), String> {
+        let Self { sites, bonds, orders, named_orders, structure, models, mut warnings, .. } = self;
+        let mut of_models: BTreeMap<usize, Vec<Site>> = BTreeMap::new();
+        for site in sites {
+            of_models.entry(site.model).or_default().push(site);
+        }
+        let (mut molecules, mut all) = (Vec::new(), Found { models, ..Found::default() });
+        for sites in of_models.into_values() {
+            let (bonds, orders) = (bonds.clone(), orders.clone());
+            let (named_orders, structure) = (named_orders.clone(), structure.clone());
+            let one = Self { sites, bonds, orders, named_orders, structure, models, ..Self::default() };
+            let (molecule, found) = one.finish_one()?;
+            molecules.push(molecule);
+            all.alternates += found.alternates;
+            all.named_bonds += found.named_bonds;
+            for warning in found.warnings {
+                if !warnings.contains(&warning) {
+                    warnings.push(warning);
+                }
+            }
+        }
+        if molecules.is_empty() {
+            return Err(NO_ATOM.into());
+        }
+        all.warnings = warnings;
+        Ok((Molecule::joined(molecules).map_err(|e| e.to_string())?, all))
+    }
+
+    /// The molecule of all sites, as of one model.
+    fn finish_one(self) -> Result<(Molecule, Found), String> {
+        let Self { sites, bonds, orders, named_orders, structure, assemblies, models, frames, mut warnings } = self;
+        if sites.is_empty() {
+            return Err(NO_ATOM.into());
         }
         let mut keep = likeliest(&sites);
         let alternates = keep.iter().filter(|k| !**k).count();

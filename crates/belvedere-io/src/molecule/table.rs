@@ -1,7 +1,7 @@
 //! Atoms in memory.
 
-use super::MoleculeFile;
 use super::sites::{Site, Sites};
+use super::{Models, MoleculeFile};
 use crate::shared_bytes::{SharedBytes, positions};
 use crate::{IoError, Limits, Loaded};
 use belvedere_scene::molecule::{Element, Residue};
@@ -73,14 +73,14 @@ impl AtomTable {
 
     /// The molecule, with bonds by distance.
     ///
-    /// * `model`: number of the model, from 1; there is one. `frames`: as of [`super::load_frames`].
+    /// * `models`: there is one model. `frames`: as of [`super::load_frames`].
     ///
     /// # Errors
     /// [`IoError::Format`] for atoms that no molecule has, or too many for `limits`.
     pub fn molecule(
         &self,
         path: &Path,
-        (model, frames): (Option<usize>, bool),
+        (models, frames): (Models, bool),
         limits: &Limits,
     ) -> Result<Loaded<MoleculeFile>, IoError> {
         let columns = &self.columns;
@@ -88,6 +88,7 @@ impl AtomTable {
         limits.ask("the molecule", peak).map_err(|reason| IoError::format(path, reason))?;
         let site = |(i, position): (usize, glam::DVec3)| Site {
             serial: i as i64 + 1,
+            model: 1,
             asym: columns.chains[i].clone(),
             name: columns.names[i].clone(),
             element: Element::from_symbol(&columns.elements[i]).unwrap_or(Element::UNKNOWN),
@@ -106,7 +107,7 @@ impl AtomTable {
         if frames {
             sites.frames = vec![self.places().collect()];
         }
-        MoleculeFile::of(sites, "array", model, path).map_err(|reason| IoError::format(path, reason))
+        MoleculeFile::of(sites, "array", models, path).map_err(|reason| IoError::format(path, reason))
     }
 
     pub(crate) fn layout(&self) -> (serde_json::Value, Vec<&[u8]>) {

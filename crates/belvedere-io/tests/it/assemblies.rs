@@ -1,6 +1,6 @@
 //! Biological assemblies, models, stated structure and orders of bonds: of real files, and of made-up ones that say the same in both formats.
 
-use belvedere_io::{Limits, Loaded, MoleculeFile, load_model, load_molecule};
+use belvedere_io::{Limits, Loaded, Models, MoleculeFile, load_model, load_molecule};
 use belvedere_scene::molecule::{Secondary, Selection};
 use belvedere_testkit::data;
 use glam::DVec3;
@@ -9,7 +9,7 @@ fn made(name: &str, text: &str, model: Option<usize>) -> Result<Loaded<MoleculeF
     let folder = tempfile::tempdir().expect("temporary folder");
     let path = folder.path().join(name);
     std::fs::write(&path, text).expect("written");
-    load_model(&path, model, &Limits::default()).map_err(|e| e.to_string())
+    load_model(&path, model.map_or(Models::First, Models::Number), &Limits::default()).map_err(|e| e.to_string())
 }
 
 #[test]

@@ -24,6 +24,7 @@ mod kinds_seeded;
 mod links;
 mod map_features;
 mod meshes;
+mod molecule_models;
 mod molecules;
 mod open_exr;
 mod picture_files;

@@ -82,6 +82,11 @@ impl Element {
         Some(Self(at as u8 + 1))
     }
 
+    /// The element of an atomic number; `None` for one that there is not.
+    pub fn from_number(number: usize) -> Option<Self> {
+        (1..=TABLE.len()).contains(&number).then_some(Self(number as u8))
+    }
+
     fn row(self) -> Option<&'static (&'static str, u16, u16)> {
         TABLE.get(usize::from(self.0).checked_sub(1)?)
     }

@@ -5,6 +5,7 @@ mod bonds;
 mod density;
 mod element;
 mod iso;
+mod joined;
 mod layer;
 mod near;
 mod openness;

@@ -47,7 +47,7 @@ pub(super) fn layer(path: &Path, known: Option<Reader>, others: &[LayerDoc]) -> 
         Some(Reader::City) => Ok(LayerDoc::City(CityDoc::of(id, name))),
         Some(Reader::Volume) => Ok(LayerDoc::Volume(VolumeDoc::of(id, name))),
         _ => {
-            let text = " is no model that can be looked into; give meshes (OBJ, PLY, STL, glTF), cities (CityJSON, CityGML, OSM PBF), molecules (PDB, mmCIF), volumes (VTI, VTK, NRRD, MetaImage, NIfTI, MRC, NumPy, TIFF stacks, DICOM, raw) or a scene file; for an elevation model give its features instead of {}";
+            let text = " is no model that can be looked into; give meshes (OBJ, PLY, STL, glTF), cities (CityJSON, CityGML, OSM PBF), molecules (PDB, mmCIF, XYZ), volumes (VTI, VTK, NRRD, MetaImage, NIfTI, MRC, NumPy, TIFF stacks, DICOM, raw) or a scene file; for an elevation model give its features instead of {}";
             Err(BelvedereError::Argument(Advice::new(text, &["see"]).before(name)))
         }
     }

@@ -29,6 +29,17 @@ pub fn pdb() -> Vec<Vec<u8>> {
     vec![text.into_bytes(), format!("{atoms}END\n").into_bytes()]
 }
 
+/// XYZ of two frames, plain and with named columns.
+pub fn xyz() -> Vec<Vec<u8>> {
+    let atoms = |before: &str| -> String {
+        let line =
+            |(.., [x, y, z], element): &(&str, &str, u32, [f64; 3], &str)| format!("{element}{before} {x} {y} {z}\n");
+        ATOMS.iter().map(line).collect()
+    };
+    let named = format!("8\nProperties=species:S:1:id:I:1:pos:R:3\n{}", atoms(" 7"));
+    vec![format!("8\na seed\n{0}8\n\n{0}", atoms("")).into_bytes(), named.into_bytes()]
+}
+
 /// mmCIF with quotes, a text and named bonds.
 pub fn mmcif() -> Vec<Vec<u8>> {
     let mut text = "data_SEED\n_entry.id 'it''s a seed'\n_struct.title\n;a text\nof two lines\n;\nloop_\n".to_owned();

@@ -51,6 +51,32 @@ pub fn xyz() -> Vec<Vec<u8>> {
     vec![grid(" ", ""), grid(",", "x,y,z\n")]
 }
 
+/// PMTiles of one tile of heights and a directory that is not packed.
+pub fn pmtiles() -> Vec<Vec<u8>> {
+    const SIDE: usize = 16;
+    let pixel = |i: usize| {
+        let [_, r, g, b] = (((height(i) + 32_768.0) * 256.0) as u32).to_be_bytes();
+        [r, g, b, 255]
+    };
+    let pixels: Vec<u8> = (0..SIDE * SIDE).flat_map(pixel).collect();
+    let mut tile = Vec::new();
+    encode(&mut tile, SIDE, SIDE, Channels::Rgba, &pixels, &[]).expect("a picture");
+    // One entry: its number, its run, its length in two bytes, and the offset 0.
+    let directory = [1, 0, 1, tile.len() as u8 | 0x80, (tile.len() >> 7) as u8, 1];
+    let metadata = b"{\"encoding\":\"terrarium\"}";
+    let mut head = b"PMTiles\x03".to_vec();
+    let mut at = 127u64;
+    for length in [directory.len(), metadata.len(), 0, tile.len()] {
+        head.extend(at.to_le_bytes());
+        head.extend((length as u64).to_le_bytes());
+        at += length as u64;
+    }
+    head.extend([0; 25]);
+    head.extend([1, 1, 2]);
+    head.resize(127, 0);
+    vec![[head.as_slice(), &directory, metadata, &tile].concat()]
+}
+
 /// Points of LAS, of an old and a new format.
 pub fn las() -> Vec<Vec<u8>> {
     let cloud = |format: u8| {

@@ -56,7 +56,7 @@ fn rows() -> Vec<(&'static str, Does)> {
         ("representation", IsRefused(json!("ribbon"), molecule)),
         ("color_by", IsRefused(json!("chain"), molecule)),
         ("assembly", IsRefused(json!("1"), molecule)),
-        ("model", IsRefused(json!(1), molecule)),
+        ("model", IsRefused(json!("all"), molecule)),
     ]);
     rows
 }
