@@ -303,7 +303,7 @@ pub const READERS: &[Reader] = &[
     reader("glb", "a.glb", alone, meshes::glb, Scene("[[layer]]\nid=\"m\"\nkind=\"mesh\"\nsource=\"a.glb\"\n")),
     reader("pdb", "a.pdb", alone, molecules::pdb, Scene("[[layer]]\nid=\"m\"\nkind=\"molecule\"\nsource=\"a.pdb\"\n")),
     reader(
-        "xyz-atoms",
+        "xyz_atoms",
         "b.xyz",
         alone,
         molecules::xyz,

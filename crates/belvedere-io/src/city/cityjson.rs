@@ -62,10 +62,19 @@ impl Reader<'_> {
             return Ok((whole, format!("CityJSON {version}")));
         }
         let mut head: Option<Value> = None;
-        for (i, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
-            let value: Value = serde_json::from_str(line).map_err(|e| {
-                format!("line {}: no valid JSON ({}); it is damaged or cut off", i + 1, crate::json_fault(&e))
-            })?;
+        let mut lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()).peekable();
+        while let Some((i, line)) = lines.next() {
+            let value: Value = match serde_json::from_str(line) {
+                Ok(value) => value,
+                Err(e) if e.is_eof() && lines.peek().is_none() && i > 1 => {
+                    self.out.cut = Some(format!("its last line, {}, is not whole; what stands before is read", i + 1));
+                    break;
+                }
+                Err(e) => {
+                    let fault = crate::json_fault(&e);
+                    return Err(format!("line {}: no valid JSON ({fault}); it is damaged or cut off", i + 1));
+                }
+            };
             if head.is_none() {
                 version(&value).map_err(|e| format!("line {}: {e}", i + 1))?;
             }

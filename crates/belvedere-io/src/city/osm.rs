@@ -53,6 +53,8 @@ struct Map {
     ways: BTreeMap<i64, Line>,
     nodes: HashMap<i64, DVec2>,
     counts: [usize; 3],
+    /// Why the file ends too early.
+    cut: Option<String>,
 }
 
 /// Numbers of objects that were left out.
@@ -68,6 +70,9 @@ pub(super) fn load(path: &Path, bytes: &[u8], format: &'static str) -> Result<Lo
     let map = Map::of_file(path, bytes, format)?;
     let (mut lost, mut repairs) = (Lost::default(), Repairs::default());
     let city = map.city(&mut lost, &mut repairs);
+    if let Some(why) = map.cut.as_ref().filter(|_| city == City::default()) {
+        return Err(read::damaged(path, format, why));
+    }
     if city == City::default() {
         let [nodes, ways, relations] = map.counts;
         let reason = format!(
@@ -76,8 +81,10 @@ pub(super) fn load(path: &Path, bytes: &[u8], format: &'static str) -> Result<Lo
         return Err(IoError::format(path, reason));
     }
     let say = |count: usize, what: &str| Warning::counted(WarningKind::Ignored, count, what);
-    let warnings = repairs
-        .warnings()
+    let warnings = map
+        .said_of_cut(format)
+        .into_iter()
+        .chain(repairs.warnings())
         .chain(say(lost.nodes, "vertices of ways are not in the file; their ways are cut there"))
         .chain(say(lost.polygons, "polygons with vertices that are not in the file were left out"))
         .chain(say(lost.underground, "buildings and ways that lie underground were left out"))

@@ -65,6 +65,9 @@ fn decimal(text: &[u8]) -> Cow<'static, [u8]> {
 
 /// The style of all words with a comma; words that contradict each other mean that commas stand between numbers.
 fn style(text: &[u8]) -> Style {
+    // The end of the file may have cut the last word.
+    let end = text.iter().rposition(u8::is_ascii_whitespace).unwrap_or(text.len());
+    let text = &text[..end];
     let words = || text.split(u8::is_ascii_whitespace).filter(|w| w.contains(&b','));
     let both = || words().filter(|w| w.contains(&b'.'));
     if both().next().is_none() {

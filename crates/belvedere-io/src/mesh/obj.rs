@@ -34,8 +34,9 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
         }
         tobj::load_mtl_buf(&mut text.as_bytes())
     };
-    let text = obj_text::statements(bytes);
+    let mut text = obj_text::statements(bytes);
     let read = |text: &str| tobj::load_obj_buf(&mut text.as_bytes(), &options, materials);
+    let mut cut = None;
     let (models, materials) = match read(&text) {
         // Colours of some vertices only are none.
         Err(tobj::LoadError::FaceColorOutOfBounds) => {
@@ -43,10 +44,24 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
             odd.borrow_mut().clear();
             read(&obj_text::without_colors(&text))
         }
+        // The end of the file may have cut its last line.
+        Err(e) if !bytes.ends_with(b"\n") && text.lines().count() > 1 => {
+            files.borrow_mut().clear();
+            odd.borrow_mut().clear();
+            let before = text.trim_end().rfind('\n').map_or(0, |at| at + 1);
+            let found = read(&text[..before]);
+            if found.is_ok() {
+                let last: String = text[before..].trim().chars().take(40).collect();
+                let said = format!("its last line ({last}) is not whole; what stands before is read");
+                cut = Some(Warning::new(WarningKind::Repaired, said).in_file(path));
+                text.truncate(before);
+            }
+            found.map_err(|_| e)
+        }
         found => found,
     }
     .map_err(|e| IoError::format(path, format!("{}; it is damaged or no OBJ file", obj_text::fault(&e, &text))))?;
-    let mut warnings = Vec::new();
+    let mut warnings: Vec<Warning> = cut.into_iter().collect();
     if materials.is_err() {
         let names = obj_text::material_files(&text);
         let text = format!(

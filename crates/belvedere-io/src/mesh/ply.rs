@@ -3,10 +3,11 @@
 use super::MeshFile;
 use crate::text::text_of;
 use crate::{IoError, Limits, Loaded};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::{Color, MeshColors};
 use glam::DVec3;
 use ply_rs_bw::parser::{Parser, Reader};
-use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
+use ply_rs_bw::ply::{Encoding, Header, Property, PropertyAccess, PropertyAccessResult};
 use std::path::Path;
 
 /// The properties of an element that are read.
@@ -127,7 +128,8 @@ pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshF
     let mended = mended(bytes);
     let bytes = mended.as_deref().unwrap_or(bytes);
     let mut reader = Reader::new(bytes);
-    let header = parser.read_header(&mut reader).map_err(|e| damaged(&e))?;
+    let mut header = parser.read_header(&mut reader).map_err(|e| damaged(&e))?;
+    let cut = cut_short(&mut header, bytes);
     let mut out = MeshFile { format: "PLY", ..MeshFile::default() };
     let (mut normals, mut per_vertex, mut per_triangle) = (Vec::new(), Vec::new(), Vec::new());
     for element in header.elements.values() {
@@ -186,7 +188,49 @@ pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshF
         (None, Some(colors)) => MeshColors::PerTriangle(colors),
         _ => MeshColors::Layer,
     };
-    Ok(Loaded::clean(out))
+    Ok(Loaded::new(out, cut.into_iter().map(|w| w.in_file(path)).collect()))
+}
+
+/// Whether a line is a list of fewer numbers than it says.
+fn is_short_list(line: &[u8]) -> bool {
+    let line = String::from_utf8_lossy(line);
+    let mut words = line.split_whitespace();
+    let count = words.next().and_then(|word| word.parse::<usize>().ok());
+    count.is_some_and(|count| (3..=64).contains(&count) && words.count() < count)
+}
+
+/// Lowers the counts of a text that ends too early to what is whole, and says so. Vertices are needed whole.
+fn cut_short(header: &mut Header, bytes: &[u8]) -> Option<Warning> {
+    const END: &[u8] = b"end_header";
+    if header.encoding != Encoding::Ascii {
+        return None;
+    }
+    let body = &bytes[bytes.windows(END.len()).position(|w| w == END)? + END.len()..];
+    let mut lines = body.split(|b| *b == b'\n').filter(|line| !line.trim_ascii().is_empty()).count();
+    let declared: usize = header.elements.values().map(|element| element.count).fold(0, usize::saturating_add);
+    let last = body.rsplit(|b| *b == b'\n').next().unwrap_or_default();
+    if lines > declared || (lines == declared && !is_short_list(last)) {
+        return None;
+    }
+    // Without its end the last line may be cut.
+    lines -= usize::from(!last.is_empty() && lines > 0);
+    let mut said = None;
+    for element in header.elements.values_mut() {
+        let held = element.count.min(lines);
+        lines -= held;
+        if held < element.count && element.name == "vertex" {
+            return None;
+        }
+        if held < element.count && said.is_none() {
+            let (count, name) = (element.count, &element.name);
+            let text = format!("it declares {count} x {name:?} and holds {held}; it is cut off, what is whole is read");
+            said = Some(
+                Warning::new(WarningKind::Repaired, text).with("declared", count as f64).with("held", held as f64),
+            );
+        }
+        element.count = held;
+    }
+    said
 }
 
 fn colored(item: &Item) -> Option<Color> {

@@ -34,7 +34,13 @@ pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshF
     let triangles = if is_binary {
         binary(&bytes[HEAD..])
     } else if is_text(bytes) {
-        text(bytes).map_err(bad)?
+        let (triangles, is_cut) = text(bytes).map_err(bad)?;
+        if is_cut {
+            let count = triangles.len();
+            let text = format!("it ends without endsolid, so it is cut off; the {count} triangles before are read");
+            warnings.push(Warning::new(WarningKind::Repaired, text).with("triangles", count as f64).in_file(path));
+        }
+        triangles
     } else {
         let room = bytes.len().saturating_sub(HEAD);
         let whole = room / TRIANGLE;
@@ -72,21 +78,29 @@ fn is_text(bytes: &[u8]) -> bool {
     head.starts_with(b"solid") && !head.contains(&0) && (holds(b"facet") || holds(b"endsolid"))
 }
 
-/// Triangles of a text: the vertices of each loop. Words count in any case; what stands on the line of `solid` is its name.
-fn text(bytes: &[u8]) -> Result<Vec<Triangle>, String> {
+/// Triangles of a text, and whether it ends too early: the vertices of each loop. Words count in any case; what stands on the line of
+/// `solid` is its name.
+fn text(bytes: &[u8]) -> Result<(Vec<Triangle>, bool), String> {
     let (mut out, mut corners): (Vec<Triangle>, Vec<[f32; 3]>) = (Vec::new(), Vec::new());
-    for (k, line) in bytes.split(|b| matches!(b, b'\n' | b'\r')).enumerate() {
+    let mut is_closed = false;
+    let mut lines = bytes.split(|b| matches!(b, b'\n' | b'\r')).enumerate().peekable();
+    while let Some((k, line)) = lines.next() {
         let mut words = line.split(u8::is_ascii_whitespace).filter(|w| !w.is_empty());
         // Some writers put a whole facet on one line.
         while let Some(word) = words.next() {
             let is = |name: &[u8]| word.eq_ignore_ascii_case(name);
             if is(b"solid") || is(b"endsolid") || word.starts_with(b"#") || word.starts_with(b"//") {
+                is_closed |= is(b"endsolid");
                 break;
             }
+            is_closed = false;
             if is(b"vertex") {
                 let mut number = || number(std::str::from_utf8(words.next()?).ok()?);
                 let corner = [number(), number(), number()];
                 let [Some(x), Some(y), Some(z)] = corner else {
+                    if lines.peek().is_none() && !out.is_empty() {
+                        return Ok((out, true));
+                    }
                     return Err(format!("the vertex on line {} has no three numbers; it is damaged", k + 1));
                 };
                 corners.push([x, y, z]);
@@ -99,7 +113,10 @@ fn text(bytes: &[u8]) -> Result<Vec<Triangle>, String> {
             }
         }
     }
-    if corners.is_empty() { Ok(out) } else { Err("it ends inside a facet; it is cut off, get it again".into()) }
+    if out.is_empty() && !corners.is_empty() {
+        return Err("it ends inside its first facet; it is cut off, get it again".into());
+    }
+    Ok((out, !is_closed))
 }
 
 /// A number, with a decimal point or comma.

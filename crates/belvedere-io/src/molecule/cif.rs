@@ -13,19 +13,23 @@ pub(super) const COMPONENT_BONDS: &str = "_chem_comp_bond.";
 /// Categories that are read.
 const CATEGORIES: [&str; 8] = [SITES, BONDS, GENERATED, OPERATIONS, ASSEMBLIES, HELICES, STRANDS, COMPONENT_BONDS];
 
-/// Tables of the categories that are read.
+/// Tables of the categories that are read, and what the end of the file cuts off.
 #[derive(Default)]
-pub(super) struct Tables<'t>([Table<'t>; CATEGORIES.len()]);
+pub(super) struct Tables<'t> {
+    of: [Table<'t>; CATEGORIES.len()],
+    /// Number of the line, and what ends there too early.
+    pub(super) cut: Option<(usize, &'static str)>,
+}
 
 impl<'t> Tables<'t> {
     /// That of a category, which is read.
     pub(super) fn of(&self, category: &str) -> &Table<'t> {
-        &self.0[CATEGORIES.iter().position(|c| *c == category).unwrap_or(0)]
+        &self.of[CATEGORIES.iter().position(|c| *c == category).unwrap_or(0)]
     }
 
     fn slot(&mut self, name: &str) -> Option<&mut Table<'t>> {
         let at = CATEGORIES.iter().position(|category| is_in(name, category))?;
-        Some(&mut self.0[at])
+        Some(&mut self.of[at])
     }
 }
 
@@ -45,6 +49,7 @@ struct Words<'t> {
     text: &'t str,
     at: usize,
     line: usize,
+    cut: Option<(usize, &'static str)>,
 }
 
 impl<'t> Words<'t> {
@@ -60,8 +65,8 @@ impl<'t> Words<'t> {
                 }
                 Some(b'#') => self.at += self.rest().find('\n').unwrap_or(self.rest().len()),
                 Some(b) if b.is_ascii_whitespace() => self.at += 1,
-                Some(b';') if self.at == 0 || bytes[self.at - 1] == b'\n' => return self.field().map(Some),
-                Some(b @ (b'\'' | b'"')) => return self.quoted(*b).map(Some),
+                Some(b';') if self.at == 0 || bytes[self.at - 1] == b'\n' => return Ok(self.field()),
+                Some(b @ (b'\'' | b'"')) => return self.quoted(*b),
                 Some(_) => return Ok(Some(self.plain())),
             }
         }
@@ -71,26 +76,37 @@ impl<'t> Words<'t> {
         &self.text[self.at..]
     }
 
+    /// Nothing more: the end of the file cuts off what begins on this line.
+    fn ended(&mut self, what: &'static str) {
+        self.cut = Some((self.line, what));
+        self.at = self.text.len();
+    }
+
     /// Text between lines that begin with a semicolon.
-    fn field(&mut self) -> Result<(usize, Token<'t>), String> {
+    fn field(&mut self) -> Option<(usize, Token<'t>)> {
         let (line, start) = (self.line, self.at + 1);
-        let end = self.text[start..]
-            .find("\n;")
-            .ok_or_else(|| format!("line {line}: a text field is not closed; it is truncated, get it again"))?;
+        let Some(end) = self.text[start..].find("\n;") else {
+            self.ended("a text field");
+            return None;
+        };
         let value = &self.text[start..start + end];
         self.line += value.matches('\n').count() + 1;
         self.at = start + end + 2;
-        Ok((line, Token::Value(Some(value))))
+        Some((line, Token::Value(Some(value))))
     }
 
     /// A quote ends where white space follows it.
-    fn quoted(&mut self, quote: u8) -> Result<(usize, Token<'t>), String> {
+    fn quoted(&mut self, quote: u8) -> Result<Option<(usize, Token<'t>)>, String> {
         let bytes = self.text.as_bytes();
         let start = self.at + 1;
         let mut end = start;
         loop {
             match bytes.get(end) {
-                None | Some(b'\n') => {
+                None => {
+                    self.ended("a quote");
+                    return Ok(None);
+                }
+                Some(b'\n') => {
                     return Err(format!("line {}: a quote is not closed; it is damaged, get it again", self.line));
                 }
                 Some(b) if *b == quote && bytes.get(end + 1).is_none_or(u8::is_ascii_whitespace) => break,
@@ -98,7 +114,7 @@ impl<'t> Words<'t> {
             }
         }
         self.at = end + 1;
-        Ok((self.line, Token::Value(Some(&self.text[start..end]))))
+        Ok(Some((self.line, Token::Value(Some(&self.text[start..end])))))
     }
 
     fn plain(&mut self) -> (usize, Token<'t>) {
@@ -132,7 +148,7 @@ impl<'t> Table<'t> {
 /// The categories that are read, given as loops or as single values.
 pub(super) fn tables(text: &str) -> Result<Tables<'_>, String> {
     let mut tables = Tables::default();
-    let mut words = Words { text, at: 0, line: 1 };
+    let mut words = Words { text, at: 0, line: 1, cut: None };
     let mut blocks = 0;
     let mut pending = words.next()?;
     while let Some((line, token)) = pending {
@@ -155,6 +171,10 @@ pub(super) fn tables(text: &str) -> Result<Tables<'_>, String> {
             }
             Token::Name(name) => {
                 let value = words.next()?;
+                if value.is_none() {
+                    words.cut.get_or_insert((line, "a value"));
+                    break;
+                }
                 let Some((_, Token::Value(value))) = value else {
                     return Err(format!("line {line}: {name} has no value; it is truncated or damaged, get it again"));
                 };
@@ -166,6 +186,7 @@ pub(super) fn tables(text: &str) -> Result<Tables<'_>, String> {
         }
         pending = words.next()?;
     }
+    tables.cut = words.cut;
     Ok(tables)
 }
 
@@ -208,7 +229,11 @@ fn looped<'t>(words: &mut Words<'t>) -> Result<(Table<'t>, Next<'t>), String> {
         count += 1;
         next = words.next()?;
     }
-    if wanted && !count.is_multiple_of(width) {
+    if wanted && next.is_none() && !count.is_multiple_of(width) {
+        // The end of the file cuts the last row.
+        let row = table.rows.pop().map_or(start, |(line, _)| line);
+        words.cut.get_or_insert((row, "a row"));
+    } else if wanted && !count.is_multiple_of(width) {
         return Err(format!(
             "line {start}: the loop of {} has {count} values for {width} columns; it is truncated or damaged, get it again",
             table.names[0]

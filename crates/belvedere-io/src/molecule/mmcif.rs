@@ -4,6 +4,7 @@ use super::Models;
 use super::categories;
 use super::cif::{BONDS, SITES, Table, tables};
 use super::sites::{Site, Sites};
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::molecule::{Element, Residue};
 use glam::DVec3;
 use std::collections::HashMap;
@@ -14,6 +15,9 @@ pub(super) fn read(text: &str, wanted: Models, frames: bool) -> Result<Sites, St
     let sites = tables.of(SITES);
     let mut out = Sites::default();
     let mut models: Vec<Option<&str>> = Vec::new();
+    if let Some((line, what)) = tables.cut.filter(|_| sites.rows.is_empty()) {
+        return Err(format!("line {line}: {what} is not closed; it is truncated, get it again"));
+    }
     let column = Columns::of(sites)?;
     for (line, row) in &sites.rows {
         let model = column.model.and_then(|k| row[k]);
@@ -39,6 +43,12 @@ pub(super) fn read(text: &str, wanted: Models, frames: bool) -> Result<Sites, St
                 out.sites.push(site);
             }
         }
+    }
+    if let Some((line, what)) = tables.cut {
+        let count = sites.rows.len();
+        let text =
+            format!("{what} on line {line} is cut off by the end of the file; the {count} atoms before are read");
+        out.warnings.push(Warning::new(WarningKind::Repaired, text).with("atoms", count as f64));
     }
     out.models = models.len().max(1);
     out.bonds = named_bonds(tables.of(BONDS), &out.sites);

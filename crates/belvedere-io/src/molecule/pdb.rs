@@ -18,9 +18,21 @@ const NEEDED: usize = 54;
 pub(super) fn read(text: &str, models: Models, frames: bool) -> Result<Sites, String> {
     let mut out = Sites::default();
     let mut remarks = Remarks::default();
-    let (mut guessed, mut renumbered) = (0, 0);
-    for (i, line) in text.lines().enumerate() {
+    let (mut guessed, mut renumbered, mut before) = (0, 0, 0);
+    let mut lines = text.lines().enumerate().peekable();
+    while let Some((i, line)) = lines.next() {
         let record = columns(line, 0, 6).trim_end();
+        if matches!(record, "ATOM" | "HETATM") {
+            // The end of the file may have cut the last line, but for blanks.
+            let is_last = lines.peek().is_none() && !text.ends_with('\n');
+            if is_last && line.len() < before && !out.sites.is_empty() {
+                let count = out.sites.len();
+                let text = format!("its last line, {}, is not whole; the {count} atoms before are read", i + 1);
+                out.warnings.push(Warning::new(WarningKind::Repaired, text).with("atoms", count as f64));
+                break;
+            }
+            before = line.trim_end().len();
+        }
         match record {
             "MODEL" => out.models += 1,
             "ATOM" | "HETATM" if models.has(out.models.max(1)) => {

@@ -36,7 +36,16 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
     let peak = text.lines().count().saturating_mul(ROW_BYTES + COLUMN_BYTES * layout.names.len());
     budget::ask("the table", peak as u64).map_err(|reason| IoError::format(path, reason))?;
     let mut rows = Rows::default();
-    for record in Records::new(text, layout.sign).skip(1) {
+    let mut records = Records::new(text, layout.sign).skip(1).peekable();
+    let mut cut = None;
+    while let Some(record) = records.next() {
+        let is_last = records.peek().is_none() && !text.ends_with(['\n', '\r']);
+        if is_last && record.fields.len() < layout.names.len() && rows.count > 0 {
+            let (fields, names) = (record.fields.len(), layout.names.len());
+            let text = format!("its last row has {fields} of {names} fields and no end; it is cut off, and left out");
+            cut = Some(Warning::new(WarningKind::Repaired, text));
+            break;
+        }
         rows.add(&layout, place, &record);
     }
     if rows.found.features.is_empty() && rows.dropped > 0 {
@@ -49,6 +58,7 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
     let what =
         format!("of {} rows were dropped, for they have no coordinates in {}", rows.count, words(&layout, place));
     warn(Warning::counted(WarningKind::Ignored, rows.dropped, &what));
+    warn(cut);
     let open = "its last quote is not closed, so the last row may hold others; close it, or get the file again";
     warn(rows.is_open.then(|| Warning::new(WarningKind::Suspect, open)));
     let mut assumed = Vec::new();

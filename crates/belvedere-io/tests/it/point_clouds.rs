@@ -324,7 +324,10 @@ fn other_lines_are_told() {
         ("1 2 3\n1 2 3\n", "its 2 points do not lie on a grid"),
         ("1 2 3\n4 5 x\n7 8 9\n", "line 2 is \"4 5 x\", three numbers x y z are needed"),
         ("", "is empty"),
-        ("2\nwater\nO 0 0 0\nH 0 0 1\n", "is XYZ of atoms (atoms of a molecule), which this version does not read"),
+        (
+            "2\nwater\nO 0 0 0\nH 0 0 1\n",
+            "holds XYZ of atoms (atoms of a molecule); it is read by layers of kind molecule",
+        ),
         ("Lerc2 \0\0\0\0", "is LERC (a raster), which this version does not read"),
     ] {
         let error = load(&folder.file("a.xyz", content.as_bytes())).expect_err("it is refused");

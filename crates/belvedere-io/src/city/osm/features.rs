@@ -18,6 +18,9 @@ use std::path::Path;
 pub(crate) fn vectors(path: &Path, bytes: &[u8], format: &'static str) -> Result<Loaded<Vectors>, IoError> {
     let map = Map::of_file(path, bytes, format)?;
     let features = map.features();
+    if let Some(why) = map.cut.as_ref().filter(|_| features.is_empty()) {
+        return Err(super::read::damaged(path, format, why));
+    }
     if features.is_empty() {
         return Err(IoError::format(
             path,
@@ -26,7 +29,7 @@ pub(crate) fn vectors(path: &Path, bytes: &[u8], format: &'static str) -> Result
     }
     let crs = CoordinateSystem::wgs84().map_err(|e| IoError::format(path, e.to_string()))?;
     let value = Vectors { path: path.into(), format, layer: String::new(), crs, crs_stated: true, features };
-    Ok(Loaded::new(value, Vec::new()))
+    Ok(Loaded::new(value, map.said_of_cut(format).into_iter().map(|w| w.in_file(path)).collect()))
 }
 
 impl Map {

@@ -216,13 +216,20 @@ fn summed(differences: &[i64]) -> impl Iterator<Item = i64> + '_ {
 }
 
 /// The blobs of objects of a file, still packed.
-pub(super) struct Blobs<'f>(Vec<&'f [u8]>);
+pub(super) struct Blobs<'f> {
+    packed: Vec<&'f [u8]>,
+    /// Why the file ends within a blob.
+    pub(super) cut: Option<String>,
+}
 
 impl<'f> Blobs<'f> {
     /// Finds the blobs, and asks whether the file requires what is not understood.
     pub(super) fn of_file(file: &'f [u8]) -> Result<Self, Broken> {
         let (mut rest, mut blobs) = (file, Vec::new());
         while !rest.is_empty() {
+            if let Some(why) = cut(rest).filter(|_| !blobs.is_empty()) {
+                return Ok(Self { packed: blobs, cut: Some(why.into()) });
+            }
             let length = rest.split_first_chunk().map(|(length, _)| u32::from_be_bytes(*length) as usize);
             let Some(length) = length.filter(|length| *length <= MAX_HEADER) else {
                 return Err(format!("no blob at byte {}", file.len() - rest.len()).into());
@@ -244,7 +251,7 @@ impl<'f> Blobs<'f> {
             }
             rest = after;
         }
-        Ok(Self(blobs))
+        Ok(Self { packed: blobs, cut: None })
     }
 
     /// Calls `take` with what `find` finds in each block, in the order of the file.
@@ -253,7 +260,7 @@ impl<'f> Blobs<'f> {
         find: impl Fn(&Block) -> T + Sync,
         mut take: impl FnMut(T),
     ) -> Result<(), Broken> {
-        for some in self.0.chunks(AT_ONCE) {
+        for some in self.packed.chunks(AT_ONCE) {
             let found = some.par_iter().map(|blob| {
                 let block: Block = unpacked(blob)?;
                 if block.agrees() { Ok(find(&block)) } else { Err("its blocks contradict themselves".into()) }
@@ -262,6 +269,18 @@ impl<'f> Blobs<'f> {
         }
         Ok(())
     }
+}
+
+/// Why the first blob of these bytes is not whole, where they end within it.
+fn cut(bytes: &[u8]) -> Option<&'static str> {
+    let Some((length, rest)) = bytes.split_first_chunk() else { return Some("it ends within the length of a blob") };
+    let length = u32::from_be_bytes(*length) as usize;
+    if length > MAX_HEADER {
+        return None;
+    }
+    let Some((head, rest)) = rest.split_at_checked(length) else { return Some("it ends within the header of a blob") };
+    let size = usize::try_from(BlobHeader::decode(head).ok()?.size).ok().filter(|size| *size <= MAX_BLOB)?;
+    (size > rest.len()).then_some("it ends within a blob")
 }
 
 fn unpacked<M: Message + Default>(blob: &[u8]) -> Result<M, Broken> {

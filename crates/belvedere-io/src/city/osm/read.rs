@@ -4,6 +4,7 @@ use super::pbf::{Blobs, Broken};
 use super::{Line, Map, Relation, Tags, is_wanted};
 use crate::IoError;
 use crate::text::text_of;
+use belvedere_core::{Warning, WarningKind};
 use glam::DVec2;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -27,16 +28,24 @@ impl Map {
             Broken::Unknown(what) => {
                 IoError::format(path, format!("{format} cannot be read: {what}; write it anew (osmium cat, with zlib)"))
             }
-            Broken::Damaged(why) => {
-                IoError::format(path, format!("{format} is damaged or cut off ({why}); fetch it again"))
-            }
+            Broken::Damaged(why) => damaged(path, format, &why),
         })
+    }
+
+    /// What is said of a file that ends too early.
+    pub(super) fn said_of_cut(&self, format: &str) -> Option<Warning> {
+        let why = self.cut.as_ref()?;
+        let [nodes, ways, relations] = self.counts;
+        let text = format!(
+            "{format} is damaged or cut off ({why}); the {nodes} nodes, {ways} ways and {relations} relations before are read"
+        );
+        Some(Warning::new(WarningKind::Repaired, text).with("nodes", nodes as f64).with("ways", ways as f64))
     }
 
     /// Relations come after ways and ways after nodes, so the file is read three times and only what is used is kept.
     fn of_pbf(bytes: &[u8]) -> Result<Self, Broken> {
         let blobs = Blobs::of_file(bytes)?;
-        let mut map = Self::default();
+        let mut map = Self { cut: blobs.cut.clone(), ..Self::default() };
         let take = |found: Vec<Relation>| found.into_iter().for_each(|relation| map.relation(relation));
         blobs.each(|block| block.relations().map(|(id, tags, ways)| Relation { id, tags, ways }).collect(), take)?;
         let members = map.members();
@@ -78,9 +87,15 @@ impl Map {
     }
 }
 
+/// The error of a file that gives nothing.
+pub(super) fn damaged(path: &Path, format: &str, why: &str) -> IoError {
+    IoError::format(path, format!("{format} is damaged or cut off ({why}); fetch it again"))
+}
+
 /// Everything that a text holds.
 #[derive(Default)]
 struct Objects {
+    cut: Option<String>,
     nodes: Vec<(i64, DVec2)>,
     ways: Vec<(i64, Line)>,
     relations: Vec<Relation>,
@@ -95,7 +110,7 @@ enum Open {
 
 impl Objects {
     fn map(self) -> Map {
-        let mut map = Map::default();
+        let mut map = Map { cut: self.cut, ..Map::default() };
         self.relations.into_iter().for_each(|relation| map.relation(relation));
         let members = map.members();
         self.ways.into_iter().for_each(|(id, line)| map.way(id, line, &members));
@@ -109,7 +124,11 @@ impl Objects {
         let mut reader = Reader::from_str(text);
         let (mut objects, mut open, mut depth) = (Self::default(), Open::Other, 0usize);
         loop {
-            match reader.read_event().map_err(|e| e.to_string())? {
+            let event = match reader.read_event() {
+                Ok(event) => event,
+                Err(e) => return objects.cut_off(e.to_string()),
+            };
+            match event {
                 Event::Start(e) => {
                     objects.element(&e, &mut open);
                     depth += 1;
@@ -126,11 +145,20 @@ impl Objects {
                         objects.close(&mut open);
                     }
                 }
-                Event::Eof if depth > 0 => return Err("it ends within an element".into()),
+                Event::Eof if depth > 0 => return objects.cut_off("it ends within an element".into()),
                 Event::Eof => return Ok(objects),
                 _ => {}
             }
         }
+    }
+
+    /// What is whole, unless there is nothing.
+    fn cut_off(mut self, why: String) -> Result<Self, String> {
+        if self.nodes.is_empty() && self.ways.is_empty() {
+            return Err(why);
+        }
+        self.cut = Some(why);
+        Ok(self)
     }
 
     fn element(&mut self, e: &BytesStart<'_>, open: &mut Open) {
