@@ -12,6 +12,7 @@ pub mod crs;
 pub mod drape;
 mod error;
 pub mod esri_ascii;
+mod exchanged;
 mod features;
 mod fonts;
 pub mod formats;

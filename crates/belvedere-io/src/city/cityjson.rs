@@ -6,9 +6,9 @@ use super::pictures::{PictureList, wrap};
 use super::plan;
 use super::reference::Reference;
 use super::{CityFile, IoError, Loaded};
-use crate::Limits;
+use crate::{Limits, exchanged};
 use belvedere_scene::{CityFace, Surface};
-use glam::{DMat4, DVec3, Vec2};
+use glam::{DMat4, DVec2, DVec3, Vec2};
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -41,16 +41,17 @@ struct Vertices {
 type Fail = String;
 
 pub(super) fn load(path: &Path, text: &str, lod: Option<&str>, limits: &Limits) -> Result<Loaded<CityFile>, IoError> {
-    let mut reader = Reader { out: Collector::new(lod) };
+    let mut reader = Reader { out: Collector::new(lod), are_degrees: false };
     let (head, format) =
         reader.read(text.trim_start_matches('\u{feff}')).map_err(|reason| IoError::format(path, reason))?;
-    let said = head.pointer("/metadata/referenceSystem").and_then(Value::as_str).unwrap_or_default();
     // Coordinates of CityJSON are x, y, z for every system.
-    reader.out.finish(path, format, Reference::of(said), limits)
+    reader.out.finish(path, format, Reference::of(system(&head)), limits)
 }
 
 struct Reader<'l> {
     out: Collector<'l>,
+    /// Whether the system that the file names has longitude and latitude.
+    are_degrees: bool,
 }
 
 impl Reader<'_> {
@@ -86,9 +87,15 @@ impl Reader<'_> {
 
     /// * `head`: holds the transform of the vertices.
     fn document(&mut self, document: &Value, head: &Value) -> Result<(), Fail> {
+        self.are_degrees = Reference::of(system(head)).crs.is_some_and(|crs| crs.is_geographic());
         let objects = document.get("CityObjects").and_then(Value::as_object);
         let objects = objects.ok_or("has no CityObjects; it is no CityJSON, or damaged")?;
-        let vertices = Vertices::of(document, head)?;
+        let mut vertices = Vertices::of(document, head)?;
+        let positions = vertices.points.iter().map(|p| p.truncate());
+        if let Some(reason) = exchanged::reason(positions, extent(document).or(extent(head)), self.are_degrees) {
+            vertices.points.iter_mut().for_each(|p| *p = DVec3::new(p.y, p.x, p.z));
+            self.out.exchanged.get_or_insert(reason);
+        }
         let looks = Looks::of(document, head, &mut self.out.pictures);
         let mut shown: BTreeMap<&str, Shown> = BTreeMap::new();
         let fail = |id: &str, e: &str| format!("object \"{id}\": {e}; the file is damaged, export it again");
@@ -142,6 +149,19 @@ fn version(document: &Value) -> Result<String, Fail> {
         return Err(format!("is CityJSON {version}; versions 1.0, 1.1 and 2.0 are read"));
     }
     Ok(version)
+}
+
+/// The extent that a document states, in plan.
+fn extent(document: &Value) -> Option<[DVec2; 2]> {
+    let stated = document.pointer("/metadata/geographicalExtent")?.as_array()?;
+    let numbers = stated.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>()?;
+    let [west, south, _, east, north, _] = numbers[..] else { return None };
+    Some([DVec2::new(west, south), DVec2::new(east, north)])
+}
+
+/// The system that a document names.
+fn system(document: &Value) -> &str {
+    document.pointer("/metadata/referenceSystem").and_then(Value::as_str).unwrap_or_default()
 }
 
 /// The outermost object that an object is a part of.

@@ -44,6 +44,8 @@ pub(super) struct Collector<'l> {
     without_faces: usize,
     /// What the end of the file cuts off, in a sentence.
     pub(super) cut: Option<String>,
+    /// Why positions had latitude first and were exchanged.
+    pub(super) exchanged: Option<String>,
     /// Number of unreadable geometries of objects that have others.
     pub(super) unread: usize,
 }
@@ -93,7 +95,8 @@ impl<'l> Collector<'l> {
         limits: &Limits,
     ) -> Result<Loaded<CityFile>, IoError> {
         let fail = |reason: String| IoError::format(path, reason);
-        let Self { mut city, about, repairs, lods, wanted, left_out, pictures, without_faces, unread, cut } = self;
+        let Self { mut city, about, repairs, lods, wanted, left_out, pictures, without_faces, unread, cut, exchanged } =
+            self;
         let lods: Vec<String> = lods.into_iter().map(|lod| lod.1).collect();
         if let Some(wanted) = wanted.filter(|w| !lods.iter().any(|lod| lod == w)) {
             return Err(fail(format!("has no level of detail {wanted}; it has {}", lods.join(", "))));
@@ -104,6 +107,8 @@ impl<'l> Collector<'l> {
         city.buildings.sort_by(|a, b| a.id.cmp(&b.id));
         let mut warnings: Vec<Warning> = reference.warning.into_iter().chain(repairs.warnings()).collect();
         warnings.extend(cut.map(|text| Warning::new(WarningKind::Repaired, text)));
+        let exchanged = exchanged.map(|reason| Warning::new(WarningKind::Assumed, crate::exchanged::said(&reason)));
+        warnings.extend(exchanged);
         let unread_words = "geometries cannot be read; their objects are drawn at another level of detail";
         warnings.extend(Warning::counted(WarningKind::Fallback, unread, unread_words));
         let without_words = "objects have no geometry that is read and were left out";

@@ -2,7 +2,9 @@
 
 use super::{Geometry, VectorFeature, Vertex, certainly_not_degrees, name_of, not_degrees};
 use crate::crs::CoordinateSystem;
+use crate::exchanged;
 use belvedere_core::{Warning, WarningKind};
+use glam::DVec2;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -73,6 +75,21 @@ impl Collected {
             found.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
         let found = if found.is_empty() { "no feature at all".to_owned() } else { found.join(", ") };
         Err(format!("{what} no usable geometry ({found}); choose another file"))
+    }
+
+    /// Exchanges the two numbers of every position where only so they fit; see [`exchanged::reason`].
+    pub(super) fn exchange(&mut self, stated: Option<[DVec2; 2]>, are_degrees: bool) -> Option<Warning> {
+        let positions = self.features.iter().flat_map(|f| f.geometry.vertices()).map(|v| v.xy);
+        let reason = exchanged::reason(positions, stated, are_degrees)?;
+        let turn = |v: &mut Vertex| v.xy = DVec2::new(v.xy.y, v.xy.x);
+        for feature in &mut self.features {
+            match &mut feature.geometry {
+                Geometry::Points(points) => points.iter_mut().for_each(turn),
+                Geometry::Lines(lines) => lines.iter_mut().flatten().for_each(turn),
+                Geometry::Polygons(polygons) => polygons.iter_mut().flatten().flatten().for_each(turn),
+            }
+        }
+        Some(Warning::new(WarningKind::Assumed, exchanged::said(&reason)))
     }
 
     /// The system of the positions, and whether it is stated: local where it is degrees by default alone and they cannot be degrees.

@@ -4,6 +4,7 @@ use super::collected::Collected;
 use super::{Geometry, Vectors, Vertex, shorten, vertex};
 use crate::crs::{CoordinateSystem, CrsError};
 use crate::{IoError, Loaded};
+use glam::DVec2;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -26,7 +27,9 @@ pub(super) fn load(path: &Path, text: &str) -> Result<Loaded<Vectors>, IoError> 
         let place = |e: String| if records.len() > 1 { format!("record {k}: {e}") } else { e };
         reader.read_root(record).map_err(|e| fail(place(e)))?;
     }
-    let warnings = reader.found.told(path, "GeoJSON holds").map_err(fail)?;
+    let mut warnings = reader.found.told(path, "GeoJSON holds").map_err(fail)?;
+    let exchanged = reader.found.exchange(records.first().and_then(extent), crs.is_geographic());
+    warnings.extend(exchanged.map(|w| w.in_file(path)));
     let (crs, stated) = reader.found.system(crs, stated).map_err(fail)?;
     let layer = records.first().and_then(|r| r.get("name")).and_then(Value::as_str).map(shorten).unwrap_or_default();
     let format = if records.len() > 1 { "GeoJSONSeq" } else { "GeoJSON" };
@@ -49,6 +52,17 @@ fn records(text: &str) -> Result<Vec<Value>, String> {
         records = std::mem::take(list);
     }
     if records.is_empty() { Err("holds no JSON value; it is empty or cut off".into()) } else { Ok(records) }
+}
+
+/// The extent that a document states: its member `bbox`, of two or three axes.
+fn extent(document: &Value) -> Option<[DVec2; 2]> {
+    let numbers = document.get("bbox")?.as_array()?.iter().map(Value::as_f64).collect::<Option<Vec<f64>>>()?;
+    match numbers[..] {
+        [west, south, east, north] | [west, south, _, east, north, _] => {
+            Some([DVec2::new(west, south), DVec2::new(east, north)])
+        }
+        _ => None,
+    }
 }
 
 /// The text with `NaN` and `Infinity` outside of strings as null.

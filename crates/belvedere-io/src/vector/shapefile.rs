@@ -5,6 +5,7 @@ use super::{Geometry, MAX_BYTES, VectorFeature, Vectors, Vertex, name_of, rings,
 use crate::text::table_encoding;
 use crate::{IoError, Loaded};
 use belvedere_core::{Warning, WarningKind};
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -19,7 +20,7 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Loaded<Vectors>, IoError
     let count = shapes.len();
     let code_page = beside(path, "cpg", SMALL)?.map(|(_, bytes)| String::from_utf8_lossy(&bytes).into_owned());
     let table = match beside(path, "dbf", MAX_BYTES)? {
-        Some((p, bytes)) => read_dbf(&bytes, code_page.as_deref()).unwrap_or_else(|reason| {
+        Some((p, bytes)) => read_dbf(&bytes, code_page.as_deref(), &mut warnings).unwrap_or_else(|reason| {
             let text = format!("{}: {reason}; features stay without names", p.display());
             warnings.push(Warning::new(WarningKind::Ignored, text));
             Vec::new()
@@ -243,16 +244,26 @@ fn shape_of_parts(parts: Vec<Vec<Option<Vertex>>>, area: bool, odd: &mut usize) 
 }
 
 /// Rows of a dBASE table as text, deleted ones included (shapes count them too).
-fn read_dbf(bytes: &[u8], code_page: Option<&str>) -> Result<Vec<BTreeMap<String, String>>, String> {
+fn read_dbf(
+    bytes: &[u8],
+    code_page: Option<&str>,
+    warnings: &mut Vec<Warning>,
+) -> Result<Vec<BTreeMap<String, String>>, String> {
     let file = Bytes(bytes);
     let short = || format!("table of {} bytes is cut off", bytes.len());
     let rows = file.count(4).ok_or_else(short)?;
     let word = |at: usize| file.array(at).map(u16::from_le_bytes).map(usize::from);
     let (header, width) = (word(8).ok_or_else(short)?, word(10).ok_or_else(short)?);
     let encoding = table_encoding(code_page, bytes.get(29).copied().unwrap_or(0));
-    let text = |bytes: &[u8]| match encoding {
-        Some(encoding) => encoding.decode_without_bom_handling(bytes).0.into_owned(),
-        None => latin1_or_utf8(bytes),
+    let misread = Cell::new(0usize);
+    let text = |bytes: &[u8]| match encoding.map(|encoding| encoding.decode_without_bom_handling(bytes)) {
+        Some((text, false)) => text.into_owned(),
+        _ => {
+            // Another encoding than the stated one, or one that is not known.
+            let is_known = encoding.is_none() && code_page.is_none();
+            misread.set(misread.get() + usize::from(!bytes.is_ascii() && !is_known));
+            latin1_or_utf8(bytes)
+        }
     };
     let mut fields: Vec<(String, usize, usize)> = Vec::new();
     let (mut at, mut column) = (32, 1);
@@ -275,7 +286,14 @@ fn read_dbf(bytes: &[u8], code_page: Option<&str>) -> Result<Vec<BTreeMap<String
             .filter(|(_, v)| !v.is_empty())
             .collect()
     };
-    Ok((0..rows).map(row).collect())
+    let table = (0..rows).map(row).collect();
+    let stated = encoding.map(|encoding| encoding.name()).or(code_page.map(str::trim)).unwrap_or_default();
+    let text = format!(
+        "texts of the table (.dbf) are not in the encoding {:?} that is stated, or it is not known; they are read as UTF-8 or Latin-1",
+        shorten(stated)
+    );
+    warnings.extend(Warning::counted(WarningKind::Suspect, misread.get(), &text));
+    Ok(table)
 }
 
 fn latin1_or_utf8(bytes: &[u8]) -> String {

@@ -123,7 +123,14 @@ impl<'b> Header<'b> {
         let shape = after("shape").and_then(|s| s.strip_prefix('(')).and_then(|s| s.split_once(')'));
         let sizes = shape.ok_or_else(|| bad("shape"))?.0.split(',').map(str::trim).filter(|s| !s.is_empty());
         let sizes: Result<Vec<u64>, _> = sizes.map(|s| s.trim_end_matches('L').parse()).collect();
-        Ok(Self { descr, fortran, shape: sizes.map_err(|_| bad("shape"))?, end })
+        let mut shape = sizes.map_err(|_| bad("shape"))?;
+        // Axes of one value alone say nothing.
+        while shape.len() > 3
+            && let Some(at) = shape.iter().position(|n| *n == 1)
+        {
+            shape.remove(at);
+        }
+        Ok(Self { descr, fortran, shape, end })
     }
 
     /// Voxels along x, y, z of a shape (z, y, x).

@@ -144,7 +144,34 @@ impl Header {
         Ok(Loaded::new(file, said.chain(odd_values(source.path, &changed)).collect()))
     }
 
+    /// Indices of the axes of the volume: all but those of one value where there are more than three, first those without a direction, then
+    /// the last.
+    fn axes(&self, sizes: &[usize]) -> Vec<usize> {
+        let directions = self.get("spacedirections").map(directions).unwrap_or_default();
+        let mut kept: Vec<usize> = (0..sizes.len()).collect();
+        while kept.len() > 3 {
+            let alone = |k: &&usize| sizes[**k] == 1;
+            let without = kept.iter().filter(alone).find(|k| matches!(directions.get(**k), Some(None)));
+            let Some(gone) = without.or_else(|| kept.iter().rfind(alone)).copied() else { break };
+            kept.retain(|k| *k != gone);
+        }
+        kept
+    }
+
     fn dims(&self) -> Result<[usize; 3], String> {
+        self.sizes().and_then(|sizes| {
+            let list: Vec<usize> = self.axes(&sizes).into_iter().map(|k| sizes[k]).collect();
+            <[usize; 3]>::try_from(list).map_err(|list| {
+                format!(
+                    "it has {} dimensions, a volume of single values has 3; take one with unu slice or unu crop",
+                    list.len()
+                )
+            })
+        })
+    }
+
+    /// Values along all axes.
+    fn sizes(&self) -> Result<Vec<usize>, String> {
         let dimension = self.need("dimension")?;
         let sizes = self.need("sizes")?;
         let list: Result<Vec<usize>, _> = sizes.split_whitespace().map(str::parse).collect();
@@ -152,12 +179,7 @@ impl Header {
         if dimension.parse() != Ok(list.len()) {
             return Err(format!("its dimension is {dimension} and it has {} sizes; it is damaged", list.len()));
         }
-        <[usize; 3]>::try_from(list).map_err(|list| {
-            format!(
-                "it has {} dimensions, a volume of single values has 3; take one with unu slice or unu crop",
-                list.len()
-            )
-        })
+        Ok(list)
     }
 
     /// The samples after skipped lines and bytes.
@@ -199,8 +221,10 @@ impl Header {
             let shown: String = text.chars().take(60).collect();
             format!("its {key} {shown:?} cannot be read; it is damaged")
         };
+        let kept = self.axes(&self.sizes()?);
         if let Some(text) = self.get("spacedirections") {
-            let vectors: Vec<DVec3> = text.split_inclusive(')').filter_map(vector).collect();
+            let all = directions(text);
+            let vectors: Vec<DVec3> = kept.iter().filter_map(|k| all.get(*k).copied().flatten()).collect();
             let [x, y, z] = <[DVec3; 3]>::try_from(vectors).map_err(|_| bad("space directions", text))?;
             let origin = match self.get("spaceorigin") {
                 Some(text) => vector(text).ok_or_else(|| bad("space origin", text))?,
@@ -210,7 +234,8 @@ impl Header {
         }
         let Some(text) = self.get("spacings") else { return Ok((DMat3::IDENTITY, DVec3::ZERO)) };
         let list: Result<Vec<f64>, _> = text.split_whitespace().map(str::parse).collect();
-        let list = list.ok().and_then(|l| <[f64; 3]>::try_from(l).ok()).ok_or_else(|| bad("spacings", text))?;
+        let list = list.ok().and_then(|l| kept.iter().map(|k| l.get(*k).copied()).collect::<Option<Vec<f64>>>());
+        let list = list.and_then(|l| <[f64; 3]>::try_from(l).ok()).ok_or_else(|| bad("spacings", text))?;
         // Unknown spacings are written as nan.
         let list = list.map(|s| if s.is_nan() { 1.0 } else { s });
         Ok((DMat3::from_diagonal(DVec3::from_array(list)), DVec3::ZERO))
@@ -242,6 +267,20 @@ fn to_lps(space: &str, warnings: &mut Vec<Warning>) -> DVec3 {
             DVec3::ONE
         }
     }
+}
+
+/// The direction of each axis, `(x,y,z)`, or none.
+fn directions(text: &str) -> Vec<Option<DVec3>> {
+    let (mut out, mut rest) = (Vec::new(), text.trim_start());
+    while !rest.is_empty() {
+        let end = match rest.starts_with('(') {
+            true => rest.find(')').map_or(rest.len(), |at| at + 1),
+            false => rest.find([' ', '\t', '(']).unwrap_or(rest.len()),
+        };
+        out.push(vector(&rest[..end]));
+        rest = rest[end..].trim_start();
+    }
+    out
 }
 
 /// `(x,y,z)`.

@@ -33,6 +33,7 @@ mod point_clouds;
 mod pyramid_writer;
 mod pyramids;
 mod rasters;
+mod said;
 mod support_files;
 mod terrain;
 mod textures;
