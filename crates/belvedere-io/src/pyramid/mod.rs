@@ -201,12 +201,14 @@ fn has_below(tiles: &[Tile], key: Key, deepest: u8) -> bool {
 
 /// Columns and rows of the deepest zoom around the tiles below which there is none.
 fn area(tiles: &[Tile], deepest: u8) -> [Range<u64>; 2] {
-    let mut area = [u64::MAX..0, u64::MAX..0];
-    for tile in tiles.iter().filter(|tile| !has_below(tiles, tile.key, deepest)) {
+    let leaves = tiles.iter().filter(|tile| !has_below(tiles, tile.key, deepest));
+    let (mut first, mut end) = ([u64::MAX; 2], [0; 2]);
+    for tile in leaves {
         let steps = deepest - tile.key.zoom();
-        for (range, n) in area.iter_mut().zip(tile.key.place()) {
-            *range = range.start.min(n << steps)..range.end.max((n + 1) << steps);
+        for (axis, n) in tile.key.place().into_iter().enumerate() {
+            first[axis] = first[axis].min(n << steps);
+            end[axis] = end[axis].max((n + 1) << steps);
         }
     }
-    area
+    [first[0]..end[0], first[1]..end[1]]
 }

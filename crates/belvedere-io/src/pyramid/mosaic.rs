@@ -64,7 +64,7 @@ impl Pyramid {
         if let Some(heights) = self.find(key).map(|tile| self.stored(tile)).transpose()?.flatten() {
             return Ok(Some(heights));
         }
-        if self.is_refined(key) { self.halved(key, progress) } else { self.from_above(key) }
+        if self.is_refined(key) { self.halved(key, progress) } else { self.cut_of_above(key) }
     }
 
     /// The heights of a tile that is stored; `None` if it cannot be read, which is kept.
@@ -112,7 +112,7 @@ impl Pyramid {
     }
 
     /// The part of the nearest tile above, between whose samples heights are bilinear.
-    fn from_above(&self, key: Key) -> Result<Heights, Fault> {
+    fn cut_of_above(&self, key: Key) -> Result<Heights, Fault> {
         for steps in 1..=key.zoom() {
             let Some(above) = key.above(steps) else { return Ok(None) };
             let Some(heights) = self.kept_above(above)? else { continue };
