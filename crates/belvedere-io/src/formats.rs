@@ -278,7 +278,7 @@ pub const FORMATS: &[Format] = &[
     unread("ESRI float grid", RASTER, &[".flt"], &[], AS_GEOTIFF),
     unread("ArcInfo grid", RASTER, &[".adf"], &[], AS_GEOTIFF),
     unread("Erdas Imagine", RASTER, &[".img"], &[At(0, b"EHFA_HEADER_TAG")], AS_GEOTIFF),
-    unread("GDAL virtual raster", RASTER, &[".vrt"], &[Root("VRTDataset")], AS_GEOTIFF),
+    read(Terrain, "GDAL virtual raster", "elevation models side by side", &[".vrt"], &[Root("VRTDataset")]),
     unread("PCD", CLOUD, &[".pcd"], &[First("# .PCD")], AS_DEM),
     unread(
         "o5m",

@@ -42,6 +42,7 @@ pub mod terrain;
 mod text;
 pub mod vector;
 pub mod volume;
+mod vrt;
 mod xyz;
 
 pub use arrays::Arrays;

@@ -2,7 +2,7 @@
 
 use crate::formats::{self, Reader, ends};
 use crate::fs::{names_in, unpacked_size};
-use crate::{IoError, budget};
+use crate::{IoError, budget, vrt};
 use std::path::{Path, PathBuf};
 
 /// Names that an error lists.
@@ -78,11 +78,14 @@ pub(crate) fn content_for(path: &Path, most: u64, reader: Reader) -> Result<Path
     content(path, most, &|p| reader.reads(p)).or_else(|_| content(path, most, &|p| reader.may_read(p)))
 }
 
-/// The elevation models of an archive that holds several and nothing else that is read, by name; else none.
+/// The elevation models of an archive that holds several and nothing else that is read, by name, or of a virtual raster; else none.
 ///
 /// # Errors
-/// [`IoError::Os`].
+/// [`IoError::Os`]; [`IoError::Format`] for a virtual raster that shows anything else than whole files.
 pub fn tiles(path: &Path) -> Result<Vec<PathBuf>, IoError> {
+    if let Some(files) = vrt::sources(path)? {
+        return Ok(files);
+    }
     let mut names = names_in(path).map_err(|e| IoError::os(path, e))?.unwrap_or_default();
     let is_read = |name: &String| {
         let name = Path::new(name);

@@ -11,7 +11,7 @@ use crate::fs::File;
 use crate::geotiff::is_tiff;
 use crate::packed::content;
 use crate::pyramid::{self, Pyramid};
-use crate::{Affine, GeoTiff, IoError, Limits, Loaded, Raster, RasterInfo, budget, esri_ascii, hgt, las, xyz};
+use crate::{Affine, GeoTiff, IoError, Limits, Loaded, Raster, RasterInfo, budget, esri_ascii, hgt, las, vrt, xyz};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Progress;
 use glam::DVec2;
@@ -93,6 +93,11 @@ fn read_one(
 ) -> Result<Loaded<SourceGrid>, IoError> {
     let array = request.arrays.find(path)?;
     let path = &array.map_or_else(|| meant(path, &request.limits), |_| Ok(path.to_owned()))?;
+    if let Some(files) = vrt::sources(path)? {
+        let names: Vec<String> = files.iter().map(|file| format!("\"{}\"", file.display())).collect();
+        let reason = format!("is a virtual raster; name its files in its place: [{}]", names.join(", "));
+        return Err(IoError::format(path, reason));
+    }
     let _work = budget::work_on(path);
     let Loaded { value: read, mut warnings, files } = match array {
         Some(array) => array::read(array, request, most_nodes, progress)?,

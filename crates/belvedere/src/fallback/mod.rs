@@ -99,7 +99,12 @@ impl fmt::Display for FallbackRecord {
         // Less than everything is not 100 %.
         let percent = |share: f64| (100.0 * share).round().min(if share < 1.0 { 99.0 } else { 100.0 });
         write!(f, "fallback for {}: {what}; ", self.target)?;
-        write!(f, "visible before {} %, now {} %", percent(self.visible_before), percent(self.visible))?;
+        write!(f, "visible before {} %, ", percent(self.visible_before))?;
+        // A share of 100 % is no help through an opening that nobody notices.
+        if let (None, Some(pixels @ ..LEAST_PX)) = (self.pixels_alone, self.pixels_opened) {
+            return write!(f, "now through an opening of {pixels} pixels, which is easily missed");
+        }
+        write!(f, "now {} %", percent(self.visible))?;
         match (self.pixels_alone, self.pixels_opened) {
             (Some(pixels), _) => write!(f, " of the {pixels} pixels that it fills"),
             (None, Some(pixels)) => write!(f, ", through an opening of {pixels} pixels"),
