@@ -8,7 +8,7 @@ use crate::BelvedereError;
 use belvedere_core::DVec3;
 use belvedere_core::{Warning, WarningKind};
 use belvedere_document::{ModelsDoc, MoleculeDoc, TransformDoc};
-use belvedere_io::{Models, load_frames, load_model};
+use belvedere_io::{Models, MoleculeFile, load_frames, load_model};
 use belvedere_scene::molecule::{ModelTransform, MoleculeColor, MoleculeFilm, Paint, Representation, Selection};
 use belvedere_scene::{LayerKind, Molecule, MoleculeLayer, MoleculeStyle};
 
@@ -68,28 +68,8 @@ fn per_atom(doc: &MoleculeDoc, molecule: &Molecule) -> u64 {
     }
 }
 
-/// The molecule, and the places of its atoms in the models of a film.
-fn source(
-    loader: &mut Loader<'_>,
-    index: usize,
-    doc: &MoleculeDoc,
-) -> Result<(Molecule, Vec<Vec<DVec3>>), BelvedereError> {
-    if builtin::is_name(&doc.source) {
-        let asked = [
-            ("assembly", doc.assembly.is_some()),
-            ("model", doc.model.is_some()),
-            ("models_per_s", doc.models_per_s.is_some()),
-        ];
-        if let Some((key, _)) = asked.into_iter().find(|(_, asked)| *asked) {
-            let reason = format!("{key} is for files, built-in molecules have none; leave it out");
-            return Err(loader.fail(index, key, reason));
-        }
-        let molecule =
-            loader.builtin(index, &doc.source, |kind| kind.molecule().map(|layer| Molecule::clone(&layer.molecule)))?;
-        return Ok((molecule, Vec::new()));
-    }
-    let path = loader.source(index, &doc.source)?;
-    loader.options.progress.tick("reading molecules", 0.0)?;
+/// An error where keys about models contradict one another.
+fn check_models(loader: &Loader<'_>, index: usize, doc: &MoleculeDoc) -> Result<(), BelvedereError> {
     if doc.model == Some(ModelsDoc::Number(0)) {
         return Err(loader.fail(index, "model", "model is 0, models are counted from 1"));
     }
@@ -113,6 +93,32 @@ fn source(
             return Err(loader.fail(index, "models_per_s", reason));
         }
     }
+    Ok(())
+}
+
+/// The molecule, and the places of its atoms in the models of a film.
+fn source(
+    loader: &mut Loader<'_>,
+    index: usize,
+    doc: &MoleculeDoc,
+) -> Result<(Molecule, Vec<Vec<DVec3>>), BelvedereError> {
+    if builtin::is_name(&doc.source) {
+        let asked = [
+            ("assembly", doc.assembly.is_some()),
+            ("model", doc.model.is_some()),
+            ("models_per_s", doc.models_per_s.is_some()),
+        ];
+        if let Some((key, _)) = asked.into_iter().find(|(_, asked)| *asked) {
+            let reason = format!("{key} is for files, built-in molecules have none; leave it out");
+            return Err(loader.fail(index, key, reason));
+        }
+        let molecule =
+            loader.builtin(index, &doc.source, |kind| kind.molecule().map(|layer| Molecule::clone(&layer.molecule)))?;
+        return Ok((molecule, Vec::new()));
+    }
+    let path = loader.source(index, &doc.source)?;
+    loader.options.progress.tick("reading molecules", 0.0)?;
+    check_models(loader, index, doc)?;
     let models = match doc.model {
         None => Models::First,
         Some(ModelsDoc::Number(number)) => Models::Number(number),
@@ -137,22 +143,27 @@ fn source(
             made.map_err(|e| loader.fail(index, "assembly", e))
         }
         None => {
-            if let Some(other) = file.assemblies.list().iter().find(|a| a.copies > 1) {
-                let note = format!(
-                    "the file describes assembly {} of {} copies ({} atoms), and the {} atoms of the file are drawn; assembly = \"{}\" draws the copies, \"{ASYMMETRIC}\" says that this is meant",
-                    other.id,
-                    other.copies,
-                    other.atoms,
-                    file.molecule.atoms().len(),
-                    other.id
-                );
-                let note = Warning::new(WarningKind::Ignored, note).with("copies", other.copies as f64);
-                loader.note(index, [note.settled_by("assembly")]);
-            }
+            note_assembly(loader, index, &file);
             Ok(file.molecule)
         }
     };
     Ok((molecule?, Vec::new()))
+}
+
+/// Says that the file describes copies that are not drawn.
+fn note_assembly(loader: &mut Loader<'_>, index: usize, file: &MoleculeFile) {
+    if let Some(other) = file.assemblies.list().iter().find(|a| a.copies > 1) {
+        let note = format!(
+            "the file describes assembly {} of {} copies ({} atoms), and the {} atoms of the file are drawn; assembly = \"{}\" draws the copies, \"{ASYMMETRIC}\" says that this is meant",
+            other.id,
+            other.copies,
+            other.atoms,
+            file.molecule.atoms().len(),
+            other.id
+        );
+        let note = Warning::new(WarningKind::Ignored, note).with("copies", other.copies as f64);
+        loader.note(index, [note.settled_by("assembly")]);
+    }
 }
 
 /// The assembly that is the atoms of the file alone.

@@ -106,7 +106,9 @@ fn names_tell_formats_by_their_longest_ending() {
 
 #[test]
 fn no_ending_belongs_to_two_formats() {
-    let mut endings: Vec<_> = FORMATS.iter().flat_map(|format| format.endings).collect();
+    // But for that of grids and of atoms, which their contents tell apart.
+    let others = FORMATS.iter().filter(|format| format.name != "XYZ of atoms");
+    let mut endings: Vec<_> = others.flat_map(|format| format.endings).collect();
     endings.sort();
     let all = endings.len();
     endings.dedup();

@@ -34,7 +34,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
         }
         tobj::load_mtl_buf(&mut text.as_bytes())
     };
-    let mut text = obj_text::statements(bytes);
+    let text = obj_text::statements(bytes);
     let read = |text: &str| tobj::load_obj_buf(&mut text.as_bytes(), &options, materials);
     let mut cut = None;
     let (models, materials) = match read(&text) {
@@ -49,31 +49,17 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
             files.borrow_mut().clear();
             odd.borrow_mut().clear();
             let before = text.trim_end().rfind('\n').map_or(0, |at| at + 1);
-            let found = read(&text[..before]);
-            if found.is_ok() {
-                let last: String = text[before..].trim().chars().take(40).collect();
-                let said = format!("its last line ({last}) is not whole; what stands before is read");
-                cut = Some(Warning::new(WarningKind::Repaired, said).in_file(path));
-                text.truncate(before);
-            }
-            found.map_err(|_| e)
+            let last: String = text[before..].trim().chars().take(40).collect();
+            let said = format!("its last line ({last}) is not whole; what stands before is read");
+            cut = Some(Warning::new(WarningKind::Repaired, said).in_file(path));
+            read(&text[..before]).map_err(|_| e)
         }
         found => found,
     }
     .map_err(|e| IoError::format(path, format!("{}; it is damaged or no OBJ file", obj_text::fault(&e, &text))))?;
-    let mut warnings: Vec<Warning> = cut.into_iter().collect();
-    if materials.is_err() {
-        let names = obj_text::material_files(&text);
-        let text = format!(
-            "its file of materials {names} cannot be read, so the colour of the layer is used; put it beside the OBJ file"
-        );
-        warnings.push(Warning::new(WarningKind::Fallback, text).in_file(path));
-    }
-    let odd = odd.into_inner();
-    if let Some(first) = odd.first() {
-        let text = format!("{} lines of its materials are not read, the first is {first:?}", odd.len());
-        warnings.push(Warning::new(WarningKind::Ignored, text).with("count", odd.len() as f64).in_file(path));
-    }
+    let missing = materials.is_err().then(|| obj_text::material_files(&text));
+    let mut warnings: Vec<Warning> =
+        cut.into_iter().chain(said_of_materials(path, missing, &odd.into_inner())).collect();
     let mut materials = Materials::new(path, materials.unwrap_or_default(), limits);
     let mut builder = Builder::default();
     for model in models {
@@ -86,6 +72,23 @@ pub(super) fn read(path: &Path, bytes: &[u8], limits: &Limits) -> Result<Loaded<
     let mut files = files.into_inner();
     files.append(&mut materials.files);
     Ok(Loaded { value: builder.finish(materials.textures), warnings, files })
+}
+
+/// What is said of the files of materials.
+///
+/// * `missing`: their names, if none can be read. `odd`: lines that are not read.
+fn said_of_materials(path: &Path, missing: Option<String>, odd: &[String]) -> Vec<Warning> {
+    let missing = missing.map(|names| {
+        let text = format!(
+            "its file of materials {names} cannot be read, so the colour of the layer is used; put it beside the OBJ file"
+        );
+        Warning::new(WarningKind::Fallback, text)
+    });
+    let odd = odd.first().map(|first| {
+        let text = format!("{} lines of its materials are not read, the first is {first:?}", odd.len());
+        Warning::new(WarningKind::Ignored, text).with("count", odd.len() as f64)
+    });
+    missing.into_iter().chain(odd).map(|w| w.in_file(path)).collect()
 }
 
 /// Materials, and the pictures of those that are used.

@@ -163,17 +163,7 @@ pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshF
                     }
                 }
             }
-            // Scanners write strips of triangles, parted by -1.
-            "tristrips" => {
-                for strip in items.iter().flat_map(|item| item.corners.split(|v| *v == -1)) {
-                    for (k, t) in strip.windows(3).enumerate() {
-                        let corners = if k % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
-                        if t[0] != t[1] && t[1] != t[2] && t[0] != t[2] {
-                            out.triangles.push(triangle(corners).map_err(bad)?);
-                        }
-                    }
-                }
-            }
+            "tristrips" => out.triangles.extend(of_strips(&items).map_err(bad)?),
             _ => {}
         }
     }
@@ -189,6 +179,20 @@ pub(super) fn read(path: &Path, bytes: &[u8], _: &Limits) -> Result<Loaded<MeshF
         _ => MeshColors::Layer,
     };
     Ok(Loaded::new(out, cut.into_iter().map(|w| w.in_file(path)).collect()))
+}
+
+/// Triangles of strips as scanners write them, parted by -1.
+fn of_strips(items: &[Item]) -> Result<Vec<[u32; 3]>, String> {
+    let mut out = Vec::new();
+    for strip in items.iter().flat_map(|item| item.corners.split(|v| *v == -1)) {
+        for (k, t) in strip.windows(3).enumerate() {
+            let corners = if k % 2 == 0 { [t[0], t[1], t[2]] } else { [t[1], t[0], t[2]] };
+            if t[0] != t[1] && t[1] != t[2] && t[0] != t[2] {
+                out.push(triangle(corners)?);
+            }
+        }
+    }
+    Ok(out)
 }
 
 /// Whether a line is a list of fewer numbers than it says.
