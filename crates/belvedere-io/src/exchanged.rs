@@ -5,7 +5,7 @@ use glam::DVec2;
 /// Share of the size of a stated extent by which positions may lie outside.
 const OUTSIDE: f64 = 1e-3;
 
-/// Why positions have latitude first, if only so they fit: where the second of their numbers are no latitudes and the first may be, or
+/// Why positions have latitude first, if only so they fit: where none of the second of their numbers is a latitude and the first may be, or
 /// where the extent that the file states holds them only the other way round.
 ///
 /// * `stated`: least and greatest x and y of the file, which may have the other order.
@@ -18,10 +18,11 @@ pub(crate) fn reason(
     let ends = positions
         .fold(None, |ends: Option<[DVec2; 2]>, p| Some(ends.map_or([p; 2], |[low, high]| [low.min(p), high.max(p)])));
     let [low, high] = ends?;
-    let beyond = if high.y > 90.0 { high.y } else { low.y };
+    // A single position beyond the pole is a fault of its own.
+    let beyond = if low.y > 0.0 { low.y } else { high.y };
     let is_swapped = |p: DVec2| p.x.abs() <= 90.0 && p.y.abs() <= 180.0;
     if are_degrees && beyond.abs() > 90.0 && is_swapped(low) && is_swapped(high) {
-        return Some(format!("its second numbers reach {beyond}, and no latitude is beyond 90 degrees"));
+        return Some(format!("its second numbers are {beyond} and beyond, and no latitude is beyond 90 degrees"));
     }
     let [from, to] = stated.filter(|[from, to]| from.is_finite() && to.is_finite() && from.cmple(*to).all())?;
     let margin = OUTSIDE * (to - from);
@@ -48,6 +49,7 @@ mod tests {
         };
         let japan = [[36.1, 138.2], [36.2, 138.3]];
         assert!(of(&japan, None, true) && !of(&japan, None, false));
+        assert!(!of(&[[14.4, 50.1], [14.0, 95.0]], None, true));
         assert!(
             !of(&[[138.2, 36.1]], None, true) && !of(&[[136.0, 138.0]], None, true) && !of(&[[1.0, 300.0]], None, true)
         );
