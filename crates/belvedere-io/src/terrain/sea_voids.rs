@@ -79,7 +79,7 @@ mod tests {
         assert_eq!(sea(20, 6.0, same), 0, "a shore over 5 m");
         assert_eq!(sea(20, -4.0, same), 20 * SIDE, "low land");
         assert_eq!(sea(20, -9.0, same), 0, "land below sea level");
-        let cliffs = |c: usize, r: usize, h: f32| if c == 20 && r % 8 == 0 { h + 30.0 } else { h };
+        let cliffs = |c: usize, r: usize, h: f32| if c == 20 && r.is_multiple_of(8) { h + 30.0 } else { h };
         assert_eq!(sea(20, 2.0, cliffs), 0, "an eighth of the shore is cliffs");
         assert_eq!(sea(2, 2.0, same), 0, "small");
         let dike = |c: usize, r: usize, h: f32| if c == 0 || r == 0 || r == SIDE - 1 { 2.0 } else { h };
