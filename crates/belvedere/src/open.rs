@@ -8,7 +8,7 @@ use crate::scene_file::{
 };
 use crate::session::Loaded;
 use crate::{BelvedereError, Needs, OpenOptions, Session};
-use belvedere_construct::views::outline;
+use belvedere_construct::views::{core_of_town, outline};
 use belvedere_core::{Aabb, DVec3, Navigation, Pinhole, Projection, Warning, WarningKind};
 use belvedere_io::crs::utm_epsg;
 use belvedere_resolve::constructor;
@@ -71,8 +71,8 @@ impl Session {
         let mut scene = Scene { title, crs, unit, layers, representations, fonts, drawings };
         hidden::apply(&mut scene, document);
         if source.of_files.is_some() {
-            show_all(&mut source.document, &scene)?;
-            loaded.warnings.push(Warning::new(WarningKind::Assumed, NO_VIEW));
+            let apart = show_all(&mut source.document, &scene)?;
+            loaded.warnings.push(no_view(apart));
         }
         belvedere_resolve::fill_surfaces(&mut source.document.layer, &scene);
         let (mut scene, mut inputs) = (Arc::new(scene), loaded.inputs);
@@ -132,8 +132,19 @@ fn change(document: &mut Document, options: &OpenOptions, allowed: &mut Vec<Path
     Ok(())
 }
 
-/// Said of a document whose camera was found.
-const NO_VIEW: &str = "no scene says how to look at this: all of it is shown, from the south; `belvedere show` with -o writes a scene to change";
+/// Said of a document whose camera was found. `apart`: buildings that stand far apart from their town.
+fn no_view(apart: usize) -> Warning {
+    let shown = match apart {
+        0 => "all of it is shown".to_owned(),
+        1 => "it is shown as far as its town reaches, without a building far apart".to_owned(),
+        _ => format!("it is shown as far as its town reaches, without {apart} buildings far apart"),
+    };
+    let text = format!(
+        "no scene says how to look at this: {shown}, from the south; `belvedere show` with -o writes a scene to change"
+    );
+    Warning::new(WarningKind::Assumed, text)
+}
+
 /// Heading and fall of the camera that shows everything, degrees.
 const ALL_SEEN_FROM: [f64; 2] = [20.0, 30.0];
 /// Share of the width or height of the picture that it fills.
@@ -141,11 +152,14 @@ const FILLED: f64 = 0.92;
 /// Triangles of a layer by which it is framed, at most about.
 const OUTLINE: usize = 50_000;
 
-/// Sets the camera of a document so that the whole scene is in its picture.
-fn show_all(document: &mut Document, scene: &Scene) -> Result<(), BelvedereError> {
+/// Sets the camera of a document so that the whole scene is in its picture, but for buildings far apart from their town, whose number it
+/// returns.
+fn show_all(document: &mut Document, scene: &Scene) -> Result<usize, BelvedereError> {
     let [heading, fall] = ALL_SEEN_FROM;
     let is_city = |layer: &&LayerDoc| matches!(layer, LayerDoc::City(_));
     let cities: Vec<&str> = document.layer.iter().filter(is_city).map(LayerDoc::id).collect();
+    let towns = scene.layers.iter().filter(|layer| cities.contains(&layer.id.as_str()));
+    let apart = towns.filter_map(|layer| core_of_town(&layer.kind.mesh()?.mesh)).map(|(_, apart)| apart).sum();
     let mut points = outline(scene, OUTLINE, &cities);
     if points.is_empty() {
         points = outline(scene, OUTLINE, &[]);
@@ -155,7 +169,7 @@ fn show_all(document: &mut Document, scene: &Scene) -> Result<(), BelvedereError
         .ok_or_else(|| BelvedereError::Target("there is nothing to see in these files".into()))?;
     document.camera.near = camera.pinhole.near;
     set_camera(document, &camera);
-    Ok(())
+    Ok(apart)
 }
 
 /// A camera that shows a box from the south, `pitch_deg` over the horizon and turned by `heading_deg` clockwise from north; `None` for an

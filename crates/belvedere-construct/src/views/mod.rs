@@ -5,5 +5,5 @@ mod models;
 mod refit;
 
 pub use city::{around_in_city, city_region};
-pub use models::{MANY, around_model, outline};
+pub use models::{MANY, around_model, core_of_town, outline};
 pub use refit::{Content, Refit, RefitRecord, refit};

@@ -2,6 +2,7 @@
 
 use crate::ConstructError;
 use crate::rays::{Target, TargetSight};
+use belvedere_core::quantile::{Rank, quantile};
 use belvedere_core::{Aabb, DVec2, DVec3, Pinhole, Projection, View};
 use belvedere_scene::{Layer, LayerKind, Mesh, OwnLayer, Scene, Unit};
 use rayon::prelude::*;
@@ -23,9 +24,45 @@ const FEW: usize = 3000;
 /// The same when the view that was chosen is refitted.
 pub const MANY: usize = 200_000;
 
+/// Buildings, at least, of a town of which some may stand apart; the share of buildings that lies beyond either side of its core along an
+/// axis, and how much farther than the core the town reaches.
+const TOWN: usize = 50;
+const BEYOND: f64 = 0.05;
+const TOWN_REACH: f64 = 1.6;
+
+/// The extent in plan of a town without what stands far apart from it, and how many buildings and structures do; `None` where none does.
+pub fn core_of_town(mesh: &Mesh) -> Option<([DVec2; 2], usize)> {
+    let mut places: Vec<DVec2> = Vec::new();
+    let mut last = 0;
+    for t in 0..mesh.triangles().len() {
+        let part = mesh.part(t).unwrap_or(0);
+        if part > 0 && part != last {
+            places.push(mesh.corners(t)[0].truncate());
+            last = part;
+        }
+    }
+    if places.len() < TOWN {
+        return None;
+    }
+    let at = |axis: usize, share: f64| {
+        quantile(&mut places.iter().map(|p| p[axis]).collect::<Vec<_>>(), share, Rank::Nearest)
+    };
+    let [low, high] = [BEYOND, 1.0 - BEYOND].map(|share| DVec2::new(at(0, share), at(1, share)));
+    // Towns along a street are narrow, and their houses stand on both sides of it.
+    let half = 0.5 * TOWN_REACH * (high - low).max(DVec2::splat(0.2 * (high - low).max_element()));
+    let core = [0.5 * (low + high) - half, 0.5 * (low + high) + half];
+    let apart = places.iter().filter(|p| !is_within(core, **p)).count();
+    (apart > 0).then_some((core, apart))
+}
+
+fn is_within([low, high]: [DVec2; 2], p: DVec2) -> bool {
+    p.cmpge(low).all() && p.cmple(high).all()
+}
+
 /// Points that show how far the visible layers reach.
 /// * `most`: triangles of a layer by which that is told, at most about;
-/// * `cities`: ids of layers of cities, of which buildings and structures count; of those without any, all but the margin of their plate.
+/// * `cities`: ids of layers of cities, of which buildings and structures count that do not stand [far apart](core_of_town); of those
+///   without any, all but the margin of their plate.
 pub fn outline(scene: &Scene, most: usize, cities: &[&str]) -> Vec<DVec3> {
     let of = |layer: &Layer| -> Vec<DVec3> {
         match &layer.kind {
@@ -37,9 +74,10 @@ pub fn outline(scene: &Scene, most: usize, cities: &[&str]) -> Vec<DVec3> {
                 let stands = |t: usize| m.mesh.part(t).is_some_and(|part| part > 0);
                 let is_city = cities.contains(&layer.id.as_str());
                 let has_buildings = is_city && (0..m.mesh.triangles().len()).any(stands);
+                let core = core_of_town(&m.mesh).filter(|_| has_buildings).map(|(core, _)| core);
                 reach(&m.mesh, most, &|t, p| match (is_city, has_buildings) {
                     (false, _) => true,
-                    (true, true) => stands(t),
+                    (true, true) => stands(t) && core.is_none_or(|core| is_within(core, p.truncate())),
                     (true, false) => is_inside(&p.with_z(0.5 * (min.z + max.z))),
                 })
             }

@@ -233,3 +233,39 @@ fn a_town_is_framed_by_its_buildings_and_not_by_its_water() {
     assert!((0.8..1.0).contains(&buildings), "buildings fill their picture: {buildings}");
     assert!(of(true) > 3.0, "the canal goes on beyond it");
 }
+
+/// A town of 400 houses, alone or with one farm 20 km away.
+#[test]
+fn a_town_is_framed_without_the_farms_far_from_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let town = |farms: usize| {
+        let house = |k: usize| {
+            let [x, y] = match k.checked_sub(400) {
+                Some(farm) => [520_000.0 + 5_000.0 * farm as f64, 5_020_000.0],
+                None => [500_000.0 + 30.0 * (k % 20) as f64, 5_000_000.0 + 30.0 * (k / 20) as f64],
+            };
+            let ring = [[x, y], [x + 12.0, y], [x + 12.0, y + 12.0], [x, y + 12.0], [x, y]];
+            serde_json::json!({ "type": "Feature", "properties": { "building": "yes", "height": 8 },
+                "geometry": { "type": "Polygon", "coordinates": [ring] } })
+        };
+        let features: Vec<_> = (0..400 + farms).map(house).collect();
+        let crs = serde_json::json!({ "type": "name", "properties": { "name": "urn:ogc:def:crs:EPSG::32632" } });
+        let text = serde_json::json!({ "type": "FeatureCollection", "crs": crs, "features": features }).to_string();
+        let file = folder.path().join(format!("town{farms}.geojson"));
+        std::fs::write(&file, text).unwrap();
+        let corners = farthest(&file, &|session: &Session| {
+            let LayerKind::Mesh(layer) = &session.scene().layers[0].kind else { panic!("a mesh") };
+            let houses =
+                (0..layer.mesh.triangles().len()).filter(|t| (1..=400).contains(&layer.mesh.part(*t).unwrap_or(0)));
+            houses.flat_map(|t| layer.mesh.corners(t)).collect()
+        });
+        let source = scene_of_data(&[file]).unwrap().unwrap();
+        let session = Session::from_document(source, &OpenOptions::default()).unwrap();
+        (corners, session.warnings().iter().map(ToString::to_string).collect::<String>())
+    };
+    let (alone, said) = town(0);
+    assert!((0.8..1.0).contains(&alone) && said.contains("all of it is shown"), "{alone} {said}");
+    let (with_farms, said) = town(2);
+    assert!((0.8..1.0).contains(&with_farms), "the town fills its picture: {with_farms}");
+    assert!(said.contains("without 2 buildings far apart"), "{said}");
+}
