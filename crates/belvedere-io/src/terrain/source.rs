@@ -64,10 +64,9 @@ pub(super) fn read_all(
     request: &TerrainRequest,
     progress: &Progress,
 ) -> Result<Loaded<Vec<SourceGrid>>, IoError> {
-    // several sources share the budget of nodes
-    let budget = (request.max_nodes / paths.len()).max(4);
+    let budgets = budgets(paths, request);
     let mut out = Loaded::clean(Vec::with_capacity(paths.len()));
-    for (i, path) in paths.iter().enumerate() {
+    for (i, (path, budget)) in paths.iter().zip(budgets).enumerate() {
         progress.tick("reading terrain", i as f64 / paths.len() as f64)?;
         let one = read_one(path, request, budget, progress)?;
         out.value.push(one.value);
@@ -75,6 +74,28 @@ pub(super) fn read_all(
         out.files.extend(one.files);
     }
     Ok(out)
+}
+
+/// Nodes that each of several sources may have: small ones all of theirs, others equal parts of what these leave.
+fn budgets(paths: &[PathBuf], request: &TerrainRequest) -> Vec<usize> {
+    // What an archive holds would have to be unpacked for its size.
+    let size = |path: &PathBuf| -> Option<usize> {
+        let tiff = path.is_file().then(|| GeoTiff::open(path, request.limits).ok()).flatten()?;
+        Some(Level::stored(&tiff, 0).samples())
+    };
+    let sizes: Vec<usize> = match paths {
+        [_] => vec![usize::MAX],
+        paths => paths.iter().map(|path| size(path).unwrap_or(usize::MAX)).collect(),
+    };
+    let mut order: Vec<usize> = (0..sizes.len()).collect();
+    order.sort_by_key(|i| sizes[*i]);
+    let (mut left, mut out) = (request.max_nodes, vec![0; sizes.len()]);
+    for (done, i) in order.into_iter().enumerate() {
+        let part = (left / (sizes.len() - done)).max(4);
+        out[i] = part;
+        left -= sizes[i].min(part).min(left);
+    }
+    out
 }
 
 /// The raster inside an archive, or the file itself.
