@@ -331,7 +331,7 @@ impl std::fmt::Display for Format {
     }
 }
 
-/// The formats that are read, by what they hold, in words.
+/// Endings of the formats that are read, by what they hold, in words.
 pub fn read_ones() -> String {
     let kinds = [
         (Terrain, "terrain and pictures"),
@@ -342,12 +342,14 @@ pub fn read_ones() -> String {
         (Volume, "volumes"),
     ];
     let of = |(reader, what): (Reader, &str)| {
-        let formats: Vec<String> = FORMATS
-            .iter()
-            .filter(|format| format.reader == Some(reader))
-            .map(|format| format!("{} ({})", format.name, format.endings.join(", ")))
-            .collect();
-        format!("{what} as {}", formats.join(", "))
+        let formats = FORMATS.iter().filter(|format| format.reader == Some(reader));
+        let mut endings: Vec<&str> = Vec::new();
+        for ending in formats.flat_map(|format| format.endings.iter().copied()) {
+            if !endings.contains(&ending) {
+                endings.push(ending);
+            }
+        }
+        format!("{what} ({})", endings.join(", "))
     };
     format!("{}; all of them also in .zip and .gz", kinds.map(of).join("; "))
 }

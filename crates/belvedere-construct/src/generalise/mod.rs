@@ -18,6 +18,7 @@ mod level;
 mod report;
 mod settings;
 mod shapes;
+mod solid;
 mod streets;
 mod strokes;
 mod volume;
@@ -28,7 +29,7 @@ pub use land_cover::{LandCoverMap, land_cover};
 pub use level::{Block, Cell, Level};
 pub use report::{BlockReport, FailingCell, GeneraliseReport, LevelReport};
 pub use settings::{GeneraliseSettings, half_width_m, is_main};
-pub use volume::volume_m3;
+pub use solid::volume_m3;
 
 use belvedere_core::DVec2;
 use belvedere_core::{Warning, WarningKind};
@@ -162,7 +163,7 @@ fn input<'a>(city: &'a City, notes: &mut Vec<Warning>) -> Result<Input<'a>, Gene
         if !(area_m2 > LEAST_AREA_M2) {
             continue;
         }
-        let height_m = volume::height_m(building);
+        let height_m = solid::height_m(building);
         bad_heights += usize::from(height_m != building.height_m);
         input.places.push(place);
         input.lands.push(land);
