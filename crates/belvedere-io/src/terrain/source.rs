@@ -81,7 +81,7 @@ fn budgets(paths: &[PathBuf], request: &TerrainRequest) -> Vec<usize> {
     // What an archive holds would have to be unpacked for its size.
     let size = |path: &PathBuf| -> Option<usize> {
         let tiff = path.is_file().then(|| GeoTiff::open(path, request.limits).ok()).flatten()?;
-        Some(Level::stored(&tiff, 0).samples())
+        Some(Level::stored(&tiff.value, 0).samples())
     };
     let sizes: Vec<usize> = match paths {
         [_] => vec![usize::MAX],
