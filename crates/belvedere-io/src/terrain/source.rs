@@ -87,9 +87,14 @@ fn budgets(paths: &[PathBuf], request: &TerrainRequest) -> Vec<usize> {
         [_] => vec![usize::MAX],
         paths => paths.iter().map(|path| size(path).unwrap_or(usize::MAX)).collect(),
     };
+    shares(&sizes, request.max_nodes)
+}
+
+/// Shares of `total`, of which those of small sizes are not used up.
+fn shares(sizes: &[usize], total: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..sizes.len()).collect();
     order.sort_by_key(|i| sizes[*i]);
-    let (mut left, mut out) = (request.max_nodes, vec![0; sizes.len()]);
+    let (mut left, mut out) = (total, vec![0; sizes.len()]);
     for (done, i) in order.into_iter().enumerate() {
         let part = (left / (sizes.len() - done)).max(4);
         out[i] = part;
@@ -337,5 +342,18 @@ fn warn_about_frame(path: &Path, heights: &[f32], cols: usize, rows: usize, warn
         let warning = Warning::new(WarningKind::Suspect, text).with("count", count as f64).with("share", share);
         let warning = warning.settled_by("nodata");
         warnings.push(warning.with("height_m", f64::from(value)).in_file(path));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shares;
+
+    #[test]
+    fn small_sizes_leave_what_they_do_not_need_to_large_ones() {
+        assert_eq!(shares(&[1 << 20, 25_600, 4 << 20], 100_000), [37_200, 33_333, 37_200]);
+        assert_eq!(shares(&[usize::MAX], 1000), [1000]);
+        assert_eq!(shares(&[usize::MAX; 4], 1000), [250; 4]);
+        assert_eq!(shares(&[10, 10], 5), [4, 4], "never less than a cell");
     }
 }

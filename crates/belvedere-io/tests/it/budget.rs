@@ -1,9 +1,7 @@
 //! Memory of loaders: what adds up, what is shared, what is packed.
 
 use belvedere_io::png::{self, Channels};
-use belvedere_io::{
-    GeoTiff, Limits, Samples, TerrainRequest, VolumeRequest, load_mesh, load_molecule, load_terrain, load_volume,
-};
+use belvedere_io::{GeoTiff, Limits, Samples, VolumeRequest, load_mesh, load_molecule, load_volume};
 use belvedere_scene::Progress;
 use flate2::{Compression, write::GzEncoder};
 use std::io::Write;
@@ -131,20 +129,4 @@ fn packed_files_ask_before_they_are_read() {
     let Ok(()) = file.set_len(1 << 40) else { return };
     let error = load_molecule(&path, &Limits::default()).expect_err("too large").to_string();
     assert!(error.contains("the packed file needs 1048576 MiB") && error.contains("allow more memory"), "{error}");
-}
-
-/// A small model takes what it needs of the nodes, and leaves the rest to the large ones.
-#[test]
-fn small_models_leave_their_share_of_the_nodes_to_large_ones() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let write = |name: &str, side: u32| {
-        let path = folder.path().join(name);
-        std::fs::write(&path, of_one_tile(side, side, 0)).expect("written");
-        path
-    };
-    let paths = [write("large.tif", 1024), write("small.tif", 160), write("huge.tif", 2048)];
-    let request = TerrainRequest { max_nodes: 100_000, ..TerrainRequest::default() };
-    let loaded = load_terrain(&paths, &request, &Progress::silent()).expect("a terrain");
-    let budgets: Vec<f64> = loaded.warnings.iter().filter_map(|w| w.figure("budget_nodes")).collect();
-    assert_eq!(budgets, [37_200.0, 37_200.0], "of the large ones, in their order");
 }
