@@ -181,10 +181,3 @@ class DisoccludeOptions(TypedDict, total=False):
 
     #: Unit of the terrain's heights, instead of the stated one
     vertical_unit: Literal["m", "ft", "us-ft"] | None
-
-
-class GeneraliseOptions(TypedDict, total=False):
-    """Options of :func:`belvedere.generalise` beside those of its signature; each is that of the command line of this name."""
-
-    #: What blocks keep of their buildings
-    keep: Literal["height", "volume"]

@@ -6,7 +6,7 @@ import json
 import os
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Mapping, Sequence
+from typing import Any, Literal, Mapping, Sequence
 
 from . import _native
 from ._ask import Progress, asked, number
@@ -37,6 +37,7 @@ def generalise(
     *,
     out: str | os.PathLike[str],
     margin_m: float | None = None,
+    keep: Literal["height", "volume"] = "height",
     overwrite: bool = False,
     threads: int | None = None,
     progress: Progress = None,
@@ -46,6 +47,7 @@ def generalise(
     * ``city``: buildings with their heights or storeys: the path of CityJSON, CityGML, OSM PBF, or footprints (GeoJSON, shapefile).
     * ``roads``: streets, railways, rivers and land cover, if the city file has none: paths.
     * ``out``: the folder. ``margin_m``: distance from buildings up to which ground counts as built-up, metres.
+    * ``keep``: what blocks keep of their buildings: the mean height, or the volume, for which they are lower.
 
     Raises :class:`belvedere.FileError`, :class:`belvedere.InputError`.
     """
@@ -54,7 +56,7 @@ def generalise(
     several = [roads] if isinstance(roads, (str, os.PathLike)) else list(roads)
     margin = None if margin_m is None else number("margin_m", margin_m)
     with asked(threads, progress) as ask:
-        request = given({"city": os.fspath(city), "roads": [os.fspath(r) for r in several], "margin": margin})
+        request = given({"city": os.fspath(city), "roads": [os.fspath(r) for r in several], "margin": margin, "keep": keep})
         answer = json.loads(_native.generalise(text("generalise", request), os.fspath(out), bool(overwrite), ask))
     return Generalised(
         tuple(Path(p) for p in answer["files"]), answer["summary"], tuple(answer["missed"]), tuple(notes_of(answer["warnings"])), answer["report"]

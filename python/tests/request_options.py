@@ -32,7 +32,7 @@ OWN: dict[str, tuple[str, dict[str, str]]] = {
         "nodata": "nodata",
     }),
     "measure": ("Scene.measure", {"spacing": "spacing_m", "size": "size", "renderer": "renderer"}),
-    "generalise": ("generalise", {"city": "city", "roads": "roads", "margin": "margin_m"}),
+    "generalise": ("generalise", {"city": "city", "roads": "roads", "margin": "margin_m", "keep": "keep"}),
 }  # fmt: skip
 #: Options of another call: of ``Scene.open`` and of ``Picture.save``.
 ELSEWHERE = {

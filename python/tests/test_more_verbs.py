@@ -117,6 +117,8 @@ def test_a_city_in_levels(tmp_path: Path) -> None:
     scene = belvedere.Scene(crs="EPSG:32631").add_layer("city", id="blocks", source=str(tmp_path / "levels" / "loa1.city.json"))
     scene._roots.append(str(tmp_path))
     assert scene.bounds is not None
+    lower = belvedere.generalise(houses, streets, out=tmp_path / "lower", keep="volume")
+    assert lower.raw["keep"] == "volume" and all(level["volume_kept"] for level in lower.raw["levels"]) and not lower.missed
     with pytest.raises(belvedere.FileError, match="exist"):
         belvedere.generalise(houses, streets, out=tmp_path / "levels")
     with pytest.raises(belvedere.FileError, match="none.geojson"):
