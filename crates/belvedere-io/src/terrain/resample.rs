@@ -7,7 +7,7 @@ use super::source::SourceGrid;
 use super::{ResampleError, TerrainRequest};
 use crate::IoError;
 use crate::crs::CoordinateSystem;
-use belvedere_core::Warning;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_scene::Progress;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -112,7 +112,7 @@ pub(super) fn resample(
     let mut planned = plan(sources, links, 1.0)?;
     let nodes = planned.cols as f64 * planned.rows as f64;
     if nodes > request.max_nodes as f64 {
-        planned = shrink(planned, sources, request.max_nodes)?;
+        planned = shrink(planned, sources, links, request.max_nodes, warnings)?;
     } else if sources.len() == 1 && roughness_p99(&sources[0]) > request.max_error_p99_m {
         let allowed = request.refine_to_nodes.min(request.max_nodes) as f64;
         let factor = (1.001 * (nodes / allowed).sqrt()).clamp(FINEST, 1.0);
@@ -261,14 +261,26 @@ fn on_lattice(lattice: Geometry, min: DVec2, max: DVec2) -> SceneGrid {
     SceneGrid { geometry: Geometry { north_west, ..lattice }, cols, rows, heights: Vec::new() }
 }
 
+/// Extents of grids over the ground that their sources cover, beyond which these lie too far apart.
+const MOSTLY_EMPTY: f64 = 16.0;
+
 /// A coarser plan with at most `max_nodes`.
-fn shrink(grid: SceneGrid, sources: &[SourceGrid], max_nodes: usize) -> Result<SceneGrid, IoError> {
+fn shrink(
+    grid: SceneGrid,
+    sources: &[SourceGrid],
+    links: &[Link],
+    max_nodes: usize,
+    warnings: &mut Vec<Warning>,
+) -> Result<SceneGrid, IoError> {
     let nodes = grid.cols as f64 * grid.rows as f64;
-    let samples: usize = sources.iter().map(|s| s.heights.len()).sum();
-    // mostly empty grids come from tiles far apart, not from detail
-    if nodes > 16.0 * samples as f64 {
+    let ground = |(source, link): (&SourceGrid, &Link)| {
+        let cell = link.spacing_near([source.cols, source.rows]).unwrap_or(DVec2::ZERO);
+        cell.element_product() * source.heights.len() as f64
+    };
+    let covered: f64 = sources.iter().zip(links).map(ground).sum();
+    if nodes * grid.geometry.spacing.element_product() > MOSTLY_EMPTY * covered {
         let reason = format!(
-            "its scene grid would have {} x {} nodes for {samples} samples, the limit is {max_nodes}; the sources lie too far apart, load fewer",
+            "its scene grid would have {} x {} nodes, of which the sources cover less than one in {MOSTLY_EMPTY:.0}, the limit is {max_nodes}; they lie too far apart, load fewer",
             grid.cols, grid.rows
         );
         return Err(IoError::format(&sources[0].path, reason));
@@ -278,6 +290,14 @@ fn shrink(grid: SceneGrid, sources: &[SourceGrid], max_nodes: usize) -> Result<S
     let (cols, rows) = (fewer(grid.cols), fewer(grid.rows));
     let span = DVec2::new((grid.cols - 1) as f64, (grid.rows - 1) as f64) * grid.geometry.spacing;
     let spacing = span / DVec2::new((cols - 1) as f64, (rows - 1) as f64);
+    if sources.len() > 1 {
+        let [finest, taken] = [grid.geometry.spacing, spacing].map(|s| s.max_element());
+        let text = format!(
+            "the ground is drawn every {taken:.1} m instead of every {finest:.1} m, as the finest file has it, to keep at most {max_nodes} nodes over all of them; crop the coarser ones to what is looked at"
+        );
+        let warning = Warning::new(WarningKind::Reduced, text).with("spacing_m", taken).with("finest_m", finest);
+        warnings.push(warning.with("budget_nodes", max_nodes as f64).in_file(&sources[0].path));
+    }
     Ok(SceneGrid { geometry: Geometry { spacing, ..grid.geometry }, cols, rows, heights: Vec::new() })
 }
 

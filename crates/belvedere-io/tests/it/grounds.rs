@@ -76,6 +76,25 @@ fn the_finest_ground_is_taken_in_any_order_and_its_border_is_no_cliff() {
 }
 
 #[test]
+fn a_fine_model_in_a_far_larger_one_makes_the_ground_coarser_and_is_not_refused() {
+    let folder = Folder::new("terrain-fine-in-wide");
+    let [wide, fine] = ["wide.asc", "fine.asc"].map(|name| folder.0.join(name));
+    write_asc(&wide, 41, 41, 5e5, 5e6, 300.0, &|_, _| 500.0);
+    write_asc(&fine, 301, 301, 5e5 + 4000.0, 5e6 + 4000.0, 8.0, &|_, _| 900.0);
+    let request = TerrainRequest { source_crs: Some(32631), max_nodes: 200_000, ..Default::default() };
+    for order in [[&wide, &fine], [&fine, &wide]] {
+        let (terrain, warnings) = load(&order.map(Clone::clone), &request).unwrap();
+        let h = &terrain.heightfield;
+        assert!((100_000..=200_000).contains(&h.heights().len()), "{} x {}", h.cols(), h.rows());
+        assert!(warnings.iter().any(|w| w.text().contains("m instead of every 8.0 m")), "{warnings:?}");
+        // The finer one where it has data, the coarser one beyond.
+        let at = |x: f64, y: f64| h.height_at(DVec2::new(5e5 + x, 5e6 + y)).unwrap();
+        assert!((at(5200.0, 5200.0) - 900.0).abs() < 1.0, "{}", at(5200.0, 5200.0));
+        assert!((at(9000.0, 9000.0) - 500.0).abs() < 1.0 && (at(3900.0, 5200.0) - 500.0).abs() < 1.0);
+    }
+}
+
+#[test]
 fn tiles_of_two_lattices_are_joined_each_with_its_own() {
     let folder = Folder::new("terrain-lattices");
     let [far, near] = coarse_and_fine(&folder);
