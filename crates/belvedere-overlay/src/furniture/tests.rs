@@ -1,6 +1,9 @@
 use super::*;
+use crate::notes::ClassNote;
 use belvedere_core::{DVec3, Pinhole, Projection};
-use belvedere_scene::{Color, Heightfield, Hidden, PointFeature, PointLayer, PointStyle, Symbol};
+use belvedere_scene::{
+    Color, Heightfield, Hidden, Mesh, MeshColors, MeshLayer, PointFeature, PointLayer, PointStyle, Symbol,
+};
 
 /// Gentle hills of 8 km, 40 m a cell.
 fn hills() -> Scene {
@@ -90,6 +93,33 @@ fn rows_of_the_legend_have_the_name_of_what_they_show() {
     }
     let named = FurnitureDoc { names: [("huts".into(), "Summits".into())].into(), ..doc };
     assert_eq!(words(&["Piz Bernina"], &named).as_deref(), Some("Summits"));
+}
+
+/// Buildings in the colours of a property have a heading and a row for each class; without it coloured meshes have none.
+#[test]
+fn classes_of_buildings_are_rows_of_the_legend() {
+    let [red, blue] = [Color::rgb(200, 0, 0), Color::rgb(0, 0, 200)];
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::Y];
+    let mesh = Mesh::new(&corners, vec![[0, 1, 2]], MeshColors::PerTriangle(vec![red])).expect("a triangle");
+    let scene = Scene::default().with_layer("town", MeshLayer::new(mesh, blue));
+    let classes = vec![("shop".to_owned(), red), ("house".to_owned(), blue)];
+    let note = ClassNote { layer: "town".into(), property: "use".into(), classes, smooth: false, others: None };
+    let rows = |notes: LayerNotes| {
+        let subject = Subject {
+            doc: &FurnitureDoc::default(),
+            scene: &scene,
+            view: &view([900, 600]),
+            notes: &notes,
+            files: Vec::new(),
+            density: 1.0,
+            reserved: Vec::new(),
+            north: &|_| DVec2::Y,
+            today: None,
+        };
+        legend::rows(&subject).into_iter().map(|row| row.words).collect::<Vec<_>>()
+    };
+    assert_eq!(rows(LayerNotes { classes: vec![note], ..LayerNotes::default() }), ["town: use", "shop", "house"]);
+    assert!(rows(LayerNotes::default()).is_empty());
 }
 
 #[test]
