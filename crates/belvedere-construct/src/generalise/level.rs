@@ -35,8 +35,6 @@ pub struct Block {
     pub cell: usize,
     /// Share of its footprint that the buildings that it stands for cover, at most 1.
     pub coverage: f64,
-    /// Buildings that it stands for.
-    pub count: usize,
 }
 
 /// Ground between streets.
@@ -327,7 +325,7 @@ fn assemble(name: &'static str, input: &Input<'_>, made: Vec<Made>, homeless: &[
                 height_source: HeightSource::Stated,
                 faces: Vec::new(),
             });
-            blocks.push(Block { cell: number, coverage, count: ordinary.len() });
+            blocks.push(Block { cell: number, coverage });
             members.push(ordinary.clone());
         }
         if made.kind == CellKind::Green {

@@ -28,7 +28,7 @@ pub const MANY: usize = 200_000;
 /// axis, and how much farther than the core the town reaches.
 const TOWN: usize = 50;
 const BEYOND: f64 = 0.05;
-const TOWN_REACH: f64 = 1.6;
+const TOWN_REACH: f64 = 1.25;
 
 /// The extent in plan of a town without what stands far apart from it, and how many buildings and structures do; `None` where none does.
 pub fn core_of_town(mesh: &Mesh) -> Option<([DVec2; 2], usize)> {

@@ -77,7 +77,7 @@ fn outside(ground: &Heightfield, [cols, rows]: [usize; 2]) -> Vec<bool> {
         .flat_map(|c| [c, (rows - 1) * cols + c])
         .chain((0..rows).flat_map(|r| [r * cols, (r + 1) * cols - 1]));
     for start in rim {
-        let (mut open, mut void, mut shore, mut low) = (vec![start], Vec::new(), 0usize, 0usize);
+        let (mut open, mut void, mut shore, mut at_coast) = (vec![start], Vec::new(), 0usize, 0usize);
         while let Some(at) = open.pop() {
             if seen[at] {
                 continue;
@@ -85,7 +85,7 @@ fn outside(ground: &Heightfield, [cols, rows]: [usize; 2]) -> Vec<bool> {
             if !is_void(at) {
                 // The same cell of the shore may be met from several sides.
                 shore += 1;
-                low += usize::from(height(at) < coast_m);
+                at_coast += usize::from(height(at) < coast_m);
                 continue;
             }
             seen[at] = true;
@@ -94,7 +94,7 @@ fn outside(ground: &Heightfield, [cols, rows]: [usize; 2]) -> Vec<bool> {
             open.extend([(c > 0).then(|| at - 1), (c + 1 < cols).then_some(at + 1)].into_iter().flatten());
             open.extend([(r > 0).then(|| at - cols), (r + 1 < rows).then_some(at + cols)].into_iter().flatten());
         }
-        if (low as f64) < LOW_SHORE * shore as f64 {
+        if (at_coast as f64) < LOW_SHORE * shore as f64 {
             void.into_iter().for_each(|at| found[at] = true);
         }
     }

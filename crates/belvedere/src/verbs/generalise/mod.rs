@@ -148,7 +148,8 @@ impl GeneralisedCity {
         }
         for (number, (level, path)) in self.generalised.levels.iter().zip(&files).enumerate() {
             progress.tick("write", 0.2 * number as f64)?;
-            let figures = level.blocks.iter().map(|b| BlockFigures { coverage: b.coverage, count: b.count });
+            let stands_for = level.blocks.iter().zip(&level.members);
+            let figures = stands_for.map(|(b, members)| BlockFigures { coverage: b.coverage, count: members.len() });
             write_city_json(path, &level.city, &figures.collect::<Vec<_>>(), self.epsg, overwrite)?;
         }
         progress.tick("map", 0.4)?;
