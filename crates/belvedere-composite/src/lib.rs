@@ -15,6 +15,7 @@ pub mod drawn;
 pub mod finish;
 pub mod layers;
 pub mod marks;
+pub mod noise;
 pub mod skyline;
 pub mod stylise;
 pub mod tint;

@@ -332,10 +332,20 @@ pub struct LightDoc {
 impl LightDoc {
     /// Names of skies.
     pub const SKIES: [&'static str; 5] = ["auto", "day", "dusk", "night", "white"];
+
+    /// Light from a direction, radians clockwise from north.
+    pub fn from_azimuth(azimuth: f64) -> Self {
+        Self { azimuth_deg: Some(azimuth.to_degrees().round()), ..Self::default() }
+    }
+
+    /// Whether a direction or a time is stated.
+    pub fn states_sun(&self) -> bool {
+        self.azimuth_deg.is_some() || self.altitude_deg.is_some() || self.time.is_some()
+    }
+
     /// This light where it states something, `below` elsewhere: a direction takes the place of a time, and the other way round.
     pub fn over(self, below: Self) -> Self {
-        let states_sun = self.azimuth_deg.is_some() || self.altitude_deg.is_some() || self.time.is_some();
-        let sun = if states_sun { &self } else { &below };
+        let sun = if self.states_sun() { &self } else { &below };
         Self {
             azimuth_deg: sun.azimuth_deg,
             altitude_deg: sun.altitude_deg,

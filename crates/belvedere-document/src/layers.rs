@@ -222,6 +222,10 @@ pub struct TerrainStyleDoc {
     pub shading: Option<Shading>,
     /// Tint by height; the heights are the true ones, wherever bends move the ground.
     pub palette: PaletteDoc,
+    /// Whether the palettes auto, swiss, winter and autumn show materials by rule, from the climate, heights and form of the ground: forest,
+    /// meadow, scree, rock and snow, and relief finer than the data; else tints by height alone.
+    #[serde(skip_serializing_if = "is_on")]
+    pub materials: bool,
     /// Whether the sea is drawn as such: connected ground at one height, 0 or the lowest below 0, that reaches the edge of the
     /// terrain, covers a square kilometre (or a twentieth of the terrain) and has a low shore; and voids at the edge whose
     /// shore is low, which become ground at 0.
@@ -235,6 +239,10 @@ pub struct TerrainStyleDoc {
     pub edge: Edge,
 }
 
+fn is_on(switch: &bool) -> bool {
+    *switch
+}
+
 fn is_plain(edge: &Edge) -> bool {
     *edge == Edge::Plain
 }
@@ -246,6 +254,7 @@ impl Default for TerrainStyleDoc {
             exaggeration: 1.0,
             shading: None,
             palette: PaletteDoc::default(),
+            materials: true,
             sea: true,
             contours: None,
             edge: Edge::Plain,

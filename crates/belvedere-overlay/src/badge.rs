@@ -7,6 +7,8 @@ use belvedere_scene::{Color, Unit};
 
 /// The shortest words of the mark, and those of all frames of a film: figures would change from frame to frame.
 pub const WORDS: &str = "bent view";
+/// What else the mark says where materials are drawn by rule.
+const MADE: &str = "forest and fine relief drawn by rule";
 /// Smallest picture that the mark fits into, pixels.
 const SMALLEST: [f64; 2] = [160.0, 90.0];
 const LETTERS_PX: f64 = 12.0;
@@ -23,12 +25,16 @@ const BESIDE: f64 = 46.0;
 const MARGIN: f64 = 10.0;
 
 /// Words of the mark: the largest displacement in the picture, in the longest form that fits.
-/// * `moved`: largest displacement, scene units.
-pub fn words(width: usize, moved: f64, unit: Unit) -> String {
+/// * `moved`: largest displacement, scene units; `made`: whether materials and fine relief are drawn by rule.
+pub fn words(width: usize, moved: f64, unit: Unit, made: bool) -> String {
     let most = self::moved(moved, unit);
     let room = width as f64 - 2.0 * MARGIN - BESIDE;
-    let all = [format!("{WORDS}: moved by up to {most}"), format!("bent by up to {most}")];
-    all.into_iter().find(|words| text_size(LETTERS_PX, words).width <= room).unwrap_or_else(|| WORDS.to_owned())
+    let short = [format!("{WORDS}: moved by up to {most}"), format!("bent by up to {most}")];
+    let long = made.then(|| format!("{}; {MADE}", short[0]));
+    long.into_iter()
+        .chain(short)
+        .find(|words| text_size(LETTERS_PX, words).width <= room)
+        .unwrap_or_else(|| WORDS.to_owned())
 }
 
 /// A displacement in words.
@@ -90,12 +96,15 @@ mod tests {
 
     #[test]
     fn the_mark_says_how_far_in_the_longest_words_that_fit() {
-        let said = |width, moved| words(width, moved, Unit::Metre);
+        let said = |width, moved| words(width, moved, Unit::Metre, false);
         assert_eq!(said(1280, 341.2), "bent view: moved by up to 342 m");
         assert_eq!(said(1280, 0.0), "bent view: moved by up to 0 m");
+        let made = |width| words(width, 341.2, Unit::Metre, true);
+        assert_eq!(made(1280), "bent view: moved by up to 342 m; forest and fine relief drawn by rule");
+        assert_eq!(made(320), "bent view: moved by up to 342 m");
         assert_eq!(said(200, 341.2), "bent by up to 342 m");
         assert_eq!(said(160, 12_345.6), "bent view");
-        assert_eq!(words(1280, 3.04, Unit::Angstrom), "bent view: moved by up to 3.1 angstrom");
+        assert_eq!(words(1280, 3.04, Unit::Angstrom, false), "bent view: moved by up to 3.1 angstrom");
         assert_eq!(moved(0.004, Unit::Voxel), "0.1 voxels", "what moves is never said to rest");
         assert_eq!(moved(184.3, Unit::Angstrom), "185 angstrom");
         for width in [160, 200, 320, 640] {

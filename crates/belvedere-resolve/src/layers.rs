@@ -217,6 +217,7 @@ fn terrain(
         }
     };
     let palette = placed(palette(loader, index, &style.palette)?, &heightfield, crs);
+    let palette = if style.materials { palette } else { without_materials(palette) };
     let layer = TerrainLayer {
         heightfield,
         drapes: Vec::new(),
@@ -238,7 +239,7 @@ fn contours(stated: &Option<SwitchOrLength>) -> Option<Option<f64>> {
     }
 }
 
-/// A palette that depends on the place, with the climate in the middle of the ground.
+/// A palette that depends on the place, with the climate in the middle of the ground, or one guessed from its heights.
 fn placed(palette: Palette, ground: &Heightfield, crs: Crs) -> Palette {
     use PaletteName::{Auto, Autumn, Swiss, Winter};
     let Palette::Named(name @ (Auto | Swiss | Winter | Autumn)) = palette else { return palette };
@@ -246,7 +247,24 @@ fn placed(palette: Palette, ground: &Heightfield, crs: Crs) -> Palette {
     let middle = (0.5 * (bounds.min + bounds.max)).truncate();
     match (Ground { crs, terrain: None }).lon_lat(middle) {
         Some(at) => Palette::Placed(name, Climate::at(at.x, at.y)),
-        None => palette,
+        // Ground without a place that is very high is rock and ice.
+        None if bounds.max.z > 5000.0 && name == Auto => palette,
+        None => Palette::Placed(name, Climate::of_heights([bounds.min.z, bounds.max.z])),
+    }
+}
+
+/// Tints by height alone that fit a palette of materials.
+fn without_materials(palette: Palette) -> Palette {
+    let (name, dry) = match &palette {
+        Palette::Named(name) => (*name, false),
+        Palette::Placed(name, climate) => (*name, climate.dryness > 0.5),
+        Palette::Ramp(_) => return palette,
+    };
+    match name {
+        PaletteName::Auto if dry => PaletteName::Desert.into(),
+        PaletteName::Auto | PaletteName::Swiss | PaletteName::Autumn => PaletteName::Alpine.into(),
+        PaletteName::Winter => PaletteName::Glacial.into(),
+        other => other.into(),
     }
 }
 

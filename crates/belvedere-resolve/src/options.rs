@@ -47,6 +47,8 @@ pub struct OpenOptions {
     pub furniture: Option<FurnitureWish>,
     /// Lines of equal height instead of the scene's.
     pub contours: Option<SwitchOrLength>,
+    /// Whether materials are drawn by rule, instead of the scene's setting.
+    pub materials: Option<bool>,
     /// How the ground ends where its data end, instead of the scene's setting.
     pub edge: Option<Edge>,
     /// Whether the sea is drawn as such, instead of the scene's setting.
@@ -96,9 +98,14 @@ impl OpenOptions {
         self.max_bytes.map_or_else(Limits::default, |max_bytes| Limits { max_bytes })
     }
 
-    /// The options with what is asked of contours and the end of the ground.
+    /// The options with what is asked of contours, materials and the end of the ground.
     pub fn airy(self, air: &Air) -> Self {
-        Self { contours: air.contours.or(self.contours), edge: air.edge.or(self.edge), ..self }
+        Self {
+            contours: air.contours.or(self.contours),
+            edge: air.edge.or(self.edge),
+            materials: if air.plain { Some(false) } else { self.materials },
+            ..self
+        }
     }
 
     /// The options with what a picture is asked to show otherwise than its scene says.

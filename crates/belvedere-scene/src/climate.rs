@@ -11,6 +11,8 @@ pub struct Climate {
     pub dryness: f64,
     /// Latitude, degrees north.
     pub latitude_deg: f64,
+    /// Whether it is the climate of the place; else it is guessed from heights.
+    pub of_place: bool,
 }
 
 /// Snow lines by distance from the equator: degrees, and metres over the sea. Rounded from tables of physical geography: highest in the dry
@@ -59,7 +61,13 @@ impl Climate {
         let oceanic = if lat_deg < 0.0 { 0.35 * ((away - 35.0) / 10.0).clamp(0.0, 1.0) } else { 0.0 };
         let snow_line_m = at_latitude(away) * (1.0 - oceanic) + 350.0 * dryness;
         let tree_line_m = (snow_line_m - 1050.0).min(4000.0);
-        Self { snow_line_m, tree_line_m, dryness, latitude_deg: lat_deg }
+        Self { snow_line_m, tree_line_m, dryness, latitude_deg: lat_deg, of_place: true }
+    }
+
+    /// A humid climate whose lines are those of a range of heights, metres, for ground whose place is not known.
+    pub fn of_heights([bottom, top]: [f64; 2]) -> Self {
+        let snow_line_m = (bottom + 0.7 * (top - bottom)).max(2450.0);
+        Self { snow_line_m, tree_line_m: snow_line_m - 1050.0, dryness: 0.0, latitude_deg: 45.0, of_place: false }
     }
 
     /// Share of winter in its coldest month: 0 in the tropics, 1 from 40 degrees on.

@@ -1,6 +1,7 @@
 //! The sun, the sky and the air.
 
 use crate::Color;
+use belvedere_core::Pinhole;
 use glam::DVec3;
 
 /// What stands behind everything.
@@ -61,11 +62,45 @@ impl Default for Light {
     }
 }
 
+/// How far left of the way up the picture the light of a found view comes from, degrees.
+const LEFT_DEG: f64 = 55.0;
+
 impl Light {
+    /// Azimuth of light that comes from the upper left of a picture, as in relief shading, in whole steps of 15 degrees, radians clockwise
+    /// from north; `None` if the picture has no way up on the map.
+    pub fn azimuth_at_upper_left(view: &Pinhole) -> Option<f64> {
+        let up = -view.down.truncate();
+        let heading_deg = (up.length() > 1e-6).then(|| up.x.atan2(up.y).to_degrees())?;
+        Some((15.0 * ((heading_deg - LEFT_DEG) / 15.0).round()).rem_euclid(360.0).to_radians())
+    }
+
     /// Unit vector towards the light; x east, y north, z up.
     pub fn direction(&self) -> DVec3 {
         let (sin_az, cos_az) = self.azimuth.sin_cos();
         let (sin_alt, cos_alt) = self.altitude.sin_cos();
         DVec3::new(sin_az * cos_alt, cos_az * cos_alt, sin_alt)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use belvedere_core::Projection;
+
+    #[test]
+    fn light_comes_from_the_upper_left_of_every_picture() {
+        for heading_deg in (0..360).step_by(7) {
+            for pitch in [0.0f64, 0.4, 1.2, 1.57] {
+                let heading = f64::from(heading_deg).to_radians();
+                let ahead = DVec3::new(heading.sin() * pitch.cos(), heading.cos() * pitch.cos(), -pitch.sin());
+                let up = DVec3::new(heading.sin(), heading.cos(), 1.0);
+                let lens = Projection::Perspective { fov_y: 0.8 };
+                let view = Pinhole::look_at(DVec3::ZERO, ahead, up, lens, [40, 30], 1.0, None).expect("a view");
+                let azimuth = Light::azimuth_at_upper_left(&view).expect("an azimuth");
+                let light = Light { azimuth, ..Light::default() }.direction();
+                assert!(light.dot(view.right) < -0.2, "{heading_deg}, {pitch}: from the left");
+                assert!(light.dot(-view.down) > 0.2, "{heading_deg}, {pitch}: from above");
+            }
+        }
     }
 }

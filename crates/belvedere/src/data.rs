@@ -6,8 +6,9 @@ use crate::record::{AreaRecord, InputFile};
 use crate::scene_file::paths::{Roots, folder_of};
 use crate::scene_file::request::Stated;
 use crate::scene_file::{
-    AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, LayerDoc, LineDoc, LineStyleDoc, Origin, PaletteDoc, Paths,
-    PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc, TextDoc,
+    AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, LayerDoc, LightDoc, LineDoc, LineStyleDoc, Origin,
+    PaletteDoc, Paths, PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc,
+    TextDoc,
 };
 use crate::session::{Description, Loaded};
 use crate::{BelvedereError, OpenOptions, Session};
@@ -20,7 +21,7 @@ use belvedere_io::{Known, join_table, split_table};
 use belvedere_overlay::notes::LayerNotes;
 use belvedere_resolve::vectors::{self, FeatureKind, kind_of, kinds_of};
 use belvedere_resolve::{self, LayerRequest};
-use belvedere_scene::{Hidden, Layer, Scene, Unit};
+use belvedere_scene::{Hidden, Layer, Light, Scene, Unit};
 use std::collections::BTreeMap;
 use std::mem::take;
 use std::path::{Path, PathBuf};
@@ -181,6 +182,7 @@ impl DataFiles {
             style: TerrainStyleDoc {
                 palette: self.palette.located(&mut roots.allowed)?,
                 sea: !self.no_sea,
+                materials: options.materials.unwrap_or(true),
                 contours: options.contours,
                 edge: options.edge.unwrap_or_default(),
                 ..TerrainStyleDoc::default()
@@ -219,6 +221,9 @@ impl Layers {
 impl Data {
     /// A session of the data in a view, which camera and stages describe.
     pub(crate) fn session(self, view: View, camera: CameraDoc, stage: Vec<StageDoc>, earth: EarthDoc) -> Session {
+        // The light of a found view is chosen with it, and from then on fixed to the map.
+        let azimuth = Light::azimuth_at_upper_left(view.pinhole()).filter(|_| self.scene.terrain().is_some());
+        let light = Light { azimuth: azimuth.unwrap_or(Light::default().azimuth), ..Light::default() };
         let document = Document {
             format: 1,
             title: self.scene.title.clone(),
@@ -232,7 +237,7 @@ impl Data {
             renderer: None,
             print: None,
             text: self.text,
-            light: None,
+            light: azimuth.map(LightDoc::from_azimuth),
             representations: Default::default(),
             hidden: Vec::new(),
             layer: self.layers,
@@ -243,7 +248,7 @@ impl Data {
         let (source, resolved) = (SourceDocument::new(document.clone()), document);
         let Self { scene, areas, notes, inputs, warnings, roots, arrays, .. } = self;
         let loaded = Loaded { scene, motions: None, areas, notes, inputs, arrays, warnings };
-        Session::of_view(loaded, view, Description { source, resolved, roots })
+        Session::of_view(loaded, view, Description { source, resolved, roots }).with_light(light)
     }
 }
 

@@ -17,7 +17,7 @@ use belvedere_resolve::show_molecules;
 use belvedere_resolve::solving::Memory;
 use belvedere_resolve::solving::Solving;
 use belvedere_resolve::{self, LayerRequest, hidden, representations, validate};
-use belvedere_scene::{Crs, Scene};
+use belvedere_scene::{Crs, Light, Scene};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -122,6 +122,7 @@ fn change(document: &mut Document, options: &OpenOptions, allowed: &mut Vec<Path
             LayerDoc::Terrain(terrain) => {
                 let style = &mut terrain.style;
                 style.palette = palette.clone().unwrap_or_else(|| std::mem::take(&mut style.palette));
+                style.materials = options.materials.unwrap_or(style.materials);
                 style.sea = options.sea.unwrap_or(style.sea);
                 style.contours = options.contours.or(style.contours);
                 style.edge = options.edge.unwrap_or(style.edge);
@@ -169,6 +170,11 @@ fn show_all(document: &mut Document, scene: &Scene) -> Result<usize, BelvedereEr
         .ok_or_else(|| BelvedereError::Target("there is nothing to see in these files".into()))?;
     document.camera.near = camera.pinhole.near;
     set_camera(document, &camera);
+    if scene.terrain().is_some() && document.light.as_ref().is_none_or(|light| !light.states_sun()) {
+        let light = Light::azimuth_at_upper_left(&camera.pinhole).map(LightDoc::from_azimuth);
+        document.light =
+            light.map(|light| document.light.take().unwrap_or_default().over(light)).or(document.light.take());
+    }
     Ok(apart)
 }
 

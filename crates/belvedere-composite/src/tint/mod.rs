@@ -1,287 +1,110 @@
-//! Hypsometric tints. The built-in ramps are ours: muted, lighter the higher for every kind of colour vision, so that they
-//! also read without colour.
+//! Colours of ground before it is lit: hypsometric tints, or materials by rule.
 
-mod climate;
+mod materials;
+mod ramps;
 
-use crate::color::{Rgb, linear, nearest};
 use belvedere_core::DVec2;
-use belvedere_scene::{Palette, PaletteName, Ramp};
-use climate::Stop;
+use belvedere_scene::{Climate, Palette, PaletteName};
+use materials::Materials;
+use ramps::RampTint;
 
-/// Steps of the table by height.
-const STEPS: usize = 1024;
-/// Colour of the ground below a translucent ramp.
-const GREY: [u8; 3] = [205, 205, 202];
-
-/// Colours of ground by height and slope, as pictures show them before they are lit: tint by height, and the colours that steepness and
-/// height add.
+/// Colours of the ground of a palette, as pictures show them before they are lit.
 #[derive(Debug, Clone)]
-pub struct GroundTint {
-    /// Colours and the strength of the texture of the ground; the last one is repeated.
-    ramp: Box<[[f32; 4]; STEPS + 1]>,
-    bottom_m: f32,
-    per_m: f32,
-    rock: Rgb,
-    /// Tangents of the slopes at which rock begins and at which it covers the ground.
-    rock_slope: Step,
-    snow: Rgb,
-    /// Heights at which snow begins and at which it covers gentle slopes, metres.
-    snow_m: Step,
-    snow_slope: Step,
-    /// Height that a slope away from the sun adds for snow, metres for a tangent of 1 to the north.
-    north_m: f32,
-    /// Strengths of the texture of rock and snow.
-    rock_rough: f32,
-    snow_rough: f32,
+pub struct GroundTint(Tint);
+
+#[derive(Debug, Clone)]
+enum Tint {
+    Ramp(RampTint),
+    Materials(Box<Materials>),
 }
 
-type Stops = &'static [(f32, [u8; 3])];
+/// Nodes of ground, value by value.
+#[derive(Debug, Clone, Copy)]
+pub struct GroundNodes<'a, const N: usize> {
+    /// True heights, metres.
+    pub height_m: &'a [f32; N],
+    /// Rise to the east and to the north, metres per metre.
+    pub slope: [&'a [f32; N]; 2],
+    /// The same of generalised ground.
+    pub broad: [&'a [f32; N]; 2],
+    /// Heights over the surroundings, metres.
+    pub above_m: &'a [f32; N],
+    /// Places on the map, metres east and south of its corner.
+    pub at_m: [&'a [f32; N]; 2],
+    /// Distance of the nodes, metres: what is smaller than two of them is left out.
+    pub spacing_m: f32,
+}
 
-/// A step that no height reaches; finite, since a step between infinities is NaN.
-const NEVER: [f32; 2] = [1e30, 2e30];
-/// Tangents of the slopes at which snow begins to slide off and has gone.
-const SNOW_SLOPE: [f32; 2] = [0.7, 1.3];
+/// What covers nodes of ground, value by value.
+#[derive(Debug, Clone)]
+pub struct GroundCover<const N: usize> {
+    /// Linear red, green and blue.
+    pub color: [[f32; N]; 3],
+    /// Shares of forest, of bare rock, and of snow, 0..=1; 0 in hypsometric tints.
+    pub forest: [f32; N],
+    /// See `forest`.
+    pub bare: [f32; N],
+    /// See `forest`.
+    pub snow: [f32; N],
+}
 
-const ALPINE: Stops = &[
-    (0.0, [101, 138, 104]),
-    (0.15, [121, 156, 110]),
-    (0.32, [148, 174, 118]),
-    (0.48, [176, 184, 128]),
-    (0.62, [195, 186, 142]),
-    (0.76, [205, 190, 158]),
-    (0.88, [214, 203, 187]),
-    (1.0, [232, 230, 228]),
-];
-const DESERT: Stops = &[
-    (0.0, [150, 112, 88]),
-    (0.2, [178, 126, 92]),
-    (0.4, [199, 150, 108]),
-    (0.6, [212, 174, 130]),
-    (0.8, [219, 197, 160]),
-    (1.0, [226, 221, 197]),
-];
-const GLACIAL: Stops = &[
-    (0.0, [128, 130, 120]),
-    (0.22, [150, 147, 136]),
-    (0.42, [170, 167, 160]),
-    (0.62, [193, 195, 196]),
-    (0.82, [212, 218, 224]),
-    (1.0, [228, 232, 237]),
-];
-/// Blue to yellow, which every kind of colour vision tells apart, in even steps of lightness.
-const CLEAR: Stops = &[
-    (0.0, [70, 92, 128]),
-    (0.2, [97, 119, 142]),
-    (0.4, [133, 144, 145]),
-    (0.6, [172, 170, 142]),
-    (0.8, [212, 199, 142]),
-    (1.0, [245, 233, 168]),
-];
-/// Not white, since slopes in the light are brighter than this and must stay below white.
-const SNOW: [u8; 3] = [229, 233, 238];
-const PLAIN: Stops = &[(0.0, GREY), (1.0, GREY)];
-const NIGHT: Stops = &[(0.0, [38, 48, 72]), (0.5, [66, 80, 112]), (1.0, [118, 134, 168])];
-/// Heights over the sea, metres.
-const ATLAS: Stops = &[
-    (0.0, [104, 148, 112]),
-    (200.0, [130, 166, 118]),
-    (500.0, [164, 186, 128]),
-    (1000.0, [198, 198, 138]),
-    (2000.0, [212, 200, 148]),
-    (3500.0, [222, 208, 172]),
-    (5000.0, [234, 226, 208]),
-    (7000.0, [244, 243, 242]),
-];
+/// A spacing at which no detail is made, metres.
+const COARSEST_M: f32 = 1e9;
 
 impl GroundTint {
     /// The colours of a palette.
     ///
-    /// * `z_range_m`: heights that its ramp spans.
+    /// * `z_range_m`: heights of the ground.
     pub fn new(palette: &Palette, z_range_m: [f64; 2]) -> Self {
-        let [bottom, top] = z_range_m.map(|z| z as f32);
-        let span = (top - bottom).max(1e-3);
-        let name = match palette {
-            Palette::Ramp(ramp) => {
-                return Self::even(from_ramp(ramp, z_range_m), GREY, z_range_m);
+        let materials = match palette {
+            Palette::Placed(name, climate) => Materials::of(*name, climate, z_range_m),
+            Palette::Named(name @ (PaletteName::Winter | PaletteName::Autumn)) => {
+                Materials::of(*name, &Climate::of_heights(z_range_m), z_range_m)
             }
-            Palette::Placed(name, climate) => {
-                if let Some(look) = climate::look(*name, climate, z_range_m) {
-                    return Self::of_look(&look);
-                }
-                *name
-            }
-            // Ground that is high everywhere is rock and ice; other ground is green in its valleys.
-            Palette::Named(PaletteName::Auto) if top > 5000.0 => PaletteName::Glacial,
-            Palette::Named(name) => *name,
+            Palette::Named(_) | Palette::Ramp(_) => None,
         };
-        let built_in = |stops: Stops| (0..STEPS).map(|i| ramp_at(stops, i as f32 / (STEPS - 1) as f32)).collect();
-        let even = |stops: Stops| Self::even(built_in(stops), GREY, z_range_m);
-        match name {
-            PaletteName::Desert => {
-                let rock = (linear([148, 98, 72]), Step::new([0.7, 1.6]));
-                Self { rock: rock.0, rock_slope: rock.1, ..even(DESERT) }
-            }
-            PaletteName::Glacial => Self {
-                rock: linear([112, 106, 102]),
-                rock_slope: Step::new([0.6, 1.15]),
-                snow_m: Step::new([bottom + 0.42 * span, bottom + 0.62 * span]),
-                ..even(GLACIAL)
-            },
-            PaletteName::Clear => even(CLEAR),
-            PaletteName::Plain => even(PLAIN),
-            PaletteName::Night => even(NIGHT),
-            PaletteName::Atlas => {
-                let height = |i: usize| bottom + span * i as f32 / (STEPS - 1) as f32;
-                Self::even((0..STEPS).map(|i| ramp_at(ATLAS, height(i))).collect(), GREY, z_range_m)
-            }
-            // Without a place the seasons have the line of snow that the range of heights gives.
-            PaletteName::Winter | PaletteName::Autumn => Self::of_look(&climate::unplaced(name, z_range_m)),
-            PaletteName::Alpine | PaletteName::Auto | PaletteName::Swiss => {
-                let line = (bottom + 0.70 * span).max(2450.0);
-                Self {
-                    rock: linear([156, 149, 137]),
-                    rock_slope: Step::new([0.66, 1.3]),
-                    snow_m: Step::new([line, line + 0.14 * span.max(300.0)]),
-                    ..even(ALPINE)
-                }
-            }
+        let ramp = || Tint::Ramp(RampTint::new(palette, z_range_m));
+        Self(materials.map_or_else(ramp, |m| Tint::Materials(Box::new(m))))
+    }
+
+    /// Whether the ground shows materials by rule, with detail that its data do not have.
+    pub fn is_made(&self) -> bool {
+        matches!(self.0, Tint::Materials(_))
+    }
+
+    /// The climate by which materials lie; `None` in hypsometric tints.
+    pub fn climate(&self) -> Option<Climate> {
+        match &self.0 {
+            Tint::Materials(materials) => Some(materials.climate()),
+            Tint::Ramp(_) => None,
         }
     }
 
-    /// Colours by height alone, without snow or texture.
-    fn even(ramp: Vec<Rgb>, rock: [u8; 3], z_range_m: [f64; 2]) -> Self {
-        let [bottom, top] = z_range_m.map(|z| z as f32);
-        let span = (top - bottom).max(1e-3);
-        Self {
-            ramp: Box::new(std::array::from_fn(|i| ramp[i.min(STEPS - 1)].extend(0.0).to_array())),
-            bottom_m: bottom,
-            per_m: (STEPS - 1) as f32 / span,
-            rock: linear(rock),
-            rock_slope: Step::new(NEVER),
-            snow: linear(SNOW),
-            snow_m: Step::new(NEVER),
-            snow_slope: Step::new(SNOW_SLOPE),
-            north_m: 0.0,
-            rock_rough: 0.0,
-            snow_rough: 0.0,
-        }
-    }
-
-    fn of_look(look: &climate::Look) -> Self {
-        let [bottom, top] = [&look.stops[0], &look.stops[look.stops.len() - 1]].map(|stop| stop.height_m);
-        let span = (top - bottom).max(1e-3);
-        let at = |i: usize| stop_at(&look.stops, bottom + span * i.min(STEPS - 1) as f32 / (STEPS - 1) as f32);
-        Self {
-            ramp: Box::new(std::array::from_fn(at)),
-            bottom_m: bottom,
-            per_m: (STEPS - 1) as f32 / span,
-            rock: linear(look.rock),
-            rock_slope: Step::new(look.rock_slope),
-            snow: linear(SNOW),
-            snow_m: Step::new(look.snow_m),
-            snow_slope: Step::new(look.snow_slope),
-            north_m: look.north_m,
-            rock_rough: 0.9,
-            snow_rough: 0.12,
-        }
-    }
-
-    /// Whether the ground has a texture.
-    pub fn is_textured(&self) -> bool {
-        self.rock_rough > 0.0
-    }
-
-    /// Colours of ground at heights, with the tangents of its slopes and those of their parts that fall to the north, linear: the tint, rock
-    /// where it is steep, snow where it is high and not steep; fourth, the strength of its texture.
+    /// Colours and covers of nodes.
     #[inline(always)]
-    pub fn colors<const N: usize>(&self, height_m: &[f32; N], steep: &[f32; N], north: &[f32; N]) -> [[f32; N]; 4] {
-        // The last index of the table lies just before its end.
-        const LAST: f32 = (STEPS - 1) as f32 - 0.001;
-        let (mut below, mut share, mut rock, mut snow) = ([0; N], [0.0; N], [0.0; N], [0.0; N]);
-        for i in 0..N {
-            let t = (height_m[i] - self.bottom_m) * self.per_m;
-            let t = if t > 0.0 { t } else { 0.0 };
-            let t = if t < LAST { t } else { LAST };
-            // On an entry of the table either neighbour gives the same colour.
-            below[i] = nearest(t - 0.5);
-            share[i] = t - below[i] as f32;
-            rock[i] = 0.85 * self.rock_slope.at(steep[i]);
-            let shaded = if north[i] > -1.0 { north[i] } else { -1.0 };
-            let shaded = if shaded < 1.0 { shaded } else { 1.0 };
-            snow[i] = self.snow_m.at(height_m[i] + self.north_m * shaded) * (1.0 - self.snow_slope.at(steep[i]));
+    pub fn cover<const N: usize>(&self, nodes: &GroundNodes<'_, N>) -> GroundCover<N> {
+        match &self.0 {
+            Tint::Ramp(ramp) => ramp.cover(nodes),
+            Tint::Materials(materials) => materials.cover(nodes),
         }
-        let mut tint = [[0.0f32; 4]; N];
-        for i in 0..N {
-            let k = below[i] as usize & (STEPS - 1);
-            let (a, b) = (self.ramp[k], self.ramp[k + 1]);
-            tint[i] = std::array::from_fn(|c| a[c] + share[i] * (b[c] - a[c]));
-        }
-        let (stone, white) =
-            (self.rock.extend(self.rock_rough).to_array(), self.snow.extend(self.snow_rough).to_array());
-        let mut out = [[0.0; N]; 4];
-        for (k, out) in out.iter_mut().enumerate() {
-            for i in 0..N {
-                let bare = tint[i][k] + rock[i] * (stone[k] - tint[i][k]);
-                out[i] = bare + snow[i] * (white[k] - bare);
-            }
-        }
-        out
     }
 
-    /// The colour of one point, linear red, green and blue, 0..=1.
+    /// The colour of one point without made detail, linear red, green and blue, 0..=1.
     ///
     /// * `height_m`: true height;
     /// * `slope`: rise to the east and to the north, metres per metre.
     pub fn color(&self, height_m: f64, slope: DVec2) -> [f32; 3] {
-        let [r, g, b, _] = self.colors(&[height_m as f32], &[slope.length() as f32], &[-slope.y as f32]);
-        [r, g, b].map(|[v]| v.clamp(0.0, 1.0))
+        let (height, [x, y]) = ([height_m as f32], slope.as_vec2().to_array().map(|v| [v]));
+        let nodes = GroundNodes {
+            height_m: &height,
+            slope: [&x, &y],
+            broad: [&x, &y],
+            above_m: &[0.0],
+            at_m: [&[0.0]; 2],
+            spacing_m: COARSEST_M,
+        };
+        self.cover(&nodes).color.map(|[v]| v.clamp(0.0, 1.0))
     }
-}
-
-/// 0 below a value, 1 above another, smooth between.
-#[derive(Debug, Clone, Copy)]
-struct Step {
-    from: f32,
-    per: f32,
-}
-
-impl Step {
-    const fn new([from, to]: [f32; 2]) -> Self {
-        Self { from, per: 1.0 / (to - from) }
-    }
-
-    #[inline(always)]
-    fn at(self, x: f32) -> f32 {
-        let t = (x - self.from) * self.per;
-        let t = if t > 0.0 { t } else { 0.0 };
-        let t = if t < 1.0 { t } else { 1.0 };
-        t * t * (3.0 - 2.0 * t)
-    }
-}
-
-fn ramp_at(stops: Stops, t: f32) -> Rgb {
-    let i = stops.partition_point(|s| s.0 <= t).clamp(1, stops.len() - 1);
-    let ((t0, a), (t1, b)) = (stops[i - 1], stops[i]);
-    linear(a).lerp(linear(b), ((t - t0) / (t1 - t0)).clamp(0.0, 1.0))
-}
-
-/// Colour and strength of the texture at a height.
-fn stop_at(stops: &[Stop], height_m: f32) -> [f32; 4] {
-    let i = stops.partition_point(|s| s.height_m <= height_m).clamp(1, stops.len() - 1);
-    let (a, b) = (&stops[i - 1], &stops[i]);
-    let t = ((height_m - a.height_m) / (b.height_m - a.height_m).max(1e-3)).clamp(0.0, 1.0);
-    let color = linear(a.color).lerp(linear(b.color), t);
-    color.extend(a.rough + t * (b.rough - a.rough)).to_array()
-}
-
-/// The table of a ramp with colours of its own.
-fn from_ramp(ramp: &Ramp, [bottom, top]: [f64; 2]) -> Vec<Rgb> {
-    let stops = ramp.resolved([bottom, top]);
-    let color = |i: usize| {
-        let c = ramp.color_at(&stops, bottom + (top - bottom) * i as f64 / (STEPS - 1) as f64);
-        linear(GREY).lerp(linear([c.r, c.g, c.b]), f32::from(c.a) / 255.0)
-    };
-    (0..STEPS).map(color).collect()
 }
 
 #[cfg(test)]

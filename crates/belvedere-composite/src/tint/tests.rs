@@ -1,5 +1,7 @@
+use super::ramps::{ALPINE, CLEAR, DESERT, GLACIAL, GREY, ramp_at};
 use super::*;
-use belvedere_scene::{Color, RampHeight, RampStop};
+use crate::color::{Rgb, linear};
+use belvedere_scene::{Climate, Color, Ramp, RampHeight, RampStop};
 use std::sync::Arc;
 
 /// Simulations of dichromatic vision in linear RGB (Machado, Oliveira, Fernandes 2009, severity 1).
@@ -24,8 +26,7 @@ fn lab(c: Rgb, eye: [[f32; 3]; 3]) -> Rgb {
 }
 
 fn color(tint: &GroundTint, height_m: f32, steep: f32) -> Rgb {
-    let [[r], [g], [b], _] = tint.colors(&[height_m], &[steep], &[0.0]);
-    Rgb::new(r, g, b)
+    Rgb::from_array(tint.color(f64::from(height_m), DVec2::new(f64::from(steep), 0.0)))
 }
 
 #[test]
@@ -46,28 +47,90 @@ fn built_in_ramps_are_told_apart_by_every_kind_of_colour_vision() {
 }
 
 #[test]
-fn every_palette_tells_snow_from_ground_even_where_there_is_none() {
-    for palette in PaletteName::ALL.map(|(_, name)| Palette::Named(name)) {
-        // Winters have snow down to the valleys.
-        if palette == PaletteName::Winter.into() {
-            continue;
-        }
-        for range in [[0.0, 4000.0], [12.0, 12.0]] {
-            let tint = GroundTint::new(&palette, range);
-            let snow = tint.snow_m.at(range[0] as f32);
-            assert!(snow == 0.0, "{palette:?}: {snow} of the lowest ground is snow");
+fn snow_lies_on_high_gentle_ground_and_slides_off_steep_ground() {
+    let tint = GroundTint::new(&PaletteName::Alpine.into(), [1000.0, 4800.0]);
+    let snow = color(&tint, 4800.0, 0.3);
+    assert!(snow.min_element() > 0.75, "gentle: {snow}");
+    for steep in [1.4, 3.0, 50.0] {
+        assert!(color(&tint, 4800.0, steep).max_element() < 0.6 * snow.min_element(), "tangent {steep}");
+    }
+    assert!(color(&tint, 1000.0, 0.3).max_element() < 0.5, "the lowest ground has none");
+}
+
+const ALPS: Climate =
+    Climate { snow_line_m: 2850.0, tree_line_m: 1900.0, dryness: 0.0, latitude_deg: 46.5, of_place: true };
+const DESERT_CLIMATE: Climate = Climate { dryness: 1.0, ..ALPS };
+
+/// Covers of 4096 places on a slope at one height, and their colours in CIELAB.
+fn places(
+    name: PaletteName,
+    climate: Climate,
+    height: f32,
+    slope: [f32; 2],
+    above: f32,
+) -> (GroundCover<64>, Vec<Rgb>) {
+    let tint = GroundTint::new(&Palette::Placed(name, climate), [400.0, 4200.0]);
+    let mut all = GroundCover { color: [[0.0; 64]; 3], forest: [0.0; 64], bare: [0.0; 64], snow: [0.0; 64] };
+    let mut colors = Vec::new();
+    for row in 0..64 {
+        let (x, y) = (std::array::from_fn(|i| 8.0 * i as f32), [8.0 * row as f32; 64]);
+        let [east, north] = slope.map(|s| [s; 64]);
+        let nodes = GroundNodes {
+            height_m: &[height; 64],
+            slope: [&east, &north],
+            broad: [&east, &north],
+            above_m: &[above; 64],
+            at_m: [&x, &y],
+            spacing_m: 8.0,
+        };
+        let cover = tint.cover(&nodes);
+        for i in 0..64 {
+            all.forest[i] += cover.forest[i] / 64.0;
+            all.bare[i] += cover.bare[i] / 64.0;
+            all.snow[i] += cover.snow[i] / 64.0;
+            colors.push(lab(Rgb::from_array([0, 1, 2].map(|k| cover.color[k][i])), NORMAL));
         }
     }
+    (all, colors)
+}
+
+fn mean(shares: [f32; 64]) -> f32 {
+    shares.iter().sum::<f32>() / 64.0
 }
 
 #[test]
-fn snow_slides_off_steep_ground() {
-    let tint = GroundTint::new(&PaletteName::Alpine.into(), [1000.0, 4800.0]);
-    let snow = |steep: f32| color(&tint, 4800.0, steep);
-    assert!((snow(0.3) - tint.snow).abs().max_element() < 0.02, "gentle: {}", snow(0.3));
-    for steep in [1.4, 3.0, 50.0] {
-        assert!(snow(steep).max_element() < 0.6 * tint.snow.min_element(), "tangent {steep}: {}", snow(steep));
-    }
+fn materials_lie_where_the_climate_and_the_form_of_the_ground_have_them() {
+    let forest = |height, slope, above| mean(places(PaletteName::Auto, ALPS, height, slope, above).0.forest);
+    let wood = forest(1400.0, [0.4, 0.0], -5.0);
+    assert!(wood > 0.7, "a slope in the forest: {wood}");
+    assert!(forest(2500.0, [0.4, 0.0], 0.0) < 0.01, "over the line of trees");
+    assert!(forest(1400.0, [1.5, 0.0], 0.0) < 0.01, "on a cliff");
+    assert!(forest(1400.0, [0.4, 0.0], 60.0) < 0.5 * wood, "on a ridge");
+    assert!(forest(1950.0, [0.0, -0.5], 0.0) > 0.2 + forest(1950.0, [0.0, 0.5], 0.0), "in the shade and in the sun");
+    let dry = mean(places(PaletteName::Auto, DESERT_CLIMATE, 900.0, [0.4, 0.0], 0.0).0.forest);
+    assert!(dry < 0.1, "in a desert: {dry}");
+    let bare = |height, slope| mean(places(PaletteName::Auto, ALPS, height, slope, 0.0).0.bare);
+    assert!(bare(2300.0, [1.2, 0.0]) > 0.9 && bare(2100.0, [0.15, 0.0]) < 0.1);
+    let snow = |name, height, slope| mean(places(name, ALPS, height, slope, 0.0).0.snow);
+    assert!(snow(PaletteName::Auto, 3400.0, [0.3, 0.0]) > 0.95 && snow(PaletteName::Auto, 3400.0, [1.6, 0.0]) < 0.2);
+    assert!(snow(PaletteName::Auto, 2000.0, [0.3, 0.0]) < 0.01 && snow(PaletteName::Winter, 1200.0, [0.2, 0.0]) > 0.95);
+}
+
+#[test]
+fn forest_has_a_canopy_and_kinds_of_ground_differ_in_hue() {
+    let (_, wood) = places(PaletteName::Auto, ALPS, 1400.0, [0.4, 0.0], -10.0);
+    let middle = wood.iter().map(|c| c.x).sum::<f32>() / 4096.0;
+    let spread = (wood.iter().map(|c| (c.x - middle).powi(2)).sum::<f32>() / 4096.0).sqrt();
+    assert!(spread >= 5.0, "deviation of the lightness of a forest without light: {spread}");
+    let hue = |name, height, slope: f32, above| {
+        let (_, colors) = places(name, ALPS, height, [slope, 0.0], above);
+        let sum = colors.iter().fold(Rgb::ZERO, |sum, c| sum + *c);
+        (sum.z.atan2(sum.y).to_degrees(), sum.x / 4096.0)
+    };
+    let (wood, rock) = (hue(PaletteName::Auto, 1300.0, 0.4, -10.0), hue(PaletteName::Auto, 2500.0, 1.3, 0.0));
+    assert!((wood.0 - rock.0).abs() >= 40.0, "hues of forest and rock: {wood:?}, {rock:?}");
+    let winter = hue(PaletteName::Winter, 1300.0, 0.4, -10.0);
+    assert!(winter.1 < 0.5 * hue(PaletteName::Winter, 2300.0, 0.2, 0.0).1, "forest in winter is dark: {winter:?}");
 }
 
 #[test]

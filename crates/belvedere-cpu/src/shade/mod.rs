@@ -32,8 +32,8 @@ use belvedere_sight::sections::Sections;
 use cast::Casters;
 use glam::Vec3A;
 pub(crate) use ground::terrain::LightCache;
-use ground::terrain::TerrainShade;
-use ground::{surface, tiles};
+use ground::terrain::{TerrainShade, finer_levels};
+use ground::{broad, surface, tiles};
 use key_light::KeyShadows;
 use overlay::area::AreaMap;
 pub(crate) use painted::{Painted, Samples};
@@ -84,10 +84,10 @@ pub(crate) struct Shaded {
 pub(crate) fn ground_bytes(job: &RenderJob<'_>, hf: &Heightfield) -> u64 {
     let nodes = hf.heights().len() as u64;
     let lifted = job.view.stages().iter().any(|s| s.moves_ground());
-    let shadows = if job.light.shadows { nodes * 4 / 3 } else { 0 };
+    let shadows = nodes * 4 / 3;
     let pixels = job.view.pinhole().image.map(u64::from).iter().product();
-    let lit = 2 * tiles::most_bytes([hf.cols(), hf.rows()], pixels);
-    let means = surface::means_bytes(nodes);
+    let lit = 2 * tiles::most_bytes([hf.cols(), hf.rows()], finer_levels(hf), pixels);
+    let means = surface::means_bytes(nodes) + broad::bytes(nodes);
     // Lifted ground takes its tint from the averages of the map.
     means + DecimatedHeights::bytes(nodes) + shadows + lit + if lifted { 8 * nodes + means } else { 0 }
 }

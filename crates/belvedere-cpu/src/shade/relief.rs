@@ -15,14 +15,29 @@ const BRIGHTEST: f32 = 4.0;
 const SWISS_ALTITUDE: f64 = 0.68;
 
 /// Relative exaggeration of level ground in a Swiss relief, and the tangent of the slope at which half of it remains.
-const GENTLE: f32 = 1.2;
+const GENTLE: f32 = 0.8;
 const GENTLE_SLOPE: f32 = 0.25;
 
 /// Factor on the openness of a point in a Swiss relief, relative to the light of the sky.
-const FORM: f32 = 2.0;
+const FORM: f32 = 3.0;
 
 /// Share of direct light left in a cast shadow of a Swiss relief, whose light is a drawing technique rather than a sun.
-const SWISS_SHADOW: f32 = 0.45;
+const SWISS_SHADOW: f32 = 0.4;
+
+/// Colours of the light of a Swiss relief, linear: a warm sun and a cool sky (Imhof; the figures are ours).
+const SWISS_SUN: [f32; 3] = [1.28, 1.13, 0.86];
+const SWISS_SKY: [f32; 3] = [0.44, 0.56, 0.88];
+
+/// Amounts of direct light and of light of the sky on level ground.
+const SWISS_AMOUNTS: [f32; 2] = [0.92, 0.30];
+const AMOUNTS: [f32; 2] = [0.80, 0.62];
+
+/// Share of the side lights of a Swiss relief on steep ground.
+const SIDES: f32 = 0.3;
+
+/// Film of a Swiss relief: exposure, and the square root of light above which it is compressed, so that snow keeps its forms.
+const EXPOSURE: f32 = 1.1;
+const SHOULDER: f32 = 0.70;
 
 /// The same for ground without relief, on which only boxes and meshes throw shadows.
 const FLAT_SHADOW: f32 = 0.62;
@@ -58,7 +73,8 @@ impl ReliefLight {
         });
         let (warm, cool) = match relief {
             Relief::None => (Rgb::ONE, Rgb::ZERO),
-            _ => (linear([255, 247, 232]) * 1.12, linear([126, 142, 176])),
+            Relief::Swiss => (Rgb::from_array(SWISS_SUN), Rgb::from_array(SWISS_SKY)),
+            Relief::Sun => (linear([255, 247, 232]) * 1.12, linear([126, 142, 176])),
         };
         let in_shadow = match relief {
             Relief::Swiss => SWISS_SHADOW,
@@ -66,6 +82,18 @@ impl ReliefLight {
             Relief::None => FLAT_SHADOW,
         };
         Self { relief, sun: towards(light.azimuth, altitude), sides, in_shadow, warm, cool }
+    }
+
+    /// Square root of a lit colour as pictures show it.
+    #[inline(always)]
+    pub(crate) fn film(&self, root: f32) -> f32 {
+        if self.relief != Relief::Swiss {
+            return root;
+        }
+        let r = EXPOSURE * root;
+        let over = (r - SHOULDER) * (1.0 / (1.0 - SHOULDER));
+        let bent = SHOULDER + (1.0 - SHOULDER) * over / (1.0 + over);
+        if over > 0.0 { bent } else { r }
     }
 
     /// Factor by which light from everywhere colours a surface with unit normal `n`.
@@ -108,12 +136,14 @@ impl ReliefLight {
             *v = tone(*v, tones);
         }
         // Ridges stand out from their surroundings, valleys lie back.
+        let amounts = if swiss { SWISS_AMOUNTS } else { AMOUNTS };
         let (form, constant, per_open) = if swiss { (FORM, 0.6, 0.4) } else { (1.0, 0.7, 0.3) };
         for i in 0..N {
             let open = 1.0 + form * (open[i] - 1.0);
             let left = self.in_shadow + (1.0 - self.in_shadow) * lit[i];
-            direct[i] = 0.80 * bright[i] * (constant + per_open * open) * left;
-            sky[i] = 0.62 * (0.5 + 0.5 * z[i]) * open;
+            let open = if open > 0.0 { open } else { 0.0 };
+            direct[i] = amounts[0] * bright[i] * (constant + per_open * open) * left;
+            sky[i] = amounts[1] * (0.5 + 0.5 * z[i]) * open;
         }
         [direct, sky]
     }
@@ -130,7 +160,7 @@ impl ReliefLight {
             weights += w;
         }
         // Level ground has no aspect, so the side lights fade in with the slope.
-        let share = 0.42 * if steep < 1.0 / 12.0 { steep * 12.0 } else { 1.0 };
+        let share = SIDES * if steep < 1.0 / 12.0 { steep * 12.0 } else { 1.0 };
         main + share * (sum / (if weights > 1e-9 { weights } else { 1e-9 }) - main)
     }
 }

@@ -28,6 +28,9 @@ pub struct Air {
     /// How the ground ends where its data end: soft (it fades), block (it is cut, with sides), mat (it stands on a plain surface), plain
     #[cfg_attr(feature = "clap", arg(long, value_name = "KIND", value_parser = one_of::<Edge>(), hide_possible_values = true))]
     pub edge: Option<Edge>,
+    /// Tint the ground by height alone: no forest, rock or snow by rule, and no relief finer than the data
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub plain: bool,
     /// Title, legend, attribution, compass and scale.
     #[cfg_attr(feature = "clap", command(flatten))]
     #[serde(flatten)]

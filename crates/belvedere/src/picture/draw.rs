@@ -105,7 +105,7 @@ pub(super) fn sidecar(
         attribution: furniture::credits(session),
         furniture,
         displacement,
-        terrain: session.scene().terrain().map(TerrainRecord::of),
+        terrain: session.scene().layers.iter().find_map(|layer| layer.kind.terrain()).map(TerrainRecord::of),
         molecules: MoleculeRecord::all_of(session.scene()),
         see_through: SeeThroughRecord::all_of(session.scene()),
         volumes,

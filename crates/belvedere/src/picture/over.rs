@@ -7,6 +7,7 @@ use super::sidecar::OverlayRecord;
 use crate::Session;
 use crate::scene_file::Inset;
 use belvedere_composite::canvas::Canvas;
+use belvedere_composite::tint::GroundTint;
 use belvedere_overlay::highlight::HighlightRecord;
 use belvedere_overlay::{badge, curve_inset, heat, highlight};
 
@@ -103,8 +104,18 @@ fn mark_words(
     match displacement {
         _ if !session.resolved.overlay.mark || request.no_mark || !badge::fits(width, height) => None,
         _ if request.steady_mark => Some(badge::WORDS.to_owned()),
-        moved => moved.map(|moved| badge::words(width, moved.max_m, session.scene().unit)),
+        moved => moved.map(|moved| badge::words(width, moved.max_m, session.scene().unit, has_made_ground(session))),
     }
+}
+
+/// Whether a ground of the scene shows materials by rule.
+fn has_made_ground(session: &Session) -> bool {
+    session
+        .scene()
+        .layers
+        .iter()
+        .filter_map(|layer| layer.kind.terrain())
+        .any(|terrain| GroundTint::new(&terrain.palette, terrain.heightfield.z_range()).is_made())
 }
 
 /// Draws the curve of a spline; whether the picture is large enough.

@@ -9,6 +9,7 @@ use crate::print::Sheet;
 use crate::record::{AreaRecord, InputFile, ViewRecord};
 use crate::scene_file::{Document, Inset};
 use crate::vectors::VectorPicture;
+use belvedere_composite::tint::GroundTint;
 use belvedere_core::View;
 use belvedere_core::Warning;
 use belvedere_disocclusion::TerrainReport;
@@ -16,7 +17,7 @@ use belvedere_overlay::furniture::FurnitureRecord;
 use belvedere_overlay::highlight::HighlightRecord;
 use belvedere_resolve::StripReport;
 use belvedere_resolve::constructor::ConstructorReport;
-use belvedere_scene::{Crs, Frame, FrameStats, Heightfield, Layer, LayerKind, NodeState, Scene, Unit};
+use belvedere_scene::{Crs, Frame, FrameStats, Layer, LayerKind, NodeState, Scene, TerrainLayer, Unit};
 use belvedere_sight::RigidLayers;
 use serde::ser::Error as _;
 use serde::{Serialize, Serializer};
@@ -33,14 +34,47 @@ pub struct TerrainRecord {
     pub filled_nodes: usize,
     /// Share of these nodes, 0..=1.
     pub filled_share: f64,
+    /// What is drawn by rule and is no data; nothing in tints by height.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub made: Option<MadeRecord>,
+}
+
+/// Materials that are drawn by rule.
+#[derive(Debug, Clone, Copy, PartialEq, schemars::JsonSchema, Serialize)]
+pub struct MadeRecord {
+    /// Height over the sea above which no forest is drawn, metres.
+    pub tree_line_m: f64,
+    /// Height over the sea above which gentle slopes have snow in summer, metres.
+    pub snow_line_m: f64,
+    /// Dryness of the climate: 0 = humid, 1 = desert.
+    pub dryness: f64,
+    /// Whether the climate is that of the place; else it is guessed from the heights.
+    pub climate_of_place: bool,
+    /// Spacing of the data, scene units: finer relief is made.
+    pub data_spacing: f64,
+}
+
+impl MadeRecord {
+    fn of(terrain: &TerrainLayer) -> Option<Self> {
+        let climate = GroundTint::new(&terrain.palette, terrain.heightfield.z_range()).climate()?;
+        Some(Self {
+            tree_line_m: climate.tree_line_m,
+            snow_line_m: climate.snow_line_m,
+            dryness: climate.dryness,
+            climate_of_place: climate.of_place,
+            data_spacing: terrain.heightfield.spacing().max_element(),
+        })
+    }
 }
 
 impl TerrainRecord {
-    pub(super) fn of(terrain: &Heightfield) -> Self {
+    pub(super) fn of(layer: &TerrainLayer) -> Self {
+        let terrain = &layer.heightfield;
         let count = |state| terrain.states().iter().filter(|s| **s == state).count();
         let filled_share = terrain.share_of(NodeState::Filled);
         let [void_nodes, filled_nodes] = [NodeState::Void, NodeState::Filled].map(count);
-        Self { nodes: terrain.states().len(), void_nodes, filled_nodes, filled_share }
+        let made = MadeRecord::of(layer);
+        Self { nodes: terrain.states().len(), void_nodes, filled_nodes, filled_share, made }
     }
 }
 

@@ -10,7 +10,7 @@ use crate::shade::ground::lit::Colors;
 use crate::shade::ground::sample::GroundSample;
 use crate::shade::ground::terrain::TerrainShade;
 use crate::shade::ground::tiles::CELL;
-use crate::shade::{LayerShade, Painted, Samples, Shader, pixel_of};
+use crate::shade::{LayerShade, Painted, Samples, Shader, lod, pixel_of};
 use crate::simd::{IntLanes, LANES, Lanes, nearest};
 use belvedere_core::DVec2;
 
@@ -201,29 +201,11 @@ impl Batch {
         let at = self.fixed(&positions, terrain);
         let inputs = terrain.inputs();
         let colors = terrain.lit.colors_of(&at, &lods, self.len, &inputs);
-        let grain = terrain.grain(
-            [&self.node[0], &self.node[1]],
-            [&positions.u, &positions.v],
-            &self.extents(&positions, terrain, shader),
-        );
-        let color = terrain.colors(shader, &colors, grain.as_ref(), &lods, &positions.depth);
+        let color = terrain.colors(shader, &colors, &lods, &positions.depth);
         painted.set_roots(&self.out[..self.len], &color, self.layer as u32 + 1);
         if terrain.is_covered(shader) {
             self.cover(shader, terrain, &positions, &at, samples, painted);
         }
-    }
-
-    /// Longest extents of the pixels on the ground, cells.
-    #[inline(always)]
-    fn extents(&self, positions: &SamplePositions, terrain: &TerrainShade<'_>, shader: &Shader<'_>) -> Lanes {
-        let [near, _] = terrain.footprints(shader, &positions.depth);
-        let mut out = [0.0; LANES];
-        for i in 0..LANES {
-            let (across, area) = (near[i].sqrt(), positions.cells_per_px[i]);
-            let along = area / across;
-            out[i] = if along > across { along } else { across };
-        }
-        out
     }
 
     /// Positions of the samples on the ground.
@@ -297,7 +279,8 @@ impl Batch {
             let [c, r] = [0, 1].map(|axis| f64::from(self.node[axis][i]));
             let g = DVec2::new(c + f64::from(positions.u[i]), r + f64::from(positions.v[i]));
             let square = positions.cells_per_px[i].max(near[i]).min(far[i]);
-            let ground = || terrain.lit.sample([at[0][i], at[1][i]], crate::shade::lod(square), &inputs);
+            let lod = terrain.lod(square, longest(square, near[i]));
+            let ground = || terrain.lit.sample([at[0][i], at[1][i]], lod, &inputs);
             let print = || {
                 let axes = shader
                     .blocks
@@ -314,6 +297,12 @@ impl Batch {
             }
         }
     }
+}
+
+/// Longer side of a pixel on the ground, cells, from its area and that of one which faces the ground.
+#[inline(always)]
+fn longest(square: f32, facing: f32) -> f32 {
+    square / if facing > 1e-12 { facing.sqrt() } else { 1e-6 }
 }
 
 #[inline(always)]
@@ -341,40 +330,40 @@ impl TerrainShade<'_> {
         if shader.screen.ortho { (per_px, 0.0) } else { (0.0, per_px) }
     }
 
-    /// Levels of averages, 256 steps to a level: from the slant and bend of the triangle, limited by the depth.
+    /// Levels, 256 steps to a level: from the slant and bend of the triangle, limited by the depth.
     #[inline(always)]
     fn lods(&self, shader: &Shader<'_>, depth: &Lanes, cells_per_px: &Lanes) -> [u32; LANES] {
         let [near, far] = self.footprints(shader, depth);
         let mut out = [0; LANES];
         for i in 0..LANES {
-            out[i] = crate::shade::lod(cells_per_px[i].max(near[i]).min(far[i]));
+            let square = cells_per_px[i].max(near[i]).min(far[i]);
+            out[i] = self.lod(square, longest(square, near[i]));
         }
         out
     }
 
+    /// Level for a pixel that covers `square` cells and is `longest` cells long, 256 steps to a level, 0 = the finest. Between the nodes
+    /// the longer side decides, since made detail that is too fine along it would shimmer.
+    #[inline(always)]
+    pub(super) fn lod(&self, square: f32, longest: f32) -> u32 {
+        let finer = self.lit.finer();
+        let per_cell = (1u32 << (2 * finer)) as f32;
+        let (by_square, by_length) = (lod(square * per_cell), lod(0.25 * longest * longest * per_cell));
+        let most = finer << 8;
+        let by_length = if by_length < most { by_length } else { most };
+        if by_square > by_length { by_square } else { by_length }
+    }
+
     /// Square roots of the lit colours, with haze.
     #[inline(always)]
-    fn colors(
-        &self,
-        shader: &Shader<'_>,
-        colors: &Colors,
-        grain: Option<&Lanes>,
-        lods: &[u32; LANES],
-        depth: &Lanes,
-    ) -> [Lanes; 3] {
+    fn colors(&self, shader: &Shader<'_>, colors: &Colors, lods: &[u32; LANES], depth: &Lanes) -> [Lanes; 3] {
         let air = shader.sky.haze();
-        let (mut out, mut textured) = ([[0.0; LANES]; 3], [1.0; LANES]);
-        if let Some(grain) = grain {
-            for i in 0..LANES {
-                textured[i] = 1.0 + colors.rough(i) * grain[i];
-            }
-        }
+        let mut out = [[0.0; LANES]; 3];
         for i in 0..LANES {
             let haze = shader.sky.haze_at(depth[i]);
             let root = colors.between(i, (lods[i] & 255) as i32 as f32 * (1.0 / 256.0));
             for k in 0..3 {
-                let c = root[k] * textured[i];
-                let c = c * c;
+                let c = root[k] * root[k];
                 out[k][i] = (c + haze * (air[k] - c)).sqrt();
             }
         }

@@ -78,12 +78,13 @@ pub(crate) struct DisplacedLight {
 
 /// Averages and light of displaced ground. Tiles of the last frame are reused unless their ground, or the ground that affects them,
 /// has changed; the result does not depend on what was cached.
+/// * `finer`: see [`LitGround::new`].
 pub(crate) fn light(
     cache: &GroundCache<LitKey, DisplacedLight>,
     hf: &Arc<Heightfield>,
     surface: &Surface<'_>,
     heights: &Arc<Vec<f32>>,
-    key: LitKey,
+    (key, finer): (LitKey, u32),
 ) -> DisplacedLight {
     let old = cache.take(hf, &key).filter(|old| !old.lit.is_full());
     let old = old.map(|old| (Squares::new(hf, &old.heights, heights), old));
@@ -98,7 +99,7 @@ pub(crate) fn light(
                 lit.retain(|reach| !changed.touch(reach));
                 Some(lit)
             });
-            let lit = lit.unwrap_or_else(|| LitGround::new(hf.cols(), hf.rows(), means.top()));
+            let lit = lit.unwrap_or_else(|| LitGround::new(hf.cols(), hf.rows(), means.top(), finer));
             DisplacedLight { heights: heights.clone(), means, lit: Arc::new(lit) }
         }
     };

@@ -6,13 +6,15 @@ use crate::raster::band::SKY;
 use crate::shade::{LayerShade, Painted, Sample, Samples, Shader, pixel_of};
 use belvedere_composite::color::{Rgb, smoothstep};
 use belvedere_core::DVec2;
-use belvedere_scene::{Edge, Heightfield, NodeState, TerrainLayer};
+use belvedere_scene::{Edge, Heightfield, LayerKind, NodeState, RenderJob, TerrainLayer};
 
 /// Width of the edge as a share of the shorter side of the data.
 const SHARE: f64 = 0.05;
 /// Voids are a sea where this share of their shore lies within this share of the range of heights above the lowest.
 const LOW_SHORE: f64 = 0.9;
 const COAST: f64 = 0.15;
+/// Distance from what must be seen at which ground fades as elsewhere, widths of the edge; up to half of it nothing fades.
+const KEPT: f32 = 0.8;
 /// Most cells along a side of the map of distances.
 const CELLS: usize = 384;
 
@@ -20,17 +22,64 @@ const CELLS: usize = 384;
 pub(crate) struct Border {
     cols: usize,
     rows: usize,
-    /// Distances of the cells, widths of the edge, at most about 1.
+    /// Distances of the cells, widths of the edge.
     distance: Vec<f32>,
+    /// Least opacity of the cells: ground under and in front of what must be seen does not fade.
+    kept: Vec<f32>,
     /// Cells per scene unit, and the north-western corner.
     per_unit: DVec2,
     north_west: DVec2,
+    /// Width of the edge, scene units.
+    width: f64,
 }
 
 impl Border {
     /// The border of a ground that fades; `None` for other edges.
-    pub(super) fn of(layer: &TerrainLayer) -> Option<Self> {
-        (layer.edge == Edge::Soft).then(|| Self::new(&layer.heightfield))
+    pub(super) fn of(layer: &TerrainLayer, job: &RenderJob<'_>) -> Option<Self> {
+        (layer.edge == Edge::Soft).then(|| {
+            let mut border = Self::new(&layer.heightfield);
+            let eye = job.view.pinhole().eye.truncate();
+            job.scene.must_see().for_each(|(_, layer)| each_place(&layer.kind, &mut |place| border.keep(place, eye)));
+            border.widen_kept();
+            border
+        })
+    }
+
+    /// Keeps the cells from a place near the rim towards the eye.
+    fn keep(&mut self, place: DVec2, eye: DVec2) {
+        let cell = |xy: DVec2| {
+            let at = DVec2::new(xy.x - self.north_west.x, self.north_west.y - xy.y) * self.per_unit;
+            let inside = at.cmpge(DVec2::ZERO).all() && at.x < self.cols as f64 && at.y < self.rows as f64;
+            inside.then(|| at.y as usize * self.cols + at.x as usize)
+        };
+        let step = (eye - place).normalize_or_zero() / self.per_unit.max_element();
+        let (mut at, mut cells) = (place, Vec::new());
+        // Towards the eye, as far as the ground fades.
+        while let Some(i) = cell(at).filter(|i| self.distance[*i] < 1.0 + KEPT) {
+            cells.push(i);
+            at += step;
+            if cells.len() > self.cols + self.rows || step == DVec2::ZERO || (eye - at).dot(step) < 0.0 {
+                break;
+            }
+        }
+        cells.into_iter().for_each(|i| self.kept[i] = 1.0);
+    }
+
+    /// Lets what is kept pass into what fades.
+    fn widen_kept(&mut self) {
+        if self.kept.iter().all(|kept| *kept == 0.0) {
+            return;
+        }
+        let kept: Vec<bool> = self.kept.iter().map(|kept| *kept > 0.0).collect();
+        let far = spread(
+            kept.iter().map(|kept| if *kept { 0.0 } else { f64::INFINITY }).collect(),
+            [self.cols, self.rows],
+            1.0 / self.per_unit,
+        );
+        self.kept = far
+            .into_iter()
+            .map(|d| 1.0 - smoothstep(0.5 * KEPT as f32, KEPT as f32, (d / self.width) as f32))
+            .collect();
     }
 
     fn new(ground: &Heightfield) -> Self {
@@ -42,7 +91,7 @@ impl Border {
         let width = SHARE * size.min_element();
         let distance = distances(&outside, [cols, rows], cell).into_iter().map(|d| (d / width) as f32).collect();
         let north_west = DVec2::new(bounds.min.x, bounds.max.y);
-        Self { cols, rows, distance, per_unit: 1.0 / cell, north_west }
+        Self { cols, rows, distance, kept: vec![0.0; cols * rows], width, per_unit: 1.0 / cell, north_west }
     }
 
     /// Opacity of the ground at a place, 0..=1.
@@ -57,10 +106,13 @@ impl Border {
         let (c, r) = (at.x as usize, at.y as usize);
         let (c1, r1) = ((c + 1).min(self.cols - 1), (r + 1).min(self.rows - 1));
         let (u, v) = ((at.x - c as f64) as f32, (at.y - r as f64) as f32);
-        let of = |c: usize, r: usize| self.distance[r * self.cols + c];
-        let (north, south) = (of(c, r) + u * (of(c1, r) - of(c, r)), of(c, r1) + u * (of(c1, r1) - of(c, r1)));
+        let between = |values: &[f32]| {
+            let of = |c: usize, r: usize| values[r * self.cols + c];
+            let (north, south) = (of(c, r) + u * (of(c1, r) - of(c, r)), of(c, r1) + u * (of(c1, r1) - of(c, r1)));
+            north + v * (south - north)
+        };
         // The outermost half cell lies beyond the middles: down to 0 at the very rim.
-        smoothstep(0.0, 1.0, (north + v * (south - north)) * (2.0 * rim as f32).min(1.0))
+        smoothstep(0.0, 1.0, between(&self.distance) * (2.0 * rim as f32).min(1.0)).max(between(&self.kept))
     }
 }
 
@@ -101,15 +153,30 @@ fn outside(ground: &Heightfield, [cols, rows]: [usize; 2]) -> Vec<bool> {
     found
 }
 
+/// Places of what a layer holds on the map.
+fn each_place(kind: &LayerKind, take: &mut dyn FnMut(DVec2)) {
+    kind.lines().iter().flat_map(|l| &l.features).flat_map(|f| &f.points).for_each(|p| take(p.truncate()));
+    kind.points().iter().flat_map(|l| &l.features).for_each(|f| take(f.position.truncate()));
+    kind.areas().iter().flat_map(|l| &l.features).flat_map(|f| f.rings.iter().flatten()).for_each(|p| take(*p));
+}
+
 /// Distances of the middles of cells from the nearest cell outside, or from the rim, scene units (a chamfer of two passes).
 fn distances(outside: &[bool], [cols, rows]: [usize; 2], cell: DVec2) -> Vec<f64> {
-    let [dx, dy, both] = [cell.x, cell.y, cell.length()];
+    let [dx, dy] = cell.to_array();
     let rim = |c: usize, r: usize| {
         let x = (c.min(cols - 1 - c) as f64 + 0.5) * dx;
         x.min((r.min(rows - 1 - r) as f64 + 0.5) * dy)
     };
-    let mut distance: Vec<f64> =
-        (0..cols * rows).map(|i| if outside[i] { 0.0 } else { rim(i % cols, i / cols) }).collect();
+    spread(
+        (0..cols * rows).map(|i| if outside[i] { 0.0 } else { rim(i % cols, i / cols) }).collect(),
+        [cols, rows],
+        cell,
+    )
+}
+
+/// Distances that do not exceed those of the cells around by more than the way there.
+fn spread(mut distance: Vec<f64>, [cols, rows]: [usize; 2], cell: DVec2) -> Vec<f64> {
+    let [dx, dy, both] = [cell.x, cell.y, cell.length()];
     for back in [false, true] {
         for k in 0..cols * rows {
             let i = if back { cols * rows - 1 - k } else { k };
@@ -181,6 +248,24 @@ mod tests {
         assert!((half - 0.5).abs() < 0.1, "{half}");
         let way: Vec<f32> = (0..60).map(|x| border.opacity(DVec2::new(f64::from(x), 300.0))).collect();
         assert!(way.windows(2).all(|w| w[0] <= w[1] && w[1] - w[0] < 0.08), "{way:?}");
+    }
+
+    #[test]
+    fn nothing_fades_under_and_in_front_of_what_must_be_seen() {
+        let ground = square(|_, _| false);
+        // A path along the western rim, seen from the south-west.
+        let (mut border, eye) = (Border::new(&ground), DVec2::new(-800.0, -200.0));
+        (300..500).step_by(5).for_each(|y| border.keep(DVec2::new(12.0, f64::from(y)), eye));
+        border.widen_kept();
+        for y in (310..500).step_by(10) {
+            let place = DVec2::new(12.0, f64::from(y));
+            assert_eq!(border.opacity(place), 1.0, "under the path at {y}");
+            let before = place + 8.0 * (eye - place).normalize();
+            assert_eq!(border.opacity(before), 1.0, "in front of it at {y}");
+        }
+        assert!(border.opacity(DVec2::new(12.0, 800.0)) < 0.5 && border.opacity(DVec2::new(985.0, 400.0)) < 0.5);
+        let way: Vec<f32> = (480..640).map(|y| border.opacity(DVec2::new(12.0, f64::from(y)))).collect();
+        assert!(way.windows(2).all(|w| (w[1] - w[0]).abs() < 0.12), "{way:?}");
     }
 
     #[test]

@@ -29,8 +29,6 @@ pub(crate) struct Lit {
     /// Amounts of direct light and of light from the sky.
     pub(crate) direct: f32,
     pub(crate) sky: f32,
-    /// Strength of the texture, 0..=1.
-    pub(crate) rough: f32,
 }
 
 /// Inputs of the lit ground, besides the ground itself.
@@ -45,16 +43,23 @@ pub(crate) struct LitKey {
 /// The two pictures of a ground, see the module.
 #[derive(Debug)]
 pub(crate) struct LitGround {
-    /// Square roots of the lit colour of the level and the strength of its texture, and of the next level with a spare byte.
+    /// Square roots of the lit colour of the level, and of the next level, each with a spare byte.
     colors: Tiles,
-    /// Square roots of the colour without light, direct light, light from the sky, strength of the texture.
+    /// Square roots of the colour without light, direct light, light from the sky.
     parts: Tiles,
 }
 
 impl LitGround {
     /// Pictures without tiles.
-    pub(crate) fn new(cols: usize, rows: usize, top: usize) -> Self {
-        Self { colors: Tiles::new([cols, rows], top), parts: Tiles::new([cols, rows], top) }
+    /// * `top`, `finer`: see [`Tiles::new`].
+    pub(crate) fn new(cols: usize, rows: usize, top: usize, finer: u32) -> Self {
+        Self { colors: Tiles::new([cols, rows], top, finer), parts: Tiles::new([cols, rows], top, finer) }
+    }
+
+    /// Levels below that of the nodes of the ground.
+    #[inline(always)]
+    pub(crate) fn finer(&self) -> u32 {
+        self.colors.finer()
     }
 
     /// Whether the tiles exceed the limit of memory, so that the next frame starts without them.
@@ -84,11 +89,11 @@ impl LitGround {
         n: usize,
         inputs: &LightingInputs<'_>,
     ) -> Colors {
-        let top = self.colors.top() as u32;
+        let (top, finer) = (self.colors.top() as u32, self.colors.finer());
         let (mut k, mut x, mut y, mut first) = ([0; LANES], [0; LANES], [0; LANES], [0; LANES]);
         for i in 0..LANES {
             k[i] = least(lods[i] >> 8, top);
-            (x[i], y[i]) = (tiles::level_position(at[0][i], k[i]), tiles::level_position(at[1][i], k[i]));
+            (x[i], y[i]) = (tiles::level_position(at[0][i], k[i], finer), tiles::level_position(at[1][i], k[i], finer));
             first[i] = tiles::first_of(x[i], y[i]);
         }
         let mut nodes = [[[0; LANES]; 2]; 4];
@@ -115,12 +120,12 @@ impl LitGround {
         out
     }
 
-    /// Square roots of the lit colour at a point, and the strength of the texture there.
-    /// * `lod`: level of averages, 256 steps to a level.
-    pub(crate) fn color(&self, at: [i32; 2], lod: u32, inputs: &LightingInputs<'_>) -> ([f32; 3], f32) {
+    /// Square roots of the lit colour at a point.
+    /// * `lod`: level, 256 steps to a level, 0 = the finest.
+    pub(crate) fn color(&self, at: [i32; 2], lod: u32, inputs: &LightingInputs<'_>) -> [f32; 3] {
         let places = [0, 1].map(|axis| [at[axis]; LANES]);
         let colors = self.colors_of(&places, &[lod; LANES], 1, inputs);
-        (colors.between(0, (lod & 255) as f32 / 256.0), colors.rough(0))
+        colors.between(0, (lod & 255) as f32 / 256.0)
     }
 
     /// Colour and light at a point, see [`LitGround::color`].
@@ -140,14 +145,14 @@ impl LitGround {
 
     fn make_parts(&self, k: usize, tile: [usize; 2], inputs: &LightingInputs<'_>) -> Box<Tile> {
         let [columns, rows] = self.parts.repeated(k, tile);
-        simd::run(Parts(&Patch::new(inputs, k, columns.all(), rows.all())))
+        simd::run(Parts(&Patch::new(inputs, (k, self.finer()), columns.all(), rows.all())))
     }
 
     fn make_colors(&self, k: usize, tile: [usize; 2], inputs: &LightingInputs<'_>) -> Box<Tile> {
         let [columns, rows] = self.colors.repeated(k, tile);
-        let patch = Patch::new(inputs, k, columns.all(), rows.all());
+        let patch = Patch::new(inputs, (k, self.finer()), columns.all(), rows.all());
         // The coarsest level stands for all coarser ones.
-        let next = (k < self.colors.top()).then(|| CoarseColors::new(inputs, k + 1, [columns, rows]));
+        let next = (k < self.colors.top()).then(|| CoarseColors::new(inputs, (k + 1, self.finer()), [columns, rows]));
         simd::run(Writing { patch: &patch, next: next.as_ref(), light: inputs.light })
     }
 }
@@ -193,12 +198,6 @@ impl Colors {
             between(odd[0] & 0xffff, odd[1] & 0xffff, share),
             between(even[0] >> 16, even[1] >> 16, share),
         ]
-    }
-
-    /// Strength of the texture at point `i`, 0..=1.
-    #[inline(always)]
-    pub(crate) fn rough(&self, i: usize) -> f32 {
-        (self.fine[1][i] >> 16) as i32 as f32 * (1.0 / (256.0 * 255.0))
     }
 }
 
@@ -252,11 +251,11 @@ impl Kernel for Parts<'_> {
     fn run(self) -> Box<Tile> {
         let mut out = Vec::with_capacity(tiles::NODES);
         for nodes in self.0.nodes() {
-            let ([r, g, b], direct, sky, rough) = (&nodes.root, &nodes.direct, &nodes.sky, &nodes.rough);
+            let ([r, g, b], direct, sky) = (&nodes.root, &nodes.direct, &nodes.sky);
             let (mut low, mut high) = ([0; LANES], [0; LANES]);
             for i in 0..LANES {
                 low[i] = word([r[i], g[i], b[i], direct[i] * (1.0 / MOST_DIRECT)]);
-                high[i] = word([sky[i] * (1.0 / MOST_SKY), rough[i], 0.0, 0.0]);
+                high[i] = word([sky[i] * (1.0 / MOST_SKY), 0.0, 0.0, 0.0]);
             }
             push(&mut out, &low, &high);
         }
@@ -281,9 +280,9 @@ impl Kernel for Writing<'_> {
         let next = self.next.map(CoarseColors::finer);
         for (n, nodes) in self.patch.nodes().iter().enumerate() {
             let here = nodes.lit_roots(self.light);
-            let low = Self::words(&here, &nodes.rough);
+            let low = Self::words(&here);
             let high = match &next {
-                Some(next) => next.get(n).map_or([0; LANES], |roots| Self::words(&roots, &[0.0; LANES])),
+                Some(next) => next.get(n).map_or([0; LANES], |roots| Self::words(&roots)),
                 None => low,
             };
             push(&mut out, &low, &high);
@@ -294,11 +293,11 @@ impl Kernel for Writing<'_> {
 
 impl Writing<'_> {
     #[inline(always)]
-    fn words([r, g, b]: &[Lanes; 3], rough: &Lanes) -> [u32; LANES] {
+    fn words([r, g, b]: &[Lanes; 3]) -> [u32; LANES] {
         let mut out = [0; LANES];
         for i in 0..LANES {
             let [r, g, b] = [r[i] * (1.0 / BRIGHTEST), g[i] * (1.0 / BRIGHTEST), b[i] * (1.0 / BRIGHTEST)];
-            out[i] = word([r, g, b, rough[i]]);
+            out[i] = word([r, g, b, 0.0]);
         }
         out
     }
@@ -308,9 +307,9 @@ impl Lit {
     /// Converts a weighted sum of nodes, 256 times the stored values.
     fn of(sum: [u16; 8]) -> Self {
         const ONE: f32 = 256.0 * 255.0;
-        let [r, g, b, direct, sky, rough, ..] = sum.map(f32::from);
+        let [r, g, b, direct, sky, ..] = sum.map(f32::from);
         let root = [r / ONE, g / ONE, b / ONE];
-        Self { root, direct: direct * (MOST_DIRECT / ONE), sky: sky * (MOST_SKY / ONE), rough: rough / ONE }
+        Self { root, direct: direct * (MOST_DIRECT / ONE), sky: sky * (MOST_SKY / ONE) }
     }
 
     /// Linear colour of the ground without light.

@@ -1,10 +1,12 @@
 //! Colour of the ground: light that is fixed to the map, computed node by node in tiles of a mip pyramid and remembered.
 
 pub(crate) mod batch;
+pub(crate) mod broad;
 mod displaced;
 mod edge;
-pub(crate) mod grain;
+mod finer;
 pub(crate) mod lit;
+mod made;
 mod patch;
 mod planes;
 mod rows;

@@ -1,6 +1,9 @@
 //! Nodes of the ground with the light on them, a patch at a time: each step is a plain loop over short arrays, which
 //! compilers turn into vector instructions.
 
+use crate::shade::ground::broad::Broad;
+use crate::shade::ground::finer::Finer;
+use crate::shade::ground::made;
 use crate::shade::ground::planes::Planes;
 use crate::shade::ground::rows::RefinedRows;
 use crate::shade::ground::shadow::Shadows;
@@ -8,7 +11,7 @@ use crate::shade::ground::surface::{MipPyramid, Surface};
 use crate::shade::ground::tiles::Line;
 use crate::shade::relief::ReliefLight;
 use crate::simd::{self, Kernel, LANES, Lanes};
-use belvedere_composite::tint::GroundTint;
+use belvedere_composite::tint::{GroundNodes, GroundTint};
 
 /// Inputs of the tiles of lit ground.
 pub(crate) struct LightingInputs<'a> {
@@ -16,6 +19,8 @@ pub(crate) struct LightingInputs<'a> {
     pub(crate) means: &'a MipPyramid,
     /// The undisplaced ground, if the lit one is displaced: the tint uses its heights and slopes.
     pub(crate) map: Option<GroundShape<'a>>,
+    /// Generalised relief of the undisplaced ground, where materials are drawn by rule.
+    pub(crate) broad: Option<&'a Broad>,
     pub(crate) shadows: Option<&'a Shadows>,
     pub(crate) tint: &'a GroundTint,
     pub(crate) light: &'a ReliefLight,
@@ -37,8 +42,6 @@ pub(crate) struct LitNodes {
     /// Amounts of direct light and of light from the sky.
     pub(crate) direct: Lanes,
     pub(crate) sky: Lanes,
-    /// Strength of the texture, 0..=1.
-    pub(crate) rough: Lanes,
 }
 
 /// Inputs of the light on nodes, plane by plane, padded to whole lanes.
@@ -56,23 +59,16 @@ struct Shapes {
 const NOTHING: Lanes = [0.0; LANES];
 
 impl Shapes {
-    fn new(nodes: usize, displaced: bool) -> Self {
+    fn empty(nodes: usize, displaced: bool) -> Self {
         let n = nodes.next_multiple_of(LANES);
         let plane = || vec![0.0; n];
         let shape = || [plane(), plane(), plane()];
         Self { shape: shape(), near: [plane(), plane()], map: displaced.then(shape), sun: vec![1.0; n] }
     }
-}
 
-/// Nodes of a level with the light on them, row by row.
-pub(crate) struct Patch {
-    nodes: Vec<LitNodes>,
-}
-
-impl Patch {
-    /// The nodes where rows and columns meet.
-    pub(crate) fn new(m: &LightingInputs<'_>, k: usize, columns: Line, rows: Line) -> Self {
-        let mut shapes = Shapes::new(columns.count * rows.count, m.map.is_some());
+    /// The nodes of a level, 0 that of the ground, where rows and columns meet.
+    fn new(m: &LightingInputs<'_>, k: usize, [columns, rows]: [Line; 2]) -> Self {
+        let mut shapes = Self::empty(columns.count * rows.count, m.map.is_some());
         let (first, inside) = columns.inside();
         let lit = GroundShape { surface: m.surface, means: m.means };
         let mut row = Row::new(lit, k, first, inside.len());
@@ -100,7 +96,71 @@ impl Patch {
                 }
             }
         }
-        Self { nodes: simd::run(LightUp { m, shapes: &shapes }) }
+        shapes
+    }
+
+    /// The nodes of a level between the nodes of the ground, `by` levels finer.
+    fn between(m: &LightingInputs<'_>, by: u32, lines: [Line; 2]) -> Self {
+        let nodes = [m.surface.hf.cols(), m.surface.hf.rows()];
+        let around = [0, 1].map(|axis| lines[axis].around(by, nodes[axis] - 1));
+        let coarse = Self::new(m, 0, around);
+        let mut shapes = Self::empty(lines[0].count * lines[1].count, m.map.is_some());
+        let finer = Finer::new(by, lines, around);
+        let map = coarse.map.iter().flatten().zip(shapes.map.iter_mut().flatten());
+        let planes =
+            coarse.shape.iter().zip(&mut shapes.shape).chain(coarse.near.iter().zip(&mut shapes.near)).chain(map);
+        for (from, to) in planes.chain([(&coarse.sun, &mut shapes.sun)]) {
+            finer.plane(from, to);
+        }
+        shapes
+    }
+}
+
+/// Places of nodes and generalised relief there, plane by plane, padded to whole lanes.
+struct Places {
+    /// Metres east and south of the corner.
+    at_m: [Vec<f32>; 2],
+    /// dz/dx, dz/dy, height of the surroundings.
+    broad: [Vec<f32>; 3],
+    spacing_m: f32,
+}
+
+impl Places {
+    /// * `per_node`: spacing in nodes of the ground.
+    fn new(m: &LightingInputs<'_>, per_node: f32, [columns, rows]: [Line; 2]) -> Self {
+        let n = (columns.count * rows.count).next_multiple_of(LANES);
+        let spacing = m.surface.hf.spacing().as_vec2() * per_node;
+        let plane = || vec![0.0; n];
+        let mut out =
+            Self { at_m: [plane(), plane()], broad: [plane(), plane(), plane()], spacing_m: spacing.max_element() };
+        let Some(broad) = m.broad else { return out };
+        for (n, r) in rows.iter().enumerate() {
+            let row = n * columns.count..(n + 1) * columns.count;
+            let planes = out.broad.each_mut().map(|plane| &mut plane[row.clone()]);
+            broad.row(per_node, r as f32, columns, planes);
+            out.at_m[1][row.clone()].fill((r as f32 + 0.5) * spacing.y);
+            for (x, c) in out.at_m[0][row].iter_mut().zip(columns.iter()) {
+                *x = (c as f32 + 0.5) * spacing.x;
+            }
+        }
+        out
+    }
+}
+
+/// Nodes of a level with the light on them, row by row.
+pub(crate) struct Patch {
+    nodes: Vec<LitNodes>,
+}
+
+impl Patch {
+    /// The nodes where rows and columns meet.
+    /// * `k`: level of which that of the ground is number `finer`.
+    pub(crate) fn new(m: &LightingInputs<'_>, (k, finer): (usize, u32), columns: Line, rows: Line) -> Self {
+        let lines = [columns, rows];
+        let by = finer.saturating_sub(k as u32);
+        let shapes = if by > 0 { Shapes::between(m, by, lines) } else { Shapes::new(m, k - finer as usize, lines) };
+        let places = Places::new(m, (k as f32 - finer as f32).exp2(), lines);
+        Self { nodes: simd::run(LightUp { m, shapes: &shapes, places: &places }) }
     }
 
     /// The nodes, [`LANES`] at a time; those past the last one are arbitrary.
@@ -118,7 +178,7 @@ impl LitNodes {
             out.iter_mut().zip(&self.root).zip(light.warm.to_array().into_iter().zip(light.cool.to_array()))
         {
             for i in 0..LANES {
-                out[i] = (root[i] * root[i] * (warm * self.direct[i] + cool * self.sky[i])).sqrt();
+                out[i] = light.film((root[i] * root[i] * (warm * self.direct[i] + cool * self.sky[i])).sqrt());
             }
         }
         out
@@ -187,6 +247,7 @@ impl Kernel for Join<'_> {
 struct LightUp<'a> {
     m: &'a LightingInputs<'a>,
     shapes: &'a Shapes,
+    places: &'a Places,
 }
 
 impl Kernel for LightUp<'_> {
@@ -194,57 +255,77 @@ impl Kernel for LightUp<'_> {
 
     #[inline(always)]
     fn run(self) -> Vec<LitNodes> {
-        let Shapes { shape, near: [height, asked], map, sun } = self.shapes;
-        let [x, y, z] = shape;
-        let [map_x, map_y, map_z] = map.as_ref().unwrap_or(shape);
-        let mut out = Vec::with_capacity(x.len() / LANES);
-        for n in (0..x.len()).step_by(LANES) {
-            let (Some(x), Some(y), Some(z)) = (lanes(x, n), lanes(y, n), lanes(z, n)) else { break };
-            let (Some(height), Some(asked), Some(sun)) = (lanes(height, n), lanes(asked, n), lanes(sun, n)) else {
-                break;
+        let Self { m, shapes, places } = self;
+        let map = shapes.map.as_ref().unwrap_or(&shapes.shape);
+        let mut out = Vec::with_capacity(map[0].len() / LANES);
+        for n in (0..map[0].len()).step_by(LANES) {
+            let of =
+                |plane: &[f32]| -> Lanes { plane.get(n..).and_then(|p| p.first_chunk()).copied().unwrap_or(NOTHING) };
+            let [x, y, z] = shapes.shape.each_ref().map(|p| of(p));
+            let [near, wide] = shapes.near.each_ref().map(|p| of(p));
+            let [map_x, map_y, map_z] = map.each_ref().map(|p| of(p));
+            let [broad_x, broad_y, around] = places.broad.each_ref().map(|p| of(p));
+            let [east, south] = places.at_m.each_ref().map(|p| of(p));
+            let mut above = NOTHING;
+            for i in 0..LANES {
+                above[i] = map_z[i] - around[i];
+            }
+            let nodes = GroundNodes {
+                height_m: &map_z,
+                slope: [&map_x, &map_y],
+                broad: [&broad_x, &broad_y],
+                above_m: &above,
+                at_m: [&east, &south],
+                spacing_m: places.spacing_m,
             };
-            let (Some(map_x), Some(map_y), Some(map_z)) = (lanes(map_x, n), lanes(map_y, n), lanes(map_z, n)) else {
-                break;
-            };
-            out.push(light_up(self.m, [x, y, z], [height, asked], [map_x, map_y, map_z], sun));
+            out.push(light_up(m, ([&x, &y, &z], [&near, &wide], &of(&shapes.sun)), &nodes));
         }
         out
     }
 }
 
-#[inline(always)]
-fn lanes(plane: &[f32], n: usize) -> Option<&Lanes> {
-    plane.get(n..)?.first_chunk()
-}
+/// Shares of the ground and of generalised relief in the slopes that are lit.
+const BUMPING: [f32; 2] = [0.66, 0.34];
+/// Strength of made relief, and how much darker the bottoms of its gullies are.
+const MADE: f32 = 1.5;
+const GULLY_INK: f32 = 0.6;
 
 #[inline(always)]
 fn light_up(
     m: &LightingInputs<'_>,
-    [x, y, z]: [&Lanes; 3],
-    near: [&Lanes; 2],
-    [map_x, map_y, map_z]: [&Lanes; 3],
-    sun: &Lanes,
+    ([x, y, z], [near, wide], sun): ([&Lanes; 3], [&Lanes; 2], &Lanes),
+    nodes: &GroundNodes<'_, LANES>,
 ) -> LitNodes {
     let openness = m.means.openness();
-    let (mut open, mut steep, mut normal) = (NOTHING, NOTHING, [NOTHING; 3]);
+    let cover = m.tint.cover(nodes);
+    let (mut open, mut slope) = (NOTHING, [*x, *y]);
+    let mut root = cover.color;
+    if m.broad.is_some() {
+        let made = made::relief(nodes, &cover, m.surface.hf.spacing().max_element() as f32);
+        for ((slope, made), broad) in slope.iter_mut().zip(&made.slope).zip(nodes.broad) {
+            for ((slope, made), broad) in slope.iter_mut().zip(made).zip(broad) {
+                *slope = BUMPING[0] * (*slope + MADE * made) + BUMPING[1] * broad;
+            }
+        }
+        for plane in &mut root {
+            for (v, gully) in plane.iter_mut().zip(&made.gully) {
+                *v *= 1.0 + GULLY_INK * gully;
+            }
+        }
+    }
+    let mut normal = [NOTHING; 3];
     for i in 0..LANES {
-        open[i] = openness.at(z[i], near[0][i], near[1][i]);
-        steep[i] = (map_x[i] * map_x[i] + map_y[i] * map_y[i]).sqrt();
-        let (a, b) = (x[i] * -m.exaggeration, y[i] * -m.exaggeration);
+        open[i] = openness.at(z[i], near[i], wide[i]);
+        let (a, b) = (slope[0][i] * -m.exaggeration, slope[1][i] * -m.exaggeration);
         let scale = 1.0 / (a * a + b * b + 1.0).sqrt();
         (normal[0][i], normal[1][i], normal[2][i]) = (a * scale, b * scale, scale);
     }
     let [direct, sky] = m.light.parts_of(&normal, &open, sun);
-    let mut north = NOTHING;
-    for i in 0..LANES {
-        north[i] = -map_y[i];
-    }
-    let [red, green, blue, rough] = m.tint.colors(map_z, &steep, &north);
-    let mut root = [red, green, blue];
     for plane in &mut root {
         for v in plane {
+            *v = if *v > 0.0 { *v } else { 0.0 };
             *v = v.sqrt();
         }
     }
-    LitNodes { root, direct, sky, rough }
+    LitNodes { root, direct, sky }
 }

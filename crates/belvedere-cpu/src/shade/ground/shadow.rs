@@ -4,12 +4,29 @@
 //! shadow that the ground so far casts: every node is visited a constant number of times.
 
 use crate::shade::ground::surface::{MipPyramid, Surface};
+use belvedere_composite::color::smoothstep;
 use belvedere_core::DVec2;
 use belvedere_scene::{Light, NodeState};
 use rayon::prelude::*;
 
 /// Angular radius of the sun, radians.
 const SUN_RADIUS: f64 = 0.004_65;
+
+/// How shadows look.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Softness {
+    /// Angular radius of the light, radians: shadows are as soft as it is wide.
+    radius: f64,
+    /// Length on the ground at which shadows have faded, scene units.
+    reach: f64,
+}
+
+impl Softness {
+    /// Those of the sun.
+    pub(crate) const SUN: Self = Self { radius: SUN_RADIUS, reach: f64::INFINITY };
+    /// Those of painters of panoramas: soft and short, so that they model forms and hide none (Novat; the figures are ours).
+    pub(crate) const PAINTED: Self = Self { radius: 0.13, reach: 2600.0 };
+}
 
 /// Light on the nodes of one level and its averages on coarser ones, 0 = shadow, 255 = the whole sun.
 #[derive(Debug)]
@@ -21,7 +38,7 @@ pub(crate) struct Shadows {
 
 impl Shadows {
     /// Shadows of the full ground, or of the finest stored averages where the ground is very large.
-    pub(crate) fn new(surface: &Surface<'_>, means: &MipPyramid, light: &Light) -> Self {
+    pub(crate) fn new(surface: &Surface<'_>, means: &MipPyramid, light: &Light, soft: Softness) -> Self {
         let hf = surface.hf;
         let first = if means.first == 1 { 0 } else { means.first };
         let spacing = hf.spacing() * f64::from(1u32 << first);
@@ -29,10 +46,10 @@ impl Shadows {
             let solid = |i: usize| hf.states()[i] != NodeState::Void;
             let heights = surface.heights();
             let at = |i: usize| if solid(i) { heights[i] } else { f32::NEG_INFINITY };
-            (hf.cols(), hf.rows(), sweep([hf.cols(), hf.rows()], spacing, light, &at))
+            (hf.cols(), hf.rows(), sweep([hf.cols(), hf.rows()], spacing, (light, soft), &at))
         } else {
             let [cols, rows] = means.size(first);
-            (cols, rows, sweep([cols, rows], spacing, light, &|i| means.node(first, i % cols, i / cols).z))
+            (cols, rows, sweep([cols, rows], spacing, (light, soft), &|i| means.node(first, i % cols, i / cols).z))
         };
         let mut levels = vec![(cols, rows, lit)];
         while let Some((cols, rows, lit)) = levels.last()
@@ -133,8 +150,15 @@ impl Lines {
     }
 
     /// Light along line `l`, one value per step, 255 outside the grid.
-    fn light(&self, l: usize, altitude: f64, height: &(dyn Fn(usize) -> f32 + Sync), out: &mut [u8]) {
-        let wide = (altitude + SUN_RADIUS).tan() - (altitude - SUN_RADIUS).tan();
+    fn light(
+        &self,
+        l: usize,
+        (altitude, soft): (f64, Softness),
+        height: &(dyn Fn(usize) -> f32 + Sync),
+        out: &mut [u8],
+    ) {
+        let lowest = (altitude - soft.radius).max(0.0);
+        let wide = (altitude + soft.radius).min(1.56).tan() - lowest.tan();
         // The ground whose ray runs highest, and the one before it, whose penumbra may not have ended.
         let mut edges = [Edge { height: f64::NEG_INFINITY, far: 0.0 }; 2];
         for (t, out) in out.iter_mut().enumerate() {
@@ -158,7 +182,9 @@ impl Lines {
                     let light = |e: Edge| {
                         // The penumbra is as wide as the sun's disc makes it, and at least about a cell.
                         let width = (e.far * wide).max(self.drop * (0.5 * e.far / self.step).min(1.0));
-                        if e.far > 0.0 { (0.5 + (z - e.height) / width).clamp(0.0, 1.0) } else { 1.0 }
+                        let gone = smoothstep(0.4, 1.0, (e.far / soft.reach) as f32);
+                        let left = if e.far > 0.0 { (0.5 + (z - e.height) / width).clamp(0.0, 1.0) } else { 1.0 };
+                        left + (1.0 - left) * f64::from(gone)
                     };
                     let lights = edges.map(light);
                     *out = (255.0 * lights[0].min(lights[1]) + 0.5) as u8;
@@ -173,13 +199,21 @@ impl Lines {
             for e in &mut edges {
                 e.height -= self.drop;
                 e.far += self.step;
+                if e.far > soft.reach {
+                    e.height = f64::NEG_INFINITY;
+                }
             }
         }
     }
 }
 
 /// Share of the sun's disc that each node of a grid sees, 0..=255; minus infinity = void.
-fn sweep(size: [usize; 2], spacing: DVec2, light: &Light, height: &(dyn Fn(usize) -> f32 + Sync)) -> Vec<u8> {
+fn sweep(
+    size: [usize; 2],
+    spacing: DVec2,
+    (light, soft): (&Light, Softness),
+    height: &(dyn Fn(usize) -> f32 + Sync),
+) -> Vec<u8> {
     let mut out = vec![0u8; size[0] * size[1]];
     if light.altitude <= 0.0 {
         return out;
@@ -188,7 +222,7 @@ fn sweep(size: [usize; 2], spacing: DVec2, light: &Light, height: &(dyn Fn(usize
     let lines = Lines::new(size, spacing, &Light { altitude, ..*light });
     let n = lines.size[0];
     let mut lit = vec![255u8; lines.count * n];
-    lit.par_chunks_mut(n).enumerate().for_each(|(l, row)| lines.light(l, altitude, height, row));
+    lit.par_chunks_mut(n).enumerate().for_each(|(l, row)| lines.light(l, (altitude, soft), height, row));
     let at = |t: usize, j: usize| {
         // Interpolates between the two lines beside the node.
         let y = j as f64 - lines.lean * t as f64 - lines.first as f64;

@@ -289,7 +289,7 @@ impl MipPyramid {
             let k = level.clamp(self.first, self.top());
             (k - self.first, share / (self.spacing * (1u32 << k) as f32))
         });
-        let means = scales.map(|(k, _)| self.smooth_heights(k));
+        let means = scales.map(|(k, _)| self.smooth_heights(k + self.first, self.first));
         for (i, n) in self.levels[0].nodes.iter_mut().enumerate() {
             n.w = scales.iter().zip(&means).map(|((_, per_m), m)| per_m * m[i]).sum();
         }
@@ -301,10 +301,11 @@ impl MipPyramid {
         }
     }
 
-    /// Heights of stored level `k` interpolated to the finest one level by level, which smooths them.
-    fn smooth_heights(&self, k: usize) -> Vec<f32> {
+    /// Heights of level `k` interpolated to a finer one, both stored, level by level, which smooths them.
+    pub(crate) fn smooth_heights(&self, k: usize, finer: usize) -> Vec<f32> {
+        let [k, finer] = [k - self.first, finer - self.first];
         let mut values: Vec<f32> = self.levels[k].nodes.iter().map(|n| n.z).collect();
-        for level in (0..k).rev() {
+        for level in (finer..k).rev() {
             let (from, to) = (&self.levels[level + 1], &self.levels[level]);
             let mut next = vec![0.0; to.cols * to.rows];
             next.par_chunks_mut(to.cols).enumerate().for_each(|(r, row)| {

@@ -1,24 +1,24 @@
 //! Terrain: its light, and the drapes and areas over it.
 
 use crate::cache::GroundCache;
+use crate::shade::Shader;
 use crate::shade::footprint::{Footprint, LONGEST};
+use crate::shade::ground::broad::Broad;
 use crate::shade::ground::displaced::{self, DisplacedLight};
 use crate::shade::ground::edge::Border;
-use crate::shade::ground::grain::grain;
 use crate::shade::ground::lit::{Lit, LitGround, LitKey};
 use crate::shade::ground::patch::{GroundShape, LightingInputs};
-use crate::shade::ground::shadow::Shadows;
+use crate::shade::ground::shadow::{Shadows, Softness};
 use crate::shade::ground::surface::{MipPyramid, Surface};
 use crate::shade::ground::texture::stipple;
 use crate::shade::ground::tiles::CELL;
 use crate::shade::overlay::area::{AreaCache, AreaMap};
 use crate::shade::overlay::drape::DrapeMap;
 use crate::shade::relief::ReliefLight;
-use crate::shade::{Shader, lod};
 use belvedere_composite::color::{Rgb, linear, smoothstep};
 use belvedere_composite::tint::GroundTint;
 use belvedere_core::{DVec2, DVec3};
-use belvedere_scene::{AreaSurface, Haze, Heightfield, Light, RenderJob, Shading, Sky, TerrainLayer};
+use belvedere_scene::{AreaSurface, Haze, Heightfield, Light, Relief, RenderJob, Shading, Sky, TerrainLayer};
 use belvedere_sight::sections::Sections;
 use std::sync::Arc;
 
@@ -37,8 +37,7 @@ pub(crate) struct TerrainShade<'a> {
     map: Option<(Surface<'a>, Arc<MipPyramid>)>,
     shadows: Option<Arc<Shadows>>,
     tint: GroundTint,
-    /// Direction of the light on the map, columns and rows.
-    to_light: [f32; 2],
+    broad: Option<Arc<Broad>>,
     exaggeration: f32,
     drapes: Arc<Vec<DrapeMap>>,
     /// Where the ground fades, if its edge is soft.
@@ -66,11 +65,28 @@ fn drapes(layer: &TerrainLayer, cache: &LightCache) -> Arc<Vec<DrapeMap>> {
 #[derive(Debug, Default)]
 pub(crate) struct LightCache {
     means: GroundCache<(), Arc<MipPyramid>>,
-    shadows: GroundCache<Light, Arc<Shadows>>,
+    broad: GroundCache<(), Arc<Broad>>,
+    shadows: GroundCache<(Light, Relief), Arc<Shadows>>,
     lit: GroundCache<LitKey, Arc<LitGround>>,
     displaced: GroundCache<LitKey, DisplacedLight>,
     drapes: GroundCache<(), Arc<Vec<DrapeMap>>>,
     pub(crate) areas: AreaCache,
+}
+
+/// Spacing of nodes that made detail reaches, metres; most levels of it, and most nodes of the finest one along a side.
+const FINEST_M: f64 = 3.5;
+const MOST_FINER: u32 = 5;
+const MOST_SIDE: usize = 1 << 17;
+
+/// Altitudes of the light whose shadows are painted, radians.
+const LOWEST: f64 = 0.55;
+const HIGHEST: f64 = 0.8;
+
+/// Levels of made detail below the nodes of a ground.
+pub(crate) fn finer_levels(hf: &Heightfield) -> u32 {
+    let wanted = (hf.spacing().min_element() / FINEST_M).log2().ceil().clamp(0.0, f64::from(MOST_FINER)) as u32;
+    let side = hf.cols().max(hf.rows());
+    (0..=wanted).rev().find(|finer| side << finer <= MOST_SIDE).unwrap_or(0)
 }
 
 impl<'a> TerrainShade<'a> {
@@ -82,24 +98,27 @@ impl<'a> TerrainShade<'a> {
         let light = Light { sky: Sky::Auto, haze: Haze::Auto, ..*job.light };
         let (relief, palette) = (layer.relief, layer.palette.clone());
         let key = LitKey { relief, light, palette, exaggeration: layer.exaggeration };
-        let unlit = |means: &MipPyramid| Arc::new(LitGround::new(hf.cols(), hf.rows(), means.top()));
+        let tint = GroundTint::new(&layer.palette, hf.z_range());
+        let finer = if tint.is_made() { finer_levels(hf) } else { 0 };
+        let unlit = |means: &MipPyramid| Arc::new(LitGround::new(hf.cols(), hf.rows(), means.top(), finer));
         let averages = || Arc::new(MipPyramid::new(&surface));
         let map = (!surface.is_map()).then(|| {
             let map = Surface::of_map(hf);
             let means = cache.means.get(hf, (), || Arc::new(MipPyramid::new(&map)));
             (map, means)
         });
-        let cast = |means: &MipPyramid| Arc::new(Shadows::new(&surface, means, &light));
+        let cast = |means: &MipPyramid| Arc::new(Shadows::new(&surface, means, &light, Softness::SUN));
         let (means, shadows, lit) = if surface.is_map() {
             // The undisplaced ground has the same light in all frames.
             let means = cache.means.get(hf, (), averages);
-            let shadows = light.shadows.then(|| cache.shadows.get(hf, light, || cast(&means)));
+            let shadows = light.shadows.then(|| cache.shadows.get(hf, (light, layer.relief), || cast(&means)));
             let lit = cache.lit.take(hf, &key).filter(|lit| !lit.is_full()).unwrap_or_else(|| unlit(&means));
             cache.lit.put(hf, key, lit.clone());
             (means, shadows, lit)
         } else {
             let (means, lit) = if let Some(heights) = surface.moved() {
-                let DisplacedLight { means, lit, .. } = displaced::light(&cache.displaced, hf, &surface, heights, key);
+                let DisplacedLight { means, lit, .. } =
+                    displaced::light(&cache.displaced, hf, &surface, heights, (key, finer));
                 (means, lit)
             } else {
                 let means = averages();
@@ -108,7 +127,18 @@ impl<'a> TerrainShade<'a> {
             };
             (means.clone(), light.shadows.then(|| cast(&means)), lit)
         };
+        let shadows = shadows.or_else(|| {
+            // Painted shadows are those of the map, wherever the ground went.
+            let (on, of_map) = map.as_ref().map_or((&surface, &means), |(surface, means)| (surface, means));
+            let low = Light { altitude: light.altitude.clamp(LOWEST, HIGHEST), ..light };
+            let cast = || Arc::new(Shadows::new(on, of_map, &low, Softness::PAINTED));
+            (layer.relief == Relief::Swiss).then(|| cache.shadows.get(hf, (light, layer.relief), cast))
+        });
         let spacing = hf.spacing();
+        let broad = tint.is_made().then(|| {
+            let of_map = map.as_ref().map_or(&means, |(_, means)| means);
+            cache.broad.get(hf, (), || Arc::new(Broad::new(of_map, spacing)))
+        });
         Self {
             layer: index,
             hf,
@@ -119,11 +149,11 @@ impl<'a> TerrainShade<'a> {
             surface,
             map,
             shadows,
-            tint: GroundTint::new(&layer.palette, hf.z_range()),
-            to_light: [light.azimuth.sin() as f32, -light.azimuth.cos() as f32],
+            tint,
+            broad,
             exaggeration: layer.exaggeration as f32,
             drapes: drapes(layer, cache),
-            border: Border::of(layer),
+            border: Border::of(layer, job),
         }
     }
 
@@ -133,32 +163,12 @@ impl<'a> TerrainShade<'a> {
             surface: &self.surface,
             means: &self.means,
             map: self.map.as_ref().map(|(surface, means)| GroundShape { surface, means }),
+            broad: self.broad.as_deref(),
             shadows: self.shadows.as_deref(),
             tint: &self.tint,
             light: &self.light,
             exaggeration: self.exaggeration,
         }
-    }
-
-    /// Texture of the ground at points, see [`grain`]; `None` where it has none.
-    #[inline(always)]
-    pub(crate) fn grain<const N: usize>(
-        &self,
-        node: [&[i32; N]; 2],
-        at: [&[f32; N]; 2],
-        px: &[f32; N],
-    ) -> Option<[f32; N]> {
-        self.tint.is_textured().then(|| grain(node, at, px, self.to_light))
-    }
-
-    /// The texture at one point.
-    /// * `g`: column and row;
-    /// * `px`: longest extent of a pixel on the ground, cells.
-    fn grain_at(&self, g: DVec2, px: f64) -> f32 {
-        let node = g.floor();
-        let (from, [c, r]) = (g - node, [node.x as i32, node.y as i32]);
-        let at = [from.x as f32, from.y as f32];
-        self.grain([&[c], &[r]], [&[at[0]], &[at[1]]], &[px as f32]).map_or(0.0, |[v]| v)
     }
 
     /// Whether a drape, an area or a cast shadow may lie over the ground.
@@ -181,14 +191,13 @@ impl<'a> TerrainShade<'a> {
         let side = fp / self.pitch;
         let last = DVec2::new((self.hf.cols() - 1) as f64, (self.hf.rows() - 1) as f64);
         let at = (g.clamp(DVec2::ZERO, last) * f64::from(CELL)).as_ivec2().to_array();
-        let lod = lod((side * side) as f32);
+        let longest = axes[0].length().max(axes[1].length()) / self.pitch;
+        let lod = self.lod((side * side) as f32, longest as f32);
         let inputs = self.inputs();
         let print = || Footprint::new(axes, shader.screen.footprint(depth));
         let ground = || self.lit.sample(at, lod, &inputs);
         self.covered(shader, g, side, print, ground, pixel.as_vec2().to_array()).unwrap_or_else(|| {
-            let (root, rough) = self.lit.color(at, lod, &inputs);
-            let longest = axes[0].length().max(axes[1].length()) / self.pitch;
-            let root = Rgb::from_array(root) * (1.0 + rough * self.grain_at(g, longest));
+            let root = Rgb::from_array(self.lit.color(at, lod, &inputs));
             (root * root, None)
         })
     }
@@ -248,8 +257,7 @@ impl<'a> TerrainShade<'a> {
             return None;
         }
         let lit = ground();
-        let textured = 1.0 + lit.rough * self.grain_at(g, print.length() / self.pitch);
-        let mut albedo = lit.albedo() * (textured * textured);
+        let mut albedo = lit.albedo();
         let mut draped = 0.0f32;
         for (color, alpha) in drapes {
             albedo = albedo.lerp(color, alpha);
@@ -275,7 +283,8 @@ impl<'a> TerrainShade<'a> {
             }
         }
         let color = if water > 0.0 { mirrored(shader, pixel, (albedo, light), sun, water) } else { albedo * light };
-        Some((color, id))
+        let root = Rgb::from_array(color.to_array().map(|c| self.light.film(c.max(0.0).sqrt())));
+        Some((root * root, id))
     }
 }
 

@@ -1,4 +1,4 @@
-//! Mip pyramid of the ground in tiles that are computed on demand.
+//! Mip pyramid of the ground in tiles that are computed on demand: averages of its nodes, the nodes, and levels between them with made detail.
 
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -26,31 +26,62 @@ const MOST_BYTES: usize = 192 << 20;
 const BYTES_PER_PIXEL: u64 = 64;
 const BYTES_OF_CORNERS: u64 = 32 << 20;
 
+/// Tiles along a side of a page: the places of tiles are made with the first tile among them.
+const PAGE: usize = 8;
+type Page = [OnceLock<Box<Tile>>; PAGE * PAGE];
+
 #[derive(Debug)]
 struct Level {
     nodes: [usize; 2],
-    across: usize,
-    tiles: Vec<OnceLock<Box<Tile>>>,
+    /// Tiles across and down.
+    tiles: [usize; 2],
+    /// Pages row by row.
+    pages: Vec<OnceLock<Box<Page>>>,
+}
+
+impl Level {
+    fn new(nodes: [usize; 2], tiles: [usize; 2]) -> Self {
+        let pages = tiles.map(|n| n.div_ceil(PAGE)).iter().product();
+        Self { nodes, tiles, pages: (0..pages).map(|_| OnceLock::new()).collect() }
+    }
+
+    /// The place of a tile; `None` off the ground.
+    #[inline(always)]
+    fn place(&self, [column, row]: [usize; 2]) -> Option<&OnceLock<Box<Tile>>> {
+        if column >= self.tiles[0] || row >= self.tiles[1] {
+            return None;
+        }
+        let across = self.tiles[0].div_ceil(PAGE);
+        let page = self.pages.get(row / PAGE * across + column / PAGE)?;
+        let page = page.get_or_init(|| Box::new(std::array::from_fn(|_| OnceLock::new())));
+        page.get(row % PAGE * PAGE + column % PAGE)
+    }
 }
 
 /// Nodes and tiles across and down of a level.
-fn level_size(nodes: [usize; 2], k: usize) -> ([usize; 2], [usize; 2]) {
-    let nodes = nodes.map(|n| n.div_ceil(1 << k));
+/// * `finer`: levels below that of the nodes of the ground.
+fn level_size(nodes: [usize; 2], k: usize, finer: u32) -> ([usize; 2], [usize; 2]) {
+    let nodes = nodes.map(|n| (n << finer).div_ceil(1 << k));
     (nodes, nodes.map(|n| (n + 1).div_ceil(SIDE)))
 }
 
-/// Bytes that the tiles of a ground take at most: all of them, or the limit and the tiles of one more picture.
-pub(crate) fn most_bytes(nodes: [usize; 2], pixels: u64) -> u64 {
-    let levels = 1 + nodes[0].max(nodes[1]).next_power_of_two().trailing_zeros() as usize;
-    let tiles: usize = (0..levels).map(|k| level_size(nodes, k).1.iter().product::<usize>()).sum();
+/// Bytes that the tiles of a ground take at most: all of them, or the limit and the tiles of one more picture; with their
+/// places.
+pub(crate) fn most_bytes(nodes: [usize; 2], finer: u32, pixels: u64) -> u64 {
+    let levels = 1 + finer as usize + nodes[0].max(nodes[1]).next_power_of_two().trailing_zeros() as usize;
+    let tiles: usize = (0..levels).map(|k| level_size(nodes, k, finer).1.iter().product::<usize>()).sum();
     let all = tiles as u64 * size_of::<Tile>() as u64;
-    all.min(pixels.saturating_mul(BYTES_PER_PIXEL).saturating_add(MOST_BYTES as u64 + BYTES_OF_CORNERS))
+    let made = all.min(pixels.saturating_mul(BYTES_PER_PIXEL).saturating_add(MOST_BYTES as u64 + BYTES_OF_CORNERS));
+    // A page takes an eighth of a tile.
+    made + made / 8
 }
 
 /// Levels of halved detail, each with a border of one repeated node, so that no position needs clamping.
 #[derive(Debug)]
 pub(crate) struct Tiles {
     levels: Vec<Level>,
+    /// Number of the level of the nodes of the ground.
+    finer: u32,
     bytes: AtomicUsize,
 }
 
@@ -64,12 +95,19 @@ pub(crate) struct FourNodes<'a> {
 
 impl Tiles {
     /// Levels without tiles.
-    pub(crate) fn new(nodes: [usize; 2], top: usize) -> Self {
+    /// * `top`: averages above the level of the nodes; `finer`: levels below it.
+    pub(crate) fn new(nodes: [usize; 2], top: usize, finer: u32) -> Self {
         let level = |k: usize| {
-            let (nodes, [across, down]) = level_size(nodes, k);
-            Level { nodes, across, tiles: (0..across * down).map(|_| OnceLock::new()).collect() }
+            let (nodes, tiles) = level_size(nodes, k, finer);
+            Level::new(nodes, tiles)
         };
-        Self { levels: (0..=top).map(level).collect(), bytes: AtomicUsize::new(0) }
+        Self { levels: (0..=top + finer as usize).map(level).collect(), finer, bytes: AtomicUsize::new(0) }
+    }
+
+    /// Number of the level of the nodes of the ground.
+    #[inline(always)]
+    pub(crate) fn finer(&self) -> u32 {
+        self.finer
     }
 
     /// Number of the coarsest level.
@@ -95,7 +133,7 @@ impl Tiles {
     }
 
     /// Nodes around a point; `None` off the ground.
-    /// * `at`: column and row of level 0, [`CELL`] steps to a cell;
+    /// * `at`: column and row of the ground, [`CELL`] steps to a cell;
     /// * `make`: makes a tile from the number of its level and its column and row.
     #[inline(always)]
     pub(crate) fn around(
@@ -104,7 +142,7 @@ impl Tiles {
         at: [i32; 2],
         make: impl FnOnce(usize, [usize; 2]) -> Box<Tile>,
     ) -> Option<FourNodes<'_>> {
-        let (x, y) = (level_position(at[0], k as u32), level_position(at[1], k as u32));
+        let (x, y) = (level_position(at[0], k as u32, self.finer), level_position(at[1], k as u32, self.finer));
         let tile = self.tile([k as u32, x / SPAN, y / SPAN], make)?;
         let first = first_of(x, y) as usize;
         Some(FourNodes {
@@ -123,27 +161,32 @@ impl Tiles {
         make: impl FnOnce(usize, [usize; 2]) -> Box<Tile>,
     ) -> Option<&Tile> {
         let (k, column, row) = (k as usize, column as usize, row as usize);
-        let level = self.levels.get(k)?;
-        let index = row * level.across + column;
-        let place = level.tiles.get(index)?;
+        let place = self.levels.get(k)?.place([column, row])?;
         Some(match place.get() {
             Some(tile) => tile,
-            None => self.made(place, || make(k, [index % level.across, index / level.across])),
+            None => self.made(place, || make(k, [column, row])),
         })
     }
 
     /// Drops the tiles that may not be kept.
-    /// * `keep`: decides by the first and last columns and rows of level 0 that affect a tile.
+    /// * `keep`: decides by the first and last columns and rows of the ground that affect a tile.
     pub(crate) fn retain(&mut self, keep: impl Fn([[usize; 2]; 2]) -> bool) {
+        let finer = self.finer as usize;
         for (k, level) in self.levels.iter_mut().enumerate() {
-            for (i, tile) in level.tiles.iter_mut().enumerate() {
-                let reach = [i % level.across, i / level.across].map(|i| {
-                    // A tile depends on three nodes of the next level and a border of one on either side.
-                    [(i * SIDE).saturating_sub(8) << k, ((i + 1) * SIDE + 8) << k]
-                });
-                if tile.get().is_some() && !keep(reach) {
-                    tile.take();
-                    *self.bytes.get_mut() -= size_of::<Tile>();
+            let across = level.tiles[0].div_ceil(PAGE);
+            for (n, page) in level.pages.iter_mut().enumerate() {
+                for (i, tile) in page.get_mut().into_iter().flat_map(|page| page.iter_mut()).enumerate() {
+                    let at = [n % across * PAGE + i % PAGE, n / across * PAGE + i / PAGE];
+                    let reach = at.map(|i| {
+                        // A tile depends on three nodes of the next level and a border of one on either side; between the nodes, on two
+                        // on either side.
+                        let [from, to] = [(i * SIDE).saturating_sub(8) << k, ((i + 1) * SIDE + 8) << k];
+                        [(from >> finer).saturating_sub(4), (to >> finer) + 4]
+                    });
+                    if tile.get().is_some() && !keep(reach) {
+                        tile.take();
+                        *self.bytes.get_mut() -= size_of::<Tile>();
+                    }
                 }
             }
         }
@@ -160,11 +203,11 @@ impl Tiles {
 }
 
 /// Position along an axis of level `k`, [`CELL`] steps from node to node.
-/// * `at`: position on level 0, `CELL` steps from node to node.
+/// * `at`: position on the ground, `CELL` steps from node to node; `finer`: see [`Tiles::finer`].
 #[inline(always)]
-pub(crate) fn level_position(at: i32, k: u32) -> u32 {
-    // Node i of level k lies at (i + 0.5) 2^k - 0.5 of level 0, and is number i + 1 with the rim.
-    ((at.wrapping_add(CELL / 2) >> (k & 31)) + CELL / 2) as u32
+pub(crate) fn level_position(at: i32, k: u32, finer: u32) -> u32 {
+    // Node i of level k lies at (i + 0.5) 2^(k - finer) - 0.5 of the ground, and is number i + 1 with the rim.
+    ((at.wrapping_add(CELL / 2) << (finer & 31) >> (k & 31)) + CELL / 2) as u32
 }
 
 /// Index of the north-western node around a point of a level, in its tile.
@@ -225,6 +268,20 @@ pub(crate) struct RepeatedNodes {
     nodes: usize,
 }
 
+impl Line {
+    /// Number of the first node, which may lie before the ground.
+    pub(crate) fn first(self) -> isize {
+        self.first
+    }
+
+    /// The nodes of the level `by` levels coarser from which this line is interpolated, two before the first and after the last.
+    /// * `last`: number of the last node there.
+    pub(crate) fn around(self, by: u32, last: usize) -> Self {
+        let [from, to] = [self.first, self.first + self.count as isize - 1].map(|i| i >> by);
+        Self { first: from - 2, count: (to - from) as usize + 5, last }
+    }
+}
+
 impl RepeatedNodes {
     pub(crate) fn all(self) -> Line {
         Line { first: self.from as isize - 1, count: STRIDE, last: self.nodes - 1 }
@@ -266,19 +323,19 @@ mod tests {
 
     #[test]
     fn tiles_take_no_more_than_is_said() {
-        for nodes in [[70usize, 70], [300, 129], [1, 2], [1025, 40]] {
+        for (nodes, finer) in [([70usize, 70], 0), ([300, 129], 0), ([1, 2], 3), ([1025, 40], 0), ([40, 33], 2)] {
             let top = nodes[0].max(nodes[1]).next_power_of_two().trailing_zeros() as usize;
-            let tiles = Tiles::new(nodes, top);
-            for (k, c, r) in
-                (0..=top).flat_map(|k| (0..nodes[0]).flat_map(move |c| (0..nodes[1]).map(move |r| (k, c, r))))
-            {
-                let at = [c, r].map(|i| i as i32 * CELL);
-                assert!(tiles.around(k, at, |_, _| boxed(Vec::new())).is_some());
+            let tiles = Tiles::new(nodes, top, finer);
+            let steps = |n: usize| (0..n << finer).map(move |i| (i as i32 * CELL) >> finer);
+            for k in 0..=tiles.top() {
+                for at in steps(nodes[0]).flat_map(|c| steps(nodes[1]).map(move |r| [c, r])) {
+                    assert!(tiles.around(k, at, |_, _| boxed(Vec::new())).is_some());
+                }
             }
             let bytes = tiles.bytes.load(Ordering::Relaxed) as u64;
-            let most = most_bytes(nodes, u64::MAX);
+            let most = most_bytes(nodes, finer, u64::MAX);
             assert!(bytes <= most && 2 * bytes > most, "{nodes:?}: {bytes} of {most}");
         }
-        assert!(most_bytes([40_000, 40_000], 1 << 20) < 320 << 20, "not all of a huge ground");
+        assert!(most_bytes([40_000, 40_000], 0, 1 << 20) < 350 << 20, "not all of a huge ground");
     }
 }

@@ -23,10 +23,10 @@ pub(crate) struct CoarseColors {
 pub(crate) struct FineColors([Vec<f32>; 3]);
 
 impl CoarseColors {
-    /// * `k`: the level;
+    /// * `level`: see [`Patch::new`];
     /// * `fine`: columns and rows of the tile.
-    pub(crate) fn new(m: &LightingInputs<'_>, k: usize, fine: [RepeatedNodes; 2]) -> Self {
-        let patch = Patch::new(m, k, fine[0].parents(), fine[1].parents());
+    pub(crate) fn new(m: &LightingInputs<'_>, level: (usize, u32), fine: [RepeatedNodes; 2]) -> Self {
+        let patch = Patch::new(m, level, fine[0].parents(), fine[1].parents());
         let mut planes = [0; 3].map(|_| Vec::with_capacity(SIDE * SIDE + LANES));
         for nodes in patch.nodes() {
             for (plane, lanes) in planes.iter_mut().zip(nodes.lit_roots(m.light)) {

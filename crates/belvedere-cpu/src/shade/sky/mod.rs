@@ -40,13 +40,12 @@ pub(crate) const LANES: usize = 32;
 /// Number of ends of the rows of [`LANES`] pixels that are stored together.
 const POINTS: usize = PIXELS / LANES + 1;
 
-/// Largest deviation of a row of samples from a line between its ends for interpolation along it: in square roots of colours, less than
-/// half a step of an 8-bit picture, and in positions in the table.
+/// Largest deviation of a row of samples from a line between its ends for interpolation along it, in square roots of colours: less than
+/// half a step of an 8-bit picture.
 const EVEN: f32 = 0.4 / 255.0;
-const EVEN_OFF: f32 = 0.25;
 
 /// Largest share of haze in a colour.
-const THICKEST: f32 = 0.54;
+const THICKEST: f32 = 0.46;
 
 /// Downward components of the direction of view between which haze fades out: a map seen from above has none.
 const FROM_ABOVE: [f32; 2] = [0.77, 0.985];
@@ -73,16 +72,14 @@ const LAST: f32 = 2.0 * SHADES - 0.01;
 /// Colours of the air.
 #[derive(Debug)]
 pub(crate) struct Sky {
-    /// Square roots of linear colours, by the sine of the elevation from -1 to 1, and the differences to the next entry; the fourth value
+    /// Square roots of linear colours, by the rise of rays from -1 to 1, and the differences to the next entry; the fourth value
     /// is the summed change of these differences up to the entry.
     steps: Box<[[[f32; 4]; 2]; 2 * SHADES as usize]>,
     haze: Rgb,
-    /// Upward parts of the ray of a pixel: sine = (a + b x + c y) / |(1, d (x - cx), d (y - cy))|.
+    /// Upward parts of the ray of a pixel, see [`Sky::rise`].
     up: [f32; 3],
     center: [f32; 2],
     per_px: f32,
-    /// Whether the sine is nearly linear over a row of [`LANES`] pixels.
-    even: bool,
     /// Depth at which haze begins, and its increase per scene unit.
     haze_from: f32,
     haze_per: f32,
@@ -92,6 +89,40 @@ pub(crate) struct Sky {
     per_depth: f32,
     /// 1 with dithering, 0 for one plain colour.
     dither: f32,
+    stretch: Stretch,
+}
+
+/// How the sky of a picture spans its colours: from the skyline to the top of the picture, however far down the view looks.
+#[derive(Debug, Clone, Copy)]
+struct Stretch {
+    /// Elevation of the farthest ground.
+    skyline: f32,
+    gain: f32,
+}
+
+/// Elevation whose colour the top of a picture has at least, and least part of the picture's height over which the sky changes.
+const AT_TOP: f32 = 0.42;
+const LEAST_PART: f64 = 0.16;
+
+impl Stretch {
+    /// * `bounds`: of the scene; `far`: its largest depth.
+    fn new(bounds: &Aabb, far: f32, pinhole: &Pinhole) -> Self {
+        let row = |y: f64| pinhole.forward.z + pinhole.down.z * (y - pinhole.center_px().y) / pinhole.scale_px();
+        let level = pinhole.forward.truncate().length();
+        if bounds.is_empty() || pinhole.is_orthographic() || level < 0.05 {
+            return Self { skyline: 0.0, gain: 1.0 };
+        }
+        let top = row(0.0);
+        // Bent rays lift ground over the skyline of straight ones.
+        let skyline = ((bounds.max.z - pinhole.eye.z) / f64::from(far.max(1e-3))).min(0.0);
+        let skyline = skyline.min(row(LEAST_PART * f64::from(pinhole.image[1])));
+        Self { skyline: skyline as f32, gain: (AT_TOP / (top - skyline).max(1e-3) as f32).max(1.0) }
+    }
+
+    /// The elevation whose colour is shown at another.
+    fn of(self, rise: f32) -> f32 {
+        ((rise - self.skyline) * self.gain).clamp(-1.0, 1.0)
+    }
 }
 
 impl Sky {
@@ -111,15 +142,13 @@ impl Sky {
         let [near, far]: [f32; 2] = depths;
         let span = (far - near).max(1e-6);
         let from_above = smoothstep(FROM_ABOVE[0], FROM_ABOVE[1], -pinhole.forward.z as f32);
-        // The second derivative of the sine along a row is 1.2 at most, the distance from a chord an eighth of it.
-        let off = 0.15 * (LANES as f64 * per_px).powi(2) * f64::from(SHADES);
+        let stretch = Stretch::new(bounds, far, pinhole);
         Self {
-            steps: steps(towards),
-            haze: linear([186, 205, 224]),
+            steps: steps(|sine| towards(stretch.of(sine))),
+            haze: linear([184, 206, 230]),
             up: [pinhole.forward.z, pinhole.right.z, pinhole.down.z].map(|v| v as f32),
             center: [center.x as f32, center.y as f32],
             per_px: per_px as f32,
-            even: off <= f64::from(EVEN_OFF),
             haze_from: near + 0.22 * span,
             haze_per: 1.0 / ((1.15 - 0.22) * span),
             thickest: if pinhole.is_orthographic() {
@@ -129,6 +158,7 @@ impl Sky {
             },
             per_depth: 0.0,
             dither: 1.0,
+            stretch,
         }
     }
 
@@ -164,8 +194,12 @@ impl Sky {
             // The gradient of a studio is fixed to the picture, for every direction of the camera.
             Choice::Auto => Self { steps: steps(studio), up: [0.0, 0.0, -1.0], ..air },
             Choice::Day => air,
-            Choice::Dusk => Self { steps: steps(|sine| of_air(&DUSK, sine)), haze: linear(DUSK_HAZE), ..air },
-            Choice::Night => Self { steps: steps(|sine| of_air(&NIGHT, sine)), haze: linear(NIGHT_HAZE), ..air },
+            Choice::Dusk => {
+                Self { steps: steps(|sine| of_air(&DUSK, air.stretch.of(sine))), haze: linear(DUSK_HAZE), ..air }
+            }
+            Choice::Night => {
+                Self { steps: steps(|sine| of_air(&NIGHT, air.stretch.of(sine))), haze: linear(NIGHT_HAZE), ..air }
+            }
             Choice::Plain(_) | Choice::Transparent => {
                 let color = if let Choice::Plain(color) = shown { color } else { Color::rgb(255, 255, 255) };
                 let plain = linear([color.r, color.g, color.b]);
@@ -181,12 +215,19 @@ impl Sky {
         (self.up[0] + self.up[1] * x + self.up[2] * y) / (1.0 + x * x + y * y).sqrt()
     }
 
+    /// Rise of the straight ray of a pixel for each unit forward: linear on the picture, so that colours lie in level bands.
+    #[inline(always)]
+    fn rise(&self, [x, y]: [f32; 2]) -> f32 {
+        let (x, y) = ((x - self.center[0]) * self.per_px, (y - self.center[1]) * self.per_px);
+        self.up[0] + self.up[1] * x + self.up[2] * y
+    }
+
     /// Sky in the direction of a pixel, dithered by one step of an 8-bit picture against banding.
     #[inline]
     pub(crate) fn at(&self, pixel: [f32; 2]) -> Rgb {
         let [x, y] = pixel.map(|v| v.max(0.0) as usize % 8);
         // Square roots of linear light are nearly even in 8-bit steps.
-        let root = self.root(self.sine(pixel)) + Rgb::splat(self.dither * THRESHOLDS[8 * y + x]);
+        let root = self.root(self.rise(pixel)) + Rgb::splat(self.dither * THRESHOLDS[8 * y + x]);
         root * root
     }
 
@@ -213,9 +254,6 @@ impl Sky {
     /// * `end`: end point of the last row, if known.
     #[inline(always)]
     pub(crate) fn line(&self, x: i32, y: i32, end: &mut Option<(i32, SkyPoint)>) -> Option<Line> {
-        if !self.even {
-            return None;
-        }
         // No closures: they would be compiled separately, for the oldest processors.
         let next = x + LANES as i32 * SUB;
         let from = match *end {
@@ -227,12 +265,9 @@ impl Sky {
         from.line_to(&to)
     }
 
-    /// Table entries at points of a row, [`LANES`] pixels apart; `None` if colours are not nearly linear between them.
+    /// Table entries at points of a row, [`LANES`] pixels apart.
     #[inline(always)]
-    pub(crate) fn points(&self, x: i32, y: i32) -> Option<[SkyPoint; POINTS]> {
-        if !self.even {
-            return None;
-        }
+    pub(crate) fn points(&self, x: i32, y: i32) -> [SkyPoint; POINTS] {
         let mut at = [0.0; POINTS.next_power_of_two()];
         for (i, at) in at.iter_mut().enumerate() {
             *at = self.table_position([x + i as i32 * LANES as i32 * SUB, y]);
@@ -241,7 +276,7 @@ impl Sky {
         for (out, at) in out.iter_mut().zip(at) {
             *out = self.root_at(at);
         }
-        Some(out)
+        out
     }
 
     /// Table entry at a position.
@@ -260,7 +295,7 @@ impl Sky {
     /// Position of a sample in the table.
     #[inline(always)]
     fn table_position(&self, [x, y]: [i32; 2]) -> f32 {
-        let at = (self.sine([x as f32 * (1.0 / SUB as f32), y as f32 * (1.0 / SUB as f32)]) + 1.0) * SHADES;
+        let at = (self.rise([x as f32 * (1.0 / SUB as f32), y as f32 * (1.0 / SUB as f32)]) + 1.0) * SHADES;
         let at = if at > 0.0 { at } else { 0.0 };
         if at < LAST { at } else { LAST }
     }
@@ -301,7 +336,7 @@ impl Sky {
         if self.dither == 0.0 {
             return towards(sine);
         }
-        let root = self.root(sine);
+        let root = self.root(self.stretch.skyline + sine / self.stretch.gain);
         root * root
     }
 
@@ -434,7 +469,7 @@ fn roots(c: Rgb) -> Rgb {
 
 /// The clear sky at an elevation, given its sine, linear.
 fn towards(sine: f32) -> Rgb {
-    of_air(&[[88, 136, 188], [140, 181, 216], [224, 232, 236], [203, 213, 220]], sine)
+    of_air(&[[62, 118, 196], [134, 180, 222], [226, 236, 242], [214, 227, 237]], sine)
 }
 
 /// The sky of air with these colours at the zenith, in the middle, at the horizon and below it.

@@ -35,10 +35,7 @@ impl Kernel for Store<'_> {
                 let whole = (j + 1) * LANES <= out.len();
                 let mut roots = [[0.0; LANES]; 3];
                 let [red, green, blue] = &mut roots;
-                let line = match &points {
-                    Some(points) if whole => points[j].line_to(&points[j + 1]),
-                    _ => None,
-                };
+                let line = if whole { points[j].line_to(&points[j + 1]) } else { None };
                 let ends = match line {
                     Some(line) => {
                         line.paint(&threshold, [red, green, blue]);

@@ -47,12 +47,14 @@ fn only_tiles_around_what_moved_on_are_made_again() {
         let mut heights = hf.heights().to_vec();
         heights[700 * 1100 + 800] -= depth;
         let surface = Surface::lifted(&hf, Arc::new(heights));
-        let DisplacedLight { means, lit, .. } = light(&cache, &hf, &surface, surface.moved().unwrap(), key.clone());
+        let DisplacedLight { means, lit, .. } =
+            light(&cache, &hf, &surface, surface.moved().unwrap(), (key.clone(), 0));
         let before = lit.bytes();
         let inputs = LightingInputs {
             surface: &surface,
             means: &means,
             map: None,
+            broad: None,
             shadows: None,
             tint: &tint,
             light: &relief,

@@ -27,12 +27,13 @@ fn with_inputs(hf: &Heightfield, palette: &Palette, relief: Relief, test: impl F
         surface: &surface,
         means: &means,
         map: None,
+        broad: None,
         shadows: None,
         tint: &tint,
         light: &light,
         exaggeration: 1.0,
     };
-    test(&LitGround::new(hf.cols(), hf.rows(), means.top()), &inputs);
+    test(&LitGround::new(hf.cols(), hf.rows(), means.top(), 0), &inputs);
 }
 
 /// Linear colour from its square roots.
@@ -61,7 +62,8 @@ fn interpolated_light_is_that_of_the_interpolated_ground() {
                         Rgb::from_array(m.tint.color(f64::from(shape.z), DVec2::new(f64::from(steep), 0.0))) * light;
                     let apart = parts.albedo() * (m.light.warm * parts.direct + m.light.cool * parts.sky);
                     let steps = |c: Rgb| c.max(Rgb::ZERO).to_array().map(|v| 255.0 * v.sqrt());
-                    for has in [apart, linear(ground.color(at, 0, m).0)] {
+                    let film = linear(want.to_array().map(|v| m.light.film(v.max(0.0).sqrt())));
+                    for (want, has) in [(want, apart), (film, linear(ground.color(at, 0, m)))] {
                         for (a, b) in steps(want).into_iter().zip(steps(has)) {
                             (worst, sum, n) = (worst.max((a - b).abs()), sum + (a - b).abs(), n + 1.0);
                         }
@@ -87,6 +89,7 @@ fn tints_are_those_of_the_map_wherever_the_ground_went() {
         surface,
         means,
         map,
+        broad: None,
         shadows: None,
         tint: &tint,
         light: &light,
@@ -94,7 +97,7 @@ fn tints_are_those_of_the_map_wherever_the_ground_went() {
     };
     let undisplaced = GroundShape { surface: &map, means: &map_means };
     let (there, here) = (inputs(&moved, &moved_means, Some(undisplaced)), inputs(&map, &map_means, None));
-    let ground = |means: &MipPyramid| LitGround::new(150, 131, means.top());
+    let ground = |means: &MipPyramid| LitGround::new(150, 131, means.top(), 0);
     let (moved_ground, map_ground) = (ground(&moved_means), ground(&map_means));
     let mut other_light = 0;
     for i in 0..8000i32 {
@@ -119,7 +122,7 @@ fn weights_are_whole_and_sum_up_everywhere() {
             assert_eq!(ground.color(at, lod, m), color, "{at:?}");
         }
         for at in [[i32::MAX; 2], [-5 * CELL, 0], [0, 900 * CELL], [i32::MIN; 2]] {
-            assert_eq!(ground.color(at, 0, m).0, [0.0; 3], "off the ground: {at:?}");
+            assert_eq!(ground.color(at, 0, m), [0.0; 3], "off the ground: {at:?}");
         }
     });
 }
@@ -137,11 +140,11 @@ fn averages_match_the_mean_of_what_they_stand_for() {
         };
         for i in 0..side * side {
             let at = [(c + i % side) * CELL, (r + i / side) * CELL];
-            let now = values(ground.sample(at, 0, m), linear(ground.color(at, 0, m).0));
+            let now = values(ground.sample(at, 0, m), linear(ground.color(at, 0, m)));
             mean.iter_mut().zip(now).for_each(|(s, v)| *s += v / (side * side) as f32);
         }
         let at = [c * CELL + (side - 1) * CELL / 2, r * CELL + (side - 1) * CELL / 2];
-        let got = values(ground.sample(at, 5 << 8, m), linear(ground.color(at, 5 << 8, m).0));
+        let got = values(ground.sample(at, 5 << 8, m), linear(ground.color(at, 5 << 8, m)));
         assert!(mean.iter().zip(got).all(|(a, b)| (a - b).abs() < 0.1), "{mean:?} {got:?}");
     });
 }
@@ -154,7 +157,7 @@ fn levels_pass_into_each_other() {
         for i in 0..20_000i32 {
             let at = [i * 7919 % (149 * CELL), i * 104_729 % (130 * CELL)];
             for k in 1..4 {
-                let steps = |lod: u32| linear(ground.color(at, lod, m).0).to_array().map(|v| 255.0 * v.sqrt());
+                let steps = |lod: u32| linear(ground.color(at, lod, m)).to_array().map(|v| 255.0 * v.sqrt());
                 for (a, b) in steps((k << 8) - 1).into_iter().zip(steps(k << 8)) {
                     (worst, sum, n) = (worst.max((a - b).abs()), sum + (a - b).abs(), n + 1.0);
                 }

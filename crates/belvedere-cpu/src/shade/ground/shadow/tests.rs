@@ -45,7 +45,7 @@ fn thousands_of_nodes_are_as_dark_as_rays_towards_the_sun_say() {
     {
         let light =
             Light { azimuth: azimuth.to_radians(), altitude: altitude.to_radians(), shadows: true, ..Light::default() };
-        let shadows = Shadows::new(&surface, &means, &light);
+        let shadows = Shadows::new(&surface, &means, &light, Softness::SUN);
         let lit = &shadows.levels[0].2;
         for i in (0..N * N).step_by(7) {
             let p = hf.node(i % N, i / N).unwrap();
@@ -70,7 +70,7 @@ fn a_wall_throws_its_shadow_as_far_as_its_height_over_the_tangent() {
     let (cols, rows) = (60, 9);
     let heights: Vec<f32> = (0..cols * rows).map(|i| if i % cols == 20 { 100.0 } else { 0.0 }).collect();
     let light = Light { azimuth: 270f64.to_radians(), altitude: 45f64.to_radians(), shadows: true, ..Light::default() };
-    let lit = sweep([cols, rows], DVec2::splat(10.0), &light, &|i| heights[i]);
+    let lit = sweep([cols, rows], DVec2::splat(10.0), (&light, Softness::SUN), &|i| heights[i]);
     for c in 0..cols {
         let want = if c > 20 && c < 30 { 0 } else { 255 };
         if c != 30 {
@@ -79,7 +79,7 @@ fn a_wall_throws_its_shadow_as_far_as_its_height_over_the_tangent() {
     }
     assert!((100..156).contains(&lit[4 * cols + 30]), "the border lies halfway: {}", lit[4 * cols + 30]);
     assert!(
-        sweep([cols, rows], DVec2::splat(10.0), &Light { altitude: -0.01, ..light }, &|i| heights[i])
+        sweep([cols, rows], DVec2::splat(10.0), (&Light { altitude: -0.01, ..light }, Softness::SUN), &|i| heights[i])
             .iter()
             .all(|&l| l == 0)
     );
@@ -90,10 +90,29 @@ fn voids_throw_no_shadow_and_the_border_softens_with_distance() {
     let (cols, rows) = (400, 5);
     let light = Light { azimuth: 270f64.to_radians(), altitude: 10f64.to_radians(), shadows: true, ..Light::default() };
     let void: Vec<f32> = (0..cols * rows).map(|i| if i % cols == 20 { f32::NEG_INFINITY } else { 0.0 }).collect();
-    assert!(sweep([cols, rows], DVec2::splat(10.0), &light, &|i| void[i]).iter().all(|&l| l == 255));
+    assert!(sweep([cols, rows], DVec2::splat(10.0), (&light, Softness::SUN), &|i| void[i]).iter().all(|&l| l == 255));
     let soft = |wall: f32| {
-        let lit = sweep([cols, rows], DVec2::splat(2.0), &light, &|i| if i % cols == 2 { wall } else { 0.0 });
+        let lit = sweep([cols, rows], DVec2::splat(2.0), (&light, Softness::SUN), &|i| {
+            if i % cols == 2 { wall } else { 0.0 }
+        });
         lit[..cols].iter().filter(|&&l| l > 0 && l < 255).count()
     };
     assert!(soft(130.0) > soft(20.0) && soft(130.0) >= 12, "{} {}", soft(20.0), soft(130.0));
+}
+
+/// A wall on a plain: its painted shadow is softer than that of the sun, fades, and ends within its reach.
+#[test]
+fn painted_shadows_are_soft_and_short() {
+    let (cols, rows) = (900, 3);
+    let light = Light { azimuth: 270f64.to_radians(), altitude: 0.6, ..Light::default() };
+    let lit = |soft: Softness, wall: f32| {
+        let height = move |i: usize| if i % cols == 2 { wall } else { 0.0 };
+        let lit = sweep([cols, rows], DVec2::splat(10.0), (&light, soft), &height);
+        lit[cols..2 * cols].iter().map(|l| f64::from(*l) / 255.0).collect::<Vec<_>>()
+    };
+    let [sun, painted] = [Softness::SUN, Softness::PAINTED].map(|soft| lit(soft, 400.0));
+    let border = |lit: &[f64]| lit.iter().filter(|l| (0.05..0.95).contains(*l)).count();
+    assert!(border(&painted) > 5 * border(&sun).max(1), "{} cells, {} by the sun", border(&painted), border(&sun));
+    let high = lit(Softness::PAINTED, 4000.0);
+    assert!(high[10] < 0.2 && high[270..].iter().all(|l| *l > 0.99), "{:?}", &high[230..290]);
 }

@@ -1,0 +1,71 @@
+//! Smooth noise that is fixed to the map: detail made where data have none.
+
+/// Value noise at places, about -1..=1, and its slope along both axes (quintic interpolation between pseudo-random values on whole numbers).
+///
+/// * `at`: places, in steps of the noise; `seed`: another seed gives other noise.
+#[inline(always)]
+pub fn value<const N: usize>([x, y]: [&[f32; N]; 2], seed: u32) -> ([f32; N], [[f32; N]; 2]) {
+    let (mut out, mut east, mut south) = ([0.0; N], [0.0; N], [0.0; N]);
+    for i in 0..N {
+        let (x0, y0) = (floor(x[i]), floor(y[i]));
+        let (s, t) = (x[i] - x0 as f32, y[i] - y0 as f32);
+        let (a, b) = (hash(x0, y0, seed), hash(x0 + 1, y0, seed));
+        let (c, d) = (hash(x0, y0 + 1, seed), hash(x0 + 1, y0 + 1, seed));
+        let (p, q) = (s * s * s * (s * (s * 6.0 - 15.0) + 10.0), t * t * t * (t * (t * 6.0 - 15.0) + 10.0));
+        let (dp, dq) = (30.0 * s * s * (1.0 - s) * (1.0 - s), 30.0 * t * t * (1.0 - t) * (1.0 - t));
+        let both = a - b - c + d;
+        out[i] = a + p * (b - a) + q * (c - a) + p * q * both;
+        east[i] = dp * (b - a + q * both);
+        south[i] = dq * (c - a + p * both);
+    }
+    (out, [east, south])
+}
+
+/// The largest whole number that is not larger, for values that an `i32` holds.
+#[inline(always)]
+pub fn floor(v: f32) -> i32 {
+    let whole = v as i32;
+    if (whole as f32) > v { whole - 1 } else { whole }
+}
+
+/// A pseudo-random value in -1..=1 of two whole numbers and a seed.
+#[inline(always)]
+pub fn hash(x: i32, y: i32, seed: u32) -> f32 {
+    (bits(x, y, seed) >> 16) as i32 as f32 * (1.0 / 32_768.0) - 1.0
+}
+
+/// Pseudo-random bits of two whole numbers and a seed.
+#[inline(always)]
+pub fn bits(x: i32, y: i32, seed: u32) -> u32 {
+    let mut h =
+        (x as u32).wrapping_mul(0x9e37_79b1) ^ (y as u32).wrapping_mul(0x85eb_ca77) ^ seed.wrapping_mul(0xc2b2_ae3d);
+    h = (h ^ (h >> 15)).wrapping_mul(0x2c1b_3c6d);
+    h = (h ^ (h >> 12)).wrapping_mul(0x297a_2d39);
+    h ^ (h >> 15)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_is_even_continuous_and_its_slope_is_its_change() {
+        let (mut sum, mut square, n) = (0.0, 0.0, 20_000);
+        for i in 0..n {
+            let (x, y) = (i as f32 * 0.0173 - 90.0, 400.0 - i as f32 * 0.0311);
+            let at = |x: f32, y: f32| value([&[x], &[y]], 7);
+            let (here, [east, south]) = at(x, y);
+            let h = 1e-2;
+            assert!((at(x + h, y).0[0] - at(x - h, y).0[0] - 2.0 * h * east[0]).abs() < 4e-3, "{x} {y}");
+            assert!((at(x, y + h).0[0] - at(x, y - h).0[0] - 2.0 * h * south[0]).abs() < 4e-3, "{x} {y}");
+            (sum, square) = (sum + here[0], square + here[0] * here[0]);
+        }
+        let (mean, spread) = (sum / n as f32, (square / n as f32).sqrt());
+        assert!(mean.abs() < 0.03 && (0.25..0.6).contains(&spread), "mean {mean}, spread {spread}");
+    }
+
+    #[test]
+    fn whole_numbers_are_rounded_down() {
+        assert_eq!([floor(-0.1), floor(-1.0), floor(0.0), floor(2.9), floor(-7.5)], [-1, -1, 0, 2, -8]);
+    }
+}

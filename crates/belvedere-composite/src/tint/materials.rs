@@ -1,0 +1,292 @@
+//! Materials of ground, by rule: forest, meadow, alpine grass, scree, rock, strata, snow, where a climate has them and the form of the ground
+//! allows. Nothing here is data: pictures say so.
+//!
+//! The rules are those of panorama painters (Patterson, Niehues, Imhof), the figures ours: forest keeps to slopes under the tree line, to
+//! gullies rather than ridges, and climbs higher on the shady side; valley floors are open; rock follows slope; snow follows height,
+//! aspect and slope.
+
+use super::{GroundCover, GroundNodes};
+use crate::color::{Rgb, linear};
+use crate::noise;
+use belvedere_scene::{Climate, PaletteName};
+
+/// Sizes of the noise that frays the borders of materials, metres: the largest, and how many halvings follow.
+const FRAY_M: f32 = 260.0;
+const FRAYS: u32 = 6;
+/// Patches of wood and fields in gentle lowland, metres.
+const PATCH_M: f32 = 900.0;
+/// Largest clumps of trees, metres, and how many halvings to single crowns.
+const CLUMP_M: f32 = 150.0;
+const CLUMPS: u32 = 5;
+/// Height over its surroundings that makes a ridge, metres.
+const RIDGE_M: f32 = 28.0;
+/// Heights between two layers of rock in walls of dry climates, metres.
+const LAYERS_M: [f32; 2] = [95.0, 33.0];
+
+/// Season of the vegetation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Season {
+    Summer,
+    Autumn,
+    Winter,
+}
+
+/// Colours of the materials, linear.
+#[derive(Debug, Clone)]
+struct Colors {
+    meadow: Rgb,
+    alpine: Rgb,
+    valley: Rgb,
+    conifers: Rgb,
+    broadleaves: Rgb,
+    scree: Rgb,
+    rock: Rgb,
+    snow: Rgb,
+    soil: [Rgb; 2],
+    strata: [Rgb; 2],
+}
+
+impl Colors {
+    fn of(season: Season) -> Self {
+        let summer = Self {
+            meadow: linear([136, 158, 86]),
+            alpine: linear([168, 166, 108]),
+            valley: linear([172, 184, 116]),
+            conifers: linear([58, 86, 54]),
+            broadleaves: linear([92, 120, 62]),
+            scree: linear([184, 175, 162]),
+            rock: linear([146, 136, 128]),
+            snow: linear([232, 238, 246]),
+            soil: [linear([190, 134, 96]), linear([212, 188, 150])],
+            strata: [linear([150, 98, 74]), linear([212, 172, 136])],
+        };
+        match season {
+            Season::Summer => summer,
+            Season::Autumn => Self {
+                meadow: linear([166, 154, 88]),
+                alpine: linear([184, 158, 96]),
+                valley: linear([180, 172, 108]),
+                conifers: linear([62, 78, 46]),
+                broadleaves: linear([176, 108, 44]),
+                ..summer
+            },
+            Season::Winter => Self {
+                meadow: linear([226, 230, 236]),
+                alpine: linear([234, 238, 243]),
+                valley: linear([222, 226, 230]),
+                conifers: linear([58, 72, 66]),
+                broadleaves: linear([104, 98, 92]),
+                scree: linear([206, 208, 212]),
+                rock: linear([118, 114, 114]),
+                ..summer
+            },
+        }
+    }
+}
+
+/// Materials of a palette at a place.
+#[derive(Debug, Clone)]
+pub(super) struct Materials {
+    colors: Colors,
+    climate: Climate,
+    tree_line_m: f32,
+    snow_line_m: f32,
+    /// 0 = humid, 1 = desert.
+    dry: f32,
+    /// 1 where the sun stands in the south at noon, -1 where in the north, less between the tropics.
+    north: f32,
+    /// Lowest and highest ground, metres.
+    range_m: [f32; 2],
+}
+
+impl Materials {
+    /// The materials of a palette at a place; `None` for palettes that do not depend on it.
+    /// * `z_range_m`: heights of the ground.
+    pub(super) fn of(name: PaletteName, climate: &Climate, z_range_m: [f64; 2]) -> Option<Self> {
+        let season = match name {
+            PaletteName::Auto | PaletteName::Swiss => Season::Summer,
+            PaletteName::Autumn => Season::Autumn,
+            PaletteName::Winter => Season::Winter,
+            _ => return None,
+        };
+        let dry = if name == PaletteName::Swiss { 0.0 } else { climate.dryness as f32 };
+        let (tree, snow, winter) = (climate.tree_line_m as f32, climate.snow_line_m as f32, climate.winter() as f32);
+        let snow_line_m = match season {
+            Season::Summer => snow,
+            Season::Autumn => (snow - 350.0 * winter).max(tree + 100.0),
+            // Snow lies on all ground of a cold winter, and higher up where it is dry.
+            Season::Winter => snow + winter * (tree - 2200.0 - snow) + 1400.0 * dry,
+        };
+        let sunny = if climate.latitude_deg < 0.0 { -1.0 } else { 1.0 };
+        Some(Self {
+            colors: Colors::of(season),
+            climate: *climate,
+            tree_line_m: tree,
+            snow_line_m,
+            dry,
+            north: sunny * (climate.latitude_deg.abs() as f32 / 30.0).min(1.0),
+            range_m: [z_range_m[0] as f32, (z_range_m[1] as f32).max(z_range_m[0] as f32 + 1.0)],
+        })
+    }
+
+    /// The climate.
+    pub(super) fn climate(&self) -> Climate {
+        self.climate
+    }
+
+    /// Colours and covers of nodes.
+    #[inline(always)]
+    pub(super) fn cover<const N: usize>(&self, nodes: &GroundNodes<'_, N>) -> GroundCover<N> {
+        let fray = fractal(nodes, FRAY_M, FRAYS, 101);
+        let patch = fractal(nodes, PATCH_M, 3, 57);
+        let crowns = fractal(nodes, CLUMP_M, CLUMPS, 401);
+        let layers = self.layers(nodes, &fray);
+        let mut out = GroundCover { color: [[0.0; N]; 3], forest: [0.0; N], bare: [0.0; N], snow: [0.0; N] };
+        for i in 0..N {
+            let (height, [x, y]) = (nodes.height_m[i], nodes.slope.map(|s| s[i]));
+            let steep = (x * x + y * y).sqrt();
+            let shady = self.shade(nodes.broad[1][i]);
+            let ridge = (nodes.above_m[i] * (1.0 / RIDGE_M)).clamp(-2.0, 2.0);
+            let forest = self.forest(height, steep, shady, ridge, fray[i], patch[i]);
+            let bare = self.bare(height, steep, fray[i]);
+            let snow = self.snow(height, steep, shady, fray[i]);
+            let color = self.color([height, steep, fray[i], patch[i], layers[i]], bare, forest, crowns[i]);
+            let color = color.lerp(self.colors.snow, snow * (1.0 - 0.92 * forest));
+            for (plane, v) in out.color.iter_mut().zip(color.to_array()) {
+                plane[i] = v;
+            }
+            (out.forest[i], out.bare[i], out.snow[i]) = (forest, bare * (1.0 - forest), snow);
+        }
+        out
+    }
+
+    /// -1..=1: how much a slope with this rise to the north lies in the shade.
+    #[inline(always)]
+    fn shade(&self, north: f32) -> f32 {
+        -self.north * north / (1.0 + north * north).sqrt()
+    }
+
+    /// Share of forest, 0..=1.
+    #[inline(always)]
+    fn forest(&self, height: f32, steep: f32, shady: f32, ridge: f32, fray: f32, patch: f32) -> f32 {
+        let under = (self.tree_line_m - height) * (1.0 / 140.0) + 0.3;
+        let under = if under < 1.35 { under } else { 1.35 };
+        let likely =
+            under - 0.55 * ridge + 1.4 * shady - 0.35 * self.dry * (2.2 - 2.0 * shady) + 0.9 * fray + 0.35 * patch;
+        let likely = ramp(likely, 0.2, 0.82);
+        // Cliffs carry none, gentle ground is mostly cleared, and so is the lowland.
+        let cliff = ramp(steep, 0.95, 0.68);
+        let wood = ramp(patch + 0.5 * fray, 0.06, 0.22);
+        let slope = ramp(steep, 0.12, 0.26);
+        let kept = wood + slope * (1.0 - wood);
+        let low = ((height - self.tree_line_m + 1500.0) * (1.0 / 600.0)).clamp(0.0, 1.0);
+        let low = low + (1.0 - low) * (0.15 + 0.85 * wood);
+        let dry = 1.0 - 0.85 * self.dry * ramp(height, self.tree_line_m, self.tree_line_m - 900.0);
+        smooth(likely * cliff * kept * low * dry)
+    }
+
+    /// Share of rock, 0..=1.
+    #[inline(always)]
+    fn bare(&self, height: f32, steep: f32, fray: f32) -> f32 {
+        let tree = self.tree_line_m;
+        let by_slope = ramp(steep + 0.55 * fray + 0.16 * self.dry, 0.52, 0.80);
+        let by_height = 0.9 * ramp(height + 400.0 * fray, tree + 600.0, tree + 950.0);
+        let bare = if by_slope > by_height { by_slope } else { by_height };
+        bare * (1.0 - 0.5 * (1.0 - self.dry) * ramp(height, tree + 200.0, tree - 100.0))
+    }
+
+    /// Share of snow, 0..=1.
+    #[inline(always)]
+    fn snow(&self, height: f32, steep: f32, shady: f32, fray: f32) -> f32 {
+        let slides = steep - 0.74;
+        let slides = if slides > 0.0 { slides } else { 0.0 };
+        smooth(ramp(
+            height + 380.0 * fray - 1100.0 * slides + 320.0 * shady,
+            self.snow_line_m - 40.0,
+            self.snow_line_m + 160.0,
+        ))
+    }
+
+    /// Colour without snow, linear.
+    #[inline(always)]
+    fn color(&self, [height, steep, fray, patch, layer]: [f32; 5], bare: f32, forest: f32, crown: f32) -> Rgb {
+        let (c, tree) = (&self.colors, self.tree_line_m);
+        let grass = c.meadow.lerp(c.alpine, ramp(height + 200.0 * fray, tree - 250.0, tree + 350.0));
+        let floor = ramp(steep, 0.15, 0.05) * ramp(height, tree - 150.0, tree - 500.0);
+        let fields = c.valley.lerp(c.meadow, ramp(patch, -0.25, 0.25));
+        let grass = grass.lerp(fields, floor) * (1.0 + 0.22 * fray);
+        let scree = c.scree * (1.0 + 0.25 * fray);
+        let green = grass.lerp(scree, 0.85 * ramp(height + 300.0 * fray, tree + 350.0, tree + 600.0));
+        let [low, high] = self.range_m;
+        let soil = c.soil[0].lerp(c.soil[1], ramp(height, low, high)) * (1.0 + 0.25 * fray + 0.10 * layer);
+        // High above trees dry ground is grey, too.
+        let soil = soil.lerp(scree, 0.75 * ramp(height, tree - 400.0, tree + 500.0));
+        let open = green.lerp(soil, self.dry);
+        let walls = c.strata[0].lerp(c.strata[1], 0.5 + 0.5 * layer);
+        let walls = walls.lerp(c.rock, 0.75 * ramp(height, tree - 400.0, tree + 500.0));
+        let rock = c.rock.lerp(walls, self.dry) * (1.0 + 0.35 * fray + 0.12 * layer * (1.0 - self.dry));
+        let ground = open.lerp(rock, bare);
+        // Broadleaves below, conifers above, mixed between.
+        let up = ramp(height + 380.0 * patch + 120.0 * fray, tree - 1000.0, tree - 350.0);
+        let trees = c.broadleaves.lerp(c.conifers, 0.25 + 0.75 * up) * (1.0 + 1.05 * crown).max(0.3);
+        ground.lerp(trees, 0.94 * forest)
+    }
+
+    /// Layers of rock by height, -1..=1, left out where they would be thinner than two nodes.
+    #[inline(always)]
+    fn layers<const N: usize>(&self, nodes: &GroundNodes<'_, N>, fray: &[f32; N]) -> [f32; N] {
+        let mut out = [0.0; N];
+        for (k, size) in LAYERS_M.into_iter().enumerate() {
+            for i in 0..N {
+                let [x, y] = nodes.slope.map(|s| s[i]);
+                let rise = (x * x + y * y).sqrt() * nodes.spacing_m;
+                let shown = (size / (2.0 * rise + 1e-3) - 0.5).clamp(0.0, 1.0);
+                let at = (nodes.height_m[i] + 14.0 * fray[i]) / size;
+                let (below, share) = (noise::floor(at), at - noise::floor(at) as f32);
+                let (a, b) = (noise::hash(below, k as i32, 11), noise::hash(below + 1, k as i32, 11));
+                // Steps with soft edges.
+                out[i] += 0.55 * shown * (a + ramp(share, 0.35, 0.65) * (b - a));
+            }
+        }
+        out
+    }
+}
+
+/// Noise of several sizes, each half of the one before and 0.62 as strong, about -1..=1; sizes below two nodes are left out.
+#[inline(always)]
+fn fractal<const N: usize>(nodes: &GroundNodes<'_, N>, longest_m: f32, octaves: u32, seed: u32) -> [f32; N] {
+    let (mut out, mut size, mut strength) = ([0.0; N], longest_m, 0.62);
+    for k in 0..octaves {
+        let shown = (size / (2.0 * nodes.spacing_m) - 0.5).clamp(0.0, 1.0);
+        if shown == 0.0 {
+            break;
+        }
+        let (mut x, mut y) = ([0.0; N], [0.0; N]);
+        for i in 0..N {
+            // Turned from size to size, so that no lattice shows.
+            let [a, b] = [nodes.at_m[0][i] / size, nodes.at_m[1][i] / size];
+            let [c, s] = TURNS[k as usize % TURNS.len()];
+            (x[i], y[i]) = (c * a - s * b, s * a + c * b);
+        }
+        let (value, _) = noise::value([&x, &y], seed + k);
+        for i in 0..N {
+            out[i] += strength * shown * value[i];
+        }
+        (size, strength) = (0.5 * size, 0.62 * strength);
+    }
+    out
+}
+
+/// Cosines and sines of turns of the lattices of noise.
+const TURNS: [[f32; 2]; 4] = [[1.0, 0.0], [0.8, 0.6], [0.28, 0.96], [0.6, -0.8]];
+
+/// 0 at one value, 1 at another, linear between.
+#[inline(always)]
+fn ramp(x: f32, zero: f32, one: f32) -> f32 {
+    ((x - zero) / (one - zero)).clamp(0.0, 1.0)
+}
+
+#[inline(always)]
+fn smooth(t: f32) -> f32 {
+    t * t * (3.0 - 2.0 * t)
+}
