@@ -65,6 +65,9 @@ class RevealOptions(TypedDict, total=False):
     #: Paper: A0 to A6 (landscape where the picture is wider than high), A3-portrait, A3-landscape, or a size such as 420x297mm; pixels, widths of lines and heights of letters follow from it
     paper: str | None
 
+    #: Tint the ground by height alone: no forest, rock or snow by rule, and no relief finer than the data
+    plain: bool
+
     #: Shading of the terrain; swiss by default, sun with --light-time
     relief: Literal["swiss", "sun", "none"] | None
 
@@ -131,6 +134,9 @@ class RenderOptions(TypedDict, total=False):
 
     #: Tint of the terrain instead of the scene's: a name, as of `reveal`, or a file of colours by height (GDAL text, GMT .cpt)
     palette: str | None
+
+    #: Tint the ground by height alone: no forest, rock or snow by rule, and no relief finer than the data
+    plain: bool
 
     #: What molecules are shown as, instead of what the scene says; without a scene auto
     representation: Literal["ball_and_stick", "space_filling", "sticks", "ribbon", "surface", "auto"] | None

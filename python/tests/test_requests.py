@@ -67,7 +67,7 @@ def test_what_data_alone_do_not_say_is_said(tmp_path: Path) -> None:
 def test_options_of_render_change_the_picture() -> None:
     scene = belvedere.Scene.builtin("massif")
     usual = scene.render(size=(96, 54), threads=2).rgba
-    changes = {"palette": "desert", "sky": "white", "haze": 1.0, "contours": 50.0, "edge": "block", "no_sea": None}
+    changes = {"palette": "desert", "sky": "white", "haze": 1.0, "contours": 50.0, "edge": "block", "plain": True, "no_sea": None}
     for name, value in changes.items():
         drawn = scene.render(size=(96, 54), threads=2, **{name: value}).rgba
         assert (drawn != usual).any() == (value is not None), name

@@ -48,6 +48,7 @@ fn rows() -> Vec<(&'static str, Does)> {
         ("sky", Changes(json!("white"), none())),
         ("haze", Changes(json!(2.0), none())),
         ("contours", Changes(json!(true), none())),
+        ("plain", Changes(json!(true), none())),
         ("edge", Changes(json!("block"), none())),
         ("title", Changes(json!("Hills"), large())),
         ("furniture", Changes(json!("scale,compass"), large())),
