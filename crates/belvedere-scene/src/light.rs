@@ -67,9 +67,10 @@ const LEFT_DEG: f64 = 55.0;
 
 impl Light {
     /// Azimuth of light that comes from the upper left of a picture, as in relief shading, in whole steps of 15 degrees, radians clockwise
-    /// from north; `None` if the picture has no way up on the map.
+    /// from north; `None` if the picture has no way up on the map: it looks at the zenith.
     pub fn azimuth_at_upper_left(view: &Pinhole) -> Option<f64> {
-        let up = -view.down.truncate();
+        // A level view goes up the picture as it goes forward, one from above has no forward on the map.
+        let up = (view.forward - view.down).truncate();
         let heading_deg = (up.length() > 1e-6).then(|| up.x.atan2(up.y).to_degrees())?;
         Some((15.0 * ((heading_deg - LEFT_DEG) / 15.0).round()).rem_euclid(360.0).to_radians())
     }

@@ -74,8 +74,8 @@ impl Colors {
                 meadow: linear([226, 230, 236]),
                 alpine: linear([234, 238, 243]),
                 valley: linear([222, 226, 230]),
-                conifers: linear([58, 72, 66]),
-                broadleaves: linear([104, 98, 92]),
+                conifers: linear([50, 64, 58]),
+                broadleaves: linear([84, 80, 76]),
                 scree: linear([206, 208, 212]),
                 rock: linear([118, 114, 114]),
                 ..summer

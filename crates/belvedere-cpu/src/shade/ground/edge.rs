@@ -76,10 +76,7 @@ impl Border {
             [self.cols, self.rows],
             1.0 / self.per_unit,
         );
-        self.kept = far
-            .into_iter()
-            .map(|d| 1.0 - smoothstep(0.5 * KEPT as f32, KEPT as f32, (d / self.width) as f32))
-            .collect();
+        self.kept = far.into_iter().map(|d| 1.0 - smoothstep(0.5 * KEPT, KEPT, (d / self.width) as f32)).collect();
     }
 
     fn new(ground: &Heightfield) -> Self {

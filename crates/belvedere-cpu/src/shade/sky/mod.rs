@@ -105,16 +105,18 @@ const AT_TOP: f32 = 0.42;
 const LEAST_PART: f64 = 0.16;
 
 impl Stretch {
-    /// * `bounds`: of the scene; `far`: its largest depth.
-    fn new(bounds: &Aabb, far: f32, pinhole: &Pinhole) -> Self {
+    /// * `ground`: bounds of all ground.
+    fn new(ground: &Aabb, pinhole: &Pinhole) -> Self {
         let row = |y: f64| pinhole.forward.z + pinhole.down.z * (y - pinhole.center_px().y) / pinhole.scale_px();
         let level = pinhole.forward.truncate().length();
-        if bounds.is_empty() || pinhole.is_orthographic() || level < 0.05 {
+        if ground.is_empty() || pinhole.is_orthographic() || level < 0.05 {
             return Self { skyline: 0.0, gain: 1.0 };
         }
         let top = row(0.0);
         // Bent rays lift ground over the skyline of straight ones.
-        let skyline = ((bounds.max.z - pinhole.eye.z) / f64::from(far.max(1e-3))).min(0.0);
+        let depth = |p: DVec3| (p - pinhole.eye).dot(pinhole.forward);
+        let far = ground.corners().into_iter().map(depth).fold(1e-3, f64::max);
+        let skyline = ((ground.max.z - pinhole.eye.z) / far).min(0.0);
         let skyline = skyline.min(row(LEAST_PART * f64::from(pinhole.image[1])));
         Self { skyline: skyline as f32, gain: (AT_TOP / (top - skyline).max(1e-3) as f32).max(1.0) }
     }
@@ -142,9 +144,8 @@ impl Sky {
         let [near, far]: [f32; 2] = depths;
         let span = (far - near).max(1e-6);
         let from_above = smoothstep(FROM_ABOVE[0], FROM_ABOVE[1], -pinhole.forward.z as f32);
-        let stretch = Stretch::new(bounds, far, pinhole);
         Self {
-            steps: steps(|sine| towards(stretch.of(sine))),
+            steps: steps(towards),
             haze: linear([184, 206, 230]),
             up: [pinhole.forward.z, pinhole.right.z, pinhole.down.z].map(|v| v as f32),
             center: [center.x as f32, center.y as f32],
@@ -158,7 +159,7 @@ impl Sky {
             },
             per_depth: 0.0,
             dither: 1.0,
-            stretch,
+            stretch: Stretch { skyline: 0.0, gain: 1.0 },
         }
     }
 
@@ -177,7 +178,10 @@ impl Sky {
     }
 
     fn outside(scene: &Scene, light: &Light, pinhole: &Pinhole) -> Self {
-        let sky = Self::new(&scene.bounds(), pinhole);
+        let mut sky = Self::new(&scene.bounds(), pinhole);
+        let ground = scene.layers.iter().filter_map(|layer| layer.kind.terrain());
+        let ground = ground.fold(Aabb::EMPTY, |all, terrain| all.union(terrain.heightfield.bounds()));
+        sky.stretch = Stretch::new(&ground, pinhole);
         let is_landscape = scene.unit == Unit::Metre || scene.terrain().is_some();
         let shown = match light.sky {
             Choice::Auto if is_landscape => match light.altitude.to_degrees() {
@@ -193,7 +197,7 @@ impl Sky {
         match shown {
             // The gradient of a studio is fixed to the picture, for every direction of the camera.
             Choice::Auto => Self { steps: steps(studio), up: [0.0, 0.0, -1.0], ..air },
-            Choice::Day => air,
+            Choice::Day => Self { steps: steps(|rise| towards(air.stretch.of(rise))), ..air },
             Choice::Dusk => {
                 Self { steps: steps(|sine| of_air(&DUSK, air.stretch.of(sine))), haze: linear(DUSK_HAZE), ..air }
             }

@@ -90,7 +90,9 @@ fn the_sky_is_pale_at_the_skyline_and_darker_at_the_top_however_far_down_the_vie
         let target = DVec3::new(0.0, pitch.cos(), -pitch.sin());
         let p =
             Pinhole::look_at(DVec3::Z * 9000.0, DVec3::Z * 9000.0 + target, DVec3::Z, screen, [320, 200], 1.0, None);
-        let sky = Sky::new(&bounds, &p.unwrap());
+        let p = p.unwrap();
+        let stretch = Stretch::new(&bounds, &p);
+        let sky = Sky { steps: steps(|rise| towards(stretch.of(rise))), stretch, ..Sky::new(&bounds, &p) };
         let lightness = |y: f32| roots(sky.at([160.5, y])).dot(Rgb::new(0.2, 0.7, 0.1));
         let (top, palest) = (lightness(0.5), (20..110).map(|y| lightness(y as f32 + 0.5)).fold(0.0, f32::max));
         assert!(palest - top > 0.2, "looking down by {pitch}: {top} at the top, {palest} at the skyline");
