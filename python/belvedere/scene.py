@@ -369,6 +369,7 @@ class Scene(Layers):
         spacing_m: float | None = None,
         size: tuple[int, int] | None = None,
         renderer: str = "auto",
+        picture: bool = False,
         threads: int | None = None,
         progress: Progress = None,
         time_limit_s: float | None = None,
@@ -376,9 +377,10 @@ class Scene(Layers):
         """Visible share of the required features (``must_see``), straight and bent, by two independent methods.
 
         * ``spacing_m``: largest distance between samples of a line, scene units; by default an eighth of the cell of the terrain.
+        * ``picture``: draws the picture, too, and scores the look of its terrain: ``raw["look"]``.
         """
         with asked(threads, progress, time_limit_s) as ask:
-            request = given({"spacing": None if spacing_m is None else number("spacing_m", spacing_m), "renderer": str(renderer)})
+            request = given({"spacing": None if spacing_m is None else number("spacing_m", spacing_m), "renderer": str(renderer), "picture": bool(picture)})
             return MeasureReport.of(json.loads(self._sized(_size(size), ask).measure(_text("measure", request), ask)))
 
     def project(self, points: object, *, size: tuple[int, int] | None = None, straight: bool = False, threads: int | None = None,

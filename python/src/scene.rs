@@ -11,7 +11,7 @@ use belvedere::scene::Progress;
 use belvedere::scene_file;
 use belvedere::vectors::VectorContent;
 use belvedere::verbs::asked;
-use belvedere::verbs::measure::{self, MeasureOptions};
+use belvedere::verbs::measure;
 use belvedere::verbs::open_files::scene_or_data;
 use belvedere::{Session, answers, output};
 use pyo3::prelude::*;
@@ -120,9 +120,8 @@ impl NativeScene {
             return Err(wrong(&format!("spacing_m={given} is not a distance; give a number above 0, or None")));
         }
         let session = self.session.clone();
-        let options = MeasureOptions { spacing_m: asked.spacing, ..MeasureOptions::default() };
         run(py, &ask, move |progress| {
-            let report = measure::measure(&session, &options, &asked.renderer, &progress)?;
+            let report = measure::measure(&session, &asked, &progress)?;
             answers::in_file("measure", &[], &report)
         })
     }

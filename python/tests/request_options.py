@@ -31,7 +31,7 @@ OWN: dict[str, tuple[str, dict[str, str]]] = {
         "no_limits": "limits", "set": "parameters", "grid": "grid", "fill_voids": "fill_voids", "source_crs": "crs", "crs": "scene_crs",
         "nodata": "nodata",
     }),
-    "measure": ("Scene.measure", {"spacing": "spacing_m", "size": "size", "renderer": "renderer"}),
+    "measure": ("Scene.measure", {"spacing": "spacing_m", "size": "size", "renderer": "renderer", "picture": "picture"}),
     "generalise": ("generalise", {"city": "city", "roads": "roads", "margin": "margin_m", "keep": "keep"}),
 }  # fmt: skip
 #: Options of another call: of ``Scene.open`` and of ``Picture.save``.

@@ -75,8 +75,7 @@ fn warned<T>(content: T, session: &Session) -> Warned<T> {
 fn measure_scene(args: &MeasureArgs, context: &Context) -> anyhow::Result<Goal> {
     ready(args.out.as_ref(), &[&args.scene], context)?;
     let session = context.open(&args.scene, Needs::Everything, args.asked.size)?;
-    let options = measure::MeasureOptions { spacing_m: args.asked.spacing, ..Default::default() };
-    let report = measure::measure(&session, &options, &args.asked.renderer, &context.progress)?;
+    let report = measure::measure(&session, &args.asked, &context.progress)?;
     answer("measure", &session, args.out.as_ref(), &report, context)
 }
 

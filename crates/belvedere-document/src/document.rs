@@ -324,7 +324,7 @@ pub struct LightDoc {
     /// `transparent` (PNG and SVG).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub sky: Option<String>,
-    /// Haze: `true` dims the farther part of the view, `false` nothing; a number is the visibility in kilometres (thousands of scene units).
+    /// Haze: `true` dims the farther part of the view, `false` nothing; a number is the visibility of air near the ground in kilometres (thousands of scene units).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub haze: Option<SwitchOrVisibility>,
 }

@@ -21,6 +21,9 @@ pub struct Measure {
     /// Renderer of the depth buffers, as of `render`
     #[cfg_attr(feature = "clap", arg(long, value_name = "NAME", default_value_t))]
     pub renderer: RendererName,
+    /// Draw the picture, too, and score the look of its terrain: rules with value, bounds and the option that mends each
+    #[cfg_attr(feature = "clap", arg(long))]
+    pub picture: bool,
 }
 
 /// Buildings and streets.

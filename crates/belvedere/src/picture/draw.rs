@@ -67,7 +67,22 @@ pub(crate) fn draw(
     let sidecar = sidecar(session, request, (made, &rigid), inputs)?;
     let (aux, aux_format, crs) = (request.aux.clone(), request.aux_format, session.scene().crs);
     let unit = session.scene().unit;
-    Ok(Picture { frame, alpha, straight, sidecar, vectors, aux, aux_format, view, rigid, crs, unit, later: None })
+    let scene = session.loaded.scene.clone();
+    Ok(Picture {
+        frame,
+        alpha,
+        straight,
+        sidecar,
+        vectors,
+        aux,
+        aux_format,
+        view,
+        scene,
+        rigid,
+        crs,
+        unit,
+        later: None,
+    })
 }
 
 /// What a record says of a picture that was made.
@@ -106,6 +121,7 @@ pub(super) fn sidecar(
         furniture,
         displacement,
         terrain: session.scene().layers.iter().find_map(|layer| layer.kind.terrain()).map(TerrainRecord::of),
+        look: None,
         molecules: MoleculeRecord::all_of(session.scene()),
         see_through: SeeThroughRecord::all_of(session.scene()),
         volumes,

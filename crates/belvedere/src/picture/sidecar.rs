@@ -1,6 +1,7 @@
 //! A finished picture and the record beside it.
 
 use super::displacement::DisplacementReport;
+use super::look::LookScore;
 use super::target_place::TargetPlace;
 use super::volume_record::VolumeRecord;
 use super::{AuxBuffer, AuxFormat, PictureOptions};
@@ -185,6 +186,9 @@ pub struct Sidecar {
     pub displacement: Option<DisplacementReport>,
     /// Measured and made-up parts of the ground; `None` without terrain.
     pub terrain: Option<TerrainRecord>,
+    /// Score of the look of a terrain picture that was written.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub look: Option<LookScore>,
     /// Drawn parts of each molecule.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub molecules: Vec<MoleculeRecord>,
@@ -272,6 +276,7 @@ pub struct Picture {
     pub(crate) aux: Vec<AuxBuffer>,
     pub(crate) aux_format: AuxFormat,
     pub(crate) view: View,
+    pub(crate) scene: Arc<Scene>,
     pub(crate) rigid: RigidLayers,
     pub(crate) crs: Crs,
     pub(crate) unit: Unit,
@@ -291,6 +296,11 @@ impl Picture {
     /// The record; of a picture that is drawn while it is written what is known before that, until then.
     pub fn record(&self) -> &Sidecar {
         self.later.as_ref().and_then(|later| later.record.get()).unwrap_or(&self.sidecar)
+    }
+
+    /// Score of its look; `None` where it shows no terrain, or is drawn while it is written.
+    pub fn look(&self) -> Option<LookScore> {
+        LookScore::of(&self.frame, &self.scene, &self.view)
     }
 
     /// The same picture, which writes these buffers beside itself; those that it was not drawn with are empty.

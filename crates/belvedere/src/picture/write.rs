@@ -101,6 +101,7 @@ impl Picture {
         let this = solved.as_ref().unwrap_or(self);
         pixels(this)?;
         let mut sidecar = this.sidecar.clone();
+        sidecar.look = this.look();
         // A device keeps nothing that could be read again.
         let place = atomic::contents_of(out);
         sidecar.picture_sha256 = belvedere_io::fs::metadata(&place)

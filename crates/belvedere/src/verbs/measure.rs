@@ -2,6 +2,8 @@
 
 use super::shares::shares;
 use crate::guard::guarded;
+use crate::picture::{LookScore, PictureOptions};
+use crate::scene_file::request::Measure;
 use crate::{BelvedereError, RendererName, Session};
 pub use belvedere_construct::MeasureOptions;
 use belvedere_construct::Measures;
@@ -42,21 +44,32 @@ pub struct MeasureReport {
     /// The measures, with all warnings, those of opening the scene included.
     #[serde(flatten)]
     pub measures: Measures,
+    /// Score of the look of the picture, if it was asked for and the picture shows terrain.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub look: Option<LookScore>,
     /// Warnings of opening the scene.
     pub scene_warnings: Vec<Warning>,
 }
 
-/// Visible share of every required feature, straight and bent, by lines of sight and by depth buffers drawn by `renderer`.
+/// Visible share of every required feature, straight and bent, by lines of sight and by depth buffers; and the look of the picture, if asked
+/// for.
 ///
 /// # Errors
 /// [`BelvedereError::Construct`] if nothing must be seen, [`BelvedereError::UnderGround`].
-pub fn measure(
-    session: &Session,
-    options: &MeasureOptions,
-    renderer: &RendererName,
-    progress: &Progress,
-) -> Result<MeasureReport, BelvedereError> {
-    guarded(|| measured(session, options, renderer, progress))
+pub fn measure(session: &Session, asked: &Measure, progress: &Progress) -> Result<MeasureReport, BelvedereError> {
+    guarded(|| {
+        let options = MeasureOptions { spacing_m: asked.spacing, ..MeasureOptions::default() };
+        let report = measured(session, &options, &asked.renderer, progress)?;
+        if !asked.picture {
+            return Ok(report);
+        }
+        let drawn = PictureOptions {
+            renderer: asked.renderer.clone(),
+            progress: progress.clone(),
+            ..PictureOptions::default()
+        };
+        Ok(MeasureReport { look: session.render(&drawn)?.look(), ..report })
+    })
 }
 
 fn measured(
@@ -85,6 +98,7 @@ fn measured(
         in_frame_bent: shares.map(|[_, bent]| bent.in_frame),
         terrain: session.terrain_report().cloned(),
         measures,
+        look: None,
         scene_warnings,
     })
 }
@@ -95,6 +109,6 @@ impl Session {
     /// # Errors
     /// Those of [`measure`].
     pub fn measure(&self, options: &MeasureOptions) -> Result<MeasureReport, BelvedereError> {
-        measure(self, options, &RendererName::AUTO, &Progress::silent())
+        guarded(|| measured(self, options, &RendererName::AUTO, &Progress::silent()))
     }
 }

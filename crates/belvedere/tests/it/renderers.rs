@@ -1,13 +1,13 @@
 //! A renderer of a program's own goes through every verb of the facade.
 
 use belvedere::picture::{AuxBuffer, PictureOptions};
-use belvedere::request::{Disocclude, RendererName, Reveal};
+use belvedere::request::{Disocclude, Measure, RendererName, Reveal};
 use belvedere::scene::Progress;
 use belvedere::scene_file::{AnimationDoc, TurntableDoc};
 use belvedere::vectors::VectorContent;
 use belvedere::verbs::animate::{AnimateRequest, animate};
 use belvedere::verbs::disocclude::{DisoccludeFiles, disocclude};
-use belvedere::verbs::measure::{MeasureOptions, measure};
+use belvedere::verbs::measure::measure;
 use belvedere::verbs::reveal::{Setting, drafts, reveal};
 use belvedere::{CameraPicture, OpenOptions, Picture, Session, renderers};
 use belvedere_testkit::synthetic::Marcher;
@@ -107,7 +107,8 @@ fn measures_and_picks_are_those_of_the_other_renderers() {
     prepared(folder.path());
     let session = opened(folder.path());
     let shares = [NAME.into(), RendererName::CPU, RendererName::EXACT].map(|name| {
-        let found = measure(&session, &MeasureOptions::default(), &name, &Progress::silent()).expect("a measure");
+        let found = measure(&session, &Measure { renderer: name.clone(), ..Measure::default() }, &Progress::silent())
+            .expect("a measure");
         assert_eq!(found.renderer, name.as_str());
         assert!(found.measures.largest_difference.is_some_and(|by| by < 0.06), "{name}: the two methods differ");
         found.visible.expect("a route is required")

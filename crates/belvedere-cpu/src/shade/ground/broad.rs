@@ -77,3 +77,34 @@ impl Broad {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shade::ground::surface::Surface;
+    use crate::shade::ground::tiles::Tiles;
+    use belvedere_scene::Heightfield;
+
+    #[test]
+    fn slopes_of_large_forms_stay_and_small_ones_go() {
+        // A plane that rises to the east, with waves of four nodes.
+        let (cols, rows, spacing) = (400, 300, 30.0);
+        let height = |i: usize| {
+            let (x, y) = (30.0 * (i % cols) as f32, (i / cols) as f32);
+            500.0 + 0.3 * x + 12.0 * (x * std::f32::consts::TAU / 120.0).sin() * (0.5 * y).cos()
+        };
+        let heights = (0..cols * rows).map(height).collect();
+        let hf = Heightfield::measured(DVec2::ZERO, DVec2::splat(spacing), cols, rows, heights).expect("ground");
+        let means = MipPyramid::new(&Surface::of_map(&hf));
+        let broad = Broad::new(&means, hf.spacing());
+        let [columns, _] = Tiles::new([cols, rows], means.top(), 2).repeated(2, [5, 4]).map(|nodes| nodes.all());
+        let mut planes = [0; 3].map(|_| vec![0.0; columns.count]);
+        let [x, y, z] = &mut planes;
+        broad.row(1.0, 150.0, columns, [x, y, z]);
+        for (i, c) in columns.iter().enumerate() {
+            let [x, y, z] = [0, 1, 2].map(|k| planes[k][i]);
+            assert!((x - 0.3).abs() < 0.04 && y.abs() < 0.04, "column {c}: {x} {y}");
+            assert!((z - (500.0 + 9.0 * c as f32)).abs() < 12.0, "column {c}: {z}");
+        }
+    }
+}

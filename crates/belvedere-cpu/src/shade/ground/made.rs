@@ -13,8 +13,8 @@ const GULLY_CELLS: f32 = 2.4;
 const GULLY_M: [f32; 2] = [24.0, 260.0];
 const GULLIES: u32 = 6;
 /// Slope of the sides of gullies on the steepest ground, from size to size times `FALL`.
-const GULLY_SLOPE: f32 = 0.34;
-const FALL: f32 = 0.82;
+const GULLY_SLOPE: f32 = 0.30;
+const FALL: f32 = 0.70;
 /// Tangents of slopes where gullies begin and where they are deepest.
 const STEEP: [f32; 2] = [0.22, 0.85];
 /// Roughness of ground: sizes from this on, metres, and slopes on gentle and on bare ground.

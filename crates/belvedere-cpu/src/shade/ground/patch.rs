@@ -288,7 +288,7 @@ impl Kernel for LightUp<'_> {
 const BUMPING: [f32; 2] = [0.66, 0.34];
 /// Strength of made relief, and how much darker the bottoms of its gullies are.
 const MADE: f32 = 1.5;
-const GULLY_INK: f32 = 0.6;
+const GULLY_INK: f32 = 0.5;
 
 #[inline(always)]
 fn light_up(

@@ -171,7 +171,8 @@ impl Sky {
             Haze::None => Self { thickest: 0.0, ..sky },
             // Koschmieder 1924: the contrast of a black thing falls to 2 % at the visibility.
             Haze::Visibility(length) if !pinhole.is_orthographic() => {
-                Self { thickest: 1.0, per_depth: (3.912 / length) as f32, ..sky }
+                let per_depth = 3.912 / length * dense_part(scene, pinhole);
+                Self { thickest: 1.0, per_depth: per_depth as f32, ..sky }
             }
             Haze::Visibility(_) => Self { thickest: 0.0, ..sky },
         }
@@ -376,6 +377,18 @@ impl Sky {
     pub(crate) fn through_air(&self, color: Rgb, depth: f32) -> Rgb {
         color.lerp(self.haze, self.haze_at(depth))
     }
+}
+
+/// Height over which air thins to the share 1 / e of its dust and vapour, metres.
+const DENSE_M: f64 = 1500.0;
+
+/// Part of the way from the eye to the ground that its air counts as that near the ground, 0..=1: a stated visibility is that of air near
+/// the ground, which thins exponentially with height, so that ground seen from far above is not hazy.
+fn dense_part(scene: &Scene, pinhole: &Pinhole) -> f64 {
+    let Some(ground) = scene.terrain() else { return 1.0 };
+    let [low, high] = ground.z_range();
+    let thinned = (pinhole.eye.z - 0.5 * (low + high)) / DENSE_M;
+    if thinned > 1e-3 { -(-thinned).exp_m1() / thinned } else { 1.0 }
 }
 
 /// A point in the table of colours, and square roots of the colour there.

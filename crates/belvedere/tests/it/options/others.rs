@@ -6,7 +6,7 @@ use belvedere::export::{ExportOptions, export};
 use belvedere::request::{Export, Generalise, Measure, options, read};
 use belvedere::scene::Progress;
 use belvedere::verbs::generalise::generalise;
-use belvedere::verbs::measure::{MeasureOptions, measure};
+use belvedere::verbs::measure::measure;
 use belvedere::verbs::open_files::scene_or_data;
 use belvedere::{BelvedereError, OpenOptions, Session};
 use serde_json::{Value, json};
@@ -20,13 +20,13 @@ fn every_option_of_measure_changes_its_answer() {
         ("spacing", Changes(json!(200), json!({}))),
         ("size", Changes(json!([48, 48]), json!({}))),
         ("renderer", Changes(json!("exact"), json!({}))),
+        ("picture", Changes(json!(true), json!({}))),
     ];
     try_all(&options::<Measure>(), &[], rows, &json!({}), |asked| {
         let asked: Measure = read(&asked.to_string()).expect("a request");
         let open = OpenOptions { image: asked.size, ..OpenOptions::default() };
         let session = Session::open(Path::new(&scene), &open)?;
-        let options = MeasureOptions { spacing_m: asked.spacing, ..MeasureOptions::default() };
-        let found = measure(&session, &options, &asked.renderer, &Progress::silent())?;
+        let found = measure(&session, &asked, &Progress::silent())?;
         Ok::<_, BelvedereError>(serde_json::to_string(&found).expect("a report"))
     });
 }
