@@ -2,6 +2,7 @@
 
 use crate::cache::GroundCache;
 use crate::shade::ground::lit::{LitGround, LitKey};
+use crate::shade::ground::shadow::Shadows;
 use crate::shade::ground::surface::{MipPyramid, Surface};
 use belvedere_core::{DVec3, Stage, TerrainDisocclusion};
 use belvedere_scene::{Heightfield, NodeState};
@@ -73,18 +74,20 @@ fn lifted(hf: &Heightfield, ground: &TerrainDisocclusion, rounded: &(impl Fn(f32
 pub(crate) struct DisplacedLight {
     pub(crate) heights: Arc<Vec<f32>>,
     pub(crate) means: Arc<MipPyramid>,
+    pub(crate) shadows: Option<Arc<Shadows>>,
     pub(crate) lit: Arc<LitGround>,
 }
 
 /// Averages and light of displaced ground. Tiles of the last frame are reused unless their ground, or the ground that affects them,
 /// has changed; the result does not depend on what was cached.
-/// * `finer`: see [`LitGround::new`].
+/// * `finer`: see [`LitGround::new`]; `cast`: the shadows of this ground.
 pub(crate) fn light(
     cache: &GroundCache<LitKey, DisplacedLight>,
     hf: &Arc<Heightfield>,
     surface: &Surface<'_>,
     heights: &Arc<Vec<f32>>,
     (key, finer): (LitKey, u32),
+    cast: &dyn Fn(&MipPyramid) -> Option<Arc<Shadows>>,
 ) -> DisplacedLight {
     let old = cache.take(hf, &key).filter(|old| !old.lit.is_full());
     let old = old.map(|old| (Squares::new(hf, &old.heights, heights), old));
@@ -92,15 +95,18 @@ pub(crate) fn light(
         Some((changed, old)) if changed.is_empty() => old,
         old => {
             let means = Arc::new(MipPyramid::new(surface));
-            // Voids take averages from any distance, and the sun's shadows reach far: then no tile is reused.
-            let near = !key.light.shadows && hf.states().each().is_none_or(|s| !s.contains(&NodeState::Void));
+            let shadows = cast(&means);
+            // Voids take averages from any distance, and shadows may reach far: then no tile is reused.
+            let reach = shadows.as_ref().map_or(0.0, |shadows| shadows.reach());
+            let near = reach <= SURROUNDINGS as f64 * hf.spacing().min_element()
+                && hf.states().each().is_none_or(|s| !s.contains(&NodeState::Void));
             let lit = old.filter(|_| near).and_then(|(changed, old)| {
                 let mut lit = Arc::try_unwrap(old.lit).ok()?;
                 lit.retain(|reach| !changed.touch(reach));
                 Some(lit)
             });
             let lit = lit.unwrap_or_else(|| LitGround::new(hf.cols(), hf.rows(), means.top(), finer));
-            DisplacedLight { heights: heights.clone(), means, lit: Arc::new(lit) }
+            DisplacedLight { heights: heights.clone(), means, shadows, lit: Arc::new(lit) }
         }
     };
     cache.put(hf, key, light.clone());

@@ -34,6 +34,7 @@ pub(crate) struct Shadows {
     /// Level of the finest grid.
     first: usize,
     levels: Vec<(usize, usize, Vec<u8>)>,
+    reach: f64,
 }
 
 impl Shadows {
@@ -57,7 +58,12 @@ impl Shadows {
         {
             levels.push(halved(*cols, *rows, lit));
         }
-        Self { first, levels }
+        Self { first, levels, reach: soft.reach }
+    }
+
+    /// Length on the ground at which shadows have faded, scene units.
+    pub(crate) fn reach(&self) -> f64 {
+        self.reach
     }
 
     /// The share of the sun that the nodes of a row of level `k` see, from column `first`.

@@ -66,7 +66,7 @@ fn drapes(layer: &TerrainLayer, cache: &LightCache) -> Arc<Vec<DrapeMap>> {
 pub(crate) struct LightCache {
     means: GroundCache<(), Arc<MipPyramid>>,
     broad: GroundCache<(), Arc<Broad>>,
-    shadows: GroundCache<(Light, Relief), Arc<Shadows>>,
+    shadows: GroundCache<(Light, Relief), Option<Arc<Shadows>>>,
     lit: GroundCache<LitKey, Arc<LitGround>>,
     displaced: GroundCache<LitKey, DisplacedLight>,
     drapes: GroundCache<(), Arc<Vec<DrapeMap>>>,
@@ -81,6 +81,15 @@ const MOST_SIDE: usize = 1 << 17;
 /// Altitudes of the light whose shadows are painted, radians.
 const LOWEST: f64 = 0.55;
 const HIGHEST: f64 = 0.8;
+
+/// The shadows of a ground: those of the sun if they are wanted, else painted ones in a Swiss relief.
+fn shadows(surface: &Surface<'_>, means: &MipPyramid, relief: Relief, light: Light) -> Option<Arc<Shadows>> {
+    if light.shadows {
+        return Some(Arc::new(Shadows::new(surface, means, &light, Softness::SUN)));
+    }
+    let light = Light { altitude: light.altitude.clamp(LOWEST, HIGHEST), ..light };
+    (relief == Relief::Swiss).then(|| Arc::new(Shadows::new(surface, means, &light, Softness::PAINTED)))
+}
 
 /// Levels of made detail below the nodes of a ground.
 pub(crate) fn finer_levels(hf: &Heightfield) -> u32 {
@@ -107,38 +116,25 @@ impl<'a> TerrainShade<'a> {
             let means = cache.means.get(hf, (), || Arc::new(MipPyramid::new(&map)));
             (map, means)
         });
-        let cast = |means: &MipPyramid| Arc::new(Shadows::new(&surface, means, &light, Softness::SUN));
+        let cast = |means: &MipPyramid| shadows(&surface, means, relief, light);
         let (means, shadows, lit) = if surface.is_map() {
             // The undisplaced ground has the same light in all frames.
             let means = cache.means.get(hf, (), averages);
-            let shadows = light.shadows.then(|| cache.shadows.get(hf, (light, layer.relief), || cast(&means)));
+            let shadows = cache.shadows.get(hf, (light, relief), || cast(&means));
             let lit = cache.lit.take(hf, &key).filter(|lit| !lit.is_full()).unwrap_or_else(|| unlit(&means));
             cache.lit.put(hf, key, lit.clone());
             (means, shadows, lit)
+        } else if let Some(heights) = surface.moved() {
+            let DisplacedLight { means, shadows, lit, .. } =
+                displaced::light(&cache.displaced, hf, &surface, heights, (key, finer), &cast);
+            (means, shadows, lit)
         } else {
-            let (means, lit) = if let Some(heights) = surface.moved() {
-                let DisplacedLight { means, lit, .. } =
-                    displaced::light(&cache.displaced, hf, &surface, heights, (key, finer));
-                (means, lit)
-            } else {
-                let means = averages();
-                let lit = unlit(&means);
-                (means, lit)
-            };
-            (means.clone(), light.shadows.then(|| cast(&means)), lit)
+            let means = averages();
+            (means.clone(), cast(&means), unlit(&means))
         };
-        let shadows = shadows.or_else(|| {
-            // Painted shadows are those of the map, wherever the ground went.
-            let (on, of_map) = map.as_ref().map_or((&surface, &means), |(surface, means)| (surface, means));
-            let low = Light { altitude: light.altitude.clamp(LOWEST, HIGHEST), ..light };
-            let cast = || Arc::new(Shadows::new(on, of_map, &low, Softness::PAINTED));
-            (layer.relief == Relief::Swiss).then(|| cache.shadows.get(hf, (light, layer.relief), cast))
-        });
+        let of_map = map.as_ref().map_or(&means, |(_, means)| means);
         let spacing = hf.spacing();
-        let broad = tint.is_made().then(|| {
-            let of_map = map.as_ref().map_or(&means, |(_, means)| means);
-            cache.broad.get(hf, (), || Arc::new(Broad::new(of_map, spacing)))
-        });
+        let broad = tint.is_made().then(|| cache.broad.get(hf, (), || Arc::new(Broad::new(of_map, spacing))));
         Self {
             layer: index,
             hf,

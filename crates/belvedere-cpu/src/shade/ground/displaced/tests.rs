@@ -48,7 +48,7 @@ fn only_tiles_around_what_moved_on_are_made_again() {
         heights[700 * 1100 + 800] -= depth;
         let surface = Surface::lifted(&hf, Arc::new(heights));
         let DisplacedLight { means, lit, .. } =
-            light(&cache, &hf, &surface, surface.moved().unwrap(), (key.clone(), 0));
+            light(&cache, &hf, &surface, surface.moved().unwrap(), (key.clone(), 0), &|_| None);
         let before = lit.bytes();
         let inputs = LightingInputs {
             surface: &surface,
