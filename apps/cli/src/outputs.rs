@@ -18,11 +18,23 @@ const KNOWN: [&str; 32] = [
 /// * `endings`: of what is written, the best one first.
 /// * `what`: a sentence that says what is written.
 pub(crate) fn named(path: &Path, endings: &[&str], what: &str) -> anyhow::Result<()> {
-    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-    let is_other = KNOWN.contains(&ending.as_str()) && !endings.contains(&ending.as_str());
+    match KNOWN.contains(&ending(path).as_str()) {
+        true => only(path, endings, what),
+        false => Ok(()),
+    }
+}
+
+/// Refuses names with any other ending; one that begins with no letter is none, such as that of `v1.2`.
+pub(crate) fn only(path: &Path, endings: &[&str], what: &str) -> anyhow::Result<()> {
+    let ending = ending(path);
+    let is_other = ending.starts_with(|c: char| c.is_alphabetic()) && !endings.contains(&ending.as_str());
     let best = endings.first().copied().unwrap_or_default();
     anyhow::ensure!(!is_other, "{}: {what}, not .{ending}; name the output .{best}", path.display());
     Ok(())
+}
+
+fn ending(path: &Path) -> String {
+    path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase()
 }
 
 /// The same for pictures.

@@ -1,13 +1,13 @@
 //! Names of pictures, and what of them becomes vectors.
 
-use crate::outputs::named;
+use crate::outputs::only;
 use belvedere::vectors::VectorContent;
 use std::path::Path;
 
 /// Refuses names of pictures with the ending of a format that is not written.
 pub(crate) fn check_name(out: &Path, vectors_only: bool) -> anyhow::Result<()> {
     let what = "pictures are written as PNG, TIFF, JPEG, WebP, SVG or PDF";
-    named(out, &["png", "tif", "tiff", "jpg", "jpeg", "webp", "svg", "pdf"], what)?;
+    only(out, &["png", "tif", "tiff", "jpg", "jpeg", "webp", "svg", "pdf"], what)?;
     anyhow::ensure!(!vectors_only || is_vectors(out), "--vectors-only needs an output named .svg or .pdf");
     Ok(())
 }

@@ -81,7 +81,7 @@ pub(crate) fn relative(text: &str) -> String {
 /// An error of the library as a message for the command line, which names the options that lift it.
 fn in_options(error: &BelvedereError) -> String {
     match error {
-        BelvedereError::FieldOfView { .. } => format!("--fov: {error}"),
+        BelvedereError::FieldOfView { .. } | BelvedereError::UnusualFieldOfView { .. } => format!("--fov: {error}"),
         BelvedereError::NoRenderer { .. } => format!("--renderer: {error}"),
         BelvedereError::Highlight(_) => format!("--highlight: {error}"),
         BelvedereError::Appearance { option, .. } => format!("--{option}: {error}"),
@@ -100,6 +100,9 @@ fn in_options(error: &BelvedereError) -> String {
         BelvedereError::EyeIsTarget | BelvedereError::Camera(PinholeError::EyeIsTarget { .. }) => {
             "--eye and --look are the same point; look somewhere else".into()
         }
+        BelvedereError::GroundAlone { ground } => {
+            format!("{error}; for the ground alone: belvedere render {ground} -o x.png")
+        }
         BelvedereError::NoAnimation => {
             format!("{error}, or give --along LAYER, --sweep phi or --turntable")
         }
@@ -117,7 +120,10 @@ fn in_options(error: &BelvedereError) -> String {
                 Ok(Some(source)) => {
                     format!("{error}; for a scene of it: belvedere show {file} -o {}.toml", source.document.title)
                 }
-                _ => format!("{error}; for a description: belvedere info {file}"),
+                _ => {
+                    let missing = belvedere::without_terrain(path).map_or_else(String::new, |text| format!("; {text}"));
+                    format!("{error}{missing}; for a description: belvedere info {file}")
+                }
             }
         }
         _ => format!("{error}{}", option_for(error).unwrap_or_default()),

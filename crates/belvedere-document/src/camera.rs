@@ -29,16 +29,19 @@ pub fn navigation(
     Navigation { pinhole: pinhole.unwrap_or_else(|_| Pinhole { image, ..shown.clone() }), target }
 }
 
-/// Largest field of view of a picture on the screen that shows more than the document's frame, degrees.
-const WIDEST_DEG: f64 = 80.0;
+/// Largest field of view of a picture that shows more than the document's frame, degrees: that of an upright sheet for a frame of 16:9 and 45
+/// degrees.
+const WIDEST_DEG: f64 = 100.0;
 
 /// Height of a picture of the size `image` (pixels) in heights of the document's frame, >= 1: a picture that is narrower than the frame
-/// shows more above and below, so that it holds the whole frame. In perspective its field of view ends at 80 degrees; then the sides of
-/// the frame are cut off. 1 where a preset states a field of view, since that fixes the eye.
+/// shows more above and below, so that it holds the whole frame. In perspective its field of view ends at 100 degrees; then the sides of
+/// the frame are cut off. 1 where the shapes are alike but for rounding, and where a preset states a field of view, since that fixes the eye.
 pub fn frame_factor(document: &Document, image: [u32; 2]) -> f64 {
     let shape = |[w, h]: [u32; 2]| f64::from(w.max(1)) / f64::from(h.max(1));
-    let factor = (shape(document.camera.image) / shape(image)).max(1.0);
-    if document.stage.iter().any(states_field_of_view) {
+    let wanted = shape(document.camera.image);
+    let is_alike = (f64::from(image[0]) - wanted * f64::from(image[1])).abs() < 1.0;
+    let factor = (wanted / shape(image)).max(1.0);
+    if is_alike || document.stage.iter().any(states_field_of_view) {
         return 1.0;
     }
     match projection_of(&document.camera) {
@@ -60,7 +63,7 @@ fn states_field_of_view(stage: &StageDoc) -> bool {
     }
 }
 
-/// Fits the camera of a document to a picture on the screen: see [`frame_factor`].
+/// Fits the camera of a document to a picture of another size: see [`frame_factor`].
 pub fn fit(document: &mut Document, image: [u32; 2]) {
     let factor = frame_factor(document, image);
     let camera = &mut document.camera;

@@ -50,6 +50,12 @@ pub enum BelvedereError {
         /// The angle given, degrees.
         deg: f64,
     },
+    /// A field of view through which no view could be chosen.
+    #[error("through a field of view of {deg} degrees no eye around the features gives a usable picture; 10 to 90 degrees are usual")]
+    UnusualFieldOfView {
+        /// The angle given, degrees.
+        deg: f64,
+    },
     /// The eye is the point that it looks at.
     #[error("the eye and the point to look at are the same; look somewhere else")]
     EyeIsTarget,
@@ -74,6 +80,12 @@ pub enum BelvedereError {
     /// No file of routes, areas or points was given.
     #[error("no features are given; name at least one file of routes, areas or points")]
     NoFeatures,
+    /// An elevation model was given, and no file of routes, areas or points.
+    #[error("no features are given; name at least one file of routes, areas or points beside {ground}")]
+    GroundAlone {
+        /// The elevation model.
+        ground: String,
+    },
     /// A target that does not exist.
     #[error("{0}")]
     Target(String),

@@ -2,6 +2,8 @@
 
 mod tiles;
 
+pub use tiles::without_terrain;
+
 use crate::record::{AreaRecord, InputFile};
 use crate::scene_file::paths::{Roots, folder_of};
 use crate::scene_file::request::Stated;
@@ -13,7 +15,7 @@ use crate::scene_file::{
 use crate::session::{Description, Loaded};
 use crate::{BelvedereError, OpenOptions, Session};
 use belvedere_core::View;
-use belvedere_core::Warning;
+use belvedere_core::{Warning, WarningKind};
 use belvedere_io::Vectors;
 use belvedere_io::arrays::{self, Arrays};
 use belvedere_io::terrain::OriginalTerrain;
@@ -33,13 +35,16 @@ pub const LARGEST_HOLE: f64 = 0.03;
 /// Colour of lines of rivers.
 const RIVER_COLOR: &str = "#2b7bba";
 
-/// Files of a terrain and of features that must be seen on it; any of them may be an array, `array:NAME` of [`OpenOptions::arrays`].
+/// Files of a terrain and of features on it; any of them may be an array, `array:NAME` of [`OpenOptions::arrays`].
 #[derive(Debug, Clone, Default)]
 pub struct DataFiles {
     /// Terrain: a file, a folder of tiles, or `builtin:massif?seed=7`.
     pub dem: String,
     /// Routes, areas or points: files, or `builtin:massif?seed=7`. Elevation models among them are further tiles of the terrain.
     pub features: Vec<String>,
+    /// Whether only the first file of features must be seen, and later ones are context: drawn, whatever of them is seen. Else all must be
+    /// seen.
+    pub first_is_subject: bool,
     /// Rivers that must not run uphill where the ground moves: files with lines.
     pub rivers: Vec<String>,
     /// Coordinate system of the scene; automatic if left out.
@@ -84,7 +89,7 @@ pub(crate) struct Data {
 impl DataFiles {
     /// Reads the files, each once.
     pub(crate) fn load(&self, keep_original: bool, options: &OpenOptions) -> Result<Data, BelvedereError> {
-        let Layers { mut layers, known, rivers, mut roots } = self.layers(options)?;
+        let Layers { mut layers, known, rivers, context, mut roots } = self.layers(options)?;
         let crs = self.crs.as_deref().unwrap_or("auto");
         let mut options = OpenOptions { area_style: self.area_style.or(options.area_style), ..options.clone() };
         let text = text_of(take(&mut options.fonts), &mut roots.files)?;
@@ -95,7 +100,8 @@ impl DataFiles {
             ..LayerRequest::new(&Origin::MEMORY, &layers, crs, &roots)
         };
         let loaded = belvedere_resolve::load(request, &options)?;
-        let (inputs, warnings, areas, original) = (loaded.inputs, loaded.warnings, loaded.areas, loaded.original);
+        let (inputs, mut warnings, areas, original) = (loaded.inputs, loaded.warnings, loaded.areas, loaded.original);
+        warnings.extend(of_context(&context));
         let notes = loaded.notes;
         let scene = Scene {
             title: title_of(&loaded.layers),
@@ -130,6 +136,8 @@ struct Layers {
     known: BTreeMap<PathBuf, belvedere_io::Loaded<Vectors>>,
     /// Ids of rivers.
     rivers: Vec<String>,
+    /// Names of files of features that are context.
+    context: Vec<String>,
     roots: Roots,
 }
 
@@ -141,15 +149,19 @@ impl DataFiles {
         if tiles.features.is_empty() {
             return Err(tiles::without_features(&self.dem, &self.features));
         }
-        let mut out = Layers { layers: vec![ground], known: BTreeMap::new(), rivers: Vec::new(), roots };
+        let (known, rivers, context) = Default::default();
+        let mut out = Layers { layers: vec![ground], known, rivers, context, roots };
         for (i, name) in tiles.features.iter().enumerate() {
             let source = locate(name, &mut out.roots)?;
             let is_builtin = source.starts_with("builtin:");
+            let is_context = i > 0 && self.first_is_subject;
+            out.context.extend(is_context.then(|| shown_name(name)));
             let kinds = if is_builtin { vec![FeatureKind::Lines] } else { out.kinds(&source, &options.arrays)? };
             for (k, kind) in kinds.into_iter().enumerate() {
                 let part = if k == 0 { String::new() } else { format!("-{}", kind.plural()) };
                 let mut layer = feature_layer(format!("features{}{part}", i + 1), Paths::One(source.clone()), kind);
                 self.describe(&mut layer, is_builtin);
+                layer.set_must_see(!is_context);
                 out.layers.push(layer);
             }
         }
@@ -250,6 +262,26 @@ impl Data {
         let loaded = Loaded { scene, motions: None, areas, notes, inputs, arrays, warnings };
         Session::of_view(loaded, view, Description { source, resolved, roots }).with_light(light)
     }
+}
+
+/// A file as a message names it: by its name alone.
+fn shown_name(name: &str) -> String {
+    Path::new(name).file_name().map_or_else(|| name.to_owned(), |file| file.to_string_lossy().into_owned())
+}
+
+/// What is said of files of context; their names are told while they are few.
+fn of_context(files: &[String]) -> Option<Warning> {
+    let named = match files {
+        [] => return None,
+        [one] => format!("{one} is"),
+        [first, second] => format!("{first} and {second} are"),
+        _ => format!("{} and {} later files are", files[0], files.len() - 1),
+    };
+    let text = format!(
+        "{named} context: drawn, but the view is chosen, and visibility measured, for the first file of features alone; give what must \
+         be seen first"
+    );
+    Some(Warning::new(WarningKind::Assumed, text).with("files", files.len() as f64))
 }
 
 /// The name of what must be seen; empty if it has several, or none.

@@ -187,7 +187,7 @@ pub use belvedere_overlay::{sheet as print, vectors};
 pub use belvedere_resolve::{Advice, BelvedereError, Needs, OpenOptions, Trust, by_property, targets, trust};
 pub use belvedere_scene as scene;
 pub use belvedere_sight as sight;
-pub use data::{DataFiles, LARGEST_HOLE};
+pub use data::{DataFiles, LARGEST_HOLE, without_terrain};
 pub use picture::{DisplacementReport, Picture, PictureOptions, Sidecar};
 pub use renderers::SharedRenderer;
 pub use request::RendererName;

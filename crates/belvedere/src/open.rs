@@ -1,7 +1,7 @@
 //! Opens scene files and documents as sessions.
 
 use crate::guard::guarded;
-use crate::scene_file::camera::set_camera;
+use crate::scene_file::camera::{self, set_camera};
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
     self, Document, EarthDoc, LayerDoc, LightDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc,
@@ -99,7 +99,9 @@ impl Session {
 ///
 /// * `allowed`: takes the folder of a palette.
 fn change(document: &mut Document, options: &OpenOptions, allowed: &mut Vec<PathBuf>) -> Result<(), BelvedereError> {
-    document.camera.image = options.image.unwrap_or(document.camera.image);
+    if let Some(image) = options.image {
+        camera::fit(document, image);
+    }
     if options.sky.is_some() || options.haze.is_some() {
         let asked = LightDoc { sky: options.sky.clone(), haze: options.haze, ..LightDoc::default() };
         belvedere_resolve::check_air(&asked)?;

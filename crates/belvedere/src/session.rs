@@ -5,6 +5,7 @@ use crate::kept::Kept;
 use crate::names::PublicNames;
 use crate::record::{AreaRecord, InputFile};
 use crate::renderers::{self, Renderers, SharedRenderer};
+use crate::scene_file::camera;
 use crate::scene_file::paths::{Roots, folder_of, stays_below};
 use crate::scene_file::request::RendererName;
 use crate::scene_file::{Document, FurnitureDoc, FurnitureWish, OverlayDoc, SourceDocument, StageDoc};
@@ -262,7 +263,7 @@ impl Session {
         Ok(Self { loaded: self.loaded.clone().drawn_for(&resolved), resolved, ..self.clone() })
     }
 
-    /// The same scene in a picture of another size, pixels: everything that depends on camera and stages is resolved again, layers are not
+    /// The same scene in a picture of another size, pixels, which shows more above and below where it is narrower: everything that depends on camera and stages is resolved again, layers are not
     /// read again. A session from parts keeps its view but for the size.
     ///
     /// # Errors
@@ -273,7 +274,7 @@ impl Session {
             return Ok(self.clone().with_view(View::new(pinhole, self.view().stages().to_vec())?));
         };
         let mut document = description.source.document.clone();
-        document.camera.image = image;
+        camera::fit(&mut document, image);
         let mut memory = Memory::default();
         let mut solving = Solving { memory: &mut memory, time_step_s: None, progress };
         guarded(|| self.with_document(document, Some(&mut solving)))

@@ -279,3 +279,48 @@ fn drafts_come_with_their_shares_and_the_command_that_makes_each() {
     let line = place.fails(&[&args[..7], &["--drafts", "0", "--overwrite"]].concat());
     assert!(line.contains("a whole number in 1..=24"), "{line}");
 }
+
+/// The camera of a picture, whatever its size.
+fn camera(report: &serde_json::Value) -> [serde_json::Value; 3] {
+    ["eye", "forward", "fov_y_deg"].map(|key| report["view"][key].clone())
+}
+
+#[test]
+fn a_sheet_has_the_same_view_at_every_resolution() {
+    let place = place(|_, _| false);
+    let cameras = ["75", "150", "300"].map(|dpi| {
+        let paper = ["--paper", "64x43mm", "--dpi", dpi, "--overwrite"];
+        camera(&place.json(&[&["reveal", "dem.asc", "way.geojson", "-o", "out.png", "--json"], &paper[..]].concat()))
+    });
+    assert!(cameras[0][0].is_array() && cameras[0][2].is_number(), "{cameras:?}");
+    assert!(cameras[0] == cameras[1] && cameras[1] == cameras[2], "{cameras:?}");
+}
+
+#[test]
+fn the_first_file_is_the_subject_and_later_ones_are_context() {
+    let place = place(|_, _| false);
+    place.write("far.geojson", "{\"type\":\"MultiPoint\",\"coordinates\":[[8.005,46.005],[8.06,46.06],[8.005,46.06]]}");
+    let camera_of = |more: &[&str]| {
+        let args = ["-o", "out.png", "--size", "160x90", "--overwrite", "--json"];
+        let report = place.json(&[&["reveal", "dem.asc", "way.geojson"], more, &args[..]].concat());
+        assert!(report["in_frame_bent"].as_f64() > Some(0.95), "{report}");
+        (camera(&report), report["warnings"].to_string())
+    };
+    let (alone, _) = camera_of(&[]);
+    let (beside, said) = camera_of(&["far.geojson"]);
+    assert_eq!(alone, beside);
+    assert!(said.contains("far.geojson is context"), "{said}");
+}
+
+#[test]
+fn what_is_missing_beside_a_route_or_an_elevation_model_is_said() {
+    let place = place(|_, _| false);
+    for verb in ["reveal", "render"] {
+        let line = place.fails(&[verb, "way.geojson", "-o", "out.png"]);
+        assert!(line.contains("the terrain is missing") && line.contains("46.0N 8.0E the tile N46E008"), "{line}");
+    }
+    let line = place.fails(&["reveal", "dem.asc", "-o", "out.png"]);
+    assert!(line.contains("no features are given") && line.contains("belvedere render dem.asc -o x.png"), "{line}");
+    let line = place.fails(&["reveal", "dem.asc", "way.geojson", "-o", "out.png", "--fov", "0.02"]);
+    assert!(line.starts_with("belvedere: --fov:") && line.contains("10 to 90 degrees are usual"), "{line}");
+}

@@ -12,11 +12,11 @@ use belvedere_scene::Progress;
 use rayon::prelude::*;
 
 /// Views kept for the search of a bend.
-pub(super) const VIEWS_KEPT: usize = 10;
+pub(super) const VIEWS_KEPT: usize = 14;
 /// Views whose bend is improved before one is chosen.
 const VIEWS_REFINED: usize = 3;
 /// Eyes with the best compositions, from which lines of sight are looked along.
-const LOOKED_FROM: usize = 500;
+const LOOKED_FROM: usize = 800;
 /// Eyes that are evaluated even where time is up.
 const EYES_AT_LEAST: usize = 24;
 /// Views within this angle of each other are alike, degrees; so many of them are kept.
@@ -44,11 +44,14 @@ pub(crate) struct Choice {
     pub(crate) score: f64,
 }
 
+/// Field of view from which on a lens is not narrow, radians.
+const USUAL_FOV_Y: f64 = 0.78;
+
 /// Score of a camera: light comes from the north-west, and looking north shows the shaded side of the relief as readers of maps know it; through
 /// a narrow lens, from far away, relief looks flat.
 fn taste(eye: &Eye, options: &RevealOptions) -> f64 {
     let lens = match eye.pinhole.projection {
-        Projection::Perspective { fov_y } => (fov_y / options.fov_y).min(1.0),
+        Projection::Perspective { fov_y } => (fov_y / options.fov_y.min(USUAL_FOV_Y)).min(1.0),
         Projection::Orthographic { .. } => 0.0,
     };
     0.15 * eye.heading_deg.to_radians().cos() - 0.2 * (1.0 - lens)
@@ -58,7 +61,7 @@ fn taste(eye: &Eye, options: &RevealOptions) -> f64 {
 /// the bend also brings a horizon that is not there yet.
 fn promise(a: &Evaluation, taste: f64) -> f64 {
     let hidden = 1.0 - a.visible_in_frame;
-    let bent = if a.visible_in_frame < NOTHING_HIDDEN { frame(a) - BENT } else { f64::NEG_INFINITY };
+    let bent = if a.visible_in_frame < 1.0 - SURE_GAIN { frame(a) - BENT } else { f64::NEG_INFINITY };
     composition(a).max(bent) + taste + 0.8 * a.visible_in_frame - 2.0 * hidden * (0.8 - a.attainable).max(0.0)
 }
 
@@ -144,12 +147,14 @@ pub(super) fn best_of_all(
         // A bend of it is hardly worth more than all of the features under a horizon.
         let at_best = frame(&base.straight).max(composition(&base.straight)) + 3.2 + base.taste;
         let hides = base.straight.visible_in_frame < NOTHING_HIDDEN;
+        let gains = |candidate: &Candidate| candidate.visible >= base.straight.visible + SURE_GAIN;
         if !hides || best.as_ref().is_some_and(|best| best.score >= at_best) {
             continue;
         }
         let mut search = BendSearch::new(evaluator, &base.view, base.straight, stride);
         let remembered = remembered.and_then(|start| search.refine(start, 0, progress));
-        let found = search.coarse().into_iter().chain(remembered).max_by(|a, b| a.1.score.total_cmp(&b.1.score));
+        let found = search.coarse().into_iter().chain(remembered).filter(|(_, found)| gains(found));
+        let found = found.max_by(|a, b| a.1.score.total_cmp(&b.1.score));
         bent.extend(
             found.map(|(start, t)| (Choice { base: index, bend: Some(start), score: t.score + base.taste }, start)),
         );
@@ -185,6 +190,8 @@ pub(super) fn pays(straight: &Evaluation, bent: &Evaluation) -> bool {
 
 /// Share of the whole features that a bend must show in addition.
 const LEAST_GAIN: f64 = 0.005;
+/// The same by the few samples of the search, so that a view is not chosen for a bend that all samples then refuse it.
+const SURE_GAIN: f64 = 0.012;
 
 /// The candidate of a bend at its camera, evaluated.
 pub(super) fn candidate(

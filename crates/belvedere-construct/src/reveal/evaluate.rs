@@ -1,11 +1,12 @@
 //! Evaluation of a candidate picture: the share of the features that it shows, and how well it fills the image.
 
+use super::shape::BuiltBend;
 use crate::measure::Shares;
 use crate::measure::bend::{facing, nodes};
 use crate::sample::{Sample, SampledFeature};
-use belvedere_core::map::spline::ReferencePlane;
+use belvedere_core::map::spline::{ReferencePlane, check_presets};
 use belvedere_core::quantile::{Rank, quantile};
-use belvedere_core::{DVec2, DVec3, View};
+use belvedere_core::{DVec2, DVec3, Pinhole, View};
 use belvedere_scene::{Heightfield, Scene};
 use belvedere_sight::{Obstacles, SightOptions};
 use serde::Serialize;
@@ -33,6 +34,9 @@ pub struct Evaluation {
     pub covered: f64,
     /// Mean position of the upper edge of the ground, share of the image height from the top; 1 = no ground in the image.
     pub skyline: f64,
+    /// Row of the horizon of level ground, share of the image height from the top; < 0 above the picture. In a bent picture, whose ground goes on
+    /// to a horizon of its own, the same as `skyline`.
+    pub horizon: f64,
     /// Standard deviation of that edge over the columns of the image, share of its height: large where the data end aslant in the picture.
     pub slant: f64,
     /// Horizontal extent of the middle 98 % of the features in the image, share of the image width.
@@ -59,6 +63,11 @@ impl Evaluation {
     }
 }
 
+/// Nodes of the whole ground, and again of that around the features, about.
+const NODES: usize = 2_000;
+/// How far ground around the features reaches, in extents of them and at least in cells.
+const AROUND: (f64, f64) = (1.5, 60.0);
+
 /// A scene prepared for evaluating many views.
 pub(crate) struct Evaluator<'a> {
     pub(crate) obstacles: Obstacles<'a>,
@@ -66,7 +75,7 @@ pub(crate) struct Evaluator<'a> {
     pub(crate) plane: ReferencePlane,
     pub(crate) samples: Vec<Sample>,
     pub(crate) ground: Vec<DVec3>,
-    cell: f64,
+    pub(crate) cell: f64,
 }
 
 impl<'a> Evaluator<'a> {
@@ -76,12 +85,15 @@ impl<'a> Evaluator<'a> {
         features: &[SampledFeature],
         count: usize,
     ) -> Self {
+        let samples = thin(features, count);
+        let mut ground = nodes(heightfield, NODES);
+        ground.extend(nodes_around(heightfield, &samples));
         Self {
             obstacles: Obstacles::new(scene),
             heightfield,
             plane: ReferencePlane::level(heightfield.median_height()),
-            samples: thin(features, count),
-            ground: nodes(heightfield, 2_000),
+            samples,
+            ground,
             cell: heightfield.spacing().max_element(),
         }
     }
@@ -141,6 +153,7 @@ impl<'a> Evaluator<'a> {
             drawn: drawn * stride.max(1) as f64 * pinhole.scale_px() / width,
             covered,
             skyline,
+            horizon: if view.is_bent() { skyline } else { horizon(pinhole) },
             slant,
             width: (quantile(&mut columns, 0.99, Rank::Nearest) - quantile(&mut columns, 0.01, Rank::Nearest)) / width,
             coarse_px,
@@ -215,6 +228,22 @@ impl<'a> Evaluator<'a> {
         None
     }
 
+    /// Mean distance of the features from the eye along the direction of view, and the width of a grid cell there, pixels; `None` unless
+    /// they lie before the eye.
+    pub(crate) fn cells_among_features(&self, view: &View) -> Option<(f64, f64)> {
+        let pinhole = view.pinhole();
+        let sum: f64 = self.samples.iter().map(|s| (s.p_world - pinhole.eye).dot(pinhole.forward)).sum();
+        let distance = sum / self.samples.len().max(1) as f64;
+        (distance > 0.0).then(|| (distance, pinhole.scale_px() * self.cell / distance))
+    }
+
+    /// Whether whoever opens a scene with the bend is warned that it folds the ground or turns it away.
+    pub(crate) fn is_warned_of(&self, built: &BuiltBend) -> bool {
+        let Some(bend) = built.view.spline_bend() else { return false };
+        let heights = self.heightfield.z_range().map(|z| z - self.plane.height());
+        !check_presets(&built.document, bend.resolved().distance, Some(heights)).is_empty()
+    }
+
     /// Smallest factor by which the bend squeezes lengths over the terrain inside the image (0 = fold), and the
     /// smallest sine of the angle at which the ground plane is seen there.
     pub(crate) fn fold_and_facing(&self, view: &View) -> (f64, f64) {
@@ -239,6 +268,12 @@ impl<'a> Evaluator<'a> {
     }
 }
 
+/// Row of the horizon, share of the image height from the top.
+fn horizon(pinhole: &Pinhole) -> f64 {
+    let rise = -pinhole.forward.z / pinhole.forward.truncate().length().max(1e-9);
+    0.5 - rise * pinhole.scale_px() / f64::from(pinhole.image[1])
+}
+
 /// Difference of the mean heights of the nodes (distance, height) beyond and before the mean distance, in units of the standard deviation of
 /// the heights; less on ground whose relief is less than a hundredth of its depth.
 fn rise(nodes: &[(f64, f64)]) -> f64 {
@@ -254,6 +289,20 @@ fn rise(nodes: &[(f64, f64)]) -> f64 {
     }
     let [near, far] = [false, true].map(|beyond| mean(&|n| ((n.0 > at) == beyond).then_some(n.1)));
     (far - near) / spread.max(0.01 * depth).max(1e-9)
+}
+
+/// Nodes of the ground around the features, which a near eye sees between the few of a large ground.
+fn nodes_around(hf: &Heightfield, samples: &[Sample]) -> Vec<DVec3> {
+    let places = samples.iter().map(|s| s.p_world.truncate());
+    let (low, high) = places.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), p| (a.min(p), b.max(p)));
+    let (extents, cells) = AROUND;
+    let reach = (extents * (high - low).max_element()).max(cells * hf.spacing().max_element());
+    let column = |x: f64| ((x - hf.north_west().x) / hf.spacing().x).clamp(0.0, (hf.cols() - 1) as f64) as usize;
+    let row = |y: f64| ((hf.north_west().y - y) / hf.spacing().y).clamp(0.0, (hf.rows() - 1) as f64) as usize;
+    let (columns, rows) = (column(low.x - reach)..=column(high.x + reach), row(high.y + reach)..=row(low.y - reach));
+    let stride = ((columns.clone().count() * rows.clone().count()) as f64 / NODES as f64).sqrt().ceil().max(1.0);
+    let columns = columns.step_by(stride as usize);
+    rows.step_by(stride as usize).flat_map(|r| columns.clone().filter_map(move |c| hf.node(c, r))).collect()
 }
 
 /// About `count` samples that stand for all: runs of neighbours are merged into their middle one.

@@ -6,17 +6,32 @@ use belvedere_core::{DVec2, DVec3, Pinhole, Projection};
 
 /// Eyes are tried in this many directions.
 const DIRECTIONS: usize = 24;
-/// Pitches as shares of half the field of view: up to 0.9 the horizon lies in the picture, from steeper ones a bend brings it there.
-const PITCHES: [f64; 5] = [0.65, 0.82, 1.0, 1.35, 1.8];
+/// Pitches as shares of half the field of view, and where the features lie in the picture: up to 1 the horizon lies in it and the features
+/// below, from steeper ones a bend brings it there.
+const PITCHES: [(f64, Window); 6] = [(0.7, LOW), (0.85, LOW), (0.55, LOW), (1.0, LOW), (1.35, MIDDLE), (1.8, MIDDLE)];
 /// Fields of view as shares of the widest: through a narrow one, from farther away, all of a long feature is about as large, and data that
 /// are hardly wider than it fill the picture.
-const LENSES: [f64; 3] = [1.0, 0.75, 0.5];
-/// Distances as shares of the one from which all features fit into the picture.
-const DISTANCES: [f64; 4] = [1.0, 1.25, 0.8, 0.6];
-/// Share of the half width and of the half height of the picture that the features take up where they fit.
-const FITTED: DVec2 = DVec2::new(0.88, 0.72);
-/// Most pixels that a grid cell among the features may take up: ground that is magnified more looks smeared.
-const MOST_PER_CELL_PX: f64 = 8.0;
+const LENSES: [f64; 4] = [1.0, 0.82, 0.61, 0.41];
+/// Distances as shares of the one from which all features fit into their window: from farther away steep ground is seen under one angle.
+const DISTANCES: [f64; 5] = [1.0, 1.25, 0.8, 1.7, 2.6];
+/// Share from which on a view is worth trying only where it looks down.
+const FAR: f64 = 2.0;
+/// Where features lie that fit into a picture, shares of its half width and half height.
+#[derive(Debug, Clone, Copy)]
+struct Window {
+    aside: f64,
+    /// Lower and upper border, from the middle upwards.
+    up: [f64; 2],
+}
+
+/// In the lower two thirds, under ground that leads to a horizon, and a sky.
+const LOW: Window = Window { aside: 0.74, up: [-0.84, 0.42] };
+/// Around the middle.
+const MIDDLE: Window = Window { aside: 0.74, up: [-0.72, 0.72] };
+/// Most pixels of the reference picture that a grid cell among the features may take up: nearer, a few smooth humps fill the picture.
+pub(super) const MOST_PER_CELL_PX: f64 = 60.0;
+/// Least distance of the eye from the features, cells.
+const NEAREST_CELLS: f64 = 8.0;
 
 /// A camera to be evaluated, and its heading.
 #[derive(Debug, Clone)]
@@ -32,18 +47,19 @@ pub(crate) fn candidates(evaluator: &Evaluator<'_>, options: &RevealOptions) -> 
     let mut fits = Vec::new();
     for lens in LENSES {
         let fov_y = lens * options.fov_y;
-        for pitch in PITCHES.map(|p| p * 0.5 * fov_y) {
+        for (pitch, window) in PITCHES.map(|(p, window)| (p * 0.5 * fov_y, window)) {
             for direction in 0..DIRECTIONS {
                 let heading = std::f64::consts::TAU * direction as f64 / DIRECTIONS as f64;
                 let ahead = DVec3::new(heading.sin(), heading.cos(), 0.0);
                 let forward = pitch.cos() * ahead - pitch.sin() * DVec3::Z;
-                fits.extend(Fit::of(&points, forward, fov_y, options.image).map(|fit| (fit, fov_y, heading)));
+                let fit = Fit::of(&points, forward, (fov_y, window), options.reference());
+                fits.extend(fit.map(|fit| (fit, fov_y, heading, pitch > 0.5 * fov_y)));
             }
         }
     }
     let mut out = Vec::new();
     for share in DISTANCES {
-        for (fit, fov_y, heading) in &fits {
+        for (fit, fov_y, heading, _) in fits.iter().filter(|(.., looks_down)| share < FAR || *looks_down) {
             let eye = camera(evaluator, options, fit, (*fov_y, share));
             out.extend(eye.map(|pinhole| Eye { pinhole, heading_deg: heading.to_degrees() }));
         }
@@ -55,32 +71,39 @@ pub(crate) fn candidates(evaluator: &Evaluator<'_>, options: &RevealOptions) -> 
 struct Fit {
     eye: DVec3,
     forward: DVec3,
-    /// Distance from the eye to the middle of the points along `forward`.
+    /// The middle of the window at the median depth of the points.
+    target: DVec3,
+    /// Distance from the eye to it along `forward`.
     distance: f64,
 }
 
 impl Fit {
     /// In the axes of the camera every border of the picture is a plane through the eye, so that each pair of opposite borders bounds how
     /// far ahead the eye may be; the nearer bound holds.
-    fn of(points: &[DVec3], forward: DVec3, fov_y: f64, image: [u32; 2]) -> Option<Self> {
+    fn of(points: &[DVec3], forward: DVec3, (fov_y, window): (f64, Window), image: [u32; 2]) -> Option<Self> {
         let [width, height] = image.map(f64::from);
         let right = forward.cross(DVec3::Z).normalize();
         let up = right.cross(forward);
-        let tangent = FITTED * (0.5 * fov_y).tan() * DVec2::new(width / height, 1.0);
+        let half = (0.5 * fov_y).tan();
+        let aside = half * window.aside * width / height;
+        let [low, high] = window.up.map(|up| half * up);
+        let (lower, upper) = (DVec2::new(-aside, low), DVec2::new(aside, high));
         let (mut least, mut most) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         let mut depths: Vec<f64> = Vec::with_capacity(points.len());
         for p in points {
             let (aside, z) = (DVec2::new(p.dot(right), p.dot(up)), p.dot(forward));
-            most = most.max(aside - tangent * z);
-            least = least.min(aside + tangent * z);
+            most = most.max(aside - upper * z);
+            least = least.min(aside - lower * z);
             depths.push(z);
         }
         depths.sort_by(f64::total_cmp);
         let middle = *depths.get(depths.len() / 2)?;
-        let aside = 0.5 * (least + most);
-        let z = (0.5 * (least - most) / tangent).min_element().min(*depths.first()?);
+        let z = ((least - most) / (upper - lower)).min_element().min(*depths.first()?);
+        let aside = 0.5 * ((least + lower * z) + (most + upper * z));
         let eye = aside.x * right + aside.y * up + z * forward;
-        (eye.is_finite()).then_some(Self { eye, forward, distance: middle - z })
+        let distance = middle - z;
+        let target = eye + distance * (forward + 0.5 * (low + high) * up);
+        (eye.is_finite()).then_some(Self { eye, forward, target, distance })
     }
 }
 
@@ -94,11 +117,12 @@ fn camera(
     let cell = evaluator.heightfield.spacing().max_element();
     let bounds = evaluator.heightfield.bounds();
     let extent = (bounds.max - bounds.min).truncate().max_element();
-    let scale = 0.5 * f64::from(options.image[1]) / (0.5 * fov_y).tan();
+    let image = options.reference();
+    let scale = 0.5 * f64::from(image[1]) / (0.5 * fov_y).tan();
     // Small features are looked at from where the grid still carries the picture.
-    let least = (scale * cell / MOST_PER_CELL_PX).min(0.6 * extent).max(30.0 * cell);
+    let least = (scale * cell / MOST_PER_CELL_PX).min(0.6 * extent).max(NEAREST_CELLS * cell);
     let distance = (share * fit.distance).max(least);
-    let eye = fit.eye - (distance - fit.distance) * fit.forward;
+    let eye = fit.target + (distance / fit.distance) * (fit.eye - fit.target);
     let outside = (eye - eye.clamp(bounds.min, bounds.max)).truncate().length();
     if outside > extent {
         return None;
@@ -109,7 +133,7 @@ fn camera(
         return None;
     }
     let projection = Projection::Perspective { fov_y };
-    Pinhole::look_at(eye, eye + distance * fit.forward, DVec3::Z, projection, options.image, 1.0, None).ok()
+    Pinhole::look_at(eye, eye + distance * fit.forward, DVec3::Z, projection, image, 1.0, None).ok()
 }
 
 #[cfg(test)]
@@ -117,7 +141,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_fit_is_the_nearest_eye_that_holds_every_point() {
+    fn the_fit_is_the_nearest_eye_that_holds_every_point_in_its_window() {
         let mut seed = 1u64;
         let mut random = || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -129,21 +153,20 @@ mod tests {
             let points: Vec<DVec3> =
                 (0..40).map(|_| middle + size * (DVec3::new(random(), random(), random()) - 0.5)).collect();
             let (heading, pitch, fov_y) = (6.3 * random(), 0.1 + 0.4 * random(), 0.4 + 0.6 * random());
+            let window = [LOW, MIDDLE][case % 2];
             let ahead = DVec3::new(heading.sin(), heading.cos(), 0.0);
             let forward = pitch.cos() * ahead - pitch.sin() * DVec3::Z;
-            let fit = Fit::of(&points, forward, fov_y, [1280, 720]).unwrap();
+            let fit = Fit::of(&points, forward, (fov_y, window), [1280, 720]).unwrap();
             let lens = Projection::Perspective { fov_y };
-            let look =
-                |eye: DVec3| Pinhole::look_at(eye, eye + forward, DVec3::Z, lens, [1280, 720], 0.1, None).unwrap();
-            let outermost = |camera: &Pinhole| {
-                let off = points.iter().map(|p| {
-                    let pixel = camera.project(*p).unwrap().0;
-                    ((pixel - camera.center_px()) / camera.center_px()).abs() / FITTED
-                });
-                off.map(|o| o.max_element()).fold(0.0, f64::max)
-            };
-            let most = outermost(&look(fit.eye));
-            assert!((most - 1.0).abs() < 1e-6, "case {case}: the outermost point lies at {most} of the margin");
+            let camera = Pinhole::look_at(fit.eye, fit.eye + forward, DVec3::Z, lens, [1280, 720], 0.1, None).unwrap();
+            // Places in the window, -1..=1 to the right and upwards.
+            let [low, high] = window.up;
+            let places = points.iter().map(|p| {
+                let at = (camera.project(*p).unwrap().0 - camera.center_px()) / camera.center_px();
+                DVec2::new(at.x / window.aside, (-at.y - 0.5 * (low + high)) / (0.5 * (high - low)))
+            });
+            let most = places.map(|at| at.abs().max_element()).fold(0.0, f64::max);
+            assert!((most - 1.0).abs() < 1e-6, "case {case}: the outermost point lies at {most} of the window");
         }
     }
 }

@@ -20,7 +20,7 @@ pub mod thresholds;
 pub use choice::Choice;
 pub use evaluate::Evaluation;
 pub use goal::{Goal, gain, shortfall};
-pub use options::RevealOptions;
+pub use options::{REFERENCE_HEIGHT_PX, RevealOptions};
 pub use shape::BendShape;
 
 use crate::ConstructError;
@@ -31,6 +31,7 @@ use belvedere_core::{DVec2, DVec3, View, Warning, WarningKind};
 use belvedere_scene::{Heightfield, Progress, Scene, Unit};
 use choose::Base;
 use evaluate::Evaluator;
+use options::{at_reference, sized};
 use search::Candidate;
 use serde::Serialize;
 
@@ -53,6 +54,13 @@ pub struct Revealed {
     pub plane_height: f64,
     /// Figures.
     pub report: RevealReport,
+}
+
+impl Revealed {
+    /// The same in a picture of another size, pixels.
+    fn sized(self, image: [u32; 2]) -> Self {
+        Self { view: sized(&self.view, image), straight: sized(&self.straight, image), ..self }
+    }
 }
 
 /// The bend of a [`Revealed`].
@@ -92,13 +100,14 @@ pub struct RevealReport {
     pub warnings: Vec<Warning>,
 }
 
-/// Chooses a view (unless `base` gives one) and a spline bend that show more of the layers that must be seen.
+/// Chooses a view (unless one is given) and a spline bend that show more of the layers that must be seen.
 ///
-/// * `scene`: with terrain; or a city without it, for which `base` is given: it stands on level ground.
-/// * `base`: a camera, with earth curvature at most; its other stages are left out.
+/// * `scene`: with terrain; or a city without it, for which a camera is given: it stands on level ground.
+/// * `given`: a camera, with earth curvature at most; its other stages are left out.
 /// * `memory`: where the search of an earlier frame ended;
 /// * `progress`: when its time is up, the best view so far is taken.
 ///
+/// Views and bends are chosen in a picture of the same shape that is [`REFERENCE_HEIGHT_PX`] high, so that they are those of every size of it.
 /// Everything is evaluated by line of sight along the rays, so no renderer is needed; [`crate::measure()`] with a renderer
 /// is the independent check. Deterministic, whatever the number of threads.
 ///
@@ -107,7 +116,7 @@ pub struct RevealReport {
 /// [`ConstructError::EyeUnderGround`], [`ConstructError::OutOfFrame`], [`ConstructError::NoView`], [`ConstructError::Cancelled`].
 pub fn reveal(
     scene: &Scene,
-    base: Option<&View>,
+    given: Option<&View>,
     options: &RevealOptions,
     memory: &mut RevealMemory,
     progress: &Progress,
@@ -116,16 +125,16 @@ pub fn reveal(
     let heightfield = match scene.terrain() {
         Some(terrain) => terrain,
         None => {
-            flat = base.and_then(|_| flat_ground(scene)).ok_or(ConstructError::NoTerrain)?;
+            flat = given.and_then(|_| flat_ground(scene)).ok_or(ConstructError::NoTerrain)?;
             &flat
         }
     };
     let features = usable_features(scene, heightfield)?;
     progress.tick("preparing lines of sight", 0.0)?;
     let evaluator = Evaluator::new(scene, heightfield, &features, 4 * options.samples_per_try);
-    let (mut eyes_tried, free) = (0, base.is_none());
-    let bases = match base {
-        Some(view) => vec![given_view(&evaluator, view)?],
+    let (mut eyes_tried, free) = (0, given.is_none());
+    let bases = match given {
+        Some(view) => vec![given_view(&evaluator, &at_reference(view))?],
         None => {
             let eyes = eyes::candidates(&evaluator, options);
             eyes_tried = eyes.len();
@@ -151,7 +160,8 @@ pub fn reveal(
     }
     progress.tick("refining the picture", 1.0)?;
     let total = KINDS.into_iter().map(|kind| total(&features, kind)).find(|total| *total > 0.0).unwrap_or(0.0);
-    Ok(finish(&evaluator, &base.view, best, options, &Counts { total, eyes_tried, bends_tried, free }))
+    let found = finish(&evaluator, &base.view, best, options, &Counts { total, eyes_tried, bends_tried, free });
+    Ok(found.sized(given.map_or(options.image, |view| view.pinhole().image)))
 }
 
 /// Grid cells along the longer side of level ground.
@@ -202,13 +212,14 @@ pub fn views(
     let evaluator = Evaluator::new(scene, heightfield, &features, 4 * options.samples_per_try);
     let eyes = eyes::candidates(&evaluator, options);
     let mut out = vec![first];
+    let image = options.image;
     for base in choose::promising(&evaluator, eyes, options, MOST_DRAFTS, progress)? {
         let apart = |view: &View| {
             let [a, b] = [view, &base.view].map(|v| v.pinhole().forward.truncate());
             a.angle_to(b).abs().to_degrees() >= DRAFTS_APART_DEG
         };
         if out.len() < count && out.iter().all(apart) {
-            out.push(base.view);
+            out.push(sized(&base.view, image));
         }
     }
     out.truncate(count);
@@ -290,7 +301,8 @@ fn finish(
     let bent = best.map(|best| (evaluator.evaluate(&best.built.view, 1), best));
     let bent = bent.filter(|(bent, _)| choose::pays(&straight, bent));
     let picture = bent.as_ref().map_or(straight, |(bent, _)| *bent);
-    let warnings = remarks(&picture, counts.free);
+    let mut warnings = remarks(&picture, counts.free);
+    warnings.extend(coarse_cells(evaluator, base, &picture).filter(|_| counts.free));
     let of = |f: fn(&Candidate) -> f64| bent.as_ref().map_or(1.0, |(_, best)| f(best));
     let report = RevealReport {
         total: counts.total,
@@ -314,7 +326,38 @@ fn finish(
 const WHOLE: f64 = 0.9;
 
 /// Pixels of a grid cell at the lower border of the picture above which near ground looks smeared, however it is interpolated.
-const SMEARED_PX: f64 = 24.0;
+const SMEARED_PX: f64 = 100.0;
+/// Share of the most pixels that a cell may take up among the features from which on cells keep the eye far.
+const KEPT_FAR: f64 = 0.8;
+
+/// What is said where the cells of the ground are coarse for the picture: that the eye stands far away for them, or that they show.
+fn coarse_cells(evaluator: &Evaluator<'_>, view: &View, picture: &Evaluation) -> Option<Warning> {
+    let (distance, cell_px) = evaluator.cells_among_features(view)?;
+    let cell = evaluator.cell;
+    let of = |text: String| {
+        Warning::new(WarningKind::Suspect, text)
+            .with("cell", cell)
+            .with("distance", distance)
+            .with("share", picture.width)
+    };
+    if picture.width < score::WIDTH[0] && cell_px > KEPT_FAR * eyes::MOST_PER_CELL_PX {
+        return Some(of(format!(
+            "the eye stands {:.1} km away because cells are {cell:.0} m: nearer, one would be more than {:.0} pixels of a picture \
+             {REFERENCE_HEIGHT_PX} high, so the features fill {:.0} % of the width; take a finer elevation model, or give a view (eye and \
+             look_at)",
+            1e-3 * distance,
+            eyes::MOST_PER_CELL_PX,
+            100.0 * picture.width
+        )));
+    }
+    (picture.coarse_px > SMEARED_PX).then(|| {
+        of(format!(
+            "cells of {cell:.0} m are {:.0} pixels wide at the lower border of a picture {REFERENCE_HEIGHT_PX} high, and look smeared above \
+             {SMEARED_PX}; take a finer elevation model, or give a view (eye and look_at)",
+            picture.coarse_px
+        ))
+    })
+}
 
 /// Oddities of a picture.
 /// * `free`: whether its camera was chosen.
@@ -327,14 +370,6 @@ fn remarks(picture: &Evaluation, free: bool) -> Vec<Warning> {
             100.0 * picture.in_frame
         );
         out.push(Warning::new(WarningKind::Hidden, text).with("share", picture.in_frame));
-    }
-    if free && picture.coarse_px > SMEARED_PX {
-        let text = format!(
-            "a cell of the ground is {:.0} pixels large at the lower border of the picture, and looks smeared above {SMEARED_PX}: no eye that \
-             was tried farther away shows the features as well; take finer data, a smaller picture, or give a view (eye and look_at)",
-            picture.coarse_px
-        );
-        out.push(Warning::new(WarningKind::Suspect, text).with("pixels", picture.coarse_px));
     }
     if picture.covered < 0.8 {
         let text =

@@ -2,12 +2,21 @@
 
 use super::evaluate::Evaluation;
 
+/// Share of the picture's height that the sky takes up, least and most.
+const SKY: [f64; 2] = [0.12, 0.25];
+/// Share of its width that the features take up.
+pub(super) const WIDTH: [f64; 2] = [0.6, 0.8];
+
 /// Score of a picture by its composition, whatever it hides: the whole of the features in it, large, on ground of the data that its cells
 /// can carry, under a horizon.
 pub(super) fn composition(a: &Evaluation) -> f64 {
-    let sky = 6.0 * (0.08 - a.skyline).max(0.0) + 2.0 * (a.skyline - 0.20).max(0.0);
+    let [least, most] = SKY;
+    let sky = 6.0 * (least - a.skyline).max(0.0) + 3.0 * (a.skyline - most).max(0.0);
     let fill = (0.45 - a.spread).max(0.0) + 2.0 * (a.spread - 0.85).max(0.0);
-    frame(a) - sky - 0.5 * fill
+    // Beyond the rim of the data sky shows below the horizon, too.
+    let beyond = (a.skyline / least).min(1.0);
+    let without = 1.5 * (0.02 - a.horizon).clamp(0.0, 0.5) * (1.0 - 0.7 * beyond);
+    frame(a) - sky - without - 0.5 * fill
 }
 
 /// The part of [`composition`] that a bend changes little: it turns the ground up and down, so that it brings the horizon into the picture and
@@ -15,13 +24,15 @@ pub(super) fn composition(a: &Evaluation) -> f64 {
 pub(super) fn frame(a: &Evaluation) -> f64 {
     let void = 1.0 - a.covered;
     let outside = 4.0 * (1.0 - a.in_frame) + 6.0 * (0.97 - a.in_frame).max(0.0);
-    0.25 * (a.drawn / 0.8).min(1.0) + 0.35 * (a.width / 0.7).min(1.0) + 0.15 * a.rise.clamp(-1.0, 1.0)
+    let [narrow, wide] = WIDTH;
+    let width = 0.35 * (a.width / 0.7).min(1.0) - 1.0 * (narrow - a.width).max(0.0) - 2.0 * (a.width - wide).max(0.0);
+    0.25 * (a.drawn / 0.8).min(1.0) + width + 0.15 * a.rise.clamp(-1.0, 1.0)
         - outside
-        - 1.0 * (a.in_frame - a.in_margin)
+        - 3.0 * (a.in_frame - a.in_margin)
         - 4.0 * void.min(0.15)
         - 2.0 * (void - 0.15).max(0.0)
         - 3.0 * (a.slant - 0.05).max(0.0)
-        - 0.03 * (a.coarse_px - 8.0).clamp(0.0, 40.0)
+        - 0.01 * (a.coarse_px - 32.0).clamp(0.0, 40.0)
 }
 
 /// Score of a straight picture in which nothing is hidden, or hardly anything: it wins over a bent one that is a little better.

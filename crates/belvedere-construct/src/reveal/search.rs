@@ -16,6 +16,8 @@ pub(crate) struct Candidate {
     pub(crate) squeeze: f64,
     pub(crate) facing: f64,
     pub(crate) score: f64,
+    /// Visible share of the whole features, by the samples of the search.
+    pub(crate) visible: f64,
 }
 
 /// Score that any bend costs: a straight picture that shows as much is better.
@@ -108,12 +110,12 @@ impl<'a, 'b> BendSearch<'a, 'b> {
         let shape = parameters.shape(&self.scales);
         let built = shape.build(self.base, &self.evaluator.plane).ok()?;
         let (squeeze, facing) = self.evaluator.fold_and_facing(&built.view);
-        if squeeze < 0.25 || facing < 0.004 {
+        if squeeze < 0.25 || facing < 0.004 || self.evaluator.is_warned_of(&built) {
             return None;
         }
         let evaluation = self.evaluator.evaluate(&built.view, stride);
         let score = self.score(&shape, &evaluation, squeeze, facing);
-        Some(Candidate { shape, built, squeeze, facing, score })
+        Some(Candidate { shape, built, squeeze, facing, score, visible: evaluation.visible })
     }
 
     fn score(&self, shape: &BendShape, a: &Evaluation, squeeze: f64, facing: f64) -> f64 {

@@ -58,3 +58,59 @@ fn where_a_straight_picture_from_another_side_shows_all_nothing_is_bent() {
         assert!(found.bend.is_none() && found.report.bent.visible > 0.99, "{south}: {:?}", found.report);
     }
 }
+
+/// A way of `length` m across the middle of hills.
+fn short_way(length: f64) -> Scene {
+    let way = (0..20).map(|k| {
+        let t = f64::from(k) / 19.0 - 0.5;
+        DVec3::new(3600.0 + length * t, 3600.0 + 0.2 * length * (6.0 * t).sin(), 0.0)
+    });
+    let layers = vec![terrain_layer(ground(240, 240, hills)), line_layer("way", way.collect())];
+    Scene { layers, ..Scene::default() }
+}
+
+#[test]
+fn a_view_is_the_same_in_every_size_of_one_shape() {
+    let scene = short_way(500.0);
+    let found = |options: RevealOptions| {
+        reveal(&scene, None, &options, &mut RevealMemory::default(), &Progress::silent()).unwrap().view
+    };
+    let sizes =
+        [[640, 360], [1280, 720], [2560, 1440]].map(|image| RevealOptions { image, ..RevealOptions::default() });
+    // A sheet of US letter at 75, 150 and 300 dpi, whose pixels are rounded to other shapes.
+    let sheets = [[825, 638], [1650, 1275], [3300, 2550]].map(|image| RevealOptions {
+        image,
+        aspect: Some(279.4 / 215.9),
+        ..RevealOptions::default()
+    });
+    for shape in [sizes, sheets] {
+        let views = shape.map(|options| (found(options), options.image));
+        let first = views[0].0.pinhole().clone();
+        for (view, image) in &views {
+            let pinhole = view.pinhole();
+            assert_eq!(pinhole.image, *image);
+            assert_eq!(
+                (pinhole.eye, pinhole.forward, pinhole.projection),
+                (first.eye, first.forward, first.projection)
+            );
+            assert_eq!(view.stages().len(), views[0].0.stages().len());
+        }
+    }
+}
+
+#[test]
+fn a_short_way_fills_the_picture_under_a_horizon() {
+    for length in [450.0, 900.0, 3000.0] {
+        let picture = run(&short_way(length)).report.bent;
+        assert!((0.55..0.85).contains(&picture.width) && picture.in_frame > 0.99, "{length}: {picture:?}");
+        assert!((0.1..0.28).contains(&picture.skyline) && picture.horizon > 0.0, "{length}: {picture:?}");
+    }
+}
+
+#[test]
+fn what_coarse_cells_forbid_is_said() {
+    let found = run(&short_way(60.0));
+    let said = found.report.warnings.iter().find(|w| w.text().contains("because cells are 30 m"));
+    let said = said.unwrap_or_else(|| panic!("{:?}", found.report.warnings));
+    assert!(said.text().contains("the eye stands") && found.report.bent.width < 0.6, "{said:?}");
+}

@@ -19,8 +19,9 @@ pub struct Reveal {
     /// also a model: OBJ, PLY, STL, glTF, PDB, mmCIF, XYZ, VTI, VTK, NRRD, MetaImage, NIfTI, raw voxels, footprints, or a scene file
     #[cfg_attr(feature = "clap", arg(value_name = "DATA"))]
     pub data: String,
-    /// Routes, areas or points: GPX, KML, TCX, GeoJSON, shapefiles, GeoPackages, FlatGeobuf, CSV, or builtin:massif?seed=7; elevation models
-    /// among them are further tiles of the terrain; with --see more models; - = standard input (one of all data)
+    /// Routes, areas or points: GPX, KML, TCX, GeoJSON, shapefiles, GeoPackages, FlatGeobuf, CSV, or builtin:massif?seed=7; the first file is
+    /// what must be seen, later ones are drawn as its context; elevation models among them are further tiles of the terrain; with --see more
+    /// models; - = standard input (one of all data)
     #[cfg_attr(feature = "clap", arg())]
     pub features: Vec<String>,
     /// Part of a model or city that must be seen: a file (by its name without ending) or layer, a named part of a mesh, atoms such as

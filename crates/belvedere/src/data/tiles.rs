@@ -2,8 +2,9 @@
 
 use crate::BelvedereError;
 use crate::scene_file::Paths;
+use belvedere_io::crs::{CoordinateSystem, Transform};
 use belvedere_io::formats::{Reader, of_content};
-use belvedere_io::{IoError, split_table};
+use belvedere_io::{IoError, Vectors, load_vectors, split_table};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -44,7 +45,13 @@ pub(super) fn without_features(dem: &str, features: &[String]) -> BelvedereError
     let held = |name: &str| belvedere_io::readable(Path::new(name)).ok().flatten();
     let first = held(dem).filter(|format| format.reader == Some(Reader::Features));
     match (first, features) {
-        (_, []) => BelvedereError::NoFeatures,
+        (Some(format), []) => BelvedereError::Target(format!(
+            "{dem} is {} ({}); {}",
+            format.name,
+            format.holds,
+            without_terrain(Path::new(dem)).unwrap_or_default()
+        )),
+        (None, []) => BelvedereError::GroundAlone { ground: dem.to_owned() },
         (Some(format), [ground, ..]) => BelvedereError::Target(format!(
             "{dem} is {} ({}), not an elevation model; the elevation model comes first, then the features: {ground} {dem}",
             format.name, format.holds
@@ -54,6 +61,33 @@ pub(super) fn without_features(dem: &str, features: &[String]) -> BelvedereError
             features.join(", ")
         )),
     }
+}
+
+/// What is missing where a file of features is given alone: an elevation model, with the tile that covers them; `None` of other files.
+pub fn without_terrain(path: &Path) -> Option<String> {
+    let format = belvedere_io::readable(path).ok().flatten().filter(|f| f.reader == Some(Reader::Features));
+    format?;
+    let tile = load_vectors(path).ok().and_then(|loaded| tile_of(&loaded.value));
+    let tile = tile.map_or_else(String::new, |tile| format!(" (for {tile} of Copernicus or SRTM)"));
+    Some(format!("the terrain is missing: give an elevation model first, then the features{tile}"))
+}
+
+/// The middle of features, and the tile of one degree in which it lies, as worldwide models name it; `None` of features without a place on the
+/// earth.
+fn tile_of(features: &Vectors) -> Option<String> {
+    let [low, high] = features.extent().filter(|_| !features.crs.is_local())?;
+    let middle =
+        Transform::new(&features.crs, &CoordinateSystem::wgs84().ok()?).ok()?.forward_one(0.5 * (low + high))?;
+    let named = |value: f64, [plus, minus]: [char; 2]| if value < 0.0 { minus } else { plus };
+    let ([north, east], corner) = ([named(middle.y, ['N', 'S']), named(middle.x, ['E', 'W'])], middle.floor());
+    let [of_north, of_east] = [named(corner.y, ['N', 'S']), named(corner.x, ['E', 'W'])];
+    Some(format!(
+        "{:.1}{north} {:.1}{east} the tile {of_north}{:02}{of_east}{:03}",
+        middle.y.abs(),
+        middle.x.abs(),
+        corner.y.abs(),
+        corner.x.abs()
+    ))
 }
 
 fn text(path: &Path) -> Result<String, BelvedereError> {

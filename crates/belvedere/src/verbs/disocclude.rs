@@ -91,6 +91,7 @@ fn files(request: &Disocclude) -> DataFiles {
     DataFiles {
         dem: request.data.clone(),
         features: request.features.clone(),
+        first_is_subject: false,
         rivers: request.rivers.clone(),
         crs: request.crs.clone(),
         keep_voids: !request.fill_voids,

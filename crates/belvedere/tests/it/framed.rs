@@ -195,6 +195,29 @@ fn a_picture_of_any_shape_holds_the_frame_and_gives_the_camera_back_unchanged() 
 }
 
 #[test]
+fn another_shape_of_paper_widens_and_cuts_nothing_off() {
+    let text =
+        "format = 1\n[camera]\neye = [0, -900, 4000]\nlook_at = [0, 0, 300]\nimage = [320, 180]\nfov_y_deg = 45.0\n";
+    let open = |image: Option<[u32; 2]>| {
+        let source = parse(Path::new("s.toml"), text).expect("scene");
+        Session::from_document(source, &OpenOptions { image, ..OpenOptions::default() }).expect("session")
+    };
+    let own = open(None);
+    for image in [[640, 360], [210, 297], [100, 100], [900, 300]] {
+        let other = open(Some(image));
+        for session in [other, own.resized(image, &belvedere::scene::Progress::silent()).expect("resized")] {
+            for corner in [DVec2::ZERO, DVec2::new(320.0, 0.0), DVec2::new(0.0, 180.0), DVec2::new(320.0, 180.0)] {
+                let p = own.view().ray(corner).at(1000.0).expect("a point").point;
+                let off = session.view().project(p).expect("seen").pixel
+                    / DVec2::new(f64::from(image[0]), f64::from(image[1]));
+                assert!(off.min_element() > -1e-9 && off.max_element() < 1.0 + 1e-9, "{image:?}: {off}");
+            }
+            assert_eq!(session.view().pinhole().eye, own.view().pinhole().eye);
+        }
+    }
+}
+
+#[test]
 fn a_town_is_framed_by_its_buildings_and_not_by_its_water() {
     let folder = tempfile::tempdir().unwrap();
     let (mut vertices, mut objects) = (Vec::new(), Vec::new());

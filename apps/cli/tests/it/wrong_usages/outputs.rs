@@ -7,6 +7,7 @@ const LINES: &[(&str, &str, &str)] = &[
     ("render scene.toml -o folder", "folder", "render scene.toml -o x.png"),
     ("render scene.toml -o nowhere/x.png", "nowhere", "render scene.toml -o folder/x.png"),
     ("render scene.toml -o x.gif", "x.gif", "render scene.toml -o x.png"),
+    ("render scene.toml -o x.pdff", "x.pdff", "render scene.toml -o x.pdf"),
     ("render scene.toml -o x.npy", "x.npy", "render scene.toml -o x.png"),
     ("render scene.toml -o scene.toml", "scene.toml", "render scene.toml -o x.png"),
     ("render scene.toml -o picture.png", "picture.png", "render scene.toml -o picture.png --overwrite"),

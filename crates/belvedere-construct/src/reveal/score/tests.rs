@@ -10,6 +10,7 @@ const GOOD: Evaluation = Evaluation {
     drawn: 1.0,
     covered: 1.0,
     skyline: 0.15,
+    horizon: 0.15,
     slant: 0.04,
     width: 0.8,
     coarse_px: 4.0,

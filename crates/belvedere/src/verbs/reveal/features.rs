@@ -16,7 +16,7 @@ use belvedere_construct::measure::HiddenRun;
 use belvedere_construct::rays::{AroundOptions, Target, bend_around};
 use belvedere_construct::reveal::{Choice, thresholds};
 use belvedere_construct::{
-    Goal, RevealMemory, RevealOptions, RevealReport, Revealed, default_spacing, sample_features,
+    ConstructError, Goal, RevealMemory, RevealOptions, RevealReport, Revealed, default_spacing, sample_features,
 };
 use belvedere_core::{DVec3, Pinhole, Projection, View};
 use belvedere_core::{Warning, WarningKind};
@@ -28,8 +28,8 @@ use belvedere_scene::{Progress, Scene, Sky};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Full vertical field of view unless given, degrees.
-const FOV_Y_DEG: f64 = 45.0;
+/// Full vertical field of view unless given, degrees; the widest where a view is chosen.
+const FOV_Y_DEG: f64 = 55.0;
 
 /// Time limit for solving the ground of each tried technique, and exaggerated ground, if none is given.
 const TRY_FOR: Duration = Duration::from_secs(120);
@@ -86,7 +86,8 @@ impl Searched {
         let options = request.search_options(&mut data)?;
         let share = if request.technique() == Technique::Spline { SEARCH_ALONE } else { SEARCH };
         let (mut memory, progress) = (RevealMemory::default(), request.open.progress.part(share));
-        let found = belvedere_construct::reveal(&scene, base.as_ref(), &options, &mut memory, &progress)?;
+        let found = belvedere_construct::reveal(&scene, base.as_ref(), &options, &mut memory, &progress)
+            .map_err(|error| request.with_reason(error))?;
         let pinhole = found.straight.pinhole();
         let middle = found.bend.as_ref().map_or_else(|| middle(&scene), |bend| bend.pivot);
         let camera = CameraDoc::of(pinhole, pinhole.eye + (middle - pinhole.eye).length().max(1.0) * pinhole.forward);
@@ -215,11 +216,26 @@ fn drawn(session: &mut Session, request: &Request<'_>) -> Result<Picture, Belved
     Ok(later)
 }
 
+/// Fields of view through which views can be chosen, degrees.
+const USUAL_FOV_DEG: [f64; 2] = [10.0, 90.0];
+
 impl Request<'_> {
+    /// The error of a search that an unusual field of view left without a view.
+    fn with_reason(&self, error: ConstructError) -> BelvedereError {
+        let [least, most] = USUAL_FOV_DEG;
+        match (&error, self.fov_y_deg) {
+            (ConstructError::NoView { .. }, Some(deg)) if !(least..=most).contains(&deg) => {
+                BelvedereError::UnusualFieldOfView { deg }
+            }
+            _ => error.into(),
+        }
+    }
+
     /// Options of the search that a request asks for.
     pub(super) fn search_options(&self, data: &mut Data) -> Result<RevealOptions, BelvedereError> {
         Ok(RevealOptions {
             image: self.image.unwrap_or(IMAGE),
+            aspect: self.aspect,
             fov_y: self.fov_y(FOV_Y_DEG)?,
             earth_radius: self.asked.curved_earth.then(|| earth_radius(&data.scene, &mut data.warnings)),
             ..RevealOptions::default()

@@ -43,6 +43,8 @@ pub(super) struct Request<'a> {
     pub(super) appearance: Appearance,
     /// Size of the picture, pixels; that of its paper, if it has one.
     pub(super) image: Option<[u32; 2]>,
+    /// Width over height of the picture on its paper, whose pixels are rounded.
+    pub(super) aspect: Option<f64>,
     /// Eye and point looked at.
     pub(super) places: Option<[Place; 2]>,
     /// Full vertical field of view, degrees.
@@ -73,6 +75,7 @@ impl<'a> Request<'a> {
             },
             appearance: Appearance::from(&asked.appearance),
             image: sheet.map(|sheet| sheet.pixels()).or(asked.size),
+            aspect: sheet.map(|sheet| sheet.picture_mm()).map(|[width, height]| width / height),
             places: asked.eye.zip(asked.look).map(|(eye, look)| [eye, look]),
             fov_y_deg: asked.fov,
             to_file: setting.to_file.clone(),
@@ -155,6 +158,7 @@ fn data(asked: &Reveal) -> DataFiles {
     DataFiles {
         dem: asked.data.clone(),
         features: asked.features.clone(),
+        first_is_subject: true,
         rivers: asked.rivers.clone(),
         crs: asked.crs.clone(),
         keep_voids: asked.keep_voids,
