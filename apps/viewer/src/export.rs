@@ -7,10 +7,11 @@ use crate::model::Model;
 use crate::wake::Wake;
 use belvedere::picture::PictureOptions;
 use belvedere::placed::Place;
+use belvedere::request::Measure;
 use belvedere::scene::Progress;
 use belvedere::scene_file::{AnimationDoc, Document, LayerDoc, PointDoc, SweepDoc, TurntableDoc};
 use belvedere::verbs::animate::{AnimateRequest, animate};
-use belvedere::verbs::measure::{MeasureOptions, measure};
+use belvedere::verbs::measure::measure;
 use belvedere::{BelvedereError, RendererName, output};
 use belvedere_studio::beside;
 use eframe::egui::{Button, ComboBox, Context, DragValue, ProgressBar, Ui};
@@ -361,7 +362,7 @@ fn make(
             Ok([made.folder].into_iter().chain(cameras).collect())
         }
         Want::Report => {
-            let report = measure(&session, &MeasureOptions::default(), &RendererName::CPU, progress)?;
+            let report = measure(&session, &Measure { renderer: RendererName::CPU, ..Measure::default() }, progress)?;
             output::write_text(path, &output::pretty(&report)?, true)?;
             Ok(vec![path.to_owned()])
         }

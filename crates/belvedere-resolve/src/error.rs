@@ -51,7 +51,9 @@ pub enum BelvedereError {
         deg: f64,
     },
     /// A field of view through which no view could be chosen.
-    #[error("through a field of view of {deg} degrees no eye around the features gives a usable picture; 10 to 90 degrees are usual")]
+    #[error(
+        "through a field of view of {deg} degrees no eye around the features gives a usable picture; 10 to 90 degrees are usual"
+    )]
     UnusualFieldOfView {
         /// The angle given, degrees.
         deg: f64,

@@ -263,8 +263,8 @@ impl Session {
         Ok(Self { loaded: self.loaded.clone().drawn_for(&resolved), resolved, ..self.clone() })
     }
 
-    /// The same scene in a picture of another size, pixels, which shows more above and below where it is narrower: everything that depends on camera and stages is resolved again, layers are not
-    /// read again. A session from parts keeps its view but for the size.
+    /// The same scene in a picture of another size, pixels, which shows more above and below where it is narrower: everything that depends on
+    /// camera and stages is resolved again, layers are not read again. A session from parts keeps its view but for the size.
     ///
     /// # Errors
     /// Those of [`Session::from_document`] but for layers.
