@@ -76,6 +76,16 @@ pub fn fit(document: &mut Document, image: [u32; 2]) {
     }
 }
 
+/// The same for a picture that is written: curved rays keep the field of view, since their turns are those of the stated frame.
+pub fn resize(document: &mut Document, image: [u32; 2]) {
+    let has_turns = document.stage.iter().any(|stage| matches!(stage, StageDoc::CurvedRays(_)));
+    if has_turns || document.constructor.is_some() {
+        document.camera.image = image;
+    } else {
+        fit(document, image);
+    }
+}
+
 /// The view of a picture on the screen, cut to the document's frame; as it is if the frame has another field of view than the document.
 ///
 /// * `image`: size of the picture on the screen, pixels.

@@ -100,7 +100,7 @@ impl Session {
 /// * `allowed`: takes the folder of a palette.
 fn change(document: &mut Document, options: &OpenOptions, allowed: &mut Vec<PathBuf>) -> Result<(), BelvedereError> {
     if let Some(image) = options.image {
-        camera::fit(document, image);
+        camera::resize(document, image);
     }
     if options.sky.is_some() || options.haze.is_some() {
         let asked = LightDoc { sky: options.sky.clone(), haze: options.haze, ..LightDoc::default() };

@@ -274,7 +274,7 @@ impl Session {
             return Ok(self.clone().with_view(View::new(pinhole, self.view().stages().to_vec())?));
         };
         let mut document = description.source.document.clone();
-        camera::fit(&mut document, image);
+        camera::resize(&mut document, image);
         let mut memory = Memory::default();
         let mut solving = Solving { memory: &mut memory, time_step_s: None, progress };
         guarded(|| self.with_document(document, Some(&mut solving)))

@@ -10,14 +10,14 @@ use crate::color::{Rgb, linear};
 use crate::noise;
 use belvedere_scene::{Climate, PaletteName};
 
-/// Sizes of the noise that frays the borders of materials, metres: the largest, and how many halvings follow.
+/// Sizes of the noise that frays the borders of materials, metres: the largest; and their number, each half of the one before.
 const FRAY_M: f32 = 260.0;
-const FRAYS: u32 = 6;
+const FRAYS: u32 = 7;
 /// Patches of wood and fields in gentle lowland, metres.
 const PATCH_M: f32 = 900.0;
-/// Largest clumps of trees, metres, and how many halvings to single crowns.
+/// Largest clumps of trees, metres, and the number of sizes down to single crowns, each half of the one before.
 const CLUMP_M: f32 = 150.0;
-const CLUMPS: u32 = 5;
+const CLUMPS: u32 = 6;
 /// Height over its surroundings that makes a ridge, metres.
 const RIDGE_M: f32 = 28.0;
 /// Heights between two layers of rock in walls of dry climates, metres.
@@ -74,8 +74,8 @@ impl Colors {
                 meadow: linear([226, 230, 236]),
                 alpine: linear([234, 238, 243]),
                 valley: linear([222, 226, 230]),
-                conifers: linear([50, 64, 58]),
-                broadleaves: linear([84, 80, 76]),
+                conifers: linear([42, 54, 50]),
+                broadleaves: linear([68, 65, 62]),
                 scree: linear([206, 208, 212]),
                 rock: linear([118, 114, 114]),
                 ..summer
@@ -214,7 +214,8 @@ impl Materials {
         let grass = c.meadow.lerp(c.alpine, ramp(height + 200.0 * fray, tree - 250.0, tree + 350.0));
         let floor = ramp(steep, 0.15, 0.05) * ramp(height, tree - 150.0, tree - 500.0);
         let fields = c.valley.lerp(c.meadow, ramp(patch, -0.25, 0.25));
-        let grass = grass.lerp(fields, floor) * (1.0 + 0.22 * fray);
+        // Tufts, as trees but fainter.
+        let grass = grass.lerp(fields, floor) * (1.0 + 0.22 * fray + 0.16 * crown);
         let scree = c.scree * (1.0 + 0.25 * fray);
         let green = grass.lerp(scree, 0.85 * ramp(height + 300.0 * fray, tree + 350.0, tree + 600.0));
         let [low, high] = self.range_m;

@@ -58,7 +58,7 @@ pub(super) fn at_reference(view: &View) -> View {
     sized(view, reference(width / height.max(1.0)))
 }
 
-/// The view in a picture of another size. Stages that turn with the pixels of a picture are none of those that views are chosen with.
+/// The view in a picture of another size. No stage of a view that is chosen depends on pixels.
 pub(super) fn sized(view: &View, image: [u32; 2]) -> View {
     let pinhole = Pinhole { image, ..view.pinhole().clone() };
     View::new(pinhole, view.stages().to_vec()).unwrap_or_else(|_| view.clone())

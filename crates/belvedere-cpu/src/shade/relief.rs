@@ -19,7 +19,7 @@ const GENTLE: f32 = 0.8;
 const GENTLE_SLOPE: f32 = 0.25;
 
 /// Factor on the openness of a point in a Swiss relief, relative to the light of the sky.
-const FORM: f32 = 3.0;
+const FORM: f32 = 2.5;
 
 /// Share of direct light left in a cast shadow of a Swiss relief, whose light is a drawing technique rather than a sun.
 const SWISS_SHADOW: f32 = 0.4;
@@ -29,7 +29,7 @@ const SWISS_SUN: [f32; 3] = [1.28, 1.13, 0.86];
 const SWISS_SKY: [f32; 3] = [0.44, 0.56, 0.88];
 
 /// Amounts of direct light and of light of the sky on level ground.
-const SWISS_AMOUNTS: [f32; 2] = [0.92, 0.30];
+const SWISS_AMOUNTS: [f32; 2] = [0.92, 0.34];
 const AMOUNTS: [f32; 2] = [0.80, 0.62];
 
 /// Share of the side lights of a Swiss relief on steep ground.

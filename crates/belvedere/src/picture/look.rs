@@ -27,7 +27,7 @@ pub struct LookRule {
     pub bounds: [Option<f64>; 2],
     /// Whether the value lies within.
     pub holds: bool,
-    /// Options that mend it.
+    /// What mends it.
     pub mend: &'static str,
 }
 
@@ -128,25 +128,20 @@ impl Seen {
                 "range of luma of the ground, of 255",
                 part(&luma, 0.995) - part(&luma, 0.005),
                 [Some(150.0), None],
-                "--light, --haze",
+                "light, haze",
             ),
-            rule(
-                "deviation of luma of the ground, of 255",
-                deviation,
-                [Some(35.0), None],
-                "--light, --shadows, --haze",
-            ),
-            rule("L* of the darkest hundredth", part(&|p| p.lab.x, 0.01), [Some(15.0), None], "--light"),
+            rule("deviation of luma of the ground, of 255", deviation, [Some(35.0), None], "light, shadows, haze"),
+            rule("L* of the darkest hundredth", part(&|p| p.lab.x, 0.01), [Some(15.0), None], "light"),
             rule(
                 "share burnt out, over 250 of 255",
                 mean(&|p| f64::from(u8::from(p.burnt))),
                 [None, Some(0.01)],
-                "--light, --palette",
+                "light, palette",
             ),
-            rule("saturation", mean(&|p| f64::from(p.saturation)), [Some(0.15), Some(0.45)], "--palette"),
+            rule("saturation", mean(&|p| f64::from(p.saturation)), [Some(0.15), Some(0.45)], "palette"),
         ];
         if let Some(spread) = self.hues() {
-            rules.push(rule("spread of hues, degrees", spread, [Some(40.0), None], "--palette, --drape"));
+            rules.push(rule("spread of hues, degrees", spread, [Some(40.0), None], "palette, drape"));
         }
         let [middle, lower] = self.energy;
         if middle > 0.0 && lower > 0.0 {
@@ -186,17 +181,11 @@ impl Seen {
         let mut heights: Vec<f64> = rows.iter().map(|(_, y)| *y).collect();
         heights.sort_by(f64::total_cmp);
         let Some(sky) = heights.get(heights.len() / 2).map(|y| y / height as f64) else { return Vec::new() };
-        let mut rules =
-            vec![rule("sky, share of the height", sky, [Some(0.1), Some(0.27)], "--pitch, --eye and --look")];
+        let mut rules = vec![rule("sky, share of the height", sky, [Some(0.1), Some(0.27)], "eye and look_at")];
         if sky < 0.02 {
             return rules;
         }
-        rules.push(rule(
-            "tilt of the skyline, degrees",
-            tilt(&rows).abs(),
-            [None, Some(2.0)],
-            "--edge, --eye and --look",
-        ));
+        rules.push(rule("tilt of the skyline, degrees", tilt(&rows).abs(), [None, Some(2.0)], "edge, eye and look_at"));
         let column = width / 2;
         let first = frame.id.iter().skip(column).step_by(width).position(|id| *id != 0).unwrap_or(height);
         if first >= 8 {
@@ -206,7 +195,7 @@ impl Seen {
                 "L* of the palest sky over that of its top",
                 palest - lightness(0),
                 [Some(8.0), None],
-                "--sky",
+                "sky",
             ));
         }
         rules
@@ -231,7 +220,7 @@ fn subject(scene: &Scene, view: &View, width: usize) -> Option<LookRule> {
     let share = (to.min(width as f64) - from.max(0.0)) / width as f64;
     share
         .is_finite()
-        .then(|| rule("subject, share of the width", share, [Some(0.5), Some(1.0)], "--eye and --look, --fov"))
+        .then(|| rule("subject, share of the width", share, [Some(0.5), Some(1.0)], "eye and look_at, fov"))
 }
 
 impl Pixel {
@@ -293,7 +282,7 @@ mod tests {
             |x, y| {
                 if y < 10 {
                     [60, 100, 180]
-                } else if y < 17 {
+                } else if y < 13 {
                     [200, 220, 240]
                 } else {
                     [[30; 3], [230; 3]][x / 4 % 2]

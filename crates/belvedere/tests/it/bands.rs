@@ -38,10 +38,19 @@ fn are_alike(name: &str, session: &Session, options: &PictureOptions) {
             assert_eq!(whole.len(), bands.len(), "{name}");
             for (a, b) in whole.iter().zip(&bands) {
                 assert_eq!(a.0, b.0);
-                assert!(a.1 == b.1, "{name}: {} in bands of {rows} rows differs", a.0.display());
+                let same =
+                    a.1 == b.1 || a.0.extension().is_some_and(|e| e == "json") && unscored(&a.1) == unscored(&b.1);
+                assert!(same, "{name}: {} in bands of {rows} rows differs", a.0.display());
             }
         }
     }
+}
+
+/// A record without the score of the look, which needs all pixels at once.
+fn unscored(record: &[u8]) -> serde_json::Value {
+    let mut record: serde_json::Value = serde_json::from_slice(record).expect("a record");
+    record.as_object_mut().expect("an object").remove("look");
+    record
 }
 
 fn all(name: &str, image: [u32; 2]) {

@@ -12,7 +12,7 @@ const GOOD: Evaluation = Evaluation {
     skyline: 0.15,
     horizon: 0.15,
     slant: 0.04,
-    width: 0.8,
+    width: 0.7,
     coarse_px: 4.0,
     rise: 0.5,
 };
@@ -21,10 +21,10 @@ const GOOD: Evaluation = Evaluation {
 fn the_whole_feature_in_the_frame_outweighs_everything_else_about_a_composition() {
     let all = composition(&GOOD);
     let part = Evaluation { in_frame: 0.6, in_margin: 0.6, ..GOOD };
-    let poor = Evaluation { spread: 0.2, drawn: 0.3, width: 0.4, covered: 0.8, skyline: 0.3, coarse_px: 25.0, ..GOOD };
+    let poor = Evaluation { spread: 0.2, drawn: 0.3, width: 0.4, covered: 0.8, skyline: 0.3, coarse_px: 50.0, ..GOOD };
     assert!(all > composition(&poor) && composition(&poor) > composition(&part));
     let worse = [
-        Evaluation { coarse_px: 30.0, ..GOOD },
+        Evaluation { coarse_px: 60.0, ..GOOD },
         Evaluation { skyline: 0.0, ..GOOD },
         Evaluation { slant: 0.3, ..GOOD },
         Evaluation { rise: -0.5, ..GOOD },

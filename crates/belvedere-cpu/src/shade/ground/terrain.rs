@@ -74,8 +74,8 @@ pub(crate) struct LightCache {
 }
 
 /// Spacing of nodes that made detail reaches, metres; most levels of it, and most nodes of the finest one along a side.
-const FINEST_M: f64 = 3.5;
-const MOST_FINER: u32 = 5;
+const FINEST_M: f64 = 2.0;
+const MOST_FINER: u32 = 6;
 const MOST_SIDE: usize = 1 << 17;
 
 /// Altitudes of the light whose shadows are painted, radians.

@@ -28,8 +28,10 @@ use belvedere_scene::{Progress, Scene, Sky};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Full vertical field of view unless given, degrees; the widest where a view is chosen.
-const FOV_Y_DEG: f64 = 55.0;
+/// Full vertical field of view unless given, degrees.
+const FOV_Y_DEG: f64 = 45.0;
+/// The widest where a view is chosen, unless one is given.
+const WIDEST_FOV_Y_DEG: f64 = 55.0;
 
 /// Time limit for solving the ground of each tried technique, and exaggerated ground, if none is given.
 const TRY_FOR: Duration = Duration::from_secs(120);
@@ -236,7 +238,7 @@ impl Request<'_> {
         Ok(RevealOptions {
             image: self.image.unwrap_or(IMAGE),
             aspect: self.aspect,
-            fov_y: self.fov_y(FOV_Y_DEG)?,
+            fov_y: self.fov_y(WIDEST_FOV_Y_DEG)?,
             earth_radius: self.asked.curved_earth.then(|| earth_radius(&data.scene, &mut data.warnings)),
             ..RevealOptions::default()
         })
