@@ -74,8 +74,8 @@ impl Colors {
                 meadow: linear([226, 230, 236]),
                 alpine: linear([234, 238, 243]),
                 valley: linear([222, 226, 230]),
-                conifers: linear([42, 54, 50]),
-                broadleaves: linear([68, 65, 62]),
+                conifers: linear([38, 50, 46]),
+                broadleaves: linear([62, 59, 56]),
                 scree: linear([206, 208, 212]),
                 rock: linear([118, 114, 114]),
                 ..summer

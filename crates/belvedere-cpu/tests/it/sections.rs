@@ -165,7 +165,7 @@ fn exposures_tend_to_the_weighted_composite_where_layers_see_one_surface() {
     let (scene, view) = plain_transition();
     let worst = off_by(&scene, &view, &placed(&scene, &view, 64));
     // Half a step of 64 between two colours, plus rounding.
-    assert!(worst <= 2.0, "{worst}");
+    assert!(worst <= 2.5, "{worst}");
 }
 
 #[test]
