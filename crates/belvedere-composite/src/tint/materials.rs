@@ -151,7 +151,7 @@ impl Materials {
             let bare = self.bare(height, steep, fray[i]);
             let snow = self.snow(height, steep, shady, fray[i]);
             let color = self.color([height, steep, fray[i], patch[i], layers[i]], bare, forest, crowns[i]);
-            let color = color.lerp(self.colors.snow, snow * (1.0 - 0.92 * forest));
+            let color = color.lerp(self.colors.snow, snow * (1.0 - 0.97 * forest));
             for (plane, v) in out.color.iter_mut().zip(color.to_array()) {
                 plane[i] = v;
             }

@@ -61,7 +61,7 @@ fn rows(folder: &Path) -> Vec<(&'static str, Does)> {
         ("edge", Changes(json!("block"), none())),
         ("title", Changes(json!("Hills"), json!({ "size": [320, 180] }))),
         ("furniture", Changes(json!(["scale"]), json!({ "size": [320, 180] }))),
-        ("shadows", Changes(json!(true), json!({ "light": [90, 10] }))),
+        ("shadows", Changes(json!(true), json!({ "light": [180, 10] }))),
         ("relief", Changes(json!("sun"), none())),
         ("hidden", Changes(json!("show"), json!({ "technique": "curved_rays" }))),
         ("exaggeration", Changes(json!(2), none())),
