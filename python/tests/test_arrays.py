@@ -49,7 +49,7 @@ def test_masks_and_no_data_are_holes_and_never_heights(how: str) -> None:
     column, row = inside[:, 0] / CELL, 59 - inside[:, 1] / CELL
     in_hole = (column > 30) & (column < 49) & (row > 20) & (row < 29)
     assert not in_hole.any(), "ground is drawn in the hole"
-    assert np.isfinite(picture.depth).mean() > 0.3, "the rest is drawn"
+    assert np.isfinite(picture.depth).mean() > 0.2, "the rest is drawn"
     assert inside[:, 2].max() < 700
 
 
