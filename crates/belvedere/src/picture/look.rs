@@ -13,7 +13,7 @@ use serde::Serialize;
 const MOST: usize = 120_000;
 /// Chroma from which on a colour has a hue.
 const CHROMATIC: f32 = 6.0;
-/// Sides of the columns of a skyline whose tilt is measured, parts of the picture's width.
+/// Columns across a picture in which the skyline is looked up.
 const SKYLINE: usize = 64;
 
 /// A rule, and how a picture keeps it.
@@ -138,7 +138,7 @@ impl Seen {
                 [None, Some(0.01)],
                 "light, palette",
             ),
-            rule("saturation", mean(&|p| f64::from(p.saturation)), [Some(0.15), Some(0.45)], "palette"),
+            rule("saturation", mean(&|p| f64::from(p.saturation)), [Some(0.25), Some(0.40)], "palette"),
         ];
         if let Some(spread) = self.hues() {
             rules.push(rule("spread of hues, degrees", spread, [Some(40.0), None], "palette, drape"));
@@ -150,7 +150,7 @@ impl Seen {
             rules.push(rule(
                 "change from pixel to pixel, lower over middle third",
                 ratio,
-                [Some(0.75), Some(1.35)],
+                [Some(0.9), Some(1.2)],
                 mend,
             ));
         }
@@ -181,7 +181,7 @@ impl Seen {
         let mut heights: Vec<f64> = rows.iter().map(|(_, y)| *y).collect();
         heights.sort_by(f64::total_cmp);
         let Some(sky) = heights.get(heights.len() / 2).map(|y| y / height as f64) else { return Vec::new() };
-        let mut rules = vec![rule("sky, share of the height", sky, [Some(0.1), Some(0.27)], "eye and look_at")];
+        let mut rules = vec![rule("sky, share of the height", sky, [Some(0.12), Some(0.25)], "eye and look_at")];
         if sky < 0.02 {
             return rules;
         }
@@ -194,7 +194,7 @@ impl Seen {
             rules.push(rule(
                 "L* of the palest sky over that of its top",
                 palest - lightness(0),
-                [Some(8.0), None],
+                [Some(12.0), None],
                 "sky",
             ));
         }
@@ -220,7 +220,7 @@ fn subject(scene: &Scene, view: &View, width: usize) -> Option<LookRule> {
     let share = (to.min(width as f64) - from.max(0.0)) / width as f64;
     share
         .is_finite()
-        .then(|| rule("subject, share of the width", share, [Some(0.5), Some(1.0)], "eye and look_at, fov"))
+        .then(|| rule("subject, share of the width", share, [Some(0.6), Some(0.8)], "eye and look_at, fov"))
 }
 
 impl Pixel {

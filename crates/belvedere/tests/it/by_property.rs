@@ -103,7 +103,7 @@ fn areas_are_filled_by_their_texts_with_the_opacity_of_the_layer() {
         let at = |x: f64| row[(100.0 + x * 150.0 / (2.0 * 22.5f64.to_radians().tan() * 6000.0)) as usize];
         [at(-1500.0), at(0.0), at(1500.0)].map(|[r, _, b]| i32::from(r) - i32::from(b))
     };
-    // The most frequent value is orange, the next one sky blue.
+    // The most frequent value is orange, the next one sky blue; the east lies in the shade of the ground.
     let [west, middle, east] = of("ff");
     assert!(west > 25 && east > 25 && middle < -25, "{west} {middle} {east}");
     let faint = of("20");
