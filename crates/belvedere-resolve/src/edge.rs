@@ -15,6 +15,8 @@ const DEEPER: [f64; 2] = [0.12, 0.012];
 /// Width of a mat beyond the data as a share of their longer side, and the cells along a side of it.
 const BEYOND: f64 = 1.0;
 const CELLS: usize = 96;
+/// Steps by which the direction of a rim is averaged, each over a node's neighbours.
+const STEPS: usize = 24;
 /// Distance of a mat from the lowest ground as a share of the longer side.
 const BELOW: f64 = 2e-4;
 
@@ -75,6 +77,8 @@ struct Build {
     triangles: Vec<[u32; 3]>,
     /// Points on the ground and below them, by node.
     walls: HashMap<[usize; 2], [u32; 2]>,
+    /// Points below the ground from which a side goes, and those to which it goes.
+    along: Vec<[u32; 2]>,
 }
 
 impl Build {
@@ -111,6 +115,7 @@ impl Build {
                     let [a, b] = ends.map(|[i, j]| self.wall(ground, [(c + i) as usize, (r + j) as usize], base));
                     if let (Some([top_a, low_a]), Some([top_b, low_b])) = (a, b) {
                         self.quad([low_a, low_b, top_b, top_a]);
+                        self.along.push([low_a, low_b]);
                     }
                 }
             }
@@ -132,7 +137,33 @@ impl Build {
         if self.triangles.is_empty() {
             return None;
         }
-        Mesh::new(&self.points, self.triangles, MeshColors::Layer).ok()
+        let normals = self.normals();
+        Mesh::new(&self.points, self.triangles, MeshColors::Layer).ok()?.with_normals(&normals).ok()
+    }
+
+    /// Normals by which points are lit: up on level surfaces; on sides those of the rim without the steps that it has from node to node
+    /// where it crosses the lattice aslant.
+    fn normals(&self) -> Vec<DVec3> {
+        let mut outward = vec![DVec2::ZERO; self.points.len()];
+        for [a, b] in self.along.iter().map(|ends| ends.map(|i| i as usize)) {
+            let along = (self.points[b] - self.points[a]).truncate();
+            for end in [a, b] {
+                outward[end] -= along.perp();
+            }
+        }
+        for _ in 0..STEPS {
+            let mut next = outward.clone();
+            for [a, b] in self.along.iter().map(|ends| ends.map(|i| i as usize)) {
+                next[a] += outward[b];
+                next[b] += outward[a];
+            }
+            outward = next.into_iter().map(DVec2::normalize_or_zero).collect();
+        }
+        for [top, low] in self.walls.values().map(|points| points.map(|i| i as usize)) {
+            outward[top] = outward[low];
+        }
+        let of = |n: DVec2| if n == DVec2::ZERO { DVec3::Z } else { n.normalize().extend(0.0) };
+        outward.into_iter().map(of).collect()
     }
 }
 

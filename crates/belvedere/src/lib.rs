@@ -165,6 +165,7 @@ pub mod places;
 pub mod record;
 pub mod renderers;
 mod session;
+mod shown;
 pub mod threads;
 pub mod verbs;
 

@@ -1,15 +1,14 @@
 //! Opens scene files and documents as sessions.
 
 use crate::guard::guarded;
-use crate::scene_file::camera::{self, set_camera};
+use crate::scene_file::camera;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
     self, Document, EarthDoc, LayerDoc, LightDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc,
 };
 use crate::session::Loaded;
+use crate::shown::{end_ground, show_all};
 use crate::{BelvedereError, Needs, OpenOptions, Session};
-use belvedere_construct::views::{core_of_town, outline};
-use belvedere_core::{Aabb, DVec3, Navigation, Pinhole, Projection, Warning, WarningKind};
 use belvedere_io::crs::utm_epsg;
 use belvedere_resolve::constructor;
 use belvedere_resolve::motion::Motions;
@@ -17,7 +16,7 @@ use belvedere_resolve::show_molecules;
 use belvedere_resolve::solving::Memory;
 use belvedere_resolve::solving::Solving;
 use belvedere_resolve::{self, LayerRequest, hidden, representations, validate};
-use belvedere_scene::{Crs, Light, Scene};
+use belvedere_scene::{Crs, Scene};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -50,6 +49,9 @@ impl Session {
     fn opened(mut source: SourceDocument, options: &OpenOptions) -> Result<Self, BelvedereError> {
         let mut allowed = options.allow_roots.clone();
         allowed.extend(source.of_files.iter().flatten().cloned());
+        if source.of_files.is_some() {
+            end_ground(&mut source.document.layer);
+        }
         change(&mut source.document, options, &mut allowed)?;
         validate::document(&source)?;
         hidden::check(&source)?;
@@ -71,8 +73,8 @@ impl Session {
         let mut scene = Scene { title, crs, unit, layers, representations, fonts, drawings };
         hidden::apply(&mut scene, document);
         if source.of_files.is_some() {
-            let apart = show_all(&mut source.document, &scene)?;
-            loaded.warnings.push(no_view(apart));
+            let shown = show_all(&mut source.document, &scene)?;
+            loaded.warnings.push(shown.said());
         }
         belvedere_resolve::fill_surfaces(&mut source.document.layer, &scene);
         let (mut scene, mut inputs) = (Arc::new(scene), loaded.inputs);
@@ -133,63 +135,6 @@ fn change(document: &mut Document, options: &OpenOptions, allowed: &mut Vec<Path
         }
     }
     Ok(())
-}
-
-/// Said of a document whose camera was found. `apart`: buildings that stand far apart from their town.
-fn no_view(apart: usize) -> Warning {
-    let shown = match apart {
-        0 => "all of it is shown".to_owned(),
-        1 => "it is shown as far as its town reaches, without a building far apart".to_owned(),
-        _ => format!("it is shown as far as its town reaches, without {apart} buildings far apart"),
-    };
-    let text = format!(
-        "no scene says how to look at this: {shown}, from the south; `belvedere show` with -o writes a scene to change"
-    );
-    Warning::new(WarningKind::Assumed, text)
-}
-
-/// Heading and fall of the camera that shows everything, degrees.
-const ALL_SEEN_FROM: [f64; 2] = [20.0, 30.0];
-/// Share of the width or height of the picture that it fills.
-const FILLED: f64 = 0.92;
-/// Triangles of a layer by which it is framed, at most about.
-const OUTLINE: usize = 50_000;
-
-/// Sets the camera of a document so that the whole scene is in its picture, but for buildings far apart from their town, whose number it
-/// returns.
-fn show_all(document: &mut Document, scene: &Scene) -> Result<usize, BelvedereError> {
-    let [heading, fall] = ALL_SEEN_FROM;
-    let is_city = |layer: &&LayerDoc| matches!(layer, LayerDoc::City(_));
-    let cities: Vec<&str> = document.layer.iter().filter(is_city).map(LayerDoc::id).collect();
-    let towns = scene.layers.iter().filter(|layer| cities.contains(&layer.id.as_str()));
-    let apart = towns.filter_map(|layer| core_of_town(&layer.kind.mesh()?.mesh)).map(|(_, apart)| apart).sum();
-    let mut points = outline(scene, OUTLINE, &cities);
-    if points.is_empty() {
-        points = outline(scene, OUTLINE, &[]);
-    }
-    let camera = framed(&scene.bounds(), heading, fall, document.camera.image)
-        .and_then(|camera| camera.holding(&points, FILLED).ok())
-        .ok_or_else(|| BelvedereError::Target("there is nothing to see in these files".into()))?;
-    document.camera.near = camera.pinhole.near;
-    set_camera(document, &camera);
-    if scene.terrain().is_some() && document.light.as_ref().is_none_or(|light| !light.states_sun()) {
-        let light = Light::azimuth_at_upper_left(&camera.pinhole).map(LightDoc::from_azimuth);
-        document.light =
-            light.map(|light| document.light.take().unwrap_or_default().over(light)).or(document.light.take());
-    }
-    Ok(apart)
-}
-
-/// A camera that shows a box from the south, `pitch_deg` over the horizon and turned by `heading_deg` clockwise from north; `None` for an
-/// empty box.
-fn framed(bounds: &Aabb, heading_deg: f64, pitch_deg: f64, image: [u32; 2]) -> Option<Navigation> {
-    let (heading, pitch) = (heading_deg.to_radians(), pitch_deg.to_radians());
-    let ahead = DVec3::new(heading.sin() * pitch.cos(), heading.cos() * pitch.cos(), -pitch.sin());
-    let lens = Projection::Perspective { fov_y: 45f64.to_radians() };
-    let size = (bounds.max - bounds.min).length();
-    let near = (1e-4 * size).clamp(1e-6, 1.0);
-    let pinhole = Pinhole::look_at(-ahead, DVec3::ZERO, DVec3::Z, lens, image, near, None).ok()?;
-    Navigation { pinhole, target: DVec3::ZERO }.framing(bounds).ok().filter(|_| !bounds.is_empty())
 }
 
 /// Parts of the scene to read for the given options.

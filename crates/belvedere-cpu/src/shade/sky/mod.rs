@@ -5,8 +5,9 @@ mod row;
 use crate::screen::SUB;
 use crate::simd::nearest;
 use belvedere_composite::color::{PIXELS, Rgb, linear, smoothstep};
-use belvedere_core::{Aabb, DVec3, Pinhole};
-use belvedere_scene::{Color, Haze, Light, Scene, Sky as Choice, Unit};
+use belvedere_composite::tint::GroundTint;
+use belvedere_core::{Aabb, DVec2, DVec3, Pinhole};
+use belvedere_scene::{Color, Haze, Light, Scene, Sky as Choice, TerrainLayer, Unit};
 
 /// Thresholds of ordered dithering, 8 x 8 (Bayer 1973), each 0..64 once.
 const BAYER: [[u8; 8]; 8] = [
@@ -56,6 +57,9 @@ const SMALL: [f32; 2] = [100.0, 500.0];
 /// The same in a studio, and its backdrop: above, in the middle, below.
 const THICKEST_IN_STUDIO: f32 = 0.32;
 const STUDIO: [[u8; 3]; 3] = [[252, 252, 251], [243, 245, 246], [222, 228, 234]];
+
+/// A clear day, at the zenith, in the middle, at the horizon and below it.
+const DAY: [[u8; 3]; 4] = [[62, 118, 196], [134, 180, 222], [226, 236, 242], [214, 227, 237]];
 
 /// Skies after sunset and at night, and their haze; the sun stands lower than this by night.
 const DUSK: [[u8; 3]; 4] = [[86, 104, 150], [150, 146, 172], [243, 208, 170], [206, 184, 170]];
@@ -183,6 +187,11 @@ impl Sky {
         let ground = scene.layers.iter().filter_map(|layer| layer.kind.terrain());
         let ground = ground.fold(Aabb::EMPTY, |all, terrain| all.union(terrain.heightfield.bounds()));
         sky.stretch = Stretch::new(&ground, pinhole);
+        let beyond = scene.layers.iter().find_map(|layer| layer.kind.terrain()).map(color_of);
+        let over = |air, stretch: Stretch| {
+            let colors = beyond.map_or_else(|| tones(air), |ground| with_land(tones(air), ground));
+            steps(|rise| of_air(&colors, stretch.of(rise)))
+        };
         let is_landscape = scene.unit == Unit::Metre || scene.terrain().is_some();
         let shown = match light.sky {
             Choice::Auto if is_landscape => match light.altitude.to_degrees() {
@@ -198,13 +207,9 @@ impl Sky {
         match shown {
             // The gradient of a studio is fixed to the picture, for every direction of the camera.
             Choice::Auto => Self { steps: steps(studio), up: [0.0, 0.0, -1.0], ..air },
-            Choice::Day => Self { steps: steps(|rise| towards(air.stretch.of(rise))), ..air },
-            Choice::Dusk => {
-                Self { steps: steps(|sine| of_air(&DUSK, air.stretch.of(sine))), haze: linear(DUSK_HAZE), ..air }
-            }
-            Choice::Night => {
-                Self { steps: steps(|sine| of_air(&NIGHT, air.stretch.of(sine))), haze: linear(NIGHT_HAZE), ..air }
-            }
+            Choice::Day => Self { steps: over(&DAY, air.stretch), ..air },
+            Choice::Dusk => Self { steps: over(&DUSK, air.stretch), haze: linear(DUSK_HAZE), ..air },
+            Choice::Night => Self { steps: over(&NIGHT, air.stretch), haze: linear(NIGHT_HAZE), ..air },
             Choice::Plain(_) | Choice::Transparent => {
                 let color = if let Choice::Plain(color) = shown { color } else { Color::rgb(255, 255, 255) };
                 let plain = linear([color.r, color.g, color.b]);
@@ -486,14 +491,40 @@ fn roots(c: Rgb) -> Rgb {
 
 /// The clear sky at an elevation, given its sine, linear.
 fn towards(sine: f32) -> Rgb {
-    of_air(&[[62, 118, 196], [134, 180, 222], [226, 236, 242], [214, 227, 237]], sine)
+    of_air(&tones(&DAY), sine)
 }
 
+fn tones(air: &[[u8; 3]; 4]) -> [Rgb; 4] {
+    air.map(linear)
+}
+
+/// Air over ground: what lies below the horizon beside the data is a plain in a tone of the ground, of this lightness and this share of its
+/// colour, without any form.
+fn with_land([zenith, middle, horizon, below]: [Rgb; 4], ground: Rgb) -> [Rgb; 4] {
+    const LIGHTNESS: f32 = 0.62;
+    const OF_GROUND: f32 = 0.6;
+    let scale = LIGHTNESS * luminance(below) / luminance(ground).max(1e-3);
+    [zenith, middle, horizon, below.lerp(ground * scale, OF_GROUND)]
+}
+
+fn luminance(c: Rgb) -> f32 {
+    c.dot(Rgb::new(0.2126, 0.7152, 0.0722))
+}
+
+/// Colour of the level ground of a layer that is as high as its lower quarter, linear.
+fn color_of(terrain: &TerrainLayer) -> Rgb {
+    let [low, high] = terrain.heightfield.z_range();
+    let tint = GroundTint::new(&terrain.palette, [low, high]);
+    Rgb::from_array(tint.color(0.75 * low + 0.25 * high, DVec2::ZERO))
+}
+
+/// Depth below the horizon, in units of [`of_air`], over which the plain beside the data leaves the colour of the horizon.
+const PLAIN: f32 = 0.5;
+
 /// The sky of air with these colours at the zenith, in the middle, at the horizon and below it.
-fn of_air(colors: &[[u8; 3]; 4], sine: f32) -> Rgb {
-    let [zenith, middle, horizon, below] = colors.map(linear);
+fn of_air(&[zenith, middle, horizon, below]: &[Rgb; 4], sine: f32) -> Rgb {
     if sine < 0.0 {
-        return horizon.lerp(below, smoothstep(0.0, 0.25, -sine));
+        return below.lerp(horizon, (sine / PLAIN).exp());
     }
     let low = 1.0 - (-sine / 0.10).exp();
     let high = smoothstep(0.0, 0.7, sine);
