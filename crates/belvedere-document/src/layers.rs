@@ -179,6 +179,11 @@ pub struct TerrainDoc {
     /// Georeferenced pictures laid over the ground, later ones on top.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub drape: Option<Paths>,
+    /// What covers the ground, for palettes of materials: one raster of classes of ESA WorldCover, CORINE Land Cover or NLCD, or files of
+    /// areas with the tags `natural`, `landuse` or `landcover` of OpenStreetMap, or `code_18` of CORINE. Where nothing is known the
+    /// materials are drawn by rule.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub land_cover: Option<Paths>,
     /// How it is drawn.
     #[serde(default)]
     pub style: TerrainStyleDoc,

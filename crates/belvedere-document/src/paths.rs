@@ -12,7 +12,10 @@ impl LayerDoc {
             paths.as_slice().iter().map(String::as_str).collect()
         }
         match self {
-            Self::Terrain(l) => [of(&l.source), l.drape.as_ref().map(of).unwrap_or_default()].concat(),
+            Self::Terrain(l) => {
+                let beside = [&l.drape, &l.land_cover].into_iter().flatten().flat_map(of);
+                of(&l.source).into_iter().chain(beside).collect()
+            }
             Self::Line(l) => l.source.as_ref().map(of).unwrap_or_default(),
             Self::Area(l) => of(&l.source),
             Self::Point(l) => of(&l.source),
@@ -46,7 +49,8 @@ impl Document {
             match layer {
                 LayerDoc::Terrain(l) => {
                     l.source.each(&mut one);
-                    l.drape.iter_mut().for_each(|drape| drape.each(&mut one));
+                    let beside = l.drape.iter_mut().chain(&mut l.land_cover);
+                    beside.for_each(|files| files.each(&mut one));
                     if let PaletteDoc::File(name) = &mut l.style.palette {
                         one(name);
                     }

@@ -291,7 +291,7 @@ fn reduction(width: usize, height: usize, max_pixels: usize) -> usize {
 }
 
 /// Columns and rows of the picture over the terrain; `None` if it does not touch the picture.
-fn window(link: &Link, heightfield: &Heightfield, size: [usize; 2]) -> Option<[Range<usize>; 2]> {
+pub(crate) fn window(link: &Link, heightfield: &Heightfield, size: [usize; 2]) -> Option<[Range<usize>; 2]> {
     const N: usize = 48;
     let bounds = heightfield.bounds();
     let span = bounds.max - bounds.min;
@@ -310,7 +310,7 @@ fn window(link: &Link, heightfield: &Heightfield, size: [usize; 2]) -> Option<[R
     Some([range(min.x, max.x, size[0])?, range(min.y, max.y, size[1])?])
 }
 
-fn no_overlap(
+pub(crate) fn no_overlap(
     path: &Path,
     link: &Link,
     size: [usize; 2],
@@ -328,7 +328,7 @@ fn no_overlap(
         DVec2::new(b.max.x, b.min.y),
     ];
     let reason = format!(
-        "the picture does not touch the terrain: it covers {}, the terrain {}; choose a picture of the same place",
+        "it does not touch the terrain: it covers {}, the terrain {}; choose one of the same place",
         covers(&picture, target),
         covers(&terrain, target)
     );

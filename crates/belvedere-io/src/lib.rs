@@ -22,6 +22,7 @@ mod half;
 pub mod hgt;
 mod input;
 mod known;
+pub mod land_cover;
 mod las;
 mod loaded;
 pub mod mesh;

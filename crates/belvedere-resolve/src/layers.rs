@@ -2,7 +2,9 @@
 
 use super::ground::{Ground, epsg};
 use super::loader::Loader;
-use super::{areas, boxes, builtin, by_property, city, dem, edge, fonts, mesh, molecule, named, sea, vectors, volume};
+use super::{
+    areas, boxes, builtin, by_property, city, dem, edge, fonts, land_cover, mesh, molecule, named, sea, vectors, volume,
+};
 use crate::record::AreaRecord;
 use crate::{BelvedereError, Needs, OpenOptions};
 use belvedere_builtin::{RouteCost, least_cost_route, valley_route};
@@ -20,8 +22,8 @@ use belvedere_io::{DrapeRequest, split_table};
 use belvedere_io::{InputFile, Loaded};
 use belvedere_overlay::notes::LayerNotes;
 use belvedere_scene::{
-    Climate, Contours, Crs, DistanceMarkers, Drape, Drawing, FontFile, Heightfield, Layer, LayerKind, LineFeature,
-    LineLayer, Palette, PaletteName, PointLayer, PointStyle, Symbol, TerrainLayer, drape_polyline,
+    Climate, Contours, CoverMap, Crs, DistanceMarkers, Drape, Drawing, FontFile, Heightfield, Layer, LayerKind,
+    LineFeature, LineLayer, Palette, PaletteName, PointLayer, PointStyle, Symbol, TerrainLayer, drape_polyline,
 };
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -216,7 +218,8 @@ fn terrain(
             (heightfield.into(), crs)
         }
     };
-    let palette = placed(palette(loader, index, &style.palette)?, &heightfield, crs);
+    let cover = land_cover::load(loader, index, doc, &heightfield, crs)?;
+    let palette = placed(palette(loader, index, &style.palette)?, &heightfield, crs, cover);
     let palette = if style.materials { palette } else { without_materials(palette) };
     let layer = TerrainLayer {
         heightfield,
@@ -240,16 +243,16 @@ fn contours(stated: &Option<SwitchOrLength>) -> Option<Option<f64>> {
 }
 
 /// A palette that depends on the place, with the climate in the middle of the ground, or one guessed from its heights.
-fn placed(palette: Palette, ground: &Heightfield, crs: Crs) -> Palette {
+fn placed(palette: Palette, ground: &Heightfield, crs: Crs, cover: Option<Arc<CoverMap>>) -> Palette {
     use PaletteName::{Auto, Autumn, Swiss, Winter};
     let Palette::Named(name @ (Auto | Swiss | Winter | Autumn)) = palette else { return palette };
     let bounds = ground.bounds();
     let middle = (0.5 * (bounds.min + bounds.max)).truncate();
     match (Ground { crs, terrain: None }).lon_lat(middle) {
-        Some(at) => Palette::Placed(name, Climate::at(at.x, at.y)),
+        Some(at) => Palette::Placed(name, Climate::at(at.x, at.y), cover),
         // Ground without a place that is very high is rock and ice.
-        None if bounds.max.z > 5000.0 && name == Auto => palette,
-        None => Palette::Placed(name, Climate::of_heights([bounds.min.z, bounds.max.z])),
+        None if bounds.max.z > 5000.0 && name == Auto && cover.is_none() => palette,
+        None => Palette::Placed(name, Climate::of_heights([bounds.min.z, bounds.max.z]), cover),
     }
 }
 
@@ -257,7 +260,7 @@ fn placed(palette: Palette, ground: &Heightfield, crs: Crs) -> Palette {
 fn without_materials(palette: Palette) -> Palette {
     let (name, dry) = match &palette {
         Palette::Named(name) => (*name, false),
-        Palette::Placed(name, climate) => (*name, climate.dryness > 0.5),
+        Palette::Placed(name, climate, _) => (*name, climate.dryness > 0.5),
         Palette::Ramp(_) => return palette,
     };
     match name {

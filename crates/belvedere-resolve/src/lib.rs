@@ -22,6 +22,7 @@ mod error;
 mod fonts;
 pub mod ground;
 pub mod hidden;
+mod land_cover;
 mod layers;
 mod light;
 pub use light::check_air;

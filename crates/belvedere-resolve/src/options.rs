@@ -49,6 +49,8 @@ pub struct OpenOptions {
     pub contours: Option<SwitchOrLength>,
     /// Whether materials are drawn by rule, instead of the scene's setting.
     pub materials: Option<bool>,
+    /// A file of land cover for all terrain, instead of the scene's.
+    pub land_cover: Option<String>,
     /// How the ground ends where its data end, instead of the scene's setting.
     pub edge: Option<Edge>,
     /// Whether the sea is drawn as such, instead of the scene's setting.
@@ -103,6 +105,7 @@ impl OpenOptions {
         Self {
             contours: air.contours.or(self.contours),
             edge: air.edge.or(self.edge),
+            land_cover: air.landcover.clone().or(self.land_cover),
             materials: if air.plain { Some(false) } else { self.materials },
             ..self
         }

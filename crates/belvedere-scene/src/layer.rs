@@ -1,8 +1,8 @@
 //! Layers and their styles.
 
 use crate::{
-    Climate, Color, DistanceMarkers, FeatureStyle, Heightfield, Hidden, MeshLayer, MoleculeLayer, OwnLayer, PointStyle,
-    Ramp, VolumeLayer,
+    Climate, Color, CoverMap, DistanceMarkers, FeatureStyle, Heightfield, Hidden, MeshLayer, MoleculeLayer, OwnLayer,
+    PointStyle, Ramp, VolumeLayer,
 };
 use belvedere_core::{Aabb, DVec2, DVec3, Pinhole};
 use serde::{Deserialize, Serialize};
@@ -86,8 +86,8 @@ impl PaletteName {
 pub enum Palette {
     /// A built-in one.
     Named(PaletteName),
-    /// A built-in one at a place on the earth, whose climate is known.
-    Placed(PaletteName, Climate),
+    /// A built-in one at a place on the earth, whose climate is known, and whose land cover may be.
+    Placed(PaletteName, Climate, Option<Arc<CoverMap>>),
     /// A colour ramp given by the user.
     Ramp(Arc<Ramp>),
 }

@@ -12,6 +12,7 @@ mod font_file;
 pub mod frame;
 pub mod heightfield;
 mod kinds;
+pub mod land_cover;
 pub mod layer;
 pub mod light;
 pub mod mark;
@@ -46,6 +47,7 @@ pub use frame::{
     Stylisation,
 };
 pub use heightfield::{Heightfield, HeightfieldError, NodeState, States};
+pub use land_cover::{Cover, CoverMap};
 pub use layer::{
     AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Contours, Drape, Edge, Layer, LayerKind, LineFeature,
     LineLayer, Palette, PaletteName, PointFeature, PointLayer, Relief, Shading, TerrainLayer,

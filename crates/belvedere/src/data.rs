@@ -190,6 +190,7 @@ impl DataFiles {
             source_crs: self.stated.raster.source_crs.clone(),
             nodata: self.stated.raster.nodata,
             vertical_unit: self.stated.raster.vertical_unit,
+            land_cover: options.land_cover.as_ref().map(|name| locate(name, roots)).transpose()?.map(Paths::One),
             drape: (!drape.is_empty()).then(|| tiles::paths(drape)),
             style: TerrainStyleDoc {
                 palette: self.palette.located(&mut roots.allowed)?,

@@ -4,7 +4,7 @@ use crate::guard::guarded;
 use crate::scene_file::camera;
 use crate::scene_file::paths::Roots;
 use crate::scene_file::{
-    self, Document, EarthDoc, LayerDoc, LightDoc, MapPointDoc, PointDoc, SourceDocument, StageDoc,
+    self, Document, EarthDoc, LayerDoc, LightDoc, MapPointDoc, Paths, PointDoc, SourceDocument, StageDoc,
 };
 use crate::session::Loaded;
 use crate::shown::{end_ground, show_all};
@@ -97,6 +97,13 @@ impl Session {
     }
 }
 
+/// The full path of a file that the user named, whose folder is allowed from now on.
+fn of_user(name: &str, allowed: &mut Vec<PathBuf>) -> Result<String, BelvedereError> {
+    let path = belvedere_io::fs::canonicalize(name).map_err(|e| belvedere_io::IoError::os(Path::new(name), e))?;
+    allowed.extend(path.parent().map(Path::to_owned));
+    path.to_str().map(str::to_owned).ok_or_else(|| BelvedereError::not_utf8(name))
+}
+
 /// Puts what is asked for instead of what a document says into it.
 ///
 /// * `allowed`: takes the folder of a palette.
@@ -115,6 +122,7 @@ fn change(document: &mut Document, options: &OpenOptions, allowed: &mut Vec<Path
         wish.put_into(&mut document.furniture);
     }
     let palette = options.palette.as_ref().map(|palette| palette.located(allowed)).transpose()?;
+    let land_cover = options.land_cover.as_ref().map(|name| of_user(name, allowed)).transpose()?;
     show_molecules(&options.molecule, &mut document.layer)?;
     for layer in &mut document.layer {
         match layer {
@@ -124,6 +132,7 @@ fn change(document: &mut Document, options: &OpenOptions, allowed: &mut Vec<Path
                 }
             }
             LayerDoc::Terrain(terrain) => {
+                terrain.land_cover = land_cover.clone().map(Paths::One).or(terrain.land_cover.take());
                 let style = &mut terrain.style;
                 style.palette = palette.clone().unwrap_or_else(|| std::mem::take(&mut style.palette));
                 style.materials = options.materials.unwrap_or(style.materials);

@@ -1,5 +1,5 @@
-//! Materials of ground, by rule: forest, meadow, alpine grass, scree, rock, strata, snow, where a climate has them and the form of the ground
-//! allows. Nothing here is data: pictures say so.
+//! Materials of ground, by land cover where it is given, else by rule: forest, meadow, alpine grass, scree, rock, strata, snow, where a climate has them and the form of the ground
+//! allows. What is drawn by rule is no data: pictures say so.
 //!
 //! The rules are those of panorama painters (Patterson, Niehues, Imhof), the figures ours: forest keeps to slopes under the tree line, to
 //! gullies rather than ridges, and climbs higher on the shady side; valley floors are open; rock follows slope; snow follows height,
@@ -8,7 +8,8 @@
 use super::{GroundCover, GroundNodes};
 use crate::color::{Rgb, linear};
 use crate::noise;
-use belvedere_scene::{Climate, PaletteName};
+use belvedere_scene::{Climate, Cover, CoverMap, PaletteName};
+use std::sync::Arc;
 
 /// Sizes of the noise that frays the borders of materials, metres: the largest; and their number, each half of the one before.
 const FRAY_M: f32 = 260.0;
@@ -42,6 +43,9 @@ struct Colors {
     scree: Rgb,
     rock: Rgb,
     snow: Rgb,
+    water: Rgb,
+    town: Rgb,
+    bog: Rgb,
     soil: [Rgb; 2],
     strata: [Rgb; 2],
 }
@@ -57,6 +61,9 @@ impl Colors {
             scree: linear([184, 175, 162]),
             rock: linear([146, 136, 128]),
             snow: linear([232, 238, 246]),
+            water: linear([152, 184, 206]),
+            town: linear([172, 162, 156]),
+            bog: linear([128, 134, 92]),
             soil: [linear([190, 134, 96]), linear([212, 188, 150])],
             strata: [linear([150, 98, 74]), linear([212, 172, 136])],
         };
@@ -76,6 +83,8 @@ impl Colors {
                 valley: linear([222, 226, 230]),
                 conifers: linear([38, 50, 46]),
                 broadleaves: linear([62, 59, 56]),
+                water: linear([150, 170, 184]),
+                bog: linear([176, 172, 160]),
                 scree: linear([206, 208, 212]),
                 rock: linear([118, 114, 114]),
                 ..summer
@@ -97,6 +106,8 @@ pub(super) struct Materials {
     north: f32,
     /// Lowest and highest ground, metres.
     range_m: [f32; 2],
+    /// What covers the ground by data.
+    land: Option<Arc<CoverMap>>,
 }
 
 impl Materials {
@@ -126,7 +137,13 @@ impl Materials {
             dry,
             north: sunny * (climate.latitude_deg.abs() as f32 / 30.0).min(1.0),
             range_m: [z_range_m[0] as f32, (z_range_m[1] as f32).max(z_range_m[0] as f32 + 1.0)],
+            land: None,
         })
+    }
+
+    /// The materials where the land cover is known.
+    pub(super) fn over(self, land: Option<Arc<CoverMap>>) -> Self {
+        Self { land, ..self }
     }
 
     /// The climate.
@@ -150,7 +167,14 @@ impl Materials {
             let forest = self.forest(height, steep, shady, ridge, fray[i], patch[i]);
             let bare = self.bare(height, steep, fray[i]);
             let snow = self.snow(height, steep, shady, fray[i]);
-            let color = self.color([height, steep, fray[i], patch[i], layers[i]], bare, forest, crowns[i]);
+            let form = [height, steep, fray[i], patch[i], layers[i]];
+            let (color, [forest, bare, snow]) = match &self.land {
+                None => (self.color(form, bare, forest, crowns[i]), [forest, bare, snow]),
+                Some(land) => {
+                    let cover = covered(land, nodes.at_m.map(|at| at[i]), [fray[i], patch[i]]);
+                    self.known(cover, form, [forest, bare, snow], crowns[i])
+                }
+            };
             let color = color.lerp(self.colors.snow, snow * (1.0 - 0.97 * forest));
             for (plane, v) in out.color.iter_mut().zip(color.to_array()) {
                 plane[i] = v;
@@ -233,6 +257,35 @@ impl Materials {
         ground.lerp(trees, 0.94 * forest)
     }
 
+    /// Colour without snow, linear, and shares of forest, rock and snow, where the land cover is known.
+    ///
+    /// * `by_rule`: these shares as the rules have them.
+    fn known(&self, cover: Cover, form: [f32; 5], by_rule: [f32; 3], crown: f32) -> (Rgb, [f32; 3]) {
+        let (c, [_, _, fray, patch, _], [forest, bare, snow]) = (&self.colors, form, by_rule);
+        let open = |bare| self.color(form, bare, 0.0, crown);
+        match cover {
+            Cover::Unknown => (self.color(form, bare, forest, crown), by_rule),
+            Cover::Forest => (self.color(form, 0.0, 1.0, crown), [1.0, 0.0, snow]),
+            Cover::Shrubs => {
+                let shrubs = c.meadow.lerp(c.broadleaves, 0.6) * (1.0 + 0.7 * crown).max(0.4);
+                (open(0.5 * bare).lerp(shrubs, 0.6), [0.3, 0.5 * bare, snow])
+            }
+            Cover::Grass => (open(0.35 * bare), [0.0, 0.35 * bare, snow]),
+            Cover::Fields => {
+                let fields = c.valley.lerp(c.meadow, ramp(patch + 0.4 * fray, -0.25, 0.25));
+                (fields.lerp(c.soil[1], 0.35 * ramp(patch - fray, 0.1, 0.3)), [0.0, 0.0, snow])
+            }
+            Cover::BuiltUp => (c.town * (1.0 + 0.18 * fray + 0.3 * crown), [0.0, 0.0, snow]),
+            Cover::Bare => {
+                let rock = bare.max(0.25 + 0.5 * fray).clamp(0.0, 1.0);
+                (self.color(form, 1.0, 0.0, crown).lerp(c.scree * (1.0 + 0.25 * fray), 1.0 - rock), [0.0, rock, snow])
+            }
+            Cover::Ice => (c.snow, [0.0, 0.0, 1.0]),
+            Cover::Water => (c.water, [0.0; 3]),
+            Cover::Wetland => (c.bog * (1.0 + 0.25 * fray), [0.0, 0.0, snow]),
+        }
+    }
+
     /// Layers of rock by height, -1..=1, left out where they would be thinner than two nodes.
     #[inline(always)]
     fn layers<const N: usize>(&self, nodes: &GroundNodes<'_, N>, fray: &[f32; N]) -> [f32; N] {
@@ -251,6 +304,13 @@ impl Materials {
         }
         out
     }
+}
+
+/// The class at a place, with borders that are frayed by half a cell, so that its cells do not show as stairs.
+#[inline(always)]
+fn covered(land: &CoverMap, at: [f32; 2], [fray, patch]: [f32; 2]) -> Cover {
+    let by = [fray, patch - fray].map(|v| v.clamp(-0.6, 0.6));
+    land.at([0, 1].map(|axis| at[axis] + by[axis] * land.spacing[axis]))
 }
 
 /// Noise of several sizes, each half of the one before and 0.62 as strong, about -1..=1; sizes below two nodes are left out.

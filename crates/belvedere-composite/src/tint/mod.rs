@@ -57,7 +57,9 @@ impl GroundTint {
     /// * `z_range_m`: heights of the ground.
     pub fn new(palette: &Palette, z_range_m: [f64; 2]) -> Self {
         let materials = match palette {
-            Palette::Placed(name, climate) => Materials::of(*name, climate, z_range_m),
+            Palette::Placed(name, climate, cover) => {
+                Materials::of(*name, climate, z_range_m).map(|made| made.over(cover.clone()))
+            }
             Palette::Named(name @ (PaletteName::Winter | PaletteName::Autumn)) => {
                 Materials::of(*name, &Climate::of_heights(z_range_m), z_range_m)
             }

@@ -95,7 +95,7 @@ impl RampTint {
             Palette::Ramp(ramp) => return Self::even(from_ramp(ramp, z_range_m), GREY, z_range_m),
             // Ground that is high everywhere is rock and ice; other ground is green in its valleys.
             Palette::Named(PaletteName::Auto) if top > 5000.0 => PaletteName::Glacial,
-            Palette::Named(name) | Palette::Placed(name, _) => *name,
+            Palette::Named(name) | Palette::Placed(name, ..) => *name,
         };
         let built_in = |stops: Stops| (0..STEPS).map(|i| ramp_at(stops, i as f32 / (STEPS - 1) as f32)).collect();
         let even = |stops: Stops| Self::even(built_in(stops), GREY, z_range_m);

@@ -69,7 +69,7 @@ fn places(
     slope: [f32; 2],
     above: f32,
 ) -> (GroundCover<64>, Vec<Rgb>) {
-    let tint = GroundTint::new(&Palette::Placed(name, climate), [400.0, 4200.0]);
+    let tint = GroundTint::new(&Palette::Placed(name, climate, None), [400.0, 4200.0]);
     let mut all = GroundCover { color: [[0.0; 64]; 3], forest: [0.0; 64], bare: [0.0; 64], snow: [0.0; 64] };
     let mut colors = Vec::new();
     for row in 0..64 {

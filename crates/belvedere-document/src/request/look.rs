@@ -31,6 +31,9 @@ pub struct Air {
     /// Tint the ground by height alone: no forest, rock or snow by rule, and no relief finer than the data
     #[cfg_attr(feature = "clap", arg(long))]
     pub plain: bool,
+    /// What covers the ground instead of a guess by climate and relief: a raster of ESA WorldCover, CORINE or NLCD, or areas of OpenStreetMap
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE", conflicts_with = "plain"))]
+    pub landcover: Option<String>,
     /// Title, legend, attribution, compass and scale.
     #[cfg_attr(feature = "clap", command(flatten))]
     #[serde(flatten)]

@@ -33,7 +33,10 @@ impl Heights {
     pub(super) fn whole(info: RasterInfo, mut heights: Vec<f32>, factor: f64, request: &TerrainRequest) -> Self {
         let absurd = void_absurd(&mut heights);
         let unit = info.vertical_unit_m as f32;
-        let customary = may_be_customary(&info, request).then(|| sentinels::void(&mut heights, unit)).flatten();
+        let may_be = may_be_customary(&info, request);
+        let customary = may_be.then(|| sentinels::void(&mut heights, unit)).flatten();
+        let frame = may_be.then(|| sentinels::void_frame(&mut heights, info.width)).flatten();
+        let customary = customary.or(frame);
         let voids = heights.iter().filter(|h| h.is_nan()).count();
         let (cols, rows, samples) = (info.width, info.height, heights.len());
         Self { info, every: 1, cols, rows, heights, factor, samples, voids, absurd, customary }

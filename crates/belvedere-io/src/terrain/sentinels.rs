@@ -16,6 +16,8 @@ const OF_GROUND_M: std::ops::Range<f32> = -11_500.0..9_000.0;
 /// Least gap between such a value and all other heights: metres, and share of the relief; with a smaller gap it is a height.
 const GAP_M: f32 = 400.0;
 const GAP_SHARE: f32 = 0.2;
+/// Ground that stands lower beside zeros may be a shore of the sea, metres.
+const SHORE_M: f32 = 30.0;
 
 /// Makes customary values void where they are far from all other heights; returns one sentence about it.
 ///
@@ -30,6 +32,47 @@ pub(super) fn void(heights: &mut [f32], unit: f32) -> Option<Warning> {
         said.push(stored);
     }
     said_of(&said, count)
+}
+
+/// Makes a frame of zeros around the heights void; returns one sentence about it. Where every sample of the border is 0 or void, the zeros that
+/// are joined with it are such a frame, unless ground beside them is low: the sea has a low shore.
+///
+/// * `heights`: row by row, metres, NaN = void; `cols`: samples in a row.
+pub(super) fn void_frame(heights: &mut [f32], cols: usize) -> Option<Warning> {
+    let rows = heights.len() / cols.max(1);
+    let on_border =
+        |i: usize| i < cols || i >= cols * (rows - 1) || i.is_multiple_of(cols) || (i + 1).is_multiple_of(cols);
+    let border = (0..cols).chain((1..rows.max(1)).flat_map(|r| [r * cols, r * cols + cols - 1]));
+    let border: Vec<usize> = border.chain((0..cols).map(|c| cols * rows.saturating_sub(1) + c)).collect();
+    if rows < 3 || cols < 3 || border.iter().any(|i| heights[*i] != 0.0 && !heights[*i].is_nan()) {
+        return None;
+    }
+    let mut frame = vec![false; heights.len()];
+    let mut open: Vec<usize> = border;
+    let mut beside = Vec::new();
+    while let Some(i) = open.pop() {
+        if std::mem::replace(&mut frame[i], true) {
+            continue;
+        }
+        let sides = [i.checked_sub(cols), i.checked_sub(1), Some(i + 1), Some(i + cols)];
+        for k in sides.into_iter().flatten().filter(|k| *k < heights.len() && !(on_border(i) && on_border(*k))) {
+            match heights[k] {
+                h if h == 0.0 || h.is_nan() => open.push(k),
+                h => beside.push(h),
+            }
+        }
+    }
+    let low = beside.iter().filter(|h| **h < SHORE_M).count();
+    if beside.is_empty() || 20 * low > beside.len() {
+        return None;
+    }
+    let mut count = 0;
+    for (height, _) in heights.iter_mut().zip(frame).filter(|(height, of_frame)| *of_frame && **height == 0.0) {
+        *height = f32::NAN;
+        count += 1;
+    }
+    let what = "samples of 0 in a frame around the data, beside ground of 30 m and more, are taken as voids though the file does not declare them; nodata of its layer says otherwise";
+    Warning::counted(WarningKind::Assumed, count, what).map(|said| said.settled_by("nodata"))
 }
 
 /// Makes all samples of a value void; returns their number.

@@ -6,7 +6,7 @@ mod coast;
 
 use crate::{Heightfield, NodeState};
 use belvedere_core::DVec2;
-use std::collections::VecDeque;
+use std::collections::{HashSet, VecDeque};
 
 /// Heights that differ by less are the same, metres.
 const SAME_M: f32 = 0.01;
@@ -17,6 +17,9 @@ const LEAST_M2: f64 = 1e6;
 const LEAST_SHARE: f64 = 0.05;
 /// A shore is at most as high as a node is wide, within these limits, metres.
 const SHORE_M: [f64; 2] = [10.0, 100.0];
+
+/// How much higher ground that climbs from a shore is one node further inland: half as much on an even slope.
+const FURTHER: f32 = 1.2;
 
 /// The sea of a ground.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,7 +40,7 @@ impl Sea {
     /// * that reaches the edge of the ground, or voids that do;
     /// * of at least a square kilometre, or a twentieth of the ground;
     /// * with a shore: half the nodes beside it stand less than the spacing of the nodes over it (10 m at least, 100 m at most).
-    ///   Level ground with a higher step to the land is a frame of undeclared voids.
+    ///   Level ground with a higher step to the land is a frame of undeclared voids, blended or not.
     pub fn of(ground: &Heightfield) -> Option<Self> {
         let lowest = ground.z_range()[0];
         let levels = [Some(0.0), (lowest < -f64::from(SAME_M)).then_some(lowest)];
@@ -81,6 +84,32 @@ fn flood(first: usize, size: [usize; 2], marked: &mut [bool], belongs: impl Fn(u
     found
 }
 
+/// Nodes beside a stretch of nodes, then those beside these, and so on.
+fn inland(part: &[usize], size: [usize; 2], is_land: impl Fn(usize) -> bool) -> [Vec<usize>; 3] {
+    let mut known: HashSet<usize> = HashSet::new();
+    let mut from: Vec<usize> = part.to_vec();
+    std::array::from_fn(|_| {
+        let beside = from.iter().flat_map(|i| around(*i, size)).filter(|k| is_land(*k) && known.insert(*k));
+        from = beside.collect();
+        from.clone()
+    })
+}
+
+fn median(nodes: &[usize], of: impl Fn(usize) -> f32) -> Option<f32> {
+    let mut values: Vec<f32> = nodes.iter().map(|i| of(*i)).collect();
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
+}
+
+/// Whether heights from the shore inland are those of a frame of undeclared voids that a change of the lattice has blended with the land: a step
+/// up to ground that climbs no further.
+fn is_frame(inland: &[Option<f32>], highest: f32) -> bool {
+    match inland {
+        [_, Some(second), Some(third)] => *second > highest && *third < FURTHER * second,
+        _ => false,
+    }
+}
+
 /// The nodes of the sea at a level.
 fn nodes_at(ground: &Heightfield, level: f32) -> Option<Vec<bool>> {
     let size @ [cols, rows] = [ground.cols(), ground.rows()];
@@ -122,10 +151,9 @@ fn nodes_at(ground: &Heightfield, level: f32) -> Option<Vec<bool>> {
             }
         }
         let wide = part.len() as f64 * cell >= LEAST_M2 || part.len() as f64 >= LEAST_SHARE * measured as f64;
-        let shore = part.iter().flat_map(|i| around(*i, size)).filter(|k| !is_void(*k) && !level_at(*k));
-        let mut shore: Vec<f32> = shore.map(|k| heights[k] - level).collect();
-        let middle = shore.len() / 2;
-        if !wide || shore.is_empty() || *shore.select_nth_unstable_by(middle, f32::total_cmp).1 > highest {
+        let steps = inland(&part, size, |k| !is_void(k) && !level_at(k));
+        let medians: Vec<Option<f32>> = steps.iter().map(|step| median(step, |k| heights[k] - level)).collect();
+        if !wide || medians[0].is_none_or(|shore| shore > highest) || is_frame(&medians, highest) {
             continue;
         }
         any = true;

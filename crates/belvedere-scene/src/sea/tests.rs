@@ -93,3 +93,16 @@ fn voids_outside_the_data_are_an_edge_and_voids_inside_it_are_none() {
     });
     assert_eq!(Sea::of(&lake), None);
 }
+
+#[test]
+fn a_frame_that_a_new_lattice_has_blended_with_the_land_is_no_sea_and_a_steep_coast_is_one() {
+    // The first node of the land is anything between 0 and its height.
+    let blended = |c: usize, r: usize| match c {
+        0..40 => 0.0,
+        40 => 250.0 * ((r * 37 % 100) as f32 / 100.0),
+        _ => 250.0 + (c % 7) as f32,
+    };
+    assert_eq!(Sea::of(&ground(101, blended)), None);
+    let fjord = |c: usize, r: usize| coast(40, 9.0)(c, r);
+    assert!(Sea::of(&ground(101, fjord)).is_some());
+}

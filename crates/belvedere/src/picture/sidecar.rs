@@ -18,14 +18,15 @@ use belvedere_overlay::furniture::FurnitureRecord;
 use belvedere_overlay::highlight::HighlightRecord;
 use belvedere_resolve::StripReport;
 use belvedere_resolve::constructor::ConstructorReport;
-use belvedere_scene::{Crs, Frame, FrameStats, Layer, LayerKind, NodeState, Scene, TerrainLayer, Unit};
+use belvedere_scene::{Cover, Crs, Frame, FrameStats, Layer, LayerKind, NodeState, Palette, Scene, TerrainLayer, Unit};
 use belvedere_sight::RigidLayers;
 use serde::ser::Error as _;
 use serde::{Serialize, Serializer};
+use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
 /// Measured and made-up parts of the ground.
-#[derive(Debug, Clone, Copy, PartialEq, schemars::JsonSchema, Serialize)]
+#[derive(Debug, Clone, PartialEq, schemars::JsonSchema, Serialize)]
 pub struct TerrainRecord {
     /// Nodes of the grid.
     pub nodes: usize,
@@ -41,7 +42,7 @@ pub struct TerrainRecord {
 }
 
 /// Materials that are drawn by rule.
-#[derive(Debug, Clone, Copy, PartialEq, schemars::JsonSchema, Serialize)]
+#[derive(Debug, Clone, PartialEq, schemars::JsonSchema, Serialize)]
 pub struct MadeRecord {
     /// Height over the sea above which no forest is drawn, metres.
     pub tree_line_m: f64,
@@ -53,6 +54,32 @@ pub struct MadeRecord {
     pub climate_of_place: bool,
     /// Spacing of the data, scene units: finer relief is made.
     pub data_spacing: f64,
+    /// What covers the ground by data; nothing where all of it is drawn by rule.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub land_cover: Option<LandCoverRecord>,
+}
+
+/// Land cover by data.
+#[derive(Debug, Clone, PartialEq, schemars::JsonSchema, Serialize)]
+pub struct LandCoverRecord {
+    /// What its classes are called.
+    pub legend: String,
+    /// Distance of its cells, scene units.
+    pub spacing: f64,
+    /// Shares of the classes over the ground, 0..=1; what is unknown is drawn by rule.
+    pub shares: BTreeMap<String, f64>,
+}
+
+impl LandCoverRecord {
+    fn of(terrain: &TerrainLayer) -> Option<Self> {
+        let Palette::Placed(_, _, Some(land)) = &terrain.palette else { return None };
+        let name = |cover: Cover| Cover::ALL[cover as usize].0.to_owned();
+        Some(Self {
+            legend: land.legend.to_owned(),
+            spacing: land.spacing.into_iter().fold(0.0, f32::max).into(),
+            shares: land.shares().into_iter().map(|(cover, share)| (name(cover), share)).collect(),
+        })
+    }
 }
 
 impl MadeRecord {
@@ -64,6 +91,7 @@ impl MadeRecord {
             dryness: climate.dryness,
             climate_of_place: climate.of_place,
             data_spacing: terrain.heightfield.spacing().max_element(),
+            land_cover: LandCoverRecord::of(terrain),
         })
     }
 }

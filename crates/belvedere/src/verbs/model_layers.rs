@@ -65,6 +65,7 @@ pub(super) fn ground(mut files: Vec<String>) -> LayerDoc {
         nodata: None,
         vertical_unit: None,
         drape: None,
+        land_cover: None,
         style: TerrainStyleDoc::default(),
     })
 }

@@ -42,3 +42,27 @@ fn heights_near_others_stay() {
     assert_eq!(voids(hills(900.0, 900.0, &[0.0; 9]), 1.0), (0, None), "two levels");
     assert_eq!(voids(hills(-8000.0, 21200.0, &[]), 1.0), (0, None), "Mars");
 }
+
+#[test]
+fn a_frame_of_zeros_beside_high_ground_is_void_and_the_sea_round_an_island_is_not() {
+    let (cols, rows) = (40usize, 30usize);
+    let ground = |land: &dyn Fn(usize) -> f32| -> Vec<f32> {
+        let of = |i: usize| {
+            let inland = (i % cols).min(cols - 1 - i % cols).min(i / cols).min(rows - 1 - i / cols);
+            if inland < 5 { 0.0 } else { land(inland - 5) }
+        };
+        (0..cols * rows).map(of).collect()
+    };
+    let framed = |mut heights: Vec<f32>| {
+        let said = void_frame(&mut heights, cols);
+        (heights.iter().filter(|h| h.is_nan()).count(), said.is_some())
+    };
+    assert_eq!(framed(ground(&|k| 90.0 + k as f32)), (cols * rows - 30 * 20, true), "a frame");
+    assert_eq!(framed(ground(&|k| 12.0 * (k + 1) as f32)), (0, false), "an island");
+    let mut land = ground(&|k| 90.0 + k as f32);
+    land[7] = 55.0;
+    assert_eq!(framed(land), (0, false), "data reach the border");
+    let mut lake = ground(&|k| 90.0 + k as f32);
+    lake[15 * cols + 20] = 0.0;
+    assert_eq!(framed(lake).0, cols * rows - 30 * 20, "a zero inside stays");
+}

@@ -274,7 +274,7 @@ impl RevealAnswer {
                 displacement: sidecar.displacement,
                 view: &sidecar.view,
                 crs: self.session.scene().crs.to_string(),
-                terrain: sidecar.terrain,
+                terrain: sidecar.terrain.clone(),
                 inputs: &sidecar.inputs,
                 scene_warnings: &sidecar.warnings,
             }),
