@@ -25,6 +25,7 @@ pub mod hidden;
 mod layers;
 mod light;
 pub use light::check_air;
+mod line_classes;
 mod loader;
 mod mesh;
 mod molecule;
