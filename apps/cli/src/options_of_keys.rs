@@ -9,6 +9,7 @@ pub(crate) fn of_data(key: &str) -> Option<&'static str> {
         "crs" => "--crs",
         "source_crs" => "--source-crs",
         "name_field" => "--name-field",
+        "class" => "--line-class",
         "palette" => "--palette",
         "drape" => "--drape",
         _ => return None,

@@ -9,7 +9,7 @@ use super::overlay::{AutoOrLength, SwitchOrLength};
 use super::palette::PaletteDoc;
 use super::points::PointLayerDoc;
 use super::volume::VolumeDoc;
-use belvedere_scene::{Edge, Hidden, Relief, Shading};
+use belvedere_scene::{Edge, Hidden, LineClass, Relief, Shading};
 use schemars::JsonSchema;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Deserializer, MapAccess, SeqAccess, Visitor};
@@ -354,6 +354,10 @@ impl<'de> Deserialize<'de> for PositionDoc {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct LineStyleDoc {
+    /// What the lines are, which gives colour, width and casing where the style states none; by default what their properties say, as
+    /// OpenStreetMap writes them, else words in the name of the file. Lifts are cables above the ground. `route`: none of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub class: Option<LineClass>,
     /// `#rrggbb` or `#rrggbbaa`.
     pub color: String,
     /// Colour by a property of the file, in place of `color`.
@@ -386,6 +390,7 @@ pub struct LineStyleDoc {
 impl Default for LineStyleDoc {
     fn default() -> Self {
         Self {
+            class: None,
             color: "#d7301f".into(),
             color_by: None,
             width_px: 3.0,

@@ -1,6 +1,7 @@
 //! Reads the layers of a document into layers of a scene.
 
 use super::ground::{Ground, epsg};
+use super::line_classes;
 use super::loader::Loader;
 use super::{
     areas, boxes, builtin, by_property, city, dem, edge, fonts, land_cover, mesh, molecule, named, sea, vectors, volume,
@@ -329,6 +330,13 @@ fn line(
         return Err(loader.fail(index, "source", "no line lies on the terrain; check that the source covers it"));
     }
     let style = &doc.style;
+    let is_of_files = matches!(&doc.source, Some(paths) if !paths.as_slice().iter().any(|name| builtin::is_name(name)));
+    if !is_of_files || doc.route.is_some() {
+        line_classes::tell_stated(doc, &mut features);
+    }
+    if ground.terrain.is_some() {
+        line_classes::stretch_cables(&mut features);
+    }
     let color = loader.color(index, &style.color)?;
     features.iter_mut().for_each(|f| f.style = by_property::as_opaque_as(color, f.style));
     Ok(LayerKind::Line(LineLayer {

@@ -26,6 +26,7 @@ mod land_cover;
 mod layers;
 mod light;
 pub use light::check_air;
+mod line_classes;
 mod loader;
 mod mesh;
 mod molecule;

@@ -2,7 +2,7 @@
 
 use super::ground::Ground;
 use super::loader::Loader;
-use super::{by_property, named};
+use super::{by_property, line_classes, named};
 use crate::BelvedereError;
 use crate::city_ground::OwnGround;
 use belvedere_core::{DVec2, Warning, WarningKind};
@@ -171,6 +171,9 @@ fn all<T>(
         all.push(vectors);
     }
     named::tell(loader, index, &mut all)?;
+    if let Some(LayerDoc::Line(line)) = loader.layers.get(index) {
+        all.iter_mut().for_each(|file| line_classes::tell(line, file));
+    }
     // Classes are those of all files together.
     by_property::style(loader, index, &mut all)?;
     let mut features = Vec::new();

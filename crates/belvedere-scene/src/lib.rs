@@ -15,6 +15,7 @@ mod kinds;
 pub mod land_cover;
 pub mod layer;
 pub mod light;
+mod line_class;
 pub mod mark;
 pub mod mesh;
 pub mod molecule;
@@ -53,6 +54,7 @@ pub use layer::{
     LineLayer, Palette, PaletteName, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
 };
 pub use light::{Haze, Light, Sky};
+pub use line_class::{LineClass, LineLook};
 pub use mark::{DistanceMarkers, Drawing, FeatureStyle, Hidden, PlaceKind, PointStyle, Symbol, WrittenHeight};
 pub use mesh::{Mesh, MeshColors, MeshError, MeshLayer, triangle_lattice};
 pub use molecule::{Molecule, MoleculeLayer, MoleculeStyle};

@@ -1,6 +1,6 @@
 //! How marks look: hidden parts, symbols, rims, distances.
 
-use crate::Color;
+use crate::{Color, LineClass};
 use belvedere_core::DVec2;
 use serde::{Deserialize, Serialize};
 
@@ -193,10 +193,14 @@ impl Default for PointStyle {
 pub struct FeatureStyle {
     /// Colour, or fill of an area; `None` = that of the layer.
     pub color: Option<Color>,
+    /// Colour of the casing of a line; `None` = as the layer has it.
+    pub casing: Option<Color>,
     /// Width of a line or diameter of a point in those of its layer, > 0; areas ignore it.
     pub scale: f64,
     /// What a point is, if it is known.
     pub kind: Option<PlaceKind>,
+    /// What a line is, if it is known.
+    pub class: Option<LineClass>,
     /// Symbol of a point; `None` = that of the layer.
     pub symbol: Option<Symbol>,
     /// Importance of the name: names of larger ones are placed first; `None`: after all that have one, in the order of the layer.
@@ -207,7 +211,7 @@ pub struct FeatureStyle {
 
 impl Default for FeatureStyle {
     fn default() -> Self {
-        Self { color: None, scale: 1.0, kind: None, symbol: None, rank: None, height: None }
+        Self { color: None, casing: None, scale: 1.0, kind: None, class: None, symbol: None, rank: None, height: None }
     }
 }
 

@@ -1,5 +1,7 @@
 //! Terrain and features straight from their files, without a scene file.
 
+mod classes;
+mod ids;
 mod tiles;
 
 pub use tiles::without_terrain;
@@ -8,9 +10,9 @@ use crate::record::{AreaRecord, InputFile};
 use crate::scene_file::paths::{Roots, folder_of};
 use crate::scene_file::request::Stated;
 use crate::scene_file::{
-    AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, LayerDoc, LightDoc, LineDoc, LineStyleDoc, Origin,
-    PaletteDoc, Paths, PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, SurfaceDoc, TerrainDoc, TerrainStyleDoc,
-    TextDoc,
+    AreaDoc, AreaStyleDoc, CameraDoc, Document, EarthDoc, FurnitureDoc, LayerDoc, LightDoc, LineDoc, LineStyleDoc,
+    Origin, PaletteDoc, Paths, PointLayerDoc, PointStyleDoc, SourceDocument, StageDoc, SurfaceDoc, TerrainDoc,
+    TerrainStyleDoc, TextDoc,
 };
 use crate::session::{Description, Loaded};
 use crate::{BelvedereError, OpenOptions, Session};
@@ -23,7 +25,7 @@ use belvedere_io::{Known, join_table, split_table};
 use belvedere_overlay::notes::LayerNotes;
 use belvedere_resolve::vectors::{self, FeatureKind, kind_of, kinds_of};
 use belvedere_resolve::{self, LayerRequest};
-use belvedere_scene::{Hidden, Layer, Light, Scene, Unit};
+use belvedere_scene::{Hidden, Layer, Light, LineClass, Scene, Unit};
 use std::collections::BTreeMap;
 use std::mem::take;
 use std::path::{Path, PathBuf};
@@ -32,8 +34,8 @@ use std::sync::Arc;
 /// Largest hole that is filled, as a share of the ground: heights made up for a larger one would be arbitrary.
 pub const LARGEST_HOLE: f64 = 0.03;
 
-/// Colour of lines of rivers.
-const RIVER_COLOR: &str = "#2b7bba";
+/// Id and name of the layer of the points of a file that also has lines.
+const WAYPOINTS: &str = "Waypoints";
 
 /// Files of a terrain and of features on it; any of them may be an array, `array:NAME` of [`OpenOptions::arrays`].
 #[derive(Debug, Clone, Default)]
@@ -65,6 +67,8 @@ pub struct DataFiles {
     pub no_sea: bool,
     /// Surface that areas are drawn as; automatic if left out.
     pub area_style: Option<SurfaceDoc>,
+    /// What the lines of files are, as `FILE=CLASS`; automatic for others.
+    pub line_class: Vec<String>,
     /// What the files do not say.
     pub stated: Stated,
 }
@@ -81,6 +85,7 @@ pub(crate) struct Data {
     notes: LayerNotes,
     inputs: Vec<InputFile>,
     layers: Vec<LayerDoc>,
+    names: BTreeMap<String, String>,
     text: Option<TextDoc>,
     roots: Roots,
     arrays: Arrays,
@@ -89,7 +94,7 @@ pub(crate) struct Data {
 impl DataFiles {
     /// Reads the files, each once.
     pub(crate) fn load(&self, keep_original: bool, options: &OpenOptions) -> Result<Data, BelvedereError> {
-        let Layers { mut layers, known, rivers, context, mut roots } = self.layers(options)?;
+        let Layers { mut layers, known, rivers, context, names, mut roots } = self.layers(options)?;
         let crs = self.crs.as_deref().unwrap_or("auto");
         let mut options = OpenOptions { area_style: self.area_style.or(options.area_style), ..options.clone() };
         let text = text_of(take(&mut options.fonts), &mut roots.files)?;
@@ -122,6 +127,7 @@ impl DataFiles {
             notes,
             inputs,
             layers,
+            names,
             text,
             roots,
             arrays,
@@ -138,28 +144,42 @@ struct Layers {
     rivers: Vec<String>,
     /// Names of files of features that are context.
     context: Vec<String>,
+    /// Names in the legend of layers whose features do not tell them.
+    names: BTreeMap<String, String>,
     roots: Roots,
 }
 
 impl DataFiles {
     fn layers(&self, options: &OpenOptions) -> Result<Layers, BelvedereError> {
         let mut roots = Roots::default();
+        let classes = classes::of(&self.line_class, &self.features)?;
         let tiles = tiles::of(&self.dem, &self.features)?;
         let ground = self.ground(&tiles.ground, options, &mut roots)?;
         if tiles.features.is_empty() {
             return Err(tiles::without_features(&self.dem, &self.features));
         }
-        let (known, rivers, context) = Default::default();
-        let mut out = Layers { layers: vec![ground], known, rivers, context, roots };
+        let (known, rivers, context, names) = Default::default();
+        let mut out = Layers { layers: vec![ground], known, rivers, context, names, roots };
         for (i, name) in tiles.features.iter().enumerate() {
             let source = locate(name, &mut out.roots)?;
             let is_builtin = source.starts_with("builtin:");
             let is_context = i > 0 && self.first_is_subject;
             out.context.extend(is_context.then(|| shown_name(name)));
             let kinds = if is_builtin { vec![FeatureKind::Lines] } else { out.kinds(&source, &options.arrays)? };
-            for (k, kind) in kinds.into_iter().enumerate() {
-                let part = if k == 0 { String::new() } else { format!("-{}", kind.plural()) };
-                let mut layer = feature_layer(format!("features{}{part}", i + 1), Paths::One(source.clone()), kind);
+            let has_lines = kinds.contains(&FeatureKind::Lines);
+            for kind in kinds {
+                let waypoints = has_lines && kind == FeatureKind::Points;
+                let id = match waypoints {
+                    true => ids::free(WAYPOINTS, &out.layers),
+                    false => ids::of_file(&source, kind, &out.layers),
+                };
+                if waypoints {
+                    out.names.insert(id.clone(), WAYPOINTS.into());
+                }
+                let mut layer = feature_layer(id, Paths::One(source.clone()), kind);
+                if let (LayerDoc::Line(line), Some(class)) = (&mut layer, classes.get(name)) {
+                    line.style.class = Some(*class);
+                }
                 self.describe(&mut layer, is_builtin);
                 layer.set_must_see(!is_context);
                 out.layers.push(layer);
@@ -245,7 +265,7 @@ impl Data {
             earth,
             camera,
             overlay: None,
-            furniture: None,
+            furniture: (!self.names.is_empty()).then(|| FurnitureDoc { names: self.names, ..FurnitureDoc::default() }),
             stylisation: None,
             renderer: None,
             print: None,
@@ -285,9 +305,11 @@ fn of_context(files: &[String]) -> Option<Warning> {
     Some(Warning::new(WarningKind::Assumed, text).with("files", files.len() as f64))
 }
 
-/// The name of what must be seen; empty if it has several, or none.
+/// The name of what must be seen: of its lines, if it has any, for waypoints belong to them; empty if it has several, or none.
 fn title_of(layers: &[Layer]) -> String {
-    let names: Vec<Option<&str>> = layers.iter().filter(|l| l.must_see).map(|layer| layer.kind.only_name()).collect();
+    let subject = |lines: bool| layers.iter().filter(move |l| l.must_see && (!lines || l.kind.lines().is_some()));
+    let names: Vec<Option<&str>> =
+        subject(subject(true).next().is_some()).map(|layer| layer.kind.only_name()).collect();
     let only = names.first().copied().flatten().filter(|first| names.iter().all(|name| *name == Some(first)));
     only.unwrap_or_default().to_owned()
 }
@@ -329,16 +351,13 @@ pub(crate) fn ground_files(dem: &str) -> Result<Vec<String>, BelvedereError> {
 pub(crate) fn features_of(known: &Known, others: &[LayerDoc]) -> Result<LayerDoc, BelvedereError> {
     let (kind, path) = (kind_of(known.features()?), &known.path);
     let name = path.to_str().ok_or_else(|| BelvedereError::not_utf8(&path.display().to_string()))?;
-    let stem = path.file_stem().and_then(|stem| stem.to_str()).unwrap_or("features");
-    let stem = stem.strip_prefix(arrays::SCHEME).unwrap_or(stem);
-    let taken = |id: &str| others.iter().any(|layer| layer.id() == id);
-    let id = (1..).map(|k| if k == 1 { stem.to_owned() } else { format!("{stem}-{k}") }).find(|id| !taken(id));
-    Ok(feature_layer(id.unwrap_or_default(), Paths::One(name.to_owned()), kind))
+    let id = ids::of_file(name, kind, others);
+    Ok(feature_layer(id, Paths::One(name.to_owned()), kind))
 }
 
 /// A layer of rivers: drawn, but not a required feature.
 fn river_layer(id: String, source: Paths) -> LineDoc {
-    let style = LineStyleDoc { color: RIVER_COLOR.into(), width_px: 2.0, ..LineStyleDoc::default() };
+    let style = LineStyleDoc { class: Some(LineClass::River), ..LineStyleDoc::default() };
     LineDoc { id, source: Some(source), select: None, route: None, name_field: None, must_see: false, style }
 }
 

@@ -174,7 +174,7 @@ fn what_a_revealing_picture_still_hides_is_listed() {
     let low = hidden(["--eye", "8.03,46.002,3400", "--look", "8.03,46.035"]);
     assert!(!low.is_empty());
     for run in &low {
-        assert_eq!((&run["layer_id"], &run["reason"]), (&"features1".into(), &"covered".into()), "{run}");
+        assert_eq!((&run["layer_id"], &run["reason"]), (&"way".into(), &"covered".into()), "{run}");
         assert!(run["to_m"].as_f64() > run["from_m"].as_f64() && run["over_m"].as_f64() > Some(0.0), "{run}");
     }
 }

@@ -268,7 +268,7 @@ fn ground_beyond_anything_plausible_is_warned_of_with_what_it_moves_for() {
         "{warnings}"
     );
     assert!(number(&coarse["steepest_deg"]) > number(&coarse["steepest_before_deg"]) + 5.0, "{coarse}");
-    assert!(warnings.contains("feature 0 of layer \\\"features1\\\" (100 %)"), "{warnings}");
+    assert!(warnings.contains("feature 0 of layer \\\"way\\\" (100 %)"), "{warnings}");
     assert_eq!(number(&coarse["costliest"][0]["share"]), 1.0);
     // From high above little has to move.
     let high = ["disocclude", "dem.asc", "way.geojson", "-o", "out.tif", "--report", "r.json", "--overwrite"];

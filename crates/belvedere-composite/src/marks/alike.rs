@@ -1,10 +1,13 @@
 //! Features of a layer that are drawn alike.
 
-use belvedere_scene::{Color, FeatureStyle};
+use belvedere_scene::{Color, FeatureStyle, LineClass};
 
 /// Features of one style, in the order of the layer.
 pub(super) struct Alike<'l, F> {
     pub(super) color: Color,
+    /// Casing of its own.
+    pub(super) casing: Option<Color>,
+    pub(super) class: Option<LineClass>,
     /// Width or diameter in that of the layer.
     pub(super) scale: f64,
     pub(super) features: Vec<&'l F>,
@@ -18,9 +21,11 @@ pub(super) fn alike<F>(features: &[F], color: Color, of: impl Fn(&F) -> Option<F
     for feature in features {
         let style = of(feature).unwrap_or_default();
         let (own, scale) = (style.color.unwrap_or(color), style.scale.max(0.0));
-        match groups.iter_mut().find(|g| g.color == own && g.scale == scale) {
+        let FeatureStyle { casing, class, .. } = style;
+        let same = |g: &&mut Alike<'_, F>| (g.color, g.casing, g.class, g.scale) == (own, casing, class, scale);
+        match groups.iter_mut().find(same) {
             Some(group) => group.features.push(feature),
-            None => groups.push(Alike { color: own, scale, features: vec![feature] }),
+            None => groups.push(Alike { color: own, casing, class, scale, features: vec![feature] }),
         }
     }
     groups.sort_by(|a, b| a.scale.total_cmp(&b.scale));

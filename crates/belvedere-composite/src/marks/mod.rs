@@ -17,6 +17,7 @@ mod occupied;
 mod path;
 mod point;
 mod pole;
+mod pylons;
 mod request;
 mod residue_names;
 mod ribbon;
@@ -34,7 +35,8 @@ use crate::skyline::Skyline;
 use alike::alike;
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{
-    AreaLayer, Color, Hidden, LayerKind, LineFeature, LineLayer, Overlay, OverlayLine, ROWS, RenderJob, Scene, Symbol,
+    AreaLayer, Color, Hidden, LayerKind, LineClass, LineFeature, LineLayer, Overlay, OverlayLine, ROWS, RenderJob,
+    Scene, Symbol,
 };
 use belvedere_sight::pass::Pass;
 use belvedere_sight::screen::{COARSE_PX, Screen};
@@ -51,12 +53,14 @@ use rayon::prelude::*;
 use request::{LabelRequest, Page};
 use ribbon::{Ink, Lane, Stroke, StrokeLayer};
 pub use shapes::{LayerShapes, LineShape, Paint, Role, Shapes, SymbolShape, outline, simplified};
+use std::mem::take;
 use visibility::{DepthMap, LineVisibility, Run, Station};
 
 /// Width of a hidden line in widths of the visible one.
 const HIDDEN_WIDTH: f64 = 0.6;
 
-/// All marks of a frame, in the order of drawing: outlines and lines in the order of the layers, then points, whose symbols no line crosses.
+/// All marks of a frame, in the order of drawing: outlines and lines in the order of the layers, then points, whose symbols no line crosses;
+/// first those of context, then those that must be seen.
 #[derive(Debug, Default)]
 pub struct Marks {
     under: Vec<StrokeLayer>,
@@ -156,12 +160,16 @@ impl Marks {
             names_alone: matches!(purpose, Purpose::Names(_)),
             choice,
         };
-        let mut placed = Placed::default();
+        let (mut context, mut subject) = (Placed::default(), Placed::default());
         for (i, layer) in job.scene.layers.iter().enumerate() {
-            builder.layer(i, &layer.kind, &mut placed);
+            builder.layer(i, &layer.kind, if layer.must_see { &mut subject } else { &mut context });
         }
-        let Placed { mut sheets, mut symbols, points, mut requests } = placed;
-        sheets.append(&mut symbols);
+        // What must be seen is drawn over all else, and named first.
+        let mut sheets: Vec<StrokeLayer> =
+            [&mut context, &mut subject].into_iter().flat_map(Placed::take_sheets).collect();
+        let mut requests = subject.requests;
+        requests.append(&mut context.requests);
+        let drawings = [context.points.drawings, subject.points.drawings].concat();
         let overlay = &job.options.overlay;
         let with_text = |l: &&OverlayLine| !builder.names_alone || !l.label.is_empty();
         sheets.extend(overlay.over.iter().filter(with_text).map(|l| builder.overlay_line(l, &mut requests)));
@@ -176,7 +184,7 @@ impl Marks {
             .flat_map(|f| passes.iter().take(job.view.records()).filter_map(|p| Face::new(f, p, screen)));
         let (size, density, keep_clear) = (2.0 * screen.center, job.options.density, &job.options.keep_clear[..]);
         let labels = Labels::place(requests, &Page { size, density, fonts: &fonts, keep_clear }, choice);
-        Self { under, faces: faces.collect(), sheets, drawings: points.drawings, labels }
+        Self { under, faces: faces.collect(), sheets, drawings, labels }
     }
 
     /// Whether the job may have any marks.
@@ -238,6 +246,13 @@ struct Placed {
     symbols: Vec<StrokeLayer>,
     points: PointMarks,
     requests: Vec<LabelRequest>,
+}
+
+impl Placed {
+    /// Lines, then symbols.
+    fn take_sheets(&mut self) -> impl Iterator<Item = StrokeLayer> + use<> {
+        take(&mut self.sheets).into_iter().chain(take(&mut self.symbols))
+    }
 }
 
 /// Rays of a picture that is not drawn yet.
@@ -342,14 +357,20 @@ impl MarkBuilder<'_> {
     fn line_sheets(&self, layer: &LineLayer, id: u32) -> Vec<StrokeLayer> {
         let sheet = |group: alike::Alike<'_, LineFeature>| {
             let half_px = 0.5 * width_or_none(group.scale * layer.width_px, self.density);
-            let casing_px = layer.casing.map(|_| self.casing_of(half_px));
+            let casing = group.casing.or(layer.casing);
+            let casing_px = casing.map(|_| self.casing_of(half_px));
             let style = Style { half_px, casing_px, hidden: layer.hidden, lift_m: layer.lift_m };
-            let paths = group
+            let mut paths: Vec<Vec<LinePoint>> = group
                 .features
                 .par_iter()
                 .map(|f| path::drape(self.scene, &f.points, layer.lift_m, self.coarse()))
                 .collect();
-            self.sheet(paths, style, inks(group.color, layer.casing, layer.hidden), id)
+            let mut strokes = Vec::new();
+            if group.class == Some(LineClass::Lift) {
+                let lifts = group.features.iter();
+                paths.extend(lifts.flat_map(|lift| self.pylons(lift, (layer.lift_m, style), &mut strokes)));
+            }
+            self.sheet(paths, style, inks(group.color, casing, layer.hidden), id).with_strokes(strokes)
         };
         alike(&layer.features, layer.color, |f| f.style).into_iter().map(sheet).collect()
     }

@@ -120,6 +120,16 @@ impl StrokeLayer {
         Self { strokes, bands, inks, id, rows, lines: Vec::new() }
     }
 
+    /// The same with more strokes.
+    pub(crate) fn with_strokes(self, more: Vec<Stroke>) -> Self {
+        if more.is_empty() {
+            return self;
+        }
+        let Self { mut strokes, bands, inks, id, rows, lines } = self;
+        strokes.extend(more);
+        Self { lines, ..Self::new(strokes, inks, id, bands.len() * rows, rows) }
+    }
+
     /// The same with its lines as shapes.
     pub(crate) fn with_lines(self, lines: Vec<LineShape>) -> Self {
         Self { lines, ..self }

@@ -87,6 +87,11 @@ pub struct Reveal {
     /// Style of areas, instead of the one that their properties and names give
     #[cfg_attr(feature = "clap", arg(long, value_parser = one_of::<SurfaceDoc>(), value_name = "STYLE"))]
     pub area_style: Option<SurfaceDoc>,
+    /// What the lines of a file are, as FILE=CLASS, instead of what their properties and the name of the file say: route (drawn as if nothing
+    /// were known), main_road, road, track, path, railway, lift, river, stream, piste_green, piste_blue, piste_red, piste_black, piste or
+    /// border; may be given several times
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE=CLASS", conflicts_with = "see", value_parser = value::line_class))]
+    pub line_class: Vec<String>,
     /// Axis that points upwards in the picture, with --see: x, y, z, -x, -y or -z
     #[cfg_attr(feature = "clap", arg(long, value_name = "AXIS", allow_hyphen_values = true, value_parser = value::axis, requires = "see"))]
     pub up: Option<[f64; 3]>,
@@ -112,7 +117,7 @@ pub struct Reveal {
 
 impl Reveal {
     /// Options that say something of terrain with features, and nothing of models and cities.
-    pub const OF_TERRAIN: [&'static str; 18] = [
+    pub const OF_TERRAIN: [&'static str; 19] = [
         "relief",
         "hidden",
         "exaggeration",
@@ -123,6 +128,7 @@ impl Reveal {
         "palette",
         "no_sea",
         "area_style",
+        "line_class",
         "curved_earth",
         "no_limits",
         "crs",

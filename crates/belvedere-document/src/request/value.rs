@@ -80,6 +80,11 @@ pub(crate) fn fallback(text: &str) -> Result<String, String> {
     text.parse::<crate::Fallback>().map(|_| text.to_owned())
 }
 
+/// A file and what its lines are; the text unchanged.
+pub(crate) fn line_class(text: &str) -> Result<String, String> {
+    super::class_of_file(text).map(|_| text.to_owned())
+}
+
 /// A paper; the text unchanged.
 pub(crate) fn paper(text: &str) -> Result<String, String> {
     crate::paper::parse_paper(text, [1, 1]).map(|_| text.to_owned())

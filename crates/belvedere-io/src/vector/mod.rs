@@ -11,6 +11,7 @@ mod geojson;
 mod geopackage;
 mod gpx;
 mod kml;
+mod line_kind;
 mod names;
 mod on_terrain;
 mod phantom;
@@ -27,6 +28,7 @@ pub use geopackage::{FeatureTable, write_geopackage};
 
 pub use area_kind::{AreaKind, area_kind};
 pub use array::{FeatureArray, Shape};
+pub use line_kind::{line_kind, line_words};
 pub use names::name_field;
 pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
 pub use place_kind::{number, place_kind, stated_height, stated_people};

@@ -7,27 +7,57 @@ use belvedere_composite::color::{Rgb, encode};
 use belvedere_composite::tint::GroundTint;
 use belvedere_core::DVec2;
 use belvedere_core::plain::number;
-use belvedere_scene::{Color, Edge, Layer, LayerKind, OwnLayer, Palette, PaletteName, TerrainLayer, VolumeLayer};
+use belvedere_scene::{
+    Color, Edge, Layer, LayerKind, LineClass, LineLayer, OwnLayer, Palette, PaletteName, TerrainLayer, VolumeLayer,
+};
 
 /// Steps of a bar of colours.
 const BAR_STEPS: usize = 64;
 /// Numbers at a bar.
 const MOST_TICKS: usize = 5;
 
-/// The rows of a legend, in the order of the layers.
+/// The rows of a legend, in the order of the layers; what two layers share has one row.
 pub(super) fn rows(subject: &Subject<'_>) -> Vec<Row> {
-    subject.scene.layers.iter().flat_map(|layer| of_layer(subject, layer)).collect()
+    let mut rows: Vec<Row> = Vec::new();
+    for row in subject.scene.layers.iter().flat_map(|layer| of_layer(subject, layer)) {
+        let is_told = !row.inset && !matches!(row.sign, Sign::Heading) && rows.contains(&row);
+        rows.extend((!is_told).then_some(row));
+    }
+    rows
+}
+
+/// The words of a layer: those that are stated, the name that all its features have, its id.
+fn words_of(subject: &Subject<'_>, layer: &Layer) -> String {
+    let stated = subject.doc.names.get(&layer.id).map(String::as_str);
+    // Names of files have no spaces as a rule.
+    let of_id = || layer.id.replace('_', " ");
+    stated.or(layer.kind.only_name()).map_or_else(of_id, str::to_owned).trim().to_owned()
+}
+
+/// Rows of the classes of lines that a layer draws, one each; of a single class the words of the layer, where its features have a name.
+fn of_classes(lines: &LineLayer, (words, is_name): (&str, bool)) -> Vec<Row> {
+    let mut looks: Vec<(Option<LineClass>, Sign)> = Vec::new();
+    for own in lines.features.iter().map(|f| f.style.unwrap_or_default()) {
+        if looks.iter().all(|(class, _)| *class != own.class) {
+            let (color, casing) = (own.color.unwrap_or(lines.color), own.casing.or(lines.casing));
+            let width = own.scale.max(0.0) * lines.width_px;
+            looks.push((own.class, Sign::Line { color, casing, width }));
+        }
+    }
+    looks.sort_by_key(|(class, _)| *class);
+    let is_one = looks.len() == 1 && is_name;
+    let name = |class: Option<LineClass>| class.filter(|_| !is_one).map_or(words, |class| class.words()).to_owned();
+    looks.into_iter().map(|(class, sign)| Row { sign, words: name(class), inset: false }).collect()
 }
 
 fn of_layer(subject: &Subject<'_>, layer: &Layer) -> Vec<Row> {
-    let stated = subject.doc.names.get(&layer.id).map(String::as_str);
-    let words = stated.or(layer.kind.only_name()).unwrap_or(&layer.id).trim();
+    let words = words_of(subject, layer);
     // Sides and mats of the ground are no layer of the scene.
     let is_edge = layer.id == Edge::LAYER || layer.id.starts_with("edge of ");
     if words.is_empty() || is_edge && layer.kind.mesh().is_some() {
         return Vec::new();
     }
-    let row = |sign: Sign| Row { sign, words: words.to_owned(), inset: false };
+    let row = |sign: Sign| Row { sign, words: words.clone(), inset: false };
     // What the sample of a class looks like, in its colour.
     let sample: Box<dyn Fn(Color) -> Sign> = match &layer.kind {
         LayerKind::Line(line) => {
@@ -74,7 +104,13 @@ fn of_layer(subject: &Subject<'_>, layer: &Layer) -> Vec<Row> {
         LayerKind::Mesh(mesh) => mesh.color,
         _ => return Vec::new(),
     };
-    let Some(note) = classes(subject, layer) else { return vec![row(sample(own))] };
+    let Some(note) = classes(subject, layer) else {
+        let is_name = subject.doc.names.contains_key(&layer.id) || layer.kind.only_name().is_some();
+        return match &layer.kind {
+            LayerKind::Line(line) => of_classes(line, (&words, is_name)),
+            _ => vec![row(sample(own))],
+        };
+    };
     let mut rows = vec![Row { sign: Sign::Heading, words: format!("{words}: {}", note.property), inset: false }];
     if note.smooth {
         let bar = smooth(&note.classes);

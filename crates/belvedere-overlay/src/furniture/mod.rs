@@ -172,7 +172,13 @@ impl Plan {
     }
 
     fn title(&mut self, subject: &Subject<'_>, stacks: &mut Stacks) {
-        let Some(text) = text_of(subject.doc.title.as_ref(), || subject.scene.title.clone()) else { return };
+        let Some(text) = text_of(subject.doc.title.as_ref(), || subject.scene.title.clone()) else {
+            // Asked for, and nothing is named.
+            if subject.doc.title == Some(SwitchOrText::Switch(true)) {
+                self.record.left_out.push("title");
+            }
+            return;
+        };
         let block = Block::title(&text, 0.8 * subject.size().x);
         match stacks.place(subject.doc.title_at, block.size()) {
             Some(at) => {

@@ -97,6 +97,7 @@ fn files(request: &Disocclude) -> DataFiles {
         keep_voids: !request.fill_voids,
         fill_all_voids: request.fill_voids,
         area_style: request.area_style,
+        line_class: Vec::new(),
         stated: request.stated.clone(),
         ..DataFiles::default()
     }

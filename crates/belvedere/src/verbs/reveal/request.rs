@@ -169,6 +169,7 @@ fn data(asked: &Reveal) -> DataFiles {
         palette: asked.palette.as_deref().map(PaletteDoc::of).unwrap_or_default(),
         no_sea: asked.no_sea,
         area_style: asked.area_style,
+        line_class: asked.line_class.clone(),
         stated: asked.stated.clone(),
     }
 }

@@ -46,6 +46,7 @@ fn rows(folder: &Path) -> Vec<(&'static str, Does)> {
         ("no_sea", Changes(json!(true), none())),
         ("rivers", IsRefused(json!([path("other.geojson")]), "kept from running uphill")),
         ("area_style", Changes(json!("glacier"), none())),
+        ("line_class", Changes(json!(["way.geojson=river"]), none())),
         ("technique", Changes(json!("curved_rays"), none())),
         ("crs", Changes(json!("EPSG:32633"), json!({ "eye": "45.14N,9.04E,900", "look": "45.18N,9.04E,200" }))),
         ("source_crs", IsRefused(json!("EPSG:1"), "EPSG:1")),
