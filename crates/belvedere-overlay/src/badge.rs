@@ -7,8 +7,27 @@ use belvedere_scene::{Color, Unit};
 
 /// The shortest words of the mark, and those of all frames of a film: figures would change from frame to frame.
 pub const WORDS: &str = "bent view";
-/// What else the mark says where materials are drawn by rule.
-const MADE: &str = "forest and fine relief drawn by rule";
+/// What is drawn by rule in a picture, and is no data.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Made {
+    /// Nothing.
+    Nothing,
+    /// Relief finer than the data; what covers the ground is data.
+    Relief,
+    /// Materials as well.
+    Materials,
+}
+
+impl Made {
+    /// What else the mark says.
+    fn words(self) -> Option<&'static str> {
+        match self {
+            Self::Nothing => None,
+            Self::Relief => Some("fine relief drawn by rule"),
+            Self::Materials => Some("forest and fine relief drawn by rule"),
+        }
+    }
+}
 /// Smallest picture that the mark fits into, pixels.
 const SMALLEST: [f64; 2] = [160.0, 90.0];
 const LETTERS_PX: f64 = 12.0;
@@ -25,12 +44,12 @@ const BESIDE: f64 = 46.0;
 const MARGIN: f64 = 10.0;
 
 /// Words of the mark: the largest displacement in the picture, in the longest form that fits.
-/// * `moved`: largest displacement, scene units; `made`: whether materials and fine relief are drawn by rule.
-pub fn words(width: usize, moved: f64, unit: Unit, made: bool) -> String {
+/// * `moved`: largest displacement, scene units; `made`: what is drawn by rule.
+pub fn words(width: usize, moved: f64, unit: Unit, made: Made) -> String {
     let most = self::moved(moved, unit);
     let room = width as f64 - 2.0 * MARGIN - BESIDE;
     let short = [format!("{WORDS}: moved by up to {most}"), format!("bent by up to {most}")];
-    let long = made.then(|| format!("{}; {MADE}", short[0]));
+    let long = made.words().map(|made| format!("{}; {made}", short[0]));
     long.into_iter()
         .chain(short)
         .find(|words| text_size(LETTERS_PX, words).width <= room)
@@ -96,15 +115,17 @@ mod tests {
 
     #[test]
     fn the_mark_says_how_far_in_the_longest_words_that_fit() {
-        let said = |width, moved| words(width, moved, Unit::Metre, false);
+        let said = |width, moved| words(width, moved, Unit::Metre, Made::Nothing);
         assert_eq!(said(1280, 341.2), "bent view: moved by up to 342 m");
         assert_eq!(said(1280, 0.0), "bent view: moved by up to 0 m");
-        let made = |width| words(width, 341.2, Unit::Metre, true);
+        let made = |width| words(width, 341.2, Unit::Metre, Made::Materials);
         assert_eq!(made(1280), "bent view: moved by up to 342 m; forest and fine relief drawn by rule");
+        let relief = words(1280, 341.2, Unit::Metre, Made::Relief);
+        assert_eq!(relief, "bent view: moved by up to 342 m; fine relief drawn by rule");
         assert_eq!(made(320), "bent view: moved by up to 342 m");
         assert_eq!(said(200, 341.2), "bent by up to 342 m");
         assert_eq!(said(160, 12_345.6), "bent view");
-        assert_eq!(words(1280, 3.04, Unit::Angstrom, false), "bent view: moved by up to 3.1 angstrom");
+        assert_eq!(words(1280, 3.04, Unit::Angstrom, Made::Nothing), "bent view: moved by up to 3.1 angstrom");
         assert_eq!(moved(0.004, Unit::Voxel), "0.1 voxels", "what moves is never said to rest");
         assert_eq!(moved(184.3, Unit::Angstrom), "185 angstrom");
         for width in [160, 200, 320, 640] {

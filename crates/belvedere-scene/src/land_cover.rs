@@ -94,6 +94,11 @@ impl CoverMap {
         shares
     }
 
+    /// Share of a class among the cells, 0..=1.
+    pub fn share(&self, cover: Cover) -> f64 {
+        self.shares().iter().find(|(found, _)| *found == cover).map_or(0.0, |(_, share)| *share)
+    }
+
     /// Fills cells of a polygon whose centres lie inside an odd number of its rings.
     ///
     /// * `rings`: scene units east and south of the north-western node of the ground.

@@ -4,7 +4,8 @@ use crate::BelvedereError;
 use crate::scene_file::camera::set_camera;
 use crate::scene_file::{Document, LayerDoc, LightDoc};
 use belvedere_construct::views::{core_of_town, outline, over_land};
-use belvedere_core::{Aabb, DVec3, Navigation, Pinhole, Projection, Warning, WarningKind};
+use belvedere_core::quantile::{Rank, quantile};
+use belvedere_core::{Aabb, DVec2, DVec3, Navigation, Pinhole, Projection, Warning, WarningKind};
 use belvedere_scene::{Edge, Layer, Light, Scene};
 
 /// Ground of which nothing says how it ends: alone it is a block, under lines, areas and points it fades where its data end.
@@ -67,6 +68,9 @@ const OUTLINE: usize = 50_000;
 /// they are shown alone.
 const AROUND: f64 = 0.15;
 const MUCH_LONGER: f64 = 2.0;
+/// Areas or points of which some may stand far apart, at least, and the share of them that lies beyond either side of the others.
+const MANY: usize = 50;
+const APART: f64 = 0.05;
 
 /// Sets the camera of a document so that ground fills its picture, or the whole scene is in it, and tells what is shown.
 pub(crate) fn show_all(document: &mut Document, scene: &Scene) -> Result<Shown, BelvedereError> {
@@ -90,11 +94,9 @@ fn over_ground(document: &Document, scene: &Scene) -> Option<(Navigation, Shown)
     let ground = scene.terrain().filter(|_| document.layer.iter().all(is_ground))?;
     let features: Vec<&str> = document.layer.iter().filter(|layer| is_flat(layer)).map(LayerDoc::id).collect();
     let features = scene.layers.iter().filter(|layer| features.contains(&layer.id.as_str()));
-    let bounds = features.map(Layer::bounds).find(|bounds| !bounds.is_empty());
-    let part = bounds.and_then(|bounds| {
-        let side = (bounds.max - bounds.min).truncate().max_element();
+    let part = features.filter_map(core).next().and_then(|[a, b]| {
+        let side = (b - a).max_element();
         let ground = (ground.bounds().max - ground.bounds().min).truncate().max_element();
-        let [a, b] = [bounds.min, bounds.max].map(DVec3::truncate);
         let around = (AROUND * side).max(4.0 * AROUND * ground / 100.0);
         (side * MUCH_LONGER < ground).then(|| [a - around, b + around])
     });
@@ -105,6 +107,22 @@ fn over_ground(document: &Document, scene: &Scene) -> Option<(Navigation, Shown)
         (None, false) => Shown::Land("south"),
     };
     Some((Navigation { pinhole: view.pinhole, target: view.target }, shown))
+}
+
+/// The box on the map that holds the features of a layer, without the few that stand far apart where there are many; `None` without any.
+fn core(layer: &Layer) -> Option<[DVec2; 2]> {
+    let kind = &layer.kind;
+    let areas = kind.areas().into_iter().flat_map(|l| &l.features).filter_map(|f| f.rings.first()?.first().copied());
+    let points = kind.points().into_iter().flat_map(|l| &l.features).map(|f| f.position.truncate());
+    let places: Vec<DVec2> = areas.chain(points).collect();
+    if places.len() >= MANY {
+        let at = |axis: usize, share: f64| {
+            quantile(&mut places.iter().map(|p| p[axis]).collect::<Vec<_>>(), share, Rank::Nearest)
+        };
+        return Some([APART, 1.0 - APART].map(|share| DVec2::new(at(0, share), at(1, share))));
+    }
+    let bounds = layer.bounds();
+    (!bounds.is_empty()).then(|| [bounds.min.truncate(), bounds.max.truncate()])
 }
 
 /// The camera that shows the whole scene, but for buildings far apart from their town.

@@ -53,13 +53,13 @@ struct Colors {
 impl Colors {
     fn of(season: Season) -> Self {
         let summer = Self {
-            meadow: linear([136, 158, 86]),
-            alpine: linear([168, 166, 108]),
+            meadow: linear([140, 158, 84]),
+            alpine: linear([180, 166, 104]),
             valley: linear([172, 184, 116]),
-            conifers: linear([58, 86, 54]),
-            broadleaves: linear([92, 120, 62]),
-            scree: linear([184, 175, 162]),
-            rock: linear([146, 136, 128]),
+            conifers: linear([48, 84, 64]),
+            broadleaves: linear([88, 120, 62]),
+            scree: linear([188, 174, 152]),
+            rock: linear([150, 136, 122]),
             snow: linear([232, 238, 246]),
             water: linear([152, 184, 206]),
             town: linear([172, 162, 156]),
@@ -239,9 +239,9 @@ impl Materials {
         let floor = ramp(steep, 0.15, 0.05) * ramp(height, tree - 150.0, tree - 500.0);
         let fields = c.valley.lerp(c.meadow, ramp(patch, -0.25, 0.25));
         // Tufts, as trees but fainter.
-        let grass = grass.lerp(fields, floor) * (1.0 + 0.22 * fray + 0.16 * crown);
+        let grass = grass.lerp(fields, floor) * (1.0 + 0.28 * fray + 0.26 * crown);
         let scree = c.scree * (1.0 + 0.25 * fray);
-        let green = grass.lerp(scree, 0.85 * ramp(height + 300.0 * fray, tree + 350.0, tree + 600.0));
+        let green = grass.lerp(scree, 0.85 * ramp(height + 300.0 * fray, tree + 450.0, tree + 800.0));
         let [low, high] = self.range_m;
         let soil = c.soil[0].lerp(c.soil[1], ramp(height, low, high)) * (1.0 + 0.25 * fray + 0.10 * layer);
         // High above trees dry ground is grey, too.
@@ -253,7 +253,7 @@ impl Materials {
         let ground = open.lerp(rock, bare);
         // Broadleaves below, conifers above, mixed between.
         let up = ramp(height + 380.0 * patch + 120.0 * fray, tree - 1000.0, tree - 350.0);
-        let trees = c.broadleaves.lerp(c.conifers, 0.25 + 0.75 * up) * (1.0 + 1.05 * crown).max(0.3);
+        let trees = c.broadleaves.lerp(c.conifers, 0.25 + 0.75 * up) * (1.0 + 1.05 * crown).max(0.42);
         ground.lerp(trees, 0.94 * forest)
     }
 

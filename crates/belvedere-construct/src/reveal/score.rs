@@ -31,7 +31,7 @@ pub(super) fn frame(a: &Evaluation) -> f64 {
         - 3.0 * (a.in_frame - a.in_margin)
         - 4.0 * void.min(0.15)
         - 2.0 * (void - 0.15).max(0.0)
-        - 3.0 * (a.slant - 0.05).max(0.0)
+        - 5.0 * (a.slant - 0.035).max(0.0)
         - 0.01 * (a.coarse_px - 32.0).clamp(0.0, 40.0)
 }
 

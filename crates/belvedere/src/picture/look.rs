@@ -138,8 +138,12 @@ impl Seen {
                 [None, Some(0.01)],
                 "light, palette",
             ),
-            rule("saturation", mean(&|p| f64::from(p.saturation)), [Some(0.25), Some(0.40)], "palette"),
         ];
+        let colored: Vec<f64> = self.ground.iter().filter(|p| !p.is_snow()).map(|p| f64::from(p.saturation)).collect();
+        if 4 * colored.len() > self.ground.len() {
+            let saturation = colored.iter().sum::<f64>() / colored.len() as f64;
+            rules.push(rule("saturation, without snow", saturation, [Some(0.25), Some(0.40)], "palette"));
+        }
         if let Some(spread) = self.hues() {
             rules.push(rule("spread of hues, degrees", spread, [Some(40.0), None], "palette, drape"));
         }
@@ -224,6 +228,11 @@ fn subject(scene: &Scene, view: &View, width: usize) -> Option<LookRule> {
 }
 
 impl Pixel {
+    /// Whether it is as grey and light as snow, in the light or in the shade.
+    fn is_snow(&self) -> bool {
+        self.saturation < 0.15 && self.luma > 120.0
+    }
+
     fn of(color: [u8; 3]) -> Self {
         let [least, most] = [color.iter().min(), color.iter().max()].map(|v| f32::from(v.copied().unwrap_or(0)));
         Self {

@@ -25,7 +25,13 @@ pub(crate) struct Broad {
     rows: usize,
     /// dz/dx, dz/dy, height of the surroundings; fourth unused.
     nodes: Vec<Vec4>,
+    /// How much steeper the ground is shaded than it is: gentle ground shows its forms, too.
+    pub(crate) steeper: f32,
 }
+
+/// Usual slope of generalised ground that is shaded as steep as it is, and the most that gentler ground is shaded steeper.
+const USUAL_SLOPE: f32 = 0.30;
+const STEEPEST: f32 = 1.8;
 
 /// Bytes of [`Broad`] of a ground of `nodes` nodes, at most, with what its making takes.
 pub(crate) fn bytes(nodes: u64) -> u64 {
@@ -57,7 +63,11 @@ impl Broad {
                 *node = Vec4::new(x, y, around[r * cols + c], 0.0);
             }
         });
-        Self { level, cols, rows, nodes }
+        let slopes = nodes.iter().map(|node| node.truncate().truncate().length()).filter(|slope| *slope > 0.0);
+        let (sum, count) = slopes.fold((0.0f64, 0u64), |(sum, count), slope| (sum + f64::from(slope), count + 1));
+        let usual = (sum / count.max(1) as f64) as f32;
+        let steeper = (USUAL_SLOPE / usual.max(1e-3)).sqrt().clamp(1.0, STEEPEST);
+        Self { level, cols, rows, nodes, steeper }
     }
 
     /// Values at nodes of a line of a level, from the first on: dz/dx, dz/dy and height of the surroundings.

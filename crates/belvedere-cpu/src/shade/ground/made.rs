@@ -20,7 +20,7 @@ const STEEP: [f32; 2] = [0.22, 0.85];
 /// Roughness of ground: sizes from this on, metres, and slopes on gentle and on bare ground.
 const ROUGH_M: f32 = 64.0;
 const ROUGHS: u32 = 5;
-const ROUGH_SLOPE: [f32; 2] = [0.065, 0.11];
+const ROUGH_SLOPE: [f32; 2] = [0.10, 0.13];
 /// Crowns of trees and clumps of them: sizes, metres, and slopes.
 const CROWNS: [(f32, f32); 5] = [(180.0, 0.10), (90.0, 0.20), (45.0, 0.28), (22.0, 0.36), (11.0, 0.34)];
 

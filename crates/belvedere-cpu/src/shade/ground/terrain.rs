@@ -135,6 +135,7 @@ impl<'a> TerrainShade<'a> {
         let of_map = map.as_ref().map_or(&means, |(_, means)| means);
         let spacing = hf.spacing();
         let broad = tint.is_made().then(|| cache.broad.get(hf, (), || Arc::new(Broad::new(of_map, spacing))));
+        let steeper = broad.as_ref().map_or(1.0, |broad| broad.steeper);
         Self {
             layer: index,
             hf,
@@ -147,7 +148,7 @@ impl<'a> TerrainShade<'a> {
             shadows,
             tint,
             broad,
-            exaggeration: layer.exaggeration as f32,
+            exaggeration: steeper * layer.exaggeration as f32,
             drapes: drapes(layer, cache),
             border: Border::of(layer, job),
         }

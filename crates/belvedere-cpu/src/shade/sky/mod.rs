@@ -46,7 +46,7 @@ const POINTS: usize = PIXELS / LANES + 1;
 const EVEN: f32 = 0.4 / 255.0;
 
 /// Largest share of haze in a colour.
-const THICKEST: f32 = 0.46;
+const THICKEST: f32 = 0.40;
 
 /// Downward components of the direction of view between which haze fades out: a map seen from above has none.
 const FROM_ABOVE: [f32; 2] = [0.77, 0.985];
