@@ -3,15 +3,15 @@
 use super::options::PictureOptions;
 use crate::Session;
 use crate::scene_file::Corner;
+use belvedere_composite::tint::GroundTint;
 use belvedere_core::{DVec2, View};
 use belvedere_io::arrays::SCHEME;
 use belvedere_overlay::furniture::{self, Plan, Subject};
-use belvedere_overlay::{curve_inset, heat};
+use belvedere_overlay::{badge, curve_inset, heat};
 use belvedere_resolve::ground::Ground;
 use belvedere_scene::{Scene, Unit};
 
-/// Sizes that the mark of bent pictures, the legend of the heat map and that of highlights may take.
-const MARK: DVec2 = DVec2::new(270.0, 24.0);
+/// Sizes that the legend of the heat map and that of highlights may take.
 const HEAT: DVec2 = DVec2::new(210.0, heat::LEGEND_HEIGHT);
 const HIGHLIGHT: DVec2 = DVec2::new(250.0, 150.0);
 /// Part of a degree of latitude over which the direction to the north is taken.
@@ -35,8 +35,10 @@ pub(super) fn plan(
     let bent = !request.straight && view.is_bent();
     let inset = overlay.inset.is_some() && view.spline_bend().is_some();
     let smaller = view.pinhole().image.map(f64::from).into_iter().fold(f64::INFINITY, f64::min) / request.density;
+    let [width, height] = view.pinhole().image.map(|side| (f64::from(side) / request.density) as usize);
+    let mark = badge::room(width, scene.unit, has_made_ground(session));
     let reserved = [
-        (bent && overlay.mark && !request.no_mark, Corner::BottomRight, MARK),
+        (bent && overlay.mark && !request.no_mark && badge::fits(width, height), Corner::BottomRight, mark),
         (heatmap, Corner::BottomLeft, HEAT),
         (bent && highlight, Corner::BottomLeft, HIGHLIGHT),
         (inset, Corner::TopLeft, curve_inset::room(smaller)),
@@ -64,6 +66,16 @@ pub(super) fn plan(
         north: &|xy| if scene.unit == Unit::Metre { north(&ground, xy) } else { DVec2::Y },
         today: today(),
     })
+}
+
+/// Whether a ground of the scene shows materials by rule.
+pub(super) fn has_made_ground(session: &Session) -> bool {
+    session
+        .scene()
+        .layers
+        .iter()
+        .filter_map(|layer| layer.kind.terrain())
+        .any(|terrain| GroundTint::new(&terrain.palette, terrain.heightfield.z_range()).is_made())
 }
 
 /// Direction of true north at a place; that of y without georeference.

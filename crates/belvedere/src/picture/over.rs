@@ -1,13 +1,13 @@
 //! What lies over a picture beside its marks: legends, the inset, furniture and the mark of bent pictures.
 
 use super::displacement::DisplacementReport;
+use super::furniture::has_made_ground;
 use super::options::PictureOptions;
 use super::plan::Plan;
 use super::sidecar::OverlayRecord;
 use crate::Session;
 use crate::scene_file::Inset;
 use belvedere_composite::canvas::Canvas;
-use belvedere_composite::tint::GroundTint;
 use belvedere_overlay::highlight::HighlightRecord;
 use belvedere_overlay::{badge, curve_inset, heat, highlight};
 
@@ -106,16 +106,6 @@ fn mark_words(
         _ if request.steady_mark => Some(badge::WORDS.to_owned()),
         moved => moved.map(|moved| badge::words(width, moved.max_m, session.scene().unit, has_made_ground(session))),
     }
-}
-
-/// Whether a ground of the scene shows materials by rule.
-fn has_made_ground(session: &Session) -> bool {
-    session
-        .scene()
-        .layers
-        .iter()
-        .filter_map(|layer| layer.kind.terrain())
-        .any(|terrain| GroundTint::new(&terrain.palette, terrain.heightfield.z_range()).is_made())
 }
 
 /// Draws the curve of a spline; whether the picture is large enough.
