@@ -104,6 +104,7 @@ fn with_marks(
     let (depth, id, out) = (frame.depth, frame.id, frame.color);
     let mut buffers = Buffers { open: true, color, depth, id, world: frame.world, out };
     draw_marks(&marks, None, &screen, &mut buffers);
+    frame.stats = marks.counted(frame.stats);
     let Buffers { depth, id, world, out, .. } = buffers;
     (frame.depth, frame.id, frame.world, frame.color) = (depth, id, world, out);
     frame

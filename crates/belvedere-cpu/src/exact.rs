@@ -111,6 +111,7 @@ fn render(job: &RenderJob<'_>) -> Result<Frame, RenderError> {
         milliseconds: start.elapsed().as_secs_f64() * 1e3,
         ..FrameStats::default()
     };
+    let stats = marks.counted(stats);
     let (width, height) = (screen.width as usize, screen.height as usize);
     Ok(Frame { width, height, color: buffers.out, depth: buffers.depth, id: buffers.id, world: buffers.world, stats })
 }

@@ -22,7 +22,7 @@ use belvedere_composite::marks::Marks;
 use belvedere_composite::stylise::Relief;
 use belvedere_composite::traced_marks;
 use belvedere_composite::veil::{Veil, Veiled};
-use belvedere_scene::{Frame, Instant, PictureRows, RenderError, RenderJob, Renderer};
+use belvedere_scene::{Frame, FrameStats, Instant, PictureRows, RenderError, RenderJob, Renderer};
 use belvedere_sight::sections::Sections;
 use belvedere_sight::{Carried, Solids};
 use std::sync::{Arc, Mutex};
@@ -142,6 +142,7 @@ impl CpuRenderer {
         surfaces.draw(0, &mut buffers, (bands_of_relief, veil.as_mut()))?;
         over_ground::paint(job, (&shader, &screen), (0, [None, None]), &mut buffers);
         let samples = volume::compose(job, Way::Fast, &mut buffers)?;
+        let mut of_marks = FrameStats::default();
         if buffers.open {
             let plain = Pass::plain(&passes);
             let marks = traced_marks::place(job, &plain, &screen, (Depths::Whole(&buffers.depth), Solids::Opaque));
@@ -154,8 +155,9 @@ impl CpuRenderer {
             let veiled = veil.as_ref().map(|veil| Veiled { veil, first: 0, front: &front });
             finish_veiled(job, (&marks, veiled), &screen, relief, &mut buffers);
             job.progress.tick("lines", 1.0)?;
+            of_marks = marks.counted(of_marks);
         }
-        let stats = stats(blocks, samples, start);
+        let stats = stats(blocks, samples, start).and(&of_marks);
         *color = buffers.color;
         let (width, height) = (screen.width as usize, screen.height as usize);
         Ok(Frame {

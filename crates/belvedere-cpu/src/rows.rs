@@ -114,7 +114,7 @@ pub(crate) fn draw(
         color: Mutex::default(),
     };
     on(pool, || rows.prepare(&Pass::plain(&passes)))?;
-    rows.stats = stats(blocks, 0, start);
+    rows.stats = stats(blocks, 0, start).and(&rows.stats);
     work(&rows)
 }
 
@@ -198,6 +198,7 @@ impl Prepared<'_> {
             }
         }
         self.marks = traced_marks::place(job, passes, screen, (Depths::Tiles(&tiles), Solids::Opaque));
+        self.stats = self.marks.counted(std::mem::take(&mut self.stats));
         if let Some(near) = &near {
             self.front = traced_marks::place(job, passes, screen, (Depths::Tiles(near), Solids::Drawn));
         }

@@ -40,6 +40,8 @@ pub(crate) fn stats(blocks: &Blocks, samples: u64, start: Instant) -> FrameStats
         vertices_missed: counts.missed,
         samples,
         layer_bytes: 0,
+        symbols_left_out: 0,
+        names_left_out: 0,
         milliseconds: start.elapsed().as_secs_f64() * 1e3,
     }
 }

@@ -43,6 +43,9 @@ pub fn fits(width: usize, height: usize) -> bool {
 const BESIDE: f64 = 46.0;
 const MARGIN: f64 = 10.0;
 
+/// A displacement whose number is as wide as any that is usual, scene units.
+const MOST_MOVED: f64 = 88_888.0;
+
 /// Words of the mark: the largest displacement in the picture, in the longest form that fits.
 /// * `moved`: largest displacement, scene units; `made`: what is drawn by rule.
 pub fn words(width: usize, moved: f64, unit: Unit, made: Made) -> String {
@@ -54,6 +57,11 @@ pub fn words(width: usize, moved: f64, unit: Unit, made: Made) -> String {
         .chain(short)
         .find(|words| text_size(LETTERS_PX, words).width <= room)
         .unwrap_or_else(|| WORDS.to_owned())
+}
+
+/// Largest size of the mark in a picture of this width, pixels; its words are known when the picture is drawn.
+pub fn room(width: usize, unit: Unit, made: Made) -> DVec2 {
+    DVec2::new(BESIDE + text_size(LETTERS_PX, &words(width, MOST_MOVED, unit, made)).width, 24.0)
 }
 
 /// A displacement in words.

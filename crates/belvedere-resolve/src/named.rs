@@ -159,13 +159,11 @@ pub(super) fn stand_out(
     in_feet: bool,
 ) {
     let rank = style.rank.as_deref().unwrap_or("auto");
-    if style.labels || style.label.is_some() {
-        if let (Some(ground), true) = (ground, ["auto", "prominence", "dominance"].contains(&rank)) {
-            rank_peaks(rank, features, ground);
-        }
-        if rank == "file" {
-            features.iter_mut().filter_map(|f| f.style.as_mut()).for_each(|own| own.rank = None);
-        }
+    if let (Some(ground), true) = (ground, ["auto", "prominence", "dominance"].contains(&rank)) {
+        rank_peaks(rank, features, ground);
+    }
+    if rank == "file" {
+        features.iter_mut().filter_map(|f| f.style.as_mut()).for_each(|own| own.rank = None);
     }
     for feature in features {
         let kind = feature.style.and_then(|own| own.kind);

@@ -109,6 +109,8 @@ impl FrameStats {
             vertices_missed: self.vertices_missed + other.vertices_missed,
             samples: self.samples + other.samples,
             layer_bytes: self.layer_bytes + other.layer_bytes,
+            symbols_left_out: self.symbols_left_out + other.symbols_left_out,
+            names_left_out: self.names_left_out + other.names_left_out,
             milliseconds: self.milliseconds + other.milliseconds,
         }
     }
@@ -144,6 +146,10 @@ pub struct FrameStats {
     pub samples: u64,
     /// Bytes of the pictures of single representations, see [`Compositing::Layers`].
     pub layer_bytes: u64,
+    /// Symbols of points that were left out, because they would overlap one that counts more.
+    pub symbols_left_out: u64,
+    /// Names that found no room.
+    pub names_left_out: u64,
     /// Wall time in milliseconds.
     pub milliseconds: f64,
 }

@@ -33,6 +33,8 @@ pub(crate) struct Labels {
     fonts: Fonts,
     /// What the next frame of a film needs to know of this one.
     memory: NameMemory,
+    /// Number of texts that found no room.
+    left_out: u64,
 }
 
 impl Labels {
@@ -46,13 +48,16 @@ impl Labels {
         page.keep_clear.iter().for_each(|rect| taken.take(*rect, NOBODY));
         let mut placed: Vec<Placed> = Vec::new();
         let mut names: Vec<(PlacedName, bool)> = Vec::new();
+        let mut left_out = 0;
         let mut place = |i: usize, request: &LabelRequest, places: &mut dyn FnMut(&Lines) -> Vec<Candidate>| {
             if placed.len() >= MOST_TEXTS {
-                return true;
+                return false;
             }
             let lines = Lines::of(request, page.fonts);
             let inside = |r: &Rect| r[0].cmpge(DVec2::ZERO).all() && r[1].cmple(page.size).all();
-            let free = |r: &Rect| inside(r) && taken.is_free(r, i) && markers.is_free(r, i);
+            let layer = request.layer as usize;
+            let free =
+                |r: &Rect| inside(r) && taken.is_free(r, i) && markers.is_free(r, i) && page.must_see.is_free(r, layer);
             let can_stand = |candidate: &Candidate| {
                 // What runs along a line stays off it by its baseline.
                 let off = !candidate.along.is_empty() || candidate.boxes.iter().all(|r| is_off(&request.line, r));
@@ -71,7 +76,7 @@ impl Labels {
         for (i, Turn { request, when }) in turns.into_iter().enumerate() {
             let stands = match when {
                 When::InTurn => {
-                    place(i, &request, &mut |lines| candidates(&request, lines, page));
+                    left_out += u64::from(!place(i, &request, &mut |lines| candidates(&request, lines, page)));
                     true
                 }
                 When::Held(at) => {
@@ -85,9 +90,14 @@ impl Labels {
             }
         }
         for (i, request) in &left {
-            place(*i, request, &mut |lines| candidates(request, lines, page));
+            left_out += u64::from(!place(*i, request, &mut |lines| candidates(request, lines, page)));
         }
-        Self { placed, density, fonts: page.fonts.clone(), memory: choice.remembered(names) }
+        Self { placed, density, fonts: page.fonts.clone(), memory: choice.remembered(names), left_out }
+    }
+
+    /// Number of texts that found no room.
+    pub(crate) fn left_out(&self) -> u64 {
+        self.left_out
     }
 
     /// What the next frame of a film needs to know of this one.

@@ -15,6 +15,7 @@ mod name_memory;
 mod names;
 mod occupied;
 mod path;
+mod placed;
 mod point;
 mod pole;
 mod pylons;
@@ -25,7 +26,9 @@ mod segment;
 mod shapes;
 mod shown;
 mod symbol;
+mod symbols;
 mod visibility;
+mod ways;
 
 use crate::canvas::{Canvas, Fonts};
 use crate::color::{Packed, linear};
@@ -35,8 +38,8 @@ use crate::skyline::Skyline;
 use alike::alike;
 use belvedere_core::{Aabb, DVec2, DVec3};
 use belvedere_scene::{
-    AreaLayer, Color, Hidden, LayerKind, LineClass, LineFeature, LineLayer, Overlay, OverlayLine, ROWS, RenderJob,
-    Scene, Symbol,
+    AreaLayer, Color, FrameStats, Hidden, Layer, LayerKind, LineClass, LineFeature, LineLayer, Overlay, OverlayLine,
+    ROWS, RenderJob, Scene, Symbol,
 };
 use belvedere_sight::pass::Pass;
 use belvedere_sight::screen::{COARSE_PX, Screen};
@@ -48,12 +51,12 @@ use line_of_sight::LineOfSight;
 use name_memory::Choice;
 pub use name_memory::{NameMemory, Patience};
 use path::LinePoint;
+use placed::Placed;
 use point::PointMarks;
 use rayon::prelude::*;
 use request::{LabelRequest, Page};
 use ribbon::{Ink, Lane, Stroke, StrokeLayer};
 pub use shapes::{LayerShapes, LineShape, Paint, Role, Shapes, SymbolShape, outline, simplified};
-use std::mem::take;
 use visibility::{DepthMap, LineVisibility, Run, Station};
 
 /// Width of a hidden line in widths of the visible one.
@@ -69,6 +72,14 @@ pub struct Marks {
     /// Symbols of the scene's own.
     drawings: Vec<PlacedDrawing>,
     labels: Labels,
+    left_out: LeftOut,
+}
+
+/// Numbers of symbols and names that found no room.
+#[derive(Debug, Clone, Copy, Default)]
+struct LeftOut {
+    symbols: u64,
+    names: u64,
 }
 
 impl Marks {
@@ -162,19 +173,24 @@ impl Marks {
         };
         let (mut context, mut subject) = (Placed::default(), Placed::default());
         for (i, layer) in job.scene.layers.iter().enumerate() {
-            builder.layer(i, &layer.kind, if layer.must_see { &mut subject } else { &mut context });
+            builder.layer(i, layer, if layer.must_see { &mut subject } else { &mut context });
         }
-        // What must be seen is drawn over all else, and named first.
-        let mut sheets: Vec<StrokeLayer> =
-            [&mut context, &mut subject].into_iter().flat_map(Placed::take_sheets).collect();
-        let mut requests = subject.requests;
-        requests.append(&mut context.requests);
-        let drawings = [context.points.drawings, subject.points.drawings].concat();
         let overlay = &job.options.overlay;
         let with_text = |l: &&OverlayLine| !builder.names_alone || !l.label.is_empty();
+        // Texts of the grid find room first, then those of what must be seen.
+        let mut requests = Vec::new();
+        let under = overlay.under.iter().filter(with_text).map(|l| builder.overlay_line(l, &mut requests)).collect();
+        let (size, density, keep_clear) = (2.0 * screen.center, job.options.density, &job.options.keep_clear[..]);
+        let mut left_out = LeftOut::default();
+        left_out.symbols = symbols::thin([&mut context.symbols, &mut subject.symbols], keep_clear);
+        // What must be seen is drawn over all else.
+        let must_see = subject.lines(density);
+        let mut points = PointMarks::default();
+        let mut of_subject = subject.drawn(&builder, &mut points, &mut requests);
+        let mut sheets = context.drawn(&builder, &mut points, &mut requests);
+        sheets.append(&mut of_subject);
         sheets.extend(overlay.over.iter().filter(with_text).map(|l| builder.overlay_line(l, &mut requests)));
         sheets.extend(overlay.points.iter().map(|p| builder.overlay_point(p, &mut requests)));
-        let under = overlay.under.iter().filter(with_text).map(|l| builder.overlay_line(l, &mut requests)).collect();
         if map.only_asks() {
             return Self::default();
         }
@@ -182,9 +198,9 @@ impl Marks {
             .faces
             .iter()
             .flat_map(|f| passes.iter().take(job.view.records()).filter_map(|p| Face::new(f, p, screen)));
-        let (size, density, keep_clear) = (2.0 * screen.center, job.options.density, &job.options.keep_clear[..]);
-        let labels = Labels::place(requests, &Page { size, density, fonts: &fonts, keep_clear }, choice);
-        Self { under, faces: faces.collect(), sheets, drawings, labels }
+        let labels = Labels::place(requests, &Page { size, density, fonts: &fonts, keep_clear, must_see }, choice);
+        left_out.names = labels.left_out();
+        Self { under, faces: faces.collect(), sheets, drawings: points.drawings, labels, left_out }
     }
 
     /// Whether the job may have any marks.
@@ -222,6 +238,12 @@ impl Marks {
         cover
     }
 
+    /// The counts of a picture with those of the marks that found no room.
+    pub fn counted(&self, stats: FrameStats) -> FrameStats {
+        let LeftOut { symbols, names } = self.left_out;
+        FrameStats { symbols_left_out: symbols, names_left_out: names, ..stats }
+    }
+
     /// Draws symbols of the scene's own and writes the names over the finished picture, or over some of its rows.
     pub fn write_names(&self, canvas: &mut Canvas<'_>) {
         self.drawings.iter().for_each(|drawing| drawing.draw(canvas));
@@ -237,22 +259,6 @@ enum Purpose<'a> {
     Shapes,
     /// Nothing but names.
     Names(Choice<'a>),
-}
-
-/// Marks of the layers.
-#[derive(Default)]
-struct Placed {
-    sheets: Vec<StrokeLayer>,
-    symbols: Vec<StrokeLayer>,
-    points: PointMarks,
-    requests: Vec<LabelRequest>,
-}
-
-impl Placed {
-    /// Lines, then symbols.
-    fn take_sheets(&mut self) -> impl Iterator<Item = StrokeLayer> + use<> {
-        take(&mut self.sheets).into_iter().chain(take(&mut self.symbols))
-    }
 }
 
 /// Rays of a picture that is not drawn yet.
@@ -327,27 +333,26 @@ impl MarkBuilder<'_> {
     }
 
     /// Adds the marks of a layer.
-    fn layer(&self, i: usize, kind: &LayerKind, out: &mut Placed) {
+    fn layer(&self, i: usize, layer: &Layer, out: &mut Placed) {
         let (id, first) = (i as u32 + 1, out.requests.len());
-        match kind {
+        // Names stay off the lines that must be seen.
+        let is_drawn = !self.names_alone || layer.must_see;
+        match &layer.kind {
             LayerKind::Line(l) => {
                 let l = &*self.shown_lines(i, l);
-                if !self.names_alone {
+                if is_drawn {
                     out.sheets.extend(self.line_sheets(l, id));
                 }
                 out.sheets.extend(self.distances(l, id, &mut out.requests));
                 out.requests.extend(self.line_names(l, id));
             }
             LayerKind::Area(a) => {
-                if !self.names_alone {
+                if is_drawn {
                     out.sheets.extend(self.outlines(a, id));
                 }
                 out.requests.extend(self.area_names(i, a));
             }
-            LayerKind::Point(p) => {
-                out.symbols.extend(self.points(&self.shown_points(i, p), id, &mut out.points));
-                out.requests.append(&mut out.points.requests);
-            }
+            LayerKind::Point(p) => out.symbols.extend(self.points(&self.shown_points(i, p), id)),
             LayerKind::Molecule(m) => out.requests.extend(self.residue_names(m)),
             _ => {}
         }

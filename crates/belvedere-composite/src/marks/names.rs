@@ -3,7 +3,7 @@
 use crate::marks::baseline::{Letters, baselines};
 use crate::marks::request::{Baseline, LabelRequest};
 use crate::marks::visibility::{Run, Station};
-use crate::marks::{MarkBuilder, Style, darker, path, width_or_none};
+use crate::marks::{MarkBuilder, Style, darker, path, ways, width_or_none};
 use belvedere_core::DVec2;
 use belvedere_scene::{Color, Hidden, LineLayer, NameAnchor, NamePlace, NameSide};
 use rayon::prelude::*;
@@ -19,7 +19,7 @@ const THOUSANDTHS: f64 = 1000.0;
 /// A drawn stretch of line.
 #[derive(Clone, Debug, PartialEq)]
 struct Stretch {
-    /// Index of the line in its layer.
+    /// Index of the line in its layer, of a way in pieces that of the first.
     feature: u32,
     /// Length, pixels.
     length: f64,
@@ -30,7 +30,7 @@ struct Stretch {
 }
 
 impl MarkBuilder<'_> {
-    /// Each name of a layer once, along the longest stretch of the lines that bear it, or beside its middle where it winds; in a film
+    /// Each name of a layer once, along the longest stretch of the ways that bear it, whose pieces are joined, or beside its middle where it winds; in a film
     /// along the stretch where it stood before, while there is room.
     ///
     /// * `id`: 1 + index of the layer.
@@ -45,11 +45,12 @@ impl MarkBuilder<'_> {
             .filter(|name| !name.is_empty())
             .map(|name| (name, Wanted { width: wide(name), held: self.choice.held_line(id, name) }))
             .collect();
-        let found = layer.features.par_iter().enumerate().filter_map(|(i, f)| {
+        let found = ways::of(&layer.features).into_par_iter().filter_map(|way| {
+            let f = &layer.features[way.first];
             let (name, wanted) = wanted.get_key_value(f.name.trim())?;
             let own = f.style.unwrap_or_default();
-            let line = path::drape(self.scene, &f.points, layer.lift_m, self.coarse());
-            let stretch = self.best(&line, style, (i as u32, wanted))?;
+            let line = path::drape(self.scene, &way.points, layer.lift_m, self.coarse());
+            let stretch = self.best(&line, style, (way.first as u32, wanted))?;
             let (color, half_px) = (own.color.unwrap_or(layer.color), half_px * own.scale.max(0.0));
             Some(Named { name, wanted, color, half_px, stretch })
         });

@@ -5,78 +5,109 @@ use crate::marks::drawing::PlacedDrawing;
 use crate::marks::path::LinePoint;
 use crate::marks::request::{LabelRequest, rank_of};
 use crate::marks::ribbon::{Lane, Stroke, StrokeLayer};
+use crate::marks::symbols::{PointGroup, PointImage};
 use crate::marks::{HIDDEN_WIDTH, MarkBuilder, Marker, casing_of, darker, inks, symbol, width_or_none};
 use belvedere_core::{Aabb, DVec2, DVec3};
-use belvedere_scene::{Color, Hidden, OverlayPoint, PointFeature, PointLayer, PointStyle, ROWS, Symbol};
+use belvedere_scene::{Color, FeatureStyle, Hidden, OverlayPoint, PointFeature, PointLayer, PointStyle, ROWS, Symbol};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
 impl MarkBuilder<'_> {
-    /// The symbols of a layer; names of points of higher rank come first.
-    pub(super) fn points(&self, layer: &PointLayer, id: u32, out: &mut PointMarks) -> Vec<StrokeLayer> {
-        let mut named = Named::default();
-        let sheets = alike(&layer.features, layer.color, |f| f.style)
-            .into_iter()
-            .map(|group| self.points_alike(layer, group, id, (&mut named, &mut out.drawings)))
-            .collect();
-        // Those without a rank come last, in their order.
-        named.requests.sort_by(|a, b| b.rank.total_cmp(&a.rank));
-        out.requests.append(&mut named.requests);
-        sheets
+    /// The images of the points of a layer, by their styles.
+    pub(super) fn points(&self, layer: &PointLayer, id: u32) -> Vec<PointGroup> {
+        let mut counts = HashMap::new();
+        let groups = alike(&layer.features, layer.color, |f| f.style).into_iter();
+        groups.map(|group| self.points_alike(layer, group, id, &mut counts)).collect()
     }
 
+    /// * `counts`: how many features of the layer there are of each name.
     fn points_alike(
         &self,
         layer: &PointLayer,
         group: alike::Alike<'_, PointFeature>,
         id: u32,
-        (out, drawings): (&mut Named, &mut Vec<PlacedDrawing>),
-    ) -> StrokeLayer {
+        counts: &mut HashMap<String, u32>,
+    ) -> PointGroup {
         let half_px = 0.5 * width_or_none(group.scale * layer.size_px, self.density);
-        let PointStyle { symbol, casing, label_px } = layer.style;
+        let PointStyle { symbol, casing, .. } = layer.style;
         let is_own = matches!(symbol, Symbol::Own(_));
         let marker_of = |feature: &PointFeature| {
             let symbol = feature.style.and_then(|own| own.symbol).filter(|_| !is_own).unwrap_or(symbol);
             // A drawing has its own rim.
             Marker { symbol, half_px, casing: casing.is_some() && !is_own, hidden: layer.hidden }
         };
-        let found: Vec<(Vec<Stroke>, Vec<Seen>)> = group
+        let found: Vec<Vec<(Seen, Vec<Stroke>)>> = group
             .features
             .par_iter()
             .map(|feature| {
                 let p = feature.position + DVec3::Z * layer.lift_m;
-                let mut strokes = Vec::new();
-                let on_line = LinePoint { p, along: 0.0, on_ground: false };
-                let named = self.mark_all(&on_line, layer.lift_m, marker_of(feature), &mut strokes);
-                (strokes, named)
+                self.images(&LinePoint { p, along: 0.0, on_ground: false }, layer.lift_m, marker_of(feature))
             })
             .collect();
-        let mut strokes = Vec::new();
-        for (feature, (s, named)) in group.features.iter().zip(found) {
-            let marker = marker_of(feature);
-            strokes.extend(s);
-            if let Symbol::Own(number) = marker.symbol {
-                drawings.extend(named.iter().filter_map(|seen| {
-                    let drawing = self.scene.drawings.get(usize::from(number))?.clone();
-                    let opacity = seen.opacity(layer.hidden)?;
-                    Some(PlacedDrawing { drawing, at: seen.pixel, half_px, color: group.color, opacity })
-                }));
-            }
-            let Some(size_px) = label_px.filter(|_| !feature.name.trim().is_empty()) else { continue };
+        let mut images = Vec::new();
+        for (feature, found) in group.features.iter().zip(found) {
+            let (marker, name) = (marker_of(feature), feature.name.trim());
             let own = feature.style.unwrap_or_default();
-            let number = out.number(feature.name.trim());
-            let request = |seen: Seen| {
-                let request = label_request(feature.name.trim(), &seen, marker, (size_px, group.color), self.density);
-                let second = own.height.map(|height| height.to_string()).unwrap_or_default();
-                let skyline = self.skyline.over(seen.pixel, self.density);
-                LabelRequest { second, skyline, number, rank: rank_of(own.rank), ..request }
-            };
-            out.requests.extend(named.into_iter().filter(|seen| self.asks_for(seen)).map(request));
+            let count = counts.entry(name.to_owned()).or_default();
+            *count += 1;
+            let number = *count - 1;
+            images.extend(found.into_iter().map(|(seen, strokes)| PointImage {
+                at: seen.pixel,
+                symbol: marker.symbol,
+                half_px,
+                rank: rank_of(own.rank),
+                seen: seen.is_named,
+                strokes,
+                drawing: self.drawing_of(&seen, marker, layer.hidden, group.color),
+                request: self.name_of(name, &seen, (layer, group.color), (marker, own, number)),
+            }));
         }
         // Under drawings lie discs that are not seen, so that they are found at their pixels.
         let color = if is_own { group.color.with_alpha(0) } else { group.color };
-        let inks = inks(color, casing.filter(|_| !is_own), layer.hidden);
-        StrokeLayer::new(strokes, inks, id, self.screen.height as usize, ROWS)
+        PointGroup { id, inks: inks(color, casing.filter(|_| !is_own), layer.hidden), images }
+    }
+
+    /// The drawing of the scene's own at an image of a point.
+    fn drawing_of(&self, seen: &Seen, marker: Marker, hidden: Hidden, color: Color) -> Option<PlacedDrawing> {
+        let Symbol::Own(number) = marker.symbol else { return None };
+        let drawing = self.scene.drawings.get(usize::from(number))?.clone();
+        Some(PlacedDrawing { drawing, at: seen.pixel, half_px: marker.half_px, color, opacity: seen.opacity(hidden)? })
+    }
+
+    /// The name at an image of a point, if the layer writes names.
+    ///
+    /// * `number`: of the feature among those of its name.
+    fn name_of(
+        &self,
+        name: &str,
+        seen: &Seen,
+        (layer, color): (&PointLayer, Color),
+        (marker, own, number): (Marker, FeatureStyle, u32),
+    ) -> Option<LabelRequest> {
+        let size_px = layer.style.label_px.filter(|_| !name.is_empty() && self.asks_for(seen))?;
+        let request = label_request(name, seen, marker, (size_px, color), self.density);
+        let second = own.height.map(|height| height.to_string()).unwrap_or_default();
+        let skyline = self.skyline.over(seen.pixel, self.density);
+        Some(LabelRequest { second, skyline, number, rank: rank_of(own.rank), ..request })
+    }
+
+    /// What is drawn of groups of points: symbols, drawings, and names, those of higher rank first within their layer.
+    pub(super) fn drawn_points(&self, groups: Vec<PointGroup>, out: &mut PointMarks) -> Vec<StrokeLayer> {
+        let mut names: Vec<LabelRequest> = Vec::new();
+        let sheet = |group: PointGroup| {
+            let mut strokes = Vec::new();
+            for image in group.images {
+                strokes.extend(image.strokes);
+                out.drawings.extend(image.drawing);
+                names.extend(image.request.map(|request| LabelRequest { layer: group.id, ..request }));
+            }
+            StrokeLayer::new(strokes, group.inks, group.id, self.screen.height as usize, ROWS)
+        };
+        let sheets = groups.into_iter().map(sheet).collect();
+        // Those without a rank come last, in their order.
+        names.sort_by(|a, b| a.layer.cmp(&b.layer).then(b.rank.total_cmp(&a.rank)));
+        out.requests.append(&mut names);
+        sheets
     }
 
     pub(super) fn overlay_point(&self, point: &OverlayPoint, requests: &mut Vec<LabelRequest>) -> StrokeLayer {
@@ -108,6 +139,17 @@ impl MarkBuilder<'_> {
 
     /// Draws a marker at every image of a point, and returns them.
     fn mark_all(&self, on_line: &LinePoint, lift_m: f64, marker: Marker, out: &mut Vec<Stroke>) -> Vec<Seen> {
+        let images = self.images(on_line, lift_m, marker).into_iter();
+        images
+            .map(|(seen, strokes)| {
+                out.extend(strokes);
+                seen
+            })
+            .collect()
+    }
+
+    /// Every image of a point with the strokes of its marker.
+    fn images(&self, on_line: &LinePoint, lift_m: f64, marker: Marker) -> Vec<(Seen, Vec<Stroke>)> {
         let mut all = Vec::new();
         let p = self.sight.on_surface(on_line, lift_m);
         for pass in self.passes_for(std::iter::once(Aabb::of([p; 2]))) {
@@ -118,9 +160,10 @@ impl MarkBuilder<'_> {
             let pixel = self.screen.pixel(v);
             let Some(behind) = self.map.behind(self.screen, pixel, v.z) else { continue };
             let visible = self.sight.sees(self.screen, pixel, v.z).unwrap_or(behind <= 1.5);
-            stamp(pixel, marker, (visible, self.density), out);
+            let mut strokes = Vec::new();
+            stamp(pixel, marker, (visible, self.density), &mut strokes);
             let is_named = visible || marker.hidden == Hidden::Show;
-            all.push(Seen { pixel, image: all.len() as u32, is_named });
+            all.push((Seen { pixel, image: all.len() as u32, is_named }, strokes));
         }
         all
     }
@@ -149,22 +192,6 @@ impl Seen {
             Hidden::Cut => None,
             _ => Some(FAINT),
         }
-    }
-}
-
-/// Names of a layer, and how many features there are of each.
-#[derive(Default)]
-struct Named {
-    requests: Vec<LabelRequest>,
-    counts: HashMap<String, u32>,
-}
-
-impl Named {
-    /// Number of the next feature of a name.
-    fn number(&mut self, name: &str) -> u32 {
-        let count = self.counts.entry(name.to_owned()).or_default();
-        *count += 1;
-        *count - 1
     }
 }
 

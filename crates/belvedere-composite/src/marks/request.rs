@@ -1,7 +1,7 @@
 //! What is to be written, how large it is, and where it may stand.
 
 use crate::canvas::Fonts;
-use crate::marks::occupied::Rect;
+use crate::marks::occupied::{Occupied, Rect};
 use belvedere_core::DVec2;
 use belvedere_scene::{Color, NameAnchor, NameId, NamePlace};
 
@@ -156,4 +156,6 @@ pub(crate) struct Page<'a> {
     pub(crate) fonts: &'a Fonts,
     /// Where no text may stand.
     pub(crate) keep_clear: &'a [Rect],
+    /// Where texts of other layers may not stand: what must be seen, by the numbers of the layers.
+    pub(crate) must_see: Occupied,
 }

@@ -1,6 +1,7 @@
 //! Anti-aliased ribbons and symbols: the union of strokes, so that overlaps are not darker.
 
 use crate::color::{Packed, Rgb};
+use crate::marks::occupied::Rect;
 use crate::marks::shapes::{LayerShapes, LineShape, Paint, Role, SymbolShape};
 use crate::marks::symbol;
 use belvedere_core::DVec2;
@@ -128,6 +129,24 @@ impl StrokeLayer {
         let Self { mut strokes, bands, inks, id, rows, lines } = self;
         strokes.extend(more);
         Self { lines, ..Self::new(strokes, inks, id, bands.len() * rows, rows) }
+    }
+
+    /// 1 + index of the layer; 0 for marks of none.
+    pub(crate) fn id(&self) -> u32 {
+        self.id
+    }
+
+    /// Boxes that cover its visible lines, each about as long as the line is wide.
+    pub(crate) fn visible_boxes(&self) -> impl Iterator<Item = Rect> + '_ {
+        let seen = self.strokes.iter().filter(|s| s.symbol.is_none() && matches!(s.lane, Lane::Fill | Lane::Shown));
+        seen.flat_map(|s| {
+            let (a, b, half) = (s.a.as_dvec2(), s.b.as_dvec2(), f64::from(s.half));
+            let parts = (a.distance(b) / (2.0 * half).max(4.0)).ceil().clamp(1.0, 1000.0) as usize;
+            (0..parts).map(move |i| {
+                let [p, q] = [i, i + 1].map(|k| a.lerp(b, k as f64 / parts as f64));
+                [p.min(q) - half, p.max(q) + half]
+            })
+        })
     }
 
     /// The same with its lines as shapes.

@@ -7,8 +7,9 @@ use belvedere_core::DVec2;
 use belvedere_scene::{Color, Symbol};
 
 const PAD: f64 = 8.0;
-/// Letters of titles, legends and notes, and distances of their baselines.
-const TITLE_PX: f64 = 22.0;
+/// Letters of titles by the smaller side of the picture: up to the first number they have the first size, and so on.
+const TITLES_PX: [(f64, f64); 3] = [(480.0, 17.0), (1000.0, 24.0), (f64::INFINITY, 34.0)];
+/// Letters of legends and notes, and distances of their baselines.
 const LETTERS_PX: f64 = 12.0;
 const SMALL_PX: f64 = 10.0;
 const LEADING: f64 = 1.3;
@@ -65,6 +66,7 @@ pub(super) struct Block {
     rows: Vec<Set>,
     letters: f64,
     size: DVec2,
+    /// Whether it stands on paper; else its letters have a halo.
     paper: bool,
 }
 
@@ -118,8 +120,11 @@ pub(super) fn listed(before: &str, names: &[String]) -> String {
 }
 
 impl Block {
-    pub(super) fn title(text: &str, width: f64) -> Self {
-        Self::texts(&[text.to_owned()], TITLE_PX, width)
+    /// The title of a picture of some size: large letters with a halo.
+    pub(super) fn title(text: &str, size: DVec2) -> Self {
+        let side = size.min_element();
+        let letters = TITLES_PX.iter().find(|(most, _)| side <= *most).map_or(LETTERS_PX, |(_, letters)| *letters);
+        Self { paper: false, ..Self::texts(&[text.to_owned()], letters, 0.8 * size.x) }
     }
 
     /// Attribution, source and date.
@@ -172,7 +177,8 @@ impl Block {
         }
         let mut y = at.y + PAD;
         for row in &self.rows {
-            row.draw(canvas, DVec2::new(at.x + PAD, y), self.letters);
+            let halo = (!self.paper).then_some((PAPER.with_alpha(225), (self.letters / 8.0).max(2.0)));
+            row.draw(canvas, DVec2::new(at.x + PAD, y), (self.letters, halo));
             y += row.height;
         }
     }
@@ -202,11 +208,12 @@ fn set(row: &Row, letters: f64, width: f64) -> Set {
 }
 
 impl Set {
-    fn draw(&self, canvas: &mut Canvas<'_>, at: DVec2, letters: f64) {
+    /// * `halo`: its colour and width.
+    fn draw(&self, canvas: &mut Canvas<'_>, at: DVec2, (letters, halo): (f64, Option<(Color, f64)>)) {
         let leading = (letters * LEADING).ceil();
         for (i, line) in self.lines.iter().enumerate() {
             let baseline = at + DVec2::new(self.left, 0.80 * letters + 1.0 + leading * i as f64);
-            canvas.text(baseline, letters, line, INK, None);
+            canvas.text(baseline, letters, line, INK, halo);
         }
         let x = self.left - SAMPLE - BESIDE;
         let middle = at + DVec2::new(x + 0.5 * SAMPLE, 0.5 * letters + 1.0);

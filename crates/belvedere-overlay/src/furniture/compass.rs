@@ -13,14 +13,15 @@ const RADIUS_PX: f64 = 46.0;
 const MOST_SHARE: f64 = 0.10;
 /// A rose on ground that is seen flatter than this cannot be read: shortest by longest radius.
 const FLATTEST: f64 = 0.13;
-/// Side of the small rose.
-pub(super) const CORNER_SIDE: f64 = 52.0;
+/// Largest height of a rose with its letter, as a share of the picture's height, and of the letter in that.
+const MOST_HEIGHT: f64 = 0.04;
+const LETTER_SHARE: f64 = 0.42;
+/// Largest side of the small rose.
+const MOST_SIDE: f64 = 52.0;
 
 const WHITE: Color = Color::rgb(255, 255, 255);
 /// Colour of the part of a rose that points to the north.
 const NORTH: Color = Color::rgb(213, 94, 0);
-const LETTERS: [(&str, [f64; 2], f64); 4] =
-    [("N", [0.0, 1.0], 14.0), ("E", [1.0, 0.0], 10.0), ("S", [0.0, -1.0], 10.0), ("W", [-1.0, 0.0], 10.0)];
 /// Places that are tried, shares of the picture.
 const COLUMNS: [f64; 9] = [0.12, 0.88, 0.2, 0.8, 0.3, 0.7, 0.4, 0.6, 0.5];
 const ROWS: [f64; 5] = [0.88, 0.82, 0.76, 0.70, 0.62];
@@ -35,7 +36,8 @@ pub(super) struct Rose {
     ring: Vec<DVec2>,
     /// Halves of the points, north first, the western half before the eastern one.
     halves: Vec<[Vec<DVec2>; 2]>,
-    letters: [DVec2; 4],
+    /// Middle of the letter at its northern end, and its height.
+    letter: (DVec2, f64),
     centre: DVec2,
     bounds: Rect,
     /// Radius on the ground, scene units.
@@ -92,8 +94,13 @@ fn rose(subject: &Subject<'_>, sighted: &Sighted<'_>, at: DVec3) -> Option<(f64,
     let [px, py] = sighted.per_unit(at)?;
     let to_px = |v: DVec2| v.x * px + v.y * py;
     let [longest, shortest] = radii(to_px(east), to_px(north));
+    let most = MOST_HEIGHT * sighted.size().y;
+    let letter_px = LETTER_SHARE * most;
+    let ratio = shortest / longest;
+    // The images of the unit vectors span an ellipse of this half height.
+    let half_height = to_px(east).y.hypot(to_px(north).y);
     let target = (RADIUS_PX * subject.density).min(MOST_SHARE * sighted.size().min_element());
-    let (ratio, radius) = (shortest / longest, target / longest);
+    let radius = (target / longest).min(0.5 * (0.97 * most - 1.1 * letter_px) / half_height.max(1e-9));
     if !(ratio >= FLATTEST && radius.is_finite() && radius > 0.0) {
         return None;
     }
@@ -135,13 +142,11 @@ fn rose(subject: &Subject<'_>, sighted: &Sighted<'_>, at: DVec3) -> Option<(f64,
     };
     let halves = (0..4).map(|q| Some([half(-1.0, q)?, half(1.0, q)?])).collect::<Option<Vec<_>>>()?;
     let centre = image(0.0, 0.0)?;
-    let mut letters = [DVec2::ZERO; 4];
-    for (to, (_, [u, v], letter_px)) in letters.iter_mut().zip(LETTERS) {
-        let tip = image(u, v)?;
-        *to = tip + (tip - centre).normalize_or(-DVec2::Y) * 0.75 * letter_px * subject.density;
-    }
-    let bounds = around(ring.iter().chain(&letters).copied(), 8.0 * subject.density)?;
-    Some((ratio, Rose { at, north, ring, halves, letters, centre, bounds, reach: radius }))
+    let tip = image(0.0, 1.0)?;
+    let letter = tip + (tip - centre).normalize_or(-DVec2::Y) * 0.6 * letter_px;
+    let corners = [letter - 0.5 * letter_px, letter + 0.5 * letter_px];
+    let bounds = around(ring.iter().copied().chain(corners), 2.0 * subject.density)?;
+    Some((ratio, Rose { at, north, ring, halves, letter: (letter, letter_px), centre, bounds, reach: radius }))
 }
 
 /// Longest and shortest radius of the ellipse that the images of two orthogonal unit vectors span.
@@ -176,10 +181,13 @@ impl Rose {
                 canvas.line(&rim, 0.8 * density, dark);
             }
         }
-        for ((text, _, letter_px), at) in LETTERS.into_iter().zip(self.letters) {
-            write(canvas, at, letter_px * density, text, density);
-        }
+        write(canvas, self.letter.0, self.letter.1, "N", density);
     }
+}
+
+/// Side of the small rose in a picture of some size.
+pub(super) fn corner_side(size: DVec2) -> f64 {
+    (MOST_HEIGHT * size.y).min(MOST_SIDE)
 }
 
 /// Writes a letter around a point.
@@ -208,17 +216,16 @@ impl Small {
         CompassRecord { on_ground: false, at: self.at.to_array(), north: self.north.to_array(), north_px }
     }
 
-    /// Draws the rose into a square with its upper left corner at `at`.
-    pub(super) fn draw(&self, canvas: &mut Canvas<'_>, at: DVec2) {
-        let (centre, along) = (at + 0.5 * CORNER_SIDE, self.north_px);
+    /// Draws the rose into a square with its upper left corner at `at`: an arrow, and the letter at its foot.
+    pub(super) fn draw(&self, canvas: &mut Canvas<'_>, at: DVec2, side: f64) {
+        let (centre, along) = (at + 0.5 * side, self.north_px);
         let across = along.perp();
-        canvas.disc(centre, 0.5 * CORNER_SIDE, PAPER);
-        let point = |u: f64, v: f64| centre + 0.5 * CORNER_SIDE * (u * across + v * along);
-        let (tip, tail) = (point(0.0, 0.5), point(0.0, -0.62));
-        canvas.polygon([&[tip, point(-0.26, -0.2), point(0.0, -0.1)][..]], NORTH);
-        canvas.polygon([&[tip, point(0.26, -0.2), point(0.0, -0.1)][..]], INK);
-        canvas.line(&[point(0.0, -0.1), tail], 1.4, INK);
-        write(canvas, point(0.0, 0.76), 12.0, "N", 1.0);
+        canvas.disc(centre, 0.5 * side, PAPER);
+        let point = |u: f64, v: f64| centre + 0.5 * side * (u * across + v * along);
+        let (tip, middle) = (point(0.0, 0.92), point(0.0, 0.16));
+        canvas.polygon([&[tip, point(-0.42, -0.04), middle][..]], NORTH);
+        canvas.polygon([&[tip, point(0.42, -0.04), middle][..]], INK);
+        write(canvas, point(0.0, -0.46), LETTER_SHARE * side, "N", 0.0);
     }
 }
 

@@ -129,12 +129,13 @@ impl Plan {
     pub fn new(subject: &Subject<'_>) -> Self {
         let mut plan = Self::default();
         let doc = subject.doc;
-        if !wants_any(doc) {
-            return plan;
-        }
         let mut stacks = Stacks { placed: Vec::new(), size: subject.size() };
         for (corner, size) in &subject.reserved {
-            stacks.place(*corner, *size);
+            let at = stacks.place(*corner, *size);
+            plan.keep_clear.extend(at.map(|at| [at, at + *size].map(|p| p * subject.density)));
+        }
+        if !wants_any(doc) {
+            return plan;
         }
         plan.title(subject, &mut stacks);
         plan.notes(subject, &mut stacks);
@@ -179,7 +180,7 @@ impl Plan {
             }
             return;
         };
-        let block = Block::title(&text, 0.8 * subject.size().x);
+        let block = Block::title(&text, subject.size());
         match stacks.place(subject.doc.title_at, block.size()) {
             Some(at) => {
                 self.record.title = Some(text);
@@ -220,14 +221,14 @@ impl Plan {
             self.record.compass = Some(rose.record());
             return self.put("compass", 1.0, |canvas| rose.draw(canvas, density), None);
         }
-        let side = compass::CORNER_SIDE;
+        let side = compass::corner_side(subject.size());
         let small = compass::in_corner(subject, sighted)
             .and_then(|small| Some((small, stacks.place(subject.doc.compass_at, DVec2::splat(side))?)));
         match small {
             Some((small, at)) => {
                 self.keep_clear.push([at, at + side].map(|p| p * density));
                 self.record.compass = Some(small.record());
-                self.put("compass", density, |canvas| small.draw(canvas, at), None);
+                self.put("compass", density, |canvas| small.draw(canvas, at, side), None);
             }
             None => self.record.left_out.push("compass"),
         }

@@ -2,7 +2,8 @@ use super::*;
 use crate::notes::ClassNote;
 use belvedere_core::{DVec3, Pinhole, Projection};
 use belvedere_scene::{
-    Color, Heightfield, Hidden, Mesh, MeshColors, MeshLayer, PointFeature, PointLayer, PointStyle, Symbol,
+    Color, FeatureStyle, Heightfield, Hidden, LineClass, LineFeature, LineLayer, Mesh, MeshColors, MeshLayer,
+    PointFeature, PointLayer, PointStyle, Symbol,
 };
 
 /// Gentle hills of 8 km, 40 m a cell.
@@ -125,7 +126,88 @@ fn classes_of_buildings_are_rows_of_the_legend() {
 #[test]
 fn nothing_is_drawn_unless_it_is_asked_for() {
     let plan = plan(&hills(), &FurnitureDoc::default(), ([900, 600], 1.0));
-    assert!(plan.kinds.is_empty() && plan.keep_clear.is_empty() && plan.record.is_empty());
+    assert!(plan.kinds.is_empty() && plan.record.is_empty());
+    // Names stay off the mark all the same.
+    assert_eq!(plan.keep_clear, [[DVec2::new(690.0, 566.0), DVec2::new(890.0, 590.0)]]);
+}
+
+#[test]
+fn titles_stand_on_no_paper_and_grow_with_the_picture() {
+    let letters = |image: [u32; 2]| {
+        let doc = FurnitureDoc { title: Some(SwitchOrText::Switch(true)), ..FurnitureDoc::default() };
+        let plan = plan(&hills(), &doc, (image, 1.0));
+        let shapes = &plan.kinds.iter().find(|(name, _)| *name == "title").expect("a title").1;
+        assert!(shapes.iter().all(|shape| matches!(shape, CanvasShape::Text { .. })), "{shapes:?}");
+        let CanvasShape::Text { size, halo, .. } = &shapes[0] else { unreachable!("texts alone") };
+        assert!(halo.is_some());
+        *size
+    };
+    assert_eq!([[600, 400], [900, 600], [1920, 1200]].map(letters), [17.0, 24.0, 34.0]);
+}
+
+#[test]
+fn a_title_that_is_asked_for_and_has_no_words_is_told() {
+    let doc = FurnitureDoc { title: Some(SwitchOrText::Switch(true)), ..FurnitureDoc::default() };
+    let nameless = Scene { title: String::new(), ..hills() };
+    assert_eq!(plan(&nameless, &doc, ([900, 600], 1.0)).record.left_out, ["title"]);
+    let off = FurnitureDoc { title: Some(SwitchOrText::Switch(false)), ..FurnitureDoc::default() };
+    assert!(plan(&nameless, &off, ([900, 600], 1.0)).record.is_empty());
+}
+
+#[test]
+fn a_compass_is_no_higher_than_a_twentyfifth_of_the_picture() {
+    for (image, density) in [([900, 600], 1.0), ([1280, 720], 1.0), ([1800, 1200], 2.0), ([400, 900], 1.0)] {
+        for place in [CompassPlace::Ground, CompassPlace::Corner] {
+            let doc = FurnitureDoc { compass: Some(CompassDoc::At(place)), ..FurnitureDoc::default() };
+            let plan = plan(&hills(), &doc, (image, density));
+            let shapes = &plan.kinds.iter().find(|(name, _)| *name == "compass").expect("a compass").1;
+            let rect = plan.keep_clear.last().expect("kept clear");
+            // On the ground 2 pixels around it are kept clear, too.
+            let beside = if place == CompassPlace::Ground { 4.0 * density } else { 0.0 };
+            let share = (rect[1].y - rect[0].y - beside) / f64::from(image[1]);
+            assert!((0.015..=0.0401).contains(&share) && !shapes.is_empty(), "{place:?} in {image:?}: {share}");
+        }
+    }
+}
+
+#[test]
+fn classes_of_lines_have_a_row_each_in_their_own_look_and_layers_share_them() {
+    let line = |class: Option<LineClass>| {
+        let style = class.map(|class| FeatureStyle {
+            class: Some(class),
+            color: Some(class.look().color),
+            casing: Some(class.look().casing),
+            scale: class.look().width_px / 3.0,
+            ..FeatureStyle::default()
+        });
+        LineFeature { name: String::new(), style, points: vec![DVec3::ZERO, DVec3::X] }
+    };
+    let layer =
+        |lines: &[Option<LineClass>]| LineLayer::new(lines.iter().copied().map(line).collect(), Color::rgb(200, 0, 0));
+    let (river, road) = (Some(LineClass::River), Some(LineClass::Road));
+    let mut scene = Scene::default()
+        .with_layer("gr_11", layer(&[None]))
+        .with_layer("map", layer(&[river, road, river]))
+        .with_layer("more", layer(&[road]));
+    scene.layers[0].must_see = true;
+    let subject = Subject {
+        doc: &FurnitureDoc::default(),
+        scene: &scene,
+        view: &view([900, 600]),
+        notes: &LayerNotes::default(),
+        files: Vec::new(),
+        density: 1.0,
+        reserved: Vec::new(),
+        north: &|_| DVec2::Y,
+        today: None,
+    };
+    let rows = legend::rows(&subject);
+    let words: Vec<&str> = rows.iter().map(|row| row.words.as_str()).collect();
+    assert_eq!(words, ["gr 11", "Road", "River"]);
+    let look = LineClass::River.look();
+    let block::Sign::Line { color, casing, width } = rows[2].sign else { panic!("{:?}", rows[2]) };
+    assert_eq!((color, casing), (look.color, Some(look.casing)));
+    assert!((width - look.width_px).abs() < 1e-9);
 }
 
 #[test]

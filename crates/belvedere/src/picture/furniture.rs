@@ -3,15 +3,16 @@
 use super::options::PictureOptions;
 use crate::Session;
 use crate::scene_file::Corner;
+use belvedere_composite::tint::GroundTint;
 use belvedere_core::{DVec2, View};
 use belvedere_io::arrays::SCHEME;
+use belvedere_overlay::badge::Made;
 use belvedere_overlay::furniture::{self, Plan, Subject};
-use belvedere_overlay::{curve_inset, heat};
+use belvedere_overlay::{badge, curve_inset, heat};
 use belvedere_resolve::ground::Ground;
-use belvedere_scene::{Scene, Unit};
+use belvedere_scene::{Cover, Palette, Scene, Unit};
 
-/// Sizes that the mark of bent pictures, the legend of the heat map and that of highlights may take.
-const MARK: DVec2 = DVec2::new(270.0, 24.0);
+/// Sizes that the legend of the heat map and that of highlights may take.
 const HEAT: DVec2 = DVec2::new(210.0, heat::LEGEND_HEIGHT);
 const HIGHLIGHT: DVec2 = DVec2::new(250.0, 150.0);
 /// Part of a degree of latitude over which the direction to the north is taken.
@@ -35,8 +36,10 @@ pub(super) fn plan(
     let bent = !request.straight && view.is_bent();
     let inset = overlay.inset.is_some() && view.spline_bend().is_some();
     let smaller = view.pinhole().image.map(f64::from).into_iter().fold(f64::INFINITY, f64::min) / request.density;
+    let [width, height] = view.pinhole().image.map(|side| (f64::from(side) / request.density) as usize);
+    let mark = badge::room(width, scene.unit, made_ground(session));
     let reserved = [
-        (bent && overlay.mark && !request.no_mark, Corner::BottomRight, MARK),
+        (bent && overlay.mark && !request.no_mark && badge::fits(width, height), Corner::BottomRight, mark),
         (heatmap, Corner::BottomLeft, HEAT),
         (bent && highlight, Corner::BottomLeft, HIGHLIGHT),
         (inset, Corner::TopLeft, curve_inset::room(smaller)),
@@ -64,6 +67,24 @@ pub(super) fn plan(
         north: &|xy| if scene.unit == Unit::Metre { north(&ground, xy) } else { DVec2::Y },
         today: today(),
     })
+}
+
+/// Share of a ground of which no land cover is known, up to which the mark says that its materials are data.
+const UNKNOWN: f64 = 0.05;
+
+/// What the grounds of a scene show by rule.
+pub(super) fn made_ground(session: &Session) -> Made {
+    let mut made = Made::Nothing;
+    for terrain in session.scene().layers.iter().filter_map(|layer| layer.kind.terrain()) {
+        let tint = GroundTint::new(&terrain.palette, terrain.heightfield.z_range());
+        let land = if let Palette::Placed(_, _, Some(land)) = &terrain.palette { Some(land) } else { None };
+        match land {
+            _ if !tint.is_made() => {}
+            Some(land) if land.share(Cover::Unknown) <= UNKNOWN => made = made.max(Made::Relief),
+            _ => made = Made::Materials,
+        }
+    }
+    made
 }
 
 /// Direction of true north at a place; that of y without georeference.

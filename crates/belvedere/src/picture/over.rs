@@ -1,17 +1,15 @@
 //! What lies over a picture beside its marks: legends, the inset, furniture and the mark of bent pictures.
 
 use super::displacement::DisplacementReport;
+use super::furniture::made_ground;
 use super::options::PictureOptions;
 use super::plan::Plan;
 use super::sidecar::OverlayRecord;
 use crate::Session;
 use crate::scene_file::Inset;
 use belvedere_composite::canvas::Canvas;
-use belvedere_composite::tint::GroundTint;
-use belvedere_overlay::badge::Made;
 use belvedere_overlay::highlight::HighlightRecord;
 use belvedere_overlay::{badge, curve_inset, heat, highlight};
-use belvedere_scene::{Cover, Palette};
 
 /// Distance between legends, pixels.
 const GAP: f64 = 10.0;
@@ -108,24 +106,6 @@ fn mark_words(
         _ if request.steady_mark => Some(badge::WORDS.to_owned()),
         moved => moved.map(|moved| badge::words(width, moved.max_m, session.scene().unit, made_ground(session))),
     }
-}
-
-/// Share of a ground of which no land cover is known, up to which the mark says that its materials are data.
-const UNKNOWN: f64 = 0.05;
-
-/// What the grounds of a scene show by rule.
-fn made_ground(session: &Session) -> Made {
-    let mut made = Made::Nothing;
-    for terrain in session.scene().layers.iter().filter_map(|layer| layer.kind.terrain()) {
-        let tint = GroundTint::new(&terrain.palette, terrain.heightfield.z_range());
-        let land = if let Palette::Placed(_, _, Some(land)) = &terrain.palette { Some(land) } else { None };
-        match land {
-            _ if !tint.is_made() => {}
-            Some(land) if land.share(Cover::Unknown) <= UNKNOWN => made = made.max(Made::Relief),
-            _ => made = Made::Materials,
-        }
-    }
-    made
 }
 
 /// Draws the curve of a spline; whether the picture is large enough.

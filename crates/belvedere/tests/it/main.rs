@@ -11,6 +11,7 @@ mod films;
 mod framed;
 mod hidden_layers;
 mod letters;
+mod line_classes;
 mod memory;
 mod moving_pictures;
 mod names;

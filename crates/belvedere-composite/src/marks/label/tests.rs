@@ -6,7 +6,11 @@ use std::collections::HashMap;
 const BLACK: Color = Color::rgb(0, 0, 0);
 
 fn place(requests: Vec<LabelRequest>, size: DVec2, keep_clear: &[Rect]) -> Labels {
-    Labels::place(requests, &Page { size, density: 1.0, fonts: &Fonts::default(), keep_clear }, Choice::Free)
+    Labels::place(
+        requests,
+        &Page { size, density: 1.0, fonts: &Fonts::default(), keep_clear, must_see: Occupied::new(48.0) },
+        Choice::Free,
+    )
 }
 
 fn summit(i: usize, at: DVec2) -> LabelRequest {
@@ -42,6 +46,37 @@ fn names_do_not_overlap_and_the_first_come_first() {
 }
 
 #[test]
+fn names_stay_off_what_must_be_seen_unless_they_name_it_and_those_left_out_are_counted() {
+    let size = DVec2::new(300.0, 200.0);
+    // A route across the picture, over the place where the name would stand.
+    let route = || {
+        let mut taken = Occupied::new(16.0);
+        (0..75).for_each(|i| {
+            taken.take([DVec2::new(4.0 * f64::from(i), 84.0), DVec2::new(4.0 * f64::from(i + 1), 90.0)], 1)
+        });
+        taken
+    };
+    let place = |layer: u32, must_see: Occupied| {
+        let request = LabelRequest { layer, ..LabelRequest::new("Hut", DVec2::new(150.0, 100.0), 13.0, BLACK) };
+        Labels::place(
+            vec![request],
+            &Page { size, density: 1.0, fonts: &Fonts::default(), keep_clear: &[], must_see },
+            Choice::Free,
+        )
+    };
+    let boxes = |labels: &Labels| labels.placed.iter().flat_map(|p| p.candidate.boxes.clone()).collect::<Vec<_>>();
+    let (own, other) = (place(1, route()), place(2, route()));
+    let line = [DVec2::new(0.0, 84.0), DVec2::new(300.0, 90.0)];
+    assert!(boxes(&own).iter().any(|r| overlap(r, &line)), "the name of the route itself may stand there");
+    assert!(!boxes(&other).is_empty() && boxes(&other).iter().all(|r| !overlap(r, &line)));
+    assert_eq!((own.left_out(), other.left_out()), (0, 0));
+    let mut all = Occupied::new(16.0);
+    all.take([DVec2::ZERO, size], 1);
+    let none = place(2, all);
+    assert_eq!((none.placed.len(), none.left_out()), (0, 1));
+}
+
+#[test]
 fn names_keep_clear_of_what_is_kept_clear() {
     let size = DVec2::new(400.0, 300.0);
     let legend = [DVec2::new(150.0, 120.0), DVec2::new(400.0, 300.0)];
@@ -68,7 +103,7 @@ fn drifting(frames: usize, held: bool) -> Vec<HashMap<String, (belvedere_scene::
             })
             .collect();
         let fonts = Fonts::default();
-        let page = Page { size, density: 1.0, fonts: &fonts, keep_clear: &[] };
+        let page = Page { size, density: 1.0, fonts: &fonts, keep_clear: &[], must_see: Occupied::new(48.0) };
         let none = NameMemory::default();
         let labels = Labels::place(requests, &page, Choice::Next(if held { &memory } else { &none }, Patience(5)));
         assert_apart(&labels, size);
@@ -109,7 +144,13 @@ fn names_keep_their_places_while_summits_drift_past_each_other() {
 fn names_given_beforehand_stand_where_they_were_placed() {
     let requests = |n: usize| (0..n).map(|i| summit(i, DVec2::new(100.0 + 7.0 * i as f64, 230.0))).collect();
     let (fonts, none) = (Fonts::default(), NameMemory::default());
-    let page = Page { size: DVec2::new(400.0, 300.0), density: 1.0, fonts: &fonts, keep_clear: &[] };
+    let page = Page {
+        size: DVec2::new(400.0, 300.0),
+        density: 1.0,
+        fonts: &fonts,
+        keep_clear: &[],
+        must_see: Occupied::new(48.0),
+    };
     let first = Labels::place(requests(20), &page, Choice::Next(&none, Patience(3)));
     let free = Labels::place(requests(20), &page, Choice::Free);
     assert_eq!(first.placed, free.placed, "the first frame is that of a picture");
@@ -207,7 +248,7 @@ fn two_thousand_names_on_a_poster_stand_apart_and_are_placed_in_time() {
         let request = LabelRequest::new(text, line[450], 13.0 * density, BLACK);
         LabelRequest { along, line: (line.clone(), *half), marker: [*half; 2], ..request }
     }));
-    let page = Page { size, density, fonts: &Fonts::default(), keep_clear: &[] };
+    let page = Page { size, density, fonts: &Fonts::default(), keep_clear: &[], must_see: Occupied::new(48.0) };
     let labels = Labels::place(requests, &page, Choice::Free);
     let taken = started.elapsed();
     assert!(taken.as_secs_f64() < 5.0, "{taken:?}");
