@@ -36,8 +36,8 @@ pub const SCENES: &[DemoScene] = &[
         bends_rays: true,
     },
     DemoScene {
-        name: "massif_lake_terrain",
-        text: include_str!("../../../scenes/massif_lake_terrain.toml"),
+        name: "massif_terrain",
+        text: include_str!("../../../scenes/massif_terrain.toml"),
         sentence: "The rays stay straight and the ground makes way: ridges sink just as far as they must, and the road, the trail and the lake behind them are seen.",
         bends_rays: false,
     },
@@ -134,6 +134,7 @@ fn section(scene: &DemoScene, sidecar: &Sidecar, measures: &Measures) -> String 
     format!(
         "<section>\n<h2>{title}</h2>\n<p>{sentence}</p>\n<figure>\n{picture}\n\
          <figcaption><span>{straight}</span><span>{bent}</span></figcaption>\n</figure>\n\
+         <p><code>belvedere render {name}.toml -o mine.png --compare</code></p>\n\
          {cameras}<p class=\"small\">{moved}<a href=\"{name}.toml\">Scene</a> · <a href=\"{name}.png.json\">record</a></p>\n</section>\n",
     )
 }
@@ -154,7 +155,8 @@ fn page(sections: &str) -> String {
         "<h1>Belvedere {}</h1>\n\
          <p>Left, an ordinary picture. Right, the same camera with its view bent so that what matters is no longer hidden; \
          dashes mark where the route runs behind something. Bent pictures are not to scale and not for navigation.</p>\n\
-         {sections}<p class=\"small\">Change a scene and draw it again: <code>belvedere render street.toml -o mine.png --compare</code></p>\n",
+         {sections}<p class=\"small\">Change a scene and draw it again by the command under its picture. Your own data: \
+         <code>belvedere reveal dem.tif route.gpx -o route.png</code></p>\n",
         belvedere::VERSION
     );
     html::page("Belvedere: straight and bent", "", &body)

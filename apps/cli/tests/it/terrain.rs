@@ -439,9 +439,9 @@ fn what_lies_beyond_the_distance_ahead_is_not_asked_for() {
 fn the_demo_finds_a_displacement_in_its_way_before_it_draws() {
     let place = Place::new();
     std::fs::create_dir(place.path("demo")).expect("folder");
-    place.write("demo/massif_lake_terrain.delta.tif", "mine");
+    place.write("demo/massif_terrain.delta.tif", "mine");
     let line = place.fails(&["demo", "-o", "demo"]);
-    assert!(line.contains("massif_lake_terrain.delta.tif") && !place.path("demo/massif.png").exists(), "{line}");
+    assert!(line.contains("massif_terrain.delta.tif") && !place.path("demo/massif.png").exists(), "{line}");
 }
 
 #[test]

@@ -19,6 +19,9 @@ const PATCH_M: f32 = 900.0;
 /// Largest clumps of trees, metres, and the number of sizes down to single crowns, each half of the one before.
 const CLUMP_M: f32 = 150.0;
 const CLUMPS: u32 = 6;
+/// Largest tufts of grass and stones, metres, and the number of sizes.
+const TUFT_M: f32 = 22.0;
+const TUFTS: u32 = 4;
 /// Height over its surroundings that makes a ridge, metres.
 const RIDGE_M: f32 = 28.0;
 /// Heights between two layers of rock in walls of dry climates, metres.
@@ -74,7 +77,7 @@ impl Colors {
                 alpine: linear([184, 158, 96]),
                 valley: linear([180, 172, 108]),
                 conifers: linear([62, 78, 46]),
-                broadleaves: linear([176, 108, 44]),
+                broadleaves: linear([172, 116, 62]),
                 ..summer
             },
             Season::Winter => Self {
@@ -158,6 +161,7 @@ impl Materials {
         let patch = fractal(nodes, PATCH_M, 3, 57);
         let crowns = fractal(nodes, CLUMP_M, CLUMPS, 401);
         let layers = self.layers(nodes, &fray);
+        let tufts = fractal(nodes, TUFT_M, TUFTS, 733);
         let mut out = GroundCover { color: [[0.0; N]; 3], forest: [0.0; N], bare: [0.0; N], snow: [0.0; N] };
         for i in 0..N {
             let (height, [x, y]) = (nodes.height_m[i], nodes.slope.map(|s| s[i]));
@@ -176,6 +180,7 @@ impl Materials {
                 }
             };
             let color = color.lerp(self.colors.snow, snow * (1.0 - 0.97 * forest));
+            let color = color * (1.0 + 0.22 * tufts[i] * (1.0 - forest));
             for (plane, v) in out.color.iter_mut().zip(color.to_array()) {
                 plane[i] = v;
             }

@@ -1,7 +1,7 @@
 use super::ramps::{ALPINE, CLEAR, DESERT, GLACIAL, GREY, ramp_at};
 use super::*;
 use crate::color::{Rgb, linear};
-use belvedere_scene::{Climate, Color, Ramp, RampHeight, RampStop};
+use belvedere_scene::{Climate, Color, Cover, CoverMap, Ramp, RampHeight, RampStop};
 use std::sync::Arc;
 
 /// Simulations of dichromatic vision in linear RGB (Machado, Oliveira, Fernandes 2009, severity 1).
@@ -162,4 +162,40 @@ fn a_ramp_of_its_own_colours_the_ground_as_it_says() {
     let clear = Ramp { stops: vec![stop(0.0, low.with_alpha(0))], ..Ramp::default() };
     let tint = GroundTint::new(&Palette::Ramp(Arc::new(clear)), [0.0, 1000.0]);
     assert!((color(&tint, 5.0, 0.0) - linear(GREY)).abs().max_element() < 1e-3);
+}
+
+#[test]
+fn land_cover_decides_where_it_is_known_and_the_rules_where_it_is_not() {
+    let classes = [Cover::Unknown, Cover::Forest, Cover::Grass, Cover::BuiltUp, Cover::Ice, Cover::Water, Cover::Bare];
+    let cells: Vec<Cover> = classes.iter().flat_map(|cover| [*cover; 32]).collect();
+    let (cols, from, spacing) = (cells.len(), [0.0; 2], [100.0, 1e6]);
+    let land = CoverMap { from, spacing, cols, cells, legend: "test" };
+    let climate = Climate::at(9.0, 46.5);
+    let tint = |land| GroundTint::new(&Palette::Placed(PaletteName::Auto, climate, land), [400.0, 4200.0]);
+    let (known, ruled) = (tint(Some(Arc::new(land))), tint(None));
+    for (k, class) in classes.into_iter().enumerate() {
+        // The middle of the cells of a class, on a gentle meadow far below the line of trees.
+        let east: [f32; 16] = std::array::from_fn(|i| 100.0 * (32 * k + 8 + i) as f32);
+        let nodes = GroundNodes {
+            height_m: &[700.0; 16],
+            slope: [&[0.02; 16], &[0.03; 16]],
+            broad: [&[0.02; 16], &[0.03; 16]],
+            above_m: &[0.0; 16],
+            at_m: [&east, &[0.0; 16]],
+            spacing_m: 100.0,
+        };
+        let (a, b) = (known.cover(&nodes), ruled.cover(&nodes));
+        let all = |of: [f32; 16], wanted: f32| of.iter().all(|v| (v - wanted).abs() < 1e-6);
+        assert!(a.color.iter().flatten().chain(&a.snow).all(|v| v.is_finite() && *v >= 0.0), "{class:?}");
+        match class {
+            Cover::Unknown => assert_eq!((a.color, a.forest), (b.color, b.forest)),
+            Cover::Forest => assert!(all(a.forest, 1.0) && all(a.bare, 0.0), "{:?}", a.forest),
+            Cover::Ice => assert!(all(a.snow, 1.0) && all(a.forest, 0.0)),
+            Cover::Bare => assert!(a.bare.iter().any(|bare| *bare > 0.1) && all(a.forest, 0.0), "{:?}", a.bare),
+            _ => assert!(all(a.forest, 0.0) && all(a.bare, 0.0) && all(a.snow, 0.0), "{class:?}"),
+        }
+        if class == Cover::Water {
+            assert!(a.color[2][0] > a.color[0][0], "water is blue");
+        }
+    }
 }

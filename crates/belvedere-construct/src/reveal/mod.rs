@@ -149,15 +149,17 @@ pub fn reveal(
         bends_tried += framed.tried;
         (base, start) = (framed.base, framed.bend.map(|(start, _)| start));
     }
-    let mut best = None;
+    let mut bend = None;
     if let Some(start) = start {
         let (found, tried) = choose::candidate(&evaluator, &base, &start, 8, options, progress);
         bends_tried += tried;
-        if let Some((start, found)) = found {
-            memory.start = Some(start);
-            best = Some(found);
-        }
+        bend = found;
     }
+    if free {
+        (base, bend) = polish::widened(&evaluator, base, bend, options, progress);
+    }
+    memory.start = bend.as_ref().map_or(memory.start, |(start, _)| Some(*start));
+    let best = bend.map(|(_, found)| found);
     progress.tick("refining the picture", 1.0)?;
     let total = KINDS.into_iter().map(|kind| total(&features, kind)).find(|total| *total > 0.0).unwrap_or(0.0);
     let found = finish(&evaluator, &base.view, best, options, &Counts { total, eyes_tried, bends_tried, free });

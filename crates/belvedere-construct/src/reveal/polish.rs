@@ -60,6 +60,51 @@ pub(super) fn polished(
     Some(best)
 }
 
+/// Shares by which the field of view of a found picture is widened to hold what lies just outside it, and the part of the features in the picture
+/// from which on all of them are.
+const WIDER: [f64; 4] = [0.01, 0.025, 0.05, 0.08];
+const WHOLE: f64 = 0.9995;
+/// Visible share that a wider picture must gain.
+const GAINED: f64 = 0.0005;
+
+/// A found picture, judged by all samples, or one a little wider that shows more because more of the features lie in it.
+///
+/// * `bend`: the bend, and where its search ended; `None` if the picture is straight.
+pub(super) fn widened(
+    evaluator: &Evaluator<'_>,
+    base: Base,
+    bend: Option<(SearchStart, Candidate)>,
+    options: &RevealOptions,
+    progress: &Progress,
+) -> (Base, Option<(SearchStart, Candidate)>) {
+    let judged = |base: &Base, bend: &Option<(SearchStart, Candidate)>| {
+        evaluator.evaluate(bend.as_ref().map_or(&base.view, |(_, found)| &found.built.view), 1)
+    };
+    let mut seen = judged(&base, &bend);
+    let (first, start) = (base.clone(), bend.as_ref().map(|(start, _)| *start));
+    let mut best = (base, bend);
+    for zoom in WIDER {
+        if seen.in_frame >= WHOLE || progress.should_end() {
+            break;
+        }
+        let Some(view) = moved(&first.view, [0.0, 0.0, zoom], options.fov_y) else { break };
+        let straight = evaluator.evaluate(&view, stride_for(evaluator.samples.len(), options));
+        let base = Base { view, straight, ..first.clone() };
+        let bend = match &start {
+            None => None,
+            Some(start) => match candidate(evaluator, &base, start, 0, options, progress).0 {
+                Some(found) => Some(found),
+                None => continue,
+            },
+        };
+        let next = judged(&base, &bend);
+        if next.visible >= seen.visible + GAINED {
+            (best, seen) = ((base, bend), next);
+        }
+    }
+    best
+}
+
 fn framed(
     evaluator: &Evaluator<'_>,
     base: Base,

@@ -6,7 +6,7 @@ use belvedere_scene::Heightfield;
 /// Nodes along the longer side of the ground by which it is framed, at most about.
 const ALONG: usize = 160;
 /// Rows of the picture, from its top, that the highest and the nearest ground come to, as shares of its height.
-const WHOLE_ROWS: [f64; 2] = [0.165, 0.94];
+const WHOLE_ROWS: [f64; 2] = [0.14, 0.94];
 const PART_ROWS: [f64; 2] = [0.36, 0.9];
 /// Vertical fields of view, degrees: a long lens keeps the far side of a whole ground wide, a short one shows the horizon over a part.
 const WHOLE_FOV: f64 = 20.0;

@@ -21,6 +21,9 @@ const GENTLE_SLOPE: f32 = 0.25;
 /// Factor on the openness of a point in a Swiss relief, relative to the light of the sky.
 const FORM: f32 = 2.5;
 
+/// Openness that the deepest gullies keep, so that no shade is black.
+const LEAST_OPEN: f32 = 0.2;
+
 /// Share of direct light left in a cast shadow of a Swiss relief, whose light is a drawing technique rather than a sun.
 const SWISS_SHADOW: f32 = 0.4;
 
@@ -141,7 +144,7 @@ impl ReliefLight {
         for i in 0..N {
             let open = 1.0 + form * (open[i] - 1.0);
             let left = self.in_shadow + (1.0 - self.in_shadow) * lit[i];
-            let open = if open > 0.0 { open } else { 0.0 };
+            let open = if open > LEAST_OPEN { open } else { LEAST_OPEN };
             direct[i] = amounts[0] * bright[i] * (constant + per_open * open) * left;
             sky[i] = amounts[1] * (0.5 + 0.5 * z[i]) * open;
         }

@@ -140,7 +140,8 @@ impl Seen {
             ),
         ];
         let colored: Vec<f64> = self.ground.iter().filter(|p| !p.is_snow()).map(|p| f64::from(p.saturation)).collect();
-        if 4 * colored.len() > self.ground.len() {
+        // Land under snow has few colours.
+        if 5 * colored.len() > 3 * self.ground.len() {
             let saturation = colored.iter().sum::<f64>() / colored.len() as f64;
             rules.push(rule("saturation, without snow", saturation, [Some(0.25), Some(0.40)], "palette"));
         }

@@ -290,6 +290,16 @@ const BUMPING: [f32; 2] = [0.66, 0.34];
 const MADE: f32 = 1.5;
 const GULLY_INK: f32 = 0.5;
 
+/// Spacing of nodes from which on averages are shaded steeper, metres, and the most that they are: averages of ground are gentler than it is.
+const AVERAGED_M: f32 = 50.0;
+const MOST_AVERAGED: f32 = 1.8;
+
+/// How much steeper averages of this spacing are shaded than they are.
+#[inline(always)]
+fn averaged(spacing_m: f32) -> f32 {
+    (spacing_m / AVERAGED_M).sqrt().sqrt().clamp(1.0, MOST_AVERAGED)
+}
+
 #[inline(always)]
 fn light_up(
     m: &LightingInputs<'_>,
@@ -313,10 +323,11 @@ fn light_up(
             }
         }
     }
+    let steeper = m.exaggeration * if m.broad.is_some() { averaged(nodes.spacing_m) } else { 1.0 };
     let mut normal = [NOTHING; 3];
     for i in 0..LANES {
         open[i] = openness.at(z[i], near[i], wide[i]);
-        let (a, b) = (slope[0][i] * -m.exaggeration, slope[1][i] * -m.exaggeration);
+        let (a, b) = (slope[0][i] * -steeper, slope[1][i] * -steeper);
         let scale = 1.0 / (a * a + b * b + 1.0).sqrt();
         (normal[0][i], normal[1][i], normal[2][i]) = (a * scale, b * scale, scale);
     }

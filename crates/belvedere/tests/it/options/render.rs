@@ -7,7 +7,7 @@ use belvedere::verbs::asked::opened;
 use belvedere::verbs::open_files::scene_or_data;
 use belvedere::{BelvedereError, OpenOptions};
 use serde_json::{Value, json};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Options that another test tries.
 const ELSEWHERE: [(&str, &str); 4] = [
@@ -20,7 +20,7 @@ const ELSEWHERE: [(&str, &str); 4] = [
     ("compositing", "sections.rs of the renderer"),
 ];
 
-fn rows() -> Vec<(&'static str, Does)> {
+fn rows(folder: &Path) -> Vec<(&'static str, Does)> {
     let none = || json!({});
     let large = || json!({ "size": [320, 180] });
     let molecule = "for molecules, and there is none";
@@ -48,6 +48,7 @@ fn rows() -> Vec<(&'static str, Does)> {
         ("sky", Changes(json!("white"), none())),
         ("haze", Changes(json!(2.0), none())),
         ("contours", Changes(json!(true), none())),
+        ("landcover", Changes(json!(folder.join("way.geojson").display().to_string()), none())),
         ("plain", Changes(json!(true), none())),
         ("edge", Changes(json!("block"), none())),
         ("title", Changes(json!("Hills"), large())),
@@ -78,7 +79,7 @@ fn drawn(scene: &str, asked: &Value) -> Result<Drawn, BelvedereError> {
 fn every_option_of_render_changes_its_answer_or_is_refused_with_a_reason() {
     let folder = tempfile::tempdir().expect("a folder");
     let scene = scene(folder.path());
-    try_all(&options::<Render>(), &ELSEWHERE, rows(), &json!({}), |asked| drawn(&scene, asked));
+    try_all(&options::<Render>(), &ELSEWHERE, rows(folder.path()), &json!({}), |asked| drawn(&scene, asked));
 }
 
 #[test]

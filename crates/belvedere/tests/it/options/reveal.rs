@@ -58,6 +58,7 @@ fn rows(folder: &Path) -> Vec<(&'static str, Does)> {
         ("sky", Changes(json!("white"), none())),
         ("haze", Changes(json!(2.0), none())),
         ("contours", Changes(json!(true), none())),
+        ("landcover", Changes(path("way.geojson"), none())),
         ("plain", Changes(json!(true), none())),
         ("edge", Changes(json!("block"), none())),
         ("title", Changes(json!("Hills"), json!({ "size": [320, 180] }))),
