@@ -44,6 +44,9 @@ class RevealOptions(TypedDict, total=False):
     #: Light the scene as the sun does over the eye at this time, such as 2026-07-01T15:00:00Z or 2026-07-01T17:00+02:00: shading by the sun alone while it is up (unless --relief says otherwise), with cast shadows
     light_time: str | None
 
+    #: What the lines of a file are, as FILE=CLASS, instead of what their properties and the name of the file say: route (drawn as if nothing were known), main_road, road, track, path, railway, lift, river, stream, piste_green, piste_blue, piste_red, piste_black, piste or border; may be given several times
+    line_class: Sequence[Any]
+
     #: White margin of the paper on every side, millimetres; PNG, TIFF, JPEG and WebP leave it out
     margin_mm: float | None
 

@@ -63,7 +63,7 @@ use visibility::{DepthMap, LineVisibility, Run, Station};
 const HIDDEN_WIDTH: f64 = 0.6;
 
 /// All marks of a frame, in the order of drawing: outlines and lines in the order of the layers, then points, whose symbols no line crosses;
-/// first those of context, then those that must be seen.
+/// of each, first those of context, then those that must be seen.
 #[derive(Debug, Default)]
 pub struct Marks {
     under: Vec<StrokeLayer>,
@@ -181,14 +181,14 @@ impl Marks {
         let mut requests = Vec::new();
         let under = overlay.under.iter().filter(with_text).map(|l| builder.overlay_line(l, &mut requests)).collect();
         let (size, density, keep_clear) = (2.0 * screen.center, job.options.density, &job.options.keep_clear[..]);
-        let mut left_out = LeftOut::default();
-        left_out.symbols = symbols::thin([&mut context.symbols, &mut subject.symbols], keep_clear);
-        // What must be seen is drawn over all else.
+        let without_room = symbols::thin([&mut context.symbols, &mut subject.symbols], keep_clear);
+        // Lines, then symbols; of both, what must be seen is drawn over the rest.
         let must_see = subject.lines(density);
         let mut points = PointMarks::default();
-        let mut of_subject = subject.drawn(&builder, &mut points, &mut requests);
-        let mut sheets = context.drawn(&builder, &mut points, &mut requests);
-        sheets.append(&mut of_subject);
+        let [lines, of_subject] = [&mut context, &mut subject].map(|placed| std::mem::take(&mut placed.sheets));
+        let subject = subject.drawn(&builder, &mut points, &mut requests);
+        let context = context.drawn(&builder, &mut points, &mut requests);
+        let mut sheets: Vec<StrokeLayer> = [lines, of_subject, context, subject].into_iter().flatten().collect();
         sheets.extend(overlay.over.iter().filter(with_text).map(|l| builder.overlay_line(l, &mut requests)));
         sheets.extend(overlay.points.iter().map(|p| builder.overlay_point(p, &mut requests)));
         if map.only_asks() {
@@ -199,7 +199,7 @@ impl Marks {
             .iter()
             .flat_map(|f| passes.iter().take(job.view.records()).filter_map(|p| Face::new(f, p, screen)));
         let labels = Labels::place(requests, &Page { size, density, fonts: &fonts, keep_clear, must_see }, choice);
-        left_out.names = labels.left_out();
+        let left_out = LeftOut { symbols: without_room, names: labels.left_out() };
         Self { under, faces: faces.collect(), sheets, drawings: points.drawings, labels, left_out }
     }
 

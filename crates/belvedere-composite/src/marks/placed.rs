@@ -32,16 +32,16 @@ impl Placed {
         taken
     }
 
-    /// Lines, then symbols. Names go into `requests`, drawings into `points`.
+    /// Symbols. Names go into `requests`, drawings into `points`.
     pub(super) fn drawn(
         mut self,
         builder: &MarkBuilder<'_>,
         points: &mut PointMarks,
         requests: &mut Vec<LabelRequest>,
     ) -> Vec<StrokeLayer> {
-        self.sheets.extend(builder.drawn_points(self.symbols, points));
+        let sheets = builder.drawn_points(self.symbols, points);
         requests.append(&mut self.requests);
         requests.append(&mut points.requests);
-        self.sheets
+        sheets
     }
 }

@@ -15,7 +15,11 @@ const MOST_SHARE: f64 = 0.10;
 const FLATTEST: f64 = 0.13;
 /// Largest height of a rose with its letter, as a share of the picture's height, and of the letter in that.
 const MOST_HEIGHT: f64 = 0.04;
-const LETTER_SHARE: f64 = 0.42;
+const LETTER_SHARE: f64 = 0.38;
+/// Share of that height that is planned for: the ground is no plane, and perspective no affine map.
+const ROOM: f64 = 0.96;
+/// From the northern end of a rose to the middle of its letter, in heights of the letter.
+const FROM_TIP: f64 = 0.65;
 /// Largest side of the small rose.
 const MOST_SIDE: f64 = 52.0;
 
@@ -97,10 +101,12 @@ fn rose(subject: &Subject<'_>, sighted: &Sighted<'_>, at: DVec3) -> Option<(f64,
     let most = MOST_HEIGHT * sighted.size().y;
     let letter_px = LETTER_SHARE * most;
     let ratio = shortest / longest;
-    // The images of the unit vectors span an ellipse of this half height.
-    let half_height = to_px(east).y.hypot(to_px(north).y);
+    // The images of the unit vectors span an ellipse of this half height. The letter stands beyond it, beside, above or below.
+    let half_height = to_px(east).y.hypot(to_px(north).y).max(1e-9);
+    let beyond = (to_px(north).normalize_or(-DVec2::Y).y * FROM_TIP).abs() + 0.5;
+    let with_letter = (ROOM * most - beyond * letter_px) / (half_height + to_px(north).y.abs());
     let target = (RADIUS_PX * subject.density).min(MOST_SHARE * sighted.size().min_element());
-    let radius = (target / longest).min(0.5 * (0.97 * most - 1.1 * letter_px) / half_height.max(1e-9));
+    let radius = (target / longest).min(0.5 * ROOM * most / half_height).min(with_letter);
     if !(ratio >= FLATTEST && radius.is_finite() && radius > 0.0) {
         return None;
     }
@@ -143,7 +149,7 @@ fn rose(subject: &Subject<'_>, sighted: &Sighted<'_>, at: DVec3) -> Option<(f64,
     let halves = (0..4).map(|q| Some([half(-1.0, q)?, half(1.0, q)?])).collect::<Option<Vec<_>>>()?;
     let centre = image(0.0, 0.0)?;
     let tip = image(0.0, 1.0)?;
-    let letter = tip + (tip - centre).normalize_or(-DVec2::Y) * 0.6 * letter_px;
+    let letter = tip + (tip - centre).normalize_or(-DVec2::Y) * FROM_TIP * letter_px;
     let corners = [letter - 0.5 * letter_px, letter + 0.5 * letter_px];
     let bounds = around(ring.iter().copied().chain(corners), 2.0 * subject.density)?;
     Some((ratio, Rose { at, north, ring, halves, letter: (letter, letter_px), centre, bounds, reach: radius }))
