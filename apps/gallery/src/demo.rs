@@ -26,7 +26,7 @@ pub const SCENES: &[DemoScene] = &[
     DemoScene {
         name: "massif",
         text: include_str!("../../../scenes/massif.toml"),
-        sentence: "The whole valley tilts towards you along a smooth curve: the lake and the trail behind the ridges come into sight, and the summits keep their skyline.",
+        sentence: "The far valleys tilt towards you along a smooth curve: all of the trail comes into sight, and the picture keeps a horizon.",
         bends_rays: true,
     },
     DemoScene {

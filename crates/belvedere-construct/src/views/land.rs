@@ -1,5 +1,6 @@
 //! Views of ground: it fills the picture, with its far side level under a band of sky.
 
+use belvedere_core::quantile::{Rank, quantile};
 use belvedere_core::{DVec2, DVec3, Pinhole, Projection};
 use belvedere_scene::Heightfield;
 
@@ -8,6 +9,8 @@ const ALONG: usize = 160;
 /// Rows of the picture, from its top, that the highest and the nearest ground come to, as shares of its height.
 const WHOLE_ROWS: [f64; 2] = [0.14, 0.94];
 const PART_ROWS: [f64; 2] = [0.36, 0.9];
+/// Share of the ground that lies below the upper row: single spikes may stand over it.
+const HIGHEST: f64 = 0.998;
 /// Vertical fields of view, degrees: a long lens keeps the far side of a whole ground wide, a short one shows the horizon over a part.
 const WHOLE_FOV: f64 = 20.0;
 const PART_FOV: f64 = 45.0;
@@ -103,11 +106,13 @@ fn framed(
     let p = at(DVec3::ZERO, 1.0)?;
     let half = (0.5 * fov_deg.to_radians()).tan();
     let [top, bottom] = [(1.0 - 2.0 * rows[0]) * half, (2.0 * rows[1] - 1.0) * half];
-    let (mut high, mut low) = (f64::NEG_INFINITY, f64::INFINITY);
+    let (mut tops, mut low) = (Vec::with_capacity(between.len()), f64::INFINITY);
     for q in between.iter().map(|q| *q - origin) {
         let (y, z) = (-q.dot(p.down), q.dot(p.forward));
-        (high, low) = (high.max(y - top * z), low.min(y + bottom * z));
+        tops.push(y - top * z);
+        low = low.min(y + bottom * z);
     }
+    let high = quantile(&mut tops, HIGHEST, Rank::Nearest);
     let across = points.iter().map(|q| (*q - origin).dot(p.right));
     let [left, right] = across.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
     let back = (high - low) / (top + bottom);
@@ -166,7 +171,7 @@ mod tests {
                 let inside: Vec<&DVec2> = seen.iter().filter(|p| (0.0..=1.0).contains(&p.x)).collect();
                 let [top, bottom] = inside.iter().fold([1.0, 0.0], |[a, b]: [f64; 2], p| [a.min(p.y), b.max(p.y)]);
                 let off = (top - WHOLE_ROWS[0]).abs().max((bottom - WHOLE_ROWS[1]).abs());
-                assert!(off < 0.02, "{shape:?} {image:?}: rows {top} to {bottom}");
+                assert!(off < 0.04, "{shape:?} {image:?}: rows {top} to {bottom}");
                 let inside = inside.len() as f64 / seen.len() as f64;
                 assert!(inside > 0.7, "{shape:?} {image:?}: {inside} inside");
                 if cols.max(rows) < 2 * cols.min(rows) && image[0] > image[1] {
