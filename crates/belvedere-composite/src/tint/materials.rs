@@ -57,9 +57,9 @@ impl Colors {
     fn of(season: Season) -> Self {
         let summer = Self {
             meadow: linear([140, 158, 84]),
-            alpine: linear([180, 166, 104]),
+            alpine: linear([172, 164, 106]),
             valley: linear([172, 184, 116]),
-            conifers: linear([48, 84, 64]),
+            conifers: linear([52, 85, 59]),
             broadleaves: linear([88, 120, 62]),
             scree: linear([188, 174, 152]),
             rock: linear([150, 136, 122]),
@@ -180,7 +180,7 @@ impl Materials {
                 }
             };
             let color = color.lerp(self.colors.snow, snow * (1.0 - 0.97 * forest));
-            let color = color * (1.0 + 0.22 * tufts[i] * (1.0 - forest));
+            let color = color * (1.0 + 0.15 * tufts[i] * (1.0 - forest));
             for (plane, v) in out.color.iter_mut().zip(color.to_array()) {
                 plane[i] = v;
             }
