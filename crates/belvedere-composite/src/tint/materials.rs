@@ -81,10 +81,10 @@ impl Colors {
                 ..summer
             },
             Season::Winter => Self {
-                meadow: linear([226, 230, 236]),
+                meadow: linear([214, 224, 240]),
                 alpine: linear([234, 238, 243]),
-                valley: linear([222, 226, 230]),
-                conifers: linear([38, 50, 46]),
+                valley: linear([206, 219, 238]),
+                conifers: linear([36, 51, 48]),
                 broadleaves: linear([62, 59, 56]),
                 water: linear([150, 170, 184]),
                 bog: linear([176, 172, 160]),
