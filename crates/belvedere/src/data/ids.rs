@@ -14,7 +14,7 @@ const UNNAMED: &str = "features";
 pub(super) fn stem(source: &str) -> String {
     if let Some(name) = source.strip_prefix(arrays::SCHEME) {
         let number = name.strip_prefix(UNNAMED).unwrap_or(name);
-        let is_numbered = number.len() < name.len() && number.chars().all(|c| c.is_ascii_digit());
+        let is_numbered = number.len() < name.len() && !number.is_empty() && number.chars().all(|c| c.is_ascii_digit());
         return if is_numbered { String::new() } else { name.to_owned() };
     }
     if source.starts_with("builtin:") {

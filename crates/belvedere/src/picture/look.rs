@@ -305,8 +305,10 @@ mod tests {
         let (range, deviation) = (value(&ground, "range"), value(&ground, "deviation"));
         assert!((range.0 - 200.0).abs() < 1.0 && range.1, "{range:?}");
         assert!((deviation.0 - 100.0).abs() < 3.0, "{deviation:?}");
-        assert!(value(&ground, "share burnt").0 == 0.0 && value(&ground, "saturation") == (0.0, false));
-        assert!(!ground.iter().any(|rule| rule.rule.starts_with("spread")), "greys have no hue");
+        assert!(value(&ground, "share burnt").0 == 0.0);
+        let is_there = |rules: &[LookRule], name: &str| rules.iter().any(|rule| rule.rule.starts_with(name));
+        assert!(!is_there(&ground, "saturation"), "half of it is as light and grey as snow");
+        assert!(!is_there(&ground, "spread"), "greys have no hue");
         let (share, tilt) = (value(&sky, "sky"), value(&sky, "tilt"));
         assert!((share.0 - 0.2).abs() < 0.02 && share.1, "{share:?}");
         assert!((tilt.0 - 5.0).abs() < 0.5 && !tilt.1, "{tilt:?}");
@@ -318,5 +320,8 @@ mod tests {
         let flat = frame(|_, _| [128; 3], |_| 0);
         let rules = Seen::new(&flat, &|id| id == 1).expect("ground").of_ground();
         assert!(!value(&rules, "range").1 && !value(&rules, "deviation").1);
+        let green = frame(|_, _| [80, 100, 65], |_| 0);
+        let rules = Seen::new(&green, &|id| id == 1).expect("ground").of_ground();
+        assert_eq!(value(&rules, "saturation"), (0.35, true));
     }
 }
