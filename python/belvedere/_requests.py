@@ -41,6 +41,9 @@ class RevealOptions(TypedDict, total=False):
     #: Write the names of lines, areas and points
     labels: bool
 
+    #: What covers the ground instead of a guess by climate and relief: a raster of ESA WorldCover, CORINE or NLCD, or areas of OpenStreetMap
+    landcover: str | None
+
     #: Light the scene as the sun does over the eye at this time, such as 2026-07-01T15:00:00Z or 2026-07-01T17:00+02:00: shading by the sun alone while it is up (unless --relief says otherwise), with cast shadows
     light_time: str | None
 
@@ -128,6 +131,9 @@ class RenderOptions(TypedDict, total=False):
 
     #: Haze: on (the default: dims the farther part of the view), off, or the visibility in kilometres
     haze: bool | float | None
+
+    #: What covers the ground instead of a guess by climate and relief: a raster of ESA WorldCover, CORINE or NLCD, or areas of OpenStreetMap
+    landcover: str | None
 
     #: Model of a file of molecules that holds several, from 1, or all
     model: int | Literal["all"] | None
