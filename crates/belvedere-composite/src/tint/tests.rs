@@ -167,8 +167,8 @@ fn a_ramp_of_its_own_colours_the_ground_as_it_says() {
 #[test]
 fn land_cover_decides_where_it_is_known_and_the_rules_where_it_is_not() {
     let classes = [Cover::Unknown, Cover::Forest, Cover::Grass, Cover::BuiltUp, Cover::Ice, Cover::Water, Cover::Bare];
-    let cells: Vec<Cover> = classes.iter().flat_map(|cover| [*cover; 32]).collect();
-    let (cols, from, spacing) = (cells.len(), [0.0; 2], [100.0, 1e6]);
+    let row: Vec<Cover> = classes.iter().flat_map(|cover| [*cover; 32]).collect();
+    let (cols, cells, from, spacing) = (row.len(), row.repeat(3), [0.0; 2], [100.0; 2]);
     let land = CoverMap { from, spacing, cols, cells, legend: "test" };
     let climate = Climate::at(9.0, 46.5);
     let tint = |land| GroundTint::new(&Palette::Placed(PaletteName::Auto, climate, land), [400.0, 4200.0]);
@@ -181,7 +181,7 @@ fn land_cover_decides_where_it_is_known_and_the_rules_where_it_is_not() {
             slope: [&[0.02; 16], &[0.03; 16]],
             broad: [&[0.02; 16], &[0.03; 16]],
             above_m: &[0.0; 16],
-            at_m: [&east, &[0.0; 16]],
+            at_m: [&east, &[100.0; 16]],
             spacing_m: 100.0,
         };
         let (a, b) = (known.cover(&nodes), ruled.cover(&nodes));
