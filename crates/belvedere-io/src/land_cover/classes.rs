@@ -89,7 +89,7 @@ const CORINE_CODES: Legend = Legend {
 const NO_DATA: [u16; 4] = [0, 48, 128, 255];
 
 impl Legend {
-    /// What a number means; `None` if it is none of the legend.
+    /// What a number means; `None` if the legend lacks it.
     pub(super) fn cover(&self, number: u16) -> Option<Cover> {
         if let Some(found) = self.classes.iter().find(|(from, to, _)| (*from..=*to).contains(&number)) {
             return Some(found.2);
@@ -115,7 +115,7 @@ impl Legend {
         legends.iter().find(holds).copied().ok_or_else(|| {
             let strange: Vec<String> = known.iter().take(8).map(u16::to_string).collect();
             format!(
-                "its classes ({}{}) are none of ESA WorldCover, CORINE Land Cover or NLCD; give such a raster, or areas of OpenStreetMap",
+                "its classes ({}{}) belong to no legend of ESA WorldCover, CORINE Land Cover or NLCD; give such a raster, or areas of OpenStreetMap",
                 strange.join(", "),
                 if known.len() > 8 { ", ..." } else { "" }
             )

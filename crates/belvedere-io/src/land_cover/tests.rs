@@ -1,6 +1,6 @@
 use super::*;
 use crate::geotiff::write_geotiff;
-use crate::{Affine, RasterInfo, SampleType, Samples, SourceCrs};
+use crate::{Affine, CrsKind, RasterInfo, SampleType, Samples, SourceCrs};
 use belvedere_scene::NodeState;
 
 /// Ground of 60 x 40 nodes, 30 m apart, in UTM zone 32.
@@ -18,6 +18,7 @@ fn raster(path: &Path, class: impl Fn(usize, usize) -> u8) {
     let mut info = RasterInfo::new(path, width, height, SampleType::U8);
     info.pixel_to_model = Some(Affine([10.0, 0.0, 599_900.0, 0.0, -10.0, 5_200_100.0]));
     info.crs = SourceCrs::Epsg(32632);
+    info.crs_kind = CrsKind::Projected;
     write_geotiff(path, &Raster { info, samples: Samples::U8(pixels), mask: None }, true).expect("file");
 }
 
