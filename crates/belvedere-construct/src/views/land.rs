@@ -25,6 +25,10 @@ const LOST: f64 = 0.8;
 const TURNED: f64 = 0.15;
 /// How much longer from south to north than wide ground is that may be seen to the east.
 const NARROW: f64 = 1.5;
+/// Share of the ground that may lie beside the picture; else it takes up less and less of the picture's height, in so many steps at most.
+const MOST_OUTSIDE: f64 = 0.25;
+const NARROWED: f64 = 0.85;
+const MOST_NARROWED: i32 = 8;
 /// Strips of the picture by which it is told how far ground fills it.
 const STRIPS: usize = 24;
 
@@ -51,13 +55,34 @@ pub fn over_land(ground: &Heightfield, part: Option<[DVec2; 2]>, image: [u32; 2]
         None => (WHOLE_FOV, &WHOLE_FALLS, WHOLE_ROWS),
         Some(_) => (PART_FOV, &PART_FALLS, PART_ROWS),
     };
+    // Ground that is much wider than the picture leaves a part of its height.
+    let shown = (0..MOST_NARROWED).map(|k| narrowed(rows, NARROWED.powi(k)));
+    let mut views = shown.filter_map(|rows| chosen(&points, (fov, falls), image, rows));
+    let first = views.next()?;
+    let whole = |view: &LandView| outside(&points, &view.pinhole) <= MOST_OUTSIDE * points.len() as f64;
+    Some(if whole(&first) { first } else { views.find(whole).unwrap_or(first) })
+}
+
+/// Rows of a picture around the middle of others, nearer to each other.
+fn narrowed([top, bottom]: [f64; 2], share: f64) -> [f64; 2] {
+    let (middle, half) = (0.5 * (top + bottom), 0.5 * share * (bottom - top));
+    [middle - half, middle + half]
+}
+
+/// Number of points beside a picture.
+fn outside(points: &[DVec3], pinhole: &Pinhole) -> f64 {
+    points.iter().filter(|p| is_beside(pinhole, **p) == Some(true)).count() as f64
+}
+
+/// The best view between two rows.
+fn chosen(points: &[DVec3], (fov, falls): (f64, &[f64]), image: [u32; 2], rows: [f64; 2]) -> Option<LandView> {
     let best = |heading: f64| {
         let views = falls.iter().filter_map(|fall| {
-            let first = framed(&points, &points, [heading, *fall], fov, image, rows)?;
+            let first = framed(points, points, [heading, *fall], fov, image, rows)?;
             // Corners beside the picture do not say where its lower edge lies.
             let inside: Vec<DVec3> = points.iter().copied().filter(|p| is_beside(&first, *p) == Some(false)).collect();
-            let pinhole = framed(&points, &inside, [heading, *fall], fov, image, rows).unwrap_or(first);
-            let score = filled(&points, &pinhole, rows) - PER_DEGREE * (fall - USUAL_FALL).abs();
+            let pinhole = framed(points, &inside, [heading, *fall], fov, image, rows).unwrap_or(first);
+            let score = filled(points, &pinhole, rows) - PER_DEGREE * (fall - USUAL_FALL).abs();
             Some((score, pinhole))
         });
         views.max_by(|a, b| a.0.total_cmp(&b.0))
@@ -132,17 +157,15 @@ fn framed(
 fn filled(points: &[DVec3], pinhole: &Pinhole, rows: [f64; 2]) -> f64 {
     let [width, height] = pinhole.image.map(f64::from);
     let mut reach = [None; STRIPS];
-    let mut outside = 0;
     for p in points {
         let Ok((px, _)) = pinhole.project(*p) else { continue };
-        outside += usize::from(is_beside(pinhole, *p) == Some(true));
         let strip = ((px.y / height - rows[0]) / (rows[1] - rows[0]) * STRIPS as f64).clamp(0.0, STRIPS as f64 - 1.0);
         let x = px.x.clamp(0.0, width);
         let [a, b] = reach[strip as usize].get_or_insert([x; 2]);
         (*a, *b) = (a.min(x), b.max(x));
     }
     let wide: f64 = reach.iter().flatten().map(|[a, b]| (b - a) / width).sum();
-    wide / STRIPS as f64 - LOST * outside as f64 / points.len().max(1) as f64
+    wide / STRIPS as f64 - LOST * outside(points, pinhole) / points.len().max(1) as f64
 }
 
 #[cfg(test)]
@@ -174,7 +197,8 @@ mod tests {
                 let inside: Vec<&DVec2> = seen.iter().filter(|p| (0.0..=1.0).contains(&p.x)).collect();
                 let [top, bottom] = inside.iter().fold([1.0, 0.0], |[a, b]: [f64; 2], p| [a.min(p.y), b.max(p.y)]);
                 let off = (top - WHOLE_ROWS[0]).abs().max((bottom - WHOLE_ROWS[1]).abs());
-                assert!(off < 0.04, "{shape:?} {image:?}: rows {top} to {bottom}");
+                let is_wide = cols * image[1] as usize > rows * image[0] as usize;
+                assert!(off < 0.04 || is_wide, "{shape:?} {image:?}: rows {top} to {bottom}");
                 let inside = inside.len() as f64 / seen.len() as f64;
                 assert!(inside > 0.7, "{shape:?} {image:?}: {inside} inside");
                 if cols.max(rows) < 2 * cols.min(rows) && image[0] > image[1] {
