@@ -28,7 +28,7 @@ const NARROW: f64 = 1.5;
 /// Share of the ground that may lie beside the picture; else it takes up less and less of the picture's height, in so many steps at most.
 const MOST_OUTSIDE: f64 = 0.25;
 const NARROWED: f64 = 0.85;
-const MOST_NARROWED: i32 = 8;
+const MOST_NARROWED: i32 = 20;
 /// Strips of the picture by which it is told how far ground fills it.
 const STRIPS: usize = 24;
 
