@@ -33,8 +33,8 @@ fn is_flat(layer: &LayerDoc) -> bool {
 pub(crate) enum Shown {
     /// All, but for a number of buildings that stand far apart from their town.
     All(usize),
-    /// Ground that fills the picture, seen towards a direction.
-    Land(&'static str),
+    /// Ground that fills the picture.
+    Land,
     /// The features on ground.
     Features,
 }
@@ -49,7 +49,7 @@ impl Shown {
             Self::All(apart) => {
                 format!("it is shown as far as its town reaches, without {apart} buildings far apart, from the south")
             }
-            Self::Land(from) => format!("the ground fills the picture, seen from the {from}"),
+            Self::Land => "the ground fills the picture, seen from the south".to_owned(),
             Self::Features => "its features are shown, from the south".to_owned(),
         };
         let text =
@@ -101,11 +101,7 @@ fn over_ground(document: &Document, scene: &Scene) -> Option<(Navigation, Shown)
         (side * MUCH_LONGER < ground).then(|| [a - around, b + around])
     });
     let view = over_land(ground, part, document.camera.image)?;
-    let shown = match (part, view.to_the_east) {
-        (Some(_), _) => Shown::Features,
-        (None, true) => Shown::Land("west"),
-        (None, false) => Shown::Land("south"),
-    };
+    let shown = if part.is_some() { Shown::Features } else { Shown::Land };
     Some((Navigation { pinhole: view.pinhole, target: view.target }, shown))
 }
 
