@@ -28,7 +28,7 @@ def test_arrays_are_added_to_a_document_of_another_folder(file: Path) -> None:
     # A file of the same name as that of the new layer lies there.
     shutil.copyfile(file.parent / "lines.geojson", file.parent / "more.geojson")
     changed = belvedere.Scene.from_document(opened.resolved(), folder=file.parent).add_points(np.array([[1200.0, 500.0]]), id="more")
-    assert changed.layers == ["ground", "lines", "more"] and 3 in changed.render(size=(160, 90)).id
+    assert changed.layers == ["ground", "lines", "more"] and 3 in changed.render(size=(480, 270)).id
     again = belvedere.Scene.open(changed.save(file.parent.parent / "b" / "scene.json"), allow_roots=[file.parent])
     assert (again.render(size=(64, 36)).rgba == changed.render(size=(64, 36)).rgba).all()
     # Beside the files of the document, the new file keeps its name.
@@ -41,13 +41,13 @@ def test_arrays_are_added_to_a_document_of_another_folder(file: Path) -> None:
         "ground.tif", "lines.geojson", "more.geojson"]  # fmt: skip
 
 
-def test_data_alone_are_shown_whole_in_every_size(file: Path) -> None:
+def test_ground_alone_fills_pictures_of_every_size_under_a_sky(file: Path) -> None:
     ground = belvedere.Scene.open(file.parent / "ground.tif")
-    assert ground.layers == ["ground"]
+    assert ground.layers == ["ground", "edge"]
     wide, tall = ground.render(size=(160, 60)), ground.render(size=(60, 160))
     for picture in (wide, tall):
         seen = picture.id > 0
-        assert seen.any() and not seen[[0, -1]].any() and not seen[:, [0, -1]].any()
+        assert not seen[0].any() and seen.mean() > 0.3
         assert max(np.ptp(np.nonzero(seen)[0]) / seen.shape[0], np.ptp(np.nonzero(seen)[1]) / seen.shape[1]) > 0.8
     # Whatever was drawn before: the same picture, and the scene that is saved draws it too.
     assert (belvedere.Scene.open(file.parent / "ground.tif").render(size=(60, 160)).rgba == tall.rgba).all()

@@ -32,7 +32,7 @@ def test_reveal_of_arrays(tmp_path: Path) -> None:
     again = belvedere.Scene.open(found.scene.save(tmp_path / "found" / "scene.json"))
     assert (again.render(size=(64, 36)).rgba == wanted.rgba).all()
     changed = found.scene.add_points([(1200.0, 500.0)], id="more")
-    assert changed.layers[-1] == "more" and 3 in changed.render(size=(160, 90)).id
+    assert changed.layers[-1] == "more" and 3 in changed.render(size=(480, 270)).id
 
 
 def test_holes_of_arrays_stay_and_those_of_files_are_filled_as_by_the_program(tmp_path: Path) -> None:
