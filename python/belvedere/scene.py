@@ -135,7 +135,7 @@ class Scene(Layers):
         progress: Progress = None,
         time_limit_s: float | None = None,
     ) -> Scene:
-        """Opens a scene file, TOML or JSON; or data, all of which is shown from the south.
+        """Opens a scene file, TOML or JSON; or data, seen from the south: ground fills the picture, others are shown whole.
 
         Data are an elevation model, a folder of its tiles, a city, a mesh, a molecule or a volume.
 

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// A picture.
 #[derive(Debug, Args)]
 pub(crate) struct RenderArgs {
-    /// Scene file, TOML or JSON; or data of which all is shown from the south: elevation models or folders of their tiles in any order, routes,
+    /// Scene file, TOML or JSON; or data, seen from the south, ground as large as the picture and others whole: elevation models or folders of their tiles in any order, routes,
     /// areas and points on them, cities, meshes, molecules, volumes; - = standard input
     #[arg(required = true, value_name = "SCENE|DATA")]
     scene: Vec<PathBuf>,

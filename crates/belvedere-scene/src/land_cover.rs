@@ -48,7 +48,7 @@ impl Cover {
 /// Classes of cells over a ground.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CoverMap {
-    /// Centre of the first cell: scene units east and south of the north-western node of the ground.
+    /// Centre of the first cell: scene units east and south of the corner of the ground, half a node beyond its north-western node.
     pub from: [f32; 2],
     /// Distance of centres to the east and to the south, scene units, > 0.
     pub spacing: [f32; 2],
@@ -64,7 +64,7 @@ pub struct CoverMap {
 impl Eq for CoverMap {}
 
 impl CoverMap {
-    /// The class at a place, scene units east and south of the north-western node of the ground; unknown beyond the cells.
+    /// The class at a place, scene units east and south of the corner of the ground, half a node beyond its north-western node; unknown beyond the cells.
     #[inline]
     pub fn at(&self, [east, south]: [f32; 2]) -> Cover {
         let x = (east - self.from[0]) / self.spacing[0] + 0.5;
@@ -101,7 +101,7 @@ impl CoverMap {
 
     /// Fills cells of a polygon whose centres lie inside an odd number of its rings.
     ///
-    /// * `rings`: scene units east and south of the north-western node of the ground.
+    /// * `rings`: scene units east and south of the corner of the ground, half a node beyond its north-western node.
     pub fn fill(&mut self, rings: &[Vec<DVec2>], cover: Cover) {
         let ([x0, y0], [dx, dy]) = (self.from.map(f64::from), self.spacing.map(f64::from));
         let rows = self.cells.len() / self.cols.max(1);

@@ -78,7 +78,7 @@ pub fn load_land_cover(
 fn numbers(raster: &Raster, land: &CoverMap, ground: &Heightfield, link: &Link, origin: DVec2) -> Vec<u16> {
     let spacing = DVec2::from(land.spacing.map(f64::from));
     let first = DVec2::new(f64::from(land.from[0]), -f64::from(land.from[1]));
-    let grid = Geometry { north_west: ground.north_west() + first, spacing };
+    let grid = Geometry { north_west: corner(ground) + first, spacing };
     let exact = |index: DVec2| link.index_from_scene(grid.scene_from_index(index));
     let map = GridMap::new(land.cols, land.cells.len() / land.cols, MAP_TOLERANCE, &exact);
     let mut numbers = vec![0u16; land.cells.len()];
@@ -96,7 +96,12 @@ fn numbers(raster: &Raster, land: &CoverMap, ground: &Heightfield, link: &Link, 
     numbers
 }
 
-/// Cells over a ground, of which nothing is known yet.
+/// The corner of a ground, half a node beyond its north-western one: places in a cover are measured from there.
+fn corner(ground: &Heightfield) -> DVec2 {
+    ground.north_west() + DVec2::new(-0.5, 0.5) * ground.spacing()
+}
+
+/// Cells over a ground, of which nothing is known yet; the first has its centre on the first node.
 fn lattice(ground: &Heightfield, spacing: DVec2, path: &Path) -> Result<CoverMap, IoError> {
     let bounds = ground.bounds();
     let span = (bounds.max - bounds.min).truncate();
@@ -106,7 +111,8 @@ fn lattice(ground: &Heightfield, spacing: DVec2, path: &Path) -> Result<CoverMap
     let [cols, rows] = [count.x, count.y].map(|n| n as usize + 1);
     budget::ask("the land cover", 3 * (cols * rows) as u64).map_err(|e| IoError::format(path, e))?;
     let [x, y] = [spacing.x as f32, spacing.y as f32];
-    Ok(CoverMap { from: [0.0; 2], spacing: [x, y], cols, cells: vec![Cover::Unknown; cols * rows], legend: "" })
+    let from = (0.5 * ground.spacing()).as_vec2().to_array();
+    Ok(CoverMap { from, spacing: [x, y], cols, cells: vec![Cover::Unknown; cols * rows], legend: "" })
 }
 
 /// The land cover that areas tell by their tags, over a terrain; where areas overlap water lies above ice, wetland, rock, forest, shrubs, grass,
@@ -161,9 +167,9 @@ pub fn land_cover_of_areas(
     }
 }
 
-/// A ring in scene units east and south of the north-western node of the ground.
+/// A ring in scene units east and south of the corner of the ground.
 fn relative(ring: &[DVec2], ground: &Heightfield) -> Vec<DVec2> {
-    let corner = ground.north_west();
+    let corner = corner(ground);
     ring.iter().map(|p| DVec2::new(p.x - corner.x, corner.y - p.y)).collect()
 }
 

@@ -3,6 +3,9 @@ use crate::geotiff::write_geotiff;
 use crate::{Affine, CrsKind, RasterInfo, SampleType, Samples, SourceCrs};
 use belvedere_scene::NodeState;
 
+/// Distance of the first node from the corner of the ground, to the east and to the south.
+const CORNER: f32 = 15.0;
+
 /// Ground of 60 x 40 nodes, 30 m apart, in UTM zone 32.
 fn ground() -> Heightfield {
     let (cols, rows) = (60, 40);
@@ -39,7 +42,7 @@ fn cells_have_the_class_of_the_pixel_that_they_lie_in() {
     for (east, south) in [(5.0, 5.0), (385.0, 5.0), (415.0, 5.0), (415.0, 700.0), (1200.0, 700.0), (1700.0, 1100.0)] {
         let [c, r] = [(east + 100.0) / 10.0, (south + 100.0) / 10.0].map(|v: f64| v as usize);
         let wanted = Legend::of(&[10, 30, 70, 80]).expect("legend").cover(class(c, r).into());
-        assert_eq!(Some(land.at([east as f32, south as f32])), wanted, "{east} east, {south} south");
+        assert_eq!(Some(land.at([east as f32 + CORNER, south as f32 + CORNER])), wanted, "{east} east, {south} south");
     }
 }
 
@@ -81,7 +84,7 @@ fn areas_cover_what_their_tags_say_and_water_lies_above_forest() {
         ([100.0, 550.0], Cover::Unknown),
         ([1400.0, 550.0], Cover::Unknown),
     ] {
-        assert_eq!(land.at([east, south]), wanted, "{east} east, {south} south");
+        assert_eq!(land.at([east + CORNER, south + CORNER]), wanted, "{east} east, {south} south");
     }
     let parks = Vectors { features: vec![vectors.features[2].clone()], ..vectors };
     let error = land_cover_of_areas(&parks, Crs::Epsg(32632), &ground()).unwrap_err();
