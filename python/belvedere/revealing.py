@@ -233,9 +233,9 @@ def _light_of(light: Mapping[str, Any] | tuple[float, float] | None) -> dict[str
     if not isinstance(light, Mapping):
         return {"light": light}
     keys = dict(light)
-    options = {"light_time" if key == "time" else key: keys.pop(key) for key in ("time", "shadows", "sky", "haze") if key in keys}
+    options = {"light_time" if key == "time" else key: keys.pop(key) for key in ("time", "shadows", "sky", "haze", "clouds") if key in keys}
     if "azimuth_deg" in keys or "altitude_deg" in keys:
         options["light"] = [keys.pop("azimuth_deg", 315.0), keys.pop("altitude_deg", 45.0)]
     if keys:
-        raise InputError(f"light: unknown keys {', '.join(keys)}; give azimuth_deg, altitude_deg, time, shadows, sky or haze")
+        raise InputError(f"light: unknown keys {', '.join(keys)}; give azimuth_deg, altitude_deg, time, shadows, sky, haze or clouds")
     return options

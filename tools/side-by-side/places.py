@@ -71,7 +71,7 @@ def score(out, name):
     if not look:
         return "no score"
     short = {"range": "range", "deviation": "deviation", "L* of the darkest": "dark", "share burnt": "burnt", "saturation": "saturation",
-             "spread": "hues", "change": "detail", "sky": "sky", "tilt": "tilt", "L* of the palest": "gradient", "subject": "subject"}  # fmt: skip
+             "spread": "hues", "change": "detail", "sky": "sky", "tilt": "tilt", "L* of the palest": "gradient", "subject": "subject", "share of the commonest": "one colour"}  # fmt: skip
     failed = [next(words for start, words in short.items() if rule["rule"].startswith(start)) for rule in look["rules"] if not rule["holds"]]
     return f"{look['held']} of {look['measured']}" + (f"; not: {', '.join(failed)}" if failed else "")
 

@@ -21,6 +21,46 @@ pub fn value<const N: usize>([x, y]: [&[f32; N]; 2], seed: u32) -> ([f32; N], [[
     (out, [east, south])
 }
 
+/// Domes side by side, as crowns of trees from above: one around a place in each square of side 1, where the nearest is shown.
+#[derive(Debug, Clone, Copy)]
+pub struct Domes<const N: usize> {
+    /// Height, 1 in the middle of a dome, less down to 0 between domes.
+    pub height: [f32; N],
+    /// Its slope along both axes.
+    pub slope: [[f32; N]; 2],
+    /// A pseudo-random value of the dome, -1..=1.
+    pub own: [f32; N],
+}
+
+/// The domes at places (cellular noise, Worley 1996).
+///
+/// * `at`, `seed`: see [`value`].
+#[inline(always)]
+pub fn domes<const N: usize>([x, y]: [&[f32; N]; 2], seed: u32) -> Domes<N> {
+    let mut out = Domes { height: [0.0; N], slope: [[0.0; N]; 2], own: [0.0; N] };
+    for i in 0..N {
+        let (x0, y0) = (floor(x[i]), floor(y[i]));
+        let (s, t) = (x[i] - x0 as f32, y[i] - y0 as f32);
+        let mut nearest = [4.0, 0.0, 0.0, 0.0];
+        for k in -1..=1 {
+            for j in -1..=1 {
+                let random = bits(x0 + j, y0 + k, seed);
+                let part = |shift: u32| ((random >> shift) & 255) as f32 * (1.0 / 255.0);
+                // Places keep off the sides of their squares, so that no two are close.
+                let (dx, dy) = (s - j as f32 - 0.15 - 0.7 * part(0), t - k as f32 - 0.15 - 0.7 * part(8));
+                let square = dx * dx + dy * dy;
+                nearest = if square < nearest[0] { [square, dx, dy, 2.0 * part(16) - 1.0] } else { nearest };
+            }
+        }
+        let [square, dx, dy, own] = nearest;
+        let inside = square < 1.0;
+        out.height[i] = if inside { 1.0 - square } else { 0.0 };
+        (out.slope[0][i], out.slope[1][i]) = if inside { (-2.0 * dx, -2.0 * dy) } else { (0.0, 0.0) };
+        out.own[i] = own;
+    }
+    out
+}
+
 /// The largest whole number that is not larger, for values that an `i32` holds.
 #[inline(always)]
 pub fn floor(v: f32) -> i32 {
@@ -62,6 +102,28 @@ mod tests {
         }
         let (mean, spread) = (sum / n as f32, (square / n as f32).sqrt());
         assert!(mean.abs() < 0.03 && (0.25..0.6).contains(&spread), "mean {mean}, spread {spread}");
+    }
+
+    #[test]
+    fn domes_stand_apart_and_their_slope_is_their_change() {
+        let (mut tops, mut inside) = (0, 0);
+        for i in 0..20_000 {
+            let (x, y) = (i as f32 * 0.0173 - 90.0, 400.0 - i as f32 * 0.0311);
+            let at = |x: f32, y: f32| domes([&[x], &[y]], 5);
+            let (here, h) = (at(x, y), 1e-2);
+            assert!((0.0..=1.0).contains(&here.height[0]) && here.own[0].abs() <= 1.0);
+            let (east, west) = (at(x + h, y), at(x - h, y));
+            // Within a dome the slope changes evenly.
+            let change = east.slope[0][0] - west.slope[0][0] + 4.0 * h;
+            if change.abs() < 1e-4 && east.height[0] > 0.0 && west.height[0] > 0.0 {
+                inside += 1;
+                assert!((east.height[0] - west.height[0] - 2.0 * h * here.slope[0][0]).abs() < 2e-3, "{x} {y}");
+            }
+            tops += usize::from(here.height[0] > 0.9);
+        }
+        // Discs of a radius of 0.32, one in each square.
+        assert!((5_000..7_500).contains(&tops), "{tops} of 20000 places on tops");
+        assert!(inside > 15_000, "{inside} of 20000 places inside a dome");
     }
 
     #[test]

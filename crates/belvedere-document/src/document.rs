@@ -327,6 +327,9 @@ pub struct LightDoc {
     /// Haze: `true` dims the farther part of the view, `false` nothing; a number is the visibility of air near the ground in kilometres (thousands of scene units).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub haze: Option<SwitchOrVisibility>,
+    /// Share of the sky that quiet clouds cover, about, 0..=1; none by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clouds: Option<f64>,
 }
 
 impl LightDoc {
@@ -353,6 +356,7 @@ impl LightDoc {
             shadows: self.shadows || below.shadows,
             sky: self.sky.clone().or(below.sky.clone()),
             haze: self.haze.or(below.haze),
+            clouds: self.clouds.or(below.clouds),
         }
     }
 

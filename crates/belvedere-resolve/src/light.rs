@@ -40,17 +40,18 @@ pub(crate) fn resolve(
             .into());
     }
     let air = |(key, reason): Complaint| source.error(&["light", key], reason);
-    Ok(Light { sky: sky(doc).map_err(air)?, haze: haze(doc).map_err(air)?, ..light })
+    Ok(Light { sky: sky(doc).map_err(air)?, haze: haze(doc).map_err(air)?, clouds: clouds(doc).map_err(air)?, ..light })
 }
 
-/// Refuses a sky or haze that does not exist.
+/// Refuses a sky, haze or clouds that do not exist.
 ///
 /// # Errors
 /// [`BelvedereError::Appearance`].
 pub fn check_air(doc: &LightDoc) -> Result<(), BelvedereError> {
     let unfit = |(option, reason): Complaint| BelvedereError::Appearance { option, reason };
     sky(doc).map_err(unfit)?;
-    haze(doc).map(|_| ()).map_err(unfit)
+    haze(doc).map_err(unfit)?;
+    clouds(doc).map(|_| ()).map_err(unfit)
 }
 
 /// Limits of the visibility, kilometres.
@@ -100,6 +101,22 @@ fn haze(doc: &LightDoc) -> Result<Haze, Complaint> {
             })
         }
     }
+}
+
+/// The clouds of a document.
+///
+/// # Errors
+/// The key, and a sentence with the limits.
+fn clouds(doc: &LightDoc) -> Result<f64, Complaint> {
+    let share = doc.clouds.unwrap_or(0.0);
+    if !(0.0..=1.0).contains(&share) {
+        return Err(("clouds", format!("clouds is {share}, it must be a share of the sky, 0..=1")));
+    }
+    let is_plain = matches!(sky(doc), Ok(Sky::Plain(_) | Sky::Transparent));
+    if share > 0.0 && is_plain {
+        return Err(("clouds", "clouds need a sky; leave them out, or give the sky auto, day, dusk or night".into()));
+    }
+    Ok(share)
 }
 
 fn from_time(

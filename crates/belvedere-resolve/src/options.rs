@@ -43,6 +43,8 @@ pub struct OpenOptions {
     pub sky: Option<String>,
     /// Haze instead of the scene's.
     pub haze: Option<SwitchOrVisibility>,
+    /// Clouds instead of the scene's, see [`belvedere_document::LightDoc::clouds`].
+    pub clouds: Option<f64>,
     /// Furniture and title instead of the scene's.
     pub furniture: Option<FurnitureWish>,
     /// Lines of equal height instead of the scene's.
@@ -118,6 +120,7 @@ impl OpenOptions {
             palette: asked.palette.as_deref().map(PaletteDoc::of),
             sky: air.sky.clone(),
             haze: air.haze,
+            clouds: air.clouds,
             furniture: Some(air.furnishing.wish()),
             area_style: asked.area_style,
             sea: asked.no_sea.then_some(false),

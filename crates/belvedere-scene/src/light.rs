@@ -47,6 +47,8 @@ pub struct Light {
     pub sky: Sky,
     /// Haze.
     pub haze: Haze,
+    /// Share of the sky that clouds cover, about, 0..=1; a sky of one colour and a studio have none.
+    pub clouds: f64,
 }
 
 impl Default for Light {
@@ -58,6 +60,7 @@ impl Default for Light {
             shadows: false,
             sky: Sky::Auto,
             haze: Haze::Auto,
+            clouds: 0.0,
         }
     }
 }

@@ -111,12 +111,12 @@ fn change(document: &mut Document, options: &OpenOptions, allowed: &mut Vec<Path
     if let Some(image) = options.image {
         camera::resize(document, image);
     }
-    if options.sky.is_some() || options.haze.is_some() {
-        let asked = LightDoc { sky: options.sky.clone(), haze: options.haze, ..LightDoc::default() };
-        belvedere_resolve::check_air(&asked)?;
-        let light = document.light.get_or_insert_default();
-        light.sky = asked.sky.or(light.sky.take());
-        light.haze = asked.haze.or(light.haze);
+    let OpenOptions { sky, haze, clouds, .. } = options;
+    if sky.is_some() || haze.is_some() || clouds.is_some() {
+        let asked = LightDoc { sky: sky.clone(), haze: *haze, clouds: *clouds, ..LightDoc::default() };
+        let light = asked.over(document.light.take().unwrap_or_default());
+        belvedere_resolve::check_air(&light)?;
+        document.light = Some(light);
     }
     if let Some(wish) = &options.furniture {
         wish.put_into(&mut document.furniture);

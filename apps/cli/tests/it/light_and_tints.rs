@@ -104,6 +104,9 @@ fn sky_and_haze_are_keys_and_options() {
     assert!(place.fails(&["render", "s.toml", "-o", "clear.jpg", "--sky", "transparent"]).contains("PNG"));
     let clear = picture(&place, &scene("[light]\nhaze = false", "", ""), &[]);
     assert!(clear != plain && clear == picture(&place, &scene("", "", ""), &["--haze", "off"]));
+    let clouds = picture(&place, &scene("[light]\nclouds = 0.5", "", ""), &[]);
+    assert!(clouds != plain && clouds == picture(&place, &scene("", "", ""), &["--clouds=0.5"]));
+    assert!(place.fails(&["render", "s.toml", "-o", "x.png", "--clouds", "--sky", "white"]).contains("--clouds"));
     let line = place.fails(&["render", "s.toml", "-o", "x.png", "--sky", "pink"]);
     assert!(line.contains("--sky") && !line.contains("s.toml:"), "{line}");
     let massif = [
@@ -116,7 +119,12 @@ fn sky_and_haze_are_keys_and_options() {
     ];
     place.ok(&[&massif[..], &["--size", "96x64", "--sky", "transparent", "-o", "bent.png"]].concat());
     assert_eq!(super::read(&place.path("bent.png"))[25], 6, "a bent picture with alpha, without a pair");
-    for (light, named) in [("sky = 'pink'", "pink"), ("haze = -1.0", "-1"), ("haze = 'thick'", "kilometres")] {
+    for (light, named) in [
+        ("sky = 'pink'", "pink"),
+        ("haze = -1.0", "-1"),
+        ("clouds = 2.0", "clouds is 2"),
+        ("haze = 'thick'", "kilometres"),
+    ] {
         place.write("s.toml", &scene(&format!("[light]\n{light}"), "", ""));
         let line = place.fails(&["check", "s.toml"]);
         assert!(line.contains(named) && line.contains("s.toml:"), "{line}");

@@ -5,6 +5,7 @@
 //! gullies rather than ridges, and climbs higher on the shady side; valley floors are open; rock follows slope; snow follows height,
 //! aspect and slope.
 
+use super::canopy::Canopy;
 use super::{GroundCover, GroundNodes};
 use crate::color::{Rgb, linear};
 use crate::noise;
@@ -16,9 +17,8 @@ const FRAY_M: f32 = 260.0;
 const FRAYS: u32 = 7;
 /// Patches of wood and fields in gentle lowland, metres.
 const PATCH_M: f32 = 900.0;
-/// Largest clumps of trees, metres, and the number of sizes down to single crowns, each half of the one before.
-const CLUMP_M: f32 = 150.0;
-const CLUMPS: u32 = 6;
+/// Share of open ground under the line of trees on which single trees stand, or shrubs where it is dry.
+const SINGLE: [f32; 2] = [0.075, 0.08];
 /// Largest tufts of grass and stones, metres, and the number of sizes.
 const TUFT_M: f32 = 22.0;
 const TUFTS: u32 = 4;
@@ -26,6 +26,12 @@ const TUFTS: u32 = 4;
 const RIDGE_M: f32 = 28.0;
 /// Heights between two layers of rock in walls of dry climates, metres.
 const LAYERS_M: [f32; 2] = [95.0, 33.0];
+
+/// Lightness that the darkest crowns keep.
+const LEAST_TONE: f32 = 0.6;
+
+/// Lightness of crowns, that of clumps, and a value of the crown's own, see [`Canopy`].
+type Crown = [f32; 3];
 
 /// Season of the vegetation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,6 +55,7 @@ struct Colors {
     water: Rgb,
     town: Rgb,
     bog: Rgb,
+    straw: Rgb,
     soil: [Rgb; 2],
     strata: [Rgb; 2],
 }
@@ -56,28 +63,29 @@ struct Colors {
 impl Colors {
     fn of(season: Season) -> Self {
         let summer = Self {
-            meadow: linear([140, 158, 84]),
-            alpine: linear([172, 164, 106]),
-            valley: linear([172, 184, 116]),
-            conifers: linear([52, 85, 59]),
-            broadleaves: linear([88, 120, 62]),
+            meadow: linear([136, 150, 94]),
+            alpine: linear([170, 162, 122]),
+            valley: linear([168, 178, 128]),
+            conifers: linear([60, 92, 70]),
+            broadleaves: linear([88, 116, 70]),
             scree: linear([188, 174, 152]),
             rock: linear([150, 136, 122]),
             snow: linear([232, 238, 246]),
             water: linear([152, 184, 206]),
             town: linear([172, 162, 156]),
             bog: linear([128, 134, 92]),
+            straw: linear([186, 164, 128]),
             soil: [linear([190, 134, 96]), linear([212, 188, 150])],
             strata: [linear([150, 98, 74]), linear([212, 172, 136])],
         };
         match season {
             Season::Summer => summer,
             Season::Autumn => Self {
-                meadow: linear([166, 154, 88]),
-                alpine: linear([184, 158, 96]),
-                valley: linear([180, 172, 108]),
-                conifers: linear([62, 78, 46]),
-                broadleaves: linear([172, 116, 62]),
+                meadow: linear([162, 150, 98]),
+                alpine: linear([180, 158, 112]),
+                valley: linear([176, 168, 120]),
+                conifers: linear([64, 80, 56]),
+                broadleaves: linear([164, 116, 80]),
                 ..summer
             },
             Season::Winter => Self {
@@ -88,6 +96,7 @@ impl Colors {
                 broadleaves: linear([62, 59, 56]),
                 water: linear([150, 170, 184]),
                 bog: linear([176, 172, 160]),
+                straw: linear([212, 212, 216]),
                 scree: linear([206, 208, 212]),
                 rock: linear([118, 114, 114]),
                 ..summer
@@ -159,10 +168,10 @@ impl Materials {
     pub(super) fn cover<const N: usize>(&self, nodes: &GroundNodes<'_, N>) -> GroundCover<N> {
         let fray = fractal(nodes, FRAY_M, FRAYS, 101);
         let patch = fractal(nodes, PATCH_M, 3, 57);
-        let crowns = fractal(nodes, CLUMP_M, CLUMPS, 401);
+        let canopy = Canopy::new(nodes);
         let layers = self.layers(nodes, &fray);
         let tufts = fractal(nodes, TUFT_M, TUFTS, 733);
-        let mut out = GroundCover { color: [[0.0; N]; 3], forest: [0.0; N], bare: [0.0; N], snow: [0.0; N] };
+        let mut out = GroundCover::of_color([[0.0; N]; 3]);
         for i in 0..N {
             let (height, [x, y]) = (nodes.height_m[i], nodes.slope.map(|s| s[i]));
             let steep = (x * x + y * y).sqrt();
@@ -172,19 +181,22 @@ impl Materials {
             let bare = self.bare(height, steep, fray[i]);
             let snow = self.snow(height, steep, shady, fray[i]);
             let form = [height, steep, fray[i], patch[i], layers[i]];
+            let forest = canopy.covered(i, forest.max(self.single(height, steep, patch[i])));
+            let crown = [canopy.tone[i], canopy.clump[i], canopy.own[i]];
             let (color, [forest, bare, snow]) = match &self.land {
-                None => (self.color(form, bare, forest, crowns[i]), [forest, bare, snow]),
+                None => (self.color(form, bare, forest, crown), [forest, bare, snow]),
                 Some(land) => {
                     let cover = covered(land, nodes.at_m.map(|at| at[i]), [fray[i], patch[i]]);
-                    self.known(cover, form, [forest, bare, snow], crowns[i])
+                    self.known(cover, form, [forest, bare, snow], crown)
                 }
             };
             let color = color.lerp(self.colors.snow, snow * (1.0 - 0.97 * forest));
-            let color = color * (1.0 + 0.15 * tufts[i] * (1.0 - forest));
+            let color = color * (1.0 + 0.12 * tufts[i] * (1.0 - forest));
             for (plane, v) in out.color.iter_mut().zip(color.to_array()) {
                 plane[i] = v;
             }
             (out.forest[i], out.bare[i], out.snow[i]) = (forest, bare * (1.0 - forest), snow);
+            (out.crowns[0][i], out.crowns[1][i]) = (forest * canopy.rise[0][i], forest * canopy.rise[1][i]);
         }
         out
     }
@@ -214,6 +226,13 @@ impl Materials {
         smooth(likely * cliff * kept * low * dry)
     }
 
+    /// Share of single trees on open ground, 0..=1.
+    #[inline(always)]
+    fn single(&self, height: f32, steep: f32, patch: f32) -> f32 {
+        let usual = SINGLE[0] + self.dry * (SINGLE[1] - SINGLE[0]);
+        usual * ramp(height, self.tree_line_m + 60.0, self.tree_line_m - 300.0) * ramp(steep, 1.0, 0.7) * (1.0 + patch)
+    }
+
     /// Share of rock, 0..=1.
     #[inline(always)]
     fn bare(&self, height: f32, steep: f32, fray: f32) -> f32 {
@@ -238,17 +257,26 @@ impl Materials {
 
     /// Colour without snow, linear.
     #[inline(always)]
-    fn color(&self, [height, steep, fray, patch, layer]: [f32; 5], bare: f32, forest: f32, crown: f32) -> Rgb {
+    fn color(
+        &self,
+        [height, steep, fray, patch, layer]: [f32; 5],
+        bare: f32,
+        forest: f32,
+        [tone, clump, own]: Crown,
+    ) -> Rgb {
         let (c, tree) = (&self.colors, self.tree_line_m);
         let grass = c.meadow.lerp(c.alpine, ramp(height + 200.0 * fray, tree - 250.0, tree + 350.0));
         let floor = ramp(steep, 0.15, 0.05) * ramp(height, tree - 150.0, tree - 500.0);
         let fields = c.valley.lerp(c.meadow, ramp(patch, -0.25, 0.25));
+        // Ploughed land and dry grass.
+        let fields = fields.lerp(c.straw, 0.75 * ramp(patch - 0.7 * fray, 0.12, 0.34));
         // Tufts, as trees but fainter.
-        let grass = grass.lerp(fields, floor) * (1.0 + 0.28 * fray + 0.26 * crown);
+        let grass = grass.lerp(fields, floor) * (1.0 + 0.28 * fray + 0.26 * clump);
         let scree = c.scree * (1.0 + 0.25 * fray);
         let green = grass.lerp(scree, 0.85 * ramp(height + 300.0 * fray, tree + 450.0, tree + 800.0));
         let [low, high] = self.range_m;
-        let soil = c.soil[0].lerp(c.soil[1], ramp(height, low, high)) * (1.0 + 0.25 * fray + 0.10 * layer);
+        let soil =
+            c.soil[0].lerp(c.soil[1], ramp(height, low, high)) * (1.0 + 0.25 * fray + 0.10 * layer + 0.45 * clump);
         // High above trees dry ground is grey, too.
         let soil = soil.lerp(scree, 0.75 * ramp(height, tree - 400.0, tree + 500.0));
         let open = green.lerp(soil, self.dry);
@@ -258,21 +286,22 @@ impl Materials {
         let ground = open.lerp(rock, bare);
         // Broadleaves below, conifers above, mixed between.
         let up = ramp(height + 380.0 * patch + 120.0 * fray, tree - 1000.0, tree - 350.0);
-        let trees = c.broadleaves.lerp(c.conifers, 0.25 + 0.75 * up) * (1.0 + 1.05 * crown).max(0.42);
+        let kind = (0.25 + 0.75 * up + 0.22 * own).clamp(0.0, 1.0);
+        let trees = c.broadleaves.lerp(c.conifers, kind) * (tone * (1.0 + 0.12 * own)).max(LEAST_TONE);
         ground.lerp(trees, 0.94 * forest)
     }
 
     /// Colour without snow, linear, and shares of forest, rock and snow, where the land cover is known.
     ///
     /// * `by_rule`: these shares as the rules have them.
-    fn known(&self, cover: Cover, form: [f32; 5], by_rule: [f32; 3], crown: f32) -> (Rgb, [f32; 3]) {
-        let (c, [_, _, fray, patch, _], [forest, bare, snow]) = (&self.colors, form, by_rule);
+    fn known(&self, cover: Cover, form: [f32; 5], by_rule: [f32; 3], crown: Crown) -> (Rgb, [f32; 3]) {
+        let (c, [_, _, fray, patch, _], [forest, bare, snow], [tone, ..]) = (&self.colors, form, by_rule, crown);
         let open = |bare| self.color(form, bare, 0.0, crown);
         match cover {
             Cover::Unknown => (self.color(form, bare, forest, crown), by_rule),
             Cover::Forest => (self.color(form, 0.0, 1.0, crown), [1.0, 0.0, snow]),
             Cover::Shrubs => {
-                let shrubs = c.meadow.lerp(c.broadleaves, 0.6) * (1.0 + 0.7 * crown).max(0.4);
+                let shrubs = c.meadow.lerp(c.broadleaves, 0.6) * (0.3 + 0.7 * tone).max(LEAST_TONE);
                 (open(0.5 * bare).lerp(shrubs, 0.6), [0.3, 0.5 * bare, snow])
             }
             Cover::Grass => (open(0.35 * bare), [0.0, 0.35 * bare, snow]),
@@ -280,7 +309,7 @@ impl Materials {
                 let fields = c.valley.lerp(c.meadow, ramp(patch + 0.4 * fray, -0.25, 0.25));
                 (fields.lerp(c.soil[1], 0.35 * ramp(patch - fray, 0.1, 0.3)), [0.0, 0.0, snow])
             }
-            Cover::BuiltUp => (c.town * (1.0 + 0.18 * fray + 0.3 * crown), [0.0, 0.0, snow]),
+            Cover::BuiltUp => (c.town * (0.7 + 0.18 * fray + 0.3 * tone), [0.0, 0.0, snow]),
             Cover::Bare => {
                 let rock = bare.max(0.25 + 0.5 * fray).clamp(0.0, 1.0);
                 (self.color(form, 1.0, 0.0, crown).lerp(c.scree * (1.0 + 0.25 * fray), 1.0 - rock), [0.0, rock, snow])
@@ -327,13 +356,7 @@ fn fractal<const N: usize>(nodes: &GroundNodes<'_, N>, longest_m: f32, octaves: 
         if shown == 0.0 {
             break;
         }
-        let (mut x, mut y) = ([0.0; N], [0.0; N]);
-        for i in 0..N {
-            // Turned from size to size, so that no lattice shows.
-            let [a, b] = [nodes.at_m[0][i] / size, nodes.at_m[1][i] / size];
-            let [c, s] = TURNS[k as usize % TURNS.len()];
-            (x[i], y[i]) = (c * a - s * b, s * a + c * b);
-        }
+        let [x, y] = turned(nodes, size, k as usize);
         let (value, _) = noise::value([&x, &y], seed + k);
         for i in 0..N {
             out[i] += strength * shown * value[i];
@@ -343,12 +366,24 @@ fn fractal<const N: usize>(nodes: &GroundNodes<'_, N>, longest_m: f32, octaves: 
     out
 }
 
+/// Places in steps of a noise whose lattice is turned the `k`-th time, so that no lattice shows.
+#[inline(always)]
+pub(super) fn turned<const N: usize>(nodes: &GroundNodes<'_, N>, size: f32, k: usize) -> [[f32; N]; 2] {
+    let (mut x, mut y) = ([0.0; N], [0.0; N]);
+    let [c, s] = TURNS[k % TURNS.len()];
+    for i in 0..N {
+        let [a, b] = [nodes.at_m[0][i] / size, nodes.at_m[1][i] / size];
+        (x[i], y[i]) = (c * a - s * b, s * a + c * b);
+    }
+    [x, y]
+}
+
 /// Cosines and sines of turns of the lattices of noise.
 const TURNS: [[f32; 2]; 4] = [[1.0, 0.0], [0.8, 0.6], [0.28, 0.96], [0.6, -0.8]];
 
 /// 0 at one value, 1 at another, linear between.
 #[inline(always)]
-fn ramp(x: f32, zero: f32, one: f32) -> f32 {
+pub(super) fn ramp(x: f32, zero: f32, one: f32) -> f32 {
     ((x - zero) / (one - zero)).clamp(0.0, 1.0)
 }
 

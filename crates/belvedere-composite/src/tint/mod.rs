@@ -1,5 +1,6 @@
 //! Colours of ground before it is lit: hypsometric tints, or materials by rule.
 
+mod canopy;
 mod materials;
 mod ramps;
 
@@ -46,6 +47,15 @@ pub struct GroundCover<const N: usize> {
     pub bare: [f32; N],
     /// See `forest`.
     pub snow: [f32; N],
+    /// Rise of the crowns of trees to the east and to the north, metres per metre.
+    pub crowns: [[f32; N]; 2],
+}
+
+impl<const N: usize> GroundCover<N> {
+    /// Ground of these colours without forest, rock and snow.
+    pub fn of_color(color: [[f32; N]; 3]) -> Self {
+        Self { color, forest: [0.0; N], bare: [0.0; N], snow: [0.0; N], crowns: [[0.0; N]; 2] }
+    }
 }
 
 /// A spacing at which no detail is made, metres.

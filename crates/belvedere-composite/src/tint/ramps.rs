@@ -181,7 +181,7 @@ impl RampTint {
                 out[i] = bare + snow[i] * (white[k] - bare);
             }
         }
-        GroundCover { color, forest: [0.0; N], bare: [0.0; N], snow: [0.0; N] }
+        GroundCover::of_color(color)
     }
 }
 

@@ -70,7 +70,7 @@ fn places(
     above: f32,
 ) -> (GroundCover<64>, Vec<Rgb>) {
     let tint = GroundTint::new(&Palette::Placed(name, climate, None), [400.0, 4200.0]);
-    let mut all = GroundCover { color: [[0.0; 64]; 3], forest: [0.0; 64], bare: [0.0; 64], snow: [0.0; 64] };
+    let mut all = GroundCover::of_color([[0.0; 64]; 3]);
     let mut colors = Vec::new();
     for row in 0..64 {
         let (x, y) = (std::array::from_fn(|i| 8.0 * i as f32), [8.0 * row as f32; 64]);

@@ -3,7 +3,7 @@
 use super::evaluate::{Evaluation, Evaluator};
 use super::eyes::Eye;
 use super::options::RevealOptions;
-use super::score::{composition, frame, shown, unbent};
+use super::score::{PER_SHARE, UNBENT, composition, frame, shown, unbent};
 use super::search::{BENT, BendSearch, Candidate, SearchStart, coarse_stride, stride_for};
 use super::thresholds::NOTHING_HIDDEN;
 use crate::ConstructError;
@@ -145,7 +145,7 @@ pub(super) fn best_of_all(
     for (index, base) in bases.iter().enumerate() {
         progress.tick("bending the picture", 0.3 + 0.3 * index as f64 / bases.len() as f64)?;
         // A bend of it is hardly worth more than all of the features under a horizon.
-        let at_best = frame(&base.straight).max(composition(&base.straight)) + 3.2 + base.taste;
+        let at_best = frame(&base.straight).max(composition(&base.straight)) + PER_SHARE + UNBENT + base.taste;
         let hides = base.straight.visible_in_frame < NOTHING_HIDDEN;
         let gains = |candidate: &Candidate| candidate.visible >= base.straight.visible + SURE_GAIN;
         if !hides || best.as_ref().is_some_and(|best| best.score >= at_best) {

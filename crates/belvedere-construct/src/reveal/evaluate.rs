@@ -39,6 +39,8 @@ pub struct Evaluation {
     pub horizon: f64,
     /// Standard deviation of that edge over the columns of the image, share of its height: large where the data end aslant in the picture.
     pub slant: f64,
+    /// Tilt of the line through that edge, degrees.
+    pub tilt_deg: f64,
     /// Horizontal extent of the middle 98 % of the features in the image, share of the image width.
     pub width: f64,
     /// Mean size of a grid cell at the lower border of the image, pixels; 0 without ground there. Ground that is magnified much more than 8
@@ -140,7 +142,7 @@ impl<'a> Evaluator<'a> {
         let height_angle = 2.0 * (0.5 * f64::from(pinhole.image[1]) / pinhole.scale_px()).atan();
         let depth_ratio =
             quantile(&mut distances, 0.97, Rank::Nearest) / quantile(&mut distances, 0.03, Rank::Nearest).max(1e-9);
-        let (skyline, slant, rise) = self.skyline(view);
+        let (skyline, [slant, tilt_deg], rise) = self.skyline(view);
         let (covered, coarse_px) = self.covered(view, skyline);
         let [width, height] = pinhole.image.map(f64::from);
         Evaluation {
@@ -155,15 +157,16 @@ impl<'a> Evaluator<'a> {
             skyline,
             horizon: if view.is_bent() { skyline } else { horizon(pinhole) },
             slant,
+            tilt_deg,
             width: (quantile(&mut columns, 0.99, Rank::Nearest) - quantile(&mut columns, 0.01, Rank::Nearest)) / width,
             coarse_px,
             rise,
         }
     }
 
-    /// Mean and standard deviation over the columns of the image of the highest terrain node in each, share of the image height from the top;
-    /// and the rise of the ground.
-    fn skyline(&self, view: &View) -> (f64, f64, f64) {
+    /// Mean over the columns of the image of the highest terrain node in each, share of the image height from the top; its standard deviation
+    /// and its tilt, degrees; and the rise of the ground.
+    fn skyline(&self, view: &View) -> (f64, [f64; 2], f64) {
         const COLUMNS: usize = 12;
         let [width, height] = view.pinhole().image.map(f64::from);
         let mut top = [height; COLUMNS];
@@ -181,7 +184,14 @@ impl<'a> Evaluator<'a> {
         }
         let mean = |of: &dyn Fn(f64) -> f64| top.iter().map(|t| of(t / height)).sum::<f64>() / COLUMNS as f64;
         let middle = mean(&|t| t);
-        (middle, mean(&|t| (t - middle) * (t - middle)).sqrt(), rise(&framed))
+        let slant = mean(&|t| (t - middle) * (t - middle)).sqrt();
+        let across = |i: usize| i as f64 - 0.5 * (COLUMNS - 1) as f64;
+        let (along, square) = top.iter().enumerate().fold((0.0, 0.0), |(along, square), (i, t)| {
+            (along + across(i) * (t / height - middle), square + across(i) * across(i))
+        });
+        let per_column = along / square;
+        let tilt = (per_column * height * COLUMNS as f64 / width).atan().to_degrees();
+        (middle, [slant, tilt.abs()], rise(&framed))
     }
 
     /// Share of a grid of rays below the skyline that come down on the ground of the data from above, and the size of its cells in the lowest

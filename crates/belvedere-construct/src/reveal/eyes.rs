@@ -8,7 +8,8 @@ use belvedere_core::{DVec2, DVec3, Pinhole, Projection};
 const DIRECTIONS: usize = 24;
 /// Pitches as shares of half the field of view, and where the features lie in the picture: up to 1 the horizon lies in it and the features
 /// below, from steeper ones a bend brings it there.
-const PITCHES: [(f64, Window); 6] = [(0.7, LOW), (0.85, LOW), (0.55, LOW), (1.0, LOW), (1.35, MIDDLE), (1.8, MIDDLE)];
+const PITCHES: [(f64, Window); 8] =
+    [(0.7, LOW), (0.85, LOW), (0.55, LOW), (1.0, LOW), (0.6, LOWEST), (0.35, LOWEST), (1.35, MIDDLE), (1.8, MIDDLE)];
 /// Fields of view as shares of the widest: through a narrow one, from farther away, all of a long feature is about as large, and data that
 /// are hardly wider than it fill the picture.
 const LENSES: [f64; 4] = [1.0, 0.82, 0.61, 0.41];
@@ -26,10 +27,12 @@ struct Window {
 
 /// In the lower two thirds, under ground that leads to a horizon, and a sky.
 const LOW: Window = Window { aside: 0.74, up: [-0.84, 0.42] };
+/// At the foot of the picture, under mountains that stand high over them, and a sky.
+const LOWEST: Window = Window { aside: 0.74, up: [-0.86, -0.3] };
 /// Around the middle.
 const MIDDLE: Window = Window { aside: 0.74, up: [-0.72, 0.72] };
 /// Most pixels of the reference picture that a grid cell among the features may take up: nearer, a few smooth humps fill the picture.
-pub(super) const MOST_PER_CELL_PX: f64 = 60.0;
+pub(super) const MOST_PER_CELL_PX: f64 = 110.0;
 /// Least distance of the eye from the features, cells.
 const NEAREST_CELLS: f64 = 8.0;
 

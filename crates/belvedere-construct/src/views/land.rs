@@ -9,6 +9,11 @@ const ALONG: usize = 160;
 /// Rows of the picture, from its top, that the highest and the nearest ground come to, as shares of its height.
 const WHOLE_ROWS: [f64; 2] = [0.14, 0.94];
 const PART_ROWS: [f64; 2] = [0.36, 0.9];
+/// Most sky over the highest summits of ground that does not fill the height, share of the picture's height.
+const MOST_SKY: f64 = 0.17;
+/// How far the upper edge of a whole ground lies below its highest summits at most, and least sky over these, shares of the picture's height.
+const UNDER_SUMMITS: f64 = 0.06;
+const LEAST_SKY: f64 = 0.06;
 /// Share of the ground that lies below the upper row: single spikes may stand over it.
 const HIGHEST: f64 = 0.998;
 /// Vertical fields of view, degrees: a long lens keeps the far side of a whole ground wide, a short one shows the horizon over a part.
@@ -25,6 +30,7 @@ const LOST: f64 = 0.8;
 const MOST_OUTSIDE: f64 = 0.25;
 const NARROWED: f64 = 0.85;
 const MOST_NARROWED: i32 = 20;
+const MUCH_NARROWED: f64 = 0.6;
 /// Strips of the picture by which it is told how far ground fills it.
 const STRIPS: usize = 24;
 
@@ -33,7 +39,7 @@ const STRIPS: usize = 24;
 pub struct LandView {
     /// The camera.
     pub pinhole: Pinhole,
-    /// Middle of the ground that it shows.
+    /// A point in the middle of the picture, as far ahead as the middle of the ground that it shows.
     pub target: DVec3,
 }
 
@@ -46,16 +52,22 @@ pub struct LandView {
 pub fn over_land(ground: &Heightfield, part: Option<[DVec2; 2]>, image: [u32; 2]) -> Option<LandView> {
     let points = nodes(ground, part);
     let (fov, falls, rows): (_, &[f64], _) = match part {
-        None => (WHOLE_FOV, &WHOLE_FALLS, WHOLE_ROWS),
-        Some(_) => (PART_FOV, &PART_FALLS, PART_ROWS),
+        None => (WHOLE_FOV, &WHOLE_FALLS, (WHOLE_ROWS, UNDER_SUMMITS)),
+        Some(_) => (PART_FOV, &PART_FALLS, (PART_ROWS, 1.0)),
     };
     let pinhole = northwards(&points, (fov, falls), image, rows)?;
-    let target = points.iter().sum::<DVec3>() / points.len() as f64;
+    let middle = points.iter().sum::<DVec3>() / points.len() as f64;
+    let target = pinhole.eye + (middle - pinhole.eye).dot(pinhole.forward) * pinhole.forward;
     Some(LandView { pinhole, target })
 }
 
 /// The best view towards the north. Ground that is much wider than the picture takes up a part of its height.
-fn northwards(points: &[DVec3], (fov, falls): (f64, &[f64]), image: [u32; 2], rows: [f64; 2]) -> Option<Pinhole> {
+fn northwards(
+    points: &[DVec3],
+    (fov, falls): (f64, &[f64]),
+    image: [u32; 2],
+    (rows, over): ([f64; 2], f64),
+) -> Option<Pinhole> {
     let mut last: Option<Pinhole> = None;
     for k in 0..MOST_NARROWED {
         let between = narrowed(rows, NARROWED.powi(k));
@@ -64,6 +76,11 @@ fn northwards(points: &[DVec3], (fov, falls): (f64, &[f64]), image: [u32; 2], ro
             // Corners beside the picture do not say where its lower edge lies.
             let inside: Vec<DVec3> = points.iter().copied().filter(|p| is_beside(&first, *p) == Some(false)).collect();
             let pinhole = framed(points, &inside, *fall, fov, image, between).unwrap_or(first);
+            // Few high summits leave more sky than is wanted.
+            let spare = skyline(points, &pinhole) - between[0] - over;
+            let spare = spare.clamp(0.0, (between[0] - LEAST_SKY).max(0.0));
+            let between = [between[0] - spare, between[1]];
+            let pinhole = if spare > 0.0 { framed(points, &inside, *fall, fov, image, between)? } else { pinhole };
             let score = filled(points, &pinhole, rows) - PER_DEGREE * (fall - USUAL_FALL).abs();
             Some((score, pinhole))
         });
@@ -76,10 +93,27 @@ fn northwards(points: &[DVec3], (fov, falls): (f64, &[f64]), image: [u32; 2], ro
     last
 }
 
-/// Rows of a picture around the middle of others, nearer to each other.
+/// Row of the upper edge of ground in the middle of the columns of a picture, share of its height.
+fn skyline(points: &[DVec3], pinhole: &Pinhole) -> f64 {
+    let [width, height] = pinhole.image.map(f64::from);
+    let mut tops = [1.0; STRIPS];
+    for p in points {
+        let Ok((px, _)) = pinhole.project(*p) else { continue };
+        let strip = px.x / width * STRIPS as f64;
+        if (0.0..STRIPS as f64).contains(&strip) {
+            let top = &mut tops[strip as usize];
+            *top = (px.y / height).min(*top);
+        }
+    }
+    quantile(&mut tops, 0.5, Rank::Nearest)
+}
+
+/// Rows of a picture nearer to each other than others: around their middle if they are much nearer, else under no more sky than is wanted.
 fn narrowed([top, bottom]: [f64; 2], share: f64) -> [f64; 2] {
-    let (middle, half) = (0.5 * (top + bottom), 0.5 * share * (bottom - top));
-    [middle - half, middle + half]
+    let rows = share * (bottom - top);
+    let middle = 0.5 * (top + bottom - rows);
+    let top = if share < MUCH_NARROWED { middle } else { middle.min(top.max(MOST_SKY)) };
+    [top, top + rows]
 }
 
 /// Number of points beside a picture.
@@ -182,6 +216,8 @@ mod tests {
             for image in [[1280, 720], [1000, 1000], [700, 1000]] {
                 let (ground, shape) = (ground(cols, rows, hills), [cols, rows]);
                 let view = over_land(&ground, None, image).expect("view");
+                let aim = view.pinhole.project(view.target).expect("in front").0;
+                assert!(aim.distance(view.pinhole.center_px()) < 1e-6, "the camera looks at its target: {aim}");
                 let seen: Vec<DVec2> = nodes(&ground, None)
                     .into_iter()
                     .map(|p| view.pinhole.project(p).expect("in front").0 / DVec2::from(image.map(f64::from)))

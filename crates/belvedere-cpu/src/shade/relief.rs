@@ -22,7 +22,7 @@ const GENTLE_SLOPE: f32 = 0.25;
 const FORM: f32 = 2.5;
 
 /// Openness that the deepest gullies keep, so that no shade is black.
-const LEAST_OPEN: f32 = 0.2;
+const LEAST_OPEN: f32 = 0.42;
 
 /// Share of direct light left in a cast shadow of a Swiss relief, whose light is a drawing technique rather than a sun.
 const SWISS_SHADOW: f32 = 0.4;
@@ -38,8 +38,13 @@ const AMOUNTS: [f32; 2] = [0.80, 0.62];
 /// Share of the side lights of a Swiss relief on steep ground.
 const SIDES: f32 = 0.3;
 
-/// Film of a Swiss relief: exposure, and the square root of light above which it is compressed, so that snow keeps its forms.
+/// Film of a Swiss relief: exposure, contrast around a middle tone, and the square root of light above which it is compressed, so that snow
+/// keeps its forms.
 const EXPOSURE: f32 = 1.1;
+const CONTRAST: f32 = 0.58;
+const MIDDLE: f32 = 0.56;
+/// How far below the middle tone contrast grows: the darkest tones keep their light.
+const TOE: f32 = 0.17;
 const SHOULDER: f32 = 0.70;
 
 /// The same for ground without relief, on which only boxes and meshes throw shadows.
@@ -94,6 +99,8 @@ impl ReliefLight {
             return root;
         }
         let r = EXPOSURE * root;
+        let tone = r - MIDDLE;
+        let r = r * (1.0 + CONTRAST * if tone > -TOE { tone } else { -TOE });
         let over = (r - SHOULDER) * (1.0 / (1.0 - SHOULDER));
         let bent = SHOULDER + (1.0 - SHOULDER) * over / (1.0 + over);
         if over > 0.0 { bent } else { r }

@@ -22,6 +22,9 @@ pub struct Air {
     /// Haze: on (the default: dims the farther part of the view), off, or the visibility in kilometres
     #[cfg_attr(feature = "clap", arg(long, value_name = "on|off|KM", allow_negative_numbers = true, value_parser = value::haze))]
     pub haze: Option<SwitchOrVisibility>,
+    /// Quiet clouds over a share of the sky, 0..=1; 0.4 without a value
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", num_args = 0..=1, require_equals = true, default_missing_value = "0.4", allow_negative_numbers = true, value_parser = value::share))]
+    pub clouds: Option<f64>,
     /// Draw lines of equal height on the ground, every M metres of true height; by default at an interval that fits the scale
     #[cfg_attr(feature = "clap", arg(long, value_name = "M", num_args = 0..=1, require_equals = true, default_missing_value = "true", value_parser = value::contours))]
     pub contours: Option<SwitchOrLength>,
@@ -142,8 +145,8 @@ impl Look {
         let [azimuth_deg, altitude_deg] = [0, 1].map(|i| self.light.map(|light| light[i]));
         let time = self.light_time.clone();
         let shadows = self.shadows || time.is_some();
-        let Air { sky, haze, .. } = self.air.clone();
-        let stated = shadows || self.light.is_some() || sky.is_some() || haze.is_some();
-        stated.then_some(LightDoc { azimuth_deg, altitude_deg, time, shadows, sky, haze })
+        let Air { sky, haze, clouds, .. } = self.air.clone();
+        let stated = shadows || self.light.is_some() || sky.is_some() || haze.is_some() || clouds.is_some();
+        stated.then_some(LightDoc { azimuth_deg, altitude_deg, time, shadows, sky, haze, clouds })
     }
 }

@@ -127,6 +127,12 @@ pub(crate) fn haze(text: &str) -> Result<SwitchOrVisibility, String> {
     }
 }
 
+/// A share.
+pub(crate) fn share(text: &str) -> Result<f64, String> {
+    let share = text.trim().parse().ok().filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "give a share in 0..=1, such as 0.4".into())
+}
+
 /// A factor of heights.
 pub(crate) fn exaggeration(text: &str) -> Result<f64, String> {
     let [least, most] = EXAGGERATION;

@@ -52,6 +52,7 @@ impl LookScore {
         let seen = Seen::new(frame, &is_ground)?;
         let mut rules = seen.of_ground();
         rules.extend(seen.of_sky(frame));
+        rules.extend(commonest(frame));
         rules.extend(subject(scene, view, frame.width));
         let held = rules.iter().filter(|rule| rule.holds).count();
         Some(Self { held, measured: rules.len(), rules })
@@ -205,6 +206,16 @@ impl Seen {
         }
         rules
     }
+}
+
+/// Share of the picture that its commonest colour fills.
+fn commonest(frame: &Frame) -> Option<LookRule> {
+    // An odd step meets every place of the pattern of dithering.
+    let mut colors: Vec<[u8; 3]> = frame.color.iter().copied().step_by(frame.color.len() / MOST | 1).collect();
+    colors.sort_unstable();
+    let most = colors.chunk_by(|a, b| a == b).map(<[_]>::len).max()?;
+    let share = most as f64 / colors.len() as f64;
+    Some(rule("share of the commonest colour", share, [None, Some(0.05)], "sky, edge, palette"))
 }
 
 /// Slope of the line through points, degrees.

@@ -12,6 +12,7 @@ const GOOD: Evaluation = Evaluation {
     skyline: 0.15,
     horizon: 0.15,
     slant: 0.04,
+    tilt_deg: 0.5,
     width: 0.7,
     coarse_px: 4.0,
     rise: 0.5,

@@ -1,4 +1,4 @@
-//! Made relief: gullies that run down steep slopes, roughness, crowns of trees, where the ground is drawn finer than its cells.
+//! Made relief: gullies that run down steep slopes, roughness, the crowns of trees of a cover, where the ground is drawn finer than its cells.
 //!
 //! It shows no data. It bends the normals of the ground, follows its fall line and its materials, is fixed to the map, and has nothing
 //! smaller than two nodes of the level that is drawn. Gullies are waves across the fall line around the corners of a lattice, each with its
@@ -14,15 +14,14 @@ const GULLY_M: [f32; 2] = [24.0, 260.0];
 const GULLIES: u32 = 6;
 /// Slope of the sides of gullies on the steepest ground, from size to size times `FALL`.
 const GULLY_SLOPE: f32 = 0.30;
-const FALL: f32 = 0.70;
+const FALL: f32 = 0.76;
 /// Tangents of slopes where gullies begin and where they are deepest.
 const STEEP: [f32; 2] = [0.22, 0.85];
-/// Roughness of ground: sizes from this on, metres, and slopes on gentle and on bare ground.
+/// Roughness of ground: sizes from this on, metres, slopes on level and on the steepest ground, and the tangent of its slope.
 const ROUGH_M: f32 = 64.0;
 const ROUGHS: u32 = 5;
-const ROUGH_SLOPE: [f32; 2] = [0.10, 0.13];
-/// Crowns of trees and clumps of them: sizes, metres, and slopes.
-const CROWNS: [(f32, f32); 5] = [(180.0, 0.10), (90.0, 0.20), (45.0, 0.28), (22.0, 0.36), (11.0, 0.34)];
+const ROUGH_SLOPE: [f32; 2] = [0.055, 0.19];
+const ROUGHEST: f32 = 0.8;
 
 /// Made relief at nodes.
 pub(crate) struct Made {
@@ -36,24 +35,23 @@ pub(crate) struct Made {
 /// * `cell_m`: spacing of the data, metres.
 #[inline(always)]
 pub(crate) fn relief(nodes: &GroundNodes<'_, LANES>, cover: &GroundCover<LANES>, cell_m: f32) -> Made {
-    let mut made = Made { slope: [[0.0; LANES]; 2], gully: [0.0; LANES] };
+    let mut made = Made { slope: cover.crowns, gully: [0.0; LANES] };
     if shown(GULLY_M[1], nodes.spacing_m) == 0.0 {
         return made;
     }
     gullies(nodes, cover, cell_m, &mut made);
+    let mut rough = [0.0; LANES];
+    for i in 0..LANES {
+        let [x, y] = nodes.slope.map(|s| s[i]);
+        let steep = ((x * x + y * y).sqrt() * (1.0 / ROUGHEST)).min(1.0);
+        let slope = ROUGH_SLOPE[0] + steep * (ROUGH_SLOPE[1] - ROUGH_SLOPE[0]);
+        rough[i] = slope * (1.0 + 0.4 * cover.bare[i]) * (1.0 - cover.forest[i]) * (1.0 + 0.5 * cover.snow[i]);
+    }
     let (mut size, mut fall) = (ROUGH_M, 1.0);
     for k in 0..ROUGHS {
-        let strength = |i: usize| {
-            let bare = cover.bare[i];
-            fall * (ROUGH_SLOPE[0] + bare * (ROUGH_SLOPE[1] - ROUGH_SLOPE[0]))
-                * (1.0 - cover.forest[i])
-                * (1.0 - 0.6 * cover.snow[i])
-        };
+        let strength = |i: usize| fall * rough[i];
         bumps(nodes, size, 31 + k, &strength, &mut made);
-        (size, fall) = (0.5 * size, 0.85 * fall);
-    }
-    for (k, (size, slope)) in CROWNS.into_iter().enumerate() {
-        bumps(nodes, size, 401 + k as u32, &|i| slope * cover.forest[i], &mut made);
+        (size, fall) = (0.5 * size, 0.74 * fall);
     }
     made
 }
@@ -175,8 +173,7 @@ mod tests {
 
     #[test]
     fn gullies_run_down_the_slope_and_only_on_steep_ground() {
-        let cover =
-            GroundCover { color: [[0.5; LANES]; 3], forest: [0.0; LANES], bare: [1.0; LANES], snow: [0.0; LANES] };
+        let cover = GroundCover { bare: [1.0; LANES], ..GroundCover::of_color([[0.5; LANES]; 3]) };
         for (x, y, steep) in [(0.9f32, 0.0f32, true), (-0.5, 0.6, true), (0.05, 0.05, false)] {
             let (mut along, mut across) = (0.0, 0.0);
             for n in 0..60 {

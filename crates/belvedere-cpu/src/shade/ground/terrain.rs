@@ -104,7 +104,7 @@ impl<'a> TerrainShade<'a> {
         let hf = &layer.heightfield;
         let surface = lit_surface(layer, job);
         // Caches are of the sun alone.
-        let light = Light { sky: Sky::Auto, haze: Haze::Auto, ..*job.light };
+        let light = Light { sky: Sky::Auto, haze: Haze::Auto, clouds: 0.0, ..*job.light };
         let (relief, palette) = (layer.relief, layer.palette.clone());
         let key = LitKey { relief, light, palette, exaggeration: layer.exaggeration };
         let tint = GroundTint::new(&layer.palette, hf.z_range());

@@ -1,5 +1,6 @@
 //! Sky and haze, dithered (Bayer 1973).
 
+mod clouds;
 mod row;
 
 use crate::screen::SUB;
@@ -8,6 +9,7 @@ use belvedere_composite::color::{PIXELS, Rgb, linear, smoothstep};
 use belvedere_composite::tint::GroundTint;
 use belvedere_core::{Aabb, DVec2, DVec3, Pinhole};
 use belvedere_scene::{Color, Haze, Light, Scene, Sky as Choice, TerrainLayer, Unit};
+use clouds::Clouds;
 
 /// Thresholds of ordered dithering, 8 x 8 (Bayer 1973), each 0..64 once.
 const BAYER: [[u8; 8]; 8] = [
@@ -80,7 +82,10 @@ pub(crate) struct Sky {
     /// is the summed change of these differences up to the entry.
     steps: Box<[[[f32; 4]; 2]; 2 * SHADES as usize]>,
     haze: Rgb,
-    /// Upward parts of the ray of a pixel, see [`Sky::rise`].
+    clouds: Option<Clouds>,
+    /// Eastward, northward and upward parts of the ray of a pixel, see [`Sky::part`].
+    east: [f32; 3],
+    north: [f32; 3],
     up: [f32; 3],
     center: [f32; 2],
     per_px: f32,
@@ -127,7 +132,7 @@ impl Stretch {
 
     /// The elevation whose colour is shown at another.
     fn of(self, rise: f32) -> f32 {
-        ((rise - self.skyline) * self.gain).clamp(-1.0, 1.0)
+        ((rise - self.skyline) * self.gain).min(1.0)
     }
 }
 
@@ -147,11 +152,15 @@ impl Sky {
         // Nearest and farthest depth of the scene, whose nearer part has full contrast.
         let [near, far]: [f32; 2] = depths;
         let span = (far - near).max(1e-6);
+        let parts = |of: fn(DVec3) -> f64| [pinhole.forward, pinhole.right, pinhole.down].map(|axis| of(axis) as f32);
         let from_above = smoothstep(FROM_ABOVE[0], FROM_ABOVE[1], -pinhole.forward.z as f32);
         Self {
             steps: steps(towards),
             haze: linear([184, 206, 230]),
-            up: [pinhole.forward.z, pinhole.right.z, pinhole.down.z].map(|v| v as f32),
+            clouds: None,
+            east: parts(|axis| axis.x),
+            north: parts(|axis| axis.y),
+            up: parts(|axis| axis.z),
             center: [center.x as f32, center.y as f32],
             per_px: per_px as f32,
             haze_from: near + 0.22 * span,
@@ -159,7 +168,8 @@ impl Sky {
             thickest: if pinhole.is_orthographic() {
                 0.0
             } else {
-                THICKEST * (1.0 - from_above) * smoothstep(SMALL[0], SMALL[1], span)
+                // All air lies between where ground begins near the eye, little where it is seen from afar.
+                THICKEST * (span / far) * (1.0 - from_above) * smoothstep(SMALL[0], SMALL[1], span)
             },
             per_depth: 0.0,
             dither: 1.0,
@@ -192,6 +202,7 @@ impl Sky {
             let colors = beyond.map_or_else(|| tones(air), |ground| with_land(tones(air), ground));
             steps(|rise| of_air(&colors, stretch.of(rise)))
         };
+        let clouds = |air: &[[u8; 3]; 4]| Clouds::new(light.clouds, tones(air)[2]);
         let is_landscape = scene.unit == Unit::Metre || scene.terrain().is_some();
         let shown = match light.sky {
             Choice::Auto if is_landscape => match light.altitude.to_degrees() {
@@ -207,9 +218,13 @@ impl Sky {
         match shown {
             // The gradient of a studio is fixed to the picture, for every direction of the camera.
             Choice::Auto => Self { steps: steps(studio), up: [0.0, 0.0, -1.0], ..air },
-            Choice::Day => Self { steps: over(&DAY, air.stretch), ..air },
-            Choice::Dusk => Self { steps: over(&DUSK, air.stretch), haze: linear(DUSK_HAZE), ..air },
-            Choice::Night => Self { steps: over(&NIGHT, air.stretch), haze: linear(NIGHT_HAZE), ..air },
+            Choice::Day => Self { steps: over(&DAY, air.stretch), clouds: clouds(&DAY), ..air },
+            Choice::Dusk => {
+                Self { steps: over(&DUSK, air.stretch), clouds: clouds(&DUSK), haze: linear(DUSK_HAZE), ..air }
+            }
+            Choice::Night => {
+                Self { steps: over(&NIGHT, air.stretch), clouds: clouds(&NIGHT), haze: linear(NIGHT_HAZE), ..air }
+            }
             Choice::Plain(_) | Choice::Transparent => {
                 let color = if let Choice::Plain(color) = shown { color } else { Color::rgb(255, 255, 255) };
                 let plain = linear([color.r, color.g, color.b]);
@@ -227,9 +242,23 @@ impl Sky {
 
     /// Rise of the straight ray of a pixel for each unit forward: linear on the picture, so that colours lie in level bands.
     #[inline(always)]
-    fn rise(&self, [x, y]: [f32; 2]) -> f32 {
+    fn rise(&self, pixel: [f32; 2]) -> f32 {
+        self.part(&self.up, pixel)
+    }
+
+    /// A part of the straight ray of a pixel for each unit forward.
+    #[inline(always)]
+    fn part(&self, along: &[f32; 3], [x, y]: [f32; 2]) -> f32 {
         let (x, y) = ((x - self.center[0]) * self.per_px, (y - self.center[1]) * self.per_px);
-        self.up[0] + self.up[1] * x + self.up[2] * y
+        along[0] + along[1] * x + along[2] * y
+    }
+
+    /// Square root of the colour of a pixel with its clouds, of that without them.
+    #[inline]
+    fn clouded(&self, root: Rgb, pixel: [f32; 2]) -> Rgb {
+        let Some(clouds) = &self.clouds else { return root };
+        let ahead = [self.part(&self.east, pixel), self.part(&self.north, pixel)];
+        clouds.over(root, ahead, self.stretch.of(self.rise(pixel)))
     }
 
     /// Sky in the direction of a pixel, dithered by one step of an 8-bit picture against banding.
@@ -237,7 +266,7 @@ impl Sky {
     pub(crate) fn at(&self, pixel: [f32; 2]) -> Rgb {
         let [x, y] = pixel.map(|v| v.max(0.0) as usize % 8);
         // Square roots of linear light are nearly even in 8-bit steps.
-        let root = self.root(self.rise(pixel)) + Rgb::splat(self.dither * THRESHOLDS[8 * y + x]);
+        let root = self.clouded(self.root(self.rise(pixel)), pixel) + Rgb::splat(self.dither * THRESHOLDS[8 * y + x]);
         root * root
     }
 
@@ -272,7 +301,7 @@ impl Sky {
         };
         let to = self.root_at(self.table_position([next, y]));
         *end = Some((next, to));
-        from.line_to(&to)
+        if self.clouds.is_some() { None } else { from.line_to(&to) }
     }
 
     /// Table entries at points of a row, [`LANES`] pixels apart.
@@ -329,13 +358,20 @@ impl Sky {
         for i in 0..LANES {
             let [low, change] = &self.steps[below[i] as usize & (2 * SHADES as usize - 1)];
             for k in 0..4 {
-                root[i][k] = (low[k] + share[i] * change[k]) + threshold[i];
+                root[i][k] = low[k] + share[i] * change[k];
+            }
+        }
+        if self.clouds.is_some() {
+            for i in 0..x.len() {
+                let at = [x[i], y[i]].map(|v| v as f32 * (1.0 / SUB as f32));
+                let [r, g, b, _] = root[i];
+                root[i] = self.clouded(Rgb::new(r, g, b), at).extend(0.0).to_array();
             }
         }
         for (k, out) in out.into_iter().enumerate() {
             let mut plane = [0.0; LANES];
             for i in 0..LANES {
-                plane[i] = root[i][k];
+                plane[i] = root[i][k] + threshold[i];
             }
             out.copy_from_slice(&plane[..out.len()]);
         }
@@ -518,13 +554,13 @@ fn color_of(terrain: &TerrainLayer) -> Rgb {
     Rgb::from_array(tint.color(0.75 * low + 0.25 * high, DVec2::ZERO))
 }
 
-/// Depth below the horizon, in units of [`of_air`], over which the plain beside the data leaves the colour of the horizon.
-const PLAIN: f32 = 0.5;
+/// Depth below the horizon, in units of [`of_air`], at which the plain beside the data has half left the colour of the horizon.
+const PLAIN: f32 = 0.4;
 
 /// The sky of air with these colours at the zenith, in the middle, at the horizon and below it.
 fn of_air(&[zenith, middle, horizon, below]: &[Rgb; 4], sine: f32) -> Rgb {
     if sine < 0.0 {
-        return below.lerp(horizon, (sine / PLAIN).exp());
+        return below.lerp(horizon, PLAIN / (PLAIN - sine));
     }
     let low = 1.0 - (-sine / 0.10).exp();
     let high = smoothstep(0.0, 0.7, sine);

@@ -32,7 +32,7 @@ impl Kernel for Store<'_> {
             let points = sky.points(x + (i * PIXELS) as i32 * SUB, y);
             for j in 0..out.len().div_ceil(LANES) {
                 let x = x + (i * PIXELS + j * LANES) as i32 * SUB;
-                let whole = (j + 1) * LANES <= out.len();
+                let whole = sky.clouds.is_none() && (j + 1) * LANES <= out.len();
                 let mut roots = [[0.0; LANES]; 3];
                 let [red, green, blue] = &mut roots;
                 let line = if whole { points[j].line_to(&points[j + 1]) } else { None };

@@ -47,6 +47,7 @@ fn rows(folder: &Path) -> Vec<(&'static str, Does)> {
         ("palette", Changes(json!("desert"), none())),
         ("sky", Changes(json!("white"), none())),
         ("haze", Changes(json!(2.0), none())),
+        ("clouds", Changes(json!(0.5), none())),
         ("contours", Changes(json!(true), none())),
         ("landcover", Changes(json!(folder.join("way.geojson").display().to_string()), none())),
         ("plain", Changes(json!(true), none())),

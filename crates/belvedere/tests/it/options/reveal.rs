@@ -57,6 +57,7 @@ fn rows(folder: &Path) -> Vec<(&'static str, Does)> {
         ("light", Changes(json!([120, 20]), none())),
         ("sky", Changes(json!("white"), none())),
         ("haze", Changes(json!(2.0), none())),
+        ("clouds", Changes(json!(0.5), none())),
         ("contours", Changes(json!(true), none())),
         ("landcover", Changes(path("way.geojson"), none())),
         ("plain", Changes(json!(true), none())),
