@@ -57,6 +57,8 @@ impl Told for Warning {
             Some("model") => " (--model)",
             Some("limits") => " (--no-limits)",
             Some("ground_nodes") => " (--nodes)",
+            Some("palette") => " (--palette)",
+            Some("materials") => " (--plain)",
             Some("grid") => " (--grid scene)",
             _ => "",
         };

@@ -219,8 +219,9 @@ fn terrain(
             (heightfield.into(), crs)
         }
     };
-    let cover = land_cover::load(loader, index, doc, &heightfield, crs)?;
-    let palette = placed(palette(loader, index, &style.palette)?, &heightfield, crs, cover);
+    let palette = palette(loader, index, &style.palette)?;
+    let cover = land_cover::load(loader, index, doc, &palette, &heightfield, crs)?;
+    let palette = placed(palette, &heightfield, crs, cover);
     let palette = if style.materials { palette } else { without_materials(palette) };
     let layer = TerrainLayer {
         heightfield,
@@ -245,14 +246,16 @@ fn contours(stated: &Option<SwitchOrLength>) -> Option<Option<f64>> {
 
 /// A palette that depends on the place, with the climate in the middle of the ground, or one guessed from its heights.
 fn placed(palette: Palette, ground: &Heightfield, crs: Crs, cover: Option<Arc<CoverMap>>) -> Palette {
-    use PaletteName::{Auto, Autumn, Swiss, Winter};
-    let Palette::Named(name @ (Auto | Swiss | Winter | Autumn)) = palette else { return palette };
+    let Palette::Named(name) = palette else { return palette };
+    if !name.has_materials() {
+        return palette;
+    }
     let bounds = ground.bounds();
     let middle = (0.5 * (bounds.min + bounds.max)).truncate();
     match (Ground { crs, terrain: None }).lon_lat(middle) {
         Some(at) => Palette::Placed(name, Climate::at(at.x, at.y), cover),
         // Ground without a place that is very high is rock and ice.
-        None if bounds.max.z > 5000.0 && name == Auto && cover.is_none() => palette,
+        None if bounds.max.z > 5000.0 && name == PaletteName::Auto && cover.is_none() => palette,
         None => Palette::Placed(name, Climate::of_heights([bounds.min.z, bounds.max.z]), cover),
     }
 }

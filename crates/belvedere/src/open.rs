@@ -8,7 +8,7 @@ use crate::scene_file::{
 };
 use crate::session::Loaded;
 use crate::shown::{end_ground, show_all};
-use crate::{BelvedereError, Needs, OpenOptions, Session};
+use crate::{Advice, BelvedereError, Needs, OpenOptions, Session};
 use belvedere_io::crs::utm_epsg;
 use belvedere_resolve::constructor;
 use belvedere_resolve::motion::Motions;
@@ -122,6 +122,10 @@ fn change(document: &mut Document, options: &OpenOptions, allowed: &mut Vec<Path
         wish.put_into(&mut document.furniture);
     }
     let palette = options.palette.as_ref().map(|palette| palette.located(allowed)).transpose()?;
+    if options.land_cover.is_some() && !document.layer.iter().any(|layer| matches!(layer, LayerDoc::Terrain(_))) {
+        let advice = Advice::of_options(&["landcover"], "for terrain, and the scene has none");
+        return Err(BelvedereError::Argument(advice));
+    }
     let land_cover = options.land_cover.as_ref().map(|name| of_user(name, allowed)).transpose()?;
     show_molecules(&options.molecule, &mut document.layer)?;
     for layer in &mut document.layer {

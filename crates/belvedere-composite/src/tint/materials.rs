@@ -15,6 +15,8 @@ use std::sync::Arc;
 /// Sizes of the noise that frays the borders of materials, metres: the largest; and their number, each half of the one before.
 const FRAY_M: f32 = 260.0;
 const FRAYS: u32 = 7;
+/// Largest size of the noise that frays the borders of land cover, cells.
+const FRAYED_CELLS: f32 = 2.0;
 /// Patches of wood and fields in gentle lowland, metres.
 const PATCH_M: f32 = 900.0;
 /// Share of open ground under the line of trees on which single trees stand, or shrubs where it is dry.
@@ -171,6 +173,7 @@ impl Materials {
         let canopy = Canopy::new(nodes);
         let layers = self.layers(nodes, &fray);
         let tufts = fractal(nodes, TUFT_M, TUFTS, 733);
+        let known = self.land.as_ref().map(|land| (land, border(land, nodes)));
         let mut out = GroundCover::of_color([[0.0; N]; 3]);
         for i in 0..N {
             let (height, [x, y]) = (nodes.height_m[i], nodes.slope.map(|s| s[i]));
@@ -183,10 +186,10 @@ impl Materials {
             let form = [height, steep, fray[i], patch[i], layers[i]];
             let forest = canopy.covered(i, forest.max(self.single(height, steep, patch[i])));
             let crown = [canopy.tone[i], canopy.clump[i], canopy.own[i]];
-            let (color, [forest, bare, snow]) = match &self.land {
+            let (color, [forest, bare, snow]) = match &known {
                 None => (self.color(form, bare, forest, crown), [forest, bare, snow]),
-                Some(land) => {
-                    let cover = covered(land, nodes.at_m.map(|at| at[i]), [fray[i], patch[i]]);
+                Some((land, border)) => {
+                    let cover = covered(land, nodes.at_m.map(|at| at[i]), [border[0][i], border[1][i]]);
                     self.known(cover, form, [forest, bare, snow], crown)
                 }
             };
@@ -340,11 +343,16 @@ impl Materials {
     }
 }
 
+/// Noise that frays the borders of cells, to the east and to the south. It is as fine as the cells, so that no lake moves as a whole.
+#[inline(always)]
+fn border<const N: usize>(land: &CoverMap, nodes: &GroundNodes<'_, N>) -> [[f32; N]; 2] {
+    [0, 1].map(|axis| fractal(nodes, FRAYED_CELLS * land.spacing[axis], 2, 211 + 40 * axis as u32))
+}
+
 /// The class at a place, with borders that are frayed by half a cell, so that its cells do not show as stairs.
 #[inline(always)]
-fn covered(land: &CoverMap, at: [f32; 2], [fray, patch]: [f32; 2]) -> Cover {
-    let by = [fray, patch - fray].map(|v| v.clamp(-0.6, 0.6));
-    land.at([0, 1].map(|axis| at[axis] + by[axis] * land.spacing[axis]))
+fn covered(land: &CoverMap, at: [f32; 2], border: [f32; 2]) -> Cover {
+    land.at([0, 1].map(|axis| at[axis] + border[axis].clamp(-0.6, 0.6) * land.spacing[axis]))
 }
 
 /// Noise of several sizes, each half of the one before and 0.62 as strong, about -1..=1; sizes below two nodes are left out.

@@ -117,7 +117,7 @@ pub struct Reveal {
 
 impl Reveal {
     /// Options that say something of terrain with features, and nothing of models and cities.
-    pub const OF_TERRAIN: [&'static str; 19] = [
+    pub const OF_TERRAIN: [&'static str; 20] = [
         "relief",
         "hidden",
         "exaggeration",
@@ -126,6 +126,7 @@ impl Reveal {
         "labels",
         "keep_voids",
         "palette",
+        "landcover",
         "no_sea",
         "area_style",
         "line_class",

@@ -10,6 +10,7 @@ mod export;
 mod films;
 mod framed;
 mod hidden_layers;
+mod land_cover;
 mod letters;
 mod line_classes;
 mod memory;
