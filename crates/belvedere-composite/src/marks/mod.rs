@@ -181,9 +181,11 @@ impl Marks {
         let mut requests = Vec::new();
         let under = overlay.under.iter().filter(with_text).map(|l| builder.overlay_line(l, &mut requests)).collect();
         let (size, density, keep_clear) = (2.0 * screen.center, job.options.density, &job.options.keep_clear[..]);
-        let without_room = symbols::thin([&mut context.symbols, &mut subject.symbols], keep_clear);
-        // Lines, then symbols; of both, what must be seen is drawn over the rest.
         let must_see = subject.lines(density);
+        let without_room = symbols::keep_off(&mut context.symbols, &must_see)
+            + symbols::thin([&mut context.symbols, &mut subject.symbols], keep_clear);
+        // Lines, then symbols; of both, what must be seen is drawn over the rest.
+        let must_see = subject.with_symbols(must_see);
         let mut points = PointMarks::default();
         let [lines, of_subject] = [&mut context, &mut subject].map(|placed| std::mem::take(&mut placed.sheets));
         let subject = subject.drawn(&builder, &mut points, &mut requests);

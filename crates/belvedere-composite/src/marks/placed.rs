@@ -19,17 +19,22 @@ pub(super) struct Placed {
 }
 
 impl Placed {
-    /// What its visible lines and symbols take, each with the number of its layer.
+    /// What its visible lines take, each with the number of its layer.
     pub(super) fn lines(&self, density: f64) -> Occupied {
         let mut taken = Occupied::new(SQUARE * density);
         for sheet in &self.sheets {
             sheet.visible_boxes().for_each(|rect| taken.take(rect, sheet.id() as usize));
         }
+        taken
+    }
+
+    /// Lines, with what its visible symbols take.
+    pub(super) fn with_symbols(&self, mut lines: Occupied) -> Occupied {
         for group in &self.symbols {
             let seen = group.images.iter().filter(|image| image.seen);
-            seen.for_each(|image| taken.take(image.rect(), group.id as usize));
+            seen.for_each(|image| lines.take(image.rect(), group.id as usize));
         }
-        taken
+        lines
     }
 
     /// Symbols. Names go into `requests`, drawings into `points`.

@@ -53,6 +53,12 @@ impl Stroke {
         Self { a: at, b: at, half: half as f32, grow: grow as f32, symbol: Some(symbol), lane }
     }
 
+    /// The same, moved by pixels.
+    pub(crate) fn moved(self, by: DVec2) -> Self {
+        let by = by.as_vec2();
+        Self { a: self.a + by, b: self.b + by, ..self }
+    }
+
     fn symbol_shape(&self) -> Option<SymbolShape> {
         let symbol = self.symbol?;
         let (at, half, grow) = (self.a.as_dvec2(), f64::from(self.half), f64::from(self.grow));

@@ -1,7 +1,8 @@
-//! Which symbols are drawn: no two overlap by more than a quarter of the smaller one.
+//! Which symbols are drawn, and where: those that must be seen all are; context stays off lines that must be seen, and overlaps no symbol by
+//! more than a quarter of the smaller one.
 
 use crate::marks::drawing::PlacedDrawing;
-use crate::marks::occupied::Rect;
+use crate::marks::occupied::{Occupied, Rect};
 use crate::marks::request::LabelRequest;
 use crate::marks::ribbon::{Ink, Stroke};
 use crate::marks::symbol;
@@ -9,9 +10,14 @@ use belvedere_core::DVec2;
 use belvedere_scene::Symbol;
 use std::cmp::Reverse;
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 
 /// Largest share of the smaller of two symbols that both cover.
 const MOST_SHARED: f64 = 0.25;
+/// How far a symbol steps aside from a line, in half sizes of it, nearest first.
+const STEPS: [f64; 4] = [0.75, 1.25, 1.75, 2.5];
+/// Number that no layer has.
+const NOBODY: usize = usize::MAX;
 
 /// Images of the points of a layer that are drawn alike.
 #[derive(Debug)]
@@ -54,10 +60,42 @@ impl PointImage {
     fn is_drawn(&self) -> bool {
         !self.strokes.is_empty() || self.drawing.is_some()
     }
+
+    /// Moves it to the nearest of a few places off some lines; whether there is one.
+    fn step_aside(&mut self, lines: &Occupied) -> bool {
+        let rect = self.rect();
+        let steps =
+            STEPS.iter().flat_map(|step| (0..8).map(move |k| step * DVec2::from_angle(f64::from(k) * TAU / 8.0)));
+        let mut moves = std::iter::once(DVec2::ZERO).chain(steps.map(|step| self.half_px * step));
+        let Some(by) = moves.find(|by| lines.is_free(&rect.map(|corner| corner + *by), NOBODY)) else { return false };
+        if by == DVec2::ZERO {
+            return true;
+        }
+        self.at += by;
+        self.strokes.iter_mut().for_each(|stroke| *stroke = stroke.moved(by));
+        if let Some(drawing) = &mut self.drawing {
+            drawing.at += by;
+        }
+        if let Some(request) = &mut self.request {
+            request.at += by;
+        }
+        true
+    }
 }
 
-/// Takes out the images that would overlap one that counts more, and returns their number: what must be seen counts more than context, what
-/// is seen more than what is hidden, then ranks decide, then the order of layers and points.
+/// Moves symbols of context off lines that must be seen, takes out those that find no place near, and returns their number.
+pub(super) fn keep_off(context: &mut [PointGroup], lines: &Occupied) -> u64 {
+    let mut count = 0;
+    for group in context {
+        let before = group.images.len();
+        group.images.retain_mut(|image| !image.is_drawn() || image.step_aside(lines));
+        count += (before - group.images.len()) as u64;
+    }
+    count
+}
+
+/// Takes out the images of context that would overlap one that counts more, and returns their number: what must be seen counts more than
+/// context and is never taken out, what is seen counts more than what is hidden, then ranks decide, then the order of layers and points.
 ///
 /// * `groups`: those of context, then those that must be seen; `keep_clear`: rectangles that context stays out of.
 pub(super) fn thin(groups: [&mut [PointGroup]; 2], keep_clear: &[Rect]) -> u64 {
@@ -77,8 +115,8 @@ pub(super) fn thin(groups: [&mut [PointGroup]; 2], keep_clear: &[Rect]) -> u64 {
     let mut dropped = Vec::new();
     for key in order.into_iter().filter(|key| image(*key).is_drawn()) {
         let rect = image(key).rect();
-        let is_covered = !key.0 && keep_clear.iter().any(|other| shared(other, &rect) > MOST_SHARED);
-        match is_covered || squares.is_taken(&rect) {
+        let is_covered = keep_clear.iter().any(|other| shared(other, &rect) > MOST_SHARED);
+        match !key.0 && (is_covered || squares.is_taken(&rect)) {
             true => dropped.push(key),
             false => squares.take(rect),
         }
@@ -165,6 +203,36 @@ mod tests {
         let mut subject = [group(vec![image(302.0, none, true)])];
         assert_eq!(thin([&mut context, &mut subject], &[]), 2);
         assert_eq!((left(&context[0]), left(&subject[0])), (vec![12.0, 25.0], vec![302.0]));
+    }
+
+    #[test]
+    fn symbols_that_must_be_seen_are_all_drawn_however_close_they_lie() {
+        let many = || group((0..20).map(|k| image(f64::from(k), f64::from(k), k % 2 == 0)).collect());
+        let (mut context, mut subject) = ([many()], [many()]);
+        assert_eq!(thin([&mut context, &mut subject], &[]), 20);
+        assert_eq!((context[0].images.len(), subject[0].images.len()), (0, 20));
+        assert_eq!(thin([&mut [many()], &mut []], &[]), 18, "context alone is thinned");
+    }
+
+    #[test]
+    fn context_steps_off_a_line_that_must_be_seen_or_is_left_out_and_others_stay() {
+        let mut lines = Occupied::new(16.0);
+        lines.take([DVec2::new(-50.0, 48.0), DVec2::new(150.0, 52.0)], 7);
+        // No place is free near the second symbol.
+        lines.take([DVec2::new(400.0, 0.0), DVec2::new(500.0, 100.0)], 7);
+        let far = PointImage { at: DVec2::new(50.0, 90.0), ..image(50.0, 1.0, true) };
+        let named = PointImage {
+            request: Some(LabelRequest::new("hut", DVec2::new(20.0, 50.0), 12.0, Color::rgb(0, 0, 0))),
+            ..image(20.0, 1.0, true)
+        };
+        let mut context = [group(vec![named, image(450.0, 1.0, true), far])];
+        assert_eq!(keep_off(&mut context, &lines), 1);
+        let [moved, stays] = &context[0].images[..] else { panic!("two symbols stay") };
+        assert_eq!(stays.at, DVec2::new(50.0, 90.0));
+        let off = moved.at - DVec2::new(20.0, 50.0);
+        assert!(lines.is_free(&moved.rect(), NOBODY) && off.length() <= 2.5 * moved.half_px, "moved by {off}");
+        assert_eq!(moved.request.as_ref().map(|request| request.at), Some(moved.at), "its name goes along");
+        assert!(moved.strokes.iter().all(|stroke| stroke.ends()[0].as_dvec2().distance(moved.at) < 1e-3));
     }
 
     #[test]
