@@ -27,14 +27,14 @@ fn pick_names_what_is_seen_and_null_for_sky() {
 fn pick_agrees_with_project_on_a_bent_scene() {
     let place = Place::new();
     let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/massif_curved_rays.toml");
-    place.write("p.json", "[[640.25, 500.5], [200.5, 600.5], [900, 690.125], [640, 0.5]]");
+    place.write("p.json", "[[640.25, 500.5], [300.5, 400.5], [900, 450.125], [640, 0.5]]");
     let answer = place.json(&["pick", scenes, "--pixels", "p.json"]);
     let pixels = answer["pixels"].as_array().expect("a list");
     let points: Vec<_> = pixels.iter().filter(|p| !p.is_null()).map(|p| p["point"].clone()).collect();
     assert!(points.len() >= 3, "{answer}");
     place.write("q.json", &serde_json::json!(points).to_string());
     let back = place.json(&["project", scenes, "--points", "q.json"]);
-    let asked = [[640.25, 500.5], [200.5, 600.5], [900.0, 690.125], [640.0, 0.5]];
+    let asked = [[640.25, 500.5], [300.5, 400.5], [900.0, 450.125], [640.0, 0.5]];
     let seen = pixels.iter().zip(asked).filter(|(p, _)| !p.is_null());
     for ((picked, pixel), image) in seen.zip(back["points"].as_array().expect("a list")) {
         // A line is answered with its own nearest point, within half its width.
