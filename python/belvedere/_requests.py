@@ -14,6 +14,9 @@ class RevealOptions(TypedDict, total=False):
     #: Biological assembly of molecules, such as 1: draws the copies that the file describes (`info` lists them); asymmetric = the atoms of the file alone
     assembly: str | None
 
+    #: Quiet clouds over a share of the sky, 0..=1; 0.4 without a value
+    clouds: float | None
+
     #: Colours of molecules: auto (by element; ribbons and surfaces by chain), element, chain, residue, structure, or one colour #rrggbb
     color_by: str | None
 
@@ -119,6 +122,9 @@ class RenderOptions(TypedDict, total=False):
 
     #: Biological assembly of molecules, such as 1: draws the copies that the file describes (`info` lists them); asymmetric = the atoms of the file alone
     assembly: str | None
+
+    #: Quiet clouds over a share of the sky, 0..=1; 0.4 without a value
+    clouds: float | None
 
     #: Colours of molecules: auto (by element; ribbons and surfaces by chain), element, chain, residue, structure, or one colour #rrggbb
     color_by: str | None

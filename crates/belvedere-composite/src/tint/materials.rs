@@ -186,19 +186,18 @@ impl Materials {
             let form = [height, steep, fray[i], patch[i], layers[i]];
             let forest = canopy.covered(i, forest.max(self.single(height, steep, patch[i])));
             let crown = [canopy.tone[i], canopy.clump[i], canopy.own[i]];
-            let (color, [forest, bare, snow]) = match &known {
-                None => (self.color(form, bare, forest, crown), [forest, bare, snow]),
-                Some((land, border)) => {
-                    let cover = covered(land, nodes.at_m.map(|at| at[i]), [border[0][i], border[1][i]]);
-                    self.known(cover, form, [forest, bare, snow], crown)
-                }
-            };
+            let cover = known.as_ref().map_or(Cover::Unknown, |(land, border)| {
+                covered(land, nodes.at_m.map(|at| at[i]), [border[0][i], border[1][i]])
+            });
+            let water = f32::from(u8::from(matches!(cover, Cover::Water)));
+            let (color, [forest, bare, snow]) = self.known(cover, form, [forest, bare, snow], crown);
             let color = color.lerp(self.colors.snow, snow * (1.0 - 0.97 * forest));
-            let color = color * (1.0 + 0.12 * tufts[i] * (1.0 - forest));
+            let color = color * (1.0 + 0.12 * tufts[i] * (1.0 - forest) * (1.0 - water));
             for (plane, v) in out.color.iter_mut().zip(color.to_array()) {
                 plane[i] = v;
             }
             (out.forest[i], out.bare[i], out.snow[i]) = (forest, bare * (1.0 - forest), snow);
+            out.water[i] = water;
             (out.crowns[0][i], out.crowns[1][i]) = (forest * canopy.rise[0][i], forest * canopy.rise[1][i]);
         }
         out
@@ -294,7 +293,7 @@ impl Materials {
         ground.lerp(trees, 0.94 * forest)
     }
 
-    /// Colour without snow, linear, and shares of forest, rock and snow, where the land cover is known.
+    /// Colour without snow, linear, and shares of forest, rock and snow, by the land cover where it is known.
     ///
     /// * `by_rule`: these shares as the rules have them.
     fn known(&self, cover: Cover, form: [f32; 5], by_rule: [f32; 3], crown: Crown) -> (Rgb, [f32; 3]) {

@@ -47,14 +47,16 @@ pub struct GroundCover<const N: usize> {
     pub bare: [f32; N],
     /// See `forest`.
     pub snow: [f32; N],
+    /// Share of water, which is level.
+    pub water: [f32; N],
     /// Rise of the crowns of trees to the east and to the north, metres per metre.
     pub crowns: [[f32; N]; 2],
 }
 
 impl<const N: usize> GroundCover<N> {
-    /// Ground of these colours without forest, rock and snow.
+    /// Ground of these colours without forest, rock, snow and water.
     pub fn of_color(color: [[f32; N]; 3]) -> Self {
-        Self { color, forest: [0.0; N], bare: [0.0; N], snow: [0.0; N], crowns: [[0.0; N]; 2] }
+        Self { color, forest: [0.0; N], bare: [0.0; N], snow: [0.0; N], water: [0.0; N], crowns: [[0.0; N]; 2] }
     }
 }
 

@@ -45,7 +45,8 @@ pub(crate) fn relief(nodes: &GroundNodes<'_, LANES>, cover: &GroundCover<LANES>,
         let [x, y] = nodes.slope.map(|s| s[i]);
         let steep = ((x * x + y * y).sqrt() * (1.0 / ROUGHEST)).min(1.0);
         let slope = ROUGH_SLOPE[0] + steep * (ROUGH_SLOPE[1] - ROUGH_SLOPE[0]);
-        rough[i] = slope * (1.0 + 0.4 * cover.bare[i]) * (1.0 - cover.forest[i]) * (1.0 + 0.5 * cover.snow[i]);
+        let firm = (1.0 - cover.forest[i]) * (1.0 - cover.water[i]);
+        rough[i] = slope * (1.0 + 0.4 * cover.bare[i]) * firm * (1.0 + 0.5 * cover.snow[i]);
     }
     let (mut size, mut fall) = (ROUGH_M, 1.0);
     for k in 0..ROUGHS {
@@ -90,7 +91,11 @@ fn gullies(nodes: &GroundNodes<'_, LANES>, cover: &GroundCover<LANES>, cell_m: f
         let [x, y] = nodes.slope.map(|s| s[i]);
         let steep = (x * x + y * y).sqrt();
         let t = ((steep - STEEP[0]) * (1.0 / (STEEP[1] - STEEP[0]))).clamp(0.0, 1.0);
-        depth[i] = t * (0.4 + 0.6 * cover.bare[i]) * (1.0 - 0.55 * cover.forest[i]) * (1.0 - 0.5 * cover.snow[i]);
+        depth[i] = t
+            * (0.4 + 0.6 * cover.bare[i])
+            * (1.0 - 0.55 * cover.forest[i])
+            * (1.0 - cover.water[i])
+            * (1.0 - 0.5 * cover.snow[i]);
         deepest = if depth[i] > deepest { depth[i] } else { deepest };
         let per = 1.0 / (steep + 1e-6);
         // East and south, across the fall line.
