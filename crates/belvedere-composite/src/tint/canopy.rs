@@ -15,6 +15,9 @@ const TONES: [f32; 2] = [0.74, 1.10];
 /// The same heights where a tree stands alone.
 const ALONE: [f32; 2] = [0.62, 0.74];
 
+/// Nodes over a crown from which on single trees begin to be drawn.
+const SINGLE: f32 = 2.4;
+
 /// Crowns at nodes.
 pub(super) struct Canopy<const N: usize> {
     /// Lightness as a factor.
@@ -60,9 +63,10 @@ impl<const N: usize> Canopy<N> {
                 let tone = TONES[0] + (TONES[1] - TONES[0]) * ramp(domes.height[i], GAP[0], GAP[1]);
                 out.tone[i] *= 1.0 + shown * (tone - 1.0);
             }
-            (out.height, out.own, out.single) =
-                (domes.height, domes.own, if k + 1 == CROWNS.len() { shown } else { 0.0 });
+            (out.height, out.own) = (domes.height, domes.own);
         }
+        // Trees of few nodes would be specks.
+        out.single = (CROWNS[1].0 / (SINGLE * nodes.spacing_m) - 1.0).clamp(0.0, 1.0);
         out
     }
 

@@ -20,7 +20,7 @@ const FRAYED_CELLS: f32 = 2.0;
 /// Patches of wood and fields in gentle lowland, metres.
 const PATCH_M: f32 = 900.0;
 /// Share of open ground under the line of trees on which single trees stand, or shrubs where it is dry.
-const SINGLE: [f32; 2] = [0.075, 0.08];
+const SINGLE: [f32; 2] = [0.05, 0.05];
 /// Largest tufts of grass and stones, metres, and the number of sizes.
 const TUFT_M: f32 = 22.0;
 const TUFTS: u32 = 4;
@@ -76,7 +76,7 @@ impl Colors {
             water: linear([152, 184, 206]),
             town: linear([172, 162, 156]),
             bog: linear([128, 134, 92]),
-            straw: linear([186, 164, 128]),
+            straw: linear([184, 172, 126]),
             soil: [linear([190, 134, 96]), linear([212, 188, 150])],
             strata: [linear([150, 98, 74]), linear([212, 172, 136])],
         };
@@ -219,7 +219,7 @@ impl Materials {
         let likely = ramp(likely, 0.2, 0.82);
         // Cliffs carry none, gentle ground is mostly cleared, and so is the lowland.
         let cliff = ramp(steep, 0.95, 0.68);
-        let wood = ramp(patch + 0.5 * fray, 0.06, 0.22);
+        let wood = ramp(patch + 0.4 * fray, 0.0, 0.34);
         let slope = ramp(steep, 0.12, 0.26);
         let kept = wood + slope * (1.0 - wood);
         let low = ((height - self.tree_line_m + 1500.0) * (1.0 / 600.0)).clamp(0.0, 1.0);
@@ -271,14 +271,13 @@ impl Materials {
         let floor = ramp(steep, 0.15, 0.05) * ramp(height, tree - 150.0, tree - 500.0);
         let fields = c.valley.lerp(c.meadow, ramp(patch, -0.25, 0.25));
         // Ploughed land and dry grass.
-        let fields = fields.lerp(c.straw, 0.75 * ramp(patch - 0.7 * fray, 0.12, 0.34));
+        let fields = fields.lerp(c.straw, 0.5 * ramp(0.4 * fray - patch, 0.1, 0.5));
         // Tufts, as trees but fainter.
         let grass = grass.lerp(fields, floor) * (1.0 + 0.28 * fray + 0.26 * clump);
         let scree = c.scree * (1.0 + 0.25 * fray);
         let green = grass.lerp(scree, 0.85 * ramp(height + 300.0 * fray, tree + 450.0, tree + 800.0));
         let [low, high] = self.range_m;
-        let soil =
-            c.soil[0].lerp(c.soil[1], ramp(height, low, high)) * (1.0 + 0.25 * fray + 0.10 * layer + 0.45 * clump);
+        let soil = c.soil[0].lerp(c.soil[1], ramp(height, low, high)) * (1.0 + 0.25 * fray + 0.10 * layer);
         // High above trees dry ground is grey, too.
         let soil = soil.lerp(scree, 0.75 * ramp(height, tree - 400.0, tree + 500.0));
         let open = green.lerp(soil, self.dry);

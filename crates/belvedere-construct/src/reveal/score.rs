@@ -32,8 +32,8 @@ pub(super) fn frame(a: &Evaluation) -> f64 {
     0.25 * (a.drawn / 0.8).min(1.0) + width + 0.15 * a.rise.clamp(-1.0, 1.0)
         - outside
         - 3.0 * (a.in_frame - a.in_margin)
-        - 5.0 * void.min(0.15)
-        - 2.0 * (void - 0.15).max(0.0)
+        - 6.0 * void.min(0.15)
+        - 5.0 * (void - 0.15).max(0.0)
         - 5.0 * (a.slant - 0.035).max(0.0)
         - PER_DEGREE * (a.tilt_deg - LEVEL_DEG).clamp(0.0, 6.0)
         - 0.01 * (a.coarse_px - 32.0).clamp(0.0, 40.0)

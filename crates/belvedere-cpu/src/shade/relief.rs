@@ -41,7 +41,7 @@ const SIDES: f32 = 0.3;
 /// Film of a Swiss relief: exposure, contrast around a middle tone, and the square root of light above which it is compressed, so that snow
 /// keeps its forms.
 const EXPOSURE: f32 = 1.1;
-const CONTRAST: f32 = 0.58;
+const CONTRAST: f32 = 0.48;
 const MIDDLE: f32 = 0.56;
 /// How far below the middle tone contrast grows: the darkest tones keep their light.
 const TOE: f32 = 0.17;

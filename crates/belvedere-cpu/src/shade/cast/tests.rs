@@ -5,6 +5,7 @@ use belvedere_scene::{
 
 /// Sun in the west, 45 degrees high.
 const SUN: Light = Light {
+    clouds: 0.0,
     azimuth: 1.5 * std::f64::consts::PI,
     altitude: std::f64::consts::FRAC_PI_4,
     shadows: true,

@@ -14,13 +14,13 @@ const GULLY_M: [f32; 2] = [24.0, 260.0];
 const GULLIES: u32 = 6;
 /// Slope of the sides of gullies on the steepest ground, from size to size times `FALL`.
 const GULLY_SLOPE: f32 = 0.30;
-const FALL: f32 = 0.76;
+const FALL: f32 = 0.70;
 /// Tangents of slopes where gullies begin and where they are deepest.
 const STEEP: [f32; 2] = [0.22, 0.85];
 /// Roughness of ground: sizes from this on, metres, slopes on level and on the steepest ground, and the tangent of its slope.
 const ROUGH_M: f32 = 64.0;
 const ROUGHS: u32 = 5;
-const ROUGH_SLOPE: [f32; 2] = [0.055, 0.19];
+const ROUGH_SLOPE: [f32; 2] = [0.08, 0.11];
 const ROUGHEST: f32 = 0.8;
 
 /// Made relief at nodes.
@@ -46,13 +46,13 @@ pub(crate) fn relief(nodes: &GroundNodes<'_, LANES>, cover: &GroundCover<LANES>,
         let steep = ((x * x + y * y).sqrt() * (1.0 / ROUGHEST)).min(1.0);
         let slope = ROUGH_SLOPE[0] + steep * (ROUGH_SLOPE[1] - ROUGH_SLOPE[0]);
         let firm = (1.0 - cover.forest[i]) * (1.0 - cover.water[i]);
-        rough[i] = slope * (1.0 + 0.4 * cover.bare[i]) * firm * (1.0 + 0.5 * cover.snow[i]);
+        rough[i] = slope * firm * (1.0 - 0.6 * cover.snow[i]);
     }
     let (mut size, mut fall) = (ROUGH_M, 1.0);
     for k in 0..ROUGHS {
         let strength = |i: usize| fall * rough[i];
         bumps(nodes, size, 31 + k, &strength, &mut made);
-        (size, fall) = (0.5 * size, 0.74 * fall);
+        (size, fall) = (0.5 * size, 0.8 * fall);
     }
     made
 }

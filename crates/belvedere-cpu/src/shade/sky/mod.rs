@@ -168,8 +168,7 @@ impl Sky {
             thickest: if pinhole.is_orthographic() {
                 0.0
             } else {
-                // All air lies between where ground begins near the eye, little where it is seen from afar.
-                THICKEST * (span / far) * (1.0 - from_above) * smoothstep(SMALL[0], SMALL[1], span)
+                THICKEST * (1.0 - from_above) * smoothstep(SMALL[0], SMALL[1], span)
             },
             per_depth: 0.0,
             dither: 1.0,
