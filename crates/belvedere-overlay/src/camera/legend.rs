@@ -11,43 +11,51 @@ const ROW: f64 = 17.0;
 /// Margin between the legend and the rim of the picture, pixels.
 const MARGIN: f64 = 10.0;
 
+/// Most of the width and of the height of a picture that a legend takes up: in smaller pictures there is none, and names of planes and viewpoints
+/// alone.
+const MOST: DVec2 = DVec2::new(0.5, 0.6);
+/// Distance of the places along rays that a legend should not cover, pixels.
+const STEP: f64 = 8.0;
+
 /// Draws the legend, and in pictures from above also scale bar and north arrow.
 ///
 /// * `title`, `unit`: those of the scene.
 pub fn draw(canvas: &mut Canvas<'_>, figure: &CameraFigure, (title, unit): (&str, Unit)) {
     let size = canvas.size();
+    let pinhole = figure.view.pinhole();
+    if pinhole.is_orthographic() {
+        scale_bar(canvas, size, pinhole.scale_px(), unit);
+    }
     let widest = figure.legend.iter().map(|(_, text)| text_size(LETTERS_PX, text).width + 42.0);
     let width = widest.fold(text_size(14.0, title).width + 20.0, f64::max);
     let height = 30.0 + ROW * figure.legend.len() as f64;
-    if size.x < width + 20.0 || size.y < height + 20.0 {
+    let legend = DVec2::new(width, height);
+    if legend.cmpgt(MOST * size).any() {
         return;
     }
-    let lo = corner(figure, size, DVec2::new(width, height));
-    canvas.rect(lo, lo + DVec2::new(width, height), 5.0, PAPER);
+    let lo = corner(figure, size, legend);
+    canvas.rect(lo, lo + legend, 5.0, PAPER);
     canvas.text(lo + DVec2::new(10.0, 18.0), 14.0, title, INK, None);
     for (i, (color, text)) in figure.legend.iter().enumerate() {
         let row = lo + DVec2::new(10.0, 33.0 + ROW * i as f64);
         canvas.line(&[row, row + DVec2::new(14.0, 0.0)], 3.0, *color);
         canvas.text(row + DVec2::new(20.0, 0.36 * LETTERS_PX), LETTERS_PX, text, INK, None);
     }
-    let pinhole = figure.view.pinhole();
-    if pinhole.is_orthographic() {
-        scale_bar(canvas, size, pinhole.scale_px(), unit);
-    }
 }
 
 /// Upper left corner of the legend: the corner of the picture where it covers the fewest rays, the upper left one in doubt.
 fn corner(figure: &CameraFigure, size: DVec2, legend: DVec2) -> DVec2 {
     let far = size - legend - MARGIN;
-    let covered = |lo: DVec2| {
-        let inside = |p: DVec3| {
-            let at = figure.view.project(p).map_or(DVec2::NAN, |image| image.pixel);
-            at.cmpgt(lo).all() && at.cmplt(lo + legend).all()
-        };
-        let lines = figure.overlay.over.iter().filter(|line| line.color.a == 255);
-        let marks = figure.overlay.points.iter().map(|mark| mark.position);
-        lines.flat_map(|line| line.points.iter().copied()).chain(marks).filter(|p| inside(*p)).count()
-    };
+    let place = |p: DVec3| figure.view.project(p).ok().map(|image| image.pixel);
+    let lines = figure.overlay.over.iter().filter(|line| line.color.a == 255);
+    let pieces =
+        lines.flat_map(|line| line.points.windows(2)).filter_map(|ends| Some([place(ends[0])?, place(ends[1])?]));
+    let along = pieces.flat_map(|[a, b]| {
+        let steps = (a.distance(b) / STEP).ceil().clamp(1.0, 1000.0);
+        (0..steps as usize).map(move |i| a.lerp(b, i as f64 / steps))
+    });
+    let drawn: Vec<DVec2> = along.chain(figure.overlay.points.iter().filter_map(|mark| place(mark.position))).collect();
+    let covered = |lo: DVec2| drawn.iter().filter(|at| at.cmpgt(lo).all() && at.cmplt(lo + legend).all()).count();
     let places = [DVec2::splat(MARGIN), DVec2::new(far.x, MARGIN), far];
     places.into_iter().min_by_key(|lo| covered(*lo)).unwrap_or(places[0])
 }
