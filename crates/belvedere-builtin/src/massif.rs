@@ -246,7 +246,7 @@ pub(crate) fn erode(seed: u64, n: usize) -> (Land, Drainage) {
         if level > 0 {
             land = refine(seed, &land, size);
         }
-        let steps = [70, 24, 10][level.min(2)];
+        let steps = [70, 24, 10, 3][level.min(3)];
         let mut f = forces(seed, size, lift_m, 0.35);
         if level == 2 {
             f.talus.iter_mut().for_each(|t| *t *= 1.4);
