@@ -16,7 +16,7 @@ pub(super) const VIEWS_KEPT: usize = 14;
 /// Views whose bend is improved before one is chosen.
 const VIEWS_REFINED: usize = 3;
 /// Eyes with the best compositions, from which lines of sight are looked along.
-const LOOKED_FROM: usize = 800;
+const LOOKED_FROM: usize = 1500;
 /// Eyes that are evaluated even where time is up.
 const EYES_AT_LEAST: usize = 24;
 /// Views within this angle of each other are alike, degrees; so many of them are kept.

@@ -32,7 +32,7 @@ const LOWEST: Window = Window { aside: 0.74, up: [-0.86, -0.3] };
 /// Around the middle.
 const MIDDLE: Window = Window { aside: 0.74, up: [-0.72, 0.72] };
 /// Most pixels of the reference picture that a grid cell among the features may take up: nearer, a few smooth humps fill the picture.
-pub(super) const MOST_PER_CELL_PX: f64 = 110.0;
+pub(super) const MOST_PER_CELL_PX: f64 = 90.0;
 /// Least distance of the eye from the features, cells.
 const NEAREST_CELLS: f64 = 8.0;
 

@@ -328,9 +328,9 @@ fn finish(
 const WHOLE: f64 = 0.9;
 
 /// Pixels of a grid cell at the lower border of the picture above which near ground looks smeared, however it is interpolated.
-const SMEARED_PX: f64 = 100.0;
+const SMEARED_PX: f64 = 140.0;
 /// Share of the most pixels that a cell may take up among the features from which on cells keep the eye far.
-const KEPT_FAR: f64 = 0.8;
+const KEPT_FAR: f64 = 0.6;
 
 /// What is said where the cells of the ground are coarse for the picture: that the eye stands far away for them, or that they show.
 fn coarse_cells(evaluator: &Evaluator<'_>, view: &View, picture: &Evaluation) -> Option<Warning> {

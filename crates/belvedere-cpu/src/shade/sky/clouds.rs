@@ -11,9 +11,11 @@ const LONG: f32 = 1.7;
 /// Sizes of the noise, each half of the one before and so much weaker.
 const SIZES: u32 = 5;
 const WEAKER: f32 = 0.52;
-/// Values of the noise from which on there are clouds, of an open and of a covered sky; and the width of their edges.
-const OPEN: [f32; 2] = [0.62, -0.75];
+/// Spread of the noise, whose values are about those of a logistic distribution; and the width of the edges of clouds.
+const SPREAD: f64 = 0.256;
 const EDGE: f32 = 0.5;
+/// Least and largest share for which that distribution holds.
+const SHARES: [f64; 2] = [0.003, 0.985];
 /// Elevations between which clouds appear over the skyline, and the most that they hide of the sky.
 const RISEN: [f32; 2] = [0.015, 0.13];
 const THICKEST: f32 = 0.86;
@@ -31,7 +33,9 @@ impl Clouds {
     /// * `share`: part of the sky that they cover, about, 0..=1; `None` for 0;
     /// * `horizon`: linear colour of the sky at the horizon, which they have.
     pub(super) fn new(share: f64, horizon: Rgb) -> Option<Self> {
-        let from = OPEN[0] + share as f32 * (OPEN[1] - OPEN[0]);
+        let [least, most] = SHARES;
+        let shown = share.clamp(least, most);
+        let from = (SPREAD * ((1.0 - shown) / shown).ln()) as f32 - 0.43 * EDGE;
         let root = horizon.to_array().map(f32::sqrt);
         (share > 0.0).then(|| Self { from, root: Rgb::from_array(root) })
     }
