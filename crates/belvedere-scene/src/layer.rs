@@ -79,11 +79,6 @@ impl PaletteName {
         ("atlas", Self::Atlas),
         ("night", Self::Night),
     ];
-
-    /// Whether it shows materials, such as forest, rock and snow; others colour by height alone.
-    pub fn has_materials(self) -> bool {
-        matches!(self, Self::Auto | Self::Swiss | Self::Winter | Self::Autumn)
-    }
 }
 
 /// Hypsometric tint.

@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 /// Largest share of the smaller of two symbols that both cover.
 const MOST_SHARED: f64 = 0.25;
 /// How far a symbol steps aside from a line, in half sizes of it, nearest first.
-const STEPS: [f64; 4] = [0.75, 1.25, 1.75, 2.5];
+const ASIDE: [f64; 4] = [0.75, 1.25, 1.75, 2.5];
 /// Number that no layer has.
 const NOBODY: usize = usize::MAX;
 
@@ -65,7 +65,7 @@ impl PointImage {
     fn step_aside(&mut self, lines: &Occupied) -> bool {
         let rect = self.rect();
         let steps =
-            STEPS.iter().flat_map(|step| (0..8).map(move |k| step * DVec2::from_angle(f64::from(k) * TAU / 8.0)));
+            ASIDE.iter().flat_map(|step| (0..8).map(move |k| step * DVec2::from_angle(f64::from(k) * TAU / 8.0)));
         let mut moves = std::iter::once(DVec2::ZERO).chain(steps.map(|step| self.half_px * step));
         let Some(by) = moves.find(|by| lines.is_free(&rect.map(|corner| corner + *by), NOBODY)) else { return false };
         if by == DVec2::ZERO {

@@ -1,7 +1,7 @@
 //! Crowns of trees: clumps of them from afar, single ones from near by, lit and coloured by the same form.
 
 use super::GroundNodes;
-use super::materials::{ramp, turned};
+use super::fractal::{ramp, turned};
 use crate::noise;
 
 /// Clumps of trees: sizes, metres, lightness and rise.

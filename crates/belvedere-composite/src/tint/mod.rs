@@ -1,6 +1,7 @@
 //! Colours of ground before it is lit: hypsometric tints, or materials by rule.
 
 mod canopy;
+mod fractal;
 mod materials;
 mod ramps;
 

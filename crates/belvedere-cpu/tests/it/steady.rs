@@ -148,8 +148,8 @@ fn less_detail_does_not_pop_on_the_way() {
     let [all, block] = popping(&frames);
     let drawn: Vec<u64> = frames.iter().map(|f| f[0].stats.triangles_drawn).collect();
     assert!(drawn.iter().zip(&frames).all(|(n, f)| *n < f[1].stats.triangles_drawn), "{drawn:?}");
-    // 3.3 when this was written, in levels of a picture whose light spans 150 of 255.
-    assert!(all < 3.6 && block < 1.5, "{all} over the picture, {block} in a block");
+    // 3.7 and 1.5 when this was written, in levels of a picture whose light spans 170 of 255.
+    assert!(all < 4.0 && block < 1.7, "{all} over the picture, {block} in a block");
 }
 
 #[test]
