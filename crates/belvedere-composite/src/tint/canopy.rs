@@ -46,9 +46,9 @@ impl<const N: usize> Canopy<N> {
             let [x, y] = turned(nodes, size, 0);
             let (value, slope) = noise::value([&x, &y], 401 + k as u32);
             out.rise(&slope, shown * rise);
-            for i in 0..N {
-                out.clump[i] += shown * light * value[i];
-                out.tone[i] = 1.0 + out.clump[i];
+            for ((clump, tone), value) in out.clump.iter_mut().zip(&mut out.tone).zip(&value) {
+                *clump += shown * light * value;
+                *tone = 1.0 + *clump;
             }
         }
         for (k, (size, rise)) in CROWNS.into_iter().enumerate() {

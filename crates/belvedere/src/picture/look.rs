@@ -211,7 +211,7 @@ impl Seen {
 /// Share of the picture that its commonest colour fills.
 fn commonest(frame: &Frame) -> Option<LookRule> {
     // An odd step meets every place of the pattern of dithering.
-    let mut colors: Vec<[u8; 3]> = frame.color.iter().copied().step_by(frame.color.len() / MOST | 1).collect();
+    let mut colors: Vec<[u8; 3]> = frame.color.iter().copied().step_by((frame.color.len() / MOST) | 1).collect();
     colors.sort_unstable();
     let most = colors.chunk_by(|a, b| a == b).map(<[_]>::len).max()?;
     let share = most as f64 / colors.len() as f64;
