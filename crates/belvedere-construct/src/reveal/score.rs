@@ -14,7 +14,7 @@ pub(super) const WIDTH: [f64; 2] = [0.61, 0.79];
 /// can carry, under a horizon.
 pub(super) fn composition(a: &Evaluation) -> f64 {
     let [least, most] = SKY;
-    let sky = 9.0 * (least - a.skyline).max(0.0) + 4.0 * (a.skyline - most).max(0.0);
+    let sky = 16.0 * (least - a.skyline).max(0.0) + 4.0 * (a.skyline - most).max(0.0);
     let fill = (0.45 - a.spread).max(0.0) + 2.0 * (a.spread - 0.85).max(0.0);
     // Beyond the rim of the data sky shows below the horizon, too.
     let beyond = (a.skyline / least).min(1.0);
@@ -48,7 +48,7 @@ pub(super) fn unbent(a: &Evaluation) -> f64 {
 }
 
 /// Score of a picture that shows all of the features.
-pub(super) const PER_SHARE: f64 = 4.5;
+pub(super) const PER_SHARE: f64 = 6.0;
 
 /// Score of what a picture shows: of the whole features, and more and more where much of what it holds is hidden.
 pub(super) fn shown(a: &Evaluation) -> f64 {
