@@ -1,14 +1,5 @@
 //! The climate of a place, as far as its colours need it.
 
-use crate::PaletteName;
-
-impl PaletteName {
-    /// Whether it shows materials, such as forest, rock and snow; others colour by height alone.
-    pub fn has_materials(self) -> bool {
-        matches!(self, Self::Auto | Self::Swiss | Self::Winter | Self::Autumn)
-    }
-}
-
 /// Heights and dryness of the climate at a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Climate {

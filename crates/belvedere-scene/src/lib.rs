@@ -17,6 +17,7 @@ pub mod layer;
 pub mod light;
 mod line_class;
 pub mod mark;
+mod materials;
 pub mod mesh;
 pub mod molecule;
 pub mod motion;
