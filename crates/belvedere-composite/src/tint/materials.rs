@@ -20,8 +20,8 @@ const FRAYS: u32 = 7;
 const FRAYED_CELLS: f32 = 2.0;
 /// Patches of wood and fields in gentle lowland, metres.
 const PATCH_M: f32 = 900.0;
-/// Share of open ground under the line of trees on which single trees stand, or shrubs where it is dry.
-const SINGLE: [f32; 2] = [0.05, 0.05];
+/// Share of open ground under the line of trees on which single trees stand.
+const SCATTERED: f32 = 0.05;
 /// Largest tufts of grass and stones, metres, and the number of sizes.
 const TUFT_M: f32 = 22.0;
 const TUFTS: u32 = 4;
@@ -232,8 +232,10 @@ impl Materials {
     /// Share of single trees on open ground, 0..=1.
     #[inline(always)]
     fn single(&self, height: f32, steep: f32, patch: f32) -> f32 {
-        let usual = SINGLE[0] + self.dry * (SINGLE[1] - SINGLE[0]);
-        usual * ramp(height, self.tree_line_m + 60.0, self.tree_line_m - 300.0) * ramp(steep, 1.0, 0.7) * (1.0 + patch)
+        SCATTERED
+            * ramp(height, self.tree_line_m + 60.0, self.tree_line_m - 300.0)
+            * ramp(steep, 1.0, 0.7)
+            * (1.0 + patch)
     }
 
     /// Share of rock, 0..=1.
