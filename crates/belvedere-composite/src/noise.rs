@@ -9,8 +9,9 @@ pub fn value<const N: usize>([x, y]: [&[f32; N]; 2], seed: u32) -> ([f32; N], [[
     for i in 0..N {
         let (x0, y0) = (floor(x[i]), floor(y[i]));
         let (s, t) = (x[i] - x0 as f32, y[i] - y0 as f32);
-        let (a, b) = (hash(x0, y0, seed), hash(x0 + 1, y0, seed));
-        let (c, d) = (hash(x0, y0 + 1, seed), hash(x0 + 1, y0 + 1, seed));
+        let (x1, y1) = (x0.wrapping_add(1), y0.wrapping_add(1));
+        let (a, b) = (hash(x0, y0, seed), hash(x1, y0, seed));
+        let (c, d) = (hash(x0, y1, seed), hash(x1, y1, seed));
         let (p, q) = (s * s * s * (s * (s * 6.0 - 15.0) + 10.0), t * t * t * (t * (t * 6.0 - 15.0) + 10.0));
         let (dp, dq) = (30.0 * s * s * (1.0 - s) * (1.0 - s), 30.0 * t * t * (1.0 - t) * (1.0 - t));
         let both = a - b - c + d;
@@ -32,40 +33,53 @@ pub struct Domes<const N: usize> {
     pub own: [f32; N],
 }
 
+/// A square and those around it.
+const AROUND: [[i32; 2]; 9] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [0, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
+
 /// The domes at places (cellular noise, Worley 1996).
 ///
 /// * `at`, `seed`: see [`value`].
 #[inline(always)]
 pub fn domes<const N: usize>([x, y]: [&[f32; N]; 2], seed: u32) -> Domes<N> {
-    let mut out = Domes { height: [0.0; N], slope: [[0.0; N]; 2], own: [0.0; N] };
-    for i in 0..N {
-        let (x0, y0) = (floor(x[i]), floor(y[i]));
-        let (s, t) = (x[i] - x0 as f32, y[i] - y0 as f32);
-        let mut nearest = [4.0, 0.0, 0.0, 0.0];
-        for k in -1..=1 {
-            for j in -1..=1 {
-                let random = bits(x0 + j, y0 + k, seed);
-                let part = |shift: u32| ((random >> shift) & 255) as f32 * (1.0 / 255.0);
-                // Places keep off the sides of their squares, so that no two are close.
-                let (dx, dy) = (s - j as f32 - 0.15 - 0.7 * part(0), t - k as f32 - 0.15 - 0.7 * part(8));
-                let square = dx * dx + dy * dy;
-                nearest = if square < nearest[0] { [square, dx, dy, 2.0 * part(16) - 1.0] } else { nearest };
-            }
+    let (mut square, mut dx, mut dy, mut own) = ([4.0f32; N], [0.0; N], [0.0; N], [0.0; N]);
+    // Lanes inside, so that they become vector instructions.
+    for [j, k] in AROUND {
+        for i in 0..N {
+            let (x0, y0) = (floor(x[i]), floor(y[i]));
+            let random = bits(x0.wrapping_add(j), y0.wrapping_add(k), seed);
+            let part = |shift: u32| ((random >> shift) & 255) as i32 as f32 * (1.0 / 255.0);
+            // Places keep off the sides of their squares, so that no two are close.
+            let (s, t) = (x[i] - x0 as f32 - j as f32, y[i] - y0 as f32 - k as f32);
+            let (s, t) = (s - 0.15 - 0.7 * part(0), t - 0.15 - 0.7 * part(8));
+            let far = s * s + t * t;
+            let nearer = far < square[i];
+            square[i] = if nearer { far } else { square[i] };
+            dx[i] = if nearer { s } else { dx[i] };
+            dy[i] = if nearer { t } else { dy[i] };
+            own[i] = if nearer { 2.0 * part(16) - 1.0 } else { own[i] };
         }
-        let [square, dx, dy, own] = nearest;
-        let inside = square < 1.0;
-        out.height[i] = if inside { 1.0 - square } else { 0.0 };
-        (out.slope[0][i], out.slope[1][i]) = if inside { (-2.0 * dx, -2.0 * dy) } else { (0.0, 0.0) };
-        out.own[i] = own;
+    }
+    let mut out = Domes { height: [0.0; N], slope: [[0.0; N]; 2], own };
+    for i in 0..N {
+        let inside = square[i] < 1.0;
+        out.height[i] = if inside { 1.0 - square[i] } else { 0.0 };
+        out.slope[0][i] = if inside { -2.0 * dx[i] } else { 0.0 };
+        out.slope[1][i] = if inside { -2.0 * dy[i] } else { 0.0 };
     }
     out
 }
 
-/// The largest whole number that is not larger, for values that an `i32` holds.
+/// A number that leaves no room for fractions in an `f32` to which it is added.
+const WHOLE: f32 = 12_582_912.0;
+
+/// The largest whole number that is not larger, of values between -4,000,000 and 4,000,000; of others an arbitrary one.
+///
+/// A conversion that saturates would keep loops from becoming vector instructions.
 #[inline(always)]
 pub fn floor(v: f32) -> i32 {
-    let whole = v as i32;
-    if (whole as f32) > v { whole - 1 } else { whole }
+    let nearest = v + WHOLE;
+    let whole = nearest.to_bits().wrapping_sub(WHOLE.to_bits()) as i32;
+    whole.wrapping_sub(i32::from(nearest - WHOLE > v))
 }
 
 /// A pseudo-random value in -1..=1 of two whole numbers and a seed.
@@ -87,6 +101,15 @@ pub fn bits(x: i32, y: i32, seed: u32) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn whole_numbers_are_those_below() {
+        for i in -4_000..4_000 {
+            for v in [i as f32 * 0.0371, i as f32 * 999.7, i as f32, i as f32 + 0.5] {
+                assert_eq!(floor(v), v.floor() as i32, "{v}");
+            }
+        }
+    }
 
     #[test]
     fn noise_is_even_continuous_and_its_slope_is_its_change() {

@@ -40,7 +40,7 @@ const TURNS: [[f32; 2]; 4] = [[1.0, 0.0], [0.8, 0.6], [0.28, 0.96], [0.6, -0.8]]
 /// 0 at one value, 1 at another, linear between.
 #[inline(always)]
 pub(super) fn ramp(x: f32, zero: f32, one: f32) -> f32 {
-    ((x - zero) / (one - zero)).clamp(0.0, 1.0)
+    ((x - zero) * (1.0 / (one - zero))).clamp(0.0, 1.0)
 }
 
 /// A rise from 0 to 1 that begins and ends level.

@@ -6,9 +6,10 @@
 //! aspect and slope.
 
 use super::canopy::Canopy;
-use super::fractal::{fractal, ramp, smooth};
+use super::color::{Color, mix, times};
+use super::fractal::{fractal, ramp, smooth, turned};
 use super::{GroundCover, GroundNodes};
-use crate::color::{Rgb, linear};
+use crate::color::linear;
 use crate::noise;
 use belvedere_scene::{Climate, Cover, CoverMap, PaletteName};
 use std::sync::Arc;
@@ -18,8 +19,11 @@ const FRAY_M: f32 = 260.0;
 const FRAYS: u32 = 7;
 /// Largest size of the noise that frays the borders of land cover, cells.
 const FRAYED_CELLS: f32 = 2.0;
-/// Patches of wood and fields in gentle lowland, metres.
-const PATCH_M: f32 = 900.0;
+/// Patches of wood and of farmland in gentle lowland, metres.
+const PATCH_M: f32 = 2600.0;
+/// Length of fields, metres, and how much longer they are than wide.
+const FIELD_M: f32 = 520.0;
+const FIELD_LONG: f32 = 1.6;
 /// Share of open ground under the line of trees on which single trees stand.
 const SCATTERED: f32 = 0.05;
 /// Largest tufts of grass and stones, metres, and the number of sizes.
@@ -47,24 +51,25 @@ enum Season {
 /// Colours of the materials, linear.
 #[derive(Debug, Clone)]
 struct Colors {
-    meadow: Rgb,
-    alpine: Rgb,
-    valley: Rgb,
-    conifers: Rgb,
-    broadleaves: Rgb,
-    scree: Rgb,
-    rock: Rgb,
-    snow: Rgb,
-    water: Rgb,
-    town: Rgb,
-    bog: Rgb,
-    straw: Rgb,
-    soil: [Rgb; 2],
-    strata: [Rgb; 2],
+    meadow: Color,
+    alpine: Color,
+    valley: Color,
+    conifers: Color,
+    broadleaves: Color,
+    scree: Color,
+    rock: Color,
+    snow: Color,
+    water: Color,
+    town: Color,
+    bog: Color,
+    straw: Color,
+    soil: [Color; 2],
+    strata: [Color; 2],
 }
 
 impl Colors {
     fn of(season: Season) -> Self {
+        let linear = |srgb| linear(srgb).to_array();
         let summer = Self {
             meadow: linear([136, 150, 94]),
             alpine: linear([170, 162, 122]),
@@ -171,35 +176,46 @@ impl Materials {
     pub(super) fn cover<const N: usize>(&self, nodes: &GroundNodes<'_, N>) -> GroundCover<N> {
         let fray = fractal(nodes, FRAY_M, FRAYS, 101);
         let patch = fractal(nodes, PATCH_M, 3, 57);
+        let fields = fields(nodes);
         let canopy = Canopy::new(nodes);
         let layers = self.layers(nodes, &fray);
         let tufts = fractal(nodes, TUFT_M, TUFTS, 733);
-        let known = self.land.as_ref().map(|land| (land, border(land, nodes)));
         let mut out = GroundCover::of_color([[0.0; N]; 3]);
+        let form = |i: usize| {
+            let [x, y] = nodes.slope.map(|s| s[i]);
+            [nodes.height_m[i], (x * x + y * y).sqrt(), fray[i], patch[i], layers[i], fields[i]]
+        };
+        let crown = |i: usize| [canopy.tone[i], canopy.clump[i], canopy.own[i]];
+        // One step of short loops after the other: compilers turn these into vector instructions.
         for i in 0..N {
-            let (height, [x, y]) = (nodes.height_m[i], nodes.slope.map(|s| s[i]));
-            let steep = (x * x + y * y).sqrt();
+            let [height, steep, ..] = form(i);
             let shady = self.shade(nodes.broad[1][i]);
             let ridge = (nodes.above_m[i] * (1.0 / RIDGE_M)).clamp(-2.0, 2.0);
-            let forest = self.forest(height, steep, shady, ridge, fray[i], patch[i]);
-            let bare = self.bare(height, steep, fray[i]);
-            let snow = self.snow(height, steep, shady, fray[i]);
-            let form = [height, steep, fray[i], patch[i], layers[i]];
-            let forest = canopy.covered(i, forest.max(self.single(height, steep, patch[i])));
-            let crown = [canopy.tone[i], canopy.clump[i], canopy.own[i]];
-            let cover = known.as_ref().map_or(Cover::Unknown, |(land, border)| {
-                covered(land, nodes.at_m.map(|at| at[i]), [border[0][i], border[1][i]])
-            });
-            let water = f32::from(u8::from(matches!(cover, Cover::Water)));
-            let (color, [forest, bare, snow]) = self.known(cover, form, [forest, bare, snow], crown);
-            let color = color.lerp(self.colors.snow, snow * (1.0 - 0.97 * forest));
-            let color = color * (1.0 + 0.12 * tufts[i] * (1.0 - forest) * (1.0 - water));
-            for (plane, v) in out.color.iter_mut().zip(color.to_array()) {
-                plane[i] = v;
+            let forest = self.forest([height, steep, shady, ridge, fray[i], patch[i], fields[i]]);
+            let single = self.single(height, steep, patch[i]);
+            out.forest[i] = canopy.covered(i, if forest > single { forest } else { single });
+            out.bare[i] = self.bare(height, steep, fray[i]);
+            out.snow[i] = self.snow(height, steep, shady, fray[i]);
+        }
+        for i in 0..N {
+            out.put(i, self.color(form(i), out.bare[i], out.forest[i], crown(i)));
+        }
+        if let Some(land) = &self.land {
+            let border = border(land, nodes);
+            for i in 0..N {
+                match covered(land, nodes.at_m.map(|at| at[i]), [border[0][i], border[1][i]]) {
+                    Cover::Unknown => {}
+                    cover => self.put_known(cover, form(i), crown(i), i, &mut out),
+                }
             }
-            (out.forest[i], out.bare[i], out.snow[i]) = (forest, bare * (1.0 - forest), snow);
-            out.water[i] = water;
-            (out.crowns[0][i], out.crowns[1][i]) = (forest * canopy.rise[0][i], forest * canopy.rise[1][i]);
+        }
+        for i in 0..N {
+            let (forest, bare, snow) = (out.forest[i], out.bare[i], out.snow[i]);
+            let tufts = 1.0 + 0.12 * tufts[i] * (1.0 - forest) * (1.0 - out.water[i]);
+            out.put(i, times(mix(out.at(i), self.colors.snow, snow * (1.0 - 0.97 * forest)), tufts));
+            out.bare[i] = bare * (1.0 - forest);
+            out.crowns[0][i] = forest * canopy.rise[0][i];
+            out.crowns[1][i] = forest * canopy.rise[1][i];
         }
         out
     }
@@ -212,7 +228,7 @@ impl Materials {
 
     /// Share of forest, 0..=1.
     #[inline(always)]
-    fn forest(&self, height: f32, steep: f32, shady: f32, ridge: f32, fray: f32, patch: f32) -> f32 {
+    fn forest(&self, [height, steep, shady, ridge, fray, patch, field]: [f32; 7]) -> f32 {
         let under = (self.tree_line_m - height) * (1.0 / 140.0) + 0.3;
         let under = if under < 1.35 { under } else { 1.35 };
         let likely =
@@ -220,7 +236,8 @@ impl Materials {
         let likely = ramp(likely, 0.2, 0.82);
         // Cliffs carry none, gentle ground is mostly cleared, and so is the lowland.
         let cliff = ramp(steep, 0.95, 0.68);
-        let wood = ramp(patch + 0.4 * fray, 0.0, 0.34);
+        let gully = ramp(-ridge, 0.06, 0.4);
+        let wood = ramp(patch + 0.3 * fray + 0.5 * gully + 0.3 * field, 0.34, 0.52);
         let slope = ramp(steep, 0.12, 0.26);
         let kept = wood + slope * (1.0 - wood);
         let low = ((height - self.tree_line_m + 1500.0) * (1.0 / 600.0)).clamp(0.0, 1.0);
@@ -264,64 +281,79 @@ impl Materials {
     #[inline(always)]
     fn color(
         &self,
-        [height, steep, fray, patch, layer]: [f32; 5],
+        [height, steep, fray, patch, layer, field]: [f32; 6],
         bare: f32,
         forest: f32,
         [tone, clump, own]: Crown,
-    ) -> Rgb {
+    ) -> Color {
         let (c, tree) = (&self.colors, self.tree_line_m);
-        let grass = c.meadow.lerp(c.alpine, ramp(height + 200.0 * fray, tree - 250.0, tree + 350.0));
+        let grass = mix(c.meadow, c.alpine, ramp(height + 200.0 * fray, tree - 250.0, tree + 350.0));
         let floor = ramp(steep, 0.15, 0.05) * ramp(height, tree - 150.0, tree - 500.0);
-        let fields = c.valley.lerp(c.meadow, ramp(patch, -0.25, 0.25));
-        // Ploughed land and dry grass.
-        let fields = fields.lerp(c.straw, 0.5 * ramp(0.4 * fray - patch, 0.1, 0.5));
         // Tufts, as trees but fainter.
-        let grass = grass.lerp(fields, floor) * (1.0 + 0.28 * fray + 0.26 * clump);
-        let scree = c.scree * (1.0 + 0.25 * fray);
-        let green = grass.lerp(scree, 0.85 * ramp(height + 300.0 * fray, tree + 450.0, tree + 800.0));
+        let grass = times(mix(grass, self.fields(field, patch), floor), 1.0 + 0.28 * fray + 0.26 * clump);
+        let scree = times(c.scree, 1.0 + 0.25 * fray);
+        let green = mix(grass, scree, 0.85 * ramp(height + 300.0 * fray, tree + 450.0, tree + 800.0));
         let [low, high] = self.range_m;
-        let soil = c.soil[0].lerp(c.soil[1], ramp(height, low, high)) * (1.0 + 0.25 * fray + 0.10 * layer);
+        let soil = mix(c.soil[0], c.soil[1], ramp(height, low, high));
         // High above trees dry ground is grey, too.
-        let soil = soil.lerp(scree, 0.75 * ramp(height, tree - 400.0, tree + 500.0));
-        let open = green.lerp(soil, self.dry);
-        let walls = c.strata[0].lerp(c.strata[1], 0.5 + 0.5 * layer);
-        let walls = walls.lerp(c.rock, 0.75 * ramp(height, tree - 400.0, tree + 500.0));
-        let rock = c.rock.lerp(walls, self.dry) * (1.0 + 0.35 * fray + 0.12 * layer * (1.0 - self.dry));
-        let ground = open.lerp(rock, bare);
+        let grey = 0.75 * ramp(height, tree - 400.0, tree + 500.0);
+        let soil = mix(times(soil, 1.0 + 0.25 * fray + 0.10 * layer), scree, grey);
+        let open = mix(green, soil, self.dry);
+        let walls = mix(mix(c.strata[0], c.strata[1], 0.5 + 0.5 * layer), c.rock, grey);
+        let rock = times(mix(c.rock, walls, self.dry), 1.0 + 0.35 * fray + 0.12 * layer * (1.0 - self.dry));
+        let ground = mix(open, rock, bare);
         // Broadleaves below, conifers above, mixed between.
         let up = ramp(height + 380.0 * patch + 120.0 * fray, tree - 1000.0, tree - 350.0);
         let kind = (0.25 + 0.75 * up + 0.22 * own).clamp(0.0, 1.0);
-        let trees = c.broadleaves.lerp(c.conifers, kind) * (tone * (1.0 + 0.12 * own)).max(LEAST_TONE);
-        ground.lerp(trees, 0.94 * forest)
+        let tone = tone * (1.0 + 0.12 * own);
+        let trees = times(mix(c.broadleaves, c.conifers, kind), if tone > LEAST_TONE { tone } else { LEAST_TONE });
+        mix(ground, trees, 0.94 * forest)
     }
 
-    /// Colour without snow, linear, and shares of forest, rock and snow, by the land cover where it is known.
+    /// Colour of farmland: meadows, green and dry crops, ploughed land, each field one of them.
+    #[inline(always)]
+    fn fields(&self, field: f32, patch: f32) -> Color {
+        let c = &self.colors;
+        let fields = mix(c.valley, c.meadow, ramp(field + 0.5 * patch, -0.6, 0.2));
+        let fields = mix(fields, c.straw, 0.7 * ramp(field - 0.3 * patch, 0.42, 0.5));
+        mix(fields, c.soil[1], 0.4 * ramp(field, -0.76, -0.84))
+    }
+
+    /// Puts the colour without snow and the shares of forest, rock, snow and water of a node whose land cover is known.
     ///
-    /// * `by_rule`: these shares as the rules have them.
-    fn known(&self, cover: Cover, form: [f32; 5], by_rule: [f32; 3], crown: Crown) -> (Rgb, [f32; 3]) {
-        let (c, [_, _, fray, patch, _], [forest, bare, snow], [tone, ..]) = (&self.colors, form, by_rule, crown);
-        let open = |bare| self.color(form, bare, 0.0, crown);
-        match cover {
-            Cover::Unknown => (self.color(form, bare, forest, crown), by_rule),
-            Cover::Forest => (self.color(form, 0.0, 1.0, crown), [1.0, 0.0, snow]),
+    /// * `out`: has these shares as the rules have them.
+    fn put_known<const N: usize>(
+        &self,
+        cover: Cover,
+        form: [f32; 6],
+        crown: Crown,
+        i: usize,
+        out: &mut GroundCover<N>,
+    ) {
+        let (c, [_, _, fray, patch, _, field], [tone, ..]) = (&self.colors, form, crown);
+        let (bare, snow) = (out.bare[i], out.snow[i]);
+        let ground = |bare, forest| self.color(form, bare, forest, crown);
+        let (color, [forest, bare, snow]) = match cover {
+            Cover::Unknown => return,
+            Cover::Forest => (ground(0.0, 1.0), [1.0, 0.0, snow]),
             Cover::Shrubs => {
-                let shrubs = c.meadow.lerp(c.broadleaves, 0.6) * (0.3 + 0.7 * tone).max(LEAST_TONE);
-                (open(0.5 * bare).lerp(shrubs, 0.6), [0.3, 0.5 * bare, snow])
+                let shrubs = times(mix(c.meadow, c.broadleaves, 0.6), (0.3 + 0.7 * tone).max(LEAST_TONE));
+                (mix(ground(0.5 * bare, 0.0), shrubs, 0.6), [0.3, 0.5 * bare, snow])
             }
-            Cover::Grass => (open(0.35 * bare), [0.0, 0.35 * bare, snow]),
-            Cover::Fields => {
-                let fields = c.valley.lerp(c.meadow, ramp(patch + 0.4 * fray, -0.25, 0.25));
-                (fields.lerp(c.soil[1], 0.35 * ramp(patch - fray, 0.1, 0.3)), [0.0, 0.0, snow])
-            }
-            Cover::BuiltUp => (c.town * (0.7 + 0.18 * fray + 0.3 * tone), [0.0, 0.0, snow]),
+            Cover::Grass => (ground(0.35 * bare, 0.0), [0.0, 0.35 * bare, snow]),
+            Cover::Fields => (times(self.fields(field, patch), 1.0 + 0.14 * fray), [0.0, 0.0, snow]),
+            Cover::BuiltUp => (times(c.town, 0.7 + 0.18 * fray + 0.3 * tone), [0.0, 0.0, snow]),
             Cover::Bare => {
                 let rock = bare.max(0.25 + 0.5 * fray).clamp(0.0, 1.0);
-                (self.color(form, 1.0, 0.0, crown).lerp(c.scree * (1.0 + 0.25 * fray), 1.0 - rock), [0.0, rock, snow])
+                (mix(ground(1.0, 0.0), times(c.scree, 1.0 + 0.25 * fray), 1.0 - rock), [0.0, rock, snow])
             }
             Cover::Ice => (c.snow, [0.0, 0.0, 1.0]),
             Cover::Water => (c.water, [0.0; 3]),
-            Cover::Wetland => (c.bog * (1.0 + 0.25 * fray), [0.0, 0.0, snow]),
-        }
+            Cover::Wetland => (times(c.bog, 1.0 + 0.25 * fray), [0.0, 0.0, snow]),
+        };
+        out.put(i, color);
+        (out.forest[i], out.bare[i], out.snow[i]) = (forest, bare, snow);
+        out.water[i] = f32::from(u8::from(matches!(cover, Cover::Water)));
     }
 
     /// Layers of rock by height, -1..=1, left out where they would be thinner than two nodes.
@@ -334,14 +366,26 @@ impl Materials {
                 let rise = (x * x + y * y).sqrt() * nodes.spacing_m;
                 let shown = (size / (2.0 * rise + 1e-3) - 0.5).clamp(0.0, 1.0);
                 let at = (nodes.height_m[i] + 14.0 * fray[i]) / size;
-                let (below, share) = (noise::floor(at), at - noise::floor(at) as f32);
-                let (a, b) = (noise::hash(below, k as i32, 11), noise::hash(below + 1, k as i32, 11));
+                let below = noise::floor(at);
+                let share = at - below as f32;
+                let (a, b) = (noise::hash(below, k as i32, 11), noise::hash(below.wrapping_add(1), k as i32, 11));
                 // Steps with soft edges.
                 out[i] += 0.55 * shown * (a + ramp(share, 0.35, 0.65) * (b - a));
             }
         }
         out
     }
+}
+
+/// A pseudo-random value of the field at nodes, -1..=1; 0 where fields would be of few nodes.
+#[inline(always)]
+fn fields<const N: usize>(nodes: &GroundNodes<'_, N>) -> [f32; N] {
+    let shown = (FIELD_M / (3.0 * nodes.spacing_m) - 0.5).clamp(0.0, 1.0);
+    if shown == 0.0 {
+        return [0.0; N];
+    }
+    let [x, y] = turned(nodes, FIELD_M, 1);
+    noise::domes([&x, &y.map(|v| FIELD_LONG * v)], 887).own.map(|own| shown * own)
 }
 
 /// Noise that frays the borders of cells, to the east and to the south. It is as fine as the cells, so that no lake moves as a whole.

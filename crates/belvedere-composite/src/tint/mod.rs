@@ -1,12 +1,14 @@
 //! Colours of ground before it is lit: hypsometric tints, or materials by rule.
 
 mod canopy;
+mod color;
 mod fractal;
 mod materials;
 mod ramps;
 
 use belvedere_core::DVec2;
 use belvedere_scene::{Climate, Palette, PaletteName};
+use color::Color;
 use materials::Materials;
 use ramps::RampTint;
 
@@ -58,6 +60,16 @@ impl<const N: usize> GroundCover<N> {
     /// Ground of these colours without forest, rock, snow and water.
     pub fn of_color(color: [[f32; N]; 3]) -> Self {
         Self { color, forest: [0.0; N], bare: [0.0; N], snow: [0.0; N], water: [0.0; N], crowns: [[0.0; N]; 2] }
+    }
+
+    #[inline(always)]
+    fn at(&self, i: usize) -> Color {
+        [self.color[0][i], self.color[1][i], self.color[2][i]]
+    }
+
+    #[inline(always)]
+    fn put(&mut self, i: usize, color: Color) {
+        (self.color[0][i], self.color[1][i], self.color[2][i]) = (color[0], color[1], color[2]);
     }
 }
 

@@ -137,7 +137,7 @@ fn wave(
         for (j, k, weight) in
             [(0, 0, (1.0 - p) * (1.0 - q)), (1, 0, p * (1.0 - q)), (0, 1, (1.0 - p) * q), (1, 1, p * q)]
         {
-            let phase = noise::hash(x0 + j, y0 + k, seed);
+            let phase = noise::hash(x0.wrapping_add(j), y0.wrapping_add(k), seed);
             let along = (s - j as f32) * cx + (t - k as f32) * cy + phase;
             let (sin, cos) = wave_of(along);
             height += weight * cos;
