@@ -7,7 +7,7 @@ use belvedere_scene::Heightfield;
 /// Nodes along the longer side of the ground by which it is framed, at most about.
 const ALONG: usize = 160;
 /// Rows of the picture, from its top, that the highest and the nearest ground come to, as shares of its height.
-const WHOLE_ROWS: [f64; 2] = [0.14, 1.03];
+const WHOLE_ROWS: [f64; 2] = [0.14, 1.07];
 const PART_ROWS: [f64; 2] = [0.36, 0.9];
 /// Most sky over the highest summits of ground that does not fill the height, share of the picture's height.
 const MOST_SKY: f64 = 0.17;

@@ -61,7 +61,7 @@ const THICKEST_IN_STUDIO: f32 = 0.32;
 const STUDIO: [[u8; 3]; 3] = [[252, 252, 251], [243, 245, 246], [222, 228, 234]];
 
 /// A clear day, at the zenith, in the middle, at the horizon and below it.
-const DAY: [[u8; 3]; 4] = [[62, 118, 196], [134, 180, 222], [226, 236, 242], [214, 227, 237]];
+const DAY: [[u8; 3]; 4] = [[62, 118, 196], [134, 180, 222], [212, 227, 239], [204, 219, 232]];
 
 /// Skies after sunset and at night, and their haze; the sun stands lower than this by night.
 const DUSK: [[u8; 3]; 4] = [[86, 104, 150], [150, 146, 172], [243, 208, 170], [206, 184, 170]];
