@@ -32,7 +32,7 @@ fn fly(g: f64, nodes: usize, count: usize) -> f64 {
     let eye = field.scene_from_grid(start);
     let wedge = Wedge { heading: DVec2::Y, half_angle: 35f64.to_radians(), ..Wedge::all_around(eye) };
     let dense = points(&field, &route, &wedge, count).into_iter().enumerate();
-    let candidates: Vec<Candidate> = dense.map(|(i, p)| Candidate::faceted(i as u32, p.grid, p.lift)).collect();
+    let candidates: Vec<Candidate> = dense.map(|(i, p)| Candidate::new(i as u32, p.grid, p.lift)).collect();
     let w = grid_weight(
         settings.smoothness(stated_spacing(field.cols(), field.rows(), field.spacing())),
         hierarchy.intervals(),

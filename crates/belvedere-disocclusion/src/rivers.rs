@@ -91,33 +91,28 @@ pub struct RiverReport {
     pub excess_m: f64,
 }
 
-/// Both grounds that a displacement makes: flat facets, as files hold it, and the bilinear one.
-pub(crate) const GROUNDS: [bool; 2] = [true, false];
-
 /// A point on a river.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Place {
     /// Grid coordinates.
     pub(crate) grid: DVec2,
-    /// Whether the ground along the river bends here: between bends facets are straight.
-    bend: bool,
     /// Height of the undisplaced ground.
     height: f64,
     /// Lowest height from the spring to here.
     pub(crate) bed: f64,
     nodes: [u32; 4],
-    /// Weights of the nodes, for each of [`GROUNDS`].
-    weights: [[f64; 4]; 2],
+    weights: [f64; 4],
 }
 
 impl Place {
-    fn entries(&self, ground: usize) -> impl Iterator<Item = (usize, f64)> + use<> {
+    /// The nodes that displace it.
+    fn entries(&self) -> impl Iterator<Item = usize> + use<> {
         let Self { nodes, weights, .. } = *self;
-        (0..4).map(move |k| (nodes[k] as usize, weights[ground][k])).filter(|(_, w)| *w > NONE)
+        (0..4).filter(move |k| weights[*k] > NONE).map(move |k| nodes[k] as usize)
     }
 
-    fn moved(&self, u: &[f64], ground: usize) -> f64 {
-        (0..4).map(|k| self.weights[ground][k] * u[self.nodes[k] as usize]).sum()
+    fn moved(&self, u: &[f64]) -> f64 {
+        (0..4).map(|k| self.weights[k] * u[self.nodes[k] as usize]).sum()
     }
 }
 
@@ -127,7 +122,7 @@ pub(crate) struct River {
     layer: usize,
     feature: usize,
     name: String,
-    /// Points in order downstream: wherever the river crosses the mesh, and between.
+    /// Points in order downstream: its ends, its turns, and wherever it crosses the mesh; between them the ground is straight.
     places: Vec<Place>,
 }
 
@@ -146,7 +141,7 @@ impl Rivers {
         height: impl Fn(usize) -> Option<f64>,
     ) -> Self {
         let river = |line: RiverLine| {
-            let at = |(g, bend): (DVec2, bool)| place(g, bend, [cols, rows], &height);
+            let at = |g: DVec2| place(g, [cols, rows], &height);
             let mut places: Vec<Place> = stations(&line.points, [cols, rows]).into_iter().filter_map(at).collect();
             if runs_up(&places) {
                 places.reverse();
@@ -185,9 +180,7 @@ impl Rivers {
         for _ in 0..ROUNDS {
             let mut sank = false;
             for river in &self.rivers {
-                for ground in 0..GROUNDS.len() {
-                    sank |= river.sink(u, ground);
-                }
+                sank |= river.sink(u);
             }
             let followed = together(u);
             if !sank && !followed {
@@ -202,7 +195,7 @@ impl Rivers {
         for river in &self.rivers {
             for _ in 0..PASSES {
                 let before = raised.len();
-                (0..GROUNDS.len()).for_each(|ground| river.raise(u, ground, raised));
+                river.raise(u, raised);
                 if raised.len() == before {
                     break;
                 }
@@ -219,67 +212,60 @@ impl Rivers {
 }
 
 impl River {
-    /// Points at which the river on one of [`GROUNDS`] may turn uphill.
-    fn places_over(&self, ground: usize) -> impl DoubleEndedIterator<Item = &Place> {
-        self.places.iter().filter(move |place| place.bend || !GROUNDS[ground])
-    }
-
-    /// The points at which the ground along the river bends, downstream.
-    pub(crate) fn bends(&self) -> impl Iterator<Item = &Place> {
-        self.places.iter().filter(|place| place.bend)
+    /// The points, downstream.
+    pub(crate) fn places(&self) -> impl Iterator<Item = &Place> {
+        self.places.iter()
     }
 
     /// Lowers nodes in order downstream; steps back where this also lowers points just upstream. Returns whether any node changed.
-    fn sink(&self, u: &mut [f64], ground: usize) -> bool {
-        let places: Vec<&Place> = self.places_over(ground).collect();
+    fn sink(&self, u: &mut [f64]) -> bool {
+        let places = &self.places;
         let mut lowest = vec![f64::INFINITY; places.len() + 1];
         let (mut k, mut changes) = (0, 0);
         while k < places.len() {
-            let place = places[k];
+            let place = &places[k];
             let most = lowest[k] - place.bed;
-            if place.moved(u, ground) > most + SAME && changes < PASSES * places.len() {
-                place.entries(ground).for_each(|(n, _)| u[n] = u[n].min(most));
+            if place.moved(u) > most + SAME && changes < PASSES * places.len() {
+                place.entries().for_each(|n| u[n] = u[n].min(most));
                 changes += 1;
                 let shares = |other: &Place| other.nodes.iter().any(|n| place.nodes.contains(n));
-                while k > 0 && shares(places[k - 1]) {
+                while k > 0 && shares(&places[k - 1]) {
                     k -= 1;
                 }
                 continue;
             }
-            lowest[k + 1] = lowest[k].min(place.bed + place.moved(u, ground));
+            lowest[k + 1] = lowest[k].min(place.bed + place.moved(u));
             k += 1;
         }
         changes > 0
     }
 
-    fn raise(&self, u: &mut [f64], ground: usize, raised: &mut Vec<usize>) {
+    fn raise(&self, u: &mut [f64], raised: &mut Vec<usize>) {
         let mut highest = f64::NEG_INFINITY;
-        for place in self.places_over(ground).rev() {
+        for place in self.places.iter().rev() {
             let least = highest - place.bed;
-            if place.moved(u, ground) < least - SAME {
-                for (n, _) in place.entries(ground) {
+            if place.moved(u) < least - SAME {
+                for n in place.entries() {
                     if u[n] < least {
                         u[n] = least;
                         raised.push(n);
                     }
                 }
             }
-            highest = highest.max(place.bed + place.moved(u, ground));
+            highest = highest.max(place.bed + place.moved(u));
         }
     }
 
     fn report(&self, u: &[f64]) -> RiverReport {
         let [mut before, mut after, mut excess] = [0.0f64; 3];
-        for ground in 0..GROUNDS.len() {
-            let mut lowest = f64::INFINITY;
-            for place in self.places_over(ground) {
-                let height = place.height + place.moved(u, ground);
-                lowest = lowest.min(height);
-                let [rise, noise] = [height - lowest, place.height - place.bed];
-                before = before.max(noise);
-                after = after.max(rise);
-                excess = excess.max(rise - noise);
-            }
+        let mut lowest = f64::INFINITY;
+        for place in &self.places {
+            let height = place.height + place.moved(u);
+            lowest = lowest.min(height);
+            let [rise, noise] = [height - lowest, place.height - place.bed];
+            before = before.max(noise);
+            after = after.max(rise);
+            excess = excess.max(rise - noise);
         }
         RiverReport {
             layer: self.layer,
@@ -292,14 +278,10 @@ impl River {
     }
 }
 
-/// Parts of a river between two edges of the mesh: there facets are flat, but the bilinear displacement bulges.
-const PARTS: usize = 16;
-
-/// Positions at which a line begins, ends, turns and crosses the mesh, and positions between, grid coordinates; each with whether it
-/// is one of the former.
-fn stations(points: &[DVec2], [cols, rows]: [usize; 2]) -> Vec<(DVec2, bool)> {
+/// Positions at which a line begins, ends, turns and crosses the mesh, grid coordinates.
+fn stations(points: &[DVec2], [cols, rows]: [usize; 2]) -> Vec<DVec2> {
     let last = DVec2::new((cols - 1) as f64, (rows - 1) as f64);
-    let mut out: Vec<(DVec2, bool)> = points.first().map(|p| (*p, true)).into_iter().collect();
+    let mut out: Vec<DVec2> = points.first().copied().into_iter().collect();
     for pair in points.windows(2) {
         let step = pair[1] - pair[0];
         // Far beyond the grid there is no mesh to cross.
@@ -307,20 +289,13 @@ fn stations(points: &[DVec2], [cols, rows]: [usize; 2]) -> Vec<(DVec2, bool)> {
         let crossings = mesh_crossings(pair[0], step).filter(|share| near(pair[0] + *share * step));
         let mut shares: Vec<f64> = crossings.chain([1.0]).collect();
         shares.sort_by(f64::total_cmp);
-        let mut from = 0.0;
-        for share in shares {
-            for part in 1..=PARTS {
-                let share = from + part as f64 / PARTS as f64 * (share - from);
-                out.push((pair[0] + share * step, part == PARTS));
-            }
-            from = share;
-        }
+        out.extend(shares.into_iter().map(|share| pair[0] + share * step));
     }
     out
 }
 
 /// The point of a river at a position; `None` beside the grid and where there is no data. Its bed is set later.
-fn place(g: DVec2, bend: bool, [cols, rows]: [usize; 2], height: impl Fn(usize) -> Option<f64>) -> Option<Place> {
+fn place(g: DVec2, [cols, rows]: [usize; 2], height: impl Fn(usize) -> Option<f64>) -> Option<Place> {
     let last = DVec2::new((cols - 1) as f64, (rows - 1) as f64);
     if !(g.cmpge(DVec2::ZERO).all() && g.cmple(last).all()) {
         return None;
@@ -330,12 +305,10 @@ fn place(g: DVec2, bend: bool, [cols, rows]: [usize; 2], height: impl Fn(usize) 
     let nodes = [nw, nw + 1, nw + cols, nw + cols + 1];
     let inside = g - DVec2::new(col as f64, row as f64);
     let height = CellTriangle::surface(nodes.map(height), inside)?;
-    let DVec2 { x, y } = inside;
-    // Height of the facets over the bilinear ground, per unit of its factor of xy.
-    let facet = inside.min_element() - x * y;
-    let [flat, bilinear] =
-        [facet, 0.0].map(|f| [(1.0 - x) * (1.0 - y) + f, x * (1.0 - y) - f, (1.0 - x) * y - f, x * y + f]);
-    Some(Place { grid: g, bend, height, bed: height, nodes: nodes.map(|n| n as u32), weights: [flat, bilinear] })
+    let mut weights = [0.0; 4];
+    let triangle = CellTriangle::at(inside);
+    triangle.corners().into_iter().zip(triangle.weights(inside)).for_each(|(corner, weight)| weights[corner] = weight);
+    Some(Place { grid: g, height, bed: height, nodes: nodes.map(|n| n as u32), weights })
 }
 
 /// Whether the last part of a river lies higher than its first part.

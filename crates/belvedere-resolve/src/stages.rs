@@ -105,5 +105,9 @@ fn solved_terrain(
     }
     let grid = super::delta::read(&path, bytes, context.ground.crs).map_err(|reason| at.error(&["delta"], reason))?;
     inputs.push(file);
+    let grid = match context.ground.terrain {
+        Some(terrain) => grid.on_facets(terrain.nodes()),
+        None => grid,
+    };
     Ok((Stage::TerrainDisocclusion(TerrainDisocclusion::new(grid)), StageDoc::TerrainDisocclusion(doc.clone())))
 }

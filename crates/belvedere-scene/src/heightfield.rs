@@ -1,6 +1,7 @@
 //! Terrain heights on a regular metric grid with holes.
 
 use crate::cell::CellTriangle;
+use belvedere_core::grid::Nodes;
 use belvedere_core::{Aabb, DVec2, DVec3};
 use std::ops::Index;
 
@@ -202,6 +203,11 @@ impl Heightfield {
             return Err(HeightfieldError::AllVoid { cols, rows });
         }
         Ok(Self { north_west, spacing, cols, rows, heights, states, z_range })
+    }
+
+    /// Where the nodes lie.
+    pub fn nodes(&self) -> Nodes {
+        Nodes { north_west: self.north_west, spacing: self.spacing, cols: self.cols, rows: self.rows }
     }
 
     /// Number of columns.

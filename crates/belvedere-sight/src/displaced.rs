@@ -5,17 +5,11 @@ use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
 use belvedere_scene::CellTriangle;
 
-/// Longest step along a line over one triangle, cells: only the displacement bends the surface there, and its own grid may cross the
-/// triangle.
-const STEP: f64 = 0.5;
-
-/// Ground with a vertical displacement: two triangles per cell, whose nodes are displaced, as it is rasterised and written; or plus the
-/// bilinear displacement, as it is traced; or undisplaced.
+/// Ground with a vertical displacement: two flat triangles per cell, whose nodes are displaced; or undisplaced.
 pub struct DisplacedGround<'a> {
     field: &'a Field,
     /// `None`: nothing is displaced.
     delta: Option<&'a Grid>,
-    faceted: bool,
     /// Upper bound of the height, scene units.
     highest: f64,
     table: Option<Table>,
@@ -25,8 +19,6 @@ pub struct DisplacedGround<'a> {
 struct Table {
     /// Displacement of the nodes.
     moved: Vec<f64>,
-    /// Whether the displacement is bilinear on each cell of the ground: the nodes of its grid are nodes of the ground.
-    aligned: bool,
     /// Upper bound of the height in each block of [`BLOCK`] x [`BLOCK`] cells.
     highest: Vec<f64>,
     blocks: [usize; 2],
@@ -48,22 +40,17 @@ pub struct Excess {
 }
 
 impl<'a> DisplacedGround<'a> {
-    /// Ground of undisplaced triangles plus the bilinear displacement, as it is traced.
+    /// Displaced ground.
     ///
     /// * `delta`: displacement upwards, scene units; 0 beside its grid.
     pub fn new(field: &'a Field, delta: &'a Grid) -> Self {
         let highest = field.datum() + field.relief() + delta.range()[1].max(0.0);
-        Self { field, delta: Some(delta), faceted: false, highest, table: None }
+        Self { field, delta: Some(delta), highest, table: None }
     }
 
     /// Undisplaced ground.
     pub fn still(field: &'a Field) -> Self {
-        Self { field, delta: None, faceted: true, highest: field.datum() + field.relief(), table: None }
-    }
-
-    /// Ground of flat triangles between the displaced nodes, as it is rasterised.
-    pub fn faceted(field: &'a Field, delta: &'a Grid) -> Self {
-        Self { faceted: true, ..Self::new(field, delta) }
+        Self { field, delta: None, highest: field.datum() + field.relief(), table: None }
     }
 
     /// Adds tables that speed up many lines of sight: one pass over the nodes.
@@ -75,48 +62,17 @@ impl<'a> DisplacedGround<'a> {
             None => Vec::new(),
         };
         let displaced = |i: usize| moved.get(i).copied().unwrap_or(0.0);
-        let aligned = self.is_aligned();
         let blocks = [cols, rows].map(|n| (n - 1).div_ceil(BLOCK));
         let height = self.field.heights();
         let top = |b: usize| {
             let [x, y] = [b % blocks[0], b / blocks[0]].map(|k| k * BLOCK);
             let [across, down] = [x..=(x + BLOCK).min(cols - 1), y..=(y + BLOCK).min(rows - 1)];
             let nodes = down.clone().flat_map(|y| across.clone().map(move |x| y * cols + x));
-            // Ground and displacement may be largest at different nodes.
-            let [h, u, sum] = nodes.fold([f64::NEG_INFINITY; 3], |[h, u, sum], i| {
-                [h.max(height[i]), u.max(displaced(i)), sum.max(height[i] + displaced(i))]
-            });
-            match (self.faceted, aligned) {
-                (true, _) => sum,
-                (false, true) => h + u,
-                (false, false) => h + self.most_moved([*across.start(), *down.start()], [*across.end(), *down.end()]),
-            }
+            nodes.map(|i| height[i] + displaced(i)).fold(f64::NEG_INFINITY, f64::max)
         };
         let highest = (0..blocks[0] * blocks[1]).map(top).collect();
-        self.table = Some(Table { moved, aligned, highest, blocks });
+        self.table = Some(Table { moved, highest, blocks });
         self
-    }
-
-    /// Whether all nodes of the displacement are nodes of the ground, but for rounding, and cover it.
-    fn is_aligned(&self) -> bool {
-        let Some(delta) = self.delta else { return true };
-        let [cols, rows] = self.field.nodes().map(|n| (n - 1) as f64);
-        let place = |g: DVec2| delta.grid_from_scene(self.field.scene_from_grid(g));
-        let (first, last) = (place(DVec2::ZERO), place(DVec2::new(cols, rows)));
-        // Cells of the ground per cell of the displacement, and where its first node lies on the ground.
-        let step = DVec2::new(cols, rows) / (last - first);
-        let start = -first * step;
-        let end = start + step * DVec2::new((delta.cols() - 1) as f64, (delta.rows() - 1) as f64);
-        let whole = |v: DVec2| (v - v.round()).abs().max_element() < 1e-6;
-        let regular = whole(step) && step.min_element() > 0.5 && whole(start) && whole(end);
-        regular && delta.contains(first) && delta.contains(last)
-    }
-
-    /// Upper bound of the displacement between two nodes of the ground, north-west and south-east.
-    fn most_moved(&self, north_west: [usize; 2], south_east: [usize; 2]) -> f64 {
-        let [a, b] = [north_west, south_east].map(|n| self.field.scene_from_grid(DVec2::new(n[0] as f64, n[1] as f64)));
-        let range = self.delta.and_then(|delta| delta.range_over(DVec2::new(a.x, b.y), DVec2::new(b.x, a.y)));
-        range.map_or(0.0, |range| range[1].max(0.0))
     }
 
     /// Columns and rows of its nodes.
@@ -131,9 +87,6 @@ impl<'a> DisplacedGround<'a> {
     /// Height at grid coordinates; `None` beside the grid and in holes.
     pub fn height_at(&self, g: DVec2) -> Option<f64> {
         let still = self.field.surface_at(g)?;
-        if !self.faceted {
-            return Some(still + self.displacement(g));
-        }
         let corner = g.floor().min(DVec2::new((self.field.cols() - 2) as f64, (self.field.rows() - 2) as f64));
         let [col, row] = [corner.x as usize, corner.y as usize];
         Some(still + CellTriangle::at(g - corner).height(self.at_corners([col, row]), g - corner))
@@ -212,21 +165,15 @@ impl<'a> DisplacedGround<'a> {
         let mut heights = nodes.map(|i| self.field.heights()[i]);
         let low = (z + part[0] * dz).min(z + part[1] * dz);
         let most = |values: [f64; 4]| values.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        let moved = match &self.table {
-            _ if self.delta.is_none() => Some([0.0; 4]),
-            Some(table) if table.aligned || self.faceted => Some(nodes.map(|i| table.moved[i])),
-            _ => None,
-        };
-        let rise = moved.map_or(self.delta.map_or(0.0, |delta| delta.range()[1].max(0.0)), most);
-        if most(heights) + rise - low <= worst.over {
-            return;
-        }
-        if self.faceted {
-            let moved = moved.unwrap_or_else(|| self.at_corners(cell));
-            heights.iter_mut().zip(moved).for_each(|(height, moved)| *height += moved);
-            if most(heights) - low <= worst.over {
+        if let Some(delta) = self.delta {
+            // Cheaper than the displacement of the corners without a table.
+            if self.table.is_none() && most(heights) + delta.range()[1].max(0.0) - low <= worst.over {
                 return;
             }
+            heights.iter_mut().zip(self.at_corners(cell)).for_each(|(height, moved)| *height += moved);
+        }
+        if most(heights) - low <= worst.over {
+            return;
         }
         for (triangle, [from, to]) in line.by_triangle(cell, part) {
             if to <= from || triangle.corners().iter().any(|&k| self.field.void()[nodes[k]]) {
@@ -234,42 +181,15 @@ impl<'a> DisplacedGround<'a> {
             }
             let slope = triangle.slope(heights);
             // Over a flat triangle the excess is largest at an end.
-            let steps = if self.faceted || moved.is_some() { 1.0 } else { (to - from) * line.dir.length() / STEP };
-            let count = steps.ceil().max(1.0) as usize;
-            let mut over_at = |t: f64| {
+            for t in [from, to] {
                 let at = line.at(t);
-                let moved = match moved {
-                    _ if self.faceted => 0.0,
-                    Some(corners) => bilinear(corners, at - corner),
-                    None => self.displacement(at),
-                };
-                let over = heights[0] + slope.dot(at - corner) + moved - (z + t * dz);
+                let over = heights[0] + slope.dot(at - corner) - (z + t * dz);
                 if over > worst.over {
                     *worst = Excess { over, at };
                 }
-                over
-            };
-            let mut before = over_at(from);
-            for k in 0..count {
-                let [a, b] = [k, k + 1].map(|k| from + (to - from) * k as f64 / count as f64);
-                let after = over_at(b);
-                if !self.faceted {
-                    // A bilinear displacement is a parabola along a line.
-                    let bend = before + after - 2.0 * over_at(0.5 * (a + b));
-                    let top = 0.5 - 0.25 * (after - before) / bend;
-                    if bend < 0.0 && top > 0.0 && top < 1.0 {
-                        over_at(a + top * (b - a));
-                    }
-                }
-                before = after;
             }
         }
     }
-}
-
-/// Bilinear value in a cell from its corners: north-west, north-east, south-west, south-east.
-fn bilinear([nw, ne, sw, se]: [f64; 4], within: DVec2) -> f64 {
-    nw + (ne - nw) * within.x + (sw - nw) * within.y + (nw - ne - sw + se) * within.x * within.y
 }
 
 /// The start of the part of a straight line from `a` to `b` that lies beyond `guard` cells of `p`.

@@ -1,6 +1,7 @@
 //! The ground in grid coordinates, lowered by the curvature of the earth: the input of terrain disocclusion.
 
 use belvedere_core::DVec2;
+use belvedere_core::grid::Nodes;
 use belvedere_scene::{CellTriangle, Heightfield, NodeState};
 
 /// Terrain that has no heights.
@@ -93,6 +94,11 @@ impl Field {
     /// Columns and rows.
     pub fn nodes(&self) -> [usize; 2] {
         [self.cols, self.rows]
+    }
+
+    /// Where the nodes lie.
+    pub fn places(&self) -> Nodes {
+        Nodes { north_west: self.north_west, spacing: self.spacing, cols: self.cols, rows: self.rows }
     }
 
     /// Scene x, y of node (0, 0).

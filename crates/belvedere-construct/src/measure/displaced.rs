@@ -51,21 +51,16 @@ impl DisplacedSight {
         self.layer
     }
 
-    /// The ground as it is rasterised and written, and as it is traced.
-    pub(super) fn grounds(&self) -> [DisplacedGround<'_>; 2] {
-        let (field, delta) = (&self.field, &self.delta);
-        [DisplacedGround::faceted(field, delta), DisplacedGround::new(field, delta)].map(DisplacedGround::prepared)
+    /// The displaced ground.
+    pub(super) fn ground(&self) -> DisplacedGround<'_> {
+        DisplacedGround::new(&self.field, &self.delta).prepared()
     }
 
-    /// Height by which each of the grounds rises over the line of sight of a sample; 0 where it does not, `None` beside the ground.
-    pub(super) fn over(&self, grounds: &[DisplacedGround<'_>; 2], sample: &Sample) -> Option<[f64; 2]> {
+    /// Height by which the ground rises over the line of sight of a sample; 0 where it does not, `None` beside the ground.
+    pub(super) fn over(&self, ground: &DisplacedGround<'_>, sample: &Sample) -> Option<f64> {
         let at = self.field.grid_from_scene(sample.p_world.truncate());
-        let mut out = [0.0; 2];
-        for (over, ground) in out.iter_mut().zip(grounds) {
-            let z = ground.height_at(at)? + sample.lift;
-            let rise = ground.excess(&[(at, z), (self.eye, self.z)], 0.0).over;
-            *over = if rise > TOUCH { rise } else { 0.0 };
-        }
-        Some(out)
+        let z = ground.height_at(at)? + sample.lift;
+        let rise = ground.excess(&[(at, z), (self.eye, self.z)], 0.0).over;
+        Some(if rise > TOUCH { rise } else { 0.0 })
     }
 }

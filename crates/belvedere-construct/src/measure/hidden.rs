@@ -17,12 +17,6 @@ pub enum HiddenReason {
         /// Largest rise of it over the line of sight, scene units.
         over_m: f64,
     },
-    /// Only facets between displaced nodes stand before it, as ground is written and rasterised: the exact picture, and what is picked in it,
-    /// show it.
-    Facets {
-        /// Largest rise of the facets over the line of sight, scene units.
-        over_m: f64,
-    },
     /// The picture folds over there.
     Folded,
 }
@@ -43,7 +37,7 @@ pub struct HiddenRun {
     pub from_m: Option<f64>,
     /// Length along a line at the end.
     pub to_m: Option<f64>,
-    /// Scene x, y of the sample that is covered most, by more than facets if one is; of the first where the picture folds.
+    /// Scene x, y of the sample that is covered most; of the first where the picture folds.
     pub at: [f64; 2],
     /// Samples.
     pub points: usize,
@@ -88,7 +82,6 @@ fn runs(feature: &SampledFeature, images: &[SampleImage]) -> Vec<HiddenRun> {
         let over_m = -image.clearance.unwrap_or(0.0);
         let here = match image {
             _ if image.folded => HiddenReason::Folded,
-            _ if image.by_facets => HiddenReason::Facets { over_m },
             _ => HiddenReason::Covered { over_m },
         };
         match out.last_mut().filter(|_| open || !is_line) {
@@ -118,14 +111,10 @@ fn runs(feature: &SampledFeature, images: &[SampleImage]) -> Vec<HiddenRun> {
     out
 }
 
-/// Whether `next` is a worse reason than `first`: ground is worse than facets, and of two such reasons the larger rise is worse.
+/// Whether `next` is a worse reason than `first`: the larger rise is worse.
 fn worse(first: HiddenReason, next: HiddenReason) -> bool {
-    use HiddenReason::{Covered, Facets};
-    match (first, next) {
-        (Covered { over_m: most }, Covered { over_m }) | (Facets { over_m: most }, Facets { over_m }) => over_m > most,
-        (Facets { .. }, Covered { .. }) => true,
-        _ => false,
-    }
+    use HiddenReason::Covered;
+    matches!((first, next), (Covered { over_m: most }, Covered { over_m }) if over_m > most)
 }
 
 #[cfg(test)]

@@ -21,8 +21,6 @@ pub(super) struct SampleImage {
     pub(super) edge_on: Option<bool>,
     /// By line of sight; `None` outside the frame.
     pub(super) clearance: Option<f64>,
-    /// Whether nothing hides it by line of sight but facets of displaced ground, which the exact picture does not have.
-    pub(super) by_facets: bool,
     /// By the depth buffer; `None` outside the frame or without a renderer.
     pub(super) in_buffer: Option<DepthTest>,
 }
@@ -36,7 +34,6 @@ impl SampleImage {
         displaced: None,
         edge_on: None,
         clearance: None,
-        by_facets: false,
         in_buffer: None,
     };
 
@@ -66,7 +63,7 @@ pub(super) struct Sight<'a> {
 }
 
 /// The displaced ground, ready for lines of sight.
-type Displaced<'s> = (&'s DisplacedSight, [DisplacedGround<'s>; 2]);
+type Displaced<'s> = (&'s DisplacedSight, DisplacedGround<'s>);
 
 impl<'a> Sight<'a> {
     pub(super) fn new(scene: &'a Scene, view: &View) -> Self {
@@ -104,14 +101,13 @@ pub(super) fn all(
     features: &[SampledFeature],
     options: &SightOptions,
 ) -> Vec<Vec<SampleImage>> {
-    let displaced: Option<Displaced<'_>> = sight.displaced.as_ref().map(|d| (d, d.grounds()));
+    let displaced: Option<Displaced<'_>> = sight.displaced.as_ref().map(|d| (d, d.ground()));
     let judged = |layer: usize, s: &Sample| {
         let mut found = image(sight, view, (layer, s), options);
         if let (Some(displaced), Some(c)) =
             (&displaced, found.clearance.filter(|_| !found.folded && s.surface.is_none()))
         {
-            let (clearance, by_facets) = over_displaced(sight, displaced, view, (s, &found, c), options);
-            (found.clearance, found.by_facets) = (Some(clearance), by_facets);
+            found.clearance = Some(over_displaced(sight, displaced, view, (s, &found, c), options));
         }
         found
     };
@@ -119,26 +115,25 @@ pub(super) fn all(
     features.iter().map(of).collect()
 }
 
-/// The clearance of a sample on displaced ground, `c` by chords, with the verdict of the judge; and whether facets alone hide it.
+/// The clearance of a sample on displaced ground, `c` by chords, with the verdict of the judge.
 fn over_displaced(
     of: &Sight<'_>,
-    (displaced, grounds): &Displaced<'_>,
+    (displaced, ground): &Displaced<'_>,
     view: &View,
     (sample, image, c): (&Sample, &SampleImage, f64),
     options: &SightOptions,
-) -> (f64, bool) {
-    let Some([facets, traced]) = displaced.over(grounds, sample) else { return (c, false) };
-    if traced > 0.0 {
-        return (c.min(-facets.max(traced)), false);
+) -> f64 {
+    let Some(over) = displaced.over(ground, sample) else { return c };
+    if over > 0.0 {
+        return c.min(-over);
     }
     // If the chords found the sample hidden, something other than the ground may hide it.
-    let others = match &of.beside {
+    match &of.beside {
         Some(beside) if c < 0.0 => {
             beside.clearance(view, (sample.p_world, sample.lift), (image.pixel, image.depth), options)
         }
         _ => c,
-    };
-    if facets > 0.0 { (others.min(-facets), others >= 0.0) } else { (others, false) }
+    }
 }
 
 fn image(of: &Sight<'_>, view: &View, (layer, sample): (usize, &Sample), sight: &SightOptions) -> SampleImage {
@@ -172,7 +167,6 @@ fn image(of: &Sight<'_>, view: &View, (layer, sample): (usize, &Sample), sight: 
         displaced,
         edge_on,
         clearance,
-        by_facets: false,
         in_buffer: None,
     }
 }

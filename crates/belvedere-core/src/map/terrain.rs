@@ -2,13 +2,14 @@
 
 use super::{Miss, SpaceMap, finite};
 use crate::Aabb;
-use crate::grid::Grid;
-use glam::{DMat3, DVec3};
+use crate::grid::{Grid, Nodes};
+use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
 
 /// `X' = X + delta(x, y) z_up`: every point of a vertical line moves by the same height, so what stands on the ground stays on it.
 ///
-/// `delta` is bilinear between the nodes of a grid and zero outside it; a grid whose rim is not zero makes a step there.
+/// `delta` is zero outside its grid; a grid whose rim is not zero makes a step there. Between nodes it is flat on the triangles of the
+/// ground, so that there is one displaced ground, however it is drawn, traced, judged or written; without a ground it is bilinear.
 /// Source: Deng et al. 2013, the displacement form of their hierarchical deformation.
 ///
 /// ```
@@ -36,9 +37,8 @@ impl TerrainDisocclusion {
 
     /// These displacements times `share`.
     pub(crate) fn eased(&self, share: f64) -> Option<Self> {
-        let delta = &*self.delta;
-        let values = delta.values().iter().map(|value| share * value).collect();
-        Grid::new(delta.north_west(), delta.spacing(), delta.cols(), delta.rows(), values).ok().map(Self::new)
+        let values = self.delta.values().iter().map(|value| share * value).collect();
+        self.delta.with_values(values).ok().map(Self::new)
     }
 
     /// Displacement at a scene position, scene units; 0 outside the grid.
@@ -51,31 +51,44 @@ impl TerrainDisocclusion {
         if !(p0.is_finite() && p1.is_finite()) {
             return f64::INFINITY;
         }
-        let (g0, g1) = (self.delta.grid_from_scene(p0.truncate()), self.delta.grid_from_scene(p1.truncate()));
-        let step = g1 - g0;
+        let step = (p1 - p0).truncate();
         let ends = [p0, p1].map(|p| self.delta_at(p));
         let chord = |t: f64| (1.0 - t) * ends[0] + t * ends[1];
-        let mut worst = 0.0f64;
-        let mut from = 0.0;
-        let mut crossings = [Crossings::new(g0.x, step.x), Crossings::new(g0.y, step.y)];
-        let [last_col, last_row] = [self.delta.cols() - 1, self.delta.rows() - 1].map(|n| n as f64);
-        crossings[0].limit(last_col);
-        crossings[1].limit(last_row);
+        let (mut worst, mut from) = (0.0f64, 0.0);
+        let mut crossings = self.crossings(p0.truncate(), p1.truncate());
         while from < 1.0 {
-            let [tx, ty] = crossings.each_ref().map(Crossings::next);
-            let to = tx.min(ty).clamp(from, 1.0);
-            for (t, c) in [tx, ty].into_iter().zip(&mut crossings) {
+            let next = crossings.each_ref().map(Crossings::next);
+            let to = next.into_iter().fold(1.0, f64::min).max(from);
+            for (t, c) in next.into_iter().zip(&mut crossings) {
                 if t <= to {
                     c.advance();
                 }
             }
-            let cell = self.delta.cell(g0 + 0.5 * (from + to) * step);
-            let at = |t: f64| cell.map_or(0.0, |c| c.at(g0 + t * step));
-            let sag = cell.map_or(0.0, |c| (c.c[3] * step.x * step.y).abs() * (to - from).powi(2) / 4.0);
+            let place = |t: f64| p0.truncate() + t * step;
+            let patch = self.delta.patch(place(0.5 * (from + to)));
+            let at = |t: f64| patch.map_or(0.0, |p| p.at(place(t)));
+            let sag = patch.map_or(0.0, |p| p.bend(step).abs()) * (to - from).powi(2) / 4.0;
             worst = worst.max((at(from) - chord(from)).abs().max((at(to) - chord(to)).abs()) + sag);
             from = to;
         }
         worst
+    }
+
+    /// The parameters at which an edge crosses lines of the grid, and lines and diagonals of the ground.
+    fn crossings(&self, p0: DVec2, p1: DVec2) -> [Crossings; 5] {
+        let of = |nodes: Nodes| {
+            let (a, b) = (nodes.grid_from_scene(p0), nodes.grid_from_scene(p1));
+            [a, b - a, DVec2::new((nodes.cols - 1) as f64, (nodes.rows - 1) as f64)]
+        };
+        let [a, step, last] = of(self.delta.nodes());
+        let lines = |[a, step, last]: [DVec2; 3]| [0, 1].map(|k| Crossings::new(a[k], step[k], [0.0, last[k]]));
+        let [column, row] = lines([a, step, last]);
+        let ground = self.delta.facets().map(of);
+        let [ground_column, ground_row] = lines(ground.unwrap_or([a, DVec2::ZERO, last]));
+        let diagonal = ground.map_or(Crossings::new(0.0, 0.0, [0.0; 2]), |[a, step, last]| {
+            Crossings::new(a.x - a.y, step.x - step.y, [-last.y, last.x])
+        });
+        [column, row, ground_column, ground_row, diagonal]
     }
 
     /// See [`crate::map::StageMap::displaced_bounds`].
@@ -83,8 +96,8 @@ impl TerrainDisocclusion {
         if bounds.is_empty() || bounds.min.is_nan() || bounds.max.is_nan() {
             return None;
         }
-        let (min, max) = (bounds.min.truncate(), bounds.max.truncate());
-        let inside = [min, max].into_iter().all(|xy| self.delta.contains(self.delta.grid_from_scene(xy)));
+        let [min, max] = self.delta.reach(bounds.min.truncate(), bounds.max.truncate());
+        let inside = [min, max].into_iter().all(|xy| self.delta.nodes().contains(self.delta.grid_from_scene(xy)));
         let [mut lo, mut hi] = self.delta.range_over(min, max).unwrap_or([0.0; 2]);
         if !inside {
             (lo, hi) = (lo.min(0.0), hi.max(0.0));
@@ -96,28 +109,23 @@ impl TerrainDisocclusion {
     }
 }
 
-/// Parameters at which an edge crosses the grid lines of one direction, ascending.
+/// Parameters at which an edge crosses the lines of one direction, ascending.
 struct Crossings {
     start: f64,
     step: f64,
     line: f64,
-    last: f64,
+    range: [f64; 2],
 }
 
 impl Crossings {
-    fn new(start: f64, step: f64) -> Self {
-        let line = if step > 0.0 { start.floor() + 1.0 } else { start.ceil() - 1.0 };
-        Self { start, step, line, last: 0.0 }
-    }
-
-    /// Limits the crossings to the grid lines 0..=last.
-    fn limit(&mut self, last: f64) {
-        self.last = last;
-        self.line = if self.step > 0.0 { self.line.max(0.0) } else { self.line.min(last) };
+    /// * `range`: numbers of the first and the last line.
+    fn new(start: f64, step: f64, range: [f64; 2]) -> Self {
+        let line = if step > 0.0 { (start.floor() + 1.0).max(range[0]) } else { (start.ceil() - 1.0).min(range[1]) };
+        Self { start, step, line, range }
     }
 
     fn next(&self) -> f64 {
-        if self.step == 0.0 || self.line < 0.0 || self.line > self.last {
+        if self.step == 0.0 || self.line < self.range[0] || self.line > self.range[1] {
             return f64::INFINITY;
         }
         (self.line - self.start) / self.step
@@ -139,11 +147,10 @@ impl SpaceMap for TerrainDisocclusion {
         finite(p - self.delta_at(p) * DVec3::Z)
     }
 
-    /// On a grid line the derivative of the cell to its east or south; on the last line that of the last cell.
+    /// On a line between two cells or triangles the derivative of one of them.
     fn jacobian(&self, p: DVec3) -> Result<DMat3, Miss> {
-        let g = self.delta.grid_from_scene(finite(p)?.truncate());
-        let slope = self.delta.cell(g).map_or(glam::DVec2::ZERO, |cell| cell.gradient(g)) / self.delta.spacing();
-        // Rows run towards south.
-        Ok(DMat3::from_cols(DVec3::new(1.0, 0.0, slope.x), DVec3::new(0.0, 1.0, -slope.y), DVec3::Z))
+        let xy = finite(p)?.truncate();
+        let slope = self.delta.patch(xy).map_or(DVec2::ZERO, |patch| patch.gradient(xy));
+        Ok(DMat3::from_cols(DVec3::new(1.0, 0.0, slope.x), DVec3::new(0.0, 1.0, slope.y), DVec3::Z))
     }
 }

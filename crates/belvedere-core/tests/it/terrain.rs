@@ -1,6 +1,6 @@
 //! Terrain disocclusion as a displacement grid.
 
-use belvedere_core::grid::{Grid, GridError};
+use belvedere_core::grid::{Grid, GridError, Nodes};
 use belvedere_core::{Aabb, DVec2, DVec3, SpaceMap, TerrainDisocclusion};
 use belvedere_testkit::Random;
 use belvedere_testkit::laws::{Continuity, Joint, MapCase, Similarity};
@@ -55,6 +55,60 @@ fn case() -> MapCase<TerrainDisocclusion> {
 
 belvedere_testkit::space_map_laws!(laws, super::case());
 
+/// The same over ground whose nodes lie closer than those of the grid.
+fn on_ground(map: TerrainDisocclusion, s: &Similarity) -> TerrainDisocclusion {
+    let north_west = s.translation.truncate() + s.scale * DVec2::new(500.0, 900.0);
+    let ground = Nodes { north_west, spacing: s.scale * DVec2::new(25.0, 40.0), cols: 33, rows: 13 };
+    TerrainDisocclusion::new(map.grid().clone().on_facets(ground))
+}
+
+fn case_on_facets() -> MapCase<TerrainDisocclusion> {
+    let region = Aabb::of([DVec3::new(300.0, 200.0, -100.0), DVec3::new(1500.0, 1000.0, 900.0)]);
+    let joints = [
+        Joint { point: DVec3::new(700.0, 611.0, 50.0), across: DVec3::X },
+        Joint { point: DVec3::new(712.5, 640.0, 50.0), across: DVec3::new(1.0, 1.0, 0.0) },
+    ];
+    MapCase::new("random grid on facets", region, |s| on_ground(moved(s), s))
+        .continuity(Continuity::C0)
+        .unturned()
+        .joints(joints)
+        .domain(0.8, |map, p| {
+            // Differences across an edge measure neither side.
+            let g = map.grid().facets().unwrap_or(map.grid().nodes()).grid_from_scene(p.truncate());
+            let away = |v: f64| (v - v.round()).abs() > 1e-3;
+            away(g.x) && away(g.y) && away(g.x - g.y)
+        })
+        .identity_at_zero_strength(|| on_ground(map(values(0.0)), &Similarity::IDENTITY))
+}
+
+belvedere_testkit::space_map_laws!(laws_on_facets, super::case_on_facets());
+
+#[test]
+fn on_facets_values_are_those_of_the_nodes_of_the_ground_and_flat_between() {
+    let bilinear = map(values(1.0));
+    let m = on_ground(bilinear.clone(), &Similarity::IDENTITY);
+    let at = |m: &TerrainDisocclusion, g: [f64; 2]| m.delta_at(DVec3::new(500.0 + 25.0 * g[0], 900.0 - 40.0 * g[1], 0.0));
+    let mut most = 0.0f64;
+    for (col, row) in (0..12).flat_map(|row| (0..32).map(move |col| (f64::from(col), f64::from(row)))) {
+        let [nw, ne, sw, se] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|[x, y]| at(&m, [col + x, row + y]));
+        for (g, corner) in [([0.0, 0.0], nw), ([1.0, 0.0], ne), ([0.0, 1.0], sw), ([1.0, 1.0], se)] {
+            assert!((at(&bilinear, [col + g[0], row + g[1]]) - corner).abs() < 1e-9);
+        }
+        for ([x, y], flat) in [
+            ([0.5, 0.5], 0.5 * (nw + se)),
+            ([0.75, 0.25], 0.25 * nw + 0.5 * ne + 0.25 * se),
+            ([0.25, 0.75], 0.25 * nw + 0.5 * sw + 0.25 * se),
+        ] {
+            assert!((at(&m, [col + x, row + y]) - flat).abs() < 1e-9, "{col} {row}: {x} {y}");
+            most = most.max((at(&bilinear, [col + x, row + y]) - flat).abs());
+        }
+    }
+    assert!(most > 0.3, "{most}");
+    // An edge of a triangle stays straight; one across it does not.
+    let p = |g: [f64; 2]| DVec3::new(500.0 + 25.0 * g[0], 900.0 - 40.0 * g[1], 0.0);
+    assert!(m.edge_bound(p([14.0, 5.0]), p([15.0, 6.0])) < 1e-9 && m.edge_bound(p([15.0, 5.0]), p([14.0, 6.0])) > 1e-3);
+}
+
 #[test]
 fn nodes_are_read_from_the_north_west_row_by_row() {
     let mut v = vec![0.0; COLS * ROWS];
@@ -95,6 +149,7 @@ fn edge_bound_is_never_below_the_sampled_truth() {
         } else {
             map((0..COLS * ROWS).map(|i| (i * i % 13) as f64).collect())
         };
+        let m = if round % 3 == 0 { on_ground(m, &Similarity::IDENTITY) } else { m };
         let p0 = DVec3::new(random.range(300.0, 1500.0), random.range(200.0, 1000.0), random.range(0.0, 900.0));
         let mut edge = random.direction() * 10f64.powf(random.range(0.0, 3.2));
         if round % 7 == 0 {

@@ -1,4 +1,4 @@
-//! The judge: points that the displaced ground hides, by lines of sight over it, as it is rasterised and written and as it is traced.
+//! The judge: points that the displaced ground hides, by lines of sight over it.
 
 use super::super::visibility_qp::LinesOfSight;
 use super::super::{Field, KINDS, ReferencePoint};
@@ -19,15 +19,13 @@ pub(crate) enum Hides {
     Ground(f64),
     /// Only ground nearer to it than the guard, which rises by this height.
     InGuard(f64),
-    /// Only the facets of the rasterised and written ground, not the ground that is traced, which is judged too.
-    Facets(f64),
 }
 
 impl Hides {
     /// Height by which that ground rises over the line of sight, scene units.
     pub(crate) fn over(self) -> f64 {
         match self {
-            Self::Ground(over) | Self::InGuard(over) | Self::Facets(over) => over,
+            Self::Ground(over) | Self::InGuard(over) => over,
         }
     }
 }
@@ -102,63 +100,39 @@ pub(crate) fn shares(points: &[ReferencePoint], verdicts: &[Verdict]) -> [f64; 2
         .fold([1.0, 0.0], |least, kind| if kind[0] < least[0] { kind } else { least })
 }
 
-/// Judges points over one or more grounds: a point that one of them hides is hidden, however near the ground is.
+/// Judges points over a ground: a point that it hides is hidden, however near the ground is.
 pub(crate) struct Judge<'a> {
-    grounds: Vec<DisplacedGround<'a>>,
+    ground: DisplacedGround<'a>,
     sight: &'a dyn LinesOfSight,
 }
 
 impl<'a> Judge<'a> {
-    /// Judge over facets between displaced nodes, as ground is rasterised and written.
-    pub(crate) fn faceted(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
-        Self { grounds: vec![DisplacedGround::faceted(field, delta)], sight }
+    /// Judge over displaced ground.
+    pub(crate) fn new(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
+        Self { ground: DisplacedGround::new(field, delta), sight }
     }
 
     /// Judge over undisplaced ground.
     pub(crate) fn still(field: &'a Field, sight: &'a dyn LinesOfSight) -> Self {
-        Self { grounds: vec![DisplacedGround::still(field)], sight }
+        Self { ground: DisplacedGround::still(field), sight }
     }
 
-    /// Judge over ground plus the bilinear displacement, as it is traced.
-    #[cfg(test)]
-    pub(crate) fn bilinear(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
-        Self { grounds: vec![DisplacedGround::new(field, delta)], sight }
-    }
-
-    /// Judge over facets and over the bilinear displacement.
-    pub(crate) fn of_both(field: &'a Field, delta: &'a Grid, sight: &'a dyn LinesOfSight) -> Self {
-        Self { grounds: vec![DisplacedGround::faceted(field, delta), DisplacedGround::new(field, delta)], sight }
-    }
-
-    /// Prepares the grounds if there are enough points for that to pay.
-    pub(crate) fn prepared(mut self, points: usize) -> Self {
-        let pays = |ground: &DisplacedGround| {
-            let [cols, rows] = ground.nodes();
-            points * (cols + rows) > WORTH_PREPARING * cols * rows
-        };
-        self.grounds = self.grounds.into_iter().map(|g| if pays(&g) { g.prepared() } else { g }).collect();
-        self
-    }
-
-    /// Calls `visit` with each ground and the line of sight of a point at grid coordinates, `lift` above it; `None` beside the ground.
-    fn each(
-        &self,
-        g: DVec2,
-        lift: f64,
-        mut visit: impl FnMut(usize, &DisplacedGround<'_>, &[SightVertex]),
-    ) -> Option<()> {
-        let (mut line, mut traced) = (Vec::new(), f64::NAN);
-        for (i, ground) in self.grounds.iter().enumerate() {
-            let z = ground.height_at(g)? + lift;
-            // Lines through later stages take long to trace, and both grounds mostly have the same height at the point.
-            if !((z - traced).abs() <= TOUCH) {
-                line.clear();
-                self.sight.trace(g, z, &mut line);
-                traced = z;
-            }
-            visit(i, ground, &line);
+    /// Prepares the ground if there are enough points for that to pay.
+    pub(crate) fn prepared(self, points: usize) -> Self {
+        let [cols, rows] = self.ground.nodes();
+        if points * (cols + rows) > WORTH_PREPARING * cols * rows {
+            Self { ground: self.ground.prepared(), ..self }
+        } else {
+            self
         }
-        Some(())
+    }
+
+    /// The line of sight of a point at grid coordinates, `lift` above the ground; `None` beside the ground.
+    fn line(&self, g: DVec2, lift: f64) -> Option<Vec<SightVertex>> {
+        let z = self.ground.height_at(g)? + lift;
+        let mut line = Vec::new();
+        self.sight.trace(g, z, &mut line);
+        Some(line)
     }
 
     /// The largest rise of the ground over the line of sight of a point at grid coordinates, `lift` above the ground; `None` beside
@@ -167,27 +141,16 @@ impl<'a> Judge<'a> {
     /// * `guard`: ground nearer than this does not count, cells.
     #[cfg(test)]
     pub(super) fn excess(&self, g: DVec2, lift: f64, guard: f64) -> Option<belvedere_sight::Excess> {
-        let mut worst: Option<belvedere_sight::Excess> = None;
-        self.each(g, lift, |_, ground, line| {
-            let excess = ground.excess(line, guard);
-            if worst.is_none_or(|w| excess.over > w.over) {
-                worst = Some(excess);
-            }
-        })?;
-        worst
+        Some(self.ground.excess(&self.line(g, lift)?, guard))
     }
 
-    /// For each point and each ground (facets first) the position at which the ground hides the point most, and its rise over the
-    /// line; `None` where the point is seen, has no line, or lies on no ground.
-    pub(crate) fn hiding(self, points: &[(DVec2, f64)]) -> Vec<[Option<(DVec2, f64)>; 2]> {
+    /// For each point the position at which the ground hides it most, and its rise over the line; `None` where the point is seen, has
+    /// no line, or lies on no ground.
+    pub(crate) fn hiding(self, points: &[(DVec2, f64)]) -> Vec<Option<(DVec2, f64)>> {
         let judge = self.prepared(points.len());
         let of = |&(g, lift): &(DVec2, f64)| {
-            let mut out = [None; 2];
-            judge.each(g, lift, |i, ground, line| {
-                let worst = ground.excess(line, 0.0);
-                out[i] = (worst.over > TOUCH && worst.over.is_finite()).then_some((worst.at, worst.over));
-            });
-            out
+            let worst = judge.ground.excess(&judge.line(g, lift)?, 0.0);
+            (worst.over > TOUCH && worst.over.is_finite()).then_some((worst.at, worst.over))
         };
         points.par_iter().map(of).collect()
     }
@@ -197,22 +160,13 @@ impl<'a> Judge<'a> {
     /// * `guard`: points that only ground nearer than this hides, grid cells, are told apart.
     pub(crate) fn judge(&self, points: &[ReferencePoint], guard: f64) -> Vec<Verdict> {
         let of = |p: &ReferencePoint| {
-            let (mut near, mut far, mut last) = (f64::NEG_INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY);
-            let on_ground = self.each(p.grid, p.lift, |_, ground, line| {
-                let over = ground.excess(line, 0.0).over;
-                (near, last) = (near.max(over), over);
-                if over > TOUCH {
-                    far = far.max(ground.excess(line, guard).over);
-                }
-            });
-            match on_ground {
-                None => Verdict::NoGround,
-                Some(()) if !(near > TOUCH) => Verdict::Seen,
-                // Facets are judged first.
-                Some(()) if !(last > TOUCH) => Verdict::Hidden(Hides::Facets(near)),
-                Some(()) if far > TOUCH => Verdict::Hidden(Hides::Ground(far)),
-                Some(()) => Verdict::Hidden(Hides::InGuard(near)),
+            let Some(line) = self.line(p.grid, p.lift) else { return Verdict::NoGround };
+            let near = self.ground.excess(&line, 0.0).over;
+            if !(near > TOUCH) {
+                return Verdict::Seen;
             }
+            let far = self.ground.excess(&line, guard).over;
+            Verdict::Hidden(if far > TOUCH { Hides::Ground(far) } else { Hides::InGuard(near) })
         };
         points.par_iter().map(of).collect()
     }

@@ -30,9 +30,8 @@ pub struct Deformation<'a> {
     pub dense: &'a [ReferencePoint],
     /// Lines of sight of the points.
     pub sight: &'a dyn LinesOfSight,
-    /// Whether ground that is traced is judged too and every node is looked at, or only what is rasterised and written is judged and the
-    /// unevenness taken from every sixteenth row, as of films.
-    pub traced: bool,
+    /// Whether the unevenness is that of every node, or of every sixteenth row, as of films.
+    pub every_node: bool,
     /// Points that only ground nearer than this hides are told apart, grid cells.
     pub guard: f64,
 }
@@ -43,8 +42,7 @@ pub struct Deformation<'a> {
 pub struct TerrainMetrics {
     /// Share of the reference points that are seen, 0..=1; 1 without points in view.
     pub visible: f64,
-    /// Visible share of the features that the dense points stand for, over the ground as it is drawn and as it is written, 0..=1; 1
-    /// without points in view. Lines count by length, areas by area in plan, point features by number; the least of the three is
+    /// Visible share of the features that the dense points stand for, 0..=1; 1 without points in view. Lines count by length, areas by area in plan, point features by number; the least of the three is
     /// given.
     pub visible_dense: f64,
     /// Share of that kind of features that only ground nearer than the guard hides, 0..=1.
@@ -85,7 +83,7 @@ pub struct FrameChange {
     pub max_m: f64,
 }
 
-/// Judges a displacement by lines of sight over the ground as it is drawn and as it is written, and by what it does to the nodes.
+/// Judges a displacement by lines of sight over the ground, and by what it does to the nodes.
 /// Shares no sampling with the solvers.
 pub fn terrain_metrics(of: &Deformation<'_>) -> TerrainMetrics {
     judged(of).metrics
@@ -105,8 +103,7 @@ pub(super) struct Judged {
 /// As [`terrain_metrics`], and which points are hidden.
 pub(super) fn judged(of: &Deformation<'_>) -> Judged {
     let u = change::at_nodes(of.field, of.delta);
-    let judge = if of.traced { Judge::of_both } else { Judge::faceted }(of.field, of.delta, of.sight);
-    let judge = judge.prepared(of.dense.len());
+    let judge = Judge::new(of.field, of.delta, of.sight).prepared(of.dense.len());
     let [points, dense] = [of.points, of.dense].map(|points| judge.judge(points, of.guard));
     let hidden = |all: &[Verdict]| -> Vec<(usize, Hides)> {
         all.iter().enumerate().filter_map(|(i, verdict)| Some((i, verdict.hides()?))).collect()
@@ -118,7 +115,7 @@ pub(super) fn judged(of: &Deformation<'_>) -> Judged {
 fn figures(of: &Deformation<'_>, u: &[f64], points: &[Verdict], dense: &[Verdict]) -> TerrainMetrics {
     let [visible_dense, hidden_in_guard] = shares(of.dense, dense);
     let over = points.iter().chain(dense).filter_map(|v| v.hides()).map(Hides::over);
-    let every = if of.traced { 1 } else { FILM_ROWS };
+    let every = if of.every_node { 1 } else { FILM_ROWS };
     let steps = change::steps(of.field, of.cells, u, every);
     let normals = change::normals(of.field, u, every);
     let size = change::size(of.field, u);

@@ -1,10 +1,7 @@
 //! Agreement of the quadratic program with the judge: hidden points become candidates, and the program is solved again.
 //!
-//! The program checks candidates over one of two grounds: the terrain plus a displacement that is bilinear between the nodes of its
-//! own grid, or one that is flat on the terrain's triangles, as files hold it. At first it checks the latter. A point that it leaves
-//! hidden lies between two candidates, or the other ground hides it. So both grounds are judged, and hidden points become candidates
-//! over the ground that hides them. Where detail moves too, both grounds are drawn with one displacement that is bilinear between the
-//! nodes of the terrain; on grid cells of hundreds of metres it differs from the program's by many metres. Where such ground rises
+//! A point that the program leaves hidden lies between two candidates: it becomes a candidate. Where detail moves too, the displacement
+//! of the nodes differs from the program's, on grid cells of hundreds of metres by many metres. Where such ground rises
 //! over the line of sight of a known candidate, the program's heights are raised by that much; likewise at a small lake, which is
 //! level on the ground but not on the program's grid.
 
@@ -22,8 +19,6 @@ use std::collections::{BTreeMap, BTreeSet};
 const ROUNDS: usize = 8;
 /// Judgements at most, on ground with lakes.
 const ROUNDS_WITH_LAKES: usize = 2;
-/// Bit that marks the ids of candidates over ground with the bilinear displacement.
-pub(super) const BILINEAR: u32 = 1 << 31;
 /// Height added to a raise, metres, so that neighbouring positions do not rise over the line in the next round.
 const ROOM_M: f64 = 0.25;
 
@@ -124,18 +119,16 @@ impl Agreement<'_> {
             (None, true) => on_grid(self.field, self.grid, &result.u)?,
             (detail, _) => at_every_node(self.field, &self.waters.whole(self.grid, &result.u, detail))?,
         };
-        let named: BTreeSet<u32> = result.unresolved.iter().map(|u| u.id & !BILINEAR).collect();
+        let named: BTreeSet<u32> = result.unresolved.iter().map(|u| u.id).collect();
         let judged = self.check.iter().chain(problem.candidates).filter(|c| !named.contains(&c.id));
         let judged: Vec<Candidate> = judged.copied().collect();
         let places: Vec<(DVec2, f64)> = judged.iter().map(|c| (c.grid, c.lift)).collect();
-        let hiding = Judge::of_both(self.field, &delta, problem.sight).hiding(&places);
-        let mut found = Vec::new();
-        for (candidate, [facets, bilinear]) in judged.iter().zip(hiding) {
-            found.extend(facets.map(|(at, over)| Found { candidate: *candidate, at, over }));
-            let candidate = Candidate { id: candidate.id | BILINEAR, faceted: false, ..*candidate };
-            found.extend(bilinear.map(|(at, over)| Found { candidate, at, over }));
-        }
-        Ok(found)
+        let hiding = Judge::new(self.field, &delta, problem.sight).hiding(&places);
+        let found = judged
+            .iter()
+            .zip(hiding)
+            .filter_map(|(candidate, hides)| hides.map(|(at, over)| Found { candidate: *candidate, at, over }));
+        Ok(found.collect())
     }
 
     /// The four nodes of the grid cell around a position.
@@ -157,7 +150,7 @@ fn worst_of_cells(found: &[Found]) -> Vec<&Found> {
         let mut worst = BTreeMap::new();
         for f in found {
             let cell = (f.candidate.grid / size).floor();
-            let slot = worst.entry((cell.x as i64, cell.y as i64, f.candidate.faceted)).or_insert(f);
+            let slot = worst.entry((cell.x as i64, cell.y as i64)).or_insert(f);
             if f.over > slot.over {
                 *slot = f;
             }

@@ -159,7 +159,7 @@ impl LiveTerrain {
         };
         let points: Vec<ReferencePoint> = ground.points.iter().filter(shown).copied().collect();
         let sight = ViewSight::new(base, field);
-        let verdicts = Judge::faceted(field, ground.stage.grid(), &sight).judge(&points, self.guard);
+        let verdicts = Judge::new(field, ground.stage.grid(), &sight).judge(&points, self.guard);
         let hidden: Vec<f64> = verdicts.into_iter().filter_map(|v| v.hides().map(Hides::over)).collect();
         LiveFrame {
             stage: ground.stage.clone(),

@@ -6,7 +6,6 @@ use super::super::{
     BlockMaxima, Cells, Field, Hierarchy, ReferencePoint, SmoothPass, Smoother, SolverMode, TerrainSettings, Unusable,
     candidate_points, grid_weight, judged_points, reference_points, stated_spacing, temporal_weight,
 };
-use super::agreement::BILINEAR;
 use super::lakes::{self, Water};
 use super::limits::LimitedTerrain;
 use super::waters::Waters;
@@ -234,14 +233,14 @@ impl Prepared {
     /// The points by which the result is judged as candidates, whose ids follow those of all others.
     pub(super) fn check_in_view(&self, in_view: &super::PointsInView<'_>) -> Vec<Candidate> {
         let first = self.dense.len() + self.points.len();
-        let of = |i: usize| Candidate::faceted((first + i) as u32, self.check[i].grid, self.check[i].lift);
+        let of = |i: usize| Candidate::new((first + i) as u32, self.check[i].grid, self.check[i].lift);
         in_view.indices(&self.check).0.into_iter().map(of).collect()
     }
 
     /// The point behind the id of a candidate: of the dense points, the reference points, or those by which the result is judged.
     pub(super) fn candidate(&self, id: u32) -> Option<&ReferencePoint> {
         let mut all = self.dense.iter().chain(&self.points).chain(&self.check);
-        all.nth((id & !BILINEAR) as usize)
+        all.nth(id as usize)
     }
 
     /// Weights on the solver's grid.

@@ -122,7 +122,7 @@ impl TerrainSolver {
             base,
             in_plan: self.in_plan,
             delta: &delta,
-            traced: self.frame().is_none(),
+            is_still: self.frame().is_none(),
             previous: previous.as_ref(),
             progress,
         };
@@ -245,7 +245,8 @@ fn spread(field: &Field, [cols, rows]: [usize; 2], step: DVec2, values: &[f64]) 
         let (col, row) = (inner(i % (cols + 2), cols), inner(i / (cols + 2), rows));
         values[row * cols + col]
     });
-    Grid::new(field.scene_from_grid(-step), step * field.spacing(), cols + 2, rows + 2, padded.collect())
+    let grid = Grid::new(field.scene_from_grid(-step), step * field.spacing(), cols + 2, rows + 2, padded.collect())?;
+    Ok(grid.on_facets(field.places()))
 }
 
 fn since(began: Instant) -> f64 {

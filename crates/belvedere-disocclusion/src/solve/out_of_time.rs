@@ -125,8 +125,8 @@ impl Passes<'_> {
         fine: Option<&(Hierarchy, Vec<f64>)>,
     ) -> Result<f64, DisocclusionError> {
         let delta = delta_of(self.field, &prepared.grid, (coarse, full, fine))?;
-        let judge = if self.frame.is_none() { Judge::of_both } else { Judge::faceted };
-        Ok(share_seen(points, &judge(self.field, &delta, &*in_view.sight).judge(points, self.settings.guard)))
+        let judge = Judge::new(self.field, &delta, &*in_view.sight);
+        Ok(share_seen(points, &judge.judge(points, self.settings.guard)))
     }
 
     fn share_unmoved(&self, in_view: &PointsInView<'_>, points: &[ReferencePoint]) -> Result<f64, DisocclusionError> {

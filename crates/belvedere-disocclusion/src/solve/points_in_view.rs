@@ -64,7 +64,7 @@ impl<'a> PointsInView<'a> {
     /// Dense points in the wedge and, after them, these reference points.
     fn candidates_of(&self, prepared: &Prepared, points: &[usize]) -> Vec<Candidate> {
         let offset = prepared.dense.len();
-        let candidate = |id: usize, p: &ReferencePoint| Candidate::faceted(id as u32, p.grid, p.lift);
+        let candidate = |id: usize, p: &ReferencePoint| Candidate::new(id as u32, p.grid, p.lift);
         let (dense, _) = self.indices(&prepared.dense);
         let dense = dense.iter().map(|&i| candidate(i, &prepared.dense[i]));
         dense.chain(points.iter().map(|&i| candidate(offset + i, &prepared.points[i]))).collect()

@@ -79,14 +79,14 @@ pub struct TerrainReport {
     pub unresolved: Vec<UnresolvedRun>,
     /// Other parts in view that the judge finds hidden, with the reason: points between two candidates.
     pub hidden: Vec<UnresolvedRun>,
-    /// Points that stay covered at the price of slack; those that only facets cover are in `hidden`.
+    /// Points that stay covered at the price of slack.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub covered: Vec<Covered>,
     /// Times.
     pub times: TerrainTimes,
 }
 
-/// A point that stays covered, in the exact picture too, because clearing it costs more than the price of slack allows.
+/// A point that stays covered because clearing it costs more than the price of slack allows.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Covered {
@@ -206,11 +206,6 @@ pub enum UnresolvedReason {
     /// Showing it takes ground deeper or steeper than the limits.
     Limits {
         /// How far the ground rises over its line of sight.
-        over_m: f64,
-    },
-    /// Only the facets of the ground as it is written and rasterised hide it: the exact picture, and what is picked in it, show it.
-    Facets {
-        /// How far the facets rise over its line of sight.
         over_m: f64,
     },
     /// Ground nearer to it than the guard hides it.

@@ -33,8 +33,8 @@ pub(super) struct Context<'a> {
     pub(super) in_plan: bool,
     /// The solution.
     pub(super) delta: &'a Grid,
-    /// See [`Deformation::traced`].
-    pub(super) traced: bool,
+    /// Whether the picture is a still, of which every dense point is judged and every node looked at, or one of a film.
+    pub(super) is_still: bool,
     /// Displacement of the frame before.
     pub(super) previous: Option<&'a Grid>,
     /// When time is short, not every dense point is judged.
@@ -59,8 +59,8 @@ pub(super) fn too_many(progress: &Progress, judge: &Judge<'_>, all: &[ReferenceP
     let few: Vec<ReferencePoint> = all.iter().step_by(every).copied().collect();
     let began = Instant::now();
     judge.judge(&few, guard);
-    // Before and after, there over two grounds.
-    began.elapsed().mul_f64(3.0 * every as f64) > left.mul_f64(0.5)
+    // Before and after.
+    began.elapsed().mul_f64(2.0 * every as f64) > left.mul_f64(0.5)
 }
 
 /// The points of a report, and what is known of them.
@@ -85,7 +85,7 @@ impl Verdicts {
         asked.retain(|&i| shown.holds(field, &prepared.points[i]));
         let all = prepared.dense_in_view(in_view, c.in_plan);
         let undisplaced = Judge::still(field, &*in_view.sight);
-        let few = !c.traced || stopped || too_many(c.progress, &undisplaced, &all, guard);
+        let few = !c.is_still || stopped || too_many(c.progress, &undisplaced, &all, guard);
         let in_view_amounts = amounts(&all);
         let (may_show, every) = sampled(all, few);
         let dense = shown.of(field, &may_show);
@@ -97,7 +97,7 @@ impl Verdicts {
             points: &required(&asked),
             dense: &dense,
             sight: &*in_view.sight,
-            traced: c.traced,
+            every_node: c.is_still,
             guard,
         });
         let undisplaced = undisplaced.prepared(dense.len());
@@ -187,8 +187,7 @@ fn covered(c: &Context<'_>, verdicts: &Verdicts) -> Vec<Covered> {
     let place = |&(i, hides): &(usize, Hides)| {
         let (p, over_m) = (&verdicts.dense[i], hides.over());
         let at = c.field.scene_from_grid(p.grid).to_array();
-        let is_covered = over_m.is_finite() && !matches!(hides, Hides::Facets(_));
-        is_covered.then_some(Covered { at, lift_m: p.lift, over_m })
+        over_m.is_finite().then_some(Covered { at, lift_m: p.lift, over_m })
     };
     verdicts.judged.dense.iter().filter_map(place).collect()
 }
@@ -217,7 +216,6 @@ fn hidden(c: &Context<'_>, done: &Outcome, verdicts: &Verdicts) -> Vec<Unresolve
     let mut runs = Runs::new(c.field, CHECK_CELLS * verdicts.every as f64);
     for (i, hides) in &verdicts.judged.dense {
         let reason = match *hides {
-            Hides::Facets(over_m) => UnresolvedReason::Facets { over_m },
             // At a price `covered` names it.
             _ if c.settings.slack_price.is_some() => continue,
             Hides::Ground(over_m) | Hides::InGuard(over_m) if done.limited.is_some() && over_m.is_finite() => {
@@ -272,8 +270,8 @@ fn unresolved(c: &Context<'_>, done: &Outcome, known: &Verdicts) -> Named {
     }
     // A solver may give up what is seen all the same, or lies beside the picture.
     let points: Vec<ReferencePoint> = said.iter().map(|(point, _)| *point).collect();
-    let judge = if c.traced { Judge::of_both } else { Judge::faceted };
-    let verdicts = judge(c.field, c.delta, &*c.in_view.sight).prepared(points.len()).judge(&points, c.settings.guard);
+    let verdicts =
+        Judge::new(c.field, c.delta, &*c.in_view.sight).prepared(points.len()).judge(&points, c.settings.guard);
     let mut program_met = true;
     for (k, ((point, reason), verdict)) in said.into_iter().zip(verdicts).enumerate() {
         if verdict.hides().is_some() && known.shown.holds(c.field, &point) {
@@ -285,7 +283,6 @@ fn unresolved(c: &Context<'_>, done: &Outcome, known: &Verdicts) -> Named {
         let (i, over_m) = (known.asked[k], hides.over());
         if c.settings.slack_price.is_none() && !named.contains(&i) {
             let reason = match c.settings.mode {
-                _ if matches!(hides, Hides::Facets(_)) => UnresolvedReason::Facets { over_m },
                 _ if over_m.is_infinite() => UnresolvedReason::NoLineOfSight,
                 SolverMode::Paper => UnresolvedReason::Smoothed { over_m },
                 _ if done.limited.is_some() => UnresolvedReason::Limits { over_m },

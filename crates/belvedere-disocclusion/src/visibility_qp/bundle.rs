@@ -59,8 +59,7 @@ impl Bundle {
         let mut out: Vec<Self> = Vec::new();
         let mut first = 0;
         for i in 1..=seen.len() {
-            let alike = i < seen.len() && seen[i].faceted == seen[first].faceted;
-            let near = alike && (seen[i].grid - seen[first].grid).abs().max_element() <= SPREAD;
+            let near = i < seen.len() && (seen[i].grid - seen[first].grid).abs().max_element() <= SPREAD;
             if !(straight && near && i - first < MOST) {
                 out.push(match first..i {
                     members if members.len() > 1 => Self::Together(Together { members, room: -1.0, near: Vec::new() }),
@@ -150,12 +149,10 @@ impl Together {
         for (near, most) in self.near.iter_mut().filter(tight).zip(most) {
             let before = touches.len();
             near.room = f64::INFINITY;
-            // Between two kinks the displaced ground may bulge; and registers round differently.
-            let bulge =
-                if lines[0].1.faceted { 0.0 } else { 0.25 * surface.displaced_bound(near.corners).1 } + ROUNDING;
             for ((k, chord, whole), most) in lines.iter().zip(most) {
-                if most + bulge <= 0.0 {
-                    near.room = near.room.min(-most - bulge);
+                // Registers round differently.
+                if most + ROUNDING <= 0.0 {
+                    near.room = near.room.min(-most - ROUNDING);
                     continue;
                 }
                 let part = [whole[0].max(near.part[0]), whole[1].min(near.part[1])];

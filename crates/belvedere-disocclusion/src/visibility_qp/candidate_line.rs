@@ -22,7 +22,6 @@ pub(super) struct CandidateLine {
     reference: f64,
     nodes: [u32; 4],
     weights: [f64; 4],
-    pub(super) faceted: bool,
 }
 
 impl CandidateLine {
@@ -30,9 +29,9 @@ impl CandidateLine {
     /// without a line has no chords.
     pub(super) fn all(problem: &QpProblem, surface: &Surface) -> Vec<Self> {
         let of = |index: usize| {
-            let Candidate { grid, faceted, .. } = problem.candidates[index];
-            let (nodes, weights) = surface.lattice.weights_over(grid, faceted);
-            let mut seen = Self { index, grid, chords: Arc::new([]), reference: 0.0, nodes, weights, faceted };
+            let Candidate { grid, .. } = problem.candidates[index];
+            let (nodes, weights) = surface.lattice.weights_over(grid);
+            let mut seen = Self { index, grid, chords: Arc::new([]), reference: 0.0, nodes, weights };
             if problem.sight.straight().is_none() {
                 seen.reference = seen.displacement(&surface.u);
             }
@@ -60,7 +59,7 @@ impl CandidateLine {
         let mut line = Vec::new();
         let lift = problem.candidates[self.index].lift;
         problem.sight.trace(self.grid, surface.ground(self.grid) + lift + self.reference, &mut line);
-        self.chords = chords(&line, self.faceted);
+        self.chords = chords(&line);
     }
 
     pub(super) fn displacement(&self, u: &[f64]) -> f64 {
@@ -82,7 +81,7 @@ impl CandidateLine {
 
     /// `f(x) + B_x u - (1 - tau) B_P u <= z(x) - margin`, z(x) of the line of the undisplaced candidate.
     pub(super) fn row(&self, surface: &Surface, touch: &Touch, clearance: &Clearance) -> Row {
-        let (x_nodes, x_weights) = surface.lattice.weights_over(touch.at, self.faceted);
+        let (x_nodes, x_weights) = surface.lattice.weights_over(touch.at);
         let rest = 1.0 - touch.tau;
         let (mut nodes, mut weights) = ([0; 8], [0.0; 8]);
         for k in 0..4 {
@@ -93,7 +92,7 @@ impl CandidateLine {
             - rest * self.displacement(&surface.u)
             - touch.ground
             - clearance.margin * clearance.share(touch.tau);
-        let [ground, point] = [touch.at, self.grid].map(|g| surface.lattice.betweens(g, self.faceted));
+        let [ground, point] = [touch.at, self.grid].map(|g| surface.lattice.betweens(g));
         let points = [ground[0], ground[1], (-rest * point[0].0, point[0].1), (-rest * point[1].0, point[1].1)];
         let constraint = Constraint::Sight { candidate: self.index, at: touch.at, tau: touch.tau };
         Row { nodes, weights, len: 8, bound, constraint, points }
@@ -125,7 +124,7 @@ impl CandidateLine {
 }
 
 /// Chords of a polyline; the share of its length is measured in plan.
-fn chords(line: &[(DVec2, f64)], faceted: bool) -> Arc<[Chord]> {
+fn chords(line: &[(DVec2, f64)]) -> Arc<[Chord]> {
     let length = |p: &[(DVec2, f64)]| (p[1].0 - p[0].0).length();
     let total: f64 = line.windows(2).map(length).sum();
     if !(total > 0.0 && line.iter().all(|(g, z)| g.is_finite() && z.is_finite())) {
@@ -136,7 +135,7 @@ fn chords(line: &[(DVec2, f64)], faceted: bool) -> Arc<[Chord]> {
         .map(|p| {
             let from = way / total;
             way += length(p);
-            Chord { ends: [p[0].0, p[1].0], z: [p[0].1, p[1].1], tau: [from, way / total], faceted }
+            Chord { ends: [p[0].0, p[1].0], z: [p[0].1, p[1].1], tau: [from, way / total] }
         })
         .collect()
 }

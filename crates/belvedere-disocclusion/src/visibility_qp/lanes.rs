@@ -18,12 +18,10 @@ pub(super) struct Lanes {
     part: [Lane; 2],
     /// Clearance without its tolerance: at the point, and by how much more far from it.
     asked: [f64; 2],
-    /// See [`Chord::faceted`].
-    faceted: bool,
 }
 
 impl Lanes {
-    /// * `lines`: with the parts of them that count; not empty, at most [`LANES`], all over the same kind of ground.
+    /// * `lines`: with the parts of them that count; not empty, at most [`LANES`].
     pub(super) fn new(lines: &[(usize, Chord, [f64; 2])], clearance: &Clearance) -> Self {
         let each = |of: &dyn Fn(&Chord, [f64; 2]) -> f64| -> Lane {
             std::array::from_fn(|l| {
@@ -41,7 +39,6 @@ impl Lanes {
             z: [each(&|c, _| c.z[0]), each(&|c, _| c.z[1] - c.z[0])],
             part: [each(&|_, part| part[0]), each(&|_, part| part[1])],
             asked: [clearance.near, 1.0 - clearance.near].map(|s| s * (clearance.margin - clearance.tolerance)),
-            faceted: lines[0].1.faceted,
         }
     }
 
@@ -85,7 +82,6 @@ struct Register<S: Simd> {
     z: [S::f64s; 2],
     part: [S::f64s; 2],
     asked: [S::f64s; 2],
-    faceted: bool,
 }
 
 /// Positions of the lines, each at a parameter of its own.
@@ -111,7 +107,6 @@ impl<S: Simd> Register<S> {
             z: two(&lanes.z),
             part: two(&lanes.part),
             asked: lanes.asked.map(|asked| simd.splat_f64s(asked)),
-            faceted: lanes.faceted,
         }
     }
 
@@ -124,17 +119,6 @@ impl<S: Simd> Register<S> {
         self.edges::<0>(surface, within, &mut most);
         self.edges::<1>(surface, within, &mut most);
         self.edges::<2>(surface, within, &mut most);
-        for axis in 0..2 {
-            // Lines of the solver's grid, where they are not lines of the ground's grid.
-            let step = surface.lattice.step[axis];
-            if step.fract() != 0.0 {
-                let [mut k, last] = self.range(axis, step, within);
-                while k <= last {
-                    self.judge_between(surface, self.crossing(axis, k * step), within, &mut most);
-                    k += 1.0;
-                }
-            }
-        }
         if simd.reduce_max_f64s(self.part[0]) >= a {
             self.judge_between(surface, within[0], within, &mut most);
         }
@@ -156,15 +140,15 @@ impl<S: Simd> Register<S> {
         simd.mul_f64s(simd.sub_f64s(simd.splat_f64s(value), self.p[axis]), self.per[axis])
     }
 
-    /// First and last multiple of `step` of a coordinate within the parts, and possibly one more.
+    /// First and last whole value of a coordinate within the parts, and possibly one more.
     #[inline(always)]
-    fn range(&self, axis: usize, step: f64, [from, to]: [S::f64s; 2]) -> [f64; 2] {
-        // Parts may end at a multiple; rounding must not lose it.
+    fn range(&self, axis: usize, [from, to]: [S::f64s; 2]) -> [f64; 2] {
+        // Parts may end at one; rounding must not lose it.
         const NUDGE: f64 = 1e-6;
         let (a, b) = (self.at(axis, from), self.at(axis, to));
         let low = self.simd.reduce_min_f64s(self.simd.min_f64s(a, b));
         let high = self.simd.reduce_max_f64s(self.simd.max_f64s(a, b));
-        [(low / step - NUDGE).ceil(), (high / step + NUDGE).floor()]
+        [(low - NUDGE).ceil(), (high + NUDGE).floor()]
     }
 
     /// Kinks at one family of edges: lines x = k, y = k, or x - y = k.
@@ -176,7 +160,7 @@ impl<S: Simd> Register<S> {
         // The diagonals of the corners are nodes of the other families.
         let limits = [[0.0, last[0]], [0.0, last[1]], [1.0 - last[1], last[0] - 1.0]][FAMILY];
         let none = simd.splat_f64s(0.0);
-        let [first, end] = self.range(FAMILY, 1.0, within);
+        let [first, end] = self.range(FAMILY, within);
         let (mut k, until) = (first.max(limits[0]), end.min(limits[1]));
         let stride = [surface.cols, 1, surface.cols + 1][FAMILY];
         // The coordinate that runs along the edges.
@@ -202,8 +186,7 @@ impl<S: Simd> Register<S> {
             }
             let (from, to) = (load::<S>(&from), load::<S>(&to));
             let ground = simd.mul_add_e_f64s(share, simd.sub_f64s(to, from), from);
-            let facet =
-                if FAMILY == 2 && self.faceted { simd.sub_f64s(share, simd.mul_f64s(share, share)) } else { none };
+            let facet = if FAMILY == 2 { simd.sub_f64s(share, simd.mul_f64s(share, share)) } else { none };
             self.judge(surface, Place { t, x, y }, [ground, facet], within, most);
             k += 1.0;
         }
@@ -252,9 +235,7 @@ impl<S: Simd> Register<S> {
         let (mut ground, mut facet) = ([0.0; LANES], [0.0; LANES]);
         for l in 0..S::F64_LANES {
             ground[l] = surface.ground([x[l], y[l]].into());
-            if self.faceted {
-                facet[l] = facet_in_cell([x[l], y[l]].into());
-            }
+            facet[l] = facet_in_cell([x[l], y[l]].into());
         }
         self.judge(surface, place, [load::<S>(&ground), load::<S>(&facet)], within, most);
     }

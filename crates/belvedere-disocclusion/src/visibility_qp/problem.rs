@@ -12,20 +12,12 @@ pub struct Candidate {
     pub grid: DVec2,
     /// Height over the ground at which it must be seen, metres.
     pub lift: f64,
-    /// Over which ground: with the bilinear displacement, or with that of the nodes of the terrain and flat triangles between them, as
-    /// it is rasterised and as files hold it. The latter is exact if the steps of the solver's grid are whole.
-    pub faceted: bool,
 }
 
 impl Candidate {
-    /// A candidate over ground with the bilinear displacement.
+    /// A point that must be seen.
     pub fn new(id: u32, grid: DVec2, lift: f64) -> Self {
-        Self { id, grid, lift, faceted: false }
-    }
-
-    /// A candidate over ground of facets.
-    pub fn faceted(id: u32, grid: DVec2, lift: f64) -> Self {
-        Self { id, grid, lift, faceted: true }
+        Self { id, grid, lift }
     }
 }
 

@@ -1,4 +1,4 @@
-//! The ground as drawn: two triangles per cell, displaced by the bilinear grid of the solver; and what it stays below.
+//! The ground: two flat triangles per cell, whose nodes are displaced by the bilinear grid of the solver; and what it stays below.
 
 use crate::smooth::Between;
 use belvedere_core::DVec2;
@@ -53,18 +53,17 @@ impl Lattice {
         facet_in_cell(g) / (self.step.x * self.step.y)
     }
 
-    /// As [`Self::weights`] for `faceted` ground too.
-    pub(super) fn weights_over(&self, g: DVec2, faceted: bool) -> ([u32; 4], [f64; 4]) {
+    /// As [`Self::weights`], of a displacement that is flat on the triangles of the field.
+    pub(super) fn weights_over(&self, g: DVec2) -> ([u32; 4], [f64; 4]) {
         let (nodes, [nw, ne, sw, se]) = self.weights(g);
-        let facet = if faceted { self.facet(g) } else { 0.0 };
+        let facet = self.facet(g);
         (nodes, [nw + facet, ne - facet, sw - facet, se + facet])
     }
 
     /// The same as bilinear values at two points with their factors: what two points opposite each other have in common is bilinear
     /// but for the factor of xy.
-    pub(super) fn betweens(&self, g: DVec2, faceted: bool) -> [(f64, Between); 2] {
-        let at = self.between(g);
-        let facet = if faceted { self.facet(g) } else { 0.0 };
+    pub(super) fn betweens(&self, g: DVec2) -> [(f64, Between); 2] {
+        let (at, facet) = (self.between(g), self.facet(g));
         // On lines of the terrain's grid both are the same.
         if facet < AT_EDGE {
             return [(1.0, at), (0.0, at)];
@@ -194,8 +193,8 @@ impl Surface {
     }
 
     /// The displacement at grid position `g`.
-    pub(super) fn displacement(&self, g: DVec2, faceted: bool) -> f64 {
-        let (nodes, weights) = self.lattice.weights_over(g, faceted);
+    pub(super) fn displacement(&self, g: DVec2) -> f64 {
+        let (nodes, weights) = self.lattice.weights_over(g);
         (0..4).map(|k| weights[k] * self.u[nodes[k] as usize]).sum()
     }
 
@@ -242,18 +241,22 @@ mod tests {
         for k in 0..400 {
             let g = DVec2::new(12.0 * noise(k, 1), 9.0 * noise(k, 2));
             let corner = g.floor();
-            let node = |x: f64, y: f64| surface.displacement(corner + DVec2::new(x, y), false);
+            let bilinear = |g: DVec2| {
+                let (nodes, weights) = lattice.weights(g);
+                (0..4).map(|k| weights[k] * surface.u[nodes[k] as usize]).sum::<f64>()
+            };
+            let node = |x: f64, y: f64| bilinear(corner + DVec2::new(x, y));
             let corners = [node(0.0, 0.0), node(1.0, 0.0), node(0.0, 1.0), node(1.0, 1.0)];
             let flat = CellTriangle::at(g - corner).height(corners, g - corner);
-            let facet = surface.displacement(g, true);
+            let facet = surface.displacement(g);
             assert!((facet - flat).abs() < 1e-9, "{g}: {facet} and {flat}");
-            most = most.max((facet - surface.displacement(g, false)).abs());
+            most = most.max((facet - bilinear(g)).abs());
             // The value that the metric uses.
-            let (nodes, weights) = lattice.weights_over(g, true);
+            let (nodes, weights) = lattice.weights_over(g);
             let far = lattice.between(DVec2::new(7.3, 2.2));
             let entry = |j: u32| green.between(Between::node(j, 5, 4), far);
             let expected: f64 = (0..4).map(|j| weights[j] * entry(nodes[j])).sum();
-            let found: f64 = lattice.betweens(g, true).iter().map(|(f, b)| f * green.between(*b, far)).sum();
+            let found: f64 = lattice.betweens(g).iter().map(|(f, b)| f * green.between(*b, far)).sum();
             assert!((found - expected).abs() < 1e-12 * green.entry(0, 0), "{g}: {found} and {expected}");
         }
         assert!(most > 0.5, "{most}");

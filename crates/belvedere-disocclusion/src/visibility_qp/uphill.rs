@@ -1,6 +1,6 @@
 //! Rows that keep rivers from running uphill: `bed + u` at a point is no higher than at one upstream of it.
 //!
-//! They hold over flat facets; rises of the bilinear displacement are corrected at the nodes after solving.
+//! Small rises that they leave are corrected at the nodes after solving.
 
 use super::row::{Constraint, Row, Stretch};
 use super::surface::Lattice;
@@ -36,10 +36,10 @@ struct Station {
 impl Uphill {
     pub(super) fn new(rivers: &Rivers, lattice: &Lattice) -> Self {
         let station = |p: &Place| {
-            let (nodes, weights) = lattice.weights_over(p.grid, true);
+            let (nodes, weights) = lattice.weights_over(p.grid);
             Station { grid: p.grid, bed: p.bed, nodes, weights }
         };
-        let course = |river: &River| Course::new(river.bends().map(station).collect(), lattice);
+        let course = |river: &River| Course::new(river.places().map(station).collect(), lattice);
         Self { courses: rivers.all().iter().map(course).collect() }
     }
 
@@ -66,7 +66,7 @@ impl Uphill {
             (nodes[k], weights[k]) = (to.nodes[k], to.weights[k]);
             (nodes[k + 4], weights[k + 4]) = (from.nodes[k], -from.weights[k]);
         }
-        let [a, b] = [to, from].map(|place| lattice.betweens(place.grid, true));
+        let [a, b] = [to, from].map(|place| lattice.betweens(place.grid));
         let points = [a[0], a[1], (-b[0].0, b[0].1), (-b[1].0, b[1].1)];
         let constraint = Constraint::River(Stretch { river, upstream, downstream });
         Row { nodes, weights, len: 8, bound: from.bed - to.bed, constraint, points }

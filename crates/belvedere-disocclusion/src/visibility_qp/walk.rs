@@ -14,8 +14,6 @@ pub(super) struct Chord {
     pub(super) z: [f64; 2],
     /// Share of the distance to the eye there: 0 at the point, 1 at the eye.
     pub(super) tau: [f64; 2],
-    /// Whether the ground has flat triangles, see [`super::Candidate::faceted`].
-    pub(super) faceted: bool,
 }
 
 /// Clearance required of lines of sight.
@@ -212,41 +210,9 @@ impl Chord {
         }
     }
 
-    /// Within a short piece: every kink, and the tops between kinks.
-    fn in_piece(&self, surface: &Surface, [a, b]: [f64; 2], gap: &Gap<'_>, found: &mut Found) {
-        let mut nearest = f64::NEG_INFINITY;
-        self.crossings(surface, [a, b], &mut |t, at, ground| {
-            nearest = nearest.max(gap.judge(self, t, at, ground, found));
-        });
-        if self.faceted {
-            return;
-        }
-        // Between two kinks the displaced ground may bulge.
-        let span = 1.0 / (self.ends[1] - self.ends[0]).abs().max_element();
-        let bulge = -0.25 * gap.c[2] * span * span;
-        if bulge > 0.0 {
-            let highest = nearest.max(gap.missing(self, surface, a)).max(gap.missing(self, surface, b)) + bulge;
-            if highest > 0.0 {
-                self.between(surface, [a, b], gap, found);
-            } else {
-                found.room = found.room.min(-highest);
-            }
-        }
-    }
-
-    /// The top of the displaced ground between neighbouring kinks of a part.
-    fn between(&self, surface: &Surface, [a, b]: [f64; 2], gap: &Gap<'_>, found: &mut Found) {
-        let mut kinks = vec![(a, surface.ground(self.at(a))), (b, surface.ground(self.at(b)))];
-        self.crossings(surface, [a, b], &mut |t, _, ground| kinks.push((t, ground)));
-        kinks.sort_by(|x, y| x.0.total_cmp(&y.0));
-        for pair in kinks.windows(2) {
-            let [(t0, h0), (t1, h1)] = [pair[0], pair[1]];
-            let slope = (h1 - h0) / (t1 - t0);
-            let top = -0.5 * (slope + gap.c[1]) / gap.c[2];
-            if top > t0 && top < t1 {
-                gap.judge(self, top, self.at(top), h0 + slope * (top - t0), found);
-            }
-        }
+    /// Within a short piece: every kink; between two of them the ground is flat.
+    fn in_piece(&self, surface: &Surface, part: [f64; 2], gap: &Gap<'_>, found: &mut Found) {
+        self.crossings(surface, part, &mut |t, at, ground| gap.judge(self, t, at, ground, found));
     }
 
     /// Whether a position is that at a parameter, but for rounding.
@@ -261,7 +227,7 @@ impl Chord {
 
     fn touch(&self, surface: &Surface, t: f64, at: DVec2, ground: f64, clearance: &Clearance) -> Touch {
         let (z, tau) = (Self::mix(self.z, t), Self::mix(self.tau, t));
-        let excess = ground + surface.displacement(at, self.faceted) - z + clearance.margin * clearance.share(tau);
+        let excess = ground + surface.displacement(at) - z + clearance.margin * clearance.share(tau);
         Touch { at, tau, ground, z, excess }
     }
 
@@ -289,7 +255,7 @@ impl Chord {
 /// Displacement minus line of sight along a chord within one cell of the solver's grid, a quadratic of the parameter.
 struct Gap<'a> {
     c: [f64; 3],
-    /// Factor of xy of the displacement, where the ground is faceted; else 0.
+    /// Factor of xy of the displacement.
     twist: f64,
     lattice: &'a Lattice,
     clearance: Clearance,
@@ -309,8 +275,7 @@ impl<'a> Gap<'a> {
             x * d.x + y * d.y + xy * (p.x * d.y + p.y * d.x) - (z[1] - z[0]),
             xy * d.x * d.y,
         ];
-        let twist = if chord.faceted { xy } else { 0.0 };
-        Self { c, twist, lattice: &surface.lattice, clearance: *clearance }
+        Self { c, twist: xy, lattice: &surface.lattice, clearance: *clearance }
     }
 
     fn at(&self, t: f64) -> f64 {
@@ -330,14 +295,9 @@ impl<'a> Gap<'a> {
         most + facet + self.clearance.margin * self.clearance.share(tau)
     }
 
-    /// Excess beyond the tolerance at `t`.
-    fn missing(&self, chord: &Chord, surface: &Surface, t: f64) -> f64 {
-        self.judge(chord, t, chord.at(t), surface.ground(chord.at(t)), &mut Found::new())
-    }
-
-    /// Takes a position into account; returns its excess beyond the tolerance.
+    /// Takes a position into account.
     #[inline]
-    fn judge(&self, chord: &Chord, t: f64, at: DVec2, ground: f64, found: &mut Found) -> f64 {
+    fn judge(&self, chord: &Chord, t: f64, at: DVec2, ground: f64, found: &mut Found) {
         let tau = Chord::mix(chord.tau, t);
         let share = self.clearance.share(tau);
         let facet = if self.twist == 0.0 { 0.0 } else { self.twist * self.lattice.facet(at) };
@@ -348,7 +308,6 @@ impl<'a> Gap<'a> {
         } else if found.worst.is_none_or(|b| excess > b.excess) {
             found.worst = Some(Touch { at, tau, ground, z: Chord::mix(chord.z, t), excess });
         }
-        missing
     }
 }
 
@@ -373,7 +332,7 @@ mod tests {
         }
         let mut visited = 0;
         for [a, b] in ends.iter().flat_map(|&[a, b]| [[a, b], [b, a]]) {
-            let chord = Chord { ends: [a.into(), b.into()], z: [0.0; 2], tau: [0.0, 1.0], faceted: false };
+            let chord = Chord { ends: [a.into(), b.into()], z: [0.0; 2], tau: [0.0, 1.0] };
             chord.crossings(&surface, [0.0, 1.0], &mut |t, at, ground| {
                 visited += 1;
                 assert!((at - chord.at(t)).length() < 1e-12, "{a:?} to {b:?} at {t}");

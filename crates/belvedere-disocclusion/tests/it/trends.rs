@@ -58,7 +58,7 @@ impl Case {
             points: &self.points,
             dense: &dense,
             sight: &sight,
-            traced: true,
+            every_node: true,
             guard: settings.guard,
         })
     }

@@ -1,7 +1,7 @@
 //! The largest height of displaced ground over lines of sight, against the height at many points of them.
 
-use belvedere_core::DVec2;
 use belvedere_core::grid::Grid;
+use belvedere_core::{DVec2, TerrainDisocclusion};
 use belvedere_scene::Heightfield;
 use belvedere_sight::{DisplacedGround, Field, SightVertex};
 use belvedere_testkit::Random;
@@ -42,7 +42,7 @@ fn dense(ground: &DisplacedGround<'_>, line: &[SightVertex], guard: f64) -> f64 
     over.fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// With facets and without, with tables and without, near and far from the point: never less than at any point of the line, and as much at
+/// With tables and without, near and far from the point: never less than at any point of the line, and as much at
 /// the place that is told. Small grounds, for on large ones the highest cell hides what is missed elsewhere.
 #[test]
 fn the_largest_excess_is_that_of_many_points() {
@@ -52,13 +52,9 @@ fn the_largest_excess_is_that_of_many_points() {
         let size = [[2, 2], [3, 2], [4, 3], [20, 11]][n % 4];
         let (step, shift) = [(1.0, 0.0), (3.0, 1.0), (0.3, 0.0), (1.7, 0.4)][n / 4 % 4];
         let (field, delta) = ground(random, size, (step, shift));
-        // Where edges of the displacement's cells cross a triangle its excess is sampled twice a cell, between heights up to 24 m apart.
-        let sampled = if step == 1.0 || step == 3.0 { 1e-6 } else { 2.5 };
         let (line, guard) = (line(random, size), [0.0, 0.4, 1.5][random.below(3)]);
-        let plain = [DisplacedGround::new(&field, &delta), DisplacedGround::faceted(&field, &delta)];
-        let tables =
-            [DisplacedGround::new(&field, &delta).prepared(), DisplacedGround::faceted(&field, &delta).prepared()];
-        for (kind, ground) in plain.iter().chain(&tables).enumerate() {
+        let grounds = [DisplacedGround::new(&field, &delta), DisplacedGround::new(&field, &delta).prepared()];
+        for (kind, ground) in grounds.iter().enumerate() {
             let (found, want) = (ground.excess(&line, guard), dense(ground, &line, guard));
             if want <= -1.0 {
                 assert!(found.over < 0.05, "{n} {kind}: {found:?}, {want}");
@@ -66,29 +62,32 @@ fn the_largest_excess_is_that_of_many_points() {
                 continue;
             }
             // The points lie 0.04 cells apart at most on large grounds, on slopes below 50 m a cell.
-            assert!(found.over > want - sampled && found.over < want + 1.5, "{n} {kind}: {found:?}, {want}");
+            assert!(found.over > want - 1e-6 && found.over < want + 1.5, "{n} {kind}: {found:?}, {want}");
             let there =
                 ground.height_at(found.at.clamp(DVec2::ZERO, DVec2::new(size[0] as f64 - 1.0, size[1] as f64 - 1.0)));
             assert!(there.is_some() && found.at.distance(line[0].0) > guard - 1e-6, "{n} {kind}: {found:?}");
             hidden += 1;
         }
     }
-    assert!(hidden > 300 && free > 40, "{hidden} {free}");
+    assert!(hidden > 150 && free > 20, "{hidden} {free}");
 }
 
-/// In cell 12, ground and displacement are largest at opposite corners, so that the traced ground is higher in its middle (1.5 m) than at any
-/// node (1 m). Ground met before comes within 0.1 m of the line.
+/// One surface: the ground of the judge stands where the stage moves the ground of the terrain, between nodes as well.
 #[test]
-fn the_middle_of_a_cell_may_stand_over_all_its_corners() {
-    let (cols, rows) = (20, 2);
-    let is = |i: usize, nodes: [[usize; 2]; 2]| nodes.contains(&[i % cols, i / cols]);
-    let height = |i: usize| if is(i, [[12, 0], [13, 1]]) { 1.0 } else { 0.0 };
-    let heights = (0..cols * rows).map(|i| if i % cols < 4 { 1.1 } else { height(i) }).collect();
-    let hf = Heightfield::measured(DVec2::ZERO, DVec2::splat(SPACING), cols, rows, heights).expect("ground");
-    let delta = (0..cols * rows).map(|i| if is(i, [[13, 0], [12, 1]]) { 1.0 } else { 0.0 }).collect();
-    let delta = Grid::new(DVec2::ZERO, DVec2::splat(SPACING), cols, rows, delta).expect("grid");
-    let field = Field::new(&hf, |_| 0.0).expect("heights");
-    let line = [0.0, 19.0].map(|x| (DVec2::new(x, 0.5), 1.2));
-    let traced = DisplacedGround::new(&field, &delta).prepared().excess(&line, 0.0);
-    assert!((traced.over - 0.3).abs() < 0.01 && traced.at.distance(DVec2::new(12.5, 0.5)) < 0.1, "{traced:?}");
+fn the_stage_moves_ground_to_where_the_judge_has_it() {
+    let random = &mut Random::new(4);
+    for n in 0..60 {
+        let size = [[2, 2], [5, 3], [20, 11]][n % 3];
+        let (field, delta) = ground(random, size, [(1.0, 0.0), (3.0, 1.0), (1.7, 0.4)][n / 3 % 3]);
+        let stage = TerrainDisocclusion::new(delta.clone().on_facets(field.places()));
+        let (mut most, judged) = (0.0f64, DisplacedGround::new(&field, &delta));
+        for _ in 0..200 {
+            let at = DVec2::new(random.range(0.0, size[0] as f64 - 1.0), random.range(0.0, size[1] as f64 - 1.0));
+            let moved = stage.delta_at(field.scene_from_grid(at).extend(0.0));
+            let height = field.surface_at(at).expect("ground") + moved;
+            assert!((height - judged.height_at(at).expect("ground")).abs() < 1e-9, "{n}: {at}");
+            most = most.max((moved - delta.sample(field.scene_from_grid(at)).expect("inside")).abs());
+        }
+        assert!(most > 0.01, "{n}: bilinear ground is another one");
+    }
 }

@@ -24,12 +24,7 @@ fn what_has_room_is_not_missed_however_the_ground_moves() {
     let step = DVec2::splat((nodes - 1) as f64 / (coarse - 1) as f64);
     let mut surface = Surface::new(&heights, nodes, nodes, Lattice { cols: coarse, rows: coarse, step });
     let candidates: Vec<Candidate> = (0..60)
-        .map(|id| Candidate {
-            id,
-            grid: DVec2::new(1.0 + 0.5 * f64::from(id), 38.0 - 0.3 * f64::from(id)),
-            lift: 2.0,
-            faceted: id % 3 == 0,
-        })
+        .map(|id| Candidate { id, grid: DVec2::new(1.0 + 0.5 * f64::from(id), 38.0 - 0.3 * f64::from(id)), lift: 2.0 })
         .collect();
     let problem = QpProblem { candidates: &candidates, sight: &Bowed, target: None, ceilings: None };
     let seen = CandidateLine::all(&problem, &surface);

@@ -94,7 +94,7 @@ pub(crate) fn case(hf: Heightfield, seed: u64, image: [u32; 2]) -> Case {
     Case { scene: Scene { layers, ..Scene::default() }, spacing, way, square, base: View::straight(pinhole) }
 }
 
-/// Ground as it is drawn and written, flat between displaced nodes, and as it is traced, displaced everywhere.
+/// Ground as it is drawn and written, flat between displaced nodes, and as it is traced, displaced everywhere: one surface.
 struct Ground<'a> {
     still: Vec<f64>,
     moved: Vec<f64>,
