@@ -19,6 +19,8 @@ const WORDS: [(&str, &str); 39] = [
     ("adjust_viewpoint", "camera or ground"),
     ("rise_limit_m", "rise at most"),
     ("margin_m", "clearance"),
+    ("show", "share to show"),
+    ("move_at_most_m", "ground moves at most"),
     ("slack_price", "price of what stays hidden"),
     ("solver_nodes", "nodes of the solver"),
     ("position_m", "position along the path"),

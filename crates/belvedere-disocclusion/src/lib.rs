@@ -49,7 +49,7 @@ pub mod report {
     pub use crate::metrics::{FrameChange, TerrainMetrics};
     pub use crate::points::PointKind;
     pub use crate::solve::{
-        BANK_M, Covered, Fallback, FeatureCost, LakeReport, LimitsReport, QpReport, Taken, TerrainTimes,
+        BANK_M, Covered, Fallback, FeatureCost, GivenUp, LakeReport, LimitsReport, PricePoint, PriceReport, QpReport, Taken, TerrainTimes,
         UnresolvedReason, UnresolvedRun,
     };
 }

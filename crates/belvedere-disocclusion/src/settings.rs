@@ -85,6 +85,14 @@ pub struct TerrainSettings {
     /// Ids of line layers along which the displaced ground rises downstream by no more than the elevation model does.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rivers: Vec<String>,
+    /// Share of the features in view that the ground makes way for at least, 0..=1: up to the rest of it, the dearest stretches, is given
+    /// up; `None` = all, or as much as [`Self::move_at_most_m`] allows. Stills alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub show: Option<f64>,
+    /// Largest displacement of the solver's grid, metres, > 0: the dearest stretches of the features are given up until the ground
+    /// moves no more, or `show` is reached; `None` = free. Stills alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub move_at_most_m: Option<f64>,
     /// Price of a metre of occlusion squared, > 0: what costs more to clear stays covered; `None` = everything is cleared.
     pub slack_price: Option<f64>,
 }
@@ -112,6 +120,8 @@ impl Default for TerrainSettings {
             limits: true,
             spikes: false,
             rivers: Vec::new(),
+            show: None,
+            move_at_most_m: None,
             slack_price: None,
         }
     }

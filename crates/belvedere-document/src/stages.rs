@@ -144,6 +144,13 @@ pub struct TerrainStageDoc {
     /// Ids of line layers, rivers, along which the displaced ground rises downstream by no more than the elevation model does.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rivers: Vec<String>,
+    /// Share of the features in view that the ground makes way for at least, 0..=1; the dearest stretches beyond it are given up. Stills
+    /// only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub show: Option<f64>,
+    /// Most the ground may move, metres: the dearest stretches of the features are given up until it moves no more. Stills only.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub move_at_most_m: Option<f64>,
     /// Price of a metre of occlusion squared, > 0: what costs more to clear stays covered by ground that is drawn see-through;
     /// by default everything is cleared.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -6,7 +6,7 @@ use crate::BelvedereError;
 use belvedere_core::{DVec3, Pinhole, Stage, View};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_disocclusion::DisocclusionError;
-use belvedere_disocclusion::report::{FeatureCost, Spike, Taken};
+use belvedere_disocclusion::report::{FeatureCost, PriceReport, Spike, Taken};
 use belvedere_disocclusion::rivers::RIVER_TOLERANCE_M;
 use belvedere_disocclusion::{
     Detail, Solved, SolverMode, TerrainReport, TerrainSettings, TerrainSolver, ViewpointOptions,
@@ -66,6 +66,8 @@ pub fn settings(doc: &TerrainStageDoc) -> Result<TerrainSettings, (&'static str,
         limits: doc.limits.unwrap_or(usual.limits),
         spikes: doc.spikes.unwrap_or(usual.spikes),
         rivers: doc.rivers.clone(),
+        show: doc.show,
+        move_at_most_m: doc.move_at_most_m,
         slack_price: doc.slack_price,
     })
 }
@@ -102,6 +104,8 @@ pub fn document(settings: &TerrainSettings, scene: &Scene) -> TerrainStageDoc {
         limits: Some(settings.limits),
         spikes: Some(settings.spikes),
         rivers: settings.rivers.clone(),
+        show: settings.show,
+        move_at_most_m: settings.move_at_most_m,
         slack_price: settings.slack_price,
         adjust_viewpoint: None,
     }
@@ -245,6 +249,7 @@ pub fn remarks(solved: &Solved, scene: &Scene) -> Vec<Warning> {
         let warning = of_solver(WarningKind::Hidden, text).with("hidden_share", hidden);
         out.push(warning.with("hidden_worst_m", report.metrics.hidden_worst_m));
     }
+    out.extend(report.price.as_ref().and_then(|price| given_up(price, &report.parameters)));
     out.extend(held(report));
     out.extend(confined(report));
     out.extend(implausible(report, scene));
@@ -253,6 +258,24 @@ pub fn remarks(solved: &Solved, scene: &Scene) -> Vec<Warning> {
         out.push(nothing_asked(report.parameters.ahead_m));
     }
     out
+}
+
+/// Warning that stretches were given up at the stated price, or that the price is higher all the same.
+fn given_up(price: &PriceReport, settings: &TerrainSettings) -> Option<Warning> {
+    let (all, paid) = (price.curve.first()?, price.curve.iter().rev().find(|at| at.asked < 1.0)?);
+    let more = settings.move_at_most_m.is_some_and(|most| paid.max_m > most);
+    let text = format!(
+        "terrain_disocclusion: {:.1} % of the features in view were given up, so that the ground moves by {:.0} m at most instead of {:.0} m \
+         ({:.1} m rms instead of {:.1} m){}; the report names them under `price`",
+        100.0 * (1.0 - paid.asked),
+        paid.max_m,
+        all.max_m,
+        paid.rms_m,
+        all.rms_m,
+        if more { ", which is more than is allowed: show a smaller share" } else { "" },
+    );
+    let warning = Warning::new(WarningKind::Limited, text).about("terrain_disocclusion");
+    Some(warning.with("asked", paid.asked).with("max_m", paid.max_m).with("max_m_for_all", all.max_m))
 }
 
 /// Warning that samples of the elevation model stand apart from all their neighbours.

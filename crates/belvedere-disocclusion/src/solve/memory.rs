@@ -324,6 +324,8 @@ pub(super) fn check(settings: &TerrainSettings) -> Result<(), DisocclusionError>
         ("margin_m", s.margin_m, [0.0, 1e4], "in 0..=10000"),
         ("gamma_time_s", s.gamma_time_s, [0.0, 1e4], "in 0..=10000"),
         ("rise_limit_m", s.rise_limit_m, [0.0, f64::INFINITY], "0 or more"),
+        ("show", s.show.unwrap_or(1.0), [0.0, 1.0], "in 0..=1"),
+        ("move_at_most_m", s.move_at_most_m.unwrap_or(1.0), [0f64.next_up(), f64::INFINITY], "greater than 0"),
         ("slack_price", s.slack_price.unwrap_or(1.0), [1e-9, 1e9], "in 0.000000001..=1000000000"),
         ("ahead_m", s.ahead_m.unwrap_or(1.0), [0f64.next_up(), f64::INFINITY], "greater than 0"),
     ];

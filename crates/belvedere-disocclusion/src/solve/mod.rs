@@ -13,6 +13,7 @@ mod memory;
 mod out_of_time;
 mod passes;
 mod points_in_view;
+mod price;
 mod report;
 mod reporting;
 mod runs;
@@ -25,6 +26,7 @@ pub use lakes::{BANK_M, LakeReport};
 pub use limits::LimitsReport;
 pub use live::{LiveFrame, LiveTerrain};
 pub use memory::TerrainMemory;
+pub use price::{GivenUp, PricePoint, PriceReport};
 pub use report::{Covered, FeatureCost, QpReport, Taken, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
 pub use written::{WrittenGround, WrittenShares};
 
@@ -281,6 +283,8 @@ struct Outcome {
     taken: Option<Taken>,
     /// Rows of the quadratic program with a multiplier.
     rows: Vec<SolvedRow>,
+    /// What was given up for the stated price.
+    paid: price::Paid,
 }
 
 /// Whether detail is scaled with the ground under it.

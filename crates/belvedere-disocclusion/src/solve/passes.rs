@@ -8,7 +8,8 @@ use super::agreement::Agreement;
 use super::fallback::{self, Fallback};
 use super::ground::Ground;
 use super::limits::LimitedTerrain;
-use super::memory::{self, Prepared, Weights};
+use super::memory::{self, Prepared, Program, Weights};
+use super::price::Price;
 use super::waters::Waters;
 use super::{Outcome, PointsInView, QpReport, TerrainTimes, scales, since};
 use crate::DisocclusionError;
@@ -207,12 +208,28 @@ impl Passes<'_> {
     ) -> Result<(), DisocclusionError> {
         self.progress.tick("quadratic program", 0.5)?;
         let began = Instant::now();
-        let target = self.target(prepared, done)?;
         let warm = self.last.is_some() && prepared.moving.is_some();
+        // Out of what is prepared while it works, and back whatever comes of it.
+        let program = if warm { prepared.moving.take() } else { prepared.still.take() };
+        let Some(mut program) = program else { return Ok(()) };
+        let solved = self.solved_by(&mut program, warm, (prepared, in_view), detail, done);
+        *(if warm { &mut prepared.moving } else { &mut prepared.still }) = Some(program);
+        times.qp_ms = since(began);
+        solved
+    }
+
+    fn solved_by(
+        &self,
+        program: &mut Program,
+        warm: bool,
+        (prepared, in_view): (&Prepared, &PointsInView<'_>),
+        detail: &mut Option<Vec<f64>>,
+        done: &mut Outcome,
+    ) -> Result<(), DisocclusionError> {
+        let target = self.target(prepared, done)?;
         let weights = if warm { self.weights } else { Weights { g: 0.0, ..self.weights } };
         // In films hidden points do not become candidates: one that is demanded in a single frame would make the ground jump.
-        let check = if self.frame.is_some() { Vec::new() } else { prepared.check_in_view(in_view) };
-        let Some(program) = (if warm { &mut prepared.moving } else { &mut prepared.still }) else { return Ok(()) };
+        let mut check = if self.frame.is_some() { Vec::new() } else { prepared.check_in_view(in_view) };
         let qp = &mut program.solver;
         let ground: Cow<'_, [f64]> = match &detail {
             Some(detail) => self.field.heights().iter().zip(detail).map(|(h, d)| h + d).collect(),
@@ -223,12 +240,20 @@ impl Passes<'_> {
         if foreign || program.foreign {
             qp.set_heights(&ground)?;
         }
-        let (asked, sight) = (&in_view.candidates[..], &*in_view.sight);
-        let wider = [asked, &in_view.entering[..]].concat();
+        let mut asked: Cow<'_, [Candidate]> = in_view.candidates.as_slice().into();
+        let mut wider = [&asked[..], &in_view.entering[..]].concat();
+        let sight = &*in_view.sight;
         let problem = QpProblem { candidates: &wider, sight, target: target.as_deref(), ceilings: None };
         let options = memory::options(self.settings, false);
         qp.set_options(options);
-        let result = qp.solve_with(&problem, self.progress)?;
+        let mut result = qp.solve_with(&problem, self.progress)?;
+        if let Some(mut price) = Price::new(self.settings, prepared, &check) {
+            result = price.settle(qp, &problem, result, self.progress)?;
+            (asked, check) = (price.kept(&asked).into(), price.kept(&check));
+            wider = asked.to_vec();
+            done.paid = price.paid();
+        }
+        let problem = QpProblem { candidates: &wider, sight, target: target.as_deref(), ceilings: None };
         let (grid, waters) = (&prepared.grid, &*prepared.waters);
         let mut solution = Solution {
             passes: self,
@@ -237,7 +262,7 @@ impl Passes<'_> {
             weights,
             check,
             options,
-            asked,
+            asked: &asked,
             problem,
             ground,
             detail,
@@ -252,7 +277,6 @@ impl Passes<'_> {
         done.stopped = result.stopped || (fallback::stuck(&result) > 0 && self.progress.is_late());
         done.qp_unresolved = result.unresolved;
         done.rows = result.active;
-        times.qp_ms = since(began);
         Ok(())
     }
 }

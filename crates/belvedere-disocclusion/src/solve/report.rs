@@ -2,7 +2,7 @@
 
 use super::super::visibility_qp::QpResult;
 use super::super::{GreedyCounters, PointKind, TerrainMetrics, TerrainSettings};
-use super::{Fallback, LakeReport, LimitsReport};
+use super::{Fallback, LakeReport, LimitsReport, PriceReport};
 use crate::rivers::RiverReport;
 use crate::spikes::Spike;
 use serde::Serialize;
@@ -79,6 +79,9 @@ pub struct TerrainReport {
     pub unresolved: Vec<UnresolvedRun>,
     /// Other parts in view that the judge finds hidden, with the reason: points between two candidates.
     pub hidden: Vec<UnresolvedRun>,
+    /// What was given up so that the ground moves less, where a price is stated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub price: Option<PriceReport>,
     /// Points that stay covered at the price of slack.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub covered: Vec<Covered>,
@@ -200,6 +203,11 @@ pub enum UnresolvedReason {
     },
     /// It lies between two points that are seen.
     Between {
+        /// How far the ground rises over its line of sight.
+        over_m: f64,
+    },
+    /// It was given up, for showing it moves more ground than is allowed.
+    GivenUp {
         /// How far the ground rises over its line of sight.
         over_m: f64,
     },

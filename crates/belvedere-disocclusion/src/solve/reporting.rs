@@ -167,6 +167,7 @@ pub(super) fn report(
         fallbacks: done.fallbacks.clone(),
         limited: done.limited,
         spikes: prepared.spikes.clone(),
+        price: (!done.paid.report.curve.is_empty()).then(|| done.paid.report.clone()),
         lakes: waters.lakes.report(moved),
         rivers,
         guaranteed: promised && verdicts.agree() && (done.limited.is_none() || hidden.is_empty()),
@@ -216,6 +217,7 @@ fn hidden(c: &Context<'_>, done: &Outcome, verdicts: &Verdicts) -> Vec<Unresolve
     let mut runs = Runs::new(c.field, CHECK_CELLS * verdicts.every as f64);
     for (i, hides) in &verdicts.judged.dense {
         let reason = match *hides {
+            _ if done.paid.gave_up(&verdicts.dense[*i]) => UnresolvedReason::GivenUp { over_m: hides.over() },
             // At a price `covered` names it.
             _ if c.settings.slack_price.is_some() => continue,
             Hides::Ground(over_m) | Hides::InGuard(over_m) if done.limited.is_some() && over_m.is_finite() => {
@@ -283,6 +285,7 @@ fn unresolved(c: &Context<'_>, done: &Outcome, known: &Verdicts) -> Named {
         let (i, over_m) = (known.asked[k], hides.over());
         if c.settings.slack_price.is_none() && !named.contains(&i) {
             let reason = match c.settings.mode {
+                _ if done.paid.gave_up(&c.prepared.points[i]) => UnresolvedReason::GivenUp { over_m },
                 _ if over_m.is_infinite() => UnresolvedReason::NoLineOfSight,
                 SolverMode::Paper => UnresolvedReason::Smoothed { over_m },
                 _ if done.limited.is_some() => UnresolvedReason::Limits { over_m },

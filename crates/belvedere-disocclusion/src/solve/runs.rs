@@ -65,12 +65,13 @@ impl<'a> Runs<'a> {
 
 /// The first of two reasons of one kind, with the larger rise of ground over a line of sight of both.
 fn worse(first: UnresolvedReason, next: UnresolvedReason) -> UnresolvedReason {
-    use UnresolvedReason::{Between, InsideGuard, Judged, Limits, Smoothed, Written};
+    use UnresolvedReason::{Between, GivenUp, InsideGuard, Judged, Limits, Smoothed, Written};
     match (first, next) {
         (Smoothed { over_m: a }, Smoothed { over_m: b }) => Smoothed { over_m: a.max(b) },
         (Judged { over_m: a }, Judged { over_m: b }) => Judged { over_m: a.max(b) },
         (Limits { over_m: a }, Limits { over_m: b }) => Limits { over_m: a.max(b) },
         (Written { over_m: a }, Written { over_m: b }) => Written { over_m: a.max(b) },
+        (GivenUp { over_m: a }, GivenUp { over_m: b }) => GivenUp { over_m: a.max(b) },
         (Between { over_m: a }, Between { over_m: b }) => Between { over_m: a.max(b) },
         (InsideGuard { over_m: a }, InsideGuard { over_m: b }) => InsideGuard { over_m: a.max(b) },
         _ => first,

@@ -8,7 +8,7 @@ use super::memory::{self, CHECK_CELLS};
 use super::report::{Covered, TerrainReport, UnresolvedReason, UnresolvedRun};
 use super::reporting::{AGREES, sampled, too_many};
 use super::runs::Runs;
-use super::{TerrainSolver, drop_at};
+use super::{PriceReport, TerrainSolver, drop_at};
 use crate::DisocclusionError;
 use crate::in_view::NEAREST_GUARDS;
 use belvedere_core::{DVec2, DVec3, View};
@@ -255,17 +255,19 @@ impl Parts<'_> {
             if self.report.parameters.slack_price.is_some() && hides.over().is_finite() {
                 covered.push(Covered { at: scene(p.grid), lift_m: p.lift, over_m: hides.over() });
             } else {
-                runs.put(p, self.reason(hides));
+                runs.put(p, self.reason(p, hides));
             }
         }
         runs.out.iter_mut().for_each(|run| run.at = scene(self.field.grid_from_scene(DVec2::from_array(run.at))));
         (runs.out, covered)
     }
 
-    fn reason(&self, hides: Hides) -> UnresolvedReason {
+    fn reason(&self, p: &ReferencePoint, hides: Hides) -> UnresolvedReason {
         let over_m = hides.over();
+        let gave_up = |price: &PriceReport| price.given_up.iter().any(|given| given.holds(p));
         match hides {
             _ if over_m.is_infinite() => UnresolvedReason::NoLineOfSight,
+            _ if self.report.price.as_ref().is_some_and(gave_up) => UnresolvedReason::GivenUp { over_m },
             _ if !self.ground.solved_on => UnresolvedReason::Written { over_m },
             _ if self.limited => UnresolvedReason::Limits { over_m },
             Hides::InGuard(_) => UnresolvedReason::InsideGuard { over_m },

@@ -8,6 +8,7 @@ mod lakes;
 mod live;
 mod memory;
 mod one_judge;
+mod price;
 mod qp;
 mod rivers;
 mod smooth;

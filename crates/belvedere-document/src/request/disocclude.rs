@@ -39,6 +39,12 @@ pub struct Disocclude {
     /// percentile of the terrain's slopes
     #[cfg_attr(feature = "clap", arg(long))]
     pub no_limits: bool,
+    /// Share of the features in view to show, such as 0.95 or 95%: the dearest stretches beyond it are given up, and less ground moves
+    #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", allow_negative_numbers = true, value_parser = value::share))]
+    pub show: Option<f64>,
+    /// Most the ground may move, metres: the dearest stretches of the features are given up until it moves no more
+    #[cfg_attr(feature = "clap", arg(long, value_name = "M", allow_negative_numbers = true, value_parser = value::number))]
+    pub move_at_most: Option<f64>,
     /// Any other key of a terrain_disocclusion stage, such as w=0.6; may be given several times
     #[cfg_attr(feature = "clap", arg(long, value_name = "KEY=VALUE"))]
     pub set: Vec<String>,

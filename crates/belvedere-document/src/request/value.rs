@@ -129,8 +129,13 @@ pub(crate) fn haze(text: &str) -> Result<SwitchOrVisibility, String> {
 
 /// A share.
 pub(crate) fn share(text: &str) -> Result<f64, String> {
-    let share = text.trim().parse().ok().filter(|share| (0.0..=1.0).contains(share));
-    share.ok_or_else(|| "give a share in 0..=1, such as 0.4".into())
+    let text = text.trim();
+    let share = match text.strip_suffix('%') {
+        Some(percent) => percent.trim_end().parse().ok().map(|percent: f64| percent / 100.0),
+        None => text.parse().ok(),
+    };
+    let share = share.filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| "give a share in 0..=1, such as 0.4 or 40%".into())
 }
 
 /// A factor of heights.

@@ -75,6 +75,8 @@ pub fn parameters(texts: &[String]) -> Result<TerrainStageDoc, BelvedereError> {
 fn stage_of(request: &Disocclude) -> Result<TerrainStageDoc, BelvedereError> {
     let mut stage = parameters(&request.set)?;
     stage.mode = request.mode.or(stage.mode);
+    stage.show = request.show.or(stage.show);
+    stage.move_at_most_m = request.move_at_most.or(stage.move_at_most_m);
     if request.no_limits {
         stage.limits = Some(false);
     }

@@ -26,6 +26,8 @@ fn rows(folder: &Path) -> Vec<(&'static str, Does)> {
         ("look", Changes(json!([503_500.0, 5_003_000.0]), none())),
         ("fov", Changes(json!(50), none())),
         ("mode", Changes(json!("paper"), none())),
+        ("show", Changes(json!(0.5), none())),
+        ("move_at_most", Changes(json!(1), none())),
         ("set", Changes(json!(["solver_nodes=20"]), none())),
         (
             "grid",

@@ -1,0 +1,304 @@
+//! The price of a bend: stretches of features are given up, the dearest first, until the ground moves no more than is allowed.
+//!
+//! At the optimum the energy of the displacement is the sum of -1/2 multiplier x bound over the rows, so what each stretch costs is known
+//! without a further solution. A price per metre would spread the loss over all points and save little; whole stretches that are left
+//! out give most of the displacement back. Ours.
+
+use super::super::visibility_qp::{Candidate, QpProblem, QpResult, QpSolver};
+use super::super::{KINDS, PointKind, ReferencePoint, TerrainSettings};
+use super::memory::Prepared;
+use crate::DisocclusionError;
+use belvedere_core::DVec2;
+use belvedere_scene::Progress;
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Stretches that all lines, and all areas, are divided into, about.
+const PARTS: f64 = 40.0;
+/// Shortest stretch, and side of the smallest tile of an area, grid cells.
+const SHORTEST: f64 = 2.0;
+/// Stretches are given up together until they hold this share of the energy.
+const AT_ONCE: f64 = 0.08;
+/// Most solutions in which stretches are given up, and in which they are taken back.
+const GIVEN_UP: usize = 60;
+const TAKEN_BACK: usize = 8;
+/// Share of the stated move that the program aims at: agreement with the judge moves the ground a little more.
+const AIM: f64 = 0.97;
+
+/// A stretch of a line, a tile of an area, or a point feature: layer, feature, and number along the line or column and row.
+type Stretch = (usize, usize, i64, i64);
+
+/// How features are divided into stretches.
+#[derive(Debug, Clone, Copy, Default)]
+struct Division {
+    /// Length of stretches, and side of tiles, scene units.
+    length: f64,
+    side: f64,
+    /// Of the ground.
+    spacing: DVec2,
+}
+
+impl Division {
+    fn of(&self, p: &ReferencePoint) -> Stretch {
+        let (x, y) = match p.kind {
+            PointKind::Line => ((p.along_m / self.length).floor() as i64, 0),
+            PointKind::Rim | PointKind::Inside => {
+                let tile = (p.grid * self.spacing / self.side).floor();
+                (tile.x as i64, tile.y as i64)
+            }
+            PointKind::Landmark => (0, 0),
+        };
+        (p.layer, p.feature, x, y)
+    }
+}
+
+/// What is shown for how much displacement, and what was given up.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct PriceReport {
+    /// Solutions, the first of which shows all: one for each time that stretches were given up or taken back.
+    pub curve: Vec<PricePoint>,
+    /// Stretches given up, the dearest first.
+    pub given_up: Vec<GivenUp>,
+}
+
+/// A solution on the way to the price that was stated.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct PricePoint {
+    /// Share of the features in view that the ground makes way for, 0..=1; the least of lines, areas and points.
+    pub asked: f64,
+    /// Root mean square displacement over the nodes of the solver's grid, scene units.
+    pub rms_m: f64,
+    /// Largest displacement there, up or down.
+    pub max_m: f64,
+}
+
+/// A stretch that was given up.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct GivenUp {
+    /// Index of the layer in the scene.
+    pub layer: usize,
+    /// Index of the feature in its layer.
+    pub feature: usize,
+    /// Length along the line where the stretch begins, and its length; 0 of areas and points.
+    pub from_m: f64,
+    /// See `from_m`.
+    pub length_m: f64,
+    /// Scene x, y of its first point.
+    pub at: [f64; 2],
+    /// Share of the energy that it took when it was given up, 0..=1.
+    pub share: f64,
+}
+
+impl GivenUp {
+    /// Whether a point of the same features, on whatever grid, lies on it; every point of an area or of a point feature does.
+    pub(super) fn holds(&self, p: &ReferencePoint) -> bool {
+        let is_along = p.kind != PointKind::Line || (0.0..self.length_m).contains(&(p.along_m - self.from_m));
+        (self.layer, self.feature) == (p.layer, p.feature) && is_along
+    }
+}
+
+/// The stretches of the features in view, and which of them are given up.
+pub(super) struct Price<'a> {
+    prepared: &'a Prepared,
+    /// Share that must be shown at least, and largest displacement.
+    show: f64,
+    most_m: Option<f64>,
+    division: Division,
+    stretches: BTreeMap<Stretch, Amount>,
+    all: [f64; KINDS],
+    /// In the order in which they were given up.
+    given_up: Vec<(Stretch, GivenUp)>,
+    curve: Vec<PricePoint>,
+}
+
+/// What a stretch stands for.
+#[derive(Debug, Clone, Copy)]
+struct Amount {
+    kind: usize,
+    amount: f64,
+    first: ReferencePoint,
+}
+
+impl<'a> Price<'a> {
+    /// `None` where no price is stated.
+    ///
+    /// * `in_view`: points that stand for equal parts of the features in view.
+    pub(super) fn new(settings: &TerrainSettings, prepared: &'a Prepared, in_view: &[Candidate]) -> Option<Self> {
+        let (show, most_m) = (settings.show, settings.move_at_most_m);
+        if show.is_none() && most_m.is_none() {
+            return None;
+        }
+        let points: Vec<ReferencePoint> = in_view.iter().filter_map(|c| prepared.candidate(c.id)).copied().collect();
+        let mut all = [0.0; KINDS];
+        points.iter().for_each(|p| all[p.kind.of_feature()] += p.amount);
+        let spacing = prepared.level.spacing();
+        let shortest = SHORTEST * spacing.max_element();
+        let (length, side) = ((all[0] / PARTS).max(shortest), (all[1] / PARTS).sqrt().max(shortest));
+        let division = Division { length, side, spacing };
+        let mut stretches = BTreeMap::new();
+        for p in points {
+            let new = Amount { kind: p.kind.of_feature(), amount: 0.0, first: p };
+            stretches.entry(division.of(&p)).or_insert(new).amount += p.amount;
+        }
+        let show = show.unwrap_or(0.0);
+        Some(Self { prepared, show, most_m, division, stretches, all, given_up: Vec::new(), curve: Vec::new() })
+    }
+
+    fn is_given_up(&self, stretch: &Stretch) -> bool {
+        self.given_up.iter().any(|(given, _)| given == stretch)
+    }
+
+    /// The candidates that are still asked for.
+    pub(super) fn kept(&self, candidates: &[Candidate]) -> Vec<Candidate> {
+        let gone: BTreeSet<Stretch> = self.given_up.iter().map(|(stretch, _)| *stretch).collect();
+        let is_kept = |c: &&Candidate| self.prepared.candidate(c.id).is_none_or(|p| !gone.contains(&self.division.of(p)));
+        candidates.iter().filter(is_kept).copied().collect()
+    }
+
+    /// Share of the features that is still asked for: the least of lines, areas and points.
+    fn asked(&self) -> f64 {
+        let mut kept = [0.0; KINDS];
+        let stretches = self.stretches.iter().filter(|(stretch, _)| !self.is_given_up(stretch));
+        stretches.for_each(|(_, of)| kept[of.kind] += of.amount);
+        let kinds = (0..KINDS).filter(|k| self.all[*k] > 0.0);
+        kinds.map(|k| kept[k] / self.all[k]).fold(1.0, f64::min)
+    }
+
+    /// Solves until the ground moves no more than is allowed, or gives up as much as is allowed.
+    ///
+    /// * `result`: the solution for all candidates.
+    pub(super) fn settle(
+        &mut self,
+        qp: &mut QpSolver,
+        problem: &QpProblem<'_>,
+        mut result: QpResult,
+        progress: &Progress,
+    ) -> Result<QpResult, DisocclusionError> {
+        self.note(&result);
+        for _ in 0..GIVEN_UP {
+            if self.is_cheap(&result) || progress.should_end() || !self.give_up(&result) {
+                break;
+            }
+            progress.tick("the price of the displacement", 0.7)?;
+            result = self.solved(qp, problem, progress)?;
+        }
+        if self.most_m.is_some() && self.is_cheap(&result) {
+            result = self.take_back(qp, problem, result, progress)?;
+        }
+        Ok(result)
+    }
+
+    /// Whether the ground moves no more than was stated; without such a limit as little as possible is wanted.
+    fn is_cheap(&self, result: &QpResult) -> bool {
+        self.most_m.is_some_and(|most| largest(&result.u) <= AIM * most)
+    }
+
+    fn solved(
+        &mut self,
+        qp: &mut QpSolver,
+        problem: &QpProblem<'_>,
+        progress: &Progress,
+    ) -> Result<QpResult, DisocclusionError> {
+        let candidates = self.kept(problem.candidates);
+        let result = qp.solve_with(&QpProblem { candidates: &candidates, ..*problem }, progress)?;
+        self.note(&result);
+        Ok(result)
+    }
+
+    fn note(&mut self, result: &QpResult) {
+        let squares: f64 = result.u.iter().map(|u| u * u).sum();
+        let rms_m = (squares / result.u.len().max(1) as f64).sqrt();
+        self.curve.push(PricePoint { asked: self.asked(), rms_m, max_m: largest(&result.u) });
+    }
+
+    /// Gives up the dearest stretches per share of the features, at least one; `false` if none may be.
+    fn give_up(&mut self, result: &QpResult) -> bool {
+        let mut energy = BTreeMap::<Stretch, f64>::new();
+        for row in &result.active {
+            let Some(point) = row.candidate.and_then(|id| self.prepared.candidate(id)) else { continue };
+            *energy.entry(self.division.of(point)).or_default() += row.multiplier * (-row.bound).max(0.0);
+        }
+        let all: f64 = energy.values().sum();
+        let part = |stretch: &Stretch| self.stretches.get(stretch).map_or(0.0, |of| of.amount / self.all[of.kind]);
+        let mut dearest: Vec<(Stretch, f64)> = energy.into_iter().filter(|(s, e)| *e > 0.0 && part(s) > 0.0).collect();
+        dearest.sort_by(|a, b| (b.1 / part(&b.0)).total_cmp(&(a.1 / part(&a.0))));
+        let mut gone = 0.0;
+        for (stretch, energy) in dearest {
+            self.given_up.push((stretch, self.given(stretch, energy / all)));
+            if self.asked() < self.show {
+                self.given_up.pop();
+                continue;
+            }
+            gone += energy;
+            if gone >= AT_ONCE * all {
+                break;
+            }
+        }
+        gone > 0.0
+    }
+
+    /// Takes back stretches that turn out to be free, those that were given up last first.
+    fn take_back(
+        &mut self,
+        qp: &mut QpSolver,
+        problem: &QpProblem<'_>,
+        mut best: QpResult,
+        progress: &Progress,
+    ) -> Result<QpResult, DisocclusionError> {
+        for k in (0..self.given_up.len()).rev().take(TAKEN_BACK) {
+            if progress.should_end() {
+                break;
+            }
+            let given = self.given_up.remove(k);
+            let result = self.solved(qp, problem, progress)?;
+            if self.is_cheap(&result) {
+                best = result;
+            } else {
+                self.given_up.insert(k, given);
+            }
+        }
+        Ok(best)
+    }
+
+    fn given(&self, stretch: Stretch, share: f64) -> GivenUp {
+        let Amount { first, .. } = self.stretches[&stretch];
+        let is_line = first.kind == PointKind::Line;
+        GivenUp {
+            layer: stretch.0,
+            feature: stretch.1,
+            from_m: if is_line { stretch.2 as f64 * self.division.length } else { 0.0 },
+            length_m: if is_line { self.division.length } else { 0.0 },
+            at: self.prepared.level.scene_from_grid(first.grid).to_array(),
+            share,
+        }
+    }
+
+    /// What was paid in the end.
+    pub(super) fn paid(self) -> Paid {
+        let gone = self.given_up.iter().map(|(stretch, _)| *stretch).collect();
+        let given_up = self.given_up.into_iter().map(|(_, given)| given).collect();
+        Paid { division: self.division, gone, report: PriceReport { curve: self.curve, given_up } }
+    }
+}
+
+/// What was shown for what price.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Paid {
+    division: Division,
+    gone: BTreeSet<Stretch>,
+    pub(super) report: PriceReport,
+}
+
+impl Paid {
+    /// Whether the stretch of a point was given up.
+    pub(super) fn gave_up(&self, p: &ReferencePoint) -> bool {
+        !self.gone.is_empty() && self.gone.contains(&self.division.of(p))
+    }
+}
+
+fn largest(u: &[f64]) -> f64 {
+    u.iter().fold(0.0, |most, u| u.abs().max(most))
+}
