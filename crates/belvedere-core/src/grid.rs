@@ -286,8 +286,15 @@ impl Grid {
         }
     }
 
+    /// Smallest and largest value over the rectangle `min..=max` (scene x, y), with the 0 beside the grid.
+    pub fn span_over(&self, min: DVec2, max: DVec2) -> [f64; 2] {
+        let [low, high] = self.range_over(min, max).unwrap_or([0.0; 2]);
+        let is_inside = |xy: DVec2| self.nodes.contains(self.nodes.grid_from_scene(xy));
+        if self.reach(min, max).into_iter().all(is_inside) { [low, high] } else { [low.min(0.0), high.max(0.0)] }
+    }
+
     /// The rectangle whose nodes the values over the rectangle `min..=max` (scene x, y) come from.
-    pub(crate) fn reach(&self, min: DVec2, max: DVec2) -> [DVec2; 2] {
+    fn reach(&self, min: DVec2, max: DVec2) -> [DVec2; 2] {
         let Some(ground) = self.facets else { return [min, max] };
         let last = DVec2::new((ground.cols - 1) as f64, (ground.rows - 1) as f64);
         let (a, b) =

@@ -49,8 +49,8 @@ pub mod report {
     pub use crate::metrics::{FrameChange, TerrainMetrics};
     pub use crate::points::PointKind;
     pub use crate::solve::{
-        BANK_M, Covered, Fallback, FeatureCost, GivenUp, LakeReport, LimitsReport, PricePoint, PriceReport, QpReport, Taken, TerrainTimes,
-        UnresolvedReason, UnresolvedRun,
+        BANK_M, Covered, Fallback, FeatureCost, GivenUp, LakeReport, LimitsReport, PricePoint, PriceReport, QpReport,
+        Taken, TerrainTimes, UnresolvedReason, UnresolvedRun,
     };
 }
 

@@ -96,12 +96,7 @@ impl TerrainDisocclusion {
         if bounds.is_empty() || bounds.min.is_nan() || bounds.max.is_nan() {
             return None;
         }
-        let [min, max] = self.delta.reach(bounds.min.truncate(), bounds.max.truncate());
-        let inside = [min, max].into_iter().all(|xy| self.delta.nodes().contains(self.delta.grid_from_scene(xy)));
-        let [mut lo, mut hi] = self.delta.range_over(min, max).unwrap_or([0.0; 2]);
-        if !inside {
-            (lo, hi) = (lo.min(0.0), hi.max(0.0));
-        }
+        let [lo, hi] = self.delta.span_over(bounds.min.truncate(), bounds.max.truncate());
         let mut out = *bounds;
         out.min.z += lo;
         out.max.z += hi;

@@ -87,10 +87,12 @@ belvedere_testkit::space_map_laws!(laws_on_facets, super::case_on_facets());
 fn on_facets_values_are_those_of_the_nodes_of_the_ground_and_flat_between() {
     let bilinear = map(values(1.0));
     let m = on_ground(bilinear.clone(), &Similarity::IDENTITY);
-    let at = |m: &TerrainDisocclusion, g: [f64; 2]| m.delta_at(DVec3::new(500.0 + 25.0 * g[0], 900.0 - 40.0 * g[1], 0.0));
+    let at =
+        |m: &TerrainDisocclusion, g: [f64; 2]| m.delta_at(DVec3::new(500.0 + 25.0 * g[0], 900.0 - 40.0 * g[1], 0.0));
     let mut most = 0.0f64;
     for (col, row) in (0..12).flat_map(|row| (0..32).map(move |col| (f64::from(col), f64::from(row)))) {
-        let [nw, ne, sw, se] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|[x, y]| at(&m, [col + x, row + y]));
+        let [nw, ne, sw, se] =
+            [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]].map(|[x, y]| at(&m, [col + x, row + y]));
         for (g, corner) in [([0.0, 0.0], nw), ([1.0, 0.0], ne), ([0.0, 1.0], sw), ([1.0, 1.0], se)] {
             assert!((at(&bilinear, [col + g[0], row + g[1]]) - corner).abs() < 1e-9);
         }

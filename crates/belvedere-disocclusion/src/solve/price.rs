@@ -154,7 +154,8 @@ impl<'a> Price<'a> {
     /// The candidates that are still asked for.
     pub(super) fn kept(&self, candidates: &[Candidate]) -> Vec<Candidate> {
         let gone: BTreeSet<Stretch> = self.given_up.iter().map(|(stretch, _)| *stretch).collect();
-        let is_kept = |c: &&Candidate| self.prepared.candidate(c.id).is_none_or(|p| !gone.contains(&self.division.of(p)));
+        let is_kept =
+            |c: &&Candidate| self.prepared.candidate(c.id).is_none_or(|p| !gone.contains(&self.division.of(p)));
         candidates.iter().filter(is_kept).copied().collect()
     }
 

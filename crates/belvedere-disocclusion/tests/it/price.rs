@@ -38,9 +38,11 @@ fn the_ground_moves_no_more_than_is_allowed_and_a_smaller_move_shows_less() {
             assert!(m.visible_dense >= found.visible_dense_before - 0.02, "{seed} {part}: {m:?}");
             let price = found.price.as_ref().expect("a price");
             assert!(!price.given_up.is_empty() && !found.guaranteed, "{seed} {part}");
-            let gave_up = |reason: &UnresolvedReason| matches!(reason, UnresolvedReason::GivenUp { over_m } if *over_m > 0.0);
+            let gave_up =
+                |reason: &UnresolvedReason| matches!(reason, UnresolvedReason::GivenUp { over_m } if *over_m > 0.0);
             let (named, others): (Vec<_>, Vec<_>) = found.hidden.iter().partition(|run| gave_up(&run.reason));
-            let points = |runs: &[&belvedere_disocclusion::report::UnresolvedRun]| runs.iter().map(|r| r.points).sum::<usize>();
+            let points =
+                |runs: &[&belvedere_disocclusion::report::UnresolvedRun]| runs.iter().map(|r| r.points).sum::<usize>();
             assert!(m.visible_dense > 0.999 || points(&named) > 9 * points(&others), "{seed} {part}: {others:?}");
             (before, shown) = (m.max_m, m.visible_dense);
             tried += 1;

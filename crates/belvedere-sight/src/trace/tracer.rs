@@ -102,12 +102,7 @@ impl<'a> Tracer<'a> {
         exposure: Exposure,
     ) -> Self {
         let split = Split::new(view);
-        let lift = |min: DVec2, max: DVec2| {
-            let Some(g) = split.ground.map(|g| g.grid()) else { return [0.0; 2] };
-            let [lo, hi] = g.range_over(min, max).unwrap_or([0.0; 2]);
-            let inside = [min, max].into_iter().all(|xy| g.contains(g.grid_from_scene(xy)));
-            if inside { [lo, hi] } else { [lo.min(0.0), hi.max(0.0)] }
-        };
+        let lift = |min: DVec2, max: DVec2| split.ground.map_or([0.0; 2], |g| g.grid().span_over(min, max));
         let lift: Option<Lift<'_>> = if split.ground.is_some() { Some(&lift) } else { None };
         let carried = Carried::new(scene, view);
         let obstacles = match &carried {
