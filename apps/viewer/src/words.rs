@@ -1,7 +1,7 @@
 //! Errors in the words of the window instead of those of scene files.
 
 /// Keys of scene files that errors name, and what the window calls them.
-const WORDS: [(&str, &str); 39] = [
+const WORDS: [(&str, &str); 41] = [
     ("terrain_disocclusion", "ground that makes way"),
     ("curved_rays", "curved rays"),
     ("spline_bend", "spline"),

@@ -1,6 +1,6 @@
 //! The passes of one frame, in the order of the mode.
 
-use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult, QpSolver};
+use super::super::visibility_qp::{Candidate, LinesOfSight, QpOptions, QpProblem, QpResult, QpSolver};
 use super::super::{
     BlockMaxima, Cells, Field, Hierarchy, Naive, ReferencePoint, Smoother, SolverMode, TerrainSettings,
 };
@@ -240,45 +240,68 @@ impl Passes<'_> {
         if foreign || program.foreign {
             qp.set_heights(&ground)?;
         }
-        let mut asked: Cow<'_, [Candidate]> = in_view.candidates.as_slice().into();
+        let (mut asked, sight) = (in_view.candidates.clone(), &*in_view.sight);
         let mut wider = [&asked[..], &in_view.entering[..]].concat();
-        let sight = &*in_view.sight;
-        let problem = QpProblem { candidates: &wider, sight, target: target.as_deref(), ceilings: None };
         let options = memory::options(self.settings, false);
         qp.set_options(options);
-        let mut result = qp.solve_with(&problem, self.progress)?;
-        if let Some(mut price) = Price::new(self.settings, prepared, &check) {
-            result = price.settle(qp, &problem, result, self.progress)?;
-            (asked, check) = (price.kept(&asked).into(), price.kept(&check));
-            wider = asked.to_vec();
-            done.paid = price.paid();
-        }
-        let problem = QpProblem { candidates: &wider, sight, target: target.as_deref(), ceilings: None };
-        let (grid, waters) = (&prepared.grid, &*prepared.waters);
-        let mut solution = Solution {
-            passes: self,
-            grid,
-            waters,
-            weights,
-            check,
-            options,
-            asked: &asked,
-            problem,
-            ground,
-            detail,
-            foreign,
-            result,
-            hidden: 0,
+        let mut result = qp.solve_with(&problem_of(&wider, sight, target.as_deref()), self.progress)?;
+        let mut price = Price::new(self.settings, prepared, &check).filter(|_| self.frame.is_none());
+        let detail_before = price.is_some().then(|| detail.clone());
+        let (result, foreign) = loop {
+            if let Some(price) = &mut price {
+                result = price.settle(
+                    qp,
+                    &problem_of(&in_view.candidates, sight, target.as_deref()),
+                    result,
+                    self.progress,
+                )?;
+                (asked, check) = (price.kept(&asked), price.kept(&check));
+                wider.clone_from(&asked);
+            }
+            let mut solution = Solution {
+                passes: self,
+                grid: &prepared.grid,
+                waters: &prepared.waters,
+                weights,
+                check: &check,
+                options,
+                asked: &asked,
+                problem: problem_of(&wider, sight, target.as_deref()),
+                ground: ground.clone(),
+                detail,
+                foreign,
+                result,
+                hidden: 0,
+            };
+            solution.fall_back(qp, prepared.limited.as_deref(), done)?;
+            let (solved, foreign) = (solution.result, solution.foreign);
+            let moved = done.fine.as_ref().map_or(&solved.u, |(_, u)| u);
+            if !price.as_mut().is_some_and(|price| price.is_exceeded(moved)) {
+                break (solved, foreign);
+            }
+            // What the fallbacks changed is taken back.
+            qp.set_heights(&ground)?;
+            qp.set_options(options);
+            detail.clone_from(detail_before.as_ref().unwrap_or(&None));
+            (done.fine, result) = (None, solved);
+            done.fallbacks.clear();
         };
-        solution.fall_back(qp, prepared.limited.as_deref(), done)?;
-        program.foreign = solution.foreign;
-        let result = solution.result;
+        program.foreign = foreign;
+        done.paid = price.map(Price::paid).unwrap_or_default();
         done.qp = Some(QpReport::of(&result, asked.len()));
         done.stopped = result.stopped || (fallback::stuck(&result) > 0 && self.progress.is_late());
         done.qp_unresolved = result.unresolved;
         done.rows = result.active;
         Ok(())
     }
+}
+
+fn problem_of<'p>(
+    candidates: &'p [Candidate],
+    sight: &'p dyn LinesOfSight,
+    target: Option<&'p [f64]>,
+) -> QpProblem<'p> {
+    QpProblem { candidates, sight, target, ceilings: None }
 }
 
 /// A solution of the quadratic program, which fallbacks replace.
@@ -289,7 +312,7 @@ struct Solution<'a> {
     waters: &'a Waters,
     weights: Weights,
     /// Points by which the result is judged.
-    check: Vec<Candidate>,
+    check: &'a [Candidate],
     options: QpOptions,
     /// Points in the picture.
     asked: &'a [Candidate],
@@ -391,7 +414,7 @@ impl Solution<'_> {
             grid,
             detail: self.detail.as_deref(),
             waters: self.waters,
-            check: &self.check,
+            check: self.check,
             options: self.options,
             progress: self.passes.progress,
         }

@@ -24,6 +24,8 @@ const GIVEN_UP: usize = 60;
 const TAKEN_BACK: usize = 8;
 /// Share of the stated move that the program aims at: agreement with the judge moves the ground a little more.
 const AIM: f64 = 0.97;
+/// Aims below this share are not tried.
+const LEAST_AIM: f64 = 0.3;
 
 /// A stretch of a line, a tile of an area, or a point feature: layer, feature, and number along the line or column and row.
 type Stretch = (usize, usize, i64, i64);
@@ -106,6 +108,8 @@ pub(super) struct Price<'a> {
     /// Share that must be shown at least, and largest displacement.
     show: f64,
     most_m: Option<f64>,
+    /// Share of the largest displacement that the program aims at.
+    aim: f64,
     division: Division,
     stretches: BTreeMap<Stretch, Amount>,
     all: [f64; KINDS],
@@ -144,7 +148,17 @@ impl<'a> Price<'a> {
             stretches.entry(division.of(&p)).or_insert(new).amount += p.amount;
         }
         let show = show.unwrap_or(0.0);
-        Some(Self { prepared, show, most_m, division, stretches, all, given_up: Vec::new(), curve: Vec::new() })
+        Some(Self {
+            prepared,
+            show,
+            most_m,
+            aim: AIM,
+            division,
+            stretches,
+            all,
+            given_up: Vec::new(),
+            curve: Vec::new(),
+        })
     }
 
     fn is_given_up(&self, stretch: &Stretch) -> bool {
@@ -170,7 +184,7 @@ impl<'a> Price<'a> {
 
     /// Solves until the ground moves no more than is allowed, or gives up as much as is allowed.
     ///
-    /// * `result`: the solution for all candidates.
+    /// * `result`: a solution for the candidates that are asked for.
     pub(super) fn settle(
         &mut self,
         qp: &mut QpSolver,
@@ -178,7 +192,9 @@ impl<'a> Price<'a> {
         mut result: QpResult,
         progress: &Progress,
     ) -> Result<QpResult, DisocclusionError> {
-        self.note(&result);
+        if self.curve.is_empty() {
+            self.note(&result);
+        }
         for _ in 0..GIVEN_UP {
             if self.is_cheap(&result) || progress.should_end() || !self.give_up(&result) {
                 break;
@@ -194,7 +210,14 @@ impl<'a> Price<'a> {
 
     /// Whether the ground moves no more than was stated; without such a limit as little as possible is wanted.
     fn is_cheap(&self, result: &QpResult) -> bool {
-        self.most_m.is_some_and(|most| largest(&result.u) <= AIM * most)
+        self.most_m.is_some_and(|most| largest(&result.u) <= self.aim * most)
+    }
+
+    /// Whether a displacement exceeds the stated one although the program met it; the program aims lower then.
+    pub(super) fn is_exceeded(&mut self, u: &[f64]) -> bool {
+        let Some(most) = self.most_m.filter(|most| largest(u) > *most) else { return false };
+        self.aim *= AIM * most / largest(u);
+        self.aim > LEAST_AIM
     }
 
     fn solved(

@@ -125,12 +125,16 @@ fn lakes_are_level_in_every_mode_and_plain_areas_are_not() {
 fn lakes_are_level_where_the_limits_fill_up_and_where_time_is_up() {
     let mut case = Case::new(1, AreaSurface::Water, true);
     // From low over the ground everything is hidden by much.
-    let from = case.view.pinhole();
-    let eye = from.eye - DVec3::Z * 235.0;
-    let pinhole = Pinhole::look_at(eye, eye + DVec3::Y, DVec3::Z, from.projection, [640, 360], 1.0, None).unwrap();
-    case.view = View::straight(pinhole);
-    let solved = solve(TerrainSettings::default(), &case);
-    assert!(solved.report.limited.is_some(), "limits held nothing");
+    let from = case.view.pinhole().clone();
+    let solved = (235..260).step_by(3).find_map(|lower| {
+        let eye = from.eye - DVec3::Z * f64::from(lower);
+        let pinhole = Pinhole::look_at(eye, eye + DVec3::Y, DVec3::Z, from.projection, [640, 360], 1.0, None).unwrap();
+        case.view = View::straight(pinhole);
+        let solver = TerrainSolver::new(TerrainSettings::default()).unwrap();
+        let solved = solver.solve(&case.scene, &case.view, &mut TerrainMemory::default(), &Progress::silent()).ok()?;
+        solved.report.limited.is_some().then_some(solved)
+    });
+    let solved = solved.expect("an eye from which the limits fill ground up");
     assert!(case.range(&solved).0 < LEVEL, "{:?}", solved.report.lakes);
     let solver = TerrainSolver::new(TerrainSettings::default()).unwrap();
     let soon = Progress::silent().limited(Duration::from_millis(40));

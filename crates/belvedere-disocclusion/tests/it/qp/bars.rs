@@ -99,7 +99,7 @@ impl Place {
 
 fn solver(place: &Place) -> (QpSolver, Hierarchy) {
     let settings = TerrainSettings::default();
-    let hierarchy = Hierarchy::new(place.field.cols(), place.field.rows(), settings.solver_nodes);
+    let hierarchy = Hierarchy::whole(place.field.cols(), place.field.rows(), settings.solver_nodes);
     let (cols, rows) = (hierarchy.cols(), hierarchy.rows());
     let stated_m = stated_spacing(place.field.cols(), place.field.rows(), place.field.spacing());
     let smoother =

@@ -43,7 +43,7 @@ fn points_are_seen_along_the_rays_of_a_spline() {
         solver.solve(&QpProblem { candidates: &candidates, sight: &sight, target: None, ceilings: None }).unwrap();
     assert!(got.unresolved.is_empty(), "{:?}", got.unresolved);
     assert!(got.active.iter().any(|r| r.candidate.is_some()), "nothing was hidden");
-    let delta = Grid::new(field.north_west(), field.spacing() * 4.0, 33, 33, got.u).unwrap();
+    let delta = Grid::new(field.north_west(), field.spacing() * 4.0, 33, 33, got.u).unwrap().on_facets(field.places());
     for c in &candidates {
         let xy = field.scene_from_grid(c.grid);
         let height = |xy: DVec2| Some(ground.surface_at(xy)? + delta.sample(xy)?);

@@ -2,7 +2,7 @@
 
 use belvedere_core::DVec2;
 
-/// Bilinear displacement on a small grid over small ground, both square.
+/// Displacement on a small grid over small ground, both square.
 pub(crate) struct Small {
     /// Nodes of the ground per side.
     pub(crate) n: usize,
@@ -33,10 +33,20 @@ impl Small {
         if a > b { (1.0 - a) * nw + (a - b) * ne + b * se } else { (1.0 - b) * nw + (b - a) * sw + a * se }
     }
 
-    /// Row of B.
-    pub(crate) fn bilinear(&self, g: DVec2) -> Vec<f64> {
+    /// Row of B: bilinear at the nodes of the ground.
+    fn bilinear(&self, g: DVec2) -> Vec<f64> {
         let hat = |v: f64, k: usize| (1.0 - (v / self.step - k as f64).abs()).max(0.0);
         (0..self.nodes * self.nodes).map(|j| hat(g.x, j % self.nodes) * hat(g.y, j / self.nodes)).collect()
+    }
+
+    /// Row of B, flat on the triangles of the ground.
+    fn displacement(&self, g: DVec2) -> Vec<f64> {
+        let corner = g.floor().min(DVec2::splat((self.n - 2) as f64));
+        let DVec2 { x: a, y: b } = g - corner;
+        let [nw, ne, sw, se] = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE].map(|step| self.bilinear(corner + step));
+        let weights = if a > b { [1.0 - a, a - b, 0.0, b] } else { [1.0 - b, 0.0, b - a, a] };
+        let value = |j: usize| [&nw, &ne, &sw, &se].iter().zip(weights).map(|(row, w)| w * row[j]).sum();
+        (0..self.nodes * self.nodes).map(value).collect()
     }
 
     /// `H = L^T L + weight I` by the stencil.
@@ -57,8 +67,7 @@ impl Small {
         (0..n * n).map(|i| (0..n * n).map(|j| product(i, j) + unit(i, j)).collect()).collect()
     }
 
-    /// Rows of every crossing of every line of sight with a line of the mesh or of the solver's grid, and of `parts - 1`
-    /// places between neighbours.
+    /// Rows of every crossing of every line of sight with a line of the mesh, and of `parts - 1` places between neighbours.
     pub(crate) fn sight_rows(
         &self,
         points: &[(DVec2, f64)],
@@ -71,15 +80,13 @@ impl Small {
         for &(p, lift) in points {
             let d = eye - p;
             let mut cuts = vec![0.0, 1.0];
-            let lines = |from: f64, to: f64, step: f64| {
-                let limit = (2.0 * self.n as f64 / step) as i64;
-                (-limit..=limit).map(move |k| (k as f64 * step - from) / (to - from)).filter(|t| *t > 0.0 && *t < 1.0)
+            let lines = |from: f64, to: f64| {
+                let limit = 2 * self.n as i64;
+                (-limit..=limit).map(move |k| (k as f64 - from) / (to - from)).filter(|t| *t > 0.0 && *t < 1.0)
             };
-            for step in [1.0, self.step] {
-                cuts.extend(lines(p.x, eye.x, step));
-                cuts.extend(lines(p.y, eye.y, step));
-            }
-            cuts.extend(lines(p.x - p.y, eye.x - eye.y, 1.0));
+            cuts.extend(lines(p.x, eye.x));
+            cuts.extend(lines(p.y, eye.y));
+            cuts.extend(lines(p.x - p.y, eye.x - eye.y));
             cuts.push(guard / d.length());
             cuts.sort_by(f64::total_cmp);
             for pair in cuts.windows(2) {
@@ -90,7 +97,7 @@ impl Small {
                     if x.min_element() < 0.0 || x.max_element() > last || (x - p).length() < guard - 1e-9 {
                         continue;
                     }
-                    let (here, there) = (self.bilinear(x), self.bilinear(p));
+                    let (here, there) = (self.displacement(x), self.displacement(p));
                     let row = here.iter().zip(&there).map(|(a, b)| a - (1.0 - tau) * b).collect();
                     let line = (1.0 - tau) * (self.height(p) + lift) + tau * z;
                     out.push(DenseRow { row, bound: line - self.height(x) - margin * (5.0 * tau).min(1.0) });
