@@ -197,8 +197,14 @@ class DisoccludeOptions(TypedDict, total=False):
     #: Lower the ground with the distance, as on a sphere, with refraction
     curved_earth: bool
 
+    #: Most the ground may move, metres: the dearest stretches of the features are given up until it moves no more
+    move_at_most: float | None
+
     #: Property that holds the names of features, instead of the one that looks most like a name
     name_field: str | None
+
+    #: Share of the features in view to show, such as 0.95 or 95%: the dearest stretches beyond it are given up, and less ground moves
+    show: float | None
 
     #: Unit of the terrain's heights, instead of the stated one
     vertical_unit: Literal["m", "ft", "us-ft"] | None
