@@ -245,7 +245,7 @@ impl Passes<'_> {
         let options = memory::options(self.settings, false);
         qp.set_options(options);
         let mut result = qp.solve_with(&problem_of(&wider, sight, target.as_deref()), self.progress)?;
-        let mut price = Price::new(self.settings, prepared, &check).filter(|_| self.frame.is_none());
+        let mut price = Price::new(self.settings, prepared, [&asked, &check]).filter(|_| self.frame.is_none());
         let detail_before = price.is_some().then(|| detail.clone());
         let (result, foreign) = loop {
             if let Some(price) = &mut price {

@@ -19,6 +19,8 @@ const PARTS: f64 = 40.0;
 const SHORTEST: f64 = 2.0;
 /// Stretches are given up together until they hold this share of the energy.
 const AT_ONCE: f64 = 0.08;
+/// Share of the features that a stretch counts for at least, so that those without length or area come first.
+const LEAST_PART: f64 = 1e-9;
 /// Most solutions in which stretches are given up, and in which they are taken back.
 const GIVEN_UP: usize = 60;
 const TAKEN_BACK: usize = 8;
@@ -129,13 +131,19 @@ struct Amount {
 impl<'a> Price<'a> {
     /// `None` where no price is stated.
     ///
-    /// * `in_view`: points that stand for equal parts of the features in view.
-    pub(super) fn new(settings: &TerrainSettings, prepared: &'a Prepared, in_view: &[Candidate]) -> Option<Self> {
+    /// * `asked`: the candidates; `in_view`: points that stand for equal parts of the features in view.
+    pub(super) fn new(
+        settings: &TerrainSettings,
+        prepared: &'a Prepared,
+        [asked, in_view]: [&[Candidate]; 2],
+    ) -> Option<Self> {
         let (show, most_m) = (settings.show, settings.move_at_most_m);
         if show.is_none() && most_m.is_none() {
             return None;
         }
-        let points: Vec<ReferencePoint> = in_view.iter().filter_map(|c| prepared.candidate(c.id)).copied().collect();
+        let [asked, points] = [asked, in_view].map(|candidates| -> Vec<ReferencePoint> {
+            candidates.iter().filter_map(|c| prepared.candidate(c.id)).copied().collect()
+        });
         let mut all = [0.0; KINDS];
         points.iter().for_each(|p| all[p.kind.of_feature()] += p.amount);
         let spacing = prepared.level.spacing();
@@ -143,9 +151,10 @@ impl<'a> Price<'a> {
         let (length, side) = ((all[0] / PARTS).max(shortest), (all[1] / PARTS).sqrt().max(shortest));
         let division = Division { length, side, spacing };
         let mut stretches = BTreeMap::new();
-        for p in points {
+        // A candidate may lie on a tile that has no part of the area.
+        for (p, amount) in points.into_iter().map(|p| (p, p.amount)).chain(asked.into_iter().map(|p| (p, 0.0))) {
             let new = Amount { kind: p.kind.of_feature(), amount: 0.0, first: p };
-            stretches.entry(division.of(&p)).or_insert(new).amount += p.amount;
+            stretches.entry(division.of(&p)).or_insert(new).amount += amount;
         }
         let show = show.unwrap_or(0.0);
         Some(Self {
@@ -246,8 +255,12 @@ impl<'a> Price<'a> {
             *energy.entry(self.division.of(point)).or_default() += row.multiplier * (-row.bound).max(0.0);
         }
         let all: f64 = energy.values().sum();
-        let part = |stretch: &Stretch| self.stretches.get(stretch).map_or(0.0, |of| of.amount / self.all[of.kind]);
-        let mut dearest: Vec<(Stretch, f64)> = energy.into_iter().filter(|(s, e)| *e > 0.0 && part(s) > 0.0).collect();
+        let part = |stretch: &Stretch| {
+            let of = self.stretches.get(stretch).filter(|of| self.all[of.kind] > 0.0);
+            of.map_or(0.0, |of| of.amount / self.all[of.kind]).max(LEAST_PART)
+        };
+        let known = |(stretch, energy): &(Stretch, f64)| *energy > 0.0 && self.stretches.contains_key(stretch);
+        let mut dearest: Vec<(Stretch, f64)> = energy.into_iter().filter(known).collect();
         dearest.sort_by(|a, b| (b.1 / part(&b.0)).total_cmp(&(a.1 / part(&a.0))));
         let mut gone = 0.0;
         for (stretch, energy) in dearest {

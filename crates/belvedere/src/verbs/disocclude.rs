@@ -36,6 +36,8 @@ use std::path::PathBuf;
 const IMAGE: [u32; 2] = [1280, 720];
 /// Share from which on a guarantee counts as kept on resampled heights.
 const KEPT_SHARE: f64 = 0.9999;
+/// Share of what is in view whose loss is worth a word.
+const LOST_ELSEWHERE: f64 = 0.005;
 /// Share of the remaining time for adjusting the eye.
 const ADJUSTING: f64 = 0.4;
 /// Time for judging and writing the ground, as a multiple of the time for reading it.
@@ -161,6 +163,9 @@ struct Record {
     /// Visible share of the features in view on the written heights, if they are resampled.
     #[serde(skip_serializing_if = "Option::is_none")]
     visible_written: Option<f64>,
+    /// Visible share of the features in view on the written heights where a program cuts cells from north-east to south-west instead of
+    /// from north-west to south-east, 0..=1; a bilinear surface lies between the two.
+    visible_other_diagonal: f64,
     /// Reports of rivers on the written heights, if they are resampled.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     rivers_written: Vec<RiverReport>,
@@ -245,12 +250,14 @@ fn disoccluded(request: &Disocclude, options: &OpenOptions) -> Result<Disocclude
         }
     };
     let seen_by = (&*data.scene, &view);
-    let [straight, written] = written_on.judged(&solver, seen_by, &rasters, &solved.report, &options.progress)?;
-    let visible_written = (!written_on.solved_on).then_some(written.visible_dense);
-    written.put(&straight, written_on.solved_on, &mut solved.report);
+    let judged = written_on.judged(&solver, seen_by, &rasters, &solved.report, &options.progress)?;
+    let visible_written = (!written_on.solved_on).then_some(judged.after.visible_dense);
+    let visible_other_diagonal = judged.other_diagonal.visible_dense;
+    judged.after.put(&judged.before, written_on.solved_on, &mut solved.report);
     drop(written_on);
     data.warnings.extend(intent::remarks(&solved, &data.scene));
     data.warnings.extend(visible_written.and_then(|share| resampled_away(share, &solved)));
+    data.warnings.extend(cut_otherwise(judged.after.visible_dense, visible_other_diagonal));
     let ground = data.scene.terrain().and_then(|t| t.surface_at(camera.target));
     let look_at = camera.target.extend(ground.unwrap_or(camera.eye.z));
     let view = camera.view(look_at, Some(Stage::TerrainDisocclusion(solved.stage.clone())))?;
@@ -275,6 +282,7 @@ fn disoccluded(request: &Disocclude, options: &OpenOptions) -> Result<Disocclude
         earth: if request.curved_earth { "curved" } else { "flat" },
         grid,
         visible_written,
+        visible_other_diagonal,
         rivers_written,
         layers: session.scene().layers.iter().map(|l| l.id.clone()).collect(),
         inputs: names.inputs(&record::inputs(&session.inputs())?),
@@ -295,6 +303,19 @@ fn resampled_away(share: f64, solved: &Solved) -> Option<Warning> {
         );
         let warning = Warning::new(WarningKind::Hidden, text).about("terrain_disocclusion");
         warning.with("visible_share", share).with("lost_share", lost).settled_by("grid")
+    })
+}
+
+/// Warning that programs that cut cells by the other diagonal hide features that the written heights show.
+fn cut_otherwise(share: f64, other: f64) -> Option<Warning> {
+    (share - other > LOST_ELSEWHERE).then(|| {
+        let text = format!(
+            "a program that cuts the cells of the written heights from north-east to south-west, as some do, shows {:.2} % of what is in \
+             view, {:.2} % less; a larger margin_m shows more there",
+            100.0 * other,
+            100.0 * (share - other)
+        );
+        Warning::new(WarningKind::Hidden, text).about("terrain_disocclusion").with("visible_other_diagonal", other)
     })
 }
 

@@ -21,6 +21,15 @@ pub(super) struct FileGrid<'a> {
     pub(super) solved_on: bool,
 }
 
+/// What written heights show.
+pub(super) struct JudgedFile {
+    /// Before the move, and after it.
+    pub(super) before: WrittenShares,
+    pub(super) after: WrittenShares,
+    /// After it, where a program cuts cells from north-east to south-west. A bilinear surface lies between the two.
+    pub(super) other_diagonal: WrittenShares,
+}
+
 impl<'a> FileGrid<'a> {
     /// The grid that was solved on.
     pub(super) fn of_terrain(terrain: &'a Heightfield) -> Self {
@@ -45,7 +54,7 @@ impl<'a> FileGrid<'a> {
         Ok(Self { index_from_scene: Box::new(to), scene_from_index: Box::new(from), solved_on })
     }
 
-    /// Judges the heights before and after the move.
+    /// Judges the heights before and after the move, and after it with the other diagonals.
     ///
     /// * `rasters`: heights, and the displacement contained in them.
     ///
@@ -58,7 +67,7 @@ impl<'a> FileGrid<'a> {
         [heights, displacement]: &[Raster; 2],
         report: &TerrainReport,
         progress: &Progress,
-    ) -> Result<[WrittenShares; 2], BelvedereError> {
+    ) -> Result<JudgedFile, BelvedereError> {
         let nodes = [heights.info.width, heights.info.height];
         let samples = nodes[0] as u64 * nodes[1] as u64;
         belvedere_io::budget::ask("judging the written heights", samples * SAMPLE_BYTES)
@@ -66,18 +75,24 @@ impl<'a> FileGrid<'a> {
         let value = |raster: &Raster, i: usize| raster.sample_f64(0, i % nodes[0], i / nodes[0]);
         let after = |i: usize| value(heights, i);
         let before = |i: usize| Some(after(i)? - value(displacement, i)?);
-        let judged = |height: &(dyn Fn(usize) -> Option<f64> + Sync)| {
-            let ground = WrittenGround {
-                nodes,
-                spacing: self.spacing(nodes),
-                height,
-                index_from_scene: &self.index_from_scene,
-                scene_from_index: &self.scene_from_index,
-                solved_on: self.solved_on,
-            };
+        let judged = |height: &(dyn Fn(usize) -> Option<f64> + Sync),
+                      [index_from_scene, scene_from_index]: [&Map<'_>; 2]| {
+            let (spacing, solved_on) = (self.spacing(nodes), self.solved_on);
+            let ground = WrittenGround { nodes, spacing, height, index_from_scene, scene_from_index, solved_on };
             solver.judge_written(scene, view, &ground, report, progress)
         };
-        Ok([judged(&before)?, judged(&after)?])
+        let maps = [&self.index_from_scene, &self.scene_from_index];
+        // From east to west the same cells have the other diagonal.
+        let last = (nodes[0] - 1) as f64;
+        let turned = |index: DVec2| DVec2::new(last - index.x, index.y);
+        let to: Map<'_> = Box::new(|p| (self.index_from_scene)(p).map(turned));
+        let from: Map<'_> = Box::new(|index| (self.scene_from_index)(turned(index)));
+        let mirrored = |i: usize| after(i / nodes[0] * nodes[0] + nodes[0] - 1 - i % nodes[0]);
+        Ok(JudgedFile {
+            before: judged(&before, maps)?,
+            after: judged(&after, maps)?,
+            other_diagonal: judged(&mirrored, [&to, &from])?,
+        })
     }
 
     /// Distance between columns and between rows in the middle of the grid, scene units.

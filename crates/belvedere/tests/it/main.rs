@@ -17,6 +17,7 @@ mod memory;
 mod moving_pictures;
 mod names;
 mod options;
+mod other_diagonal;
 mod over_ground;
 mod own_layers;
 mod parts;
