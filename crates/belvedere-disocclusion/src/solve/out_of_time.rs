@@ -81,8 +81,9 @@ impl Passes<'_> {
         }
         if best.0 < ENOUGH
             && self.frame.is_none()
-            && let Some(u) = self.single_pass(prepared, in_view)?
+            && let Some(mut u) = self.single_pass(prepared, in_view)?
         {
+            self.hold(&mut u);
             let mut ground = Ground::plain(Taken::SinglePass, u);
             let share = self.share_limited(prepared, in_view, &points, &mut ground)?;
             if share > best.0 + WORTH {

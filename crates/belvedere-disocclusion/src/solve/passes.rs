@@ -63,6 +63,11 @@ impl Passes<'_> {
                 samples.extend(self.samples_of(prepared, in_view, detail.as_deref())?);
             }
         }
+        if done.stopped {
+            self.hold(&mut done.coarse);
+            done.fine.iter_mut().for_each(|(_, u)| self.hold(u));
+            samples.iter_mut().for_each(|ground| self.hold(&mut ground.coarse));
+        }
         if detail.is_some() || !prepared.waters.is_empty() {
             let (grid, u) = done.fine.as_ref().map_or((&prepared.grid, &done.coarse), |(grid, u)| (grid, u));
             done.full = Some(prepared.waters.whole(grid, u, detail.as_deref()));
@@ -73,6 +78,12 @@ impl Passes<'_> {
             self.take_best(prepared, in_view, &mut done, samples)?;
         }
         Ok(done)
+    }
+
+    /// Keeps unfinished ground from rising by more than it may: its ceilings are not all met yet.
+    pub(super) fn hold(&self, u: &mut [f64]) {
+        let QpOptions { ceiling, ceiling_tolerance, .. } = QpOptions::of(self.settings);
+        u.iter_mut().for_each(|u| *u = u.min(ceiling + ceiling_tolerance));
     }
 
     /// See [`Self::samples`]; empty in films, in modes other than qp, and where detail of the ground changed, which samples ignore.

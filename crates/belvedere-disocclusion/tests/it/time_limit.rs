@@ -45,6 +45,7 @@ fn what_is_taken_shows_no_less_than_the_ground_before_and_keeps_the_limits() {
             assert_eq!(report.taken.is_some(), report.out_of_time, "{about}");
             assert!(!(report.out_of_time && report.guaranteed), "{about}");
             let [low, high] = place.0.terrain().unwrap().z_range();
+            assert!(report.metrics.raised_max_m <= 0.5, "{about}: {}", report.metrics.raised_max_m);
             assert!(report.metrics.sunk_below_m <= 0.2 * (high - low) + 1e-3, "{about}");
             if milliseconds == 0 {
                 assert!(report.out_of_time, "{about}");
