@@ -26,8 +26,10 @@ const GIVEN_UP: usize = 60;
 const TAKEN_BACK: usize = 8;
 /// Share of the stated move that the program aims at: agreement with the judge moves the ground a little more.
 const AIM: f64 = 0.97;
-/// Aims below this share are not tried.
-const LEAST_AIM: f64 = 0.3;
+/// Least share by which the aim is lowered at a time, least aim, and how often the judge may make the ground move more than is allowed.
+const LOWER: f64 = 0.8;
+const LEAST_AIM: f64 = 0.4;
+const ROUNDS: usize = 6;
 
 /// A stretch of a line, a tile of an area, or a point feature: layer, feature, and number along the line or column and row.
 type Stretch = (usize, usize, i64, i64);
@@ -112,6 +114,8 @@ pub(super) struct Price<'a> {
     most_m: Option<f64>,
     /// Share of the largest displacement that the program aims at.
     aim: f64,
+    /// Times that the judge made the ground move more than is allowed.
+    exceeded: usize,
     division: Division,
     stretches: BTreeMap<Stretch, Amount>,
     all: [f64; KINDS],
@@ -211,7 +215,8 @@ impl<'a> Price<'a> {
             progress.tick("the price of the displacement", 0.7)?;
             result = self.solved(qp, problem, progress)?;
         }
-        if self.most_m.is_some() && self.is_cheap(&result) {
+        // Stretches that were given up for the judge would make it ask for more again.
+        if self.exceeded == 0 && self.is_cheap(&result) {
             result = self.take_back(qp, problem, result, progress)?;
         }
         Ok(result)
@@ -222,11 +227,17 @@ impl<'a> Price<'a> {
         self.most_m.is_some_and(|most| largest(&result.u) <= self.aim * most)
     }
 
-    /// Whether a displacement exceeds the stated one although the program met it; the program aims lower then.
+    /// Whether a displacement exceeds the stated one although the program met it, and more can be given up. The judge asks for more than
+    /// the program did, so the program aims lower then, and at last gives up what is left.
     pub(super) fn is_exceeded(&mut self, u: &[f64]) -> bool {
         let Some(most) = self.most_m.filter(|most| largest(u) > *most) else { return false };
-        self.aim *= AIM * most / largest(u);
-        self.aim > LEAST_AIM
+        self.aim = (self.aim * (AIM * most / largest(u)).max(LOWER)).max(LEAST_AIM);
+        self.exceeded += 1;
+        if self.exceeded >= ROUNDS && self.show == 0.0 {
+            let left: Vec<Stretch> = self.stretches.keys().filter(|s| !self.is_given_up(s)).copied().collect();
+            left.into_iter().for_each(|stretch| self.given_up.push((stretch, self.given(stretch, 0.0))));
+        }
+        self.exceeded <= ROUNDS
     }
 
     fn solved(
