@@ -166,6 +166,7 @@ impl<'a> Price<'a> {
             show,
             most_m,
             aim: AIM,
+            exceeded: 0,
             division,
             stretches,
             all,
