@@ -189,6 +189,9 @@ impl<'a> Price<'a> {
 
     /// Share of the features that is still asked for: the least of lines, areas and points.
     fn asked(&self) -> f64 {
+        if self.given_up.is_empty() {
+            return 1.0;
+        }
         let mut kept = [0.0; KINDS];
         let stretches = self.stretches.iter().filter(|(stretch, _)| !self.is_given_up(stretch));
         stretches.for_each(|(_, of)| kept[of.kind] += of.amount);

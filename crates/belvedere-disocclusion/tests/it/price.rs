@@ -75,7 +75,7 @@ fn the_dearest_stretches_take_more_of_the_displacement_than_of_the_trail() {
 fn a_price_that_is_not_reached_changes_nothing() {
     let (seed, all) = &SEEDS[0];
     for settings in [priced(None, Some(2.0 * all.metrics.max_m)), priced(Some(1.0), None)] {
-        let found = solved(seed, settings);
+        let found = solved(*seed, settings);
         assert_eq!((found.metrics, found.guaranteed), (all.metrics, all.guaranteed));
         assert!(found.price.is_some_and(|price| price.given_up.is_empty()));
     }
