@@ -262,7 +262,7 @@ pub fn remarks(solved: &Solved, scene: &Scene) -> Vec<Warning> {
 
 /// Warning that stretches were given up at the stated price, or that the price is higher all the same.
 fn given_up(price: &PriceReport, settings: &TerrainSettings) -> Option<Warning> {
-    let (all, paid) = (price.curve.first()?, price.curve.iter().rev().find(|at| at.asked < 1.0)?);
+    let (all, paid) = (price.curve.first()?, Some(&price.taken).filter(|taken| taken.asked < 1.0)?);
     let more = settings.move_at_most_m.is_some_and(|most| paid.max_m > most);
     let text = format!(
         "terrain_disocclusion: {:.1} % of the features in view were given up, so that the ground moves by {:.0} m at most instead of {:.0} m \

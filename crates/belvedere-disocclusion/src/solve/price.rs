@@ -59,9 +59,11 @@ impl Division {
 }
 
 /// What is shown for how much displacement, and what was given up.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PriceReport {
+    /// The solution that was taken, before the judge asked for more.
+    pub taken: PricePoint,
     /// Solutions, the first of which shows all: one for each time that stretches were given up or taken back.
     pub curve: Vec<PricePoint>,
     /// Stretches given up, the dearest first.
@@ -122,6 +124,7 @@ pub(super) struct Price<'a> {
     /// In the order in which they were given up.
     given_up: Vec<(Stretch, GivenUp)>,
     curve: Vec<PricePoint>,
+    taken: Option<PricePoint>,
 }
 
 /// What a stretch stands for.
@@ -172,6 +175,7 @@ impl<'a> Price<'a> {
             all,
             given_up: Vec::new(),
             curve: Vec::new(),
+            taken: None,
         })
     }
 
@@ -223,6 +227,7 @@ impl<'a> Price<'a> {
         if self.exceeded == 0 && self.is_cheap(&result) {
             result = self.take_back(qp, problem, result, progress)?;
         }
+        self.taken = Some(self.point(&result));
         Ok(result)
     }
 
@@ -257,9 +262,14 @@ impl<'a> Price<'a> {
     }
 
     fn note(&mut self, result: &QpResult) {
+        let point = self.point(result);
+        self.curve.push(point);
+    }
+
+    fn point(&self, result: &QpResult) -> PricePoint {
         let squares: f64 = result.u.iter().map(|u| u * u).sum();
         let rms_m = (squares / result.u.len().max(1) as f64).sqrt();
-        self.curve.push(PricePoint { asked: self.asked(), rms_m, max_m: largest(&result.u) });
+        PricePoint { asked: self.asked(), rms_m, max_m: largest(&result.u) }
     }
 
     /// Gives up the dearest stretches per share of the features, at least one; `false` if none may be.
@@ -332,7 +342,8 @@ impl<'a> Price<'a> {
     pub(super) fn paid(self) -> Paid {
         let gone = self.given_up.iter().map(|(stretch, _)| *stretch).collect();
         let given_up = self.given_up.into_iter().map(|(_, given)| given).collect();
-        Paid { division: self.division, gone, report: PriceReport { curve: self.curve, given_up } }
+        let report = self.taken.map(|taken| PriceReport { taken, curve: self.curve, given_up });
+        Paid { division: self.division, gone, report }
     }
 }
 
@@ -341,7 +352,7 @@ impl<'a> Price<'a> {
 pub(super) struct Paid {
     division: Division,
     gone: BTreeSet<Stretch>,
-    pub(super) report: PriceReport,
+    pub(super) report: Option<PriceReport>,
 }
 
 impl Paid {

@@ -167,7 +167,7 @@ pub(super) fn report(
         fallbacks: done.fallbacks.clone(),
         limited: done.limited,
         spikes: prepared.spikes.clone(),
-        price: (!done.paid.report.curve.is_empty()).then(|| done.paid.report.clone()),
+        price: done.paid.report.clone(),
         lakes: waters.lakes.report(moved),
         rivers,
         guaranteed: promised && verdicts.agree() && (done.limited.is_none() || hidden.is_empty()),
