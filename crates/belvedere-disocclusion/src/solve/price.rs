@@ -120,9 +120,12 @@ pub(super) struct Price<'a> {
     exceeded: usize,
     division: Division,
     stretches: BTreeMap<Stretch, Amount>,
+    /// Amounts of all stretches, and of those that are still asked for.
     all: [f64; KINDS],
-    /// In the order in which they were given up.
+    kept: [f64; KINDS],
+    /// In the order in which they were given up, and as a set.
     given_up: Vec<(Stretch, GivenUp)>,
+    gone: BTreeSet<Stretch>,
     curve: Vec<PricePoint>,
     taken: Option<PricePoint>,
 }
@@ -173,34 +176,45 @@ impl<'a> Price<'a> {
             division,
             stretches,
             all,
+            kept: all,
             given_up: Vec::new(),
+            gone: BTreeSet::new(),
             curve: Vec::new(),
             taken: None,
         })
     }
 
-    fn is_given_up(&self, stretch: &Stretch) -> bool {
-        self.given_up.iter().any(|(given, _)| given == stretch)
+    /// Gives up a stretch, as the `k`-th.
+    fn give(&mut self, k: usize, (stretch, given): (Stretch, GivenUp)) {
+        let Amount { kind, amount, .. } = self.stretches[&stretch];
+        self.kept[kind] -= amount;
+        self.gone.insert(stretch);
+        self.given_up.insert(k, (stretch, given));
+    }
+
+    /// Asks for the `k`-th stretch that was given up again.
+    fn ask(&mut self, k: usize) -> (Stretch, GivenUp) {
+        let (stretch, given) = self.given_up.remove(k);
+        let Amount { kind, amount, .. } = self.stretches[&stretch];
+        self.kept[kind] += amount;
+        self.gone.remove(&stretch);
+        (stretch, given)
     }
 
     /// The candidates that are still asked for.
     pub(super) fn kept(&self, candidates: &[Candidate]) -> Vec<Candidate> {
-        let gone: BTreeSet<Stretch> = self.given_up.iter().map(|(stretch, _)| *stretch).collect();
-        let is_kept =
-            |c: &&Candidate| self.prepared.candidate(c.id).is_none_or(|p| !gone.contains(&self.division.of(p)));
-        candidates.iter().filter(is_kept).copied().collect()
+        let is_gone =
+            |c: &Candidate| self.prepared.candidate(c.id).is_some_and(|p| self.gone.contains(&self.division.of(p)));
+        candidates.iter().filter(|c| !is_gone(c)).copied().collect()
     }
 
     /// Share of the features that is still asked for: the least of lines, areas and points.
     fn asked(&self) -> f64 {
-        if self.given_up.is_empty() {
+        if self.gone.is_empty() {
             return 1.0;
         }
-        let mut kept = [0.0; KINDS];
-        let stretches = self.stretches.iter().filter(|(stretch, _)| !self.is_given_up(stretch));
-        stretches.for_each(|(_, of)| kept[of.kind] += of.amount);
         let kinds = (0..KINDS).filter(|k| self.all[*k] > 0.0);
-        kinds.map(|k| kept[k] / self.all[k]).fold(1.0, f64::min)
+        kinds.map(|k| (self.kept[k] / self.all[k]).max(0.0)).fold(1.0, f64::min)
     }
 
     /// Solves until the ground moves no more than is allowed, or gives up as much as is allowed.
@@ -243,8 +257,8 @@ impl<'a> Price<'a> {
         self.aim = (self.aim * (AIM * most / largest(u)).max(LOWER)).max(LEAST_AIM);
         self.exceeded += 1;
         if self.exceeded >= ROUNDS && self.show == 0.0 {
-            let left: Vec<Stretch> = self.stretches.keys().filter(|s| !self.is_given_up(s)).copied().collect();
-            left.into_iter().for_each(|stretch| self.given_up.push((stretch, self.given(stretch, 0.0))));
+            let left: Vec<Stretch> = self.stretches.keys().filter(|s| !self.gone.contains(s)).copied().collect();
+            left.into_iter().for_each(|stretch| self.give(self.given_up.len(), (stretch, self.given(stretch, 0.0))));
         }
         self.exceeded <= ROUNDS
     }
@@ -284,14 +298,17 @@ impl<'a> Price<'a> {
             let of = self.stretches.get(stretch).filter(|of| self.all[of.kind] > 0.0);
             of.map_or(0.0, |of| of.amount / self.all[of.kind]).max(LEAST_PART)
         };
-        let known = |(stretch, energy): &(Stretch, f64)| *energy > 0.0 && self.stretches.contains_key(stretch);
+        let known = |(stretch, energy): &(Stretch, f64)| {
+            *energy > 0.0 && self.stretches.contains_key(stretch) && !self.gone.contains(stretch)
+        };
         let mut dearest: Vec<(Stretch, f64)> = energy.into_iter().filter(known).collect();
         dearest.sort_by(|a, b| (b.1 / part(&b.0)).total_cmp(&(a.1 / part(&a.0))));
         let mut gone = 0.0;
         for (stretch, energy) in dearest {
-            self.given_up.push((stretch, self.given(stretch, energy / all)));
+            let last = self.given_up.len();
+            self.give(last, (stretch, self.given(stretch, energy / all)));
             if self.asked() < self.show {
-                self.given_up.pop();
+                self.ask(last);
                 continue;
             }
             gone += energy;
@@ -314,12 +331,12 @@ impl<'a> Price<'a> {
             if progress.should_end() {
                 break;
             }
-            let given = self.given_up.remove(k);
+            let given = self.ask(k);
             let result = self.solved(qp, problem, progress)?;
-            if self.is_cheap(&result) {
+            if self.is_cheap(&result) && !result.stopped {
                 best = result;
             } else {
-                self.given_up.insert(k, given);
+                self.give(k, given);
             }
         }
         Ok(best)
@@ -340,10 +357,9 @@ impl<'a> Price<'a> {
 
     /// What was paid in the end.
     pub(super) fn paid(self) -> Paid {
-        let gone = self.given_up.iter().map(|(stretch, _)| *stretch).collect();
         let given_up = self.given_up.into_iter().map(|(_, given)| given).collect();
         let report = self.taken.map(|taken| PriceReport { taken, curve: self.curve, given_up });
-        Paid { division: self.division, gone, report }
+        Paid { division: self.division, gone: self.gone, report }
     }
 }
 
