@@ -25,7 +25,7 @@ mod visibility_qp;
 pub use error::DisocclusionError;
 pub use settings::{Detail, SolverMode, TerrainSettings};
 pub use solve::{
-    LiveFrame, LiveTerrain, Solved, TerrainMemory, TerrainReport, TerrainSolver, WrittenGround, WrittenShares,
+    LiveFrame, LiveTerrain, Solved, TerrainMemory, TerrainReport, TerrainSolver, FileToWrite, PlanMap, WrittenGround, WrittenShares,
 };
 pub use viewpoint::{AdjustedViewpoint, ViewpointOptions};
 

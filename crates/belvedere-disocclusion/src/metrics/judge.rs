@@ -146,10 +146,12 @@ impl<'a> Judge<'a> {
 
     /// For each point the position at which the ground hides it most, and its rise over the line; `None` where the point is seen, has
     /// no line, or lies on no ground.
-    pub(crate) fn hiding(self, points: &[(DVec2, f64)]) -> Vec<Option<(DVec2, f64)>> {
+    ///
+    /// * `guard`: ground nearer than this does not count, grid cells.
+    pub(crate) fn hiding(self, points: &[(DVec2, f64)], guard: f64) -> Vec<Option<(DVec2, f64)>> {
         let judge = self.prepared(points.len());
         let of = |&(g, lift): &(DVec2, f64)| {
-            let worst = judge.ground.excess(&judge.line(g, lift)?, 0.0);
+            let worst = judge.ground.excess(&judge.line(g, lift)?, guard);
             (worst.over > TOUCH && worst.over.is_finite()).then_some((worst.at, worst.over))
         };
         points.par_iter().map(of).collect()

@@ -4,7 +4,7 @@ use super::super::visibility_qp::Candidate;
 use super::super::{
     AdjustedViewpoint, SolverMode, TerrainSettings, ViewpointEnergy, ViewpointOptions, adjust_viewpoint, height_slope,
 };
-use super::{PointsInView, TerrainMemory, TerrainSolver};
+use super::{Demand, PointsInView, TerrainMemory, TerrainSolver};
 use crate::DisocclusionError;
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Stage, View};
 use belvedere_scene::{Progress, Scene};
@@ -73,7 +73,7 @@ impl Level {
     ) -> Result<Self, DisocclusionError> {
         let solver = TerrainSolver::new(settings)?;
         let straight = straight(base, base.pinhole().clone())?;
-        let frame_result = solver.run(scene, &straight, &mut TerrainMemory::default(), None, progress)?;
+        let frame_result = solver.run(scene, &straight, &mut TerrainMemory::default(), Demand::default(), progress)?;
         let in_view =
             PointsInView::new(&frame_result.field, &frame_result.prepared, &straight, &solver.settings, false);
         let asked = RequiredPoints { points: in_view.points.clone(), candidates: in_view.candidates.clone() };
@@ -83,7 +83,8 @@ impl Level {
 
     /// Energy and its slope along the height.
     fn energy(&mut self, scene: &Scene, view: &View, progress: &Progress) -> Result<(f64, f64), DisocclusionError> {
-        let frame_result = self.solver.run(scene, view, &mut self.memory, Some(&self.asked), progress)?;
+        let demand = Demand { points: Some(&self.asked), files: &[] };
+        let frame_result = self.solver.run(scene, view, &mut self.memory, demand, progress)?;
         let rows = frame_result.done.rows.iter().filter(|r| r.candidate.is_some());
         let slope = height_slope(rows.map(|r| (r.multiplier, r.tau)));
         let energy = frame_result.done.qp.map_or(0.0, |qp| qp.energy);

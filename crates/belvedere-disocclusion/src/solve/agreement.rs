@@ -1,29 +1,30 @@
-//! Agreement of the quadratic program with the judge: hidden points become candidates, and the program is solved again.
+//! Agreement of the quadratic program with the judge: hidden points bring rows, and the program is solved again.
 //!
-//! A point that the program leaves hidden lies between two candidates: it becomes a candidate. Where detail moves too, the displacement
-//! of the nodes differs from the program's, on grid cells of hundreds of metres by many metres. Where such ground rises
-//! over the line of sight of a known candidate, the program's heights are raised by that much; likewise at a small lake, which is
-//! level on the ground but not on the program's grid.
+//! A point that the program leaves hidden mostly lies between two candidates: it becomes a candidate. Where the ground moves otherwise
+//! than the program's grid, at lakes, where detail moves, and at the samples of a file to be written, the ground that hides a point
+//! brings a row by itself: there it must sink against the line of sight by as much as it rises over it. That is linear but for which
+//! node of a bank moves with its lake, so that a few rounds meet it.
 
 use super::super::metrics::Judge;
-use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult, QpSolver};
-use super::super::{Field, Hierarchy};
+use super::super::visibility_qp::{Candidate, GivenRow, QpOptions, QpProblem, QpResult, QpSolver};
+use super::super::{Field, Hierarchy, ReferencePoint};
+use super::file_to_write::{FileJudge, HiddenInFile};
 use super::waters::Waters;
 use super::{at_every_node, fallback, on_grid};
 use crate::DisocclusionError;
-use belvedere_core::DVec2;
+use belvedere_core::grid::Grid;
+use belvedere_core::{DVec2, TerrainDisocclusion};
 use belvedere_scene::Progress;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Judgements at most, without lakes.
+/// Judgements at most.
 const ROUNDS: usize = 8;
-/// Judgements at most, on ground with lakes.
-const ROUNDS_WITH_LAKES: usize = 2;
-/// Height added to a raise, metres, so that neighbouring positions do not rise over the line in the next round.
+/// Judgements at most where rows of the judge itself are needed.
+const ROUNDS_WITH_ROWS: usize = 24;
+/// Judgements in succession that find no fewer hidden points, at most.
+const IN_VAIN: usize = 4;
+/// Height added to a rise, metres, so that neighbouring positions do not rise over the line in the next round.
 const ROOM_M: f64 = 0.25;
-
-/// Ground nearer than this to a point is not raised, grid cells: the point would rise with it.
-const NEAR: f64 = 1.5;
 
 /// Arguments of the agreement between the program and the judge.
 pub(super) struct Agreement<'a> {
@@ -33,6 +34,9 @@ pub(super) struct Agreement<'a> {
     /// Change of detail at every node.
     pub(super) detail: Option<&'a [f64]>,
     pub(super) waters: &'a Waters,
+    pub(super) files: &'a [FileJudge<'a>],
+    /// Whether a point was given up.
+    pub(super) gave_up: &'a (dyn Fn(&ReferencePoint) -> bool + Sync),
     /// Points by which the result is judged.
     pub(super) check: &'a [Candidate],
     pub(super) options: QpOptions,
@@ -41,21 +45,19 @@ pub(super) struct Agreement<'a> {
 
 /// A point that is hidden.
 struct Found {
-    candidate: Candidate,
-    /// Position at which ground hides it most, grid coordinates, and the rise of that ground over the line, metres.
-    at: DVec2,
-    over: f64,
+    /// On the solved ground, the point as a candidate.
+    candidate: Option<Candidate>,
+    hides: HiddenInFile,
 }
 
 impl Agreement<'_> {
     /// Judges and solves until the judge finds no hidden point that the program counts as seen, or solving again gains nothing.
-    /// Returns the best result and, on ground with lakes, the number of points that it hides.
+    /// Returns the best result and, where a finer grid may show more, the number of points that it hides.
     ///
-    /// * `qp`: the solver, set to `ground`, the undisplaced ground with its change of detail; `result`: its solution.
+    /// * `qp`: the solver, set to the undisplaced ground with its change of detail; `result`: its solution.
     pub(super) fn reach(
         &self,
         qp: &mut QpSolver,
-        ground: &[f64],
         problem: &QpProblem<'_>,
         result: QpResult,
     ) -> Result<(QpResult, usize), DisocclusionError> {
@@ -65,34 +67,31 @@ impl Agreement<'_> {
         if self.options.slack_price.is_some() || in_vain(&result.u) {
             return Ok((result, 0));
         }
-        let mut told = ground.to_vec();
-        let mut asked = problem.candidates.to_vec();
-        let mut known: BTreeSet<u32> = asked.iter().map(|c| c.id).collect();
         // When time is up, the report lists the hidden points.
         if self.progress.should_end() {
             return Ok((QpResult { stopped: true, ..result }, 0));
         }
+        let by_rows = self.needs_rows();
+        let most = if by_rows || !self.files.is_empty() { ROUNDS_WITH_ROWS } else { ROUNDS };
+        let mut asked = problem.candidates.to_vec();
+        let mut known: BTreeSet<u32> = asked.iter().map(|c| c.id).collect();
+        let mut given = qp.given().to_vec();
         let mut found = self.hidden(problem, &result)?;
-        let (mut best, mut fewest) = (result, found.len());
-        // The program cannot show points that a small lake hides, for such a lake is made level after solving.
-        let most = if self.waters.lakes.is_empty() { ROUNDS } else { ROUNDS_WITH_LAKES };
+        let mut judged = result.u.clone();
+        let (mut best, mut fewest, mut since) = (result, found.len(), 0);
         for _ in 1..most {
-            if found.is_empty() || self.progress.should_end() {
+            if std::env::var_os("DBG").is_some() { eprintln!("agree found {} worst {:.2} given {} stuck {} lakes {}", found.len(), found.iter().map(|f| f.hides.over).fold(0.0, f64::max), given.len(), fallback::stuck(&best), by_rows); for f in found.iter().take(4) { eprintln!("   {} at {} over {:.3}", f.hides.point, f.hides.at, f.hides.over); } }
+            if found.is_empty() || since >= IN_VAIN || self.progress.should_end() {
                 break;
             }
-            let before = told.clone();
-            for Found { candidate, at, over } in &worst_of_cells(&found) {
-                if known.insert(candidate.id) {
-                    asked.push(*candidate);
-                } else if candidate.grid.distance(*at) > self.options.guard.max(NEAR) {
-                    for node in self.around(*at) {
-                        told[node] = told[node].max(before[node] + over + ROOM_M);
-                    }
+            for Found { candidate, hides } in worst_of_cells(&found) {
+                let new = candidate.filter(|candidate| known.insert(candidate.id));
+                asked.extend(new);
+                if by_rows || new.is_none() {
+                    given.push(self.row(qp, &judged, hides));
                 }
             }
-            if told != before {
-                qp.set_heights(&told)?;
-            }
+            qp.keep_clear(&given);
             let next = qp.solve_with(&QpProblem { candidates: &asked, ..*problem }, self.progress)?;
             if next.stopped || in_vain(&next.u) || fallback::stuck(&next) > fallback::stuck(&best) {
                 break;
@@ -102,17 +101,30 @@ impl Agreement<'_> {
                 break;
             }
             found = self.hidden(problem, &next)?;
+            judged.clone_from(&next.u);
             let (rounds, added, kept) = (best.rounds + next.rounds, best.added + next.added, best.kept);
+            since += 1;
             if found.len() < fewest {
-                (fewest, best) = (found.len(), next);
+                (fewest, best, since) = (found.len(), next, 0);
             }
             best = QpResult { rounds, added, kept, ..best };
         }
         best.stopped |= self.progress.is_late() && fewest > 0;
-        Ok((best, if self.waters.lakes.is_empty() { 0 } else { fewest }))
+        Ok((best, if by_rows { fewest } else { 0 }))
     }
 
-    /// Points that a solution leaves hidden and does not list as unresolved.
+    /// Whether the solved ground moves otherwise than the program's grid.
+    fn needs_rows(&self) -> bool {
+        !self.waters.lakes.is_empty() || self.detail.is_some()
+    }
+
+    fn row(&self, qp: &QpSolver, u: &[f64], hides: &HiddenInFile) -> GivenRow {
+        let HiddenInFile { point, at, tau, over } = *hides;
+        qp.lowering(u, [at, point], tau, over + ROOM_M)
+    }
+
+    /// Points that a solution leaves hidden and does not list as unresolved: on the ground that is solved on or, if there are none, on
+    /// the files.
     fn hidden(&self, problem: &QpProblem<'_>, result: &QpResult) -> Result<Vec<Found>, DisocclusionError> {
         self.progress.tick("what the displaced ground hides", 0.9)?;
         let delta = match (self.detail, self.waters.is_empty()) {
@@ -123,24 +135,68 @@ impl Agreement<'_> {
         let judged = self.check.iter().chain(problem.candidates).filter(|c| !named.contains(&c.id));
         let judged: Vec<Candidate> = judged.copied().collect();
         let places: Vec<(DVec2, f64)> = judged.iter().map(|c| (c.grid, c.lift)).collect();
-        let hiding = Judge::new(self.field, &delta, problem.sight).hiding(&places);
-        let found = judged
+        let hiding = Judge::new(self.field, &delta, problem.sight).hiding(&places, 0.0);
+        let found: Vec<Found> = judged
             .iter()
             .zip(hiding)
-            .filter_map(|(candidate, hides)| hides.map(|(at, over)| Found { candidate: *candidate, at, over }));
-        Ok(found.collect())
+            .filter_map(|(candidate, hides)| {
+                let (at, over) = hides?;
+                let tau = share_of_way(problem, candidate.grid, at);
+                Some(Found { candidate: Some(*candidate), hides: HiddenInFile { point: candidate.grid, at, tau, over } })
+            })
+            .collect();
+        if found.is_empty() { self.hidden_in_files(problem, &named, delta) } else { Ok(found) }
     }
 
-    /// The four nodes of the grid cell around a position.
-    fn around(&self, at: DVec2) -> [usize; 4] {
-        let index = |v: f64, n: usize| (v.max(0.0) as usize).min(n.saturating_sub(2));
-        let (cols, rows) = (self.field.cols(), self.field.rows());
-        let nw = index(at.y, rows) * cols + index(at.x, cols);
-        [nw, nw + 1, nw + cols, nw + cols + 1]
+    fn hidden_in_files(
+        &self,
+        problem: &QpProblem<'_>,
+        named: &BTreeSet<u32>,
+        delta: Grid,
+    ) -> Result<Vec<Found>, DisocclusionError> {
+        if self.files.is_empty() {
+            return Ok(Vec::new());
+        }
+        let moved = |i: usize| delta.sample(self.field.scene_from_grid(self.field.node(i))).unwrap_or(0.0);
+        let lakes = self.waters.lakes.report(moved);
+        // What the program cannot show on the solved ground it cannot show on a file.
+        let cell = |g: DVec2| (g.x.round() as i64, g.y.round() as i64);
+        let candidates = self.check.iter().chain(problem.candidates).filter(|c| named.contains(&c.id));
+        let around = |c: &Candidate| {
+            let (x, y) = cell(c.grid);
+            (-1..=1).flat_map(move |dy| (-1..=1).map(move |dx| (x + dx, y + dy)))
+        };
+        let unresolved: BTreeSet<(i64, i64)> = candidates.flat_map(around).collect();
+        let is_asked = |p: &ReferencePoint| !unresolved.contains(&cell(p.grid)) && !(self.gave_up)(p);
+        let stage = TerrainDisocclusion::new(delta);
+        let mut out = Vec::new();
+        for file in self.files {
+            let hidden = file.hidden(self.field, (&stage, &lakes), &is_asked, self.progress)?;
+            out.extend(hidden.into_iter().map(|hides| Found { candidate: None, hides }));
+        }
+        Ok(out)
     }
 }
 
-/// New candidates from one judgement at most: points near them mostly become visible with them.
+/// Share of the way from a point to the eye at which a position of its line of sight lies.
+fn share_of_way(problem: &QpProblem<'_>, point: DVec2, at: DVec2) -> f64 {
+    let mut line = Vec::new();
+    problem.sight.trace(point, 0.0, &mut line);
+    let (mut way, mut reached, mut nearest) = (0.0, 0.0, f64::INFINITY);
+    for pair in line.windows(2) {
+        let [a, b] = [pair[0].0, pair[1].0];
+        let length = a.distance(b);
+        let t = ((at - a).dot(b - a) / (length * length).max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        let away = at.distance(a.lerp(b, t));
+        if away < nearest {
+            (nearest, reached) = (away, way + t * length);
+        }
+        way += length;
+    }
+    if way > 0.0 { reached / way } else { 0.0 }
+}
+
+/// Rows and candidates from one judgement at most: points near them mostly become visible with them.
 const MOST_NEW: usize = 4000;
 
 /// The most hidden point of each grid cell, or of each larger square if there are very many.
@@ -149,9 +205,9 @@ fn worst_of_cells(found: &[Found]) -> Vec<&Found> {
     loop {
         let mut worst = BTreeMap::new();
         for f in found {
-            let cell = (f.candidate.grid / size).floor();
+            let cell = (f.hides.point / size).floor();
             let slot = worst.entry((cell.x as i64, cell.y as i64)).or_insert(f);
-            if f.over > slot.over {
+            if f.hides.over > slot.hides.over {
                 *slot = f;
             }
         }

@@ -3,6 +3,7 @@
 //! A lake is an area of water that the elevation model shows level. The program ties the nodes of its own grid that lie on one
 //! together; every node of the terrain on it then gets the same displacement. Nodes of the bank stay free.
 
+use super::super::visibility_qp::Levels;
 use super::super::{Field, Hierarchy};
 use belvedere_core::{DVec2, polygon};
 use belvedere_scene::{AreaSurface, LayerKind, Scene};
@@ -52,6 +53,16 @@ struct Lake {
     bank: Vec<(u32, f64)>,
     /// Nodes next to the lake: they sink at least as far as the water, so that it does not run up a bank that stayed.
     shore: Vec<u32>,
+}
+
+impl Lake {
+    /// The node of its water next to the middle of that.
+    fn middle(&self, cols: usize) -> u32 {
+        let place = |n: u32| DVec2::new((n as usize % cols) as f64, (n as usize / cols) as f64);
+        let middle = self.nodes.iter().map(|n| place(*n)).sum::<DVec2>() / self.nodes.len().max(1) as f64;
+        let away = |n: &&u32| place(**n).distance_squared(middle);
+        self.nodes.iter().min_by(|a, b| away(a).total_cmp(&away(b))).copied().unwrap_or(0)
+    }
 }
 
 /// The lakes of a scene on its terrain.
@@ -153,18 +164,37 @@ impl Lakes {
         on.map(|[x, y]| [x / across, y / down]).collect()
     }
 
-    /// Makes a displacement of the terrain's nodes level on each lake: the mean over the tied nodes of the solver's grid. Where none
-    /// are tied, that of the node that sinks least, for water that rises does not become hidden. The shore sinks at least as far as
-    /// the water.
+    /// Of each lake the node of the terrain with which it moves: one that is tied on the solver's grid, else the one next to its middle.
+    fn leaders(&self, grid: &Hierarchy) -> Vec<u32> {
+        let [across, down] = [grid.step().x as usize, grid.step().y as usize].map(|s| s.max(1));
+        let of_grid = |n: u32| {
+            let n = n as usize;
+            ((n / grid.cols()) * down * self.cols + (n % grid.cols()) * across) as u32
+        };
+        let leader = |(lake, tied): (&Lake, Vec<u32>)| match tied.first() {
+            Some(node) => of_grid(*node),
+            None => lake.middle(self.cols),
+        };
+        self.lakes.iter().zip(self.tied(grid)).map(leader).collect()
+    }
+
+    /// What rows of a program on `grid` must know of the lakes.
+    pub(super) fn levels(&self, grid: &Hierarchy) -> Levels {
+        let place = |n: u32| DVec2::new((n as usize % self.cols) as f64, (n as usize / self.cols) as f64);
+        let mut levels = Levels { lakes: self.leaders(grid).into_iter().map(place).collect(), ..Levels::default() };
+        for (k, lake) in self.lakes.iter().enumerate() {
+            let of = |rise: f64| move |n: &u32| (*n, (k as u32, rise));
+            levels.nodes.extend(lake.shore.iter().map(of(f64::INFINITY)));
+            levels.nodes.extend(lake.bank.iter().map(|(n, rise)| (*n, (k as u32, *rise))));
+            levels.nodes.extend(lake.nodes.iter().map(of(0.0)));
+        }
+        levels
+    }
+
+    /// Makes a displacement of the terrain's nodes level on each lake, see [`Self::leaders`]. The shore sinks at least as far as the water.
     pub(super) fn level(&self, grid: &Hierarchy, u: &mut [f64]) {
-        let step = [grid.step().x as usize, grid.step().y as usize].map(|s| s.max(1));
-        for lake in &self.lakes {
-            let own = self.on_grid(lake, grid);
-            let moved = if own.len() < FEWEST_TIED {
-                lake.nodes.iter().map(|n| u[*n as usize]).fold(f64::NEG_INFINITY, f64::max)
-            } else {
-                own.iter().map(|[x, y]| u[y * step[1] * self.cols + x * step[0]]).sum::<f64>() / own.len() as f64
-            };
+        for (lake, leader) in self.lakes.iter().zip(self.leaders(grid)) {
+            let moved = u[leader as usize];
             lake.nodes.iter().for_each(|n| u[*n as usize] = moved);
             lake.shore.iter().for_each(|n| u[*n as usize] = u[*n as usize].min(moved));
             for &(n, rise) in &lake.bank {

@@ -283,6 +283,7 @@ pub(super) fn program(
     let smoother = Smoother::new(grid.cols(), grid.rows(), w, g)?;
     let mut qp = QpSolver::new(field, grid, smoother, options);
     qp.tie(&waters.lakes.tied(grid));
+    qp.know_levels(waters.lakes.levels(grid));
     qp.keep_downhill(&waters.rivers);
     Ok(qp)
 }

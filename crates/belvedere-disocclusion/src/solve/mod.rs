@@ -4,6 +4,7 @@ mod adjust;
 mod agreement;
 mod entering;
 mod fallback;
+mod file_to_write;
 mod ground;
 mod in_picture;
 mod lakes;
@@ -22,18 +23,20 @@ mod waters;
 mod written;
 
 pub use fallback::Fallback;
+pub use file_to_write::FileToWrite;
 pub use lakes::{BANK_M, LakeReport};
 pub use limits::LimitsReport;
 pub use live::{LiveFrame, LiveTerrain};
 pub use memory::TerrainMemory;
 pub use price::{GivenUp, PricePoint, PriceReport};
 pub use report::{Covered, FeatureCost, QpReport, Taken, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
-pub use written::{WrittenGround, WrittenShares};
+pub use written::{PlanMap, WrittenGround, WrittenShares};
 
 use super::visibility_qp::{SolvedRow, Unresolved};
 use super::{Detail, Field, Hierarchy, SolverMode, TerrainSettings, check_eye};
 use crate::DisocclusionError;
 use adjust::RequiredPoints;
+use file_to_write::FileJudge;
 use belvedere_core::grid::{Grid, GridError};
 use belvedere_core::{DVec2, EarthCurvature, SpaceMap, TerrainDisocclusion, View};
 use belvedere_scene::Instant;
@@ -108,8 +111,26 @@ impl TerrainSolver {
         memory: &mut TerrainMemory,
         progress: &Progress,
     ) -> Result<Solved, DisocclusionError> {
+        self.solve_for_files(scene, base, memory, &[], progress)
+    }
+
+    /// As [`TerrainSolver::solve`], where lines of sight over the samples of these files are kept clear too, as far as that is possible.
+    ///
+    /// # Errors
+    /// As [`TerrainSolver::solve`].
+    pub fn solve_for_files(
+        &self,
+        scene: &Scene,
+        base: &View,
+        memory: &mut TerrainMemory,
+        files: &[FileToWrite<'_>],
+        progress: &Progress,
+    ) -> Result<Solved, DisocclusionError> {
         let progress = &progress.begin();
-        let frame_result = self.run(scene, base, memory, None, &progress.part(SOLVING))?;
+        let files: Vec<FileJudge<'_>> =
+            files.iter().map(|file| FileJudge::new(scene, base, *file, &self.settings)).collect();
+        let demand = Demand { points: None, files: &files };
+        let frame_result = self.run(scene, base, memory, demand, &progress.part(SOLVING))?;
         progress.tick("figures of the displaced terrain", 0.95)?;
         let began = Instant::now();
         let delta = frame_result.delta()?;
@@ -141,19 +162,19 @@ impl TerrainSolver {
         memory: &mut TerrainMemory,
         progress: &Progress,
     ) -> Result<(TerrainDisocclusion, Arc<Field>), DisocclusionError> {
-        let frame_result = self.run(scene, base, memory, None, progress)?;
+        let frame_result = self.run(scene, base, memory, Demand::default(), progress)?;
         let stage = TerrainDisocclusion::new(frame_result.delta()?);
         memory.keep(frame_result.prepared, base, frame_result.done.coarse);
         Ok((stage, frame_result.field))
     }
 
-    /// The passes of one frame, without figures; the memory lends its preparation. `asked` replaces the points that `base` shows.
+    /// The passes of one frame, without figures; the memory lends its preparation.
     fn run(
         &self,
         scene: &Scene,
         base: &View,
         memory: &mut TerrainMemory,
-        asked: Option<&RequiredPoints>,
+        asked: Demand<'_>,
         progress: &Progress,
     ) -> Result<SolvedFrame, DisocclusionError> {
         let heightfield = ground(scene).ok_or(DisocclusionError::NoTerrain)?;
@@ -176,7 +197,7 @@ impl TerrainSolver {
             return Err(e.into());
         }
         let mut in_view = PointsInView::new(&field, &prepared, base, &self.settings, self.frame().is_some());
-        if let Some(asked) = asked {
+        if let Some(asked) = asked.points {
             (in_view.points, in_view.candidates) = (asked.points.clone(), asked.candidates.clone());
         }
         let mut times = TerrainTimes { prepare_ms: since(began), ..TerrainTimes::default() };
@@ -189,12 +210,21 @@ impl TerrainSolver {
             frame: self.frame(),
             eye,
             last: last.as_deref(),
+            files: asked.files,
             progress,
         };
         let done = passes.run(&mut prepared, &in_view, &mut times)?;
         drop(in_view);
         Ok(SolvedFrame { prepared, field, done, times })
     }
+}
+
+/// What a solution must show besides what its picture does.
+#[derive(Default, Clone, Copy)]
+struct Demand<'a> {
+    /// Points in place of those that the picture shows.
+    points: Option<&'a RequiredPoints>,
+    files: &'a [FileJudge<'a>],
 }
 
 /// The heights that are solved on.

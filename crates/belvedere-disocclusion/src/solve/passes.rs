@@ -6,6 +6,7 @@ use super::super::{
 };
 use super::agreement::Agreement;
 use super::fallback::{self, Fallback};
+use super::file_to_write::FileJudge;
 use super::ground::Ground;
 use super::limits::LimitedTerrain;
 use super::memory::{self, Prepared, Program, Weights};
@@ -36,6 +37,8 @@ pub(super) struct Passes<'a> {
     pub(super) eye: DVec3,
     /// Displacement of the frame before.
     pub(super) last: Option<&'a [f64]>,
+    /// Files that the displacement will be written to.
+    pub(super) files: &'a [FileJudge<'a>],
     pub(super) progress: &'a Progress,
 }
 
@@ -255,6 +258,7 @@ impl Passes<'_> {
         let mut wider = [&asked[..], &in_view.entering[..]].concat();
         let options = memory::options(self.settings, false);
         qp.set_options(options);
+        qp.keep_clear(&[]);
         let mut result = qp.solve_with(&problem_of(&wider, sight, target.as_deref()), self.progress)?;
         let mut price = Price::new(self.settings, prepared, [&asked, &check]).filter(|_| self.frame.is_none());
         let detail_before = price.is_some().then(|| detail.clone());
@@ -269,8 +273,10 @@ impl Passes<'_> {
                 (asked, check) = (price.kept(&asked), price.kept(&check));
                 wider.clone_from(&asked);
             }
+            let gave_up = |p: &ReferencePoint| price.as_ref().is_some_and(|price| price.gave_up(p));
             let mut solution = Solution {
                 passes: self,
+                gave_up: &gave_up,
                 grid: &prepared.grid,
                 waters: &prepared.waters,
                 weights,
@@ -291,7 +297,7 @@ impl Passes<'_> {
                 break (solved, foreign);
             }
             // What the fallbacks changed is taken back.
-            qp.set_heights(&ground)?;
+            qp.keep_clear(&[]);
             qp.set_options(options);
             detail.clone_from(detail_before.as_ref().unwrap_or(&None));
             (done.fine, result) = (None, solved);
@@ -324,6 +330,7 @@ struct Solution<'a> {
     weights: Weights,
     /// Points by which the result is judged.
     check: &'a [Candidate],
+    gave_up: &'a (dyn Fn(&ReferencePoint) -> bool + Sync),
     options: QpOptions,
     /// Points in the picture.
     asked: &'a [Candidate],
@@ -413,8 +420,7 @@ impl Solution<'_> {
     fn agree(&mut self, qp: &mut QpSolver) -> Result<(), DisocclusionError> {
         if fallback::stuck(&self.result) == 0 && (self.passes.frame.is_none() || self.detail.is_some()) {
             let result = std::mem::take(&mut self.result);
-            (self.result, self.hidden) = self.agreement(self.grid).reach(qp, &self.ground, &self.problem, result)?;
-            self.foreign = true;
+            (self.result, self.hidden) = self.agreement(self.grid).reach(qp, &self.problem, result)?;
         }
         Ok(())
     }
@@ -425,6 +431,8 @@ impl Solution<'_> {
             grid,
             detail: self.detail.as_deref(),
             waters: self.waters,
+            files: self.passes.files,
+            gave_up: self.gave_up,
             check: self.check,
             options: self.options,
             progress: self.passes.progress,
@@ -455,7 +463,7 @@ impl Solution<'_> {
             let mut next = finer.solve_with(&problem, progress)?;
             let mut left = 0;
             if fallback::stuck(&next) == 0 {
-                (next, left) = self.agreement(&grid).reach(&mut finer, &self.ground, &problem, next)?;
+                (next, left) = self.agreement(&grid).reach(&mut finer, &problem, next)?;
             }
             before = (Cow::Owned(finer), grid.clone(), next.u.clone());
             if (fallback::stuck(&next), left) < (fallback::stuck(&self.result), self.hidden) {

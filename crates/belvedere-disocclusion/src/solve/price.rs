@@ -201,10 +201,14 @@ impl<'a> Price<'a> {
         (stretch, given)
     }
 
+    /// Whether the stretch of a point was given up.
+    pub(super) fn gave_up(&self, p: &ReferencePoint) -> bool {
+        self.gone.contains(&self.division.of(p))
+    }
+
     /// The candidates that are still asked for.
     pub(super) fn kept(&self, candidates: &[Candidate]) -> Vec<Candidate> {
-        let is_gone =
-            |c: &Candidate| self.prepared.candidate(c.id).is_some_and(|p| self.gone.contains(&self.division.of(p)));
+        let is_gone = |c: &Candidate| self.prepared.candidate(c.id).is_some_and(|p| self.gave_up(p));
         candidates.iter().filter(|c| !is_gone(c)).copied().collect()
     }
 

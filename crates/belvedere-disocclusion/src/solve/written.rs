@@ -3,7 +3,7 @@
 use super::super::metrics::{Hides, Judge, Verdict, amounts, share_seen, shares, shares_of_whole};
 use super::super::points::{judged_points, reference_points_of, required_features};
 use super::super::visibility_qp::LinesOfSight;
-use super::super::{Field, KINDS, ReferencePoint, SolverMode, Wedge};
+use super::super::{Field, KINDS, ReferencePoint, SolverMode, TerrainSettings, Wedge};
 use super::memory::{self, CHECK_CELLS};
 use super::report::{Covered, TerrainReport, UnresolvedReason, UnresolvedRun};
 use super::reporting::{AGREES, sampled, too_many};
@@ -21,7 +21,7 @@ const BOW_CELLS: f64 = 0.01;
 const HALVINGS: u32 = 12;
 
 /// A map of positions in plan; `None` outside its domain.
-type PlanMap<'a> = &'a (dyn Fn(DVec2) -> Option<DVec2> + Sync);
+pub type PlanMap<'a> = &'a (dyn Fn(DVec2) -> Option<DVec2> + Sync);
 
 /// Heights as a file holds them, on its own grid and in its own coordinate system.
 #[derive(Clone, Copy)]
@@ -115,9 +115,8 @@ impl TerrainSolver {
         let features: Vec<_> =
             required_features(scene).iter().map(|f| f.mapped(&|line| ground.image_of(&field, line))).collect();
         let all = judged_points(&features, &field, settings, CHECK_CELLS);
-        let eye = view.pinhole().eye;
-        let sight = SightOverFile { ground, eye, eye_index: (ground.index_from_scene)(eye.truncate()) };
-        let in_view = |points: &[ReferencePoint]| sight.in_view(&field, points, view, settings.guard, settings.ahead_m);
+        let sight = SightOverFile::new(ground, view);
+        let in_view = |points: &[ReferencePoint]| sight.in_view(&field, points, view, settings);
         let seen_from = in_view(&all);
         let points = in_view(&reference_points_of(&features, &field, settings));
         let judge = Judge::still(&field, &sight);
@@ -153,7 +152,7 @@ impl TerrainSolver {
 
 impl WrittenGround<'_> {
     /// The samples, lowered by the curvature of the earth.
-    fn field(&self, view: &View) -> Result<Field, DisocclusionError> {
+    pub(super) fn field(&self, view: &View) -> Result<Field, DisocclusionError> {
         let [cols, rows] = self.nodes;
         let height = |i: usize| {
             let height = (self.height)(i)?;
@@ -166,7 +165,7 @@ impl WrittenGround<'_> {
     }
 
     /// A chain of scene positions in the coordinates of `field`, with as many further positions as its straight pieces need.
-    fn image_of(&self, field: &Field, line: &[DVec2]) -> Vec<DVec2> {
+    pub(super) fn image_of(&self, field: &Field, line: &[DVec2]) -> Vec<DVec2> {
         let mut out: Vec<DVec2> = Vec::new();
         let mut last = None;
         for &p in line {
@@ -196,7 +195,7 @@ impl WrittenGround<'_> {
 }
 
 /// Straight lines of the scene to the eye, over the grid of a file.
-struct SightOverFile<'a> {
+pub(super) struct SightOverFile<'a> {
     ground: &'a WrittenGround<'a>,
     eye: DVec3,
     eye_index: Option<DVec2>,
@@ -215,21 +214,25 @@ impl LinesOfSight for SightOverFile<'_> {
     }
 }
 
-impl SightOverFile<'_> {
+impl<'a> SightOverFile<'a> {
+    pub(super) fn new(ground: &'a WrittenGround<'a>, view: &View) -> Self {
+        let eye = view.pinhole().eye;
+        Self { ground, eye, eye_index: (ground.index_from_scene)(eye.truncate()) }
+    }
+
     /// The points between the left and the right border of the picture that are not too near to the eye.
-    fn in_view(
+    pub(super) fn in_view(
         &self,
         field: &Field,
         points: &[ReferencePoint],
         view: &View,
-        guard: f64,
-        ahead_m: Option<f64>,
+        settings: &TerrainSettings,
     ) -> Vec<ReferencePoint> {
         let Some(eye) = self.eye_index else { return Vec::new() };
         let wedge = Wedge::of_pinhole(view.pinhole());
-        let ahead = memory::ahead(field, points, field.scene_from_grid(eye), ahead_m);
+        let ahead = memory::ahead(field, points, field.scene_from_grid(eye), settings.ahead_m);
         let holds = |p: &ReferencePoint| {
-            (p.grid - eye).length() >= NEAREST_GUARDS * guard
+            (p.grid - eye).length() >= NEAREST_GUARDS * settings.guard
                 && (self.ground.scene_from_index)(p.grid).is_some_and(|xy| wedge.contains(xy))
         };
         points.par_iter().zip(ahead).filter(|(p, near)| *near && holds(p)).map(|(p, _)| *p).collect()

@@ -105,11 +105,10 @@ impl<'a> Augmented<'a> {
         let mut pairs = BTreeSet::<Pair>::new();
         for ((row, diagonal), _) in self.rows.iter().zip(&terms.diagonal).zip(force).filter(|(_, force)| **force) {
             squares.push(row.entries().map(|(node, w)| (own(node), w)), 1.0 / diagonal);
-            if row.len > 1 {
-                // Groups of four, or a node and others.
-                let split = if row.len == 8 { 4 } else { 1 };
-                let group = |from: usize, to: usize| [0, 1, 2, 3].map(|j| own(row.nodes[(from + j).min(to - 1)]));
-                pairs.insert([group(0, split), group(split, row.len)]);
+            let groups: Vec<[u32; 4]> =
+                row.groups().map(|group| [0, 1, 2, 3].map(|j: usize| own(group[j.min(group.len() - 1)]))).collect();
+            for (k, group) in groups.iter().enumerate() {
+                pairs.extend(groups[..k].iter().map(|before| [*before, *group]));
             }
         }
         let factor = Factor::new(&Dissection::new(self.sides, &self.stands_for, &pairs), &squares);

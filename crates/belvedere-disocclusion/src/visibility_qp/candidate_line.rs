@@ -1,5 +1,6 @@
 //! The candidates of one frame with their lines of sight, and the rows that follow from them.
 
+use super::combination::Combination;
 use super::problem::{Candidate, QpProblem};
 use super::row::{Constraint, Row};
 use super::surface::Surface;
@@ -20,8 +21,8 @@ pub(super) struct CandidateLine {
     pub(super) chords: Arc<[Chord]>,
     /// Displacement of the candidate for which the chords hold.
     reference: f64,
-    nodes: [u32; 4],
-    weights: [f64; 4],
+    /// Displacement of the candidate.
+    moves: Combination,
 }
 
 impl CandidateLine {
@@ -30,8 +31,8 @@ impl CandidateLine {
     pub(super) fn all(problem: &QpProblem, surface: &Surface) -> Vec<Self> {
         let of = |index: usize| {
             let Candidate { grid, .. } = problem.candidates[index];
-            let (nodes, weights) = surface.lattice.weights_over(grid);
-            let mut seen = Self { index, grid, chords: Arc::new([]), reference: 0.0, nodes, weights };
+            let moves = surface.combination(grid, &surface.u);
+            let mut seen = Self { index, grid, chords: Arc::new([]), reference: 0.0, moves };
             if problem.sight.straight().is_none() {
                 seen.reference = seen.displacement(&surface.u);
             }
@@ -63,7 +64,7 @@ impl CandidateLine {
     }
 
     pub(super) fn displacement(&self, u: &[f64]) -> f64 {
-        (0..4).map(|k| self.weights[k] * u[self.nodes[k] as usize]).sum()
+        self.moves.at(u)
     }
 
     /// Plan distance to the eye, cells.
@@ -81,21 +82,14 @@ impl CandidateLine {
 
     /// `f(x) + B_x u - (1 - tau) B_P u <= z(x) - margin`, z(x) of the line of the undisplaced candidate.
     pub(super) fn row(&self, surface: &Surface, touch: &Touch, clearance: &Clearance) -> Row {
-        let (x_nodes, x_weights) = surface.lattice.weights_over(touch.at);
         let rest = 1.0 - touch.tau;
-        let (mut nodes, mut weights) = ([0; 8], [0.0; 8]);
-        for k in 0..4 {
-            (nodes[k], weights[k]) = (x_nodes[k], x_weights[k]);
-            (nodes[k + 4], weights[k + 4]) = (self.nodes[k], -rest * self.weights[k]);
-        }
         let bound = touch.z
-            - rest * self.displacement(&surface.u)
+            - rest * self.moves.of_nodes(&surface.u)
             - touch.ground
             - clearance.margin * clearance.share(touch.tau);
-        let [ground, point] = [touch.at, self.grid].map(|g| surface.lattice.betweens(g));
-        let points = [ground[0], ground[1], (-rest * point[0].0, point[0].1), (-rest * point[1].0, point[1].1)];
         let constraint = Constraint::Sight { candidate: self.index, at: touch.at, tau: touch.tau };
-        Row { nodes, weights, len: 8, bound, constraint, points }
+        let ground = Combination::of_grid(&surface.lattice, touch.at);
+        Row::sight((&ground, &self.moves), rest, bound, constraint)
     }
 
     /// The row of this candidate at `at` if its line passes there, else where the ground comes nearest to its line around `at`.

@@ -8,6 +8,7 @@ mod augmented;
 mod bundle;
 mod candidate_line;
 mod cholesky;
+mod combination;
 mod dissection;
 mod dual;
 mod front;
@@ -34,6 +35,8 @@ pub use problem::{
     Candidate, Certificate, LinesOfSight, QpError, QpOptions, QpProblem, QpResult, Reason, SolvedRow, StraightSight,
     Unresolved,
 };
+pub(crate) use combination::Levels;
 pub(crate) use remembered::RememberedLines;
+pub(crate) use solver::GivenRow;
 pub use solver::QpSolver;
 pub use view_rays::ViewSight;

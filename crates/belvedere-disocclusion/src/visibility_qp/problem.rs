@@ -106,8 +106,8 @@ pub struct QpProblem<'a> {
     pub ceilings: Option<&'a [f64]>,
 }
 
-/// A row of the solution: `sum weights u[nodes] <= bound`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A row of the solution: the sum of weights times displacements of nodes is at most the bound.
+#[derive(Debug, Clone, PartialEq)]
 pub struct SolvedRow {
     /// Candidate whose line of sight it keeps clear; `None` = a node below its ceiling, or a river that does not rise.
     pub candidate: Option<u32>,
@@ -115,10 +115,8 @@ pub struct SolvedRow {
     pub at: DVec2,
     /// Share of the distance from the candidate to the eye in plan.
     pub tau: f64,
-    /// Nodes.
-    pub nodes: [u32; 8],
-    /// Weights, 0 beyond the last node in use.
-    pub weights: [f64; 8],
+    /// Nodes with their weights; a node may occur twice.
+    pub weights: Vec<(u32, f64)>,
     /// Bound, metres.
     pub bound: f64,
     /// Multiplier, >= 0.

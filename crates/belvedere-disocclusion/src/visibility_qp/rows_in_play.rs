@@ -26,6 +26,7 @@ pub(super) enum RowKey {
     Ceiling(u32),
     River(Stretch),
     Sight { id: u32, at: DVec2 },
+    Given(u32),
 }
 
 /// Frames after which a row without a multiplier is forgotten; at once if it never had one at the end of a frame.
@@ -110,7 +111,7 @@ impl RowsInPlay {
     pub(super) fn ceilings(&self) -> BTreeSet<u32> {
         let node = |row: &Row| match row.constraint {
             Constraint::Ceiling(node) => Some(node),
-            Constraint::River(_) | Constraint::Sight { .. } => None,
+            Constraint::River(_) | Constraint::Sight { .. } | Constraint::Given(_) => None,
         };
         self.rows.iter().filter_map(node).collect()
     }
@@ -119,7 +120,7 @@ impl RowsInPlay {
     pub(super) fn stretches(&self) -> BTreeSet<Stretch> {
         let stretch = |row: &Row| match row.constraint {
             Constraint::River(stretch) => Some(stretch),
-            Constraint::Ceiling(_) | Constraint::Sight { .. } => None,
+            Constraint::Ceiling(_) | Constraint::Sight { .. } | Constraint::Given(_) => None,
         };
         self.rows.iter().filter_map(stretch).collect()
     }
@@ -226,6 +227,7 @@ impl RowsInPlay {
                     Constraint::Ceiling(node) => RowKey::Ceiling(node),
                     Constraint::River(stretch) => RowKey::River(stretch),
                     Constraint::Sight { candidate, at, .. } => RowKey::Sight { id: id(candidate), at },
+                    Constraint::Given(index) => RowKey::Given(index),
                 };
                 out.push(RememberedRow { key, multiplier, idle });
             }
@@ -239,13 +241,14 @@ impl RowsInPlay {
     pub(super) fn active(&self, id: impl Fn(usize) -> u32) -> Vec<SolvedRow> {
         let held = (0..self.rows.len()).filter(|&i| self.multiplier(i) > 0.0);
         held.map(|i| {
-            let Row { nodes, weights, bound, constraint, .. } = self.rows[i];
+            let Row { bound, constraint, .. } = self.rows[i];
+            let weights = self.rows[i].entries().collect();
             let (candidate, at, tau) = match constraint {
-                Constraint::Ceiling(_) | Constraint::River(_) => (None, DVec2::ZERO, 0.0),
+                Constraint::Ceiling(_) | Constraint::River(_) | Constraint::Given(_) => (None, DVec2::ZERO, 0.0),
                 Constraint::Sight { candidate, at, tau } => (Some(id(candidate)), at, tau),
             };
             let (multiplier, slack) = (self.multiplier(i), self.slack(i));
-            SolvedRow { candidate, at, tau, nodes, weights, bound, multiplier, slack }
+            SolvedRow { candidate, at, tau, weights, bound, multiplier, slack }
         })
         .collect()
     }

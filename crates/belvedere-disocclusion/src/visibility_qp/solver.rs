@@ -2,6 +2,7 @@
 
 use super::bundle::Bundle;
 use super::candidate_line::CandidateLine;
+use super::combination::{Combination, Levels};
 use super::matrix_free::Effort;
 use super::metric::Metric;
 use super::problem::{QpError, QpOptions, QpProblem, QpResult, Reason, Unresolved};
@@ -19,12 +20,14 @@ use belvedere_core::DVec2;
 use belvedere_scene::Instant;
 use belvedere_scene::Progress;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Rows are met to within this by the dual solver, metres.
 const EXACT: f64 = 1e-6;
 /// Rounds of ceilings between two checks of the lines of sight, at most.
 const CEILING_ROUNDS: usize = 40;
+/// Height by which given rows may be missed, scene units.
+const GIVEN_ALLOWED: f64 = 0.05;
 /// Depth to which the ground may sink, as a multiple of the range of heights of ground and lines; beyond it rows become soft.
 const DEPTH: f64 = 4.0;
 /// Price of slack where rows contradict each other.
@@ -53,6 +56,21 @@ pub struct QpSolver {
     uphill: Uphill,
     options: QpOptions,
     kept: Vec<RememberedRow>,
+    given: Vec<GivenRow>,
+}
+
+/// A row that a judge asks for: the displacement at a position of the ground, minus `1 - tau` times that of a point, is at most `bound`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct GivenRow {
+    /// Grid position of the ground, and of the point.
+    at: DVec2,
+    point: DVec2,
+    /// Share of the way from the point to the eye at which the ground lies.
+    tau: f64,
+    /// Scene units.
+    bound: f64,
+    /// How both move, see [`Surface::moves`].
+    moves: [Combination; 2],
 }
 
 /// State of the solution of one frame.
@@ -75,12 +93,45 @@ impl QpSolver {
     pub fn new(field: &Field, hierarchy: &Hierarchy, smoother: Smoother, options: QpOptions) -> Self {
         let lattice = Lattice { cols: hierarchy.cols(), rows: hierarchy.rows(), step: hierarchy.step() };
         let surface = Surface::new(field.heights(), field.cols(), field.rows(), lattice);
-        Self { metric: Metric::new(smoother), surface, uphill: Uphill::default(), options, kept: Vec::new() }
+        Self { metric: Metric::new(smoother), surface, uphill: Uphill::default(), options, kept: Vec::new(), given: Vec::new() }
     }
 
     /// From now on the nodes of each of these sets have one displacement. No node is in two of them.
     pub fn tie(&mut self, sets: &[Vec<u32>]) {
         self.metric.tie(sets);
+    }
+
+    /// From now on rows of sight take nodes on lakes to move with these.
+    pub(crate) fn know_levels(&mut self, levels: Levels) {
+        self.surface.levels = levels;
+    }
+
+    /// The rows that the solution keeps besides those that it finds by itself; rows that it had before keep their multipliers.
+    pub(crate) fn keep_clear(&mut self, rows: &[GivenRow]) {
+        if !rows.starts_with(&self.given) {
+            self.kept.retain(|row| !matches!(row.key, RowKey::Given(_)));
+        }
+        self.given = rows.to_vec();
+    }
+
+    /// See [`Self::keep_clear`].
+    pub(crate) fn given(&self) -> &[GivenRow] {
+        &self.given
+    }
+
+    /// The row that lowers the ground at a grid position by `by`, scene units, against the line of sight of a point, as they lie under
+    /// the displacement `u`.
+    pub(crate) fn lowering(&self, u: &[f64], [at, point]: [DVec2; 2], tau: f64, by: f64) -> GivenRow {
+        let [ground, of_point] = [at, point].map(|g| self.surface.combination(g, u).at(u));
+        let bound = ground - (1.0 - tau) * of_point - by;
+        GivenRow { at, point, tau, bound, moves: self.surface.moves(at, point, u) }
+    }
+
+    fn given_row(&self, index: u32) -> Row {
+        let GivenRow { tau, bound, moves: [ground, of_point], .. } = &self.given[index as usize];
+        let rest = 1.0 - tau;
+        let bound = bound - (ground.constant - rest * of_point.constant);
+        Row::sight((ground, of_point), rest, bound, Constraint::Given(index))
     }
 
     /// From now on these rivers of the field do not run uphill.
@@ -121,6 +172,8 @@ impl QpSolver {
         };
         self.kept = other.kept.iter().map(row).collect();
         self.surface.displace(u);
+        let row = |row: &GivenRow| GivenRow { moves: self.surface.moves(row.at, row.point, u), ..*row };
+        self.given = other.given.iter().map(row).collect();
     }
 
     /// Parameters of the next frames.
@@ -284,6 +337,7 @@ impl QpSolver {
             let row = match kept.key {
                 RowKey::Ceiling(node) => Some(self.ceiling_row(frame, node)),
                 RowKey::River(stretch) => Some(self.uphill.row(stretch, &self.surface.lattice)),
+                RowKey::Given(index) => Some(self.given_row(index)),
                 RowKey::Sight { id, at } => {
                     by_id.get(&id).and_then(|&k| frame.seen[k].follow(&self.surface, at, &frame.clearance))
                 }
@@ -291,6 +345,10 @@ impl QpSolver {
             let begin = (kept.multiplier, kept.idle);
             new.extend(row.map(|row| self.new_row(frame, row, begin)));
         }
+        let kept = |row: &RememberedRow| if let RowKey::Given(index) = row.key { Some(index) } else { None };
+        let kept: BTreeSet<u32> = self.kept.iter().filter_map(kept).collect();
+        let others = (0..self.given.len() as u32).filter(|index| !kept.contains(index));
+        new.extend(others.map(|index| self.new_row(frame, self.given_row(index), (0.0, 0))));
         frame.pool.extend(new, &self.metric);
     }
 
@@ -310,6 +368,7 @@ impl QpSolver {
             Constraint::Ceiling(_) => self.options.ceiling_tolerance,
             Constraint::River(_) => uphill::ALLOWED,
             Constraint::Sight { tau, .. } => frame.clearance.tolerance * frame.clearance.share(tau),
+            Constraint::Given(_) => GIVEN_ALLOWED,
         };
         // The walks find what is missed by more than is allowed.
         NewRow { row, excess, soft, allowed: 0.5 * allowed, multiplier, idle }

@@ -1,5 +1,6 @@
 //! The ground: two flat triangles per cell, whose nodes are displaced by the bilinear grid of the solver; and what it stays below.
 
+use super::combination::Levels;
 use crate::smooth::Between;
 use belvedere_core::DVec2;
 use belvedere_scene::CellTriangle;
@@ -47,6 +48,12 @@ impl Lattice {
         Between { col: col as u32, row: row as u32, x: s.x - col as f64, y: s.y - row as f64 }
     }
 
+    /// Bilinear value at grid position `g` of values of nodes.
+    pub(super) fn value(&self, g: DVec2, u: &[f64]) -> f64 {
+        let (nodes, weights) = self.weights(g);
+        (0..4).map(|k| weights[k] * u[nodes[k] as usize]).sum()
+    }
+
     /// Height of a displacement that is flat on the triangles of the field over the bilinear one at `g`, per unit of the latter's
     /// factor of xy in a cell of the lattice.
     pub(super) fn facet(&self, g: DVec2) -> f64 {
@@ -85,6 +92,8 @@ pub(super) struct Surface {
     pub(super) u: Vec<f64>,
     /// For each cell of the lattice the value at its first node and the factors of x, y and xy, both 0..=1 in the cell.
     pub(super) patches: Vec<[f64; 4]>,
+    /// Lakes, which rows know; bounds and walks take the ground on them to move as the grid does.
+    pub(super) levels: Levels,
     /// Highest undisplaced ground of blocks of 2, 4, .. cells, and highest displaced ground of blocks of [`BLOCK`], ..
     still: Pyramid<f64>,
     displaced: Pyramid<f64>,
@@ -101,6 +110,7 @@ impl Surface {
             lattice,
             u: vec![0.0; lattice.cols * lattice.rows],
             patches: vec![[0.0; 4]; (lattice.cols.max(2) - 1) * (lattice.rows.max(2) - 1)],
+            levels: Levels::default(),
             still: Pyramid::new(cells, FINEST, |_| 0.0, |_, _, _| 0.0),
             displaced: Pyramid::new(cells, BLOCK, |_| 0.0, |_, _, _| 0.0),
         };

@@ -2,7 +2,7 @@
 //!
 //! Small rises that they leave are corrected at the nodes after solving.
 
-use super::row::{Constraint, Row, Stretch};
+use super::row::{Constraint, MOST_NODES, Row, Stretch};
 use super::surface::Lattice;
 use crate::rivers::{Place, River, Rivers};
 use belvedere_core::DVec2;
@@ -61,7 +61,7 @@ impl Uphill {
     pub(super) fn row(&self, Stretch { river, upstream, downstream }: Stretch, lattice: &Lattice) -> Row {
         let places = &self.courses[river as usize].places;
         let [from, to] = [upstream, downstream].map(|k| places[k as usize]);
-        let (mut nodes, mut weights) = ([0; 8], [0.0; 8]);
+        let (mut nodes, mut weights) = ([0; MOST_NODES], [0.0; MOST_NODES]);
         for k in 0..4 {
             (nodes[k], weights[k]) = (to.nodes[k], to.weights[k]);
             (nodes[k + 4], weights[k + 4]) = (from.nodes[k], -from.weights[k]);

@@ -1,9 +1,7 @@
 //! `disocclude`: writes an elevation model on which features are visible from an eye.
 
-use super::level_lakes::LevelLakes;
 use super::moved::MovedFeatures;
-use super::written_ground::FileGrid;
-use super::written_rivers::run_downhill;
+use super::written_ground::{HeightsToWrite, ToWrite};
 use crate::answers;
 use crate::data::DataFiles;
 use crate::guard::guarded;
@@ -19,11 +17,11 @@ use belvedere_construct::reveal::shortfall;
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, View};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_disocclusion::report::RiverReport;
-use belvedere_disocclusion::{Solved, TerrainMemory, TerrainReport, TerrainSolver, ViewpointOptions};
+use belvedere_disocclusion::{Solved, TerrainReport, TerrainSolver, ViewpointOptions};
 use belvedere_io::IoError;
 use belvedere_io::geotiff::write_cloud_geotiff;
 use belvedere_io::raster::Raster;
-use belvedere_io::terrain::{OriginalTerrain, moved_terrain};
+use belvedere_io::terrain::OriginalTerrain;
 use belvedere_resolve::ground::earth_radius;
 use belvedere_resolve::terrain as intent;
 use belvedere_scene::{Progress, Scene};
@@ -230,25 +228,16 @@ fn disoccluded(request: &Disocclude, options: &OpenOptions) -> Result<Disocclude
     let view = camera.view(camera.target.extend(camera.eye.z), None)?;
     let solving = options.progress.before(WRITING);
     belvedere_resolve::terrain::ask(&data.scene)?;
-    let mut solved = solver.solve(&data.scene, &view, &mut TerrainMemory::default(), &solving)?;
-    let lakes = LevelLakes::new(&solved.stage, &solved.report, &data.scene);
-    let delta = |p: DVec2| lakes.at(p);
-    let mut rivers_written = Vec::new();
-    let (rasters, written_on) = match (grid, data.scene.terrain()) {
-        (WrittenGrid::Scene, Some(terrain)) => {
-            (moved_terrain(terrain, data.scene.crs, delta), FileGrid::of_terrain(terrain))
-        }
-        _ => {
-            let surface = |p: DVec2| data.scene.terrain().filter(|_| request.fill_voids)?.surface_at(p);
-            let mut rasters = original.moved_and_filled(data.scene.crs, delta, surface)?;
-            let resampled = data.scene.terrain().is_some_and(|terrain| !original.is_grid_of(terrain));
-            if resampled {
-                let ids = &solver.settings().rivers[..];
-                rivers_written = run_downhill(&mut rasters, &original, (&data.scene, ids), &lakes)?;
-            }
-            (rasters, FileGrid::of_file(&original, data.scene.crs, !resampled)?)
-        }
+    let to_write = HeightsToWrite {
+        original: &original,
+        scene: &data.scene,
+        grid,
+        fill_voids: request.fill_voids,
+        rivers: &solver.settings().rivers,
     };
+    let mut solved = to_write.solved(&solver, &view, &solving)?;
+    let ToWrite { rasters, rivers: rivers_written } = to_write.under(&solved.stage, &solved.report.lakes)?;
+    let written_on = to_write.grid()?;
     let seen_by = (&*data.scene, &view);
     let judged = written_on.judged(&solver, seen_by, &rasters, &solved.report, &options.progress)?;
     let visible_written = (!written_on.solved_on).then_some(judged.after.visible_dense);

@@ -1,8 +1,7 @@
 //! Lakes on written grids: kept level also where the grid is not the solver's.
 
 use belvedere_core::{DVec2, TerrainDisocclusion, polygon};
-use belvedere_disocclusion::TerrainReport;
-use belvedere_disocclusion::report::BANK_M;
+use belvedere_disocclusion::report::{BANK_M, LakeReport};
 use belvedere_scene::{Heightfield, Scene};
 
 /// One lake: its bounding box, its rings, the height up to which its area counts as water, and its displacement.
@@ -22,16 +21,16 @@ pub(super) struct LevelLakes<'a> {
 }
 
 impl<'a> LevelLakes<'a> {
-    /// * `report`: gives the areas of the scene that are lakes, and their displacements.
-    pub(super) fn new(stage: &'a TerrainDisocclusion, report: &TerrainReport, scene: &'a Scene) -> Self {
-        let lake = |of: &belvedere_disocclusion::report::LakeReport| {
+    /// * `lakes`: the areas of the scene that are lakes, and their displacements.
+    pub(super) fn new(stage: &'a TerrainDisocclusion, lakes: &[LakeReport], scene: &'a Scene) -> Self {
+        let lake = |of: &LakeReport| {
             let areas = scene.layers.get(of.layer)?.kind.areas()?;
             let rings = &areas.features.get(of.feature)?.rings[..];
             let corners = rings.iter().flatten().filter(|p| p.is_finite());
             let [low, high] = corners.fold([DVec2::MAX, DVec2::MIN], |[a, b], p| [a.min(*p), b.max(*p)]);
             Some(Lake { low, high, rings, water_m: of.height_m + BANK_M, moved: of.moved_m })
         };
-        Self { stage, terrain: scene.terrain(), lakes: report.lakes.iter().filter_map(lake).collect() }
+        Self { stage, terrain: scene.terrain(), lakes: lakes.iter().filter_map(lake).collect() }
     }
 
     pub(super) fn is_empty(&self) -> bool {
