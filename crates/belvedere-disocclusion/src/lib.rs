@@ -25,7 +25,8 @@ mod visibility_qp;
 pub use error::DisocclusionError;
 pub use settings::{Detail, SolverMode, TerrainSettings};
 pub use solve::{
-    LiveFrame, LiveTerrain, Solved, TerrainMemory, TerrainReport, TerrainSolver, FileToWrite, PlanMap, WrittenGround, WrittenShares,
+    FileToWrite, LiveFrame, LiveTerrain, PlanMap, SampleGrid, Solved, TerrainMemory, TerrainReport, TerrainSolver,
+    WrittenGround, WrittenShares,
 };
 pub use viewpoint::{AdjustedViewpoint, ViewpointOptions};
 
@@ -50,7 +51,7 @@ pub mod report {
     pub use crate::points::PointKind;
     pub use crate::solve::{
         BANK_M, Covered, Fallback, FeatureCost, GivenUp, LakeReport, LimitsReport, PricePoint, PriceReport, QpReport,
-        Taken, TerrainTimes, UnresolvedReason, UnresolvedRun,
+        Taken, TerrainTimes, TrimReport, UnresolvedReason, UnresolvedRun,
     };
 }
 

@@ -40,6 +40,19 @@ impl CellTriangle {
         }
     }
 
+    /// Row-major indices of the nodes around grid coordinates (column, row; clamped into the grid), with their weights.
+    ///
+    /// * `nodes`: columns and rows, at least 2 each.
+    pub fn nodes_around([cols, rows]: [usize; 2], g: DVec2) -> [(usize, f64); 3] {
+        let index = |v: f64, n: usize| (v.max(0.0) as usize).min(n.saturating_sub(2));
+        let (col, row) = (index(g.x, cols), index(g.y, rows));
+        let fractions = (g - DVec2::new(col as f64, row as f64)).clamp(DVec2::ZERO, DVec2::ONE);
+        let (triangle, nw) = (Self::at(fractions), row * cols + col);
+        let corner = |k: usize| nw + [0, 1, cols, cols + 1][k];
+        let (corners, weights) = (triangle.corners(), triangle.weights(fractions));
+        [0, 1, 2].map(|k| (corner(corners[k]), weights[k]))
+    }
+
     /// Height of its plane at fractions of a cell with four corner heights.
     #[inline]
     pub fn height(self, heights: [f64; 4], fractions: DVec2) -> f64 {

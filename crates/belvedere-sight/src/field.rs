@@ -155,6 +155,12 @@ impl Field {
         CellTriangle::surface(corners, DVec2::new(u, v))
     }
 
+    /// Lowers a node, by at least 0 scene units.
+    pub fn lower(&mut self, i: usize, by: f64) {
+        self.heights[i] -= by;
+        self.range[0] = self.range[0].min(self.heights[i]);
+    }
+
     /// Scene x, y of grid coordinates.
     pub fn scene_from_grid(&self, g: DVec2) -> DVec2 {
         DVec2::new(self.north_west.x + g.x * self.spacing.x, self.north_west.y - g.y * self.spacing.y)

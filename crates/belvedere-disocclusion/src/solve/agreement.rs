@@ -50,8 +50,23 @@ struct Found {
     hides: HiddenInFile,
 }
 
+/// Numbers of hidden points.
+#[derive(Default, Clone, Copy)]
+struct Left {
+    all: usize,
+    /// On the ground that is solved on.
+    on_ground: usize,
+}
+
+impl Left {
+    fn of(found: &[Found]) -> Self {
+        Self { all: found.len(), on_ground: found.iter().filter(|f| f.candidate.is_some()).count() }
+    }
+}
+
 impl Agreement<'_> {
-    /// Judges and solves until the judge finds no hidden point that the program counts as seen, or solving again gains nothing.
+    /// Judges and solves until the judge finds no hidden point that the program counts as seen, or solving again gains nothing; then
+    /// again for the files that must not cost too much.
     /// Returns the best result and, where a finer grid may show more, the number of points that it hides.
     ///
     /// * `qp`: the solver, set to the undisplaced ground with its change of detail; `result`: its solution.
@@ -61,26 +76,49 @@ impl Agreement<'_> {
         problem: &QpProblem<'_>,
         result: QpResult,
     ) -> Result<(QpResult, usize), DisocclusionError> {
+        let dear: Vec<&FileJudge<'_>> = self.files.iter().filter(|file| file.at_most().is_some()).collect();
+        let firm: Vec<&FileJudge<'_>> = self.files.iter().filter(|file| file.at_most().is_none()).collect();
+        let (best, left) = self.reach_over(&firm, qp, problem, result)?;
+        let on_ground = if self.needs_rows() { left.on_ground } else { 0 };
+        let Some(at_most) = dear.iter().filter_map(|file| file.at_most()).reduce(f64::min) else {
+            return Ok((best, on_ground));
+        };
+        if left.all > 0 || best.stopped || fallback::stuck(&best) > 0 {
+            return Ok((best, on_ground));
+        }
+        let all = [&firm[..], &dear].concat();
+        let (next, left) = self.reach_over(&all, qp, problem, best.clone())?;
+        let is_worth = left.all == 0 && !next.stopped && rms(&next.u) <= at_most * rms(&best.u);
+        Ok((if is_worth { next } else { best }, on_ground))
+    }
+
+    /// See [`Self::reach`].
+    fn reach_over(
+        &self,
+        files: &[&FileJudge<'_>],
+        qp: &mut QpSolver,
+        problem: &QpProblem<'_>,
+        result: QpResult,
+    ) -> Result<(QpResult, Left), DisocclusionError> {
         // A lake that sinks by more than the relief is filled up again by the limits; no more solutions then.
         let in_vain = |u: &[f64]| !self.waters.lakes.is_empty() && u.iter().any(|u| *u < -self.field.relief());
         // With a price of slack the program leaves points covered on purpose.
         if self.options.slack_price.is_some() || in_vain(&result.u) {
-            return Ok((result, 0));
+            return Ok((result, Left::default()));
         }
         // When time is up, the report lists the hidden points.
         if self.progress.should_end() {
-            return Ok((QpResult { stopped: true, ..result }, 0));
+            return Ok((QpResult { stopped: true, ..result }, Left::default()));
         }
         let by_rows = self.needs_rows();
-        let most = if by_rows || !self.files.is_empty() { ROUNDS_WITH_ROWS } else { ROUNDS };
+        let most = if by_rows || !files.is_empty() { ROUNDS_WITH_ROWS } else { ROUNDS };
         let mut asked = problem.candidates.to_vec();
         let mut known: BTreeSet<u32> = asked.iter().map(|c| c.id).collect();
         let mut given = qp.given().to_vec();
-        let mut found = self.hidden(problem, &result)?;
+        let mut found = self.hidden(problem, &result, files)?;
         let mut judged = result.u.clone();
-        let (mut best, mut fewest, mut since) = (result, found.len(), 0);
+        let (mut best, mut fewest, mut since) = (result, Left::of(&found), 0);
         for _ in 1..most {
-            if std::env::var_os("DBG").is_some() { eprintln!("agree found {} worst {:.2} given {} stuck {} lakes {}", found.len(), found.iter().map(|f| f.hides.over).fold(0.0, f64::max), given.len(), fallback::stuck(&best), by_rows); for f in found.iter().take(4) { eprintln!("   {} at {} over {:.3}", f.hides.point, f.hides.at, f.hides.over); } }
             if found.is_empty() || since >= IN_VAIN || self.progress.should_end() {
                 break;
             }
@@ -100,17 +138,17 @@ impl Agreement<'_> {
                 best.stopped = true;
                 break;
             }
-            found = self.hidden(problem, &next)?;
+            found = self.hidden(problem, &next, files)?;
             judged.clone_from(&next.u);
             let (rounds, added, kept) = (best.rounds + next.rounds, best.added + next.added, best.kept);
             since += 1;
-            if found.len() < fewest {
-                (fewest, best, since) = (found.len(), next, 0);
+            if Left::of(&found).all < fewest.all {
+                (fewest, best, since) = (Left::of(&found), next, 0);
             }
             best = QpResult { rounds, added, kept, ..best };
         }
-        best.stopped |= self.progress.is_late() && fewest > 0;
-        Ok((best, if by_rows { fewest } else { 0 }))
+        best.stopped |= self.progress.is_late() && fewest.all > 0;
+        Ok((best, fewest))
     }
 
     /// Whether the solved ground moves otherwise than the program's grid.
@@ -125,7 +163,12 @@ impl Agreement<'_> {
 
     /// Points that a solution leaves hidden and does not list as unresolved: on the ground that is solved on or, if there are none, on
     /// the files.
-    fn hidden(&self, problem: &QpProblem<'_>, result: &QpResult) -> Result<Vec<Found>, DisocclusionError> {
+    fn hidden(
+        &self,
+        problem: &QpProblem<'_>,
+        result: &QpResult,
+        files: &[&FileJudge<'_>],
+    ) -> Result<Vec<Found>, DisocclusionError> {
         self.progress.tick("what the displaced ground hides", 0.9)?;
         let delta = match (self.detail, self.waters.is_empty()) {
             (None, true) => on_grid(self.field, self.grid, &result.u)?,
@@ -142,19 +185,23 @@ impl Agreement<'_> {
             .filter_map(|(candidate, hides)| {
                 let (at, over) = hides?;
                 let tau = share_of_way(problem, candidate.grid, at);
-                Some(Found { candidate: Some(*candidate), hides: HiddenInFile { point: candidate.grid, at, tau, over } })
+                Some(Found {
+                    candidate: Some(*candidate),
+                    hides: HiddenInFile { point: candidate.grid, at, tau, over },
+                })
             })
             .collect();
-        if found.is_empty() { self.hidden_in_files(problem, &named, delta) } else { Ok(found) }
+        if found.is_empty() { self.hidden_in_files(files, problem, &named, delta) } else { Ok(found) }
     }
 
     fn hidden_in_files(
         &self,
+        files: &[&FileJudge<'_>],
         problem: &QpProblem<'_>,
         named: &BTreeSet<u32>,
         delta: Grid,
     ) -> Result<Vec<Found>, DisocclusionError> {
-        if self.files.is_empty() {
+        if files.is_empty() {
             return Ok(Vec::new());
         }
         let moved = |i: usize| delta.sample(self.field.scene_from_grid(self.field.node(i))).unwrap_or(0.0);
@@ -170,12 +217,17 @@ impl Agreement<'_> {
         let is_asked = |p: &ReferencePoint| !unresolved.contains(&cell(p.grid)) && !(self.gave_up)(p);
         let stage = TerrainDisocclusion::new(delta);
         let mut out = Vec::new();
-        for file in self.files {
-            let hidden = file.hidden(self.field, (&stage, &lakes), &is_asked, self.progress)?;
+        for file in files {
+            let hidden = file.hidden((self.field, self.grid), (&stage, &lakes), &is_asked, self.progress)?;
             out.extend(hidden.into_iter().map(|hides| Found { candidate: None, hides }));
         }
         Ok(out)
     }
+}
+
+/// Root mean square.
+fn rms(u: &[f64]) -> f64 {
+    (u.iter().map(|u| u * u).sum::<f64>() / u.len().max(1) as f64).sqrt()
 }
 
 /// Share of the way from a point to the eye at which a position of its line of sight lies.

@@ -2,28 +2,26 @@
 
 use super::super::metrics::Judge;
 use super::super::points::{RequiredFeature, judged_points, required_features};
-use super::super::{Field, ReferencePoint, TerrainSettings};
-use super::memory::CHECK_CELLS;
-use super::written::{PlanMap, SightOverFile, WrittenGround};
+use super::super::{Field, Hierarchy, ReferencePoint, TerrainSettings};
 use super::LakeReport;
+use super::memory::CHECK_CELLS;
+use super::sample_grid::SampleGrid;
+use super::trim::most_lowered;
+use super::written::{SightOverFile, WrittenGround};
 use crate::DisocclusionError;
 use belvedere_core::{DVec2, TerrainDisocclusion, View};
 use belvedere_scene::{Progress, Scene};
 use std::sync::OnceLock;
 
-/// A file to which the displaced heights will be written, on its own grid and in its own coordinate system.
+/// A file to which the displaced heights will be written.
 #[derive(Clone, Copy)]
 pub struct FileToWrite<'a> {
-    /// Columns and rows, at least 2 each.
-    pub nodes: [usize; 2],
-    /// Distance between columns and between rows, about, scene units, > 0.
-    pub spacing: DVec2,
-    /// From scene x, y to column and row of the samples, the first at 0.
-    pub index_from_scene: PlanMap<'a>,
-    /// From column and row to scene x, y.
-    pub scene_from_index: PlanMap<'a>,
+    /// Its samples.
+    pub grid: SampleGrid<'a>,
     /// Heights of the samples (row-major), scene units, NaN without data, under a displacement with these lakes; `None` ends the search.
     pub heights: &'a (dyn Fn(&TerrainDisocclusion, &[LakeReport]) -> Option<Vec<f64>> + Sync),
+    /// Most that keeping it clear may cost, as a multiple of the root mean square displacement without it; `None` = whatever it costs.
+    pub at_most: Option<f64>,
 }
 
 /// A point that a file hides.
@@ -52,39 +50,44 @@ impl<'a> FileJudge<'a> {
         Self { file, view, settings, features: required_features(scene), points: OnceLock::new() }
     }
 
+    /// See [`FileToWrite::at_most`].
+    pub(super) fn at_most(&self) -> Option<f64> {
+        self.file.at_most
+    }
+
     /// The points that the file hides under a displacement.
     ///
-    /// * `field`: the ground that is solved on; `is_asked`: whether a point (grid coordinates of that ground) must be seen.
+    /// * `field`, `solver`: the ground that is solved on, and the solver's grid over it; `is_asked`: whether a point (grid coordinates of that ground) must be seen.
     pub(super) fn hidden(
         &self,
-        field: &Field,
+        (field, solver): (&Field, &Hierarchy),
         (stage, lakes): (&TerrainDisocclusion, &[LakeReport]),
         is_asked: &(dyn Fn(&ReferencePoint) -> bool + Sync),
         progress: &Progress,
     ) -> Result<Vec<HiddenInFile>, DisocclusionError> {
         progress.tick("what the heights to be written hide", 0.9)?;
-        let FileToWrite { nodes, spacing, index_from_scene, scene_from_index, heights } = self.file;
+        let FileToWrite { grid, heights, .. } = self.file;
         let Some(heights) = heights(stage, lakes) else { return Ok(Vec::new()) };
         let height = |i: usize| heights.get(i).copied().filter(|h| h.is_finite());
-        let ground = WrittenGround { nodes, spacing, height: &height, index_from_scene, scene_from_index, solved_on: false };
+        let ground = WrittenGround { grid, height: &height, solved_on: false };
         let own = ground.field(self.view)?;
-        let sight = SightOverFile::new(&ground, self.view);
+        let sight = SightOverFile::new(grid, self.view);
         let points = self.points.get_or_init(|| {
-            let features: Vec<_> = self.features.iter().map(|f| f.mapped(&|line| ground.image_of(&own, line))).collect();
+            let features: Vec<_> = self.features.iter().map(|f| f.mapped(&|line| grid.image_of(&own, line))).collect();
             sight.in_view(&own, &judged_points(&features, &own, self.settings, CHECK_CELLS), self.view, self.settings)
         });
         let places: Vec<(DVec2, f64)> = points.iter().map(|p| (p.grid, p.lift)).collect();
-        let eye = self.view.pinhole().eye.truncate();
         let found = |(p, (at, over)): (&ReferencePoint, (DVec2, f64))| {
-            let [of_point, of_ground] = [p.grid, at].map(scene_from_index);
-            let (of_point, of_ground) = (of_point?, of_ground?);
-            let tau = of_point.distance(of_ground) / of_point.distance(eye).max(f64::MIN_POSITIVE);
-            let [point, at] = [of_point, of_ground].map(|p| field.grid_from_scene(p));
-            is_asked(&ReferencePoint { grid: point, ..*p }).then_some(HiddenInFile { point, at, tau, over })
+            let [of_point, of_ground] = [p.grid, at].map(|index| grid.scene(index));
+            let tau = sight.share_of_way(p.grid, at);
+            let [point, at] = [of_point?, of_ground?].map(|p| field.grid_from_scene(p));
+            // Such bumps are trimmed, for the solver's grid cannot hold them.
+            let is_bump = over <= most_lowered(&grid) && (at - point).abs().cmplt(solver.step()).all();
+            let asked = !is_bump && is_asked(&ReferencePoint { grid: point, ..*p });
+            asked.then_some(HiddenInFile { point, at, tau, over })
         };
-        // What lies nearer is cut down at the samples.
-        let guard = self.settings.guard * (field.spacing() / spacing).max_element();
-        let hiding = Judge::still(&own, &sight).hiding(&places, guard);
+        let hiding = Judge::still(&own, &sight)
+            .hiding(&places, self.settings.guard * (field.spacing() / grid.spacing).max_element());
         Ok(points.iter().zip(hiding).filter_map(|(p, hides)| found((p, hides?))).collect())
     }
 }

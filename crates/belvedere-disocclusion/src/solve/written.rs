@@ -8,6 +8,7 @@ use super::memory::{self, CHECK_CELLS};
 use super::report::{Covered, TerrainReport, UnresolvedReason, UnresolvedRun};
 use super::reporting::{AGREES, sampled, too_many};
 use super::runs::Runs;
+use super::sample_grid::SampleGrid;
 use super::{PriceReport, TerrainSolver, drop_at};
 use crate::DisocclusionError;
 use crate::in_view::NEAREST_GUARDS;
@@ -15,27 +16,13 @@ use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Progress, Scene};
 use rayon::prelude::*;
 
-/// A chord between two positions leaves what lies between them by less than this in plan, cells.
-const BOW_CELLS: f64 = 0.01;
-/// Chords are halved at most this often.
-const HALVINGS: u32 = 12;
-
-/// A map of positions in plan; `None` outside its domain.
-pub type PlanMap<'a> = &'a (dyn Fn(DVec2) -> Option<DVec2> + Sync);
-
-/// Heights as a file holds them, on its own grid and in its own coordinate system.
+/// Heights as a file holds them.
 #[derive(Clone, Copy)]
 pub struct WrittenGround<'a> {
-    /// Columns and rows, at least 2 each.
-    pub nodes: [usize; 2],
-    /// Distance between columns and between rows, about, scene units, > 0: parts of features are weighed by it.
-    pub spacing: DVec2,
+    /// Its samples.
+    pub grid: SampleGrid<'a>,
     /// Height of a sample (row-major), scene units; `None` without data.
     pub height: &'a (dyn Fn(usize) -> Option<f64> + Sync),
-    /// From scene x, y to column and row of the samples, the first at 0.
-    pub index_from_scene: PlanMap<'a>,
-    /// From column and row to scene x, y.
-    pub scene_from_index: PlanMap<'a>,
     /// Whether the samples are those that were solved on.
     pub solved_on: bool,
 }
@@ -113,9 +100,9 @@ impl TerrainSolver {
         let settings = &self.settings;
         let field = ground.field(view)?;
         let features: Vec<_> =
-            required_features(scene).iter().map(|f| f.mapped(&|line| ground.image_of(&field, line))).collect();
+            required_features(scene).iter().map(|f| f.mapped(&|line| ground.grid.image_of(&field, line))).collect();
         let all = judged_points(&features, &field, settings, CHECK_CELLS);
-        let sight = SightOverFile::new(ground, view);
+        let sight = SightOverFile::new(ground.grid, view);
         let in_view = |points: &[ReferencePoint]| sight.in_view(&field, points, view, settings);
         let seen_from = in_view(&all);
         let points = in_view(&reference_points_of(&features, &field, settings));
@@ -153,61 +140,33 @@ impl TerrainSolver {
 impl WrittenGround<'_> {
     /// The samples, lowered by the curvature of the earth.
     pub(super) fn field(&self, view: &View) -> Result<Field, DisocclusionError> {
-        let [cols, rows] = self.nodes;
+        let grid = &self.grid;
+        let cols = grid.nodes[0];
         let height = |i: usize| {
-            let height = (self.height)(i)?;
+            let height = (self.height)(grid.sample(i))?;
             let Some(earth) = view.earth() else { return Some(height) };
-            let at = (self.scene_from_index)(DVec2::new((i % cols) as f64, (i / cols) as f64))?;
+            let at = grid.scene(DVec2::new((i % cols) as f64, (i / cols) as f64))?;
             Some(height - drop_at(earth, at))
         };
-        let heights = (0..cols * rows).into_par_iter().with_min_len(4096).map(|i| height(i).unwrap_or(f64::NAN));
-        Ok(Field::of_samples(self.nodes, self.spacing, heights.collect())?)
-    }
-
-    /// A chain of scene positions in the coordinates of `field`, with as many further positions as its straight pieces need.
-    pub(super) fn image_of(&self, field: &Field, line: &[DVec2]) -> Vec<DVec2> {
-        let mut out: Vec<DVec2> = Vec::new();
-        let mut last = None;
-        for &p in line {
-            let Some(index) = (self.index_from_scene)(p) else {
-                last = None;
-                continue;
-            };
-            if let Some(from) = last {
-                self.halve(from, (p, index), 0, &mut |_, index| out.push(field.scene_from_grid(index)));
-            }
-            out.push(field.scene_from_grid(index));
-            last = Some((p, index));
-        }
-        out
-    }
-
-    /// Visits positions between two, in their order, until chords between them keep to [`BOW_CELLS`].
-    fn halve(&self, a: (DVec2, DVec2), b: (DVec2, DVec2), halvings: u32, visit: &mut dyn FnMut(DVec2, DVec2)) {
-        let middle = 0.5 * (a.0 + b.0);
-        let Some(index) = (self.index_from_scene)(middle).filter(|_| halvings < HALVINGS) else { return };
-        if index.distance(0.5 * (a.1 + b.1)) > BOW_CELLS {
-            self.halve(a, (middle, index), halvings + 1, visit);
-            visit(middle, index);
-            self.halve((middle, index), b, halvings + 1, visit);
-        }
+        let heights = (0..grid.len()).into_par_iter().with_min_len(4096).map(|i| height(i).unwrap_or(f64::NAN));
+        Ok(Field::of_samples(grid.nodes, grid.spacing, heights.collect())?)
     }
 }
 
 /// Straight lines of the scene to the eye, over the grid of a file.
 pub(super) struct SightOverFile<'a> {
-    ground: &'a WrittenGround<'a>,
+    grid: SampleGrid<'a>,
     eye: DVec3,
     eye_index: Option<DVec2>,
 }
 
 impl LinesOfSight for SightOverFile<'_> {
     fn trace(&self, grid: DVec2, z: f64, out: &mut Vec<(DVec2, f64)>) {
-        let (Some(from), Some(eye_index)) = ((self.ground.scene_from_index)(grid), self.eye_index) else { return };
+        let (Some(from), Some(eye_index)) = (self.grid.scene(grid), self.eye_index) else { return };
         let to = self.eye.truncate();
         let length = from.distance(to).max(f64::MIN_POSITIVE);
         out.push((grid, z));
-        self.ground.halve((from, grid), (to, eye_index), 0, &mut |p, index| {
+        self.grid.halve((from, grid), (to, eye_index), 0, &mut |p, index| {
             out.push((index, z + (self.eye.z - z) * from.distance(p) / length));
         });
         out.push((eye_index, self.eye.z));
@@ -215,9 +174,15 @@ impl LinesOfSight for SightOverFile<'_> {
 }
 
 impl<'a> SightOverFile<'a> {
-    pub(super) fn new(ground: &'a WrittenGround<'a>, view: &View) -> Self {
+    pub(super) fn new(grid: SampleGrid<'a>, view: &View) -> Self {
         let eye = view.pinhole().eye;
-        Self { ground, eye, eye_index: (ground.index_from_scene)(eye.truncate()) }
+        Self { grid, eye, eye_index: grid.index(eye.truncate()) }
+    }
+
+    /// Share of the way from a point to the eye at which a position lies, both in grid coordinates of the file.
+    pub(super) fn share_of_way(&self, point: DVec2, at: DVec2) -> f64 {
+        let [Some(point), Some(at)] = [point, at].map(|index| self.grid.scene(index)) else { return 0.0 };
+        point.distance(at) / point.distance(self.eye.truncate()).max(f64::MIN_POSITIVE)
     }
 
     /// The points between the left and the right border of the picture that are not too near to the eye.
@@ -233,7 +198,7 @@ impl<'a> SightOverFile<'a> {
         let ahead = memory::ahead(field, points, field.scene_from_grid(eye), settings.ahead_m);
         let holds = |p: &ReferencePoint| {
             (p.grid - eye).length() >= NEAREST_GUARDS * settings.guard
-                && (self.ground.scene_from_index)(p.grid).is_some_and(|xy| wedge.contains(xy))
+                && self.grid.scene(p.grid).is_some_and(|xy| wedge.contains(xy))
         };
         points.par_iter().zip(ahead).filter(|(p, near)| *near && holds(p)).map(|(p, _)| *p).collect()
     }
@@ -252,7 +217,7 @@ impl Parts<'_> {
     fn of(&self, dense: &[ReferencePoint], verdicts: &[Verdict], every: usize) -> (Vec<UnresolvedRun>, Vec<Covered>) {
         let mut runs = Runs::new(self.field, CHECK_CELLS * every as f64);
         let mut covered = Vec::new();
-        let scene = |index: DVec2| (self.ground.scene_from_index)(index).unwrap_or(DVec2::ZERO).to_array();
+        let scene = |index: DVec2| self.ground.grid.scene(index).unwrap_or(DVec2::ZERO).to_array();
         for (p, verdict) in dense.iter().zip(verdicts) {
             let Some(hides) = verdict.hides() else { continue };
             if self.report.parameters.slack_price.is_some() && hides.over().is_finite() {

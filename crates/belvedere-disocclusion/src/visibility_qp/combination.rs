@@ -3,6 +3,7 @@
 use super::surface::{Lattice, Surface};
 use crate::smooth::Between;
 use belvedere_core::DVec2;
+use belvedere_scene::CellTriangle;
 use std::collections::BTreeMap;
 
 /// A combination of displacements of nodes, and a constant.
@@ -70,14 +71,15 @@ impl Surface {
         if self.levels.nodes.is_empty() {
             return plain();
         }
-        let corners = self.corners(g);
         let (mut free, mut middle, mut constant) = (0.0, DVec2::ZERO, 0.0);
         let mut with: Option<(u32, f64)> = None;
-        for (node, at, w) in corners {
-            let own = self.levels.nodes.get(&node).and_then(|&(lake, rise)| {
+        for (node, w) in CellTriangle::nodes_around([self.cols, self.rows], g) {
+            let at = DVec2::new((node % self.cols) as f64, (node / self.cols) as f64);
+            let own = self.levels.nodes.get(&(node as u32)).and_then(|&(lake, rise)| {
                 let level = self.lattice.value(self.levels.lakes[lake as usize], u);
                 let moved = self.lattice.value(at, u);
-                let over = if moved > level && !banks_sink { Some(0.0) } else { (moved < level - rise).then_some(-rise) };
+                let over =
+                    if moved > level && !banks_sink { Some(0.0) } else { (moved < level - rise).then_some(-rise) };
                 over.or((rise == 0.0).then_some(0.0)).map(|over| (lake, over))
             });
             match own {
@@ -102,23 +104,6 @@ impl Surface {
         }
         let terms = places.map(|(factor, at)| (factor, self.lattice.between(at)));
         Combination { nodes, weights, len, constant, terms }
-    }
-
-    /// The corners of the triangle of the field around `g`, with their grid positions and weights.
-    fn corners(&self, g: DVec2) -> [(u32, DVec2, f64); 3] {
-        let index = |v: f64, n: usize| (v.max(0.0) as usize).min(n.saturating_sub(2));
-        let (col, row) = (index(g.x, self.cols), index(g.y, self.rows));
-        let corner = DVec2::new(col as f64, row as f64);
-        let DVec2 { x, y } = (g - corner).clamp(DVec2::ZERO, DVec2::ONE);
-        let at = |dx: usize, dy: usize, w: f64| {
-            (((row + dy) * self.cols + col + dx) as u32, corner + DVec2::new(dx as f64, dy as f64), w)
-        };
-        // Cells are cut from north-west to south-east.
-        if x > y {
-            [at(0, 0, 1.0 - x), at(1, 0, x - y), at(1, 1, y)]
-        } else {
-            [at(0, 0, 1.0 - y), at(0, 1, y - x), at(1, 1, x)]
-        }
     }
 }
 

@@ -31,11 +31,11 @@ mod uphill;
 mod view_rays;
 mod walk;
 
+pub(crate) use combination::Levels;
 pub use problem::{
     Candidate, Certificate, LinesOfSight, QpError, QpOptions, QpProblem, QpResult, Reason, SolvedRow, StraightSight,
     Unresolved,
 };
-pub(crate) use combination::Levels;
 pub(crate) use remembered::RememberedLines;
 pub(crate) use solver::GivenRow;
 pub use solver::QpSolver;

@@ -93,7 +93,14 @@ impl QpSolver {
     pub fn new(field: &Field, hierarchy: &Hierarchy, smoother: Smoother, options: QpOptions) -> Self {
         let lattice = Lattice { cols: hierarchy.cols(), rows: hierarchy.rows(), step: hierarchy.step() };
         let surface = Surface::new(field.heights(), field.cols(), field.rows(), lattice);
-        Self { metric: Metric::new(smoother), surface, uphill: Uphill::default(), options, kept: Vec::new(), given: Vec::new() }
+        Self {
+            metric: Metric::new(smoother),
+            surface,
+            uphill: Uphill::default(),
+            options,
+            kept: Vec::new(),
+            given: Vec::new(),
+        }
     }
 
     /// From now on the nodes of each of these sets have one displacement. No node is in two of them.

@@ -121,6 +121,27 @@ fn lakes_are_level_in_every_mode_and_plain_areas_are_not() {
     assert!(tilted > 2.0, "areas that are no water tilt: {tilted} m");
 }
 
+/// A lake is shown as the same outline is that is no lake: all of it, for about as much displacement, and level.
+#[test]
+fn a_lake_is_promised_as_a_meadow_is() {
+    let mut promised = 0;
+    for seed in 1..9 {
+        let [water, meadow] = [AreaSurface::Water, AreaSurface::Plain].map(|surface| {
+            let case = Case::new(seed, surface, true);
+            let solved = solve(TerrainSettings { limits: false, ..TerrainSettings::default() }, &case);
+            assert!(surface == AreaSurface::Plain || case.range(&solved).0 < LEVEL, "seed {seed}");
+            solved.report
+        });
+        if meadow.guaranteed {
+            promised += 1;
+            assert!(water.guaranteed, "seed {seed}: {} of the lake, {:?}", water.metrics.visible_dense, water.hidden);
+        }
+        let [rms, of_meadow] = [&water, &meadow].map(|report| report.metrics.rms_m);
+        assert!(rms < 1.3 * of_meadow, "seed {seed}: {rms} m for the lake, {of_meadow} m for the meadow");
+    }
+    assert!(promised >= 6, "only {promised} of 8 meadows are promised");
+}
+
 #[test]
 fn lakes_are_level_where_the_limits_fill_up_and_where_time_is_up() {
     // From low over the ground everything is hidden by much.

@@ -1,7 +1,10 @@
 //! What a file of heights shows is judged on the file's own samples, all of them, whatever ground was solved on.
 
-use belvedere_core::{DVec2, DVec3, Pinhole, Projection, SpaceMap, View};
-use belvedere_disocclusion::{Solved, TerrainMemory, TerrainSettings, TerrainSolver, WrittenGround, WrittenShares};
+use belvedere_core::{DVec2, DVec3, Pinhole, Projection, TerrainDisocclusion, View};
+use belvedere_disocclusion::report::LakeReport;
+use belvedere_disocclusion::{
+    FileToWrite, SampleGrid, Solved, TerrainMemory, TerrainSettings, TerrainSolver, WrittenGround, WrittenShares,
+};
 use belvedere_scene::{Heightfield, NodeState, Progress, Scene};
 use belvedere_testkit::Random;
 use belvedere_testkit::synthetic::{line_layer, terrain_layer};
@@ -48,30 +51,56 @@ fn view() -> View {
     View::straight(Pinhole::look_at(eye, target, DVec3::Z, lens, [1280, 720], 1.0, None).unwrap())
 }
 
+/// How a file is taken into account.
+#[derive(Clone, Copy, PartialEq)]
+enum Known {
+    /// Not at all.
+    No,
+    /// Its samples are kept clear, and trimmed.
+    OneDiagonal,
+    BothDiagonals,
+}
+
 /// The file after the move, and what the judge says of it.
-fn judged(noise_m: f64, seed: u64) -> (Vec<f64>, Solved, WrittenShares) {
+fn judged(noise_m: f64, seed: u64, known: Known) -> (Vec<f64>, Solved, WrittenShares) {
     let heights = file(noise_m, seed);
     let (scene, view) = (scene(&heights), view());
     let solver = TerrainSolver::new(TerrainSettings { limits: false, ..TerrainSettings::default() }).unwrap().in_plan();
-    let mut solved = solver.solve(&scene, &view, &mut TerrainMemory::default(), &Progress::silent()).unwrap();
-    let place = |i: usize| DVec2::new((i % FILE) as f64 * STEP, SIZE - (i / FILE) as f64 * STEP);
-    let moved: Vec<f64> =
-        (0..FILE * FILE).map(|i| heights[i] + solved.stage.apply(place(i).extend(0.0)).unwrap().z).collect();
-    let shares = {
-        let of = |z: &Vec<f64>| {
-            let ground = WrittenGround {
-                nodes: [FILE; 2],
-                spacing: DVec2::splat(STEP),
-                height: &|i| Some(z[i]),
-                index_from_scene: &|p| Some(DVec2::new(p.x, SIZE - p.y) / STEP),
-                scene_from_index: &|g| Some(DVec2::new(g.x, SIZE / STEP - g.y) * STEP),
-                solved_on: false,
-            };
-            solver.judge_written(&scene, &view, &ground, &solved.report, &Progress::silent()).unwrap()
-        };
-        [of(&heights), of(&moved)]
+    let grid = SampleGrid {
+        nodes: [FILE; 2],
+        spacing: DVec2::splat(STEP),
+        index_from_scene: &|p| Some(DVec2::new(p.x, SIZE - p.y) / STEP),
+        scene_from_index: &|g| Some(DVec2::new(g.x, SIZE / STEP - g.y) * STEP),
+        other_diagonal: false,
     };
-    let [before, after] = shares;
+    let grids: &[SampleGrid<'_>] = match known {
+        Known::No => &[],
+        Known::OneDiagonal => &[grid],
+        Known::BothDiagonals => &[grid, grid.cut_otherwise()],
+    };
+    let place = |i: usize| DVec2::new((i % FILE) as f64 * STEP, SIZE - (i / FILE) as f64 * STEP);
+    let under = |stage: &TerrainDisocclusion, _: &[LakeReport]| -> Option<Vec<f64>> {
+        Some((0..FILE * FILE).map(|i| heights[i] + stage.delta_at(place(i).extend(0.0))).collect())
+    };
+    let files: Vec<FileToWrite<'_>> =
+        grids.iter().map(|grid| FileToWrite { grid: *grid, heights: &under, at_most: None }).collect();
+    let (mut memory, silent) = (TerrainMemory::default(), Progress::silent());
+    let mut solved = solver.solve_for_files(&scene, &view, &mut memory, &files, &silent).unwrap();
+    let mut moved = under(&solved.stage, &[]).unwrap();
+    if known != Known::No {
+        let height = |i: usize| Some(moved[i]);
+        let lowered = solver.trimmed((&scene, &view), grids, &height, &|_| false, &solved.report, &silent).unwrap();
+        lowered.into_iter().for_each(|(i, by)| moved[i] -= by);
+    }
+    let of = |z: &Vec<f64>, grid: SampleGrid<'_>| {
+        let ground = WrittenGround { grid, height: &|i| Some(z[i]), solved_on: false };
+        solver.judge_written(&scene, &view, &ground, &solved.report, &silent).unwrap()
+    };
+    let [before, after] = [of(&heights, grid), of(&moved, grid)];
+    if known == Known::BothDiagonals {
+        let other = of(&moved, grid.cut_otherwise()).visible_dense;
+        assert!(other >= 0.995, "noise {noise_m}: the other diagonal shows {other}");
+    }
     after.put(&before, false, &mut solved.report);
     (moved, solved, after)
 }
@@ -111,7 +140,7 @@ fn marched(z: &[f64]) -> f64 {
 fn a_guarantee_is_one_of_every_sample_of_the_written_file() {
     let mut kept = 0;
     for (noise_m, seed) in [(0.0, 1), (3.0, 2), (6.0, 3), (6.0, 4)] {
-        let (moved, solved, after) = judged(noise_m, seed);
+        let (moved, solved, after) = judged(noise_m, seed, Known::No);
         let report = &solved.report;
         assert!(report.metrics.visible_dense >= 0.9999, "the ground that was solved on shows all: {report:?}");
         assert!(report.visible_whole_before < 0.95, "{report:?}");
@@ -123,4 +152,21 @@ fn a_guarantee_is_one_of_every_sample_of_the_written_file() {
         assert!(noise_m < 1.0 || seen < 0.97, "the noise hides something: {seen}");
     }
     assert!(kept >= 1, "ground without noise keeps what was promised");
+}
+
+#[test]
+fn a_file_that_the_solver_knows_shows_what_the_solved_ground_shows() {
+    for (noise_m, seed) in [(0.0, 1), (3.0, 2), (6.0, 3), (6.0, 4)] {
+        let (_, alone, _) = judged(noise_m, seed, Known::No);
+        for known in [Known::OneDiagonal, Known::BothDiagonals] {
+            let (moved, solved, after) = judged(noise_m, seed, known);
+            let report = &solved.report;
+            let seen = marched(&moved);
+            assert!(seen >= 0.995, "noise {noise_m}: the file shows {seen}");
+            assert!((after.visible_dense - seen).abs() < 0.005, "said {}, the file shows {seen}", after.visible_dense);
+            assert_eq!(report.guaranteed, seen >= 0.9999, "noise {noise_m}: {seen}");
+            let [with, without] = [report, &alone.report].map(|r| r.metrics.rms_m);
+            assert!(with <= 1.3 * without, "noise {noise_m}: {with} m instead of {without} m");
+        }
+    }
 }

@@ -51,6 +51,10 @@ pub struct Disocclude {
     /// Grid of the written heights; input by default
     #[cfg_attr(feature = "clap", arg(long, value_name = "GRID", value_parser = one_of::<WrittenGrid>()))]
     pub grid: Option<WrittenGrid>,
+    /// Show what is in view to programs that cut the cells of the heights from north-east to south-west as well: auto, the default, if the
+    /// ground moves by less than 1.3 times as much, always or never; without a value always
+    #[cfg_attr(feature = "clap", arg(long, value_name = "WHEN", num_args = 0..=1, require_equals = true, default_missing_value = "always", value_parser = one_of::<Robust>()))]
+    pub robust: Option<Robust>,
     /// Fill all holes of the elevation model, also in the written heights, instead of leaving them open
     #[cfg_attr(feature = "clap", arg(long))]
     pub fill_voids: bool,
@@ -72,6 +76,19 @@ pub struct Disocclude {
 impl Disocclude {
     /// Full horizontal field of view where none is asked for, degrees.
     pub const FOV_X_DEG: f64 = 70.0;
+}
+
+/// When what is in view must be seen whichever way a program cuts the cells of the heights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Robust {
+    /// If the ground moves by less than 1.3 times as much.
+    #[default]
+    Auto,
+    /// However much it moves.
+    Always,
+    /// Never: only as this program cuts them, from north-west to south-east.
+    Never,
 }
 
 /// Grid of the written heights.

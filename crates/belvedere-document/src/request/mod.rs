@@ -24,7 +24,7 @@ pub use crate::renderer::RendererName;
 pub use animate::Animate;
 #[cfg(feature = "clap")]
 pub use args::one_of;
-pub use disocclude::{Disocclude, WrittenGrid};
+pub use disocclude::{Disocclude, Robust, WrittenGrid};
 pub use drawing::Drawing;
 pub use ground::{OfData, Stated, StatedRaster};
 pub use line_class::class_of_file;

@@ -16,7 +16,7 @@ use belvedere_construct::measure::{Shares, percent};
 use belvedere_construct::reveal::shortfall;
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, View};
 use belvedere_core::{Warning, WarningKind};
-use belvedere_disocclusion::report::RiverReport;
+use belvedere_disocclusion::report::{RiverReport, TrimReport};
 use belvedere_disocclusion::{Solved, TerrainReport, TerrainSolver, ViewpointOptions};
 use belvedere_io::IoError;
 use belvedere_io::geotiff::write_cloud_geotiff;
@@ -164,6 +164,9 @@ struct Record {
     /// Visible share of the features in view on the written heights where a program cuts cells from north-east to south-west instead of
     /// from north-west to south-east, 0..=1; a bilinear surface lies between the two.
     visible_other_diagonal: f64,
+    /// Samples of the written heights that were lowered because small bumps right in front of a point hid it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    trimmed: Option<TrimReport>,
     /// Reports of rivers on the written heights, if they are resampled.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     rivers_written: Vec<RiverReport>,
@@ -234,9 +237,11 @@ fn disoccluded(request: &Disocclude, options: &OpenOptions) -> Result<Disocclude
         grid,
         fill_voids: request.fill_voids,
         rivers: &solver.settings().rivers,
+        robust: request.robust.unwrap_or_default(),
     };
     let mut solved = to_write.solved(&solver, &view, &solving)?;
-    let ToWrite { rasters, rivers: rivers_written } = to_write.under(&solved.stage, &solved.report.lakes)?;
+    let (written, trimmed) = to_write.trimmed(&solver, &view, &solved, &options.progress)?;
+    let ToWrite { rasters, rivers: rivers_written } = written;
     let written_on = to_write.grid()?;
     let seen_by = (&*data.scene, &view);
     let judged = written_on.judged(&solver, seen_by, &rasters, &solved.report, &options.progress)?;
@@ -272,6 +277,7 @@ fn disoccluded(request: &Disocclude, options: &OpenOptions) -> Result<Disocclude
         grid,
         visible_written,
         visible_other_diagonal,
+        trimmed,
         rivers_written,
         layers: session.scene().layers.iter().map(|l| l.id.clone()).collect(),
         inputs: names.inputs(&record::inputs(&session.inputs())?),

@@ -3,24 +3,28 @@
 use super::level_lakes::LevelLakes;
 use super::written_rivers::run_downhill;
 use crate::BelvedereError;
-use crate::request::WrittenGrid;
+use crate::request::{Robust, WrittenGrid};
 use belvedere_core::{DVec2, TerrainDisocclusion, View};
-use belvedere_disocclusion::report::{LakeReport, RiverReport};
+use belvedere_disocclusion::report::{LakeReport, RiverReport, TrimReport};
 use belvedere_disocclusion::{
-    FileToWrite, Solved, TerrainMemory, TerrainReport, TerrainSolver, WrittenGround, WrittenShares,
+    FileToWrite, SampleGrid, Solved, TerrainMemory, TerrainReport, TerrainSolver, WrittenGround, WrittenShares,
 };
 use belvedere_io::IoError;
-use belvedere_io::raster::Raster;
+use belvedere_io::raster::{Raster, Samples};
 use belvedere_io::terrain::{OriginalTerrain, moved_terrain};
 use belvedere_scene::{Crs, Heightfield, Progress, Scene};
 
 type Map<'a> = Box<dyn Fn(DVec2) -> Option<DVec2> + Sync + 'a>;
 
+/// Most that showing all to programs that cut cells otherwise may cost unless that is asked for, as a multiple of the displacement
+/// without it.
+const ROBUST_AT_MOST: f64 = 1.3;
 /// Bytes of a sample while it is judged: its height twice, whether it has one, and the rasters that hold it.
 const SAMPLE_BYTES: u64 = 25;
 
 /// The grid of the written heights.
 pub(super) struct FileGrid<'a> {
+    nodes: [usize; 2],
     index_from_scene: Map<'a>,
     scene_from_index: Map<'a>,
     /// Whether its samples are those that were solved on.
@@ -44,6 +48,7 @@ pub(super) struct HeightsToWrite<'a> {
     pub(super) fill_voids: bool,
     /// Layers of rivers.
     pub(super) rivers: &'a [String],
+    pub(super) robust: Robust,
 }
 
 /// Heights and the displacement in them, as they are written.
@@ -61,7 +66,8 @@ impl<'a> HeightsToWrite<'a> {
 
     /// Whether the samples are others than those that are solved on.
     fn is_resampled(&self) -> bool {
-        self.grid == WrittenGrid::Input && self.scene.terrain().is_some_and(|terrain| !self.original.is_grid_of(terrain))
+        self.grid == WrittenGrid::Input
+            && self.scene.terrain().is_some_and(|terrain| !self.original.is_grid_of(terrain))
     }
 
     /// The grid of what is written.
@@ -105,24 +111,65 @@ impl<'a> HeightsToWrite<'a> {
         progress: &Progress,
     ) -> Result<Solved, BelvedereError> {
         let mut memory = TerrainMemory::default();
-        if !self.is_resampled() {
-            return Ok(solver.solve(self.scene, view, &mut memory, progress)?);
-        }
-        let nodes = self.original.size();
-        ask(nodes)?;
         let grid = self.grid()?;
+        let count = grid.nodes[0] * grid.nodes[1];
         let heights = |stage: &TerrainDisocclusion, lakes: &[LakeReport]| {
             let [heights, _] = self.under(stage, lakes).ok()?.rasters;
-            Some((0..nodes[0] * nodes[1]).map(|i| sample(&heights, i).unwrap_or(f64::NAN)).collect())
+            Some((0..count).map(|i| sample(&heights, i).unwrap_or(f64::NAN)).collect())
         };
-        let file = FileToWrite {
-            nodes,
-            spacing: grid.spacing(nodes),
-            index_from_scene: &grid.index_from_scene,
-            scene_from_index: &grid.scene_from_index,
-            heights: &heights,
-        };
-        Ok(solver.solve_for_files(self.scene, view, &mut memory, &[file], progress)?)
+        let file = |grid, at_most| FileToWrite { grid, heights: &heights, at_most };
+        let (own, other) = (grid.samples(), grid.samples().cut_otherwise());
+        let mut files = Vec::new();
+        files.extend((!grid.solved_on).then(|| file(own, None)));
+        files.extend(match self.robust {
+            Robust::Auto => Some(file(other, Some(ROBUST_AT_MOST))),
+            Robust::Always => Some(file(other, None)),
+            Robust::Never => None,
+        });
+        if !files.is_empty() {
+            ask(grid.nodes)?;
+        }
+        Ok(solver.solve_for_files(self.scene, view, &mut memory, &files, progress)?)
+    }
+
+    /// The heights under a solution, trimmed where small bumps hide something, and how they were trimmed.
+    ///
+    /// # Errors
+    /// As [`Self::under`] and [`TerrainSolver::trimmed`].
+    pub(super) fn trimmed(
+        &self,
+        solver: &TerrainSolver,
+        view: &View,
+        solved: &Solved,
+        progress: &Progress,
+    ) -> Result<(ToWrite, Option<TrimReport>), BelvedereError> {
+        let mut out = self.under(&solved.stage, &solved.report.lakes)?;
+        let grid = self.grid()?;
+        let own = (!grid.solved_on).then(|| grid.samples());
+        let other = (self.robust != Robust::Never).then(|| grid.samples().cut_otherwise());
+        let grids: Vec<SampleGrid<'_>> = own.into_iter().chain(other).collect();
+        if grids.is_empty() || solved.report.parameters.slack_price.is_some() {
+            return Ok((out, None));
+        }
+        let lakes = LevelLakes::new(&solved.stage, &solved.report.lakes, self.scene);
+        let place = |i: usize| DVec2::new((i % grid.nodes[0]) as f64, (i / grid.nodes[0]) as f64);
+        let is_water = |i: usize| (grid.scene_from_index)(place(i)).is_some_and(|p| lakes.lake_at(p).is_some());
+        let height = |i: usize| sample(&out.rasters[0], i);
+        let lowered = solver.trimmed((self.scene, view), &grids, &height, &is_water, &solved.report, progress)?;
+        if lowered.is_empty() {
+            return Ok((out, None));
+        }
+        let report = TrimReport { samples: lowered.len(), most_m: lowered.values().copied().fold(0.0, f64::max) };
+        for raster in &mut out.rasters {
+            if let Samples::F32(values) = &mut raster.samples {
+                lowered.iter().for_each(|(i, by)| values[*i] -= *by as f32);
+            }
+        }
+        if !grid.solved_on {
+            let rivers = (self.scene, self.rivers);
+            out.rivers = run_downhill(&mut out.rasters, self.original, rivers, &lakes)?;
+        }
+        Ok((out, Some(report)))
     }
 }
 
@@ -142,6 +189,7 @@ impl<'a> FileGrid<'a> {
     fn of_terrain(terrain: &'a Heightfield) -> Self {
         let (first, step) = (terrain.north_west(), terrain.spacing() * DVec2::new(1.0, -1.0));
         Self {
+            nodes: [terrain.cols(), terrain.rows()],
             index_from_scene: Box::new(|p| Some(terrain.grid_from_scene(p))),
             scene_from_index: Box::new(move |index| Some(first + index * step)),
             solved_on: true,
@@ -158,7 +206,7 @@ impl<'a> FileGrid<'a> {
                 format!("its coordinate system {} cannot be joined with that of the scene", file.system_name());
             return Err(IoError::format(file.path(), reason).into());
         };
-        Ok(Self { index_from_scene: Box::new(to), scene_from_index: Box::new(from), solved_on })
+        Ok(Self { nodes: file.size(), index_from_scene: Box::new(to), scene_from_index: Box::new(from), solved_on })
     }
 
     /// Judges the heights before and after the move, and after it with the other diagonals.
@@ -175,33 +223,35 @@ impl<'a> FileGrid<'a> {
         report: &TerrainReport,
         progress: &Progress,
     ) -> Result<JudgedFile, BelvedereError> {
-        let nodes = [heights.info.width, heights.info.height];
-        ask(nodes)?;
+        ask(self.nodes)?;
         let after = |i: usize| sample(heights, i);
         let before = |i: usize| Some(after(i)? - sample(displacement, i)?);
-        let judged = |height: &(dyn Fn(usize) -> Option<f64> + Sync),
-                      [index_from_scene, scene_from_index]: [&Map<'_>; 2]| {
-            let (spacing, solved_on) = (self.spacing(nodes), self.solved_on);
-            let ground = WrittenGround { nodes, spacing, height, index_from_scene, scene_from_index, solved_on };
+        let judged = |height: &(dyn Fn(usize) -> Option<f64> + Sync), grid: SampleGrid<'_>| {
+            let ground = WrittenGround { grid, height, solved_on: self.solved_on };
             solver.judge_written(scene, view, &ground, report, progress)
         };
-        let maps = [&self.index_from_scene, &self.scene_from_index];
-        // From east to west the same cells have the other diagonal.
-        let last = (nodes[0] - 1) as f64;
-        let turned = |index: DVec2| DVec2::new(last - index.x, index.y);
-        let to: Map<'_> = Box::new(|p| (self.index_from_scene)(p).map(turned));
-        let from: Map<'_> = Box::new(|index| (self.scene_from_index)(turned(index)));
-        let mirrored = |i: usize| after(i / nodes[0] * nodes[0] + nodes[0] - 1 - i % nodes[0]);
+        let grid = self.samples();
         Ok(JudgedFile {
-            before: judged(&before, maps)?,
-            after: judged(&after, maps)?,
-            other_diagonal: judged(&mirrored, [&to, &from])?,
+            before: judged(&before, grid)?,
+            after: judged(&after, grid)?,
+            other_diagonal: judged(&after, grid.cut_otherwise())?,
         })
     }
 
+    /// Its samples, with the cells cut as the program draws them.
+    fn samples(&self) -> SampleGrid<'_> {
+        SampleGrid {
+            nodes: self.nodes,
+            spacing: self.spacing(),
+            index_from_scene: &self.index_from_scene,
+            scene_from_index: &self.scene_from_index,
+            other_diagonal: false,
+        }
+    }
+
     /// Distance between columns and between rows in the middle of the grid, scene units.
-    fn spacing(&self, nodes: [usize; 2]) -> DVec2 {
-        let middle = 0.5 * DVec2::new((nodes[0] - 1) as f64, (nodes[1] - 1) as f64);
+    fn spacing(&self) -> DVec2 {
+        let middle = 0.5 * DVec2::new((self.nodes[0] - 1) as f64, (self.nodes[1] - 1) as f64);
         let length = |step: DVec2| {
             let [a, b] = [-0.5, 0.5].map(|side| (self.scene_from_index)(middle + side * step));
             a.zip(b).map(|(a, b)| a.distance(b)).filter(|d| *d > 0.0).unwrap_or(1.0)

@@ -40,7 +40,7 @@ fn gap(found: &QpResult, depth: f64, ceiling: f64) -> f64 {
     let mut sum = std::collections::BTreeMap::<u32, f64>::new();
     let (mut bound, mut total) = (0.0, 0.0);
     for row in &found.active {
-        for (node, w) in row.nodes.iter().zip(row.weights).filter(|(_, w)| *w != 0.0) {
+        for (node, w) in &row.weights {
             *sum.entry(*node).or_default() += row.multiplier * w;
         }
         bound += row.multiplier * row.bound;

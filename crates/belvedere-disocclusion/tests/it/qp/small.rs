@@ -131,7 +131,7 @@ fn solutions_meet_the_conditions_of_karush_kuhn_and_tucker() {
     for row in &got.active {
         assert!(row.multiplier > 0.0);
         let mut value = -row.bound;
-        for (node, w) in row.nodes.iter().zip(&row.weights) {
+        for (node, w) in &row.weights {
             force[*node as usize] += row.multiplier * w;
             value += w * got.u[*node as usize];
         }
