@@ -25,8 +25,8 @@ mod visibility_qp;
 pub use error::DisocclusionError;
 pub use settings::{Detail, SolverMode, TerrainSettings};
 pub use solve::{
-    FileToWrite, LiveFrame, LiveTerrain, PlanMap, SampleGrid, Solved, TerrainMemory, TerrainReport, TerrainSolver,
-    WrittenGround, WrittenShares,
+    FileToWrite, HeightsUnder, LiveFrame, LiveTerrain, PlanMap, SampleGrid, Solved, TerrainMemory, TerrainReport,
+    TerrainSolver, WrittenGround, WrittenShares,
 };
 pub use viewpoint::{AdjustedViewpoint, ViewpointOptions};
 

@@ -6,7 +6,7 @@
 //! node of a bank moves with its lake, so that a few rounds meet it.
 
 use super::super::metrics::Judge;
-use super::super::visibility_qp::{Candidate, GivenRow, QpOptions, QpProblem, QpResult, QpSolver};
+use super::super::visibility_qp::{Candidate, GivenRow, QpOptions, QpProblem, QpResult, QpSolver, SolvedRow};
 use super::super::{Field, Hierarchy, ReferencePoint};
 use super::file_to_write::{FileJudge, HiddenInFile};
 use super::waters::Waters;
@@ -21,8 +21,17 @@ use std::collections::{BTreeMap, BTreeSet};
 const ROUNDS: usize = 8;
 /// Judgements at most where rows of the judge itself are needed.
 const ROUNDS_WITH_ROWS: usize = 24;
+/// The same where the program has more than [`FEW_ROWS`], for then each solution takes long.
+const ROUNDS_OF_MANY: usize = 4;
+const FEW_ROWS: usize = 2000;
 /// Judgements in succession that find no fewer hidden points, at most.
 const IN_VAIN: usize = 4;
+/// Most that agreement may cost, as a multiple of the root mean square displacement before, and what is added to it, metres: the rows that
+/// take most are given up then.
+const MOST_COST: f64 = 1.3;
+const SPARE_M: f64 = 0.5;
+/// Share of the energy of the rows of the judge that is given up at once.
+const DEAREST: f64 = 0.5;
 /// Height added to a rise, metres, so that neighbouring positions do not rise over the line in the next round.
 const ROOM_M: f64 = 0.25;
 
@@ -100,10 +109,10 @@ impl Agreement<'_> {
         problem: &QpProblem<'_>,
         result: QpResult,
     ) -> Result<(QpResult, Left), DisocclusionError> {
-        // A lake that sinks by more than the relief is filled up again by the limits; no more solutions then.
+        // The limits fill such a lake up again.
         let in_vain = |u: &[f64]| !self.waters.lakes.is_empty() && u.iter().any(|u| *u < -self.field.relief());
         // With a price of slack the program leaves points covered on purpose.
-        if self.options.slack_price.is_some() || in_vain(&result.u) {
+        if self.options.slack_price.is_some() {
             return Ok((result, Left::default()));
         }
         // When time is up, the report lists the hidden points.
@@ -111,18 +120,30 @@ impl Agreement<'_> {
             return Ok((QpResult { stopped: true, ..result }, Left::default()));
         }
         let by_rows = self.needs_rows();
-        let most = if by_rows || !files.is_empty() { ROUNDS_WITH_ROWS } else { ROUNDS };
+        let most = match by_rows || !files.is_empty() {
+            true if result.rows <= FEW_ROWS => ROUNDS_WITH_ROWS,
+            true => ROUNDS_OF_MANY,
+            false => ROUNDS,
+        };
         let mut asked = problem.candidates.to_vec();
         let mut known: BTreeSet<u32> = asked.iter().map(|c| c.id).collect();
         let mut given = qp.given().to_vec();
         let mut found = self.hidden(problem, &result, files)?;
         let mut judged = result.u.clone();
+        let (most_m, mut too_dear) = (MOST_COST * rms(&result.u) + SPARE_M, BTreeSet::new());
         let (mut best, mut fewest, mut since) = (result, Left::of(&found), 0);
+        let mut given_to_best = given.clone();
+        if in_vain(&best.u) {
+            return Ok((best, fewest));
+        }
         for _ in 1..most {
             if found.is_empty() || since >= IN_VAIN || self.progress.should_end() {
                 break;
             }
             for Found { candidate, hides } in worst_of_cells(&found) {
+                if too_dear.contains(&cell_of(hides.point)) {
+                    continue;
+                }
                 let new = candidate.filter(|candidate| known.insert(candidate.id));
                 asked.extend(new);
                 if by_rows || new.is_none() {
@@ -131,12 +152,18 @@ impl Agreement<'_> {
             }
             qp.keep_clear(&given);
             let next = qp.solve_with(&QpProblem { candidates: &asked, ..*problem }, self.progress)?;
-            if next.stopped || in_vain(&next.u) || fallback::stuck(&next) > fallback::stuck(&best) {
+            if next.stopped {
                 break;
             }
             if self.progress.should_end() {
                 best.stopped = true;
                 break;
+            }
+            if rms(&next.u) > most_m || fallback::stuck(&next) > fallback::stuck(&best) {
+                if !drop_dearest(&mut given, &mut too_dear, &next) {
+                    break;
+                }
+                continue;
             }
             found = self.hidden(problem, &next, files)?;
             judged.clone_from(&next.u);
@@ -144,9 +171,11 @@ impl Agreement<'_> {
             since += 1;
             if Left::of(&found).all < fewest.all {
                 (fewest, best, since) = (Left::of(&found), next, 0);
+                given_to_best.clone_from(&given);
             }
             best = QpResult { rounds, added, kept, ..best };
         }
+        qp.keep_clear(&given_to_best);
         best.stopped |= self.progress.is_late() && fewest.all > 0;
         Ok((best, fewest))
     }
@@ -223,6 +252,29 @@ impl Agreement<'_> {
         }
         Ok(out)
     }
+}
+
+/// Cell of a point.
+fn cell_of(point: DVec2) -> (i64, i64) {
+    (point.x.floor() as i64, point.y.floor() as i64)
+}
+
+/// Gives up the rows of the judge that take most of the energy of all of them, with the cells of their points; whether there were any.
+fn drop_dearest(given: &mut Vec<GivenRow>, too_dear: &mut BTreeSet<(i64, i64)>, result: &QpResult) -> bool {
+    let energy = |row: &SolvedRow| Some((row.given?, row.multiplier * row.bound.abs()));
+    let mut dearest: Vec<(u32, f64)> = result.active.iter().filter_map(energy).collect();
+    dearest.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let all: f64 = dearest.iter().map(|(_, energy)| energy).sum();
+    let (mut gone, before) = (0.0, too_dear.len());
+    for (index, energy) in &dearest {
+        too_dear.insert(cell_of(given[*index as usize].point));
+        gone += energy;
+        if gone >= DEAREST * all {
+            break;
+        }
+    }
+    given.retain(|row| !too_dear.contains(&cell_of(row.point)));
+    too_dear.len() > before
 }
 
 /// Root mean square.

@@ -13,13 +13,16 @@ use belvedere_core::{DVec2, TerrainDisocclusion, View};
 use belvedere_scene::{Progress, Scene};
 use std::sync::OnceLock;
 
+/// Heights of the samples of a file under a displacement.
+pub type HeightsUnder<'a> = &'a (dyn Fn(&TerrainDisocclusion, &[LakeReport]) -> Option<Vec<f64>> + Sync);
+
 /// A file to which the displaced heights will be written.
 #[derive(Clone, Copy)]
 pub struct FileToWrite<'a> {
     /// Its samples.
     pub grid: SampleGrid<'a>,
     /// Heights of the samples (row-major), scene units, NaN without data, under a displacement with these lakes; `None` ends the search.
-    pub heights: &'a (dyn Fn(&TerrainDisocclusion, &[LakeReport]) -> Option<Vec<f64>> + Sync),
+    pub heights: HeightsUnder<'a>,
     /// Most that keeping it clear may cost, as a multiple of the root mean square displacement without it; `None` = whatever it costs.
     pub at_most: Option<f64>,
 }

@@ -25,7 +25,7 @@ mod waters;
 mod written;
 
 pub use fallback::Fallback;
-pub use file_to_write::FileToWrite;
+pub use file_to_write::{FileToWrite, HeightsUnder};
 pub use lakes::{BANK_M, LakeReport};
 pub use limits::LimitsReport;
 pub use live::{LiveFrame, LiveTerrain};

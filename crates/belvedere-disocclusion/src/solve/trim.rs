@@ -9,9 +9,9 @@ use super::super::{Field, ReferencePoint};
 use super::memory::CHECK_CELLS;
 use super::sample_grid::SampleGrid;
 use super::written::{SightOverFile, WrittenGround};
-use super::{PriceReport, TerrainReport, TerrainSolver};
+use super::{PriceReport, Solved, TerrainReport, TerrainSolver, at_every_node, ground};
 use crate::DisocclusionError;
-use belvedere_core::{DVec2, View};
+use belvedere_core::{DVec2, TerrainDisocclusion, View};
 use belvedere_scene::{CellTriangle, Progress, Scene};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -106,6 +106,22 @@ impl TerrainSolver {
             cuts.iter_mut().for_each(|cut| cut.sink(&moved));
         }
         Ok(lowered.by)
+    }
+}
+
+impl Solved {
+    /// Lowers nodes of the terrain, by row-major index, scene units: the samples of [`TerrainSolver::trimmed`], where the terrain is that
+    /// which is written.
+    ///
+    /// # Errors
+    /// [`DisocclusionError::NoTerrain`], [`DisocclusionError::Field`].
+    pub fn lower(&mut self, scene: &Scene, lowered: &BTreeMap<usize, f64>) -> Result<(), DisocclusionError> {
+        let field = Field::new(ground(scene).ok_or(DisocclusionError::NoTerrain)?, |_| 0.0)?;
+        let moved = |i: usize| self.stage.delta_at(field.scene_from_grid(field.node(i)).extend(0.0));
+        let moved = |i: usize| moved(i) - lowered.get(&i).copied().unwrap_or(0.0);
+        let all: Vec<f64> = (0..field.heights().len()).map(moved).collect();
+        self.stage = TerrainDisocclusion::new(at_every_node(&field, &all)?);
+        Ok(())
     }
 }
 

@@ -31,7 +31,7 @@ impl CandidateLine {
     pub(super) fn all(problem: &QpProblem, surface: &Surface) -> Vec<Self> {
         let of = |index: usize| {
             let Candidate { grid, .. } = problem.candidates[index];
-            let moves = surface.combination(grid, &surface.u);
+            let moves = Combination::of_grid(&surface.lattice, grid);
             let mut seen = Self { index, grid, chords: Arc::new([]), reference: 0.0, moves };
             if problem.sight.straight().is_none() {
                 seen.reference = seen.displacement(&surface.u);

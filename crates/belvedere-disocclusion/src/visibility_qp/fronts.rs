@@ -2,6 +2,7 @@
 
 use super::dissection::Dissection;
 use super::front::Front;
+use super::row::MOST_NODES;
 
 /// Sums of squares `scale (sum weights v[nodes])^2`.
 #[derive(Debug, Clone, Default)]
@@ -155,7 +156,7 @@ impl Symbolic<'_> {
         };
         for k in &self.of_part[index] {
             let (entries, scale) = (self.squares.entries(*k as usize), self.squares.scales[*k as usize]);
-            let mut at = [(0usize, 0.0f64); 8];
+            let mut at = [(0usize, 0.0f64); MOST_NODES];
             for (at, (node, weight)) in at.iter_mut().zip(entries) {
                 *at = (local(self.position[*node as usize]), *weight);
             }

@@ -111,6 +111,8 @@ pub struct QpProblem<'a> {
 pub struct SolvedRow {
     /// Candidate whose line of sight it keeps clear; `None` = a node below its ceiling, or a river that does not rise.
     pub candidate: Option<u32>,
+    /// Index among the rows that a judge asked for, of one of those.
+    pub given: Option<u32>,
     /// Position at which the ground comes near the line, grid coordinates.
     pub at: DVec2,
     /// Share of the distance from the candidate to the eye in plan.

@@ -243,12 +243,13 @@ impl RowsInPlay {
         held.map(|i| {
             let Row { bound, constraint, .. } = self.rows[i];
             let weights = self.rows[i].entries().collect();
-            let (candidate, at, tau) = match constraint {
-                Constraint::Ceiling(_) | Constraint::River(_) | Constraint::Given(_) => (None, DVec2::ZERO, 0.0),
-                Constraint::Sight { candidate, at, tau } => (Some(id(candidate)), at, tau),
+            let (candidate, given, at, tau) = match constraint {
+                Constraint::Ceiling(_) | Constraint::River(_) => (None, None, DVec2::ZERO, 0.0),
+                Constraint::Given(index) => (None, Some(index), DVec2::ZERO, 0.0),
+                Constraint::Sight { candidate, at, tau } => (Some(id(candidate)), None, at, tau),
             };
             let (multiplier, slack) = (self.multiplier(i), self.slack(i));
-            SolvedRow { candidate, at, tau, weights, bound, multiplier, slack }
+            SolvedRow { candidate, given, at, tau, weights, bound, multiplier, slack }
         })
         .collect()
     }

@@ -64,7 +64,7 @@ pub struct QpSolver {
 pub(crate) struct GivenRow {
     /// Grid position of the ground, and of the point.
     at: DVec2,
-    point: DVec2,
+    pub(crate) point: DVec2,
     /// Share of the way from the point to the eye at which the ground lies.
     tau: f64,
     /// Scene units.

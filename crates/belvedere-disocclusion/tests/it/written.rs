@@ -166,7 +166,7 @@ fn a_file_that_the_solver_knows_shows_what_the_solved_ground_shows() {
             assert!((after.visible_dense - seen).abs() < 0.005, "said {}, the file shows {seen}", after.visible_dense);
             assert_eq!(report.guaranteed, seen >= 0.9999, "noise {noise_m}: {seen}");
             let [with, without] = [report, &alone.report].map(|r| r.metrics.rms_m);
-            assert!(with <= 1.3 * without, "noise {noise_m}: {with} m instead of {without} m");
+            assert!(with <= 1.3 * without + 0.5, "noise {noise_m}: {with} m instead of {without} m");
         }
     }
 }

@@ -240,7 +240,7 @@ fn disoccluded(request: &Disocclude, options: &OpenOptions) -> Result<Disocclude
         robust: request.robust.unwrap_or_default(),
     };
     let mut solved = to_write.solved(&solver, &view, &solving)?;
-    let (written, trimmed) = to_write.trimmed(&solver, &view, &solved, &options.progress)?;
+    let (written, trimmed) = to_write.trimmed(&solver, &view, &mut solved, &options.progress)?;
     let ToWrite { rasters, rivers: rivers_written } = written;
     let written_on = to_write.grid()?;
     let seen_by = (&*data.scene, &view);

@@ -140,18 +140,18 @@ impl<'a> HeightsToWrite<'a> {
         &self,
         solver: &TerrainSolver,
         view: &View,
-        solved: &Solved,
+        solved: &mut Solved,
         progress: &Progress,
     ) -> Result<(ToWrite, Option<TrimReport>), BelvedereError> {
         let mut out = self.under(&solved.stage, &solved.report.lakes)?;
         let grid = self.grid()?;
-        let own = (!grid.solved_on).then(|| grid.samples());
-        let other = (self.robust != Robust::Never).then(|| grid.samples().cut_otherwise());
-        let grids: Vec<SampleGrid<'_>> = own.into_iter().chain(other).collect();
-        if grids.is_empty() || solved.report.parameters.slack_price.is_some() {
+        if solved.report.parameters.slack_price.is_some() {
             return Ok((out, None));
         }
-        let lakes = LevelLakes::new(&solved.stage, &solved.report.lakes, self.scene);
+        let mut grids = vec![grid.samples()];
+        grids.extend((self.robust != Robust::Never).then(|| grid.samples().cut_otherwise()));
+        let stage = solved.stage.clone();
+        let lakes = LevelLakes::new(&stage, &solved.report.lakes, self.scene);
         let place = |i: usize| DVec2::new((i % grid.nodes[0]) as f64, (i / grid.nodes[0]) as f64);
         let is_water = |i: usize| (grid.scene_from_index)(place(i)).is_some_and(|p| lakes.lake_at(p).is_some());
         let height = |i: usize| sample(&out.rasters[0], i);
@@ -165,7 +165,9 @@ impl<'a> HeightsToWrite<'a> {
                 lowered.iter().for_each(|(i, by)| values[*i] -= *by as f32);
             }
         }
-        if !grid.solved_on {
+        if grid.solved_on {
+            solved.lower(self.scene, &lowered)?;
+        } else {
             let rivers = (self.scene, self.rivers);
             out.rivers = run_downhill(&mut out.rasters, self.original, rivers, &lakes)?;
         }
