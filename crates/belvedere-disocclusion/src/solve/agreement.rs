@@ -22,8 +22,11 @@ const ROUNDS: usize = 8;
 /// Judgements at most where rows of the judge itself are needed.
 const ROUNDS_WITH_ROWS: usize = 24;
 /// The same where the program has more than [`FEW_ROWS`], for then each solution takes long.
-const ROUNDS_OF_MANY: usize = 4;
+const ROUNDS_OF_MANY: usize = 3;
 const FEW_ROWS: usize = 2000;
+/// Share of the judged points for which a finer grid is tried where there are more than [`MANY`] candidates.
+const WORTH: f64 = 0.01;
+const MANY: usize = 2000;
 /// Judgements in succession that find no fewer hidden points, at most.
 const IN_VAIN: usize = 4;
 /// Most that agreement may cost, as a multiple of the root mean square displacement before, and what is added to it, metres: the rows that
@@ -88,7 +91,9 @@ impl Agreement<'_> {
         let dear: Vec<&FileJudge<'_>> = self.files.iter().filter(|file| file.at_most().is_some()).collect();
         let firm: Vec<&FileJudge<'_>> = self.files.iter().filter(|file| file.at_most().is_none()).collect();
         let (best, left) = self.reach_over(&firm, qp, problem, result)?;
-        let on_ground = if self.needs_rows() { left.on_ground } else { 0 };
+        // A finer grid takes long where much is asked for.
+        let few = problem.candidates.len() > MANY && (left.on_ground as f64) < WORTH * self.check.len() as f64;
+        let on_ground = if self.needs_rows() && !few { left.on_ground } else { 0 };
         let Some(at_most) = dear.iter().filter_map(|file| file.at_most()).reduce(f64::min) else {
             return Ok((best, on_ground));
         };
@@ -132,7 +137,7 @@ impl Agreement<'_> {
         let mut judged = result.u.clone();
         let (most_m, mut too_dear) = (MOST_COST * rms(&result.u) + SPARE_M, BTreeSet::new());
         let (mut best, mut fewest, mut since) = (result, Left::of(&found), 0);
-        let mut given_to_best = given.clone();
+        let (mut given_to_best, mut is_new) = (given.clone(), true);
         if in_vain(&best.u) {
             return Ok((best, fewest));
         }
@@ -140,14 +145,16 @@ impl Agreement<'_> {
             if found.is_empty() || since >= IN_VAIN || self.progress.should_end() {
                 break;
             }
-            for Found { candidate, hides } in worst_of_cells(&found) {
-                if too_dear.contains(&cell_of(hides.point)) {
-                    continue;
-                }
-                let new = candidate.filter(|candidate| known.insert(candidate.id));
-                asked.extend(new);
-                if by_rows || new.is_none() {
-                    given.push(self.row(qp, &judged, hides));
+            if std::mem::take(&mut is_new) {
+                for Found { candidate, hides } in worst_of_cells(&found) {
+                    if too_dear.contains(&cell_of(hides.point)) {
+                        continue;
+                    }
+                    let new = candidate.filter(|candidate| known.insert(candidate.id));
+                    asked.extend(new);
+                    if by_rows || new.is_none() {
+                        given.push(self.row(qp, &judged, hides));
+                    }
                 }
             }
             qp.keep_clear(&given);
@@ -165,7 +172,7 @@ impl Agreement<'_> {
                 }
                 continue;
             }
-            found = self.hidden(problem, &next, files)?;
+            (found, is_new) = (self.hidden(problem, &next, files)?, true);
             judged.clone_from(&next.u);
             let (rounds, added, kept) = (best.rounds + next.rounds, best.added + next.added, best.kept);
             since += 1;
