@@ -25,7 +25,7 @@ const ROUNDS_WITH_ROWS: usize = 24;
 const ROUNDS_OF_MANY: usize = 3;
 const FEW_ROWS: usize = 2000;
 /// Share of the judged points for which a finer grid is tried where there are more than [`MANY`] candidates.
-const WORTH: f64 = 0.01;
+const WORTH: f64 = 0.1;
 const MANY: usize = 2000;
 /// Judgements in succession that find no fewer hidden points, at most.
 const IN_VAIN: usize = 4;
