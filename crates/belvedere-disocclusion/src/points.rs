@@ -75,6 +75,8 @@ pub struct Unusable {
     pub kind: PointKind,
     /// Why it cannot be used.
     pub reason: UnusableReason,
+    /// What it stands for, see [`ReferencePoint::amount`].
+    pub amount: f64,
 }
 
 /// Reference points of every feature of the layers that must be seen, in the order of layers and features, along each.
@@ -114,14 +116,19 @@ pub(super) fn candidate_points(scene: &Scene, field: &Field, settings: &TerrainS
 /// stand for no length or area: they lie on the edges of the ground's triangles inside areas, and wherever lines and rims cross these
 /// edges. On a flat triangle a straight piece of a feature is hidden first at one of its ends, and an area first at the rim of the
 /// triangle or of the area. So if no edge is hidden, nothing between the edges is.
+///
+/// Returns also what lies beside the ground or in its holes: lengths, areas and numbers, see [`ReferencePoint::amount`].
 pub(super) fn judged_points(
     features: &[RequiredFeature],
     field: &Field,
     settings: &TerrainSettings,
     spacing: f64,
-) -> Vec<ReferencePoint> {
+) -> (Vec<ReferencePoint>, [f64; KINDS]) {
     let out = PointCollector { edges: true, ..PointCollector::new(field, false) };
-    collect_points(out, features, settings, spacing).0
+    let (points, unusable) = collect_points(out, features, settings, spacing);
+    let mut beside = [0.0; KINDS];
+    unusable.iter().for_each(|point| beside[point.kind.of_feature()] += point.amount);
+    (points, beside)
 }
 
 /// Number of kinds of features: lines, areas and points, whose shares are never added up.
@@ -267,7 +274,8 @@ impl<'a> PointCollector<'a> {
             None => {
                 let reason =
                     if self.field.contains(grid) { UnusableReason::NoData } else { UnusableReason::OutsideDem };
-                self.unusable.push(Unusable { layer, feature, along_m, grid, kind, reason });
+                let amount = self.amount;
+                self.unusable.push(Unusable { layer, feature, along_m, grid, kind, reason, amount });
             }
         }
     }
@@ -338,8 +346,9 @@ impl<'a> PointCollector<'a> {
         self.amount = 0.0;
         self.on_rims(rings, spacing);
         let rims = self.usable.len();
+        let beside = self.unusable.len();
         self.inside(rings, spacing);
-        if self.usable.len() == rims {
+        if self.usable.len() == rims && self.unusable.len() == beside {
             let enclosed =
                 self.field.spacing().element_product() * rings.iter().map(|r| 0.5 * doubled_area(r).abs()).sum::<f64>();
             let each = enclosed / (rims - first).max(1) as f64;

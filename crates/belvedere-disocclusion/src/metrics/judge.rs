@@ -62,6 +62,11 @@ pub(crate) fn amounts(points: &[ReferencePoint]) -> [f64; KINDS] {
     sums
 }
 
+/// Sums by kind.
+pub(crate) fn sums(a: [f64; KINDS], b: [f64; KINDS]) -> [f64; KINDS] {
+    std::array::from_fn(|k| a[k] + b[k])
+}
+
 /// Shares of the whole features that `points` show and stand for: visible, and in view; the least of lines, areas and points. 0 where
 /// nothing is in view, 1 without features.
 ///

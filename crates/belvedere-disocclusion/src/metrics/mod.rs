@@ -3,7 +3,7 @@
 mod change;
 mod judge;
 
-pub(super) use judge::{Hides, Judge, Verdict, amounts, share_seen, shares, shares_of_whole};
+pub(super) use judge::{Hides, Judge, Verdict, amounts, share_seen, shares, shares_of_whole, sums};
 
 use super::visibility_qp::LinesOfSight;
 use super::{Cells, Field, ReferencePoint};

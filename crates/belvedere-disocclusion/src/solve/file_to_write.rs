@@ -77,7 +77,8 @@ impl<'a> FileJudge<'a> {
         let sight = SightOverFile::new(grid, self.view);
         let points = self.points.get_or_init(|| {
             let features: Vec<_> = self.features.iter().map(|f| f.mapped(&|line| grid.image_of(&own, line))).collect();
-            sight.in_view(&own, &judged_points(&features, &own, self.settings, CHECK_CELLS), self.view, self.settings)
+            let (all, _) = judged_points(&features, &own, self.settings, CHECK_CELLS);
+            sight.in_view(&own, &all, self.view, self.settings)
         });
         let places: Vec<(DVec2, f64)> = points.iter().map(|p| (p.grid, p.lift)).collect();
         let found = |(p, (at, over)): (&ReferencePoint, (DVec2, f64))| {

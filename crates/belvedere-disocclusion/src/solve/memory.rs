@@ -1,10 +1,11 @@
 //! Preparation, once per terrain, and memory between frames.
 
+use super::super::metrics::{amounts, sums};
 use super::super::settings::MOST_W;
 use super::super::visibility_qp::{Candidate, QpOptions, QpSolver};
 use super::super::{
-    BlockMaxima, Cells, Field, Hierarchy, ReferencePoint, SmoothPass, Smoother, SolverMode, TerrainSettings, Unusable,
-    candidate_points, grid_weight, judged_points, reference_points, stated_spacing, temporal_weight,
+    BlockMaxima, Cells, Field, Hierarchy, KINDS, ReferencePoint, SmoothPass, Smoother, SolverMode, TerrainSettings,
+    Unusable, candidate_points, grid_weight, judged_points, reference_points, stated_spacing, temporal_weight,
 };
 use super::lakes::{self, Water};
 use super::limits::LimitedTerrain;
@@ -57,6 +58,8 @@ pub(super) struct Prepared {
     pub(super) dense: Vec<ReferencePoint>,
     /// Points every tenth of a cell, by which the result is judged.
     check: Vec<ReferencePoint>,
+    /// Lengths, areas and numbers of what lies beside the ground or in its holes.
+    beside: [f64; KINDS],
     /// Limits of the displaced ground.
     pub(super) limited: Option<Arc<LimitedTerrain>>,
     /// Cells and bounds of blocks, in modes with a greedy pass.
@@ -179,7 +182,7 @@ impl Prepared {
         let (points, unusable) = reference_points(scene, &level, settings, settings.spacing);
         let with_qp = settings.mode != SolverMode::Paper;
         let dense = if with_qp { candidate_points(scene, &level, settings) } else { Vec::new() };
-        let check = judged_points(&features, &level, settings, CHECK_CELLS);
+        let (check, beside) = judged_points(&features, &level, settings, CHECK_CELLS);
         let waters = Waters::new(&areas_of_water, &river_lines, heightfield, &level);
         let limited = (with_qp && settings.limits).then(|| Arc::new(LimitedTerrain::new(&level, &grid)));
         let cells = (settings.mode != SolverMode::Qp).then(|| {
@@ -210,6 +213,7 @@ impl Prepared {
             unusable,
             dense,
             check,
+            beside,
             limited,
             cells,
             smooth: smooth.transpose()?,
@@ -225,9 +229,9 @@ impl Prepared {
         inside.into_iter().chain(near).map(|i| self.check[i]).collect()
     }
 
-    /// All points by which the result is judged, in view or not.
-    pub(super) fn all_dense(&self) -> &[ReferencePoint] {
-        &self.check
+    /// Lengths, areas and numbers of all features, in view or not, on the ground or not.
+    pub(super) fn whole(&self) -> [f64; KINDS] {
+        sums(amounts(&self.check), self.beside)
     }
 
     /// The points by which the result is judged as candidates, whose ids follow those of all others.

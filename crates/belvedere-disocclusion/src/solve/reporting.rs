@@ -102,7 +102,7 @@ impl Verdicts {
         });
         let undisplaced = undisplaced.prepared(dense.len());
         let shown_before = Shown::before(c.base, c.in_plan)?;
-        let whole = [amounts(&may_show), in_view_amounts, amounts(prepared.all_dense())];
+        let whole = [amounts(&may_show), in_view_amounts, prepared.whole()];
         let before = |points: &[ReferencePoint]| {
             let points = shown_before.of(field, points);
             let verdicts = undisplaced.judge(&points, guard);

@@ -83,7 +83,7 @@ impl TerrainSolver {
             let field = WrittenGround { grid, height, solved_on: false }.field(view)?;
             let sight = SightOverFile::new(grid, view);
             let features: Vec<_> = features.iter().map(|f| f.mapped(&|line| grid.image_of(&field, line))).collect();
-            let all = judged_points(&features, &field, &self.settings, CHECK_CELLS);
+            let (all, _) = judged_points(&features, &field, &self.settings, CHECK_CELLS);
             let mut points = sight.in_view(&field, &all, view, &self.settings);
             points.retain(|p| !given_up(p));
             let mut by_cell = BTreeMap::<_, Vec<usize>>::new();

@@ -1,6 +1,6 @@
 //! Judges a file of heights: its own samples, all of them, and the triangles between them.
 
-use super::super::metrics::{Hides, Judge, Verdict, amounts, share_seen, shares, shares_of_whole};
+use super::super::metrics::{Hides, Judge, Verdict, amounts, share_seen, shares, shares_of_whole, sums};
 use super::super::points::{judged_points, reference_points_of, required_features};
 use super::super::visibility_qp::LinesOfSight;
 use super::super::{Field, KINDS, ReferencePoint, SolverMode, TerrainSettings, Wedge};
@@ -101,7 +101,7 @@ impl TerrainSolver {
         let field = ground.field(view)?;
         let features: Vec<_> =
             required_features(scene).iter().map(|f| f.mapped(&|line| ground.grid.image_of(&field, line))).collect();
-        let all = judged_points(&features, &field, settings, CHECK_CELLS);
+        let (all, beside) = judged_points(&features, &field, settings, CHECK_CELLS);
         let sight = SightOverFile::new(ground.grid, view);
         let in_view = |points: &[ReferencePoint]| sight.in_view(&field, points, view, settings);
         let seen_from = in_view(&all);
@@ -113,7 +113,7 @@ impl TerrainSolver {
         let judge = judge.prepared(dense.len());
         let [of_points, of_dense] = [&points, &dense].map(|points| judge.judge(points, settings.guard));
         progress.tick("judging the written heights", 1.0)?;
-        let amounts: [[f64; KINDS]; 3] = [amounts(&dense), in_view_amounts, amounts(&all)];
+        let amounts: [[f64; KINDS]; 3] = [amounts(&dense), in_view_amounts, sums(amounts(&all), beside)];
         let [visible_whole, in_view] = shares_of_whole((&dense, &of_dense), amounts);
         let [visible_dense, hidden_in_guard] = shares(&dense, &of_dense);
         let over = of_points.iter().chain(&of_dense).filter_map(|v| v.hides()).map(Hides::over);
