@@ -203,6 +203,9 @@ class DisoccludeOptions(TypedDict, total=False):
     #: Property that holds the names of features, instead of the one that looks most like a name
     name_field: str | None
 
+    #: Show what is in view to programs that cut the cells of the heights from north-east to south-west as well: auto, the default, if the ground moves by less than 1.3 times as much, always or never; without a value always
+    robust: Literal["auto", "always", "never"] | None
+
     #: Share of the features in view to show, such as 0.95 or 95%: the dearest stretches beyond it are given up, and less ground moves
     show: float | None
 

@@ -36,6 +36,7 @@ fn rows(folder: &Path) -> Vec<(&'static str, Does)> {
                 json!({ "crs": "EPSG:32633", "eye": "45.155N,9.038E,600", "look": "45.18N,9.04E" }),
             ),
         ),
+        ("robust", Changes(json!("never"), none())),
         ("fill_voids", Changes(json!(true), none())),
         ("area_style", Changes(json!("glacier"), none())),
         ("curved_earth", Changes(json!(true), none())),
