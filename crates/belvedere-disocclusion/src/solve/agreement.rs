@@ -76,6 +76,60 @@ impl Left {
     }
 }
 
+/// What is asked of the program.
+struct Asked {
+    candidates: Vec<Candidate>,
+    known: BTreeSet<u32>,
+    given: Vec<GivenRow>,
+    /// Whether every hidden point brings a row, or only one that is a candidate or lies on a file.
+    by_rows: bool,
+    /// Cells of points whose rows were given up.
+    too_dear: BTreeSet<(i64, i64)>,
+}
+
+impl Asked {
+    fn new(problem: &QpProblem<'_>, qp: &QpSolver, by_rows: bool) -> Self {
+        let candidates = problem.candidates.to_vec();
+        let known = candidates.iter().map(|c| c.id).collect();
+        Self { candidates, known, given: qp.given().to_vec(), by_rows, too_dear: BTreeSet::new() }
+    }
+
+    /// Asks for hidden points too.
+    ///
+    /// * `u`: the displacement under which they are hidden.
+    fn take_in(&mut self, found: &[Found], qp: &QpSolver, u: &[f64]) {
+        for Found { candidate, hides } in worst_of_cells(found) {
+            let HiddenInFile { point, at, tau, over } = *hides;
+            if self.too_dear.contains(&cell_of(point)) {
+                continue;
+            }
+            let new = candidate.filter(|candidate| self.known.insert(candidate.id));
+            self.candidates.extend(new);
+            if self.by_rows || new.is_none() {
+                self.given.push(qp.lowering(u, [at, point], tau, over + ROOM_M));
+            }
+        }
+    }
+
+    /// Gives up the rows of the judge that take most of the energy of all of them, with the cells of their points; whether there were any.
+    fn drop_dearest(&mut self, result: &QpResult) -> bool {
+        let energy = |row: &SolvedRow| Some((row.given?, row.multiplier * row.bound.abs()));
+        let mut dearest: Vec<(u32, f64)> = result.active.iter().filter_map(energy).collect();
+        dearest.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let all: f64 = dearest.iter().map(|(_, energy)| energy).sum();
+        let (mut gone, before) = (0.0, self.too_dear.len());
+        for (index, energy) in &dearest {
+            self.too_dear.insert(cell_of(self.given[*index as usize].point));
+            gone += energy;
+            if gone >= DEAREST * all {
+                break;
+            }
+        }
+        self.given.retain(|row| !self.too_dear.contains(&cell_of(row.point)));
+        self.too_dear.len() > before
+    }
+}
+
 impl Agreement<'_> {
     /// Judges and solves until the judge finds no hidden point that the program counts as seen, or solving again gains nothing; then
     /// again for the files that must not cost too much.
@@ -100,10 +154,13 @@ impl Agreement<'_> {
         if left.all > 0 || best.stopped || fallback::stuck(&best) > 0 {
             return Ok((best, on_ground));
         }
-        let all = [&firm[..], &dear].concat();
+        let (all, given) = ([&firm[..], &dear].concat(), qp.given().to_vec());
         let (next, left) = self.reach_over(&all, qp, problem, best.clone())?;
-        let is_worth = left.all == 0 && !next.stopped && rms(&next.u) <= at_most * rms(&best.u);
-        Ok((if is_worth { next } else { best }, on_ground))
+        if left.all == 0 && !next.stopped && rms(&next.u) <= at_most * rms(&best.u) {
+            return Ok((next, on_ground));
+        }
+        qp.keep_clear(&given);
+        Ok((best, on_ground))
     }
 
     /// See [`Self::reach`].
@@ -124,20 +181,17 @@ impl Agreement<'_> {
         if self.progress.should_end() {
             return Ok((QpResult { stopped: true, ..result }, Left::default()));
         }
-        let by_rows = self.needs_rows();
-        let most = match by_rows || !files.is_empty() {
+        let most = match self.needs_rows() || !files.is_empty() {
             true if result.rows <= FEW_ROWS => ROUNDS_WITH_ROWS,
             true => ROUNDS_OF_MANY,
             false => ROUNDS,
         };
-        let mut asked = problem.candidates.to_vec();
-        let mut known: BTreeSet<u32> = asked.iter().map(|c| c.id).collect();
-        let mut given = qp.given().to_vec();
+        let mut asked = Asked::new(problem, qp, self.needs_rows());
         let mut found = self.hidden(problem, &result, files)?;
         let mut judged = result.u.clone();
-        let (most_m, mut too_dear) = (MOST_COST * rms(&result.u) + SPARE_M, BTreeSet::new());
+        let most_m = MOST_COST * rms(&result.u) + SPARE_M;
         let (mut best, mut fewest, mut since) = (result, Left::of(&found), 0);
-        let (mut given_to_best, mut is_new) = (given.clone(), true);
+        let (mut given_to_best, mut is_new) = (asked.given.clone(), true);
         if in_vain(&best.u) {
             return Ok((best, fewest));
         }
@@ -146,19 +200,10 @@ impl Agreement<'_> {
                 break;
             }
             if std::mem::take(&mut is_new) {
-                for Found { candidate, hides } in worst_of_cells(&found) {
-                    if too_dear.contains(&cell_of(hides.point)) {
-                        continue;
-                    }
-                    let new = candidate.filter(|candidate| known.insert(candidate.id));
-                    asked.extend(new);
-                    if by_rows || new.is_none() {
-                        given.push(self.row(qp, &judged, hides));
-                    }
-                }
+                asked.take_in(&found, qp, &judged);
             }
-            qp.keep_clear(&given);
-            let next = qp.solve_with(&QpProblem { candidates: &asked, ..*problem }, self.progress)?;
+            qp.keep_clear(&asked.given);
+            let next = qp.solve_with(&QpProblem { candidates: &asked.candidates, ..*problem }, self.progress)?;
             if next.stopped {
                 break;
             }
@@ -167,7 +212,7 @@ impl Agreement<'_> {
                 break;
             }
             if rms(&next.u) > most_m || fallback::stuck(&next) > fallback::stuck(&best) {
-                if !drop_dearest(&mut given, &mut too_dear, &next) {
+                if !asked.drop_dearest(&next) {
                     break;
                 }
                 continue;
@@ -178,7 +223,7 @@ impl Agreement<'_> {
             since += 1;
             if Left::of(&found).all < fewest.all {
                 (fewest, best, since) = (Left::of(&found), next, 0);
-                given_to_best.clone_from(&given);
+                given_to_best.clone_from(&asked.given);
             }
             best = QpResult { rounds, added, kept, ..best };
         }
@@ -190,11 +235,6 @@ impl Agreement<'_> {
     /// Whether the solved ground moves otherwise than the program's grid.
     fn needs_rows(&self) -> bool {
         !self.waters.lakes.is_empty() || self.detail.is_some()
-    }
-
-    fn row(&self, qp: &QpSolver, u: &[f64], hides: &HiddenInFile) -> GivenRow {
-        let HiddenInFile { point, at, tau, over } = *hides;
-        qp.lowering(u, [at, point], tau, over + ROOM_M)
     }
 
     /// Points that a solution leaves hidden and does not list as unresolved: on the ground that is solved on or, if there are none, on
@@ -264,24 +304,6 @@ impl Agreement<'_> {
 /// Cell of a point.
 fn cell_of(point: DVec2) -> (i64, i64) {
     (point.x.floor() as i64, point.y.floor() as i64)
-}
-
-/// Gives up the rows of the judge that take most of the energy of all of them, with the cells of their points; whether there were any.
-fn drop_dearest(given: &mut Vec<GivenRow>, too_dear: &mut BTreeSet<(i64, i64)>, result: &QpResult) -> bool {
-    let energy = |row: &SolvedRow| Some((row.given?, row.multiplier * row.bound.abs()));
-    let mut dearest: Vec<(u32, f64)> = result.active.iter().filter_map(energy).collect();
-    dearest.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let all: f64 = dearest.iter().map(|(_, energy)| energy).sum();
-    let (mut gone, before) = (0.0, too_dear.len());
-    for (index, energy) in &dearest {
-        too_dear.insert(cell_of(given[*index as usize].point));
-        gone += energy;
-        if gone >= DEAREST * all {
-            break;
-        }
-    }
-    given.retain(|row| !too_dear.contains(&cell_of(row.point)));
-    too_dear.len() > before
 }
 
 /// Root mean square.

@@ -6,7 +6,6 @@ use super::super::{Field, Hierarchy, ReferencePoint, TerrainSettings};
 use super::LakeReport;
 use super::memory::CHECK_CELLS;
 use super::sample_grid::SampleGrid;
-use super::trim::most_lowered;
 use super::written::{SightOverFile, WrittenGround};
 use crate::DisocclusionError;
 use belvedere_core::{DVec2, TerrainDisocclusion, View};
@@ -86,7 +85,7 @@ impl<'a> FileJudge<'a> {
             let tau = sight.share_of_way(p.grid, at);
             let [point, at] = [of_point?, of_ground?].map(|p| field.grid_from_scene(p));
             // Such bumps are trimmed, for the solver's grid cannot hold them.
-            let is_bump = over <= most_lowered(&grid) && (at - point).abs().cmplt(solver.step()).all();
+            let is_bump = over <= grid.most_trimmed() && (at - point).abs().cmplt(solver.step()).all();
             let asked = !is_bump && is_asked(&ReferencePoint { grid: point, ..*p });
             asked.then_some(HiddenInFile { point, at, tau, over })
         };

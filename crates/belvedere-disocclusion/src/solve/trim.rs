@@ -9,7 +9,7 @@ use super::super::{Field, ReferencePoint};
 use super::memory::CHECK_CELLS;
 use super::sample_grid::SampleGrid;
 use super::written::{SightOverFile, WrittenGround};
-use super::{PriceReport, Solved, TerrainReport, TerrainSolver, at_every_node, ground};
+use super::{Solved, TerrainReport, TerrainSolver, at_every_node, ground};
 use crate::DisocclusionError;
 use belvedere_core::{DVec2, TerrainDisocclusion, View};
 use belvedere_scene::{CellTriangle, Progress, Scene};
@@ -76,7 +76,7 @@ impl TerrainSolver {
     ) -> Result<BTreeMap<usize, f64>, DisocclusionError> {
         let features = required_features(scene);
         let given_up = |p: &ReferencePoint| {
-            report.price.as_ref().is_some_and(|price: &PriceReport| price.given_up.iter().any(|given| given.holds(p)))
+            report.price.as_ref().is_some_and(|price| price.given_up.iter().any(|given| given.holds(p)))
         };
         let mut cuts = Vec::new();
         for &grid in grids {
@@ -92,7 +92,7 @@ impl TerrainSolver {
             }
             cuts.push(Cut { grid, field, sight, open: (0..points.len()).collect(), points, by_cell });
         }
-        let most = grids.iter().map(most_lowered).fold(0.0, f64::max);
+        let most = grids.iter().map(SampleGrid::most_trimmed).fold(0.0, f64::max);
         let mut lowered = Lowered { by: BTreeMap::new(), is_fixed, most };
         for _ in 0..ROUNDS {
             progress.tick("trimming the heights to be written", 0.95)?;
@@ -181,9 +181,11 @@ impl Cut<'_> {
     }
 }
 
-/// Most a sample of a grid is lowered, scene units.
-pub(super) fn most_lowered(grid: &SampleGrid<'_>) -> f64 {
-    MOST_M.max(MOST_SHARE * grid.spacing.max_element())
+impl SampleGrid<'_> {
+    /// Most a sample is trimmed, scene units.
+    pub fn most_trimmed(&self) -> f64 {
+        MOST_M.max(MOST_SHARE * self.spacing.max_element())
+    }
 }
 
 fn cell(g: DVec2) -> (i64, i64) {

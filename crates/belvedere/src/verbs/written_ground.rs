@@ -7,7 +7,8 @@ use crate::request::{Robust, WrittenGrid};
 use belvedere_core::{DVec2, TerrainDisocclusion, View};
 use belvedere_disocclusion::report::{LakeReport, RiverReport, TrimReport};
 use belvedere_disocclusion::{
-    FileToWrite, SampleGrid, Solved, TerrainMemory, TerrainReport, TerrainSolver, WrittenGround, WrittenShares,
+    FileToWrite, SampleGrid, Solved, SolverMode, TerrainMemory, TerrainReport, TerrainSettings, TerrainSolver,
+    WrittenGround, WrittenShares,
 };
 use belvedere_io::IoError;
 use belvedere_io::raster::{Raster, Samples};
@@ -145,7 +146,8 @@ impl<'a> HeightsToWrite<'a> {
     ) -> Result<(ToWrite, Option<TrimReport>), BelvedereError> {
         let mut out = self.under(&solved.stage, &solved.report.lakes)?;
         let grid = self.grid()?;
-        if solved.report.parameters.slack_price.is_some() {
+        let TerrainSettings { mode, slack_price, move_at_most_m, .. } = *solver.settings();
+        if mode == SolverMode::Paper || slack_price.is_some() {
             return Ok((out, None));
         }
         let mut grids = vec![grid.samples()];
@@ -154,8 +156,12 @@ impl<'a> HeightsToWrite<'a> {
         let lakes = LevelLakes::new(&stage, &solved.report.lakes, self.scene);
         let place = |i: usize| DVec2::new((i % grid.nodes[0]) as f64, (i / grid.nodes[0]) as f64);
         let is_water = |i: usize| (grid.scene_from_index)(place(i)).is_some_and(|p| lakes.lake_at(p).is_some());
+        let most = grids[0].most_trimmed();
+        let is_deep =
+            |i: usize| move_at_most_m.zip(sample(&out.rasters[1], i)).is_some_and(|(at_most, d)| most - d > at_most);
+        let is_fixed = |i: usize| is_deep(i) || is_water(i);
         let height = |i: usize| sample(&out.rasters[0], i);
-        let lowered = solver.trimmed((self.scene, view), &grids, &height, &is_water, &solved.report, progress)?;
+        let lowered = solver.trimmed((self.scene, view), &grids, &height, &is_fixed, &solved.report, progress)?;
         if lowered.is_empty() {
             return Ok((out, None));
         }

@@ -10,9 +10,11 @@ use serde_json::{Value, json};
 use std::path::Path;
 
 /// Options that another test tries.
-const ELSEWHERE: [(&str, &str); 1] = [
+const ELSEWHERE: [(&str, &str); 2] = [
     // It needs ground that is solved for, beyond its limits.
     ("no_limits", "terrain.rs of the command line"),
+    // It needs rough ground.
+    ("robust", "other_diagonal.rs"),
 ];
 
 fn rows(folder: &Path) -> Vec<(&'static str, Does)> {
@@ -36,7 +38,6 @@ fn rows(folder: &Path) -> Vec<(&'static str, Does)> {
                 json!({ "crs": "EPSG:32633", "eye": "45.155N,9.038E,600", "look": "45.18N,9.04E" }),
             ),
         ),
-        ("robust", Changes(json!("never"), none())),
         ("fill_voids", Changes(json!(true), none())),
         ("area_style", Changes(json!("glacier"), none())),
         ("curved_earth", Changes(json!(true), none())),
