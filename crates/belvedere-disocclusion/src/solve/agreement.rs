@@ -62,12 +62,12 @@ struct Found {
     hides: HiddenInFile,
 }
 
-/// Numbers of hidden points.
-#[derive(Default, Clone, Copy)]
+/// Numbers of hidden points; fewer on the ground count more, for files are judged where it hides none.
+#[derive(Default, Clone, Copy, PartialEq, PartialOrd)]
 struct Left {
-    all: usize,
     /// On the ground that is solved on.
     on_ground: usize,
+    all: usize,
 }
 
 impl Left {
@@ -221,7 +221,7 @@ impl Agreement<'_> {
             judged.clone_from(&next.u);
             let (rounds, added, kept) = (best.rounds + next.rounds, best.added + next.added, best.kept);
             since += 1;
-            if Left::of(&found).all < fewest.all {
+            if Left::of(&found) < fewest {
                 (fewest, best, since) = (Left::of(&found), next, 0);
                 given_to_best.clone_from(&asked.given);
             }

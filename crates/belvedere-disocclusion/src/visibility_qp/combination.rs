@@ -4,7 +4,6 @@ use super::surface::{Lattice, Surface};
 use crate::smooth::Between;
 use belvedere_core::DVec2;
 use belvedere_scene::CellTriangle;
-use std::collections::BTreeMap;
 
 /// A combination of displacements of nodes, and a constant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,16 +40,6 @@ impl Combination {
     pub(super) fn at(&self, u: &[f64]) -> f64 {
         self.constant + self.of_nodes(u)
     }
-}
-
-/// Nodes of the terrain that move with a lake: its water by as much as the lake does; its bank and its shore as the solver's grid does,
-/// but not above the water, and not below it by more than they stand over it.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Levels {
-    /// Grid position at which the displacement of each lake is that of the solver's grid.
-    pub(crate) lakes: Vec<DVec2>,
-    /// Of a node of the terrain its lake, and its height over the water: 0 of water, infinite on the shore.
-    pub(crate) nodes: BTreeMap<u32, (u32, f64)>,
 }
 
 impl Surface {
@@ -109,6 +98,7 @@ impl Surface {
 
 #[cfg(test)]
 mod tests {
+    use super::super::levels::Levels;
     use super::*;
     use crate::cells::tests::noise;
     use crate::smooth::{Green, Smoother};

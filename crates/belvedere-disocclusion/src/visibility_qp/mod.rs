@@ -14,6 +14,7 @@ mod dual;
 mod front;
 mod fronts;
 mod lanes;
+mod levels;
 mod matrix_free;
 mod metric;
 mod preconditioner;
@@ -31,7 +32,7 @@ mod uphill;
 mod view_rays;
 mod walk;
 
-pub(crate) use combination::Levels;
+pub(crate) use levels::Levels;
 pub use problem::{
     Candidate, Certificate, LinesOfSight, QpError, QpOptions, QpProblem, QpResult, Reason, SolvedRow, StraightSight,
     Unresolved,

@@ -2,7 +2,8 @@
 
 use super::bundle::Bundle;
 use super::candidate_line::CandidateLine;
-use super::combination::{Combination, Levels};
+use super::combination::Combination;
+use super::levels::Levels;
 use super::matrix_free::Effort;
 use super::metric::Metric;
 use super::problem::{QpError, QpOptions, QpProblem, QpResult, Reason, Unresolved};

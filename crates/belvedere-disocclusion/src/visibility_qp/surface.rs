@@ -1,6 +1,6 @@
 //! The ground: two flat triangles per cell, whose nodes are displaced by the bilinear grid of the solver; and what it stays below.
 
-use super::combination::Levels;
+use super::levels::Levels;
 use crate::smooth::Between;
 use belvedere_core::DVec2;
 use belvedere_scene::CellTriangle;
