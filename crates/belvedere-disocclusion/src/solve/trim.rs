@@ -60,7 +60,7 @@ struct Lowered<'a> {
 impl TerrainSolver {
     /// Samples of a file to be lowered, with by how much, scene units, so that small bumps hide nothing of what is in view.
     ///
-    /// * `grids`: the same samples once or, for programs that cut cells otherwise too, twice; `height`: of a sample;
+    /// * `grids`: the same samples once or, for programs that cut cells otherwise too, twice; the second costs the first no sight; `height`: of a sample;
     /// * `is_fixed`: samples that must not move; `report`: of the solution that the heights hold.
     ///
     /// # Errors
@@ -94,18 +94,26 @@ impl TerrainSolver {
         }
         let most = grids.iter().map(SampleGrid::most_trimmed).fold(0.0, f64::max);
         let mut lowered = Lowered { by: BTreeMap::new(), is_fixed, most };
-        for _ in 0..ROUNDS {
-            progress.tick("trimming the heights to be written", 0.95)?;
-            let mut moved = BTreeMap::new();
-            for cut in &mut cuts {
-                cut.lower(&mut lowered, &mut moved);
+        // What the first grid shows comes first.
+        let mut best = (usize::MAX, BTreeMap::new());
+        for count in 1..=cuts.len() {
+            for _ in 0..ROUNDS {
+                progress.tick("trimming the heights to be written", 0.95)?;
+                let mut moved = BTreeMap::new();
+                for cut in &mut cuts[..count] {
+                    cut.lower(&mut lowered, &mut moved);
+                }
+                if moved.is_empty() || progress.should_end() {
+                    break;
+                }
+                cuts.iter_mut().for_each(|cut| cut.sink(&moved));
             }
-            if moved.is_empty() || progress.should_end() {
-                break;
+            let hidden = cuts[0].hidden().len();
+            if hidden <= best.0 {
+                best = (hidden, lowered.by.clone());
             }
-            cuts.iter_mut().for_each(|cut| cut.sink(&moved));
         }
-        Ok(lowered.by)
+        Ok(best.1)
     }
 }
 
@@ -126,13 +134,17 @@ impl Solved {
 }
 
 impl Cut<'_> {
+    /// The open points that are hidden, with where ground hides them most, and its rise over the line of sight.
+    fn hidden(&self) -> Vec<(usize, (DVec2, f64))> {
+        let places: Vec<(DVec2, f64)> = self.open.iter().map(|&k| (self.points[k].grid, self.points[k].lift)).collect();
+        let hiding = Judge::still(&self.field, &self.sight).hiding(&places, 0.0);
+        self.open.iter().zip(hiding).filter_map(|(&k, hides)| Some((k, hides?))).collect()
+    }
+
     /// Lowers the samples under the lines of sight of the open points, of which those that are hidden stay open; `moved` gets what
     /// each sample sank in this round.
     fn lower(&mut self, lowered: &mut Lowered<'_>, moved: &mut BTreeMap<usize, f64>) {
-        let places: Vec<(DVec2, f64)> = self.open.iter().map(|&k| (self.points[k].grid, self.points[k].lift)).collect();
-        let hiding = Judge::still(&self.field, &self.sight).hiding(&places, 0.0);
-        let hidden: Vec<(usize, (DVec2, f64))> =
-            self.open.iter().zip(hiding).filter_map(|(&k, hides)| Some((k, hides?))).collect();
+        let hidden = self.hidden();
         self.open = hidden.iter().map(|(k, _)| *k).collect();
         for (k, (at, over)) in hidden {
             if over > lowered.most {

@@ -52,7 +52,7 @@ fn view() -> View {
 }
 
 /// How a file is taken into account.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Known {
     /// Not at all.
     No,
@@ -99,7 +99,7 @@ fn judged(noise_m: f64, seed: u64, known: Known) -> (Vec<f64>, Solved, WrittenSh
     let [before, after] = [of(&heights, grid), of(&moved, grid)];
     if known == Known::BothDiagonals {
         let other = of(&moved, grid.cut_otherwise()).visible_dense;
-        assert!(other >= 0.99, "noise {noise_m}: the other diagonal shows {other}");
+        assert!(other >= 0.995, "noise {noise_m}: the other diagonal shows {other}");
     }
     after.put(&before, false, &mut solved.report);
     (moved, solved, after)
@@ -156,13 +156,13 @@ fn a_guarantee_is_one_of_every_sample_of_the_written_file() {
 
 #[test]
 fn a_file_that_the_solver_knows_shows_what_the_solved_ground_shows() {
-    for (noise_m, seed) in [(0.0, 1), (3.0, 2), (6.0, 3), (6.0, 4)] {
+    for (noise_m, seed) in [(0.0, 1), (3.0, 2), (4.0, 3), (4.0, 4)] {
         let (_, alone, _) = judged(noise_m, seed, Known::No);
         for known in [Known::OneDiagonal, Known::BothDiagonals] {
             let (moved, solved, after) = judged(noise_m, seed, known);
             let report = &solved.report;
             let seen = marched(&moved);
-            assert!(seen >= 0.995, "noise {noise_m}: the file shows {seen}");
+            assert!(seen >= 0.995, "{known:?}, noise {noise_m}, seed {seed}: the file shows {seen}");
             assert!((after.visible_dense - seen).abs() < 0.005, "said {}, the file shows {seen}", after.visible_dense);
             assert_eq!(report.guaranteed, seen >= 0.9999, "noise {noise_m}: {seen}");
             let [with, without] = [report, &alone.report].map(|r| r.metrics.rms_m);
