@@ -155,7 +155,7 @@ impl Field {
         CellTriangle::surface(corners, DVec2::new(u, v))
     }
 
-    /// Lowers a node, by at least 0 scene units.
+    /// Lowers a node, by scene units; to raise it again, by less than it was lowered at most.
     pub fn lower(&mut self, i: usize, by: f64) {
         self.heights[i] -= by;
         self.range[0] = self.range[0].min(self.heights[i]);

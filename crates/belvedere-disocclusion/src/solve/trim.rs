@@ -7,6 +7,7 @@ use super::super::metrics::Judge;
 use super::super::points::{judged_points, required_features};
 use super::super::{Field, ReferencePoint};
 use super::memory::CHECK_CELLS;
+use super::reporting::AGREES;
 use super::sample_grid::SampleGrid;
 use super::written::{SightOverFile, WrittenGround};
 use super::{Solved, TerrainReport, TerrainSolver, at_every_node, ground};
@@ -60,7 +61,7 @@ struct Lowered<'a> {
 impl TerrainSolver {
     /// Samples of a file to be lowered, with by how much, scene units, so that small bumps hide nothing of what is in view.
     ///
-    /// * `grids`: the same samples once or, for programs that cut cells otherwise too, twice; the second costs the first no sight; `height`: of a sample;
+    /// * `grids`: the same samples once or, for programs that cut cells otherwise too, twice; the second costs the first next to no sight; `height`: of a sample;
     /// * `is_fixed`: samples that must not move; `report`: of the solution that the heights hold.
     ///
     /// # Errors
@@ -94,26 +95,36 @@ impl TerrainSolver {
         }
         let most = grids.iter().map(SampleGrid::most_trimmed).fold(0.0, f64::max);
         let mut lowered = Lowered { by: BTreeMap::new(), is_fixed, most };
-        // What the first grid shows comes first.
-        let mut best = (usize::MAX, BTreeMap::new());
-        for count in 1..=cuts.len() {
-            for _ in 0..ROUNDS {
-                progress.tick("trimming the heights to be written", 0.95)?;
-                let mut moved = BTreeMap::new();
-                for cut in &mut cuts[..count] {
-                    cut.lower(&mut lowered, &mut moved);
-                }
-                if moved.is_empty() || progress.should_end() {
-                    break;
-                }
-                cuts.iter_mut().for_each(|cut| cut.sink(&moved));
-            }
-            let hidden = cuts[0].hidden().len();
-            if hidden <= best.0 {
-                best = (hidden, lowered.by.clone());
-            }
+        let all_of_them = cuts.len();
+        lowered.trim(&mut cuts[..all_of_them], progress)?;
+        let allowed = (1.0 - AGREES) * cuts[0].points.len() as f64;
+        let hidden = cuts[0].hidden().len() as f64;
+        if all_of_them == 1 || hidden <= allowed {
+            return Ok(lowered.by);
         }
-        Ok(best.1)
+        // What the first grid shows comes first.
+        let together = std::mem::take(&mut lowered.by);
+        cuts[0].raise(&together);
+        lowered.trim(&mut cuts[..1], progress)?;
+        Ok(if hidden <= cuts[0].hidden().len() as f64 + allowed { together } else { lowered.by })
+    }
+}
+
+impl Lowered<'_> {
+    /// Lowers samples until no bump hides a point, or none can be lowered.
+    fn trim(&mut self, cuts: &mut [Cut<'_>], progress: &Progress) -> Result<(), DisocclusionError> {
+        for _ in 0..ROUNDS {
+            progress.tick("trimming the heights to be written", 0.95)?;
+            let mut moved = BTreeMap::new();
+            for cut in &mut *cuts {
+                cut.lower(self, &mut moved);
+            }
+            if moved.is_empty() || progress.should_end() {
+                break;
+            }
+            cuts.iter_mut().for_each(|cut| cut.sink(&moved));
+        }
+        Ok(())
     }
 }
 
@@ -175,6 +186,14 @@ impl Cut<'_> {
             }
         }
         lowered.by.retain(|_, by| *by > 0.0);
+    }
+
+    /// Raises samples again; all points are to be judged.
+    fn raise(&mut self, lowered: &BTreeMap<usize, f64>) {
+        for (&sample, &by) in lowered {
+            self.field.lower(self.grid.sample(sample), -by);
+        }
+        self.open = (0..self.points.len()).collect();
     }
 
     /// Takes over what samples sank; the points on these samples are judged next as well.
