@@ -90,6 +90,8 @@ fn judged(noise_m: f64, seed: u64, known: Known) -> (Vec<f64>, Solved, WrittenSh
     if known != Known::No {
         let height = |i: usize| Some(moved[i]);
         let lowered = solver.trimmed((&scene, &view), grids, &height, &|_| false, &solved.report, &silent).unwrap();
+        let most = grid.most_trimmed();
+        assert!(lowered.values().all(|by| *by > 0.0 && *by <= most + 1e-9), "noise {noise_m}: more than {most} m");
         lowered.into_iter().for_each(|(i, by)| moved[i] -= by);
     }
     let of = |z: &Vec<f64>, grid: SampleGrid<'_>| {

@@ -147,7 +147,9 @@ impl<'a> HeightsToWrite<'a> {
         let mut out = self.under(&solved.stage, &solved.report.lakes)?;
         let grid = self.grid()?;
         let TerrainSettings { mode, slack_price, move_at_most_m, .. } = *solver.settings();
-        if mode == SolverMode::Paper || slack_price.is_some() {
+        // Rivers on the solved ground would run into what is trimmed; elsewhere they are settled afterwards.
+        let has_rivers = grid.solved_on && !self.rivers.is_empty();
+        if mode == SolverMode::Paper || slack_price.is_some() || has_rivers {
             return Ok((out, None));
         }
         let mut grids = vec![grid.samples()];
