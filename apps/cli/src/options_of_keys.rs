@@ -56,6 +56,7 @@ impl Told for Warning {
             Some("assembly") => " (--assembly)",
             Some("model") => " (--model)",
             Some("limits") => " (--no-limits)",
+            Some("show") => " (--show)",
             Some("ground_nodes") => " (--nodes)",
             Some("palette") => " (--palette)",
             Some("materials") => " (--plain)",

@@ -50,7 +50,7 @@ pub mod report {
     pub use crate::metrics::{FrameChange, TerrainMetrics};
     pub use crate::points::PointKind;
     pub use crate::solve::{
-        BANK_M, Covered, Fallback, FeatureCost, GivenUp, LakeReport, LimitsReport, PricePoint, PriceReport, QpReport,
+        BANK_M, Covered, Fallback, FeatureCost, GivenUp, HigherEye, LakeReport, LikenessFigures, LikenessReport, LimitsReport, PricePoint, PriceReport, QpReport,
         Taken, TerrainTimes, TrimReport, UnresolvedReason, UnresolvedRun,
     };
 }

@@ -86,7 +86,8 @@ pub struct TerrainSettings {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rivers: Vec<String>,
     /// Share of the features in view that the ground makes way for at least, 0..=1: up to the rest of it, the dearest stretches, is given
-    /// up; `None` = all, or as much as [`Self::move_at_most_m`] allows. Stills alone.
+    /// up; `None` = as much as [`Self::move_at_most_m`] allows or, without that, as much as leaves the landscape like itself
+    /// ([`crate::report::LikenessReport`]; only with [`Self::limits`] and in mode qp). Stills alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub show: Option<f64>,
     /// Largest displacement of the solver's grid, metres, > 0: the dearest stretches of the features are given up until the ground

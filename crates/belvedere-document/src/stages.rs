@@ -144,8 +144,9 @@ pub struct TerrainStageDoc {
     /// Ids of line layers, rivers, along which the displaced ground rises downstream by no more than the elevation model does.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub rivers: Vec<String>,
-    /// Share of the features in view that the ground makes way for at least, 0..=1; the dearest stretches beyond it are given up. Stills
-    /// only.
+    /// Share of the features in view that the ground makes way for at least, 0..=1; the dearest stretches beyond it are given up. By default,
+    /// without `move_at_most_m` and with `limits`, all are shown that leave the landscape like itself: slopes, the order of heights and of
+    /// summits in the picture. 1 shows all, whatever it costs. Stills only.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub show: Option<f64>,
     /// Most the ground may move, metres: the dearest stretches of the features are given up until it moves no more. Stills only.

@@ -6,7 +6,7 @@ use crate::BelvedereError;
 use belvedere_core::{DVec3, Pinhole, Stage, View};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_disocclusion::DisocclusionError;
-use belvedere_disocclusion::report::{FeatureCost, PriceReport, Spike, Taken};
+use belvedere_disocclusion::report::{FeatureCost, PriceReport, Spike, Taken, UnresolvedReason, UnresolvedRun};
 use belvedere_disocclusion::rivers::RIVER_TOLERANCE_M;
 use belvedere_disocclusion::{
     Detail, Solved, SolverMode, TerrainReport, TerrainSettings, TerrainSolver, ViewpointOptions,
@@ -249,7 +249,7 @@ pub fn remarks(solved: &Solved, scene: &Scene) -> Vec<Warning> {
         let warning = of_solver(WarningKind::Hidden, text).with("hidden_share", hidden);
         out.push(warning.with("hidden_worst_m", report.metrics.hidden_worst_m));
     }
-    out.extend(report.price.as_ref().and_then(|price| given_up(price, &report.parameters)));
+    out.extend(report.price.as_ref().and_then(|price| given_up(price, report)));
     out.extend(held(report));
     out.extend(confined(report));
     out.extend(implausible(report, scene));
@@ -260,21 +260,32 @@ pub fn remarks(solved: &Solved, scene: &Scene) -> Vec<Warning> {
     out
 }
 
-/// Warning that stretches were given up at the stated price, or that the price is higher all the same.
-fn given_up(price: &PriceReport, settings: &TerrainSettings) -> Option<Warning> {
+/// Warning that stretches were given up at the stated price or for the landscape, or that the price is higher all the same.
+fn given_up(price: &PriceReport, report: &TerrainReport) -> Option<Warning> {
     let (all, paid) = (price.curve.first()?, Some(&price.taken).filter(|taken| taken.asked < 1.0)?);
-    let more = settings.move_at_most_m.is_some_and(|most| paid.max_m > most);
+    let TerrainSettings { show, move_at_most_m, .. } = report.parameters;
+    let why = match (show, move_at_most_m) {
+        (None, None) => "so that the landscape stays like itself: the ground moves".into(),
+        _ => "so that the ground moves".to_owned(),
+    };
+    let more = match move_at_most_m {
+        Some(most) if paid.max_m > most => ", which is more than is allowed: show a smaller share",
+        None if show.is_none() => "; show = 1 shows all, whatever it costs",
+        _ => "",
+    };
+    let higher = report.higher_eye.map_or_else(String::new, |eye| {
+        format!("; an eye {:.0} m higher would save {:.0} % of the displacement for all", eye.up_m, 100.0 * eye.saves)
+    });
     let text = format!(
-        "terrain_disocclusion: {:.1} % of the features in view were given up, so that the ground moves by {:.0} m at most instead of {:.0} m \
-         ({:.1} m rms instead of {:.1} m){}; the report names them under `price`",
+        "terrain_disocclusion: {:.1} % of the features in view were given up, {why} by {:.0} m at most instead of {:.0} m ({:.1} m rms \
+         instead of {:.1} m){higher}{more}; the report names them under `price`",
         100.0 * (1.0 - paid.asked),
         paid.max_m,
         all.max_m,
         paid.rms_m,
         all.rms_m,
-        if more { ", which is more than is allowed: show a smaller share" } else { "" },
     );
-    let warning = Warning::new(WarningKind::Limited, text).about("terrain_disocclusion");
+    let warning = Warning::new(WarningKind::Limited, text).about("terrain_disocclusion").settled_by("show");
     Some(warning.with("asked", paid.asked).with("max_m", paid.max_m).with("max_m_for_all", all.max_m))
 }
 
@@ -301,7 +312,9 @@ fn spiky(spikes: &[Spike]) -> Option<Warning> {
 fn held(report: &TerrainReport) -> Option<Warning> {
     let limits = report.limited?;
     let hidden = 1.0 - report.metrics.visible_dense;
-    (hidden > 0.0 && !report.guaranteed).then(|| {
+    let by_limits = |run: &UnresolvedRun| matches!(run.reason, UnresolvedReason::Limits { .. });
+    let is_held = report.unresolved.iter().chain(&report.hidden).any(by_limits);
+    (is_held && !report.guaranteed).then(|| {
         let text = format!(
             "terrain_disocclusion: not all can be shown on ground that looks like ground, no lower than {:.0} m and no steeper than {:.0} \
              degrees: {:.2} % of what is in view stays hidden, which the report names; look from higher up or elsewhere, or lift the \

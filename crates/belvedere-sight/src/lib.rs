@@ -44,5 +44,5 @@ pub use pyramid::Pyramid;
 pub use rigid::{RigidLayers, refusal};
 pub use shadow::Bundle;
 pub use solids::{LayerPart, Solids};
-pub use summits::{Standing, standings};
+pub use summits::{Standing, most_prominent, standings};
 pub use voxels::Voxels;

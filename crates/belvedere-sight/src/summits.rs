@@ -47,6 +47,16 @@ impl Grid {
         Self { cols, rows, heights, north_west: ground.north_west() + middle, spacing }
     }
 
+    /// The highest node of the ground in the block of a node.
+    fn highest_of_block(&self, ground: &Heightfield, node: usize) -> Option<u32> {
+        let block = (self.spacing / ground.spacing()).round();
+        let (block, first) = (block.x as usize, [node % self.cols, node / self.cols].map(|k| k * block.x as usize));
+        let [cols, rows] = [0, 1].map(|axis| first[axis]..(first[axis] + block).min([ground.cols(), ground.rows()][axis]));
+        let nodes = rows.flat_map(|row| cols.clone().map(move |col| (col, row)));
+        let heights = nodes.filter_map(|(col, row)| Some((ground.node(col, row)?.z, row * ground.cols() + col)));
+        heights.reduce(|a, b| if b.0 > a.0 { b } else { a }).map(|(_, node)| node as u32)
+    }
+
     /// Nodes around a node that are on the grid.
     fn around(&self, node: usize) -> impl Iterator<Item = usize> + use<'_> {
         let (col, row) = ((node % self.cols) as i64, (node / self.cols) as i64);
@@ -169,6 +179,23 @@ impl Floods {
 /// Takes O(n log n) for n nodes, of which at most four million are looked at.
 pub fn standings(ground: &Heightfield, points: &[DVec2]) -> Vec<Standing> {
     standings_on(&Grid::of(ground, MOST_NODES), points)
+}
+
+/// Nodes of the most prominent summits of the ground, the most prominent first.
+///
+/// * `count`: summits at most; `least`: least prominence, share of the range of heights; `most`: nodes that are looked at: finer grounds keep
+///   the highest node of every block.
+///
+/// Takes O(n log n) for n nodes that are looked at.
+pub fn most_prominent(ground: &Heightfield, count: usize, least: f64, most: usize) -> Vec<u32> {
+    let grid = Grid::of(ground, most);
+    let prominences = grid.prominences();
+    // The highest summit stands out by the range of heights.
+    let least = least * f64::from(prominences.iter().copied().fold(0.0, f32::max));
+    let mut order: Vec<usize> = (0..prominences.len()).filter(|node| f64::from(prominences[*node]) > least).collect();
+    order.sort_unstable_by(|a, b| prominences[*b].total_cmp(&prominences[*a]).then(a.cmp(b)));
+    order.truncate(count);
+    order.into_iter().filter_map(|node| grid.highest_of_block(ground, node)).collect()
 }
 
 fn standings_on(grid: &Grid, points: &[DVec2]) -> Vec<Standing> {

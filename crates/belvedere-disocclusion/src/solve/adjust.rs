@@ -36,7 +36,9 @@ impl TerrainSolver {
         options: &ViewpointOptions,
         progress: &Progress,
     ) -> Result<Option<AdjustedViewpoint>, DisocclusionError> {
-        let exact = TerrainSettings { mode: SolverMode::Qp, ..self.settings.clone() };
+        // Energies of different eyes are those of the same features.
+        let (mode, show) = (SolverMode::Qp, Some(1.0));
+        let exact = TerrainSettings { mode, show, move_at_most_m: None, ..self.settings.clone() };
         let rough = TerrainSettings { solver_nodes: ROUGH_NODES, candidates: exact.spacing, ..exact.clone() };
         let mut moves = EyeEnergy {
             scene,

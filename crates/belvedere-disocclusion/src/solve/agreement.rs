@@ -113,7 +113,10 @@ impl Asked {
 
     /// Gives up the rows of the judge that take most of the energy of all of them, with the cells of their points; whether there were any.
     fn drop_dearest(&mut self, result: &QpResult) -> bool {
-        let energy = |row: &SolvedRow| Some((row.given?, row.multiplier * row.bound.abs()));
+        let energy = |row: &SolvedRow| {
+            let index = row.given.filter(|index| !self.given[*index as usize].is_order)?;
+            Some((index, row.multiplier * row.bound.abs()))
+        };
         let mut dearest: Vec<(u32, f64)> = result.active.iter().filter_map(energy).collect();
         dearest.sort_by(|a, b| b.1.total_cmp(&a.1));
         let all: f64 = dearest.iter().map(|(_, energy)| energy).sum();
@@ -125,7 +128,7 @@ impl Asked {
                 break;
             }
         }
-        self.given.retain(|row| !self.too_dear.contains(&cell_of(row.point)));
+        self.given.retain(|row| row.is_order || !self.too_dear.contains(&cell_of(row.point)));
         self.too_dear.len() > before
     }
 }

@@ -17,6 +17,7 @@ use crate::smooth::SmoothError;
 use crate::spikes::{Spike, without_spikes};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::{Heightfield, Scene};
+use belvedere_sight::most_prominent;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -45,6 +46,8 @@ pub(super) struct Prepared {
     /// The ground with spikes replaced by the median of their surroundings, on which the solver works.
     pub(super) despiked: Arc<Heightfield>,
     pub(super) spikes: Vec<Spike>,
+    /// Nodes of the most prominent summits.
+    pub(super) summits: Vec<u32>,
     features: Vec<RequiredFeature>,
     areas_of_water: Vec<Water>,
     river_lines: Vec<RiverLine>,
@@ -102,6 +105,11 @@ impl Weights {
     }
 }
 
+/// Summits of the terrain by which it is known, at most, their least prominence as a share of the relief, and nodes that they are looked for
+/// among.
+const SUMMITS: usize = 32;
+const SUMMITS_LEAST: f64 = 0.1;
+const SUMMITS_AMONG: usize = 100_000;
 /// Spacing of the points by which the result is judged, cells.
 pub(super) const CHECK_CELLS: f64 = 0.1;
 /// The view jumped if the eye moved by more than this share of the terrain's diagonal, or turned by more than this angle.
@@ -200,6 +208,7 @@ impl Prepared {
         Ok(Self {
             settings: settings.clone(),
             ground: heightfield.clone(),
+            summits: most_prominent(&despiked, SUMMITS, SUMMITS_LEAST, SUMMITS_AMONG),
             despiked,
             spikes,
             features,

@@ -6,8 +6,10 @@ mod entering;
 mod fallback;
 mod file_to_write;
 mod ground;
+mod higher_eye;
 mod in_picture;
 mod lakes;
+mod likeness;
 mod limits;
 mod live;
 mod memory;
@@ -26,7 +28,9 @@ mod written;
 
 pub use fallback::Fallback;
 pub use file_to_write::{FileToWrite, HeightsUnder};
+pub use higher_eye::HigherEye;
 pub use lakes::{BANK_M, LakeReport};
+pub use likeness::{LikenessFigures, LikenessReport};
 pub use limits::LimitsReport;
 pub use live::{LiveFrame, LiveTerrain};
 pub use memory::TerrainMemory;
@@ -153,7 +157,11 @@ impl TerrainSolver {
             previous: previous.as_ref(),
             progress,
         };
-        let report = reporting::report(&context, &done, times, began)?;
+        let mut report = reporting::report(&context, &done, times, began)?;
+        if done.paid.gave_up_any() && !progress.should_end() {
+            let ground = (field, context.prepared);
+            report.higher_eye = higher_eye::higher_eye(&self.settings, ground, context.in_view, progress)?;
+        }
         memory.keep(prepared, base, done.coarse);
         Ok(Solved { stage: TerrainDisocclusion::new(delta), report })
     }

@@ -8,6 +8,7 @@ use super::agreement::Agreement;
 use super::fallback::{self, Fallback};
 use super::file_to_write::FileJudge;
 use super::ground::Ground;
+use super::likeness::Likeness;
 use super::limits::LimitedTerrain;
 use super::memory::{self, Prepared, Program, Weights};
 use super::price::Price;
@@ -232,6 +233,13 @@ impl Passes<'_> {
         solved
     }
 
+    /// Whether stretches are given up that do not leave the landscape like itself: in stills with limits, unless a price is stated.
+    fn keeps_landscape(&self) -> bool {
+        let TerrainSettings { mode, limits, show, move_at_most_m, slack_price, .. } = *self.settings;
+        let stated = [show, move_at_most_m, slack_price].iter().any(Option::is_some);
+        mode == SolverMode::Qp && limits && self.frame.is_none() && !stated
+    }
+
     fn solved_by(
         &self,
         program: &mut Program,
@@ -258,9 +266,11 @@ impl Passes<'_> {
         let mut wider = [&asked[..], &in_view.entering[..]].concat();
         let options = memory::options(self.settings, false);
         qp.set_options(options);
-        qp.keep_clear(&[]);
+        let likeness = self.keeps_landscape().then(|| Likeness::new(self.field, in_view.base, &prepared.summits));
+        let in_order = likeness.as_ref().map_or_else(Vec::new, |likeness| likeness.in_order(&prepared.level, qp));
+        qp.keep_clear(&in_order);
         let mut result = qp.solve_with(&problem_of(&wider, sight, target.as_deref()), self.progress)?;
-        let mut price = Price::new(self.settings, prepared, [&asked, &check]).filter(|_| self.frame.is_none());
+        let mut price = Price::new(self.settings, prepared, likeness, [&asked, &check]).filter(|_| self.frame.is_none());
         let detail_before = price.is_some().then(|| detail.clone());
         let (result, foreign) = loop {
             if let Some(price) = &mut price {
@@ -292,12 +302,12 @@ impl Passes<'_> {
             };
             solution.fall_back(qp, prepared.limited.as_deref(), done)?;
             let (solved, foreign) = (solution.result, solution.foreign);
-            let moved = done.fine.as_ref().map_or(&solved.u, |(_, u)| u);
-            if !price.as_mut().is_some_and(|price| price.is_exceeded(moved)) {
+            let (grid, moved) = done.fine.as_ref().map_or((&prepared.grid, &solved.u), |(grid, u)| (grid, u));
+            if !price.as_mut().is_some_and(|price| price.is_exceeded(grid, moved)) {
                 break (solved, foreign);
             }
             // What the fallbacks changed is taken back.
-            qp.keep_clear(&[]);
+            qp.keep_clear(&in_order);
             qp.set_options(options);
             detail.clone_from(detail_before.as_ref().unwrap_or(&None));
             (done.fine, result) = (None, solved);

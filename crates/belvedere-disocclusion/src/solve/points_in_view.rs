@@ -10,7 +10,7 @@ use belvedere_core::View;
 /// Reference and candidate points that a picture must show.
 pub(super) struct PointsInView<'a> {
     field: &'a Field,
-    base: &'a View,
+    pub(super) base: &'a View,
     pub(super) wedge: Wedge,
     guard: f64,
     ahead_m: Option<f64>,

@@ -5,7 +5,8 @@
 //! out give most of the displacement back. Ours.
 
 use super::super::visibility_qp::{Candidate, QpProblem, QpResult, QpSolver};
-use super::super::{KINDS, PointKind, ReferencePoint, TerrainSettings};
+use super::super::{Hierarchy, KINDS, PointKind, ReferencePoint, TerrainSettings};
+use super::likeness::Likeness;
 use super::memory::Prepared;
 use crate::DisocclusionError;
 use belvedere_core::DVec2;
@@ -17,8 +18,9 @@ use std::collections::{BTreeMap, BTreeSet};
 const PARTS: f64 = 40.0;
 /// Shortest stretch, and side of the smallest tile of an area, grid cells.
 const SHORTEST: f64 = 2.0;
-/// Stretches are given up together until they hold this share of the energy.
+/// Stretches are given up together until they hold this share of the energy, or that which takes the strain to this multiple of the aim.
 const AT_ONCE: f64 = 0.08;
+const SHORT_OF: f64 = 1.3;
 /// Share of the features that a stretch counts for at least, so that those without length or area come first.
 const LEAST_PART: f64 = 1e-9;
 /// Most solutions in which stretches are given up, and in which they are taken back.
@@ -26,6 +28,8 @@ const GIVEN_UP: usize = 60;
 const TAKEN_BACK: usize = 8;
 /// Share of the stated move that the program aims at: agreement with the judge moves the ground a little more.
 const AIM: f64 = 0.97;
+/// Share of the aim below which stretches are taken back although the judge asked for more than is allowed.
+const ROOM: f64 = 0.8;
 /// Least share by which the aim is lowered at a time, least aim, and how often the judge may make the ground move more than is allowed.
 const LOWER: f64 = 0.8;
 const LEAST_AIM: f64 = 0.4;
@@ -80,6 +84,10 @@ pub struct PricePoint {
     pub rms_m: f64,
     /// Largest displacement there, up or down.
     pub max_m: f64,
+    /// How much of what is allowed it uses, more than 1 where it exceeds that: of the largest displacement or of the bounds of the landscape;
+    /// absent where only a share is stated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub strain: Option<f64>,
 }
 
 /// A stretch that was given up.
@@ -114,6 +122,8 @@ pub(super) struct Price<'a> {
     /// Share that must be shown at least, and largest displacement.
     show: f64,
     most_m: Option<f64>,
+    /// The picture that must stay like itself.
+    likeness: Option<Likeness<'a>>,
     /// Share of the largest displacement that the program aims at.
     aim: f64,
     /// Times that the judge made the ground move more than is allowed.
@@ -145,10 +155,11 @@ impl<'a> Price<'a> {
     pub(super) fn new(
         settings: &TerrainSettings,
         prepared: &'a Prepared,
+        likeness: Option<Likeness<'a>>,
         [asked, in_view]: [&[Candidate]; 2],
     ) -> Option<Self> {
         let (show, most_m) = (settings.show, settings.move_at_most_m);
-        if show.is_none() && most_m.is_none() {
+        if show.is_none() && most_m.is_none() && likeness.is_none() {
             return None;
         }
         let [asked, points] = [asked, in_view].map(|candidates| -> Vec<ReferencePoint> {
@@ -171,6 +182,7 @@ impl<'a> Price<'a> {
             prepared,
             show,
             most_m,
+            likeness,
             aim: AIM,
             exceeded: 0,
             division,
@@ -235,30 +247,47 @@ impl<'a> Price<'a> {
             self.note(&result);
         }
         for _ in 0..GIVEN_UP {
-            if self.is_cheap(&result) || progress.should_end() || !self.give_up(&result) {
+            let strain = self.last_strain();
+            if strain <= self.aim || progress.should_end() || !self.give_up(&result, strain) {
                 break;
             }
             progress.tick("the price of the displacement", 0.7)?;
             result = self.solved(qp, problem, progress)?;
         }
-        // Stretches that were given up for the judge would make it ask for more again.
-        if self.exceeded == 0 && self.is_cheap(&result) {
+        // Stretches that were given up for the judge would make it ask for more again, unless that left much room.
+        let room = if self.exceeded == 0 { 1.0 } else { ROOM };
+        if self.last_strain() <= room * self.aim {
             result = self.take_back(qp, problem, result, progress)?;
         }
         self.taken = Some(self.point(&result));
         Ok(result)
     }
 
-    /// Whether the ground moves no more than was stated; without such a limit as little as possible is wanted.
-    fn is_cheap(&self, result: &QpResult) -> bool {
-        self.most_m.is_some_and(|most| largest(&result.u) <= self.aim * most)
+    /// That of the last solution.
+    fn last_strain(&self) -> f64 {
+        self.curve.last().and_then(|point| point.strain).unwrap_or(f64::INFINITY)
     }
 
-    /// Whether a displacement exceeds the stated one although the program met it, and more can be given up. The judge asks for more than
+    /// How much of what is allowed a displacement uses, > 1 if it exceeds that; infinite where nothing is, for then as little as possible is
+    /// wanted.
+    ///
+    /// * `u`: displacement of the nodes of `grid`.
+    fn strain(&self, grid: &Hierarchy, u: &[f64]) -> f64 {
+        let moved = self.most_m.map(|most| largest(u) / most);
+        let changed = self.likeness.as_ref().map(|likeness| likeness.strain(grid, u));
+        [moved, changed].into_iter().flatten().reduce(f64::max).unwrap_or(f64::INFINITY)
+    }
+
+    /// Whether a displacement exceeds what is allowed although the program met it, and more can be given up. The judge asks for more than
     /// the program did, so the program aims lower then, and at last gives up what is left.
-    pub(super) fn is_exceeded(&mut self, u: &[f64]) -> bool {
-        let Some(most) = self.most_m.filter(|most| largest(u) > *most) else { return false };
-        self.aim = (self.aim * (AIM * most / largest(u)).max(LOWER)).max(LEAST_AIM);
+    ///
+    /// * `u`: displacement of the nodes of `grid`.
+    pub(super) fn is_exceeded(&mut self, grid: &Hierarchy, u: &[f64]) -> bool {
+        let strain = self.strain(grid, u);
+        if !(strain.is_finite() && strain > 1.0) {
+            return false;
+        }
+        self.aim = (self.aim * (AIM / strain).max(LOWER)).max(LEAST_AIM);
         self.exceeded += 1;
         if self.exceeded >= ROUNDS && self.show == 0.0 {
             let left: Vec<Stretch> = self.stretches.keys().filter(|s| !self.gone.contains(s)).copied().collect();
@@ -287,11 +316,17 @@ impl<'a> Price<'a> {
     fn point(&self, result: &QpResult) -> PricePoint {
         let squares: f64 = result.u.iter().map(|u| u * u).sum();
         let rms_m = (squares / result.u.len().max(1) as f64).sqrt();
-        PricePoint { asked: self.asked(), rms_m, max_m: largest(&result.u) }
+        let strain = Some(self.strain(&self.prepared.grid, &result.u)).filter(|strain| strain.is_finite());
+        PricePoint { asked: self.asked(), rms_m, max_m: largest(&result.u), strain }
     }
 
     /// Gives up the dearest stretches per share of the features, at least one; `false` if none may be.
-    fn give_up(&mut self, result: &QpResult) -> bool {
+    ///
+    /// * `strain`: of the solution: far beyond what is allowed more are given up at once.
+    fn give_up(&mut self, result: &QpResult, strain: f64) -> bool {
+        // The energy is a square of the displacement.
+        let beyond = if strain.is_finite() { 1.0 - (SHORT_OF * self.aim / strain).powi(2) } else { 0.0 };
+        let at_once = beyond.max(AT_ONCE);
         let mut energy = BTreeMap::<Stretch, f64>::new();
         for row in &result.active {
             let Some(point) = row.candidate.and_then(|id| self.prepared.candidate(id)) else { continue };
@@ -316,7 +351,7 @@ impl<'a> Price<'a> {
                 continue;
             }
             gone += energy;
-            if gone >= AT_ONCE * all {
+            if gone >= at_once * all {
                 break;
             }
         }
@@ -337,7 +372,7 @@ impl<'a> Price<'a> {
             }
             let given = self.ask(k);
             let result = self.solved(qp, problem, progress)?;
-            if self.is_cheap(&result) && !result.stopped {
+            if self.last_strain() <= self.aim && !result.stopped {
                 best = result;
             } else {
                 self.give(k, given);
@@ -376,6 +411,10 @@ pub(super) struct Paid {
 }
 
 impl Paid {
+    pub(super) fn gave_up_any(&self) -> bool {
+        !self.gone.is_empty()
+    }
+
     /// Whether the stretch of a point was given up.
     pub(super) fn gave_up(&self, p: &ReferencePoint) -> bool {
         !self.gone.is_empty() && self.gone.contains(&self.division.of(p))

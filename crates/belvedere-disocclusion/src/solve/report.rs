@@ -2,7 +2,7 @@
 
 use super::super::visibility_qp::QpResult;
 use super::super::{GreedyCounters, PointKind, TerrainMetrics, TerrainSettings};
-use super::{Fallback, LakeReport, LimitsReport, PriceReport};
+use super::{Fallback, HigherEye, LakeReport, LikenessReport, LimitsReport, PriceReport};
 use crate::rivers::RiverReport;
 use crate::spikes::Spike;
 use serde::Serialize;
@@ -29,6 +29,9 @@ pub struct TerrainReport {
     /// [`super::TerrainSolver::in_plan`]).
     #[serde(flatten)]
     pub metrics: TerrainMetrics,
+    /// Likeness to the undisplaced ground; `None` in films.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub likeness: Option<LikenessReport>,
     /// One of this many dense points was judged: 1, but more in frames of films and where time was up, so that judging takes no
     /// longer than solving. Where it is more than 1, a guarantee needs all reference points and all judged points to be seen.
     pub judged_every: usize,
@@ -82,6 +85,9 @@ pub struct TerrainReport {
     /// What was given up so that the ground moves less, where a price is stated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub price: Option<PriceReport>,
+    /// A higher eye that would save much of the displacement, where something was given up.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub higher_eye: Option<HigherEye>,
     /// Points that stay covered at the price of slack.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub covered: Vec<Covered>,

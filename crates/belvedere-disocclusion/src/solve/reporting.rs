@@ -5,6 +5,7 @@ use super::super::visibility_qp::{Reason, SolvedRow, Unresolved};
 use super::super::{
     Deformation, Field, ReferencePoint, SolverMode, TerrainSettings, Unusable, UnusableReason, stated_spacing,
 };
+use super::likeness::Likeness;
 use super::memory::{CHECK_CELLS, Prepared};
 use super::report::{Covered, FeatureCost, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
 use super::runs::Runs;
@@ -155,6 +156,7 @@ pub(super) fn report(
         points: verdicts.asked.len(),
         asked: c.in_view.candidates.len(),
         metrics: verdicts.judged.metrics,
+        likeness: c.is_still.then(|| Likeness::new(field, c.base, &prepared.summits).of(&moved)),
         judged_every: verdicts.every,
         visible_before,
         visible_dense_before,
@@ -168,6 +170,7 @@ pub(super) fn report(
         limited: done.limited,
         spikes: prepared.spikes.clone(),
         price: done.paid.report.clone(),
+        higher_eye: None,
         lakes: waters.lakes.report(moved),
         rivers,
         guaranteed: promised && verdicts.agree() && (done.limited.is_none() || hidden.is_empty()),

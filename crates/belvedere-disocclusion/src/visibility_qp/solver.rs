@@ -60,7 +60,8 @@ pub struct QpSolver {
     given: Vec<GivenRow>,
 }
 
-/// A row that a judge asks for: the displacement at a position of the ground, minus `1 - tau` times that of a point, is at most `bound`.
+/// A row that is asked for from outside: the displacement at a position of the ground, minus `1 - tau` times that of a point, is at most
+/// `bound`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct GivenRow {
     /// Grid position of the ground, and of the point.
@@ -72,6 +73,8 @@ pub(crate) struct GivenRow {
     bound: f64,
     /// How both move, see [`Surface::moves`].
     moves: [Combination; 2],
+    /// Whether it keeps the order of two summits, or clears a line of sight.
+    pub(crate) is_order: bool,
 }
 
 /// State of the solution of one frame.
@@ -132,7 +135,15 @@ impl QpSolver {
     pub(crate) fn lowering(&self, u: &[f64], [at, point]: [DVec2; 2], tau: f64, by: f64) -> GivenRow {
         let [ground, of_point] = [at, point].map(|g| self.surface.combination(g, u).at(u));
         let bound = ground - (1.0 - tau) * of_point - by;
-        GivenRow { at, point, tau, bound, moves: self.surface.moves(at, point, u) }
+        GivenRow { at, point, tau, bound, moves: self.surface.moves(at, point, u), is_order: false }
+    }
+
+    /// The row under which the lower of two summits does not become the higher.
+    ///
+    /// * `low`, `high`: grid positions; `by`: how much lower the former is, scene units, >= 0.
+    pub(crate) fn in_order(&self, [low, high]: [DVec2; 2], by: f64) -> GivenRow {
+        let moves = self.surface.moves(low, high, &self.surface.u);
+        GivenRow { at: low, point: high, tau: 0.0, bound: by, moves, is_order: true }
     }
 
     fn given_row(&self, index: u32) -> Row {
