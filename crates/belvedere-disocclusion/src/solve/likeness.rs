@@ -16,6 +16,8 @@ const MOST_NODES: usize = 60_000;
 const FEWEST: usize = 30;
 /// Height by which a summit may rise over the next higher one, metres.
 const ORDER_ALLOWED_M: f64 = 0.5;
+/// Levels into which the heights of the nodes are divided for their order.
+const LEVELS: f64 = 50.0;
 /// Bounds within which a landscape counts as itself. Ours.
 const MOST_TURN_DEG: f64 = 4.0;
 const MOST_TURN_P95_DEG: f64 = 20.0;
@@ -49,7 +51,7 @@ pub struct LikenessFigures {
     pub turn_mean_deg: f64,
     /// The angle that 95 of 100 nodes stay below, degrees.
     pub turn_p95_deg: f64,
-    /// Rank correlation (Spearman) of heights before and after, -1..=1.
+    /// Rank correlation (Spearman) of heights before and after, in steps of a fiftieth of their range, -1..=1.
     pub heights: f64,
     /// Correlation (Pearson) of slopes before and after, -1..=1.
     pub slopes: f64,
@@ -64,10 +66,16 @@ impl LikenessFigures {
         }
         let column = |of: &dyn Fn(&Seen) -> f64| seen.iter().map(of).collect::<Vec<f64>>();
         let mut turns = column(&|s| s.turn);
+        // On plains the order of heights says nothing.
+        let [low, high] = seen.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], s| {
+            [low.min(s.heights[0]), high.max(s.heights[0])]
+        });
+        let step = ((high - low) / LEVELS).max(MOVES_M);
+        let level = |height: f64| ((height - low) / step).round();
         Self {
             turn_mean_deg: (turns.iter().sum::<f64>() / turns.len() as f64).to_degrees(),
             turn_p95_deg: quantile(&mut turns, 0.95, Rank::Lower).to_degrees(),
-            heights: correlation(&ranks(&column(&|s| s.heights[0])), &ranks(&column(&|s| s.heights[1]))),
+            heights: correlation(&ranks(&column(&|s| level(s.heights[0]))), &ranks(&column(&|s| level(s.heights[1])))),
             slopes: correlation(&column(&|s| s.slopes[0]), &column(&|s| s.slopes[1])),
         }
     }

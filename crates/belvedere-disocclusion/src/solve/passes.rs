@@ -283,6 +283,7 @@ impl Passes<'_> {
                 (asked, check) = (price.kept(&asked), price.kept(&check));
                 wider.clone_from(&asked);
             }
+            let settled = price.is_some().then(|| result.clone());
             let gave_up = |p: &ReferencePoint| price.as_ref().is_some_and(|price| price.gave_up(p));
             let mut solution = Solution {
                 passes: self,
@@ -303,14 +304,15 @@ impl Passes<'_> {
             solution.fall_back(qp, prepared.limited.as_deref(), done)?;
             let (solved, foreign) = (solution.result, solution.foreign);
             let (grid, moved) = done.fine.as_ref().map_or((&prepared.grid, &solved.u), |(grid, u)| (grid, u));
-            if !price.as_mut().is_some_and(|price| price.is_exceeded(grid, moved)) {
+            let exceeded = price.as_mut().is_some_and(|price| price.is_exceeded(grid, moved));
+            if !exceeded || self.progress.should_end() {
                 break (solved, foreign);
             }
             // What the fallbacks changed is taken back.
             qp.keep_clear(&in_order);
             qp.set_options(options);
             detail.clone_from(detail_before.as_ref().unwrap_or(&None));
-            (done.fine, result) = (None, solved);
+            (done.fine, result) = (None, settled.unwrap_or(solved));
             done.fallbacks.clear();
         };
         program.foreign = foreign;

@@ -25,14 +25,13 @@ const SHORT_OF: f64 = 1.3;
 const LEAST_PART: f64 = 1e-9;
 /// Most solutions in which stretches are given up, and in which they are taken back.
 const GIVEN_UP: usize = 60;
-const TAKEN_BACK: usize = 8;
+const TAKEN_BACK: usize = 5;
 /// Share of the stated move that the program aims at: agreement with the judge moves the ground a little more.
 const AIM: f64 = 0.97;
 /// Share of the aim below which stretches are taken back although the judge asked for more than is allowed.
 const ROOM: f64 = 0.8;
-/// Least share by which the aim is lowered at a time, least aim, and how often the judge may make the ground move more than is allowed.
+/// Least share by which the aim is lowered at a time, and how often the judge may make the ground move more than is allowed.
 const LOWER: f64 = 0.8;
-const LEAST_AIM: f64 = 0.4;
 const ROUNDS: usize = 6;
 
 /// A stretch of a line, a tile of an area, or a point feature: layer, feature, and number along the line or column and row.
@@ -247,7 +246,7 @@ impl<'a> Price<'a> {
             self.note(&result);
         }
         for _ in 0..GIVEN_UP {
-            let strain = self.last_strain();
+            let strain = self.strain_of(&result);
             if strain <= self.aim || progress.should_end() || !self.give_up(&result, strain) {
                 break;
             }
@@ -256,16 +255,15 @@ impl<'a> Price<'a> {
         }
         // Stretches that were given up for the judge would make it ask for more again, unless that left much room.
         let room = if self.exceeded == 0 { 1.0 } else { ROOM };
-        if self.last_strain() <= room * self.aim {
+        if self.strain_of(&result) <= room * self.aim {
             result = self.take_back(qp, problem, result, progress)?;
         }
         self.taken = Some(self.point(&result));
         Ok(result)
     }
 
-    /// That of the last solution.
-    fn last_strain(&self) -> f64 {
-        self.curve.last().and_then(|point| point.strain).unwrap_or(f64::INFINITY)
+    fn strain_of(&self, result: &QpResult) -> f64 {
+        self.strain(&self.prepared.grid, &result.u)
     }
 
     /// How much of what is allowed a displacement uses, > 1 if it exceeds that; infinite where nothing is, for then as little as possible is
@@ -279,7 +277,7 @@ impl<'a> Price<'a> {
     }
 
     /// Whether a displacement exceeds what is allowed although the program met it, and more can be given up. The judge asks for more than
-    /// the program did, so the program aims lower then, and at last gives up what is left.
+    /// the program did, so the program aims lower than it came then, and at last gives up what is left.
     ///
     /// * `u`: displacement of the nodes of `grid`.
     pub(super) fn is_exceeded(&mut self, grid: &Hierarchy, u: &[f64]) -> bool {
@@ -287,7 +285,8 @@ impl<'a> Price<'a> {
         if !(strain.is_finite() && strain > 1.0) {
             return false;
         }
-        self.aim = (self.aim * (AIM / strain).max(LOWER)).max(LEAST_AIM);
+        let came = self.taken.and_then(|taken| taken.strain).unwrap_or(self.aim);
+        self.aim = came * (AIM / strain).max(LOWER);
         self.exceeded += 1;
         if self.exceeded >= ROUNDS && self.show == 0.0 {
             let left: Vec<Stretch> = self.stretches.keys().filter(|s| !self.gone.contains(s)).copied().collect();
@@ -372,7 +371,7 @@ impl<'a> Price<'a> {
             }
             let given = self.ask(k);
             let result = self.solved(qp, problem, progress)?;
-            if self.last_strain() <= self.aim && !result.stopped {
+            if self.strain_of(&result) <= self.aim && !result.stopped {
                 best = result;
             } else {
                 self.give(k, given);

@@ -5,6 +5,7 @@ mod coarse;
 mod entering;
 mod fallbacks;
 mod lakes;
+mod likeness;
 mod live;
 mod memory;
 mod one_judge;

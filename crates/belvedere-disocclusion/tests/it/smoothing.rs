@@ -17,7 +17,7 @@ fn report(stated_m: f64, w: Option<f64>) -> TerrainReport {
     let way = trail(&hf);
     let scene = Scene { layers: vec![terrain_layer(hf), line_layer("trail", way)], ..Scene::default() };
     let view = View::straight(camera(&scene, 0.3 * spacing, [320, 180]));
-    let solver = TerrainSolver::new(TerrainSettings { w, ..TerrainSettings::default() }).unwrap();
+    let solver = TerrainSolver::new(TerrainSettings { w, show: Some(1.0), ..TerrainSettings::default() }).unwrap();
     solver.solve(&scene, &view, &mut TerrainMemory::default(), &Progress::silent()).unwrap().report
 }
 

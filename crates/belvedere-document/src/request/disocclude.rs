@@ -39,7 +39,8 @@ pub struct Disocclude {
     /// percentile of the terrain's slopes
     #[cfg_attr(feature = "clap", arg(long))]
     pub no_limits: bool,
-    /// Share of the features in view to show, such as 0.95 or 95%: the dearest stretches beyond it are given up, and less ground moves
+    /// Share of the features in view to show, such as 0.95 or 95%: the dearest stretches beyond it are given up, and less ground moves; 100%
+    /// shows all, whatever it costs (default: all that leaves the landscape like itself)
     #[cfg_attr(feature = "clap", arg(long, value_name = "SHARE", allow_negative_numbers = true, value_parser = value::share))]
     pub show: Option<f64>,
     /// Most the ground may move, metres: the dearest stretches of the features are given up until it moves no more

@@ -34,7 +34,7 @@ fn solved(folder: &Path, heights: &[f64], (mirrored, robust): (bool, &str)) -> (
     let text = |[x, y]: [f64; 2], z: &str| format!("{x},{y}{z}");
     let [eye, look] = [[1900.0, 200.0], [1850.0, 2600.0]].map(|p| place(p, mirrored));
     let asked = json!({ "data": dem.display().to_string(), "features": [features.display().to_string()],
-        "source_crs": "EPSG:32632", "eye": text(eye, ",420"), "look": text(look, ""), "fov": 90, "robust": robust, "set": ["solver_nodes=30"] });
+        "source_crs": "EPSG:32632", "eye": text(eye, ",420"), "look": text(look, ""), "fov": 90, "robust": robust, "show": 1.0, "set": ["solver_nodes=30"] });
     let asked: Disocclude = read(&asked.to_string()).expect("a request");
     let found = disocclude(&asked, &OpenOptions::default()).expect("a solution");
     let files = DisoccludeFiles { out: out.clone(), ..DisoccludeFiles::default() };

@@ -87,6 +87,7 @@ fn rivers_run_downhill_on_the_grid_of_the_input() {
             eye: Some(Place::of([x, y], Some(1060.0))),
             look: Some(Place::of(degrees([24.0, 10.0]), None)),
             set: vec!["solver_nodes=24".into()],
+            show: Some(1.0),
             ..Disocclude::default()
         };
         let found = disocclude(&request, &OpenOptions::default()).unwrap();
