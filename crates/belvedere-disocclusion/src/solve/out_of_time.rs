@@ -1,16 +1,17 @@
 //! Choice of a ground when time is up: of several the one that shows most.
 //!
 //! A program that is stopped leaves unfinished ground, which may show less than the undisplaced one. So the same program is solved
-//! for samples of its candidates, which takes a fraction of the time. If the best ground still shows too little, the greedy and
-//! smooth pass is made, which takes about as long as one round. The limits are applied to each ground, which is judged as the report
-//! judges it.
+//! for samples of its candidates, which takes a fraction of the time. Neither moves more than the finished one would: both are solutions for
+//! fewer rows. The limits are applied to each ground, which is judged as the report judges it; what exceeds a stated price or the
+//! bounds of the landscape is not taken.
 
 use super::super::metrics::{Judge, share_seen};
 use super::super::visibility_qp::{Candidate, QpProblem, QpSolver};
-use super::super::{BlockMaxima, Cells, Hierarchy, ReferencePoint, SolverMode, TerrainSettings};
+use super::super::{Hierarchy, ReferencePoint};
 use super::ground::Ground;
-use super::memory::{Prepared, smooth_pass};
+use super::memory::Prepared;
 use super::passes::Passes;
+use super::price::Price;
 use super::{Outcome, PointsInView, Taken, delta_of, reporting};
 use crate::DisocclusionError;
 
@@ -22,12 +23,15 @@ const FEWEST: usize = 24;
 const FIRST_SAMPLE: f64 = 0.1;
 /// Gain of the visible share for which another ground is taken.
 const WORTH: f64 = 0.001;
-/// Visible share from which on the greedy and smooth pass is not tried.
-const ENOUGH: f64 = 0.9;
 
 impl Passes<'_> {
-    /// Solutions for samples of the candidates, the coarsest first, as many as time allows.
-    pub(super) fn samples(&self, qp: &mut QpSolver, problem: &QpProblem<'_>) -> Result<Vec<Ground>, DisocclusionError> {
+    /// Solutions for samples of the candidates, the coarsest first, as many as time allows; what they give up is what the price says.
+    pub(super) fn samples(
+        &self,
+        qp: &mut QpSolver,
+        problem: &QpProblem<'_>,
+        (prepared, in_view): (&Prepared, &PointsInView<'_>),
+    ) -> Result<Vec<Ground>, DisocclusionError> {
         let mut out = Vec::new();
         let worth = SAMPLES.into_iter().filter(|every| problem.candidates.len() / every >= FEWEST);
         for (k, every) in worth.enumerate() {
@@ -38,7 +42,11 @@ impl Passes<'_> {
             self.progress.tick("quadratic program for a sample", 0.9)?;
             qp.reset();
             let few: Vec<Candidate> = problem.candidates.iter().step_by(every).copied().collect();
-            let result = qp.solve_with(&QpProblem { candidates: &few, ..*problem }, &progress)?;
+            let problem = QpProblem { candidates: &few, ..*problem };
+            let mut result = qp.solve_with(&problem, &progress)?;
+            if let Some(mut price) = Price::new(self.settings, prepared, self.likeness(prepared, in_view), [&few, &few]) {
+                result = price.settle(qp, &problem, result, &progress)?;
+            }
             let done = !result.stopped;
             out.push(Ground::solved(Taken::Sample { every }, result, few.len()));
             if !done {
@@ -69,26 +77,23 @@ impl Passes<'_> {
         // No ground: the unfinished one.
         let unmoved = Ground::plain(Taken::Unmoved, vec![0.0; done.coarse.len()]);
         let mut best = (self.share_unmoved(in_view, &points)?, Some(unmoved));
+        let likeness = self.likeness(prepared, in_view);
+        let is_allowed = |grid: &Hierarchy, u: &[f64]| {
+            let moved = u.iter().fold(0.0f64, |most, u| most.max(u.abs()));
+            self.settings.move_at_most_m.is_none_or(|most| moved <= most)
+                && likeness.as_ref().is_none_or(|likeness| likeness.strain(grid, u) <= 1.0)
+        };
         let before = self.last.map(|u| Ground::plain(Taken::FrameBefore, u.to_vec()));
+        let samples = samples.into_iter().filter(|ground| is_allowed(&prepared.grid, &ground.coarse));
         for mut ground in before.into_iter().chain(samples) {
             let share = self.share_limited(prepared, in_view, &points, &mut ground)?;
             if share > best.0 + WORTH {
                 best = (share, Some(ground));
             }
         }
-        if unfinished > best.0 + WORTH {
+        let (grid, u) = done.fine.as_ref().map_or((&prepared.grid, &done.coarse), |(grid, u)| (grid, u));
+        if unfinished > best.0 + WORTH && is_allowed(grid, u) {
             best = (unfinished, None);
-        }
-        if best.0 < ENOUGH
-            && self.frame.is_none()
-            && let Some(mut u) = self.single_pass(prepared, in_view)?
-        {
-            self.hold(&mut u);
-            let mut ground = Ground::plain(Taken::SinglePass, u);
-            let share = self.share_limited(prepared, in_view, &points, &mut ground)?;
-            if share > best.0 + WORTH {
-                best = (share, Some(ground));
-            }
         }
         done.taken = Some(best.1.as_ref().map_or(Taken::Unfinished, |ground| ground.taken));
         best.1.into_iter().for_each(|ground| ground.put(done));
@@ -133,25 +138,5 @@ impl Passes<'_> {
     fn share_unmoved(&self, in_view: &PointsInView<'_>, points: &[ReferencePoint]) -> Result<f64, DisocclusionError> {
         let judge = Judge::still(self.field, &*in_view.sight);
         Ok(share_seen(points, &judge.judge(points, self.settings.guard)))
-    }
-
-    /// The greedy and the smooth pass as published, detail kept as it is; `None` where they were made already.
-    fn single_pass(
-        &self,
-        prepared: &Prepared,
-        in_view: &PointsInView<'_>,
-    ) -> Result<Option<Vec<f64>>, DisocclusionError> {
-        if self.settings.mode != SolverMode::Qp {
-            return Ok(None);
-        }
-        self.progress.tick("greedy and smooth pass", 0.9)?;
-        let field = self.field;
-        let settings = TerrainSettings { mode: SolverMode::Paper, ..self.settings.clone() };
-        let cells = Cells::new(field, settings.cells.unwrap_or_else(|| Cells::default_count(field)));
-        let blocks = BlockMaxima::new(field);
-        let naive = self.naive(prepared, in_view, &settings, (&cells, &blocks));
-        let w = settings.smoothness_on(&prepared.despiked);
-        let mut pass = smooth_pass(&settings, w, &prepared.grid, &prepared.points, (field, &cells))?;
-        Ok(Some(pass.run(&naive.displacement(field, &cells), None, None).u))
     }
 }

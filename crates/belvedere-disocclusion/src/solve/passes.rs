@@ -98,13 +98,16 @@ impl Passes<'_> {
         detail: Option<&[f64]>,
     ) -> Result<Vec<Ground>, DisocclusionError> {
         let usual = detail.is_none() && self.frame.is_none() && self.settings.mode == SolverMode::Qp;
-        let Some(program) = prepared.still.as_mut().filter(|_| usual) else { return Ok(Vec::new()) };
+        let Some(mut program) = prepared.still.take_if(|_| usual) else { return Ok(Vec::new()) };
         let qp = &mut program.solver;
         program.foreign = true;
         qp.set_heights(self.field.heights())?;
         qp.set_options(memory::options(self.settings, false));
         let (candidates, sight) = (&in_view.candidates[..], &*in_view.sight);
-        self.samples(qp, &QpProblem { candidates, sight, target: None, ceilings: None })
+        let problem = QpProblem { candidates, sight, target: None, ceilings: None };
+        let samples = self.samples(qp, &problem, (prepared, in_view));
+        prepared.still = Some(program);
+        samples
     }
 
     /// Applies the limits: fills up ground that is dug too deep or too steep.
@@ -164,7 +167,7 @@ impl Passes<'_> {
     }
 
     /// The greedy pass for the points in view.
-    pub(super) fn naive(
+    fn naive(
         &self,
         prepared: &Prepared,
         in_view: &PointsInView<'_>,
@@ -233,11 +236,12 @@ impl Passes<'_> {
         solved
     }
 
-    /// Whether stretches are given up that do not leave the landscape like itself: in stills with limits, unless a price is stated.
-    fn keeps_landscape(&self) -> bool {
+    /// The picture that must stay like itself: in stills with limits, unless a price is stated.
+    pub(super) fn likeness<'b>(&'b self, prepared: &Prepared, in_view: &PointsInView<'_>) -> Option<Likeness<'b>> {
         let TerrainSettings { mode, limits, show, move_at_most_m, slack_price, .. } = *self.settings;
         let stated = [show, move_at_most_m, slack_price].iter().any(Option::is_some);
-        mode == SolverMode::Qp && limits && self.frame.is_none() && !stated
+        let is_kept = mode == SolverMode::Qp && limits && self.frame.is_none() && !stated;
+        is_kept.then(|| Likeness::new(self.field, in_view.base, &prepared.summits))
     }
 
     fn solved_by(
@@ -266,7 +270,7 @@ impl Passes<'_> {
         let mut wider = [&asked[..], &in_view.entering[..]].concat();
         let options = memory::options(self.settings, false);
         qp.set_options(options);
-        let likeness = self.keeps_landscape().then(|| Likeness::new(self.field, in_view.base, &prepared.summits));
+        let likeness = self.likeness(prepared, in_view);
         let in_order = likeness.as_ref().map_or_else(Vec::new, |likeness| likeness.in_order(&prepared.level, qp));
         qp.keep_clear(&in_order);
         let mut result = qp.solve_with(&problem_of(&wider, sight, target.as_deref()), self.progress)?;

@@ -262,6 +262,22 @@ impl<'a> Price<'a> {
         Ok(result)
     }
 
+    /// Energy of the rows of each stretch.
+    fn energy(&self, result: &QpResult) -> BTreeMap<Stretch, f64> {
+        let mut energy = BTreeMap::new();
+        for row in &result.active {
+            let Some(point) = row.candidate.and_then(|id| self.prepared.candidate(id)) else { continue };
+            *energy.entry(self.division.of(point)).or_default() += row.multiplier * (-row.bound).max(0.0);
+        }
+        energy
+    }
+
+    /// Part of the features of its kind that a stretch stands for.
+    fn part(&self, stretch: &Stretch) -> f64 {
+        let of = self.stretches.get(stretch).filter(|of| self.all[of.kind] > 0.0);
+        of.map_or(0.0, |of| of.amount / self.all[of.kind]).max(LEAST_PART)
+    }
+
     fn strain_of(&self, result: &QpResult) -> f64 {
         self.strain(&self.prepared.grid, &result.u)
     }
@@ -326,21 +342,13 @@ impl<'a> Price<'a> {
         // The energy is a square of the displacement.
         let beyond = if strain.is_finite() { 1.0 - (SHORT_OF * self.aim / strain).powi(2) } else { 0.0 };
         let at_once = beyond.max(AT_ONCE);
-        let mut energy = BTreeMap::<Stretch, f64>::new();
-        for row in &result.active {
-            let Some(point) = row.candidate.and_then(|id| self.prepared.candidate(id)) else { continue };
-            *energy.entry(self.division.of(point)).or_default() += row.multiplier * (-row.bound).max(0.0);
-        }
+        let energy = self.energy(result);
         let all: f64 = energy.values().sum();
-        let part = |stretch: &Stretch| {
-            let of = self.stretches.get(stretch).filter(|of| self.all[of.kind] > 0.0);
-            of.map_or(0.0, |of| of.amount / self.all[of.kind]).max(LEAST_PART)
-        };
         let known = |(stretch, energy): &(Stretch, f64)| {
             *energy > 0.0 && self.stretches.contains_key(stretch) && !self.gone.contains(stretch)
         };
         let mut dearest: Vec<(Stretch, f64)> = energy.into_iter().filter(known).collect();
-        dearest.sort_by(|a, b| (b.1 / part(&b.0)).total_cmp(&(a.1 / part(&a.0))));
+        dearest.sort_by(|a, b| (b.1 / self.part(&b.0)).total_cmp(&(a.1 / self.part(&a.0))));
         let mut gone = 0.0;
         for (stretch, energy) in dearest {
             let last = self.given_up.len();
