@@ -149,7 +149,9 @@ impl<'a> HeightsToWrite<'a> {
         let TerrainSettings { mode, slack_price, move_at_most_m, .. } = *solver.settings();
         // Rivers on the solved ground would run into what is trimmed; elsewhere they are settled afterwards.
         let has_rivers = grid.solved_on && !self.rivers.is_empty();
-        if mode == SolverMode::Paper || slack_price.is_some() || has_rivers {
+        // Where time is up nothing is promised.
+        let is_late = solved.report.out_of_time;
+        if mode == SolverMode::Paper || slack_price.is_some() || has_rivers || is_late {
             return Ok((out, None));
         }
         let mut grids = vec![grid.samples()];
