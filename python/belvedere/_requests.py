@@ -206,7 +206,7 @@ class DisoccludeOptions(TypedDict, total=False):
     #: Show what is in view to programs that cut the cells of the heights from north-east to south-west as well: auto, the default, if the ground moves by less than 1.3 times as much, always or never; without a value always
     robust: Literal["auto", "always", "never"] | None
 
-    #: Share of the features in view to show, such as 0.95 or 95%: the dearest stretches beyond it are given up, and less ground moves
+    #: Share of the features in view to show, such as 0.95 or 95%: the dearest stretches beyond it are given up, and less ground moves; 100% shows all, whatever it costs (default: all that leaves the landscape like itself)
     show: float | None
 
     #: Unit of the terrain's heights, instead of the stated one

@@ -51,7 +51,8 @@ impl Grid {
     fn highest_of_block(&self, ground: &Heightfield, node: usize) -> Option<u32> {
         let block = (self.spacing / ground.spacing()).round();
         let (block, first) = (block.x as usize, [node % self.cols, node / self.cols].map(|k| k * block.x as usize));
-        let [cols, rows] = [0, 1].map(|axis| first[axis]..(first[axis] + block).min([ground.cols(), ground.rows()][axis]));
+        let [cols, rows] =
+            [0, 1].map(|axis| first[axis]..(first[axis] + block).min([ground.cols(), ground.rows()][axis]));
         let nodes = rows.flat_map(|row| cols.clone().map(move |col| (col, row)));
         let heights = nodes.filter_map(|(col, row)| Some((ground.node(col, row)?.z, row * ground.cols() + col)));
         heights.reduce(|a, b| if b.0 > a.0 { b } else { a }).map(|(_, node)| node as u32)

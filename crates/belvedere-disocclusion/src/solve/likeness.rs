@@ -1,7 +1,7 @@
 //! How much the displaced ground still looks like the ground, over the nodes of the picture that move.
 
-use super::super::{Field, Hierarchy};
 use super::super::visibility_qp::{GivenRow, QpSolver};
+use super::super::{Field, Hierarchy};
 use super::in_picture;
 use belvedere_core::quantile::{Rank, quantile};
 use belvedere_core::{DVec2, DVec3, View};
@@ -67,9 +67,9 @@ impl LikenessFigures {
         let column = |of: &dyn Fn(&Seen) -> f64| seen.iter().map(of).collect::<Vec<f64>>();
         let mut turns = column(&|s| s.turn);
         // On plains the order of heights says nothing.
-        let [low, high] = seen.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], s| {
-            [low.min(s.heights[0]), high.max(s.heights[0])]
-        });
+        let [low, high] = seen
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], s| [low.min(s.heights[0]), high.max(s.heights[0])]);
         let step = ((high - low) / LEVELS).max(MOVES_M);
         let level = |height: f64| ((height - low) / step).round();
         Self {
@@ -114,9 +114,8 @@ impl<'a> Likeness<'a> {
             let p: DVec3 = field.scene_from_grid(field.node(i as usize)).extend(height);
             !field.void()[i as usize] && in_picture::nearly_holds(base, p)
         };
-        let of_row = |row: usize| {
-            (0..cols).step_by(every).map(move |col| (row * cols + col) as u32).filter(|i| in_picture(*i))
-        };
+        let of_row =
+            |row: usize| (0..cols).step_by(every).map(move |col| (row * cols + col) as u32).filter(|i| in_picture(*i));
         let nodes = (0..rows).into_par_iter().step_by(every).flat_map_iter(of_row).collect();
         let mut summits: Vec<u32> = summits.iter().copied().filter(|i| in_picture(*i)).collect();
         summits.sort_by(|a, b| field.heights()[*b as usize].total_cmp(&field.heights()[*a as usize]));

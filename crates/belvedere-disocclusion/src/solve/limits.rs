@@ -6,15 +6,20 @@
 //! rises with the first, and where the displacement is drawn bilinear between nodes, filled ground is rough. The judge finds what that
 //! hides, and what filling up steep sides hides.
 //!
+//! The sea does not move, and land that stands over it does not sink below it. Lines of sight from above the sea to land run above it, so
+//! that filling up to it hides next to nothing.
+//!
 //! The program has no rows for the floor: where they were tried they contradicted those of lines of sight, for a displacement of the
 //! solver's grid is smooth and cannot flatten the ground within a cell as filling up does.
 
 use super::super::{Field, Hierarchy};
 use super::waters::Waters;
+use belvedere_scene::{Heightfield, Sea};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BinaryHeap};
+use std::ops::Range;
 
 /// Depth to which the ground may sink below the lowest node of the terrain, share of the relief.
 const DEEPER: f64 = 0.2;
@@ -29,12 +34,14 @@ const RIVER_ROUNDS: usize = 200;
 const KEPT: f64 = 1e-6;
 
 /// Limits that the displaced ground must keep.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Limits {
     /// Lowest height.
     floor: f64,
     /// Steepest slope between two nodes, rise over run; pairs of nodes that were steeper may stay so.
     slope: f64,
+    /// Height of the sea, and which nodes are sea.
+    sea: Option<(f64, Vec<bool>)>,
 }
 
 /// Report of the limits.
@@ -57,12 +64,15 @@ pub(super) struct LimitedTerrain {
     limits: Limits,
     /// Lowest height and steepest slope of each block.
     blocks: Vec<[f64; 2]>,
+    /// Blocks with sea; empty where there is none.
+    with_sea: Vec<bool>,
     spacing: f64,
 }
 
 impl LimitedTerrain {
-    pub(super) fn new(field: &Field, grid: &Hierarchy) -> Self {
-        let limits = Limits::of(field);
+    /// * `ground`: whose field this is.
+    pub(super) fn new(ground: &Heightfield, field: &Field, grid: &Hierarchy) -> Self {
+        let limits = Limits { sea: Sea::nodes(ground), ..Limits::of(field) };
         let [cols, rows] = [grid.cols().max(2) - 1, grid.rows().max(2) - 1];
         let [across, down] = [grid.step().x as usize, grid.step().y as usize];
         let block = |b: usize| {
@@ -70,7 +80,14 @@ impl LimitedTerrain {
             lowest_and_steepest(field, [x, (x + across).min(field.cols() - 1)], [y, (y + down).min(field.rows() - 1)])
         };
         let blocks = (0..cols * rows).into_par_iter().map(block).collect();
-        Self { limits, blocks, spacing: field.spacing().min_element() }
+        let has_sea = |b: usize| {
+            let (x, y) = (b % cols * across, b / cols * down);
+            let row =
+                |y: usize| limits.sea_of(y * field.cols() + x..y * field.cols() + (x + across + 1).min(field.cols()));
+            (y..(y + down + 1).min(field.rows())).any(row)
+        };
+        let with_sea = (0..limits.sea.as_ref().map_or(0, |_| cols * rows)).map(has_sea).collect();
+        Self { limits, blocks, with_sea, spacing: field.spacing().min_element() }
     }
 
     /// Whether a displacement certainly keeps the limits, by bounds for each block.
@@ -85,8 +102,11 @@ impl LimitedTerrain {
             let [least, most] =
                 corners.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
             let across = (most - least) / reach;
+            if self.with_sea.get(i) == Some(&true) && corners != [0.0; 4] {
+                return false;
+            }
             // Along a diagonal both slopes add up.
-            low + least >= self.limits.floor
+            low + least >= self.limits.floor_at(*low)
                 && (across == 0.0 || steep + std::f64::consts::SQRT_2 * across <= self.limits.slope)
         })
     }
@@ -115,7 +135,17 @@ impl Limits {
                 f64::from(*slopes.select_nth_unstable_by(k, f32::total_cmp).1).sqrt()
             }
         };
-        Self { floor: field.datum() - DEEPER * field.relief(), slope: DIRECTIONS * STEEPER * steep }
+        Self { floor: field.datum() - DEEPER * field.relief(), slope: DIRECTIONS * STEEPER * steep, sea: None }
+    }
+
+    /// Lowest height of ground that was this high.
+    fn floor_at(&self, height: f64) -> f64 {
+        let sea = self.sea.as_ref().map_or(f64::NEG_INFINITY, |(level, _)| level.min(height));
+        self.floor.min(height).max(sea)
+    }
+
+    fn sea_of(&self, mut nodes: Range<usize>) -> bool {
+        self.sea.as_ref().is_some_and(|(_, sea)| nodes.any(|i| sea[i]))
     }
 
     /// Raises the displaced ground until it keeps the limits, lakes are level and no river runs uphill; without rivers the result is
@@ -123,7 +153,12 @@ impl Limits {
     fn keep(&self, field: &Field, waters: &Waters, u: &mut [f64]) -> Option<LimitsReport> {
         let (h, lakes, ways) = (field.heights(), &waters.lakes, Ways::over(field));
         let solid = |i: usize| !field.void()[i];
-        let mut ground: Vec<f64> = h.par_iter().zip(&*u).map(|(h, u)| (h + u).max(self.floor.min(*h))).collect();
+        if let Some((_, sea)) = &self.sea {
+            // It may have risen by the tolerance of ceilings.
+            u.iter_mut().zip(sea).filter(|(_, sea)| **sea).for_each(|(u, _)| *u = u.min(0.0));
+        }
+        let lowest = |i: usize| if self.sea_of(i..i + 1) { h[i] } else { self.floor_at(h[i]) };
+        let mut ground: Vec<f64> = (0..h.len()).into_par_iter().map(|i| (h[i] + u[i]).max(lowest(i))).collect();
         for lake in lakes.nodes() {
             let highest = highest(lake, |n| ground[n] - h[n]);
             lake.iter().for_each(|n| ground[*n as usize] = h[*n as usize] + highest);

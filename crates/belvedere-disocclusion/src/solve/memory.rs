@@ -192,7 +192,7 @@ impl Prepared {
         let dense = if with_qp { candidate_points(scene, &level, settings) } else { Vec::new() };
         let (check, beside) = judged_points(&features, &level, settings, CHECK_CELLS);
         let waters = Waters::new(&areas_of_water, &river_lines, heightfield, &level);
-        let limited = (with_qp && settings.limits).then(|| Arc::new(LimitedTerrain::new(&level, &grid)));
+        let limited = (with_qp && settings.limits).then(|| Arc::new(LimitedTerrain::new(&despiked, &level, &grid)));
         let cells = (settings.mode != SolverMode::Qp).then(|| {
             let keep = settings.cells.unwrap_or_else(|| Cells::default_count(&level));
             Arc::new((Cells::new(&level, keep), BlockMaxima::new(&level)))

@@ -44,7 +44,8 @@ impl Passes<'_> {
             let few: Vec<Candidate> = problem.candidates.iter().step_by(every).copied().collect();
             let problem = QpProblem { candidates: &few, ..*problem };
             let mut result = qp.solve_with(&problem, &progress)?;
-            if let Some(mut price) = Price::new(self.settings, prepared, self.likeness(prepared, in_view), [&few, &few]) {
+            if let Some(mut price) = Price::new(self.settings, prepared, self.likeness(prepared, in_view), [&few, &few])
+            {
                 result = price.settle(qp, &problem, result, &progress)?;
             }
             let done = !result.stopped;

@@ -274,7 +274,8 @@ impl Passes<'_> {
         let in_order = likeness.as_ref().map_or_else(Vec::new, |likeness| likeness.in_order(&prepared.level, qp));
         qp.keep_clear(&in_order);
         let mut result = qp.solve_with(&problem_of(&wider, sight, target.as_deref()), self.progress)?;
-        let mut price = Price::new(self.settings, prepared, likeness, [&asked, &check]).filter(|_| self.frame.is_none());
+        let mut price =
+            Price::new(self.settings, prepared, likeness, [&asked, &check]).filter(|_| self.frame.is_none());
         let detail_before = price.is_some().then(|| detail.clone());
         let (result, foreign) = loop {
             if let Some(price) = &mut price {

@@ -65,7 +65,10 @@ fn the_turn_of_the_normals_is_that_of_the_drawn_ground() {
         let (turn_moved, moved) = mean(&mut all.iter().filter(|n| (n.0[1] - n.0[0]).abs() > 1.0).map(|n| n.1));
         let said = likeness(&found);
         assert!((said.picture.turn_mean_deg - turn).abs() < 0.05 * turn + 0.02, "{seed}: {said:?}, {turn}");
-        assert!((said.moved.turn_mean_deg - turn_moved).abs() < 0.05 * turn_moved + 0.05, "{seed}: {said:?}, {turn_moved}");
+        assert!(
+            (said.moved.turn_mean_deg - turn_moved).abs() < 0.05 * turn_moved + 0.05,
+            "{seed}: {said:?}, {turn_moved}"
+        );
         assert!((said.moved_share - moved / count).abs() < 0.03, "{seed}: {said:?}, {}", moved / count);
         tried += usize::from(turn_moved > 1.0);
     }

@@ -69,17 +69,17 @@ impl OriginalTerrain {
     /// # Errors
     /// [`IoError`] if the file's coordinate system cannot be joined with that of the scene.
     pub fn moved(&self, scene: Crs, delta: impl Fn(DVec2) -> f64 + Sync) -> Result<[Raster; 2], IoError> {
-        self.moved_and_filled(scene, delta, |_| None)
+        self.moved_and_filled(scene, |p, _| delta(p), |_| None)
     }
 
-    /// As [`Self::moved`], but where the file has no data the height before the move is `fill` (metres, at scene x, y), if that has one.
+    /// As [`Self::moved`], where the move may also depend on the height before it, and where the file has no data the height before the move is `fill` (metres, at scene x, y), if that has one.
     ///
     /// # Errors
     /// As [`Self::moved`].
     pub fn moved_and_filled(
         &self,
         scene: Crs,
-        delta: impl Fn(DVec2) -> f64 + Sync,
+        delta: impl Fn(DVec2, f64) -> f64 + Sync,
         fill: impl Fn(DVec2) -> Option<f64> + Sync,
     ) -> Result<[Raster; 2], IoError> {
         let source = &self.source;
@@ -102,7 +102,8 @@ impl OriginalTerrain {
                 };
                 let own = f64::from(source.heights[i]);
                 let height = |p: DVec2| if own.is_finite() { Some(own) } else { fill(p) };
-                let moved = scene_xy.and_then(|p| Some((height(p)?, delta(p)))).filter(|(h, d)| (h + d).is_finite());
+                let moved =
+                    scene_xy.and_then(|p| height(p).map(|h| (h, delta(p, h)))).filter(|(h, d)| (h + d).is_finite());
                 moved.map_or([NODATA; 2], |(h, d)| [(h + d) as f32, d as f32])
             })
             .collect();

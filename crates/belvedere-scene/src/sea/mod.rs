@@ -42,14 +42,18 @@ impl Sea {
     /// * with a shore: half the nodes beside it stand less than the spacing of the nodes over it (10 m at least, 100 m at most).
     ///   Level ground with a higher step to the land is a frame of undeclared voids, blended or not.
     pub fn of(ground: &Heightfield) -> Option<Self> {
+        let (level_m, nodes) = Self::nodes(ground)?;
+        let spacing = ground.spacing();
+        let area_m2 = nodes.iter().filter(|sea| **sea).count() as f64 * spacing.x * spacing.y;
+        Some(Self { level_m, area_m2, coasts: coast::rings(ground, &nodes, level_m) })
+    }
+
+    /// The height of the sea, metres, and which nodes of the ground are sea, row by row.
+    pub fn nodes(ground: &Heightfield) -> Option<(f64, Vec<bool>)> {
         let lowest = ground.z_range()[0];
         let levels = [Some(0.0), (lowest < -f64::from(SAME_M)).then_some(lowest)];
-        levels.into_iter().flatten().filter(|level| *level >= lowest).find_map(|level| {
-            let nodes = nodes_at(ground, level as f32)?;
-            let spacing = ground.spacing();
-            let area_m2 = nodes.iter().filter(|sea| **sea).count() as f64 * spacing.x * spacing.y;
-            Some(Self { level_m: level, area_m2, coasts: coast::rings(ground, &nodes, level) })
-        })
+        let known = levels.into_iter().flatten().filter(|level| *level >= lowest);
+        known.into_iter().find_map(|level| Some((level, nodes_at(ground, level as f32)?)))
     }
 }
 

@@ -24,7 +24,7 @@ use belvedere_io::raster::Raster;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_resolve::ground::earth_radius;
 use belvedere_resolve::terrain as intent;
-use belvedere_scene::{Progress, Scene};
+use belvedere_scene::{Progress, Scene, Sea};
 use schemars::JsonSchema;
 use serde::{Serialize, Serializer};
 use serde_json::{Map, Value};
@@ -238,6 +238,12 @@ fn disoccluded(request: &Disocclude, options: &OpenOptions) -> Result<Disocclude
         fill_voids: request.fill_voids,
         rivers: &solver.settings().rivers,
         robust: request.robust.unwrap_or_default(),
+        sea_m: data
+            .scene
+            .terrain()
+            .filter(|_| solver.settings().limits)
+            .and_then(|t| Sea::nodes(t))
+            .map(|(level, _)| level),
     };
     let mut solved = to_write.solved(&solver, &view, &solving)?;
     let (written, trimmed) = to_write.trimmed(&solver, &view, &mut solved, &options.progress)?;

@@ -20,6 +20,8 @@ type Map<'a> = Box<dyn Fn(DVec2) -> Option<DVec2> + Sync + 'a>;
 /// Most that showing all to programs that cut cells otherwise may cost unless that is asked for, as a multiple of the displacement
 /// without it.
 const ROBUST_AT_MOST: f64 = 1.3;
+/// Heights within this of the sea's are sea, metres.
+const SEA_M: f64 = 0.01;
 /// Bytes of a sample while it is judged: its height twice, whether it has one, and the rasters that hold it.
 const SAMPLE_BYTES: u64 = 25;
 
@@ -50,6 +52,8 @@ pub(super) struct HeightsToWrite<'a> {
     /// Layers of rivers.
     pub(super) rivers: &'a [String],
     pub(super) robust: Robust,
+    /// Height of the sea, metres, which stays where it is.
+    pub(super) sea_m: Option<f64>,
 }
 
 /// Heights and the displacement in them, as they are written.
@@ -92,8 +96,9 @@ impl<'a> HeightsToWrite<'a> {
         if let Some(terrain) = self.terrain() {
             return Ok(ToWrite { rasters: moved_terrain(terrain, self.scene.crs, delta), rivers: Vec::new() });
         }
+        let by = |p: DVec2, height: f64| over_sea(self.sea_m, height, delta(p));
         let surface = |p: DVec2| self.scene.terrain().filter(|_| self.fill_voids)?.surface_at(p);
-        let mut rasters = self.original.moved_and_filled(self.scene.crs, delta, surface)?;
+        let mut rasters = self.original.moved_and_filled(self.scene.crs, by, surface)?;
         let rivers = match self.is_resampled() {
             true => run_downhill(&mut rasters, self.original, (self.scene, self.rivers), &lakes)?,
             false => Vec::new(),
@@ -163,7 +168,9 @@ impl<'a> HeightsToWrite<'a> {
         let most = grids[0].most_trimmed();
         let is_deep =
             |i: usize| move_at_most_m.zip(sample(&out.rasters[1], i)).is_some_and(|(at_most, d)| most - d > at_most);
-        let is_fixed = |i: usize| is_deep(i) || is_water(i);
+        // No sample is trimmed to below the sea.
+        let is_low = |i: usize| self.sea_m.zip(sample(&out.rasters[0], i)).is_some_and(|(sea, h)| h <= sea + most);
+        let is_fixed = |i: usize| is_deep(i) || is_water(i) || is_low(i);
         let height = |i: usize| sample(&out.rasters[0], i);
         let lowered = solver.trimmed((self.scene, view), &grids, &height, &is_fixed, &solved.report, progress)?;
         if lowered.is_empty() {
@@ -182,6 +189,15 @@ impl<'a> HeightsToWrite<'a> {
             out.rivers = run_downhill(&mut out.rasters, self.original, rivers, &lakes)?;
         }
         Ok((out, Some(report)))
+    }
+}
+
+/// The displacement of a sample under which the sea stays and land does not sink below it.
+fn over_sea(sea_m: Option<f64>, height: f64, by: f64) -> f64 {
+    match sea_m {
+        Some(sea) if (height - sea).abs() <= SEA_M => 0.0,
+        Some(sea) if height > sea => by.max(sea - height),
+        _ => by,
     }
 }
 

@@ -36,3 +36,4 @@ mod walls;
 mod warnings;
 mod written_lakes;
 mod written_rivers;
+mod written_sea;

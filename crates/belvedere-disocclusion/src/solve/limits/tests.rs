@@ -2,11 +2,14 @@ use super::*;
 use belvedere_core::DVec2;
 use belvedere_scene::{Heightfield, NodeState};
 
-fn field(height: impl Fn(usize, usize) -> f32) -> Field {
+fn ground(height: impl Fn(usize, usize) -> f32) -> Heightfield {
     let heights = (0..30 * 24).map(|i| height(i % 30, i / 30)).collect();
     let states = vec![NodeState::Measured; 30 * 24];
-    let hf = Heightfield::new(DVec2::ZERO, DVec2::new(10.0, 20.0), 30, 24, heights, states).unwrap();
-    Field::new(&hf, |_| 0.0).unwrap()
+    Heightfield::new(DVec2::ZERO, DVec2::new(10.0, 20.0), 30, 24, heights, states).unwrap()
+}
+
+fn field(height: impl Fn(usize, usize) -> f32) -> Field {
+    Field::new(&ground(height), |_| 0.0).unwrap()
 }
 
 fn rough(x: usize, y: usize) -> f32 {
@@ -45,7 +48,7 @@ fn what_is_filled_up_is_the_least_ground_that_keeps_the_limits() {
 fn a_displacement_that_is_surely_within_the_limits_is_within_them() {
     let field = field(rough);
     let grid = Hierarchy::whole(30, 24, 8);
-    let limited = LimitedTerrain::new(&field, &grid);
+    let limited = LimitedTerrain::new(&ground(rough), &field, &grid);
     let (mut sure, mut held) = (0, 0);
     for k in 0..200u32 {
         let depth = 0.4 * f64::from(k);
@@ -59,4 +62,35 @@ fn a_displacement_that_is_surely_within_the_limits_is_within_them() {
         held += usize::from(report.is_some());
     }
     assert!(sure > 3 && held > 3, "{sure} {held}");
+}
+
+/// An island in a sea.
+fn island(x: usize, y: usize) -> f32 {
+    (90.0 - 9.0 * (x as f32 - 14.0).hypot(y as f32 - 11.0)).max(0.0)
+}
+
+#[test]
+fn the_sea_stays_and_land_does_not_sink_below_it() {
+    let (hf, field, grid) = (ground(island), field(island), Hierarchy::whole(30, 24, 8));
+    let limited = LimitedTerrain::new(&hf, &field, &grid);
+    let (level, sea) = Sea::nodes(&hf).expect("a sea");
+    let (mut kept, mut held) = (0, 0);
+    for k in 0..200u32 {
+        // Some leave the coast as it is.
+        let inland = |i: usize| (i % grid.cols()).abs_diff(3) + (i / grid.cols()).abs_diff(3) < 2;
+        let of = |i: usize| {
+            if k % 2 == 0 || inland(i) { -0.3 * f64::from(k) * (((i * 37) % 11) as f64) / 11.0 } else { 0.0 }
+        };
+        let u: Vec<f64> = (0..grid.nodes()).map(of).collect();
+        let mut fine = grid.prolong(&u);
+        let surely = limited.surely_kept(&grid, &u);
+        let changed = limited.keep(&field, &Waters::default(), &mut fine).is_some();
+        assert!(!(surely && changed), "{k}");
+        for (i, u) in fine.iter().enumerate() {
+            let after = field.heights()[i] + u;
+            assert!(if sea[i] { *u == 0.0 } else { after >= level }, "node {i}: {u}, {after}");
+        }
+        (kept, held) = (kept + u32::from(surely), held + u32::from(changed));
+    }
+    assert!(kept > 3 && held > 50, "{kept} {held}");
 }

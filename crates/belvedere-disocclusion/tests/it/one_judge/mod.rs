@@ -39,7 +39,8 @@ fn the_report_says_what_buffers_and_rays_say() {
         // As published and at a price much stays hidden, which has to be counted alike as well.
         let mode = [SolverMode::Qp, SolverMode::Qp, SolverMode::Paper][seed as usize % 3];
         let slack_price = (seed % 6 == 4).then_some(50.0);
-        let settings = TerrainSettings { mode, slack_price, show: Some(1.0), cells: Some(8), ..TerrainSettings::default() };
+        let settings =
+            TerrainSettings { mode, slack_price, show: Some(1.0), cells: Some(8), ..TerrainSettings::default() };
         let Compared { report, view, shares } = compared(&case, settings);
         for (when, [said, others @ ..]) in ["before", "after"].into_iter().zip(shares) {
             for (who, share) in ["line of sight", "depth buffer", "rays"].into_iter().zip(others) {
