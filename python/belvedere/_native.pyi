@@ -165,6 +165,7 @@ class NativeGround:
         displacement: str | None,
         features: str | None,
         picture: str | None,
+        certificate: str | None,
         overwrite: bool,
     ) -> list[PathLike[str]]: ...
 

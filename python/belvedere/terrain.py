@@ -91,12 +91,14 @@ class Ground:
         displacement: str | os.PathLike[str] | None = None,
         features: str | os.PathLike[str] | None = None,
         picture: str | os.PathLike[str] | None = None,
+        certificate: str | os.PathLike[str] | None = None,
         overwrite: bool = False,
     ) -> list[Path]:
         """Writes the displaced elevation model (GeoTIFF), and if named the report (JSON), the displacement (GeoTIFF), the features on the displaced
-        ground (GeoJSON), and the ground before and after (PNG); returns the paths."""
-        r, d, f, p = (None if name is None else os.fspath(name) for name in (report, displacement, features, picture))
-        return [Path(name) for name in self._native.save(os.fspath(path), r, d, f, p, overwrite)]
+        ground (GeoJSON), the ground before and after (PNG), and the lines of sight by which what is shown can be checked (JSON); returns the paths."""
+        others = (report, displacement, features, picture, certificate)
+        r, d, f, p, c = (None if name is None else os.fspath(name) for name in others)
+        return [Path(name) for name in self._native.save(os.fspath(path), r, d, f, p, c, overwrite)]
 
     def __repr__(self) -> str:
         return f"<belvedere.Ground: {self.summary}>"

@@ -90,6 +90,7 @@ impl NativeGround {
         displacement: Option<PathBuf>,
         features: Option<PathBuf>,
         picture: Option<PathBuf>,
+        certificate: Option<PathBuf>,
         overwrite: bool,
     ) -> PyResult<Vec<PathBuf>> {
         let tiff = |path: &PathBuf| {
@@ -101,7 +102,7 @@ impl NativeGround {
             return Err(wrong(&text));
         }
         let found = self.found.clone();
-        let files = DisoccludeFiles { out, report, displacement, features, picture };
+        let files = DisoccludeFiles { out, report, displacement, features, picture, certificate };
         run(py, &Ask::default(), move |progress| {
             output::check_all(&files.all(), &found.session.input_paths(), overwrite)?;
             found.write(&files, overwrite, &progress)

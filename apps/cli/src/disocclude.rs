@@ -30,6 +30,9 @@ pub(crate) struct DisoccludeArgs {
     /// Draw the ground before and after from the eye, side by side, with its record
     #[arg(long, value_name = "OUT.png")]
     picture: Option<PathBuf>,
+    /// Write lines of sight to this file by which what is shown can be checked against the elevation model alone
+    #[arg(long, value_name = "OUT.json")]
+    certificate: Option<PathBuf>,
 }
 
 pub(crate) fn disocclude(args: DisoccludeArgs, context: &Context) -> anyhow::Result<Goal> {
@@ -40,6 +43,7 @@ pub(crate) fn disocclude(args: DisoccludeArgs, context: &Context) -> anyhow::Res
         displacement: args.displacement,
         features: args.features_out,
         picture: args.picture,
+        certificate: args.certificate,
     };
     ready(&files)?;
     let inputs: Vec<PathBuf> =

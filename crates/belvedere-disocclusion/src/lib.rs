@@ -50,9 +50,9 @@ pub mod report {
     pub use crate::metrics::{FrameChange, TerrainMetrics};
     pub use crate::points::PointKind;
     pub use crate::solve::{
-        BANK_M, Covered, Fallback, FeatureCost, GivenUp, HigherEye, LakeReport, LikenessFigures, LikenessReport,
-        LimitsReport, PricePoint, PriceReport, QpReport, Taken, TerrainTimes, TrimReport, UnresolvedReason,
-        UnresolvedRun,
+        BANK_M, CertifiedLine, Covered, Fallback, FeatureCost, GivenUp, HigherEye, LakeReport, LikenessFigures,
+        LikenessReport, LimitsReport, PricePoint, PriceReport, QpReport, Taken, TerrainTimes, TrimReport,
+        UnresolvedReason, UnresolvedRun,
     };
 }
 

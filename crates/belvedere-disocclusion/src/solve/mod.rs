@@ -2,6 +2,7 @@
 
 mod adjust;
 mod agreement;
+mod certificate;
 mod entering;
 mod fallback;
 mod file_to_write;
@@ -26,6 +27,7 @@ mod trim;
 mod waters;
 mod written;
 
+pub use certificate::CertifiedLine;
 pub use fallback::Fallback;
 pub use file_to_write::{FileToWrite, HeightsUnder};
 pub use higher_eye::HigherEye;

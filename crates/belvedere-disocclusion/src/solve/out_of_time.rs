@@ -9,14 +9,19 @@ use super::super::metrics::{Judge, share_seen};
 use super::super::visibility_qp::{Candidate, QpProblem, QpSolver};
 use super::super::{Hierarchy, ReferencePoint};
 use super::ground::Ground;
+use super::likeness::Likeness;
 use super::memory::Prepared;
 use super::passes::Passes;
-use super::price::Price;
 use super::{Outcome, PointsInView, Taken, delta_of, reporting};
 use crate::DisocclusionError;
+use belvedere_core::DVec2;
+use std::collections::BTreeMap;
 
 /// Each solution demands one of this many candidates; the solutions are made in this order.
 const SAMPLES: [usize; 3] = [32, 8, 3];
+/// Candidates of a sample where bounds hold, about, and the parts of them that are demanded one after the other.
+const BOUNDED: usize = 200;
+const PARTS: [f64; 4] = [0.1, 0.3, 0.6, 1.0];
 /// Fewer candidates than these are not worth a solution of their own.
 const FEWEST: usize = 24;
 /// Share of the time for all of the work that the first sample has at least.
@@ -24,31 +29,43 @@ const FIRST_SAMPLE: f64 = 0.1;
 /// Gain of the visible share for which another ground is taken.
 const WORTH: f64 = 0.001;
 
+/// What bounds a displacement: the largest that is allowed, and the landscape.
+struct Bounds<'a> {
+    most_m: Option<f64>,
+    likeness: Option<Likeness<'a>>,
+}
+
+impl Bounds<'_> {
+    fn are_any(&self) -> bool {
+        self.most_m.is_some() || self.likeness.is_some()
+    }
+
+    fn hold(&self, grid: &Hierarchy, u: &[f64]) -> bool {
+        let moved = u.iter().fold(0.0f64, |most, u| most.max(u.abs()));
+        self.most_m.is_none_or(|most| moved <= most) && self.likeness.as_ref().is_none_or(|l| l.strain(grid, u) <= 1.0)
+    }
+}
+
 impl Passes<'_> {
-    /// Solutions for samples of the candidates, the coarsest first, as many as time allows; what they give up is what the price says.
+    /// Solutions for samples of the candidates, the coarsest first, as many as time allows. Where what moves is bounded, the samples are of
+    /// those that the ground hides least, for they cost least, more each time until a bound is exceeded.
     pub(super) fn samples(
         &self,
         qp: &mut QpSolver,
         problem: &QpProblem<'_>,
         (prepared, in_view): (&Prepared, &PointsInView<'_>),
     ) -> Result<Vec<Ground>, DisocclusionError> {
+        let bounds = self.bounds(prepared, in_view);
         let mut out = Vec::new();
-        let worth = SAMPLES.into_iter().filter(|every| problem.candidates.len() / every >= FEWEST);
-        for (k, every) in worth.enumerate() {
+        for (k, (every, few)) in self.sampled(problem, bounds.are_any()).into_iter().enumerate() {
             let progress = if k == 0 { self.progress.at_least(FIRST_SAMPLE) } else { self.progress.clone() };
             if progress.should_end() {
                 break;
             }
             self.progress.tick("quadratic program for a sample", 0.9)?;
             qp.reset();
-            let few: Vec<Candidate> = problem.candidates.iter().step_by(every).copied().collect();
-            let problem = QpProblem { candidates: &few, ..*problem };
-            let mut result = qp.solve_with(&problem, &progress)?;
-            if let Some(mut price) = Price::new(self.settings, prepared, self.likeness(prepared, in_view), [&few, &few])
-            {
-                result = price.settle(qp, &problem, result, &progress)?;
-            }
-            let done = !result.stopped;
+            let result = qp.solve_with(&QpProblem { candidates: &few, ..*problem }, &progress)?;
+            let done = !result.stopped && bounds.hold(&prepared.grid, &result.u);
             out.push(Ground::solved(Taken::Sample { every }, result, few.len()));
             if !done {
                 break;
@@ -57,6 +74,29 @@ impl Passes<'_> {
         // The next frame must not begin with rows of a sample.
         qp.reset();
         Ok(out)
+    }
+
+    /// Candidates of the samples, with one of how many they are.
+    fn sampled(&self, problem: &QpProblem<'_>, bounded: bool) -> Vec<(usize, Vec<Candidate>)> {
+        let all = problem.candidates;
+        let of = |every: usize| (every, all.iter().step_by(every).copied().collect::<Vec<Candidate>>());
+        if !bounded {
+            return SAMPLES.into_iter().filter(|every| all.len() / every >= FEWEST).map(of).collect();
+        }
+        let (every, mut few) = of(all.len().div_ceil(BOUNDED).max(1));
+        let places: Vec<(DVec2, f64)> = few.iter().map(|c| (c.grid, c.lift)).collect();
+        let hiding = Judge::still(self.field, problem.sight).hiding(&places, 0.0);
+        let over: BTreeMap<u32, f64> =
+            few.iter().zip(hiding).map(|(c, hides)| (c.id, hides.map_or(0.0, |h| h.1))).collect();
+        few.sort_by(|a, b| over[&a.id].total_cmp(&over[&b.id]));
+        let seen = few.iter().filter(|c| over[&c.id] == 0.0).count();
+        let part = |share: f64| seen + (share * (few.len() - seen) as f64).ceil() as usize;
+        PARTS.into_iter().map(|share| (every, few[..part(share)].to_vec())).collect()
+    }
+
+    /// What bounds the displacement.
+    fn bounds(&self, prepared: &Prepared, in_view: &PointsInView<'_>) -> Bounds<'_> {
+        Bounds { most_m: self.settings.move_at_most_m, likeness: self.likeness(prepared, in_view) }
     }
 
     /// Replaces the unfinished ground by the one that shows most, if that shows more.
@@ -78,14 +118,9 @@ impl Passes<'_> {
         // No ground: the unfinished one.
         let unmoved = Ground::plain(Taken::Unmoved, vec![0.0; done.coarse.len()]);
         let mut best = (self.share_unmoved(in_view, &points)?, Some(unmoved));
-        let likeness = self.likeness(prepared, in_view);
-        let is_allowed = |grid: &Hierarchy, u: &[f64]| {
-            let moved = u.iter().fold(0.0f64, |most, u| most.max(u.abs()));
-            self.settings.move_at_most_m.is_none_or(|most| moved <= most)
-                && likeness.as_ref().is_none_or(|likeness| likeness.strain(grid, u) <= 1.0)
-        };
+        let bounds = self.bounds(prepared, in_view);
         let before = self.last.map(|u| Ground::plain(Taken::FrameBefore, u.to_vec()));
-        let samples = samples.into_iter().filter(|ground| is_allowed(&prepared.grid, &ground.coarse));
+        let samples = samples.into_iter().filter(|ground| bounds.hold(&prepared.grid, &ground.coarse));
         for mut ground in before.into_iter().chain(samples) {
             let share = self.share_limited(prepared, in_view, &points, &mut ground)?;
             if share > best.0 + WORTH {
@@ -93,7 +128,7 @@ impl Passes<'_> {
             }
         }
         let (grid, u) = done.fine.as_ref().map_or((&prepared.grid, &done.coarse), |(grid, u)| (grid, u));
-        if unfinished > best.0 + WORTH && is_allowed(grid, u) {
+        if unfinished > best.0 + WORTH && bounds.hold(grid, u) {
             best = (unfinished, None);
         }
         done.taken = Some(best.1.as_ref().map_or(Taken::Unfinished, |ground| ground.taken));

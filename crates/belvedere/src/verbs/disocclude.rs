@@ -1,5 +1,6 @@
 //! `disocclude`: writes an elevation model on which features are visible from an eye.
 
+use super::certificate::{Certificate, Evidence};
 use super::moved::MovedFeatures;
 use super::written_ground::{HeightsToWrite, ToWrite};
 use crate::answers;
@@ -114,6 +115,7 @@ pub struct Disoccluded {
     /// Written heights and displacement.
     rasters: [Raster; 2],
     record: Record,
+    evidence: Evidence,
 }
 
 /// Content of the report file and of `--json`: the report of the solver, and what is said of the written heights.
@@ -188,12 +190,15 @@ pub struct DisoccludeFiles {
     pub features: Option<PathBuf>,
     /// The ground before and after from the eye, PNG, with its record and displacement beside it.
     pub picture: Option<PathBuf>,
+    /// Lines of sight by which the share that is shown can be checked against `out` alone, JSON.
+    pub certificate: Option<PathBuf>,
 }
 
 impl DisoccludeFiles {
     /// Every file that will be written.
     pub fn all(&self) -> Vec<PathBuf> {
-        let others = [&self.report, &self.displacement, &self.features].into_iter().flatten().cloned();
+        let others =
+            [&self.report, &self.displacement, &self.features, &self.certificate].into_iter().flatten().cloned();
         let pictures = self.picture.iter().flat_map(|p| picture::outputs(p, &PictureOptions::default(), true));
         std::iter::once(self.out.clone()).chain(others).chain(pictures).collect()
     }
@@ -260,6 +265,7 @@ fn disoccluded(request: &Disocclude, options: &OpenOptions) -> Result<Disocclude
     data.warnings.extend(cut_otherwise(judged.after.visible_dense, visible_other_diagonal));
     let ground = data.scene.terrain().and_then(|t| t.surface_at(camera.target));
     let look_at = camera.target.extend(ground.unwrap_or(camera.eye.z));
+    let level = view;
     let view = camera.view(look_at, Some(Stage::TerrainDisocclusion(solved.stage.clone())))?;
     let stage = StageDoc::TerrainDisocclusion(intent::document(solver.settings(), &data.scene));
     let earth = if request.curved_earth { EarthDoc::Curved } else { EarthDoc::Flat };
@@ -289,7 +295,8 @@ fn disoccluded(request: &Disocclude, options: &OpenOptions) -> Result<Disocclude
         inputs: names.inputs(&record::inputs(&session.inputs())?),
         warnings: session.warnings(),
     };
-    Ok(Disoccluded { session, solved, rasters, record })
+    let evidence = Evidence { original, solver, view: level };
+    Ok(Disoccluded { session, solved, rasters, record, evidence })
 }
 
 /// Warning that resampling hides features that the solution shows.
@@ -476,6 +483,15 @@ impl Disoccluded {
         if let Some(path) = &files.picture {
             let pair = PictureOptions { compare: true, progress: progress.clone(), ..PictureOptions::default() };
             written.extend(self.session.render(&pair)?.write(path, overwrite)?);
+        }
+        if let Some(path) = &files.certificate {
+            let Record { grid, visible_written, .. } = self.record;
+            let visible = visible_written.unwrap_or(self.report().metrics.visible_dense);
+            let (scene, original) = (self.session.scene(), &self.evidence.original);
+            let to_write = HeightsToWrite::as_written(original, scene, grid);
+            let certificate = Certificate::of((scene, dem), &to_write, &self.evidence, (&files.out, visible))?;
+            output::write_text(path, &output::json(&certificate)?, overwrite)?;
+            written.push(path.clone());
         }
         if let Some(path) = &files.report {
             written.push(path.clone());

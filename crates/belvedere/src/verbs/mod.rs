@@ -2,6 +2,7 @@
 
 pub mod animate;
 pub mod asked;
+mod certificate;
 pub mod check;
 mod city_names;
 pub mod disocclude;

@@ -5,7 +5,7 @@ use super::written_rivers::run_downhill;
 use crate::BelvedereError;
 use crate::request::{Robust, WrittenGrid};
 use belvedere_core::{DVec2, TerrainDisocclusion, View};
-use belvedere_disocclusion::report::{LakeReport, RiverReport, TrimReport};
+use belvedere_disocclusion::report::{CertifiedLine, LakeReport, RiverReport, TrimReport};
 use belvedere_disocclusion::{
     FileToWrite, SampleGrid, Solved, SolverMode, TerrainMemory, TerrainReport, TerrainSettings, TerrainSolver,
     WrittenGround, WrittenShares,
@@ -64,6 +64,11 @@ pub(super) struct ToWrite {
 }
 
 impl<'a> HeightsToWrite<'a> {
+    /// Those that were written on a grid.
+    pub(super) fn as_written(original: &'a OriginalTerrain, scene: &'a Scene, grid: WrittenGrid) -> Self {
+        Self { original, scene, grid, fill_voids: false, rivers: &[], robust: Robust::Never, sea_m: None }
+    }
+
     /// The grid of the scene, if that is what is written.
     fn terrain(&self) -> Option<&'a Heightfield> {
         self.scene.terrain().filter(|_| self.grid == WrittenGrid::Scene)
@@ -264,6 +269,27 @@ impl<'a> FileGrid<'a> {
             after: judged(&after, grid)?,
             other_diagonal: judged(&after, grid.cut_otherwise())?,
         })
+    }
+
+    /// Columns and rows.
+    pub(super) fn nodes(&self) -> [usize; 2] {
+        self.nodes
+    }
+
+    /// Lines of sight over written heights, see [`TerrainSolver::lines_over_file`].
+    ///
+    /// # Errors
+    /// As [`TerrainSolver::lines_over_file`].
+    pub(super) fn lines(
+        &self,
+        seen_by: (&Scene, &View),
+        solver: &TerrainSolver,
+        heights: &Raster,
+        most: usize,
+    ) -> Result<Vec<CertifiedLine>, BelvedereError> {
+        let height = |i: usize| sample(heights, i);
+        let ground = WrittenGround { grid: self.samples(), height: &height, solved_on: self.solved_on };
+        Ok(solver.lines_over_file(seen_by, &ground, most)?)
     }
 
     /// Its samples, with the cells cut as the program draws them.

@@ -3,6 +3,7 @@
 mod arrays;
 mod bands;
 mod by_property;
+mod certificate;
 mod escapes;
 mod exact;
 mod examples;
