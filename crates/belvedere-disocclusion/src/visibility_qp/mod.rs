@@ -13,6 +13,7 @@ mod dissection;
 mod dual;
 mod front;
 mod fronts;
+mod given_row;
 mod lanes;
 mod levels;
 mod matrix_free;
@@ -32,12 +33,12 @@ mod uphill;
 mod view_rays;
 mod walk;
 
+pub(crate) use given_row::GivenRow;
 pub(crate) use levels::Levels;
 pub use problem::{
     Candidate, Certificate, LinesOfSight, QpError, QpOptions, QpProblem, QpResult, Reason, SolvedRow, StraightSight,
     Unresolved,
 };
 pub(crate) use remembered::RememberedLines;
-pub(crate) use solver::GivenRow;
 pub use solver::QpSolver;
 pub use view_rays::ViewSight;

@@ -2,7 +2,7 @@
 
 use super::bundle::Bundle;
 use super::candidate_line::CandidateLine;
-use super::combination::Combination;
+use super::given_row::GivenRow;
 use super::levels::Levels;
 use super::matrix_free::Effort;
 use super::metric::Metric;
@@ -60,23 +60,6 @@ pub struct QpSolver {
     given: Vec<GivenRow>,
 }
 
-/// A row that is asked for from outside: the displacement at a position of the ground, minus `1 - tau` times that of a point, is at most
-/// `bound`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct GivenRow {
-    /// Grid position of the ground, and of the point.
-    at: DVec2,
-    pub(crate) point: DVec2,
-    /// Share of the way from the point to the eye at which the ground lies.
-    tau: f64,
-    /// Scene units.
-    bound: f64,
-    /// How both move, see [`Surface::moves`].
-    moves: [Combination; 2],
-    /// Whether it keeps the order of two summits, or clears a line of sight.
-    pub(crate) is_order: bool,
-}
-
 /// State of the solution of one frame.
 struct Frame<'a> {
     problem: QpProblem<'a>,
@@ -130,27 +113,18 @@ impl QpSolver {
         &self.given
     }
 
-    /// The row that lowers the ground at a grid position by `by`, scene units, against the line of sight of a point, as they lie under
-    /// the displacement `u`.
-    pub(crate) fn lowering(&self, u: &[f64], [at, point]: [DVec2; 2], tau: f64, by: f64) -> GivenRow {
-        let [ground, of_point] = [at, point].map(|g| self.surface.combination(g, u).at(u));
-        let bound = ground - (1.0 - tau) * of_point - by;
-        GivenRow { at, point, tau, bound, moves: self.surface.moves(at, point, u), is_order: false }
+    /// See [`GivenRow::lowering`].
+    pub(crate) fn lowering(&self, u: &[f64], places: [DVec2; 2], tau: f64, by: f64) -> GivenRow {
+        GivenRow::lowering(&self.surface, u, places, tau, by)
     }
 
-    /// The row under which the lower of two summits does not become the higher.
-    ///
-    /// * `low`, `high`: grid positions; `by`: how much lower the former is, scene units, >= 0.
-    pub(crate) fn in_order(&self, [low, high]: [DVec2; 2], by: f64) -> GivenRow {
-        let moves = self.surface.moves(low, high, &self.surface.u);
-        GivenRow { at: low, point: high, tau: 0.0, bound: by, moves, is_order: true }
+    /// See [`GivenRow::in_order`].
+    pub(crate) fn in_order(&self, places: [DVec2; 2], by: f64) -> GivenRow {
+        GivenRow::in_order(&self.surface, places, by)
     }
 
     fn given_row(&self, index: u32) -> Row {
-        let GivenRow { tau, bound, moves: [ground, of_point], .. } = &self.given[index as usize];
-        let rest = 1.0 - tau;
-        let bound = bound - (ground.constant - rest * of_point.constant);
-        Row::sight((ground, of_point), rest, bound, Constraint::Given(index))
+        self.given[index as usize].row(index)
     }
 
     /// From now on these rivers of the field do not run uphill.
@@ -191,8 +165,7 @@ impl QpSolver {
         };
         self.kept = other.kept.iter().map(row).collect();
         self.surface.displace(u);
-        let row = |row: &GivenRow| GivenRow { moves: self.surface.moves(row.at, row.point, u), ..*row };
-        self.given = other.given.iter().map(row).collect();
+        self.given = other.given.iter().map(|row| row.on(&self.surface, u)).collect();
     }
 
     /// Parameters of the next frames.

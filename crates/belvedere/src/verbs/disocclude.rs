@@ -243,12 +243,7 @@ fn disoccluded(request: &Disocclude, options: &OpenOptions) -> Result<Disocclude
         fill_voids: request.fill_voids,
         rivers: &solver.settings().rivers,
         robust: request.robust.unwrap_or_default(),
-        sea_m: data
-            .scene
-            .terrain()
-            .filter(|_| solver.settings().limits)
-            .and_then(|t| Sea::nodes(t))
-            .map(|(level, _)| level),
+        sea_m: data.scene.terrain().filter(|_| solver.settings().limits).and_then(Sea::nodes).map(|(level, _)| level),
     };
     let mut solved = to_write.solved(&solver, &view, &solving)?;
     let (written, trimmed) = to_write.trimmed(&solver, &view, &mut solved, &options.progress)?;
