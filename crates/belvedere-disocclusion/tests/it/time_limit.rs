@@ -57,18 +57,34 @@ fn what_is_taken_shows_no_less_than_the_ground_before_and_keeps_the_limits() {
 #[test]
 fn a_sample_of_what_is_asked_is_shown_where_there_is_no_time_for_all() {
     let place = hidden_trail(97, 3);
-    let settings = TerrainSettings::default();
+    let settings = TerrainSettings { show: Some(1.0), ..TerrainSettings::default() };
     let short = solved(&settings, &place, &slow_rounds().limited(Duration::from_secs(2))).report;
     assert!(short.out_of_time && !short.guaranteed);
     let (before, after) = (short.visible_dense_before, short.metrics.visible_dense);
-    assert!(after > before + 0.4 * (1.0 - before), "{before} -> {after} by {:?}", short.taken);
+    assert!(after > before + 0.2 * (1.0 - before), "{before} -> {after} by {:?}", short.taken);
     // On a machine that is slow or busy the time is too short for a sample, too.
     if matches!(short.taken, Some(Taken::Sample { .. })) {
-        assert!(after > before + 0.5 * (1.0 - before), "{before} -> {after}");
         assert!(!short.costliest.is_empty() && short.qp.is_some_and(|qp| qp.active > 0));
     }
     let all = solved(&settings, &place, &Progress::silent()).report;
     assert!(all.taken.is_none() && all.metrics.visible_dense >= after);
+}
+
+#[test]
+fn out_of_time_the_landscape_stays_like_itself_and_no_more_moves_than_in_the_end() {
+    for seed in [3, 5] {
+        let (place, settings) = (hidden_trail(97, seed), TerrainSettings::default());
+        let short = solved(&settings, &place, &slow_rounds().limited(Duration::from_secs(2))).report;
+        let all = solved(&settings, &place, &Progress::silent()).report;
+        let strain = short.likeness.expect("a still").strain;
+        assert!(short.out_of_time && strain <= 1.0, "seed {seed}: {strain}");
+        assert!(
+            short.metrics.rms_m <= all.metrics.rms_m,
+            "seed {seed}: {} of {}",
+            short.metrics.rms_m,
+            all.metrics.rms_m
+        );
+    }
 }
 
 #[test]
