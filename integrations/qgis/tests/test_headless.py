@@ -124,7 +124,8 @@ class Headless(unittest.TestCase):
     def test_ground_makes_way(self):
         done = self.results(
             "disocclude", DEM=self.path("dem.asc"), FEATURES=self.path("route.geojson"), EYE_HEIGHT=100, OUTPUT=self.path("out.tif"),
-            DISPLACEMENT=self.path("moved.tif"), MOVED=self.path("moved.gpkg"), REPORT=self.path("report.json"), **self.points())
+            DISPLACEMENT=self.path("moved.tif"), MOVED=self.path("moved.gpkg"), REPORT=self.path("report.json"), EXTRA="--show 100%",
+            **self.points())
         self.assertLess(done["VISIBLE_STRAIGHT"], 0.5)
         self.assertGreater(done["VISIBLE_BENT"], 0.95)
         for name in ("out.tif", "moved.tif", "moved.gpkg", "report.json"):

@@ -43,7 +43,8 @@ class Disocclude(Algorithm):
         return (
             "Writes an elevation model that is moved as little as possible so that features are visible from an eye; "
             "the displacement, and the features on the moved ground with their true positions as attributes. The "
-            "report names what stays hidden, and why."
+            "report names what stays hidden, and why. What would change the landscape too much is given up; the further option "
+            "--show 100% shows all, whatever it costs."
         )
 
     def initAlgorithm(self, configuration=None):
