@@ -18,7 +18,7 @@ use belvedere_construct::reveal::shortfall;
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Projection, Stage, View};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_disocclusion::report::{RiverReport, TrimReport};
-use belvedere_disocclusion::{Solved, TerrainReport, TerrainSolver, ViewpointOptions};
+use belvedere_disocclusion::{Solved, SolverMode, TerrainReport, TerrainSettings, TerrainSolver, ViewpointOptions};
 use belvedere_io::IoError;
 use belvedere_io::geotiff::write_cloud_geotiff;
 use belvedere_io::raster::Raster;
@@ -243,7 +243,7 @@ fn disoccluded(request: &Disocclude, options: &OpenOptions) -> Result<Disocclude
         fill_voids: request.fill_voids,
         rivers: &solver.settings().rivers,
         robust: request.robust.unwrap_or_default(),
-        sea_m: data.scene.terrain().filter(|_| solver.settings().limits).and_then(Sea::nodes).map(|(level, _)| level),
+        sea_m: sea(&data.scene, solver.settings()),
     };
     let mut solved = to_write.solved(&solver, &view, &solving)?;
     let (written, trimmed) = to_write.trimmed(&solver, &view, &mut solved, &options.progress)?;
@@ -292,6 +292,12 @@ fn disoccluded(request: &Disocclude, options: &OpenOptions) -> Result<Disocclude
     };
     let evidence = Evidence { original, solver, view: level };
     Ok(Disoccluded { session, solved, rasters, record, evidence })
+}
+
+/// Height of the sea where the solver leaves it as it is: the limits do, which mode `paper` has not.
+fn sea(scene: &Scene, settings: &TerrainSettings) -> Option<f64> {
+    let stays = settings.limits && settings.mode != SolverMode::Paper;
+    scene.terrain().filter(|_| stays).and_then(Sea::nodes).map(|(level, _)| level)
 }
 
 /// Warning that resampling hides features that the solution shows.
