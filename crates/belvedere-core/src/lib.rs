@@ -30,6 +30,7 @@ pub use camera::{ImageBox, Navigation, Pinhole, PinholeBuilder, PinholeError, Pr
 pub use glam::{DMat3, DQuat, DVec2, DVec3};
 pub use map::curved_rays::{CurvedRays, CurvedRaysError};
 pub use map::earth::EarthCurvature;
+pub use map::ground_moves::GroundMoves;
 pub use map::rigid::RigidMotion;
 pub use map::spline::SplineBend;
 pub use map::split_rays::SplitRays;

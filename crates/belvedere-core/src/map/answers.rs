@@ -2,6 +2,7 @@
 
 use super::curved_rays::CurvedRays;
 use super::earth::EarthCurvature;
+use super::ground_moves::GroundMoves;
 use super::relief::Relief;
 use super::rigid::RigidMotion;
 use super::spline::SplineBend;
@@ -69,6 +70,33 @@ impl StageMap for TerrainDisocclusion {
     }
     fn rotation_of_body(&self, _: DVec3) -> Result<DMat3, Miss> {
         Ok(DMat3::IDENTITY)
+    }
+}
+
+impl StageMap for GroundMoves {
+    fn name(&self) -> &'static str {
+        "ground_moves"
+    }
+    fn eased(&self, share: f64) -> Option<Stage> {
+        self.eased(share).map(Stage::GroundMoves)
+    }
+    fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
+        self.edge_bound(p0, p1)
+    }
+    fn displaced_bounds(&self, bounds: &Aabb) -> Option<Aabb> {
+        self.displaced_bounds(bounds)
+    }
+    fn has_border(&self) -> bool {
+        false
+    }
+    fn moves_ground(&self) -> bool {
+        true
+    }
+    fn turns_heights(&self) -> bool {
+        false
+    }
+    fn rotation_of_body(&self, foot: DVec3) -> Result<DMat3, Miss> {
+        Ok(DMat3::from_rotation_z(self.turn_at(foot.truncate())))
     }
 }
 

@@ -3,6 +3,7 @@
 mod answers;
 pub mod curved_rays;
 pub mod earth;
+pub mod ground_moves;
 pub mod relief;
 pub mod rigid;
 pub mod spline;

@@ -1,6 +1,8 @@
 //! The stages of a view: their trait for drawing, picking and measuring, the maps of scene files, and users' own maps.
 
-use super::{Displaced, Miss, SpaceMap, curved_rays, earth, relief, rigid, spline, split_rays, strip, terrain};
+use super::{
+    Displaced, Miss, SpaceMap, curved_rays, earth, ground_moves, relief, rigid, spline, split_rays, strip, terrain,
+};
 use crate::Aabb;
 use glam::{DMat3, DVec3};
 use std::fmt::Debug;
@@ -127,6 +129,8 @@ pub enum Stage {
     EarthCurvature(earth::EarthCurvature),
     /// The ground moves so that routes are seen (Deng et al. 2013).
     TerrainDisocclusion(terrain::TerrainDisocclusion),
+    /// The ground moves sideways and up or down as an author set it.
+    GroundMoves(ground_moves::GroundMoves),
     /// A strip along a route is unrolled in plan.
     Strip(strip::Strip),
     /// Heights are raised, lowered, shown in plan or levelled.
@@ -187,16 +191,17 @@ impl Stage {
         Self::Own(OwnMap(Arc::new(map)))
     }
 
-    /// Position in the fixed order of application: earth, terrain, strip, relief, spline, own maps, curved rays.
+    /// Position in the fixed order of application: earth, terrain, moved ground, strip, relief, spline, own maps, curved rays.
     pub fn rank(&self) -> u32 {
         match self {
             Self::EarthCurvature(_) => 0,
             Self::TerrainDisocclusion(_) => 1,
-            Self::Strip(_) => 2,
-            Self::Relief(_) => 3,
-            Self::SplineBend(_) | Self::Body(_) => 4,
-            Self::Own(_) => 5,
-            Self::CurvedRays(_) | Self::SplitRays(_) => 6,
+            Self::GroundMoves(_) => 2,
+            Self::Strip(_) => 3,
+            Self::Relief(_) => 4,
+            Self::SplineBend(_) | Self::Body(_) => 5,
+            Self::Own(_) => 6,
+            Self::CurvedRays(_) | Self::SplitRays(_) => 7,
         }
     }
 
@@ -213,6 +218,7 @@ impl Deref for Stage {
         match self {
             Self::EarthCurvature(m) => m,
             Self::TerrainDisocclusion(m) => m,
+            Self::GroundMoves(m) => m,
             Self::Strip(m) => m,
             Self::Relief(m) => m,
             Self::SplineBend(m) => m,

@@ -2,6 +2,7 @@
 
 mod curved_rays;
 mod eased;
+mod ground_moves;
 mod preset_angles;
 mod preset_edit;
 mod preset_sweeps;

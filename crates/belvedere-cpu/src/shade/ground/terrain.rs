@@ -317,7 +317,7 @@ fn fill(area: &AreaMap, color: Rgb, xy: DVec2, inside: f32, print: &Footprint) -
 /// a lowered ridge must not keep its old shadow.
 fn lit_surface<'a>(layer: &'a TerrainLayer, job: &RenderJob<'a>) -> Surface<'a> {
     let (hf, stages) = (&layer.heightfield, job.view.stages());
-    let ground = stages.iter().position(|s| s.moves_ground());
+    let ground = stages.iter().rposition(|s| s.moves_ground());
     let deformed = match layer.shading {
         Some(Shading::Map) => return Surface::of_map(hf),
         Some(Shading::Deformed) => stages,
