@@ -9,6 +9,7 @@ mod error;
 pub mod flight;
 mod frontier;
 pub mod generalise;
+pub mod ground_moves;
 mod large_forms;
 pub mod measure;
 pub mod rays;

@@ -6,6 +6,7 @@ mod flight;
 mod generalise;
 mod generalise_coverage;
 mod generalise_towns;
+mod ground_moves;
 mod measure;
 mod preview;
 mod preview_foreground;

@@ -142,9 +142,11 @@ impl MoveNet {
         &self.coefficients
     }
 
-    /// The smallest box that holds all coefficients, and with them every displacement.
-    pub fn range(&self) -> &Aabb {
-        &self.range
+    /// Largest displacement in plan and in height at the places of the coefficients, scene units.
+    pub fn largest(&self) -> [f64; 2] {
+        let places = (0..self.coefficients.len()).map(|i| [i % self.place.size[0], i / self.place.size[0]]);
+        let by = places.map(|[x, y]| self.at(self.place.first + self.place.step * DVec2::new(x as f64, y as f64)));
+        by.fold([0.0, 0.0], |[plan, height], d| [plan.max(d.truncate().length()), d.z.abs().max(height)])
     }
 
     /// The same net, all displacements times `share`.
