@@ -11,6 +11,7 @@ mod document;
 mod error;
 mod fallback;
 mod furniture;
+mod ground_moves;
 mod intent;
 mod json;
 pub mod layer_names;
@@ -51,6 +52,7 @@ pub use fallback::{Fallback, FallbackKind};
 pub use furniture::{
     CompassDoc, CompassPlace, Corner, FurnitureDoc, FurnitureItem, FurnitureWish, ScaleDoc, SwitchOrText,
 };
+pub use ground_moves::{GroundMovesStageDoc, MoveDoc, MoveKindDoc};
 pub use intent::{AnimationDoc, CentrelineDoc, ConstructorDoc, ConstructorKind, SweepDoc, TurntableDoc};
 pub use layers::{
     AreaDoc, AreaStyleDoc, BoxDoc, BoxStyleDoc, BoxesDoc, LayerDoc, LineDoc, LineStyleDoc, LonLatDoc, PositionDoc,
@@ -412,6 +414,7 @@ fn layer(kind: &str, node: &Node) -> Result<Option<LayerDoc>, DocError> {
 fn stage(kind: &str, node: &Node) -> Result<Option<StageDoc>, DocError> {
     Ok(Some(match kind {
         "terrain_disocclusion" => StageDoc::TerrainDisocclusion(de::from_node(node)?),
+        "ground_moves" => StageDoc::GroundMoves(de::from_node(node)?),
         "strip" => StageDoc::Strip(de::from_node(node)?),
         "relief" => StageDoc::Relief(de::from_node(node)?),
         "spline_bend" => StageDoc::SplineBend(de::from_node(node)?),

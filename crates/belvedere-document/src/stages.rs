@@ -1,6 +1,7 @@
 //! Stages of the scene document.
 
 use super::common::PlaneDoc;
+use super::ground_moves::GroundMovesStageDoc;
 use super::relief::ReliefStageDoc;
 use super::strip::StripStageDoc;
 use belvedere_core::map::curved_rays::{Model, Sharpness};
@@ -16,6 +17,8 @@ use serde::{Deserialize, Serialize};
 pub enum StageDoc {
     /// The ground moves so that required features are seen.
     TerrainDisocclusion(TerrainStageDoc),
+    /// The ground moves as an author set it.
+    GroundMoves(GroundMovesStageDoc),
     /// A strip along a route is straightened.
     Strip(StripStageDoc),
     /// Heights are raised, lowered, shown in plan or levelled.
@@ -27,13 +30,15 @@ pub enum StageDoc {
 }
 
 /// Names of the kinds of stages.
-pub(super) const STAGE_KINDS: &[&str] = &["terrain_disocclusion", "strip", "relief", "spline_bend", "curved_rays"];
+pub(super) const STAGE_KINDS: &[&str] =
+    &["terrain_disocclusion", "ground_moves", "strip", "relief", "spline_bend", "curved_rays"];
 
 impl StageDoc {
     /// Name of the kind, as files write it.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::TerrainDisocclusion(_) => "terrain_disocclusion",
+            Self::GroundMoves(_) => "ground_moves",
             Self::Strip(_) => "strip",
             Self::Relief(_) => "relief",
             Self::SplineBend(_) => "spline_bend",

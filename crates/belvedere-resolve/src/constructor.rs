@@ -148,6 +148,9 @@ pub(super) fn check_stages(source: &SourceDocument) -> Result<(), BelvedereError
         StageDoc::SplineBend(_) if probes => {
             Some("auto_probe looks for free space where things stand, not where a spline bend carries them; remove the spline_bend stage")
         }
+        StageDoc::GroundMoves(_) if previews || probes => {
+            Some("it works in space as it is, not as an author moved it; remove the ground_moves stage")
+        }
         StageDoc::Strip(_) if previews || probes => {
             Some("it works in space as it is, not as a strip unrolls it; remove the strip stage")
         }

@@ -26,7 +26,9 @@ mod land_cover;
 mod layers;
 mod light;
 pub use light::check_air;
+mod ground_moves;
 mod line_classes;
+mod line_of_stage;
 mod loader;
 mod mesh;
 mod molecule;
@@ -55,6 +57,7 @@ pub mod wall;
 
 pub use advice::Advice;
 pub use areas::{fill_surfaces, restyle};
+pub use belvedere_construct::ground_moves::{GroundMovesReport, MoveReport, RouteReport};
 pub use error::BelvedereError;
 pub use layers::{LayerRequest, load};
 pub use options::{Needs, OpenOptions, show_molecules};

@@ -6,6 +6,7 @@ use super::spline::spline;
 use super::strip::StripReport;
 use super::terrain;
 use crate::BelvedereError;
+use belvedere_construct::ground_moves::GroundMovesReport;
 use belvedere_core::Warning;
 use belvedere_core::{DVec3, Pinhole, Stage, TerrainDisocclusion, View};
 use belvedere_disocclusion::TerrainReport;
@@ -30,6 +31,8 @@ pub(super) struct ResolvedStages {
     pub(super) documents: Vec<StageDoc>,
     /// Report of the terrain solver, if it ran.
     pub(super) terrain: Option<TerrainReport>,
+    /// Report of moved ground, if an author moves it.
+    pub(super) moved: Option<GroundMovesReport>,
     /// Report of the strip, if there is one.
     pub(super) strip: Option<StripReport>,
 }
@@ -42,7 +45,8 @@ pub(super) fn resolve(
     warnings: &mut Vec<Warning>,
 ) -> Result<ResolvedStages, BelvedereError> {
     let pinhole = context.camera.pinhole.clone();
-    let mut out = ResolvedStages { stages: Vec::new(), pinhole, documents: Vec::new(), terrain: None, strip: None };
+    let mut out =
+        ResolvedStages { stages: Vec::new(), pinhole, documents: Vec::new(), terrain: None, moved: None, strip: None };
     let mut intent = None;
     for (i, stage) in context.source.document.stage.iter().enumerate() {
         let at = context.at(i);
@@ -54,6 +58,11 @@ pub(super) fn resolve(
                 continue;
             }
             StageDoc::TerrainDisocclusion(doc) => solved_terrain(context, doc, inputs, at)?,
+            StageDoc::GroundMoves(doc) => {
+                let (stage, document, report) = super::ground_moves::resolve(context, doc, warnings, at)?;
+                out.moved = Some(report);
+                (stage, document)
+            }
             StageDoc::Strip(doc) => {
                 let (stage, document, report) = super::strip::resolve(context, doc, warnings, at)?;
                 out.strip = Some(report);

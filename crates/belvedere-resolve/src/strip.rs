@@ -1,6 +1,7 @@
 //! Stages that unroll a strip along a route.
 
 use super::context::{StageContext, plane};
+use super::line_of_stage::LineOfStage;
 use crate::BelvedereError;
 use belvedere_core::map::spline::default_pivot;
 use belvedere_core::map::strip::{SmoothedRoute, Strip, StripError};
@@ -36,7 +37,8 @@ pub(super) fn resolve(
     warnings: &mut Vec<Warning>,
     at: Table<'_>,
 ) -> Result<(Stage, StageDoc, StripReport), BelvedereError> {
-    let (points, named) = route(context, doc, at)?;
+    let line = LineOfStage { along: doc.along.as_deref(), path: doc.path.as_deref(), within: &[], what: "a strip" };
+    let (points, named) = line.find(context, at)?;
     let length: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
     let half_width = doc.half_width_m.unwrap_or(WIDTH * length);
     let fail = |e: StripError| at.error(&[key(&e, named)], words(&e));
@@ -72,35 +74,6 @@ pub(super) fn resolve(
         ..doc.clone()
     };
     Ok((Stage::Strip(strip), StageDoc::Strip(document), report))
-}
-
-/// The route in plan, and the key that names it.
-fn route(
-    context: &StageContext<'_>,
-    doc: &StripStageDoc,
-    at: Table<'_>,
-) -> Result<(Vec<DVec2>, &'static str), BelvedereError> {
-    let id = match (&doc.along, &doc.path) {
-        (Some(id), None) => id,
-        (None, Some(path)) => return Ok((path.iter().copied().map(DVec2::from_array).collect(), "path")),
-        (along, _) => {
-            let given = if along.is_some() { "both are given" } else { "neither is given" };
-            return Err(at.error(&["along"], format!("a strip needs along or path, {given}; give exactly one")).into());
-        }
-    };
-    let layers = &context.source.document.layer;
-    let Some(layer) = context.scene.layers.iter().find(|l| l.id == *id) else {
-        let ids: Vec<&str> = layers.iter().map(|l| l.id()).collect();
-        let hint = belvedere_document::suggestion(id, &ids);
-        return Err(at.error(&["along"], format!("a strip along \"{id}\": there is no such layer ({hint})")).into());
-    };
-    let Some(line) = layer.kind.lines() else {
-        return Err(at
-            .error(&["along"], format!("a strip along \"{id}\": the layer is no line; name a layer of kind line"))
-            .into());
-    };
-    let gap = context.ground.terrain.map_or(1.0, |t| 20.0 * t.spacing().max_element());
-    Ok((line.longest_chain(gap).iter().map(|p| p.truncate()).collect(), "along"))
 }
 
 /// Point that the camera looks at, in plan.

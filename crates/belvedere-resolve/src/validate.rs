@@ -254,10 +254,11 @@ fn lift(value: f64) -> Result<(), Complaint> {
 fn rank(stage: &StageDoc) -> u32 {
     match stage {
         StageDoc::TerrainDisocclusion(_) => 1,
-        StageDoc::Strip(_) => 2,
-        StageDoc::Relief(_) => 3,
-        StageDoc::SplineBend(_) => 4,
-        StageDoc::CurvedRays(_) => 5,
+        StageDoc::GroundMoves(_) => 2,
+        StageDoc::Strip(_) => 3,
+        StageDoc::Relief(_) => 4,
+        StageDoc::SplineBend(_) => 5,
+        StageDoc::CurvedRays(_) => 6,
     }
 }
 

@@ -6,6 +6,7 @@ use super::solving::Solving;
 use super::strip::StripReport;
 use super::{camera, context, light, stages, terrain};
 use crate::BelvedereError;
+use belvedere_construct::ground_moves::GroundMovesReport;
 use belvedere_core::View;
 use belvedere_core::Warning;
 use belvedere_disocclusion::TerrainReport;
@@ -24,6 +25,8 @@ pub struct ResolvedView {
     pub light: Light,
     /// Report of the terrain solver, if it ran.
     pub terrain: Option<TerrainReport>,
+    /// Report of moved ground, if an author moves it.
+    pub moved: Option<GroundMovesReport>,
     /// Report of the strip, if there is one.
     pub strip: Option<StripReport>,
     /// Report of the constructor of curved rays, if there is one.
@@ -71,6 +74,6 @@ pub fn resolve(
     document.crs = scene.crs.to_string();
     document.camera = camera.document;
     document.stage = resolved.documents;
-    let (terrain, strip) = (resolved.terrain, resolved.strip);
-    Ok(ResolvedView { document, view, light, terrain, strip, constructor, inputs, warnings })
+    let (terrain, moved, strip) = (resolved.terrain, resolved.moved, resolved.strip);
+    Ok(ResolvedView { document, view, light, terrain, moved, strip, constructor, inputs, warnings })
 }

@@ -157,11 +157,18 @@ fn needs(source: &SourceDocument, options: &OpenOptions) -> Needs {
     match options.needs {
         _ if source.of_files.is_some() => Needs::Everything,
         _ if constructs && !options.unsolved => Needs::Everything,
-        _ if document.stage.iter().any(|s| matches!(s, StageDoc::Strip(strip) if strip.along.is_some())) => {
-            Needs::Everything
-        }
+        _ if document.stage.iter().any(needs_layers) => Needs::Everything,
         Needs::View if ground_is_needed(document) => Needs::Ground,
         needs => needs,
+    }
+}
+
+/// Whether a stage follows lines of layers, or keeps what lies on the ground.
+fn needs_layers(stage: &StageDoc) -> bool {
+    match stage {
+        StageDoc::Strip(strip) => strip.along.is_some(),
+        StageDoc::GroundMoves(_) => true,
+        _ => false,
     }
 }
 
@@ -175,7 +182,7 @@ fn ground_is_needed(doc: &Document) -> bool {
         StageDoc::Relief(relief) => {
             relief.levelling.is_some_and(|v| v > 0.0) || relief.plane.as_ref().is_none_or(|p| p.height_m.is_none())
         }
-        StageDoc::TerrainDisocclusion(_) => true,
+        StageDoc::TerrainDisocclusion(_) | StageDoc::GroundMoves(_) => true,
         // Without an anchor the point that the camera looks at is used, which may lie on the terrain.
         StageDoc::Strip(strip) => strip.anchor.is_none(),
         StageDoc::CurvedRays(_) => false,

@@ -15,11 +15,11 @@ use belvedere_core::{Pinhole, SpaceMap, View};
 use belvedere_disocclusion::{TerrainReport, TerrainSettings};
 use belvedere_io::{Arrays, arrays, budget, split_table};
 use belvedere_overlay::notes::LayerNotes;
-use belvedere_resolve::StripReport;
 use belvedere_resolve::constructor::{self, ConstructorReport};
 use belvedere_resolve::motion::Motions;
 use belvedere_resolve::solving::{Memory, Solving};
 use belvedere_resolve::terrain;
+use belvedere_resolve::{GroundMovesReport, StripReport};
 use belvedere_resolve::{validate, view, wall};
 use belvedere_scene::{Light, Progress, Scene, Stylisation};
 use std::path::{MAIN_SEPARATOR, Path, PathBuf};
@@ -60,6 +60,7 @@ pub(crate) struct Resolved {
     pub(crate) furniture: FurnitureDoc,
     pub(crate) stylisation: Stylisation,
     pub(crate) terrain: Option<TerrainReport>,
+    pub(crate) moved: Option<GroundMovesReport>,
     pub(crate) strip: Option<StripReport>,
     pub(crate) constructor: Option<ConstructorReport>,
     pub(crate) inputs: Vec<InputFile>,
@@ -103,6 +104,7 @@ impl Resolved {
             furniture: FurnitureDoc::default(),
             stylisation: Stylisation::default(),
             terrain: None,
+            moved: None,
             strip: None,
             constructor: None,
             inputs: Vec::new(),
@@ -126,6 +128,7 @@ impl Resolved {
             furniture: source.document.furniture.clone().unwrap_or_default(),
             stylisation: source.document.stylisation.unwrap_or_default().strengths().unwrap_or_default(),
             terrain: made.terrain,
+            moved: made.moved,
             strip: made.strip,
             constructor: made.constructor,
             inputs: made.inputs,
@@ -293,6 +296,11 @@ impl Session {
     /// The light.
     pub fn light(&self) -> &Light {
         &self.resolved.light
+    }
+
+    /// Report of ground that an author moved; `None` if the scene has no stage of that kind.
+    pub fn moves_report(&self) -> Option<&GroundMovesReport> {
+        self.resolved.moved.as_ref()
     }
 
     /// Report of the strip along a route; `None` if the scene has no strip.

@@ -176,7 +176,7 @@ fn goes_with(kind: ConstructorKind, stage: &StageDoc, solves: bool) -> bool {
     let moves = kind == ConstructorKind::PathPreview || kind == ConstructorKind::AutoProbe;
     match stage {
         StageDoc::CurvedRays(_) => false,
-        StageDoc::SplineBend(_) | StageDoc::Strip(_) | StageDoc::Relief(_) => !moves,
+        StageDoc::SplineBend(_) | StageDoc::GroundMoves(_) | StageDoc::Strip(_) | StageDoc::Relief(_) => !moves,
         StageDoc::TerrainDisocclusion(_) => !solves,
     }
 }

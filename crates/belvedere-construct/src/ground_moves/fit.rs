@@ -1,6 +1,6 @@
 //! The smoothest net that carries out handles: least squares over its coefficients.
 //!
-//! The energy is that of a thin plate, the sum of squared second differences; goals of handles are rows of a great weight. Plan and height have
+//! The energy is that of a thin plate under tension, the sum of squared second and first differences; goals of handles are rows of a great weight. Plan and height have
 //! nothing in common and are solved one after the other. Coefficients whose place is beyond reach are zero; those that touch a
 //! lake are one unknown, so that it stays level exactly; those that touch the sea are zero in height.
 
@@ -9,12 +9,22 @@ use super::{KeptLine, Move};
 use belvedere_core::map::ground_moves::NetPlace;
 use belvedere_core::{DVec2, DVec3};
 
+/// Weight of a first difference of heights, beside 1 of a second one.
+const HEIGHT_TENSION: f64 = 0.3;
+/// The same in plan, at first.
+const TENSION: f64 = 0.1;
+/// Ground in plan that is stretched or compressed by more than this share becomes stiffer.
+const STRAIN: f64 = 0.4;
+/// Weight against stretching routes, at first.
+const ROUTES: f64 = 3.0;
 /// Weight of a goal, beside 1 of a second difference.
 const GOAL: f64 = 100.0;
 /// Steps of the net from the place of a coefficient to the corners of what it moves.
 const SUPPORT: f64 = 2.0 * std::f64::consts::SQRT_2;
 /// Weight that ties neighbouring points of a river.
 const RIVER: f64 = 1e9;
+/// Coefficients go no farther than what is asked for, times this.
+const SWING: f64 = 1.1;
 /// Rounds in which rivers that rise are tied.
 const ROUNDS: u32 = 12;
 /// A river rises by less than this, metres, before it is tied.
@@ -27,16 +37,41 @@ pub(super) struct Fitted {
     pub(super) lakes: usize,
 }
 
-/// * `stiffness`: weight against stretching routes, per stretch of half a step of the net or more, beside 1 of a second difference.
-pub(super) fn fit(place: &NetPlace, moves: &[Move], kept: &Kept, stiffness: f64) -> Fitted {
+/// What grows where a displacement folds or stretches a route, from one round to the next.
+pub(super) struct Stiffness {
+    /// Weight against stretching routes, for each stretch of half a step of the net or more, beside 1 of a second difference.
+    pub(super) routes: f64,
+    /// Weight of the first differences in plan from each coefficient to the next one along x and along y.
+    sides: Vec<[f64; 2]>,
+}
+
+impl Stiffness {
+    pub(super) fn new(place: &NetPlace) -> Self {
+        Self { routes: ROUTES, sides: vec![[TENSION; 2]; place.size[0] * place.size[1]] }
+    }
+
+    /// Makes the ground stiffer where it is stretched or compressed most, so that more of it gives way.
+    pub(super) fn spread(&mut self, place: &NetPlace, coefficients: &[DVec3]) {
+        for (i, sides) in self.sides.iter_mut().enumerate() {
+            let at = |k: usize| coefficients.get(k).map_or(DVec2::ZERO, |c| c.truncate());
+            for (weight, next) in sides.iter_mut().zip([i + 1, i + place.size[0]]) {
+                let strain = (at(next) - at(i)).length() / place.step;
+                *weight *= (strain / STRAIN).powi(2).clamp(1.0, 10.0);
+            }
+        }
+    }
+}
+
+pub(super) fn fit(place: &NetPlace, moves: &[Move], kept: &Kept, stiffness: &Stiffness) -> Fitted {
     let mut out = Fitted { coefficients: vec![DVec3::ZERO; place.size[0] * place.size[1]], lakes: 0 };
     let (heights, plan): (Vec<&Move>, Vec<&Move>) = moves.iter().partition(|m| m.handle.is_height());
     if !plan.is_empty() {
         let mut unknowns = Unknowns::within(place, &plan);
         unknowns.number(place);
-        let mut rows = unknowns.goals(place, &plan);
-        rows.extend(unknowns.stretches(place, &kept.routes, stiffness));
-        let found = unknowns.solve(place, &rows);
+        let mut rows = unknowns.plate(place, &stiffness.sides);
+        rows.extend(unknowns.goals(place, &plan));
+        rows.extend(unknowns.stretches(place, &kept.routes, stiffness.routes));
+        let found = unknowns.solve(&rows);
         for (c, k) in out.coefficients.iter_mut().zip(&unknowns.of) {
             if let Some(k) = k {
                 [c.x, c.y] = found[*k];
@@ -44,31 +79,55 @@ pub(super) fn fit(place: &NetPlace, moves: &[Move], kept: &Kept, stiffness: f64)
         }
     }
     if !heights.is_empty() {
-        let mut unknowns = Unknowns::within(place, &heights);
-        unknowns.hold(place, &kept.sea);
-        let lakes = unknowns.tie_lakes(place, &kept.lakes);
-        unknowns.number(place);
-        let mut rivers: Vec<River> = kept.rivers.iter().map(|river| River::new(river, 0.5 * place.step)).collect();
-        let mut rows = unknowns.goals(place, &heights);
-        rows.extend(unknowns.stretches(place, &kept.routes, stiffness));
-        let own = rows.len();
-        let mut found = unknowns.solve(place, &rows);
-        for _ in 0..ROUNDS {
-            if !unknowns.tie_rising(place, &mut rivers, &found) {
-                break;
-            }
-            rows.truncate(own);
-            rows.extend(unknowns.tied(place, &rivers));
-            found = unknowns.solve(place, &rows);
-        }
-        for (c, k) in out.coefficients.iter_mut().zip(&unknowns.of) {
-            if let Some(k) = k {
-                c.z = found[*k][0];
-            }
+        let (found, lakes) = fit_heights(place, &heights, kept, stiffness);
+        for (c, z) in out.coefficients.iter_mut().zip(found) {
+            c.z = z;
         }
         out.lakes = lakes.iter().filter(|lake| out.coefficients[**lake].z != 0.0).count();
     }
     out
+}
+
+/// Heights of the coefficients, and the first coefficient of each lake.
+fn fit_heights(place: &NetPlace, moves: &[&Move], kept: &Kept, stiffness: &Stiffness) -> (Vec<f64>, Vec<usize>) {
+    let mut unknowns = Unknowns::within(place, moves);
+    unknowns.hold(place, &kept.sea);
+    let lakes = unknowns.tie_lakes(place, &kept.lakes);
+    unknowns.number(place);
+    let mut rivers: Vec<River> = kept.rivers.iter().map(|river| River::new(river, 0.5 * place.step)).collect();
+    let goals = unknowns.goals(place, moves);
+    let asked = goals.iter().fold([0.0f64; 2], |[low, high], row| [low.min(row.goal[0]), high.max(row.goal[0])]);
+    let mut rows = unknowns.plate(place, &vec![[HEIGHT_TENSION; 2]; unknowns.of.len()]);
+    rows.extend(goals);
+    rows.extend(unknowns.stretches(place, &kept.routes, stiffness.routes));
+    let own = rows.len();
+    let mut far = vec![None; unknowns.count];
+    let mut found = unknowns.solve(&rows);
+    for _ in 0..ROUNDS {
+        let (rises, swings) = (unknowns.tie_rising(place, &mut rivers, &found), swing(&mut far, &found, asked));
+        if !(rises || swings) {
+            break;
+        }
+        rows.truncate(own);
+        rows.extend(unknowns.tied(place, &rivers));
+        let held = far.iter().enumerate().filter_map(|(k, most)| Some((k, (*most)?)));
+        rows.extend(held.map(|(k, most)| Row { terms: vec![(k, 1.0)], goal: [most, 0.0], weight: GOAL }));
+        found = unknowns.solve(&rows);
+    }
+    (unknowns.of.iter().map(|k| k.map_or(0.0, |k| found[k][0])).collect(), lakes)
+}
+
+/// Marks the unknowns that go farther than anything that is asked for, with how far they may go; whether there are new ones.
+fn swing(far: &mut [Option<f64>], found: &[[f64; 2]], asked: [f64; 2]) -> bool {
+    let mut any = false;
+    for (far, [z, _]) in far.iter_mut().zip(found) {
+        let most = SWING * z.clamp(asked[0], asked[1]);
+        if far.is_none() && z.abs() > most.abs() + RISE_M {
+            *far = Some(most);
+            any = true;
+        }
+    }
+    any
 }
 
 /// A row of the least squares: a weighted sum of unknowns and its goals, one for each direction of the plan, or the height alone.
@@ -268,8 +327,9 @@ impl Unknowns {
         rivers.iter().flat_map(of_river).collect()
     }
 
-    /// Second differences along both directions and across, of every place whose coefficients are not all zero.
-    fn plate(&self, place: &NetPlace) -> Vec<Row> {
+    /// Second differences along both directions and across, and first ones, of every place whose coefficients are not all zero.
+    /// * `sides`: weights of the first differences.
+    fn plate(&self, place: &NetPlace, sides: &[[f64; 2]]) -> Vec<Row> {
         let [cols, rows] = place.size;
         let mut out = Vec::new();
         for row in 0..rows {
@@ -281,6 +341,13 @@ impl Unknowns {
                         out.push(row);
                     }
                 };
+                let [along_x, along_y] = sides[at(0, 0)];
+                if column + 1 < cols {
+                    push(&[(at(0, 0), -1.0), (at(1, 0), 1.0)], along_x);
+                }
+                if row + 1 < rows {
+                    push(&[(at(0, 0), -1.0), (at(0, 1), 1.0)], along_y);
+                }
                 if column + 2 < cols {
                     push(&[(at(0, 0), 1.0), (at(1, 0), -2.0), (at(2, 0), 1.0)], 1.0);
                 }
@@ -295,12 +362,11 @@ impl Unknowns {
         out
     }
 
-    /// The unknowns of least squared weighted errors over the rows and the plate, by Cholesky's factors within the envelope of the matrix.
-    fn solve(&self, place: &NetPlace, rows: &[Row]) -> Vec<[f64; 2]> {
-        let plate = self.plate(place);
-        let all = || plate.iter().chain(rows);
+    /// The unknowns of least squared weighted errors over rows, those of the plate among them, by Cholesky's factors within the
+    /// envelope of the matrix.
+    fn solve(&self, rows: &[Row]) -> Vec<[f64; 2]> {
         let mut first: Vec<usize> = (0..self.count).collect();
-        for row in all() {
+        for row in rows {
             let lowest = row.terms.first().map_or(0, |(k, _)| *k);
             for (k, _) in &row.terms {
                 first[*k] = first[*k].min(lowest);
@@ -308,7 +374,7 @@ impl Unknowns {
         }
         let mut matrix: Vec<Vec<f64>> = first.iter().enumerate().map(|(k, low)| vec![0.0; k + 1 - low]).collect();
         let mut right = vec![[0.0; 2]; self.count];
-        for row in all() {
+        for row in rows {
             for (n, (k, w)) in row.terms.iter().enumerate() {
                 for (j, v) in &row.terms[..=n] {
                     matrix[*k][j - first[*k]] += row.weight * w * v;

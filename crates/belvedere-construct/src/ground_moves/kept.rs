@@ -1,7 +1,7 @@
 //! What lies on the ground and keeps its form when an author moves it.
 
-use belvedere_core::map::ground_moves::GroundMoves;
-use belvedere_core::{DVec2, DVec3, SpaceMap, polygon};
+use belvedere_core::map::ground_moves::MoveNet;
+use belvedere_core::{DVec2, DVec3, polygon};
 use belvedere_scene::{AreaSurface, Heightfield, LayerKind, LineClass, Scene, Sea};
 
 /// An area of water is a lake if four fifths of its heights lie within this range, metres, as for the terrain solver.
@@ -108,9 +108,9 @@ impl KeptLine {
         self
     }
 
-    /// Most that the line rises under a map between two of its points, more than it did.
-    pub(super) fn rise_under(&self, map: &GroundMoves) -> f64 {
-        let heights = self.points.iter().map(|p| (p.z, map.apply(*p).map_or(p.z, |q| q.z)));
+    /// Most that the line rises on moved ground between two of its points, more than it did.
+    pub(super) fn rise_under(&self, net: &MoveNet) -> f64 {
+        let heights = self.points.iter().map(|p| (p.z, p.z + net.at(p.truncate()).z));
         let (mut lowest, mut most) = ([f64::INFINITY; 2], [0.0f64; 2]);
         for (before, after) in heights {
             for (k, z) in [before, after].into_iter().enumerate() {

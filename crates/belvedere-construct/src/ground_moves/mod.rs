@@ -21,8 +21,8 @@ pub const ROUTES_WITHIN: f64 = 0.03;
 const MOST_COEFFICIENTS: f64 = 161.0;
 /// Coefficients across the shorter of what moves in full and what gives way around it.
 const COEFFICIENTS: f64 = 2.5;
-/// Weights against stretching routes that are tried one after the other, until all can be carried out.
-const STIFFNESS: [f64; 4] = [3.0, 30.0, 300.0, 3000.0];
+/// Rounds in which ground that folds and routes that change become stiffer, until all can be carried out.
+const ROUNDS: u32 = 8;
 /// Halvings of the share of the moves that can be carried out.
 const HALVINGS: u32 = 12;
 
@@ -104,32 +104,37 @@ pub fn ground_moves(moves: &[Move], kept: &Kept) -> Result<(GroundMoves, GroundM
     let place = net_over(moves);
     let moves: Vec<Move> = moves.iter().map(|m| m.thinned(0.5 * place.step)).collect();
     let mut best: Option<(f64, GroundMoves, GroundMovesReport)> = None;
-    for stiffness in STIFFNESS {
-        let fitted = fit::fit(&place, &moves, kept, stiffness);
-        let (share, map) = carried_out(&place, &fitted, kept).map_err(GroundMovesFailure::Folds)?;
+    let mut stiffness = fit::Stiffness::new(&place);
+    for _ in 0..ROUNDS {
+        let fitted = fit::fit(&place, &moves, kept, &stiffness);
+        let Some(whole) = MoveNet::new(place, fitted.coefficients.clone()) else { break };
+        let (share, map) = carried_out(&whole, kept).map_err(GroundMovesFailure::Folds)?;
         let report = report(&map, share, &moves, kept, &fitted);
         let done = report.moves.iter().map(|m| m.carried_out).sum::<f64>();
-        if best.as_ref().is_none_or(|(most, ..)| done > *most) {
+        let is_better = best.as_ref().is_none_or(|(most, ..)| done > *most);
+        if is_better {
             best = Some((done, map, report));
         }
-        if share == 1.0 || kept.routes.is_empty() {
+        if share == 1.0 {
             break;
+        }
+        stiffness.spread(&place, &fitted.coefficients);
+        if routes::largest_change(&whole, &kept.routes) > ROUTES_WITHIN {
+            stiffness.routes *= 3.0;
         }
     }
     best.map(|(_, map, report)| (map, report)).ok_or(GroundMovesFailure::Nothing)
 }
 
-/// The largest share of a fitted displacement that folds nowhere and keeps the lengths of routes, and its map.
-fn carried_out(place: &NetPlace, fitted: &fit::Fitted, kept: &Kept) -> Result<(f64, GroundMoves), GroundMovesError> {
-    let at = |share: f64| {
-        let scaled = fitted.coefficients.iter().map(|c| share * *c).collect();
-        let net = MoveNet::new(*place, scaled).ok_or(GroundMovesError::Folds { at: place.first, bound: f64::NAN })?;
-        GroundMoves::new(net)
-    };
-    let is_kept = |map: &GroundMoves| routes::largest_change(map, &kept.routes) <= ROUTES_WITHIN;
-    let whole = at(1.0);
-    if whole.as_ref().is_ok_and(is_kept) {
-        return Ok((1.0, whole?));
+/// The largest share of a displacement that folds nowhere and keeps the lengths of routes, and its map.
+fn carried_out(whole: &MoveNet, kept: &Kept) -> Result<(f64, GroundMoves), GroundMovesError> {
+    let folds = GroundMovesError::Folds { at: whole.place().first, bound: f64::NAN };
+    let at = |share: f64| whole.scaled(share).ok_or(folds).and_then(GroundMoves::new);
+    let is_kept = |map: &GroundMoves| routes::largest_change(map.net(), &kept.routes) <= ROUTES_WITHIN;
+    if let Ok(map) = at(1.0)
+        && is_kept(&map)
+    {
+        return Ok((1.0, map));
     }
     let (mut low, mut high, mut found) = (0.0, 1.0, at(0.0)?);
     for _ in 0..HALVINGS {
@@ -151,9 +156,9 @@ fn report(map: &GroundMoves, share: f64, moves: &[Move], kept: &Kept, fitted: &f
         plan_m: most[0],
         height_m: most[1],
         least_determinant: map.least_determinant(),
-        routes: routes::lengths(map, &kept.routes),
+        routes: routes::lengths(map.net(), &kept.routes),
         lakes: fitted.lakes,
-        rivers_rise_m: kept.rivers.iter().map(|river| river.rise_under(map)).fold(0.0, f64::max),
+        rivers_rise_m: kept.rivers.iter().map(|river| river.rise_under(map.net())).fold(0.0, f64::max),
     }
 }
 

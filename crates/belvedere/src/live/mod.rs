@@ -308,7 +308,7 @@ impl LiveSession {
             None => self.reopened(&document, &options)?,
         };
         self.sun.rest(order.document.light.as_ref(), *session.light());
-        self.ground.last = session.view().ground().cloned().map(Stage::TerrainDisocclusion);
+        self.ground.last = session.view().ground().cloned().map(belvedere_core::Stage::TerrainDisocclusion);
         self.session = Some(session.clone());
         Ok(session)
     }

@@ -128,6 +128,7 @@ pub(super) fn sidecar(
         rigid: rigid.ids(session.scene()),
         areas: session.areas().to_vec(),
         disocclusion: session.terrain_report().filter(|_| !request.straight).cloned(),
+        moved: session.moves_report().filter(|_| !request.straight).cloned(),
         strip: session.strip_report().filter(|_| !request.straight).cloned(),
         constructor: session.constructor_report().filter(|_| !request.straight).cloned(),
         target: None,

@@ -16,8 +16,8 @@ use belvedere_core::Warning;
 use belvedere_disocclusion::TerrainReport;
 use belvedere_overlay::furniture::FurnitureRecord;
 use belvedere_overlay::highlight::HighlightRecord;
-use belvedere_resolve::StripReport;
 use belvedere_resolve::constructor::ConstructorReport;
+use belvedere_resolve::{GroundMovesReport, StripReport};
 use belvedere_scene::{Cover, Crs, Frame, FrameStats, Layer, LayerKind, NodeState, Palette, Scene, TerrainLayer, Unit};
 use belvedere_sight::RigidLayers;
 use serde::ser::Error as _;
@@ -235,6 +235,9 @@ pub struct Sidecar {
     /// Report of the solver of terrain disocclusion; `None` if it did not run. Its times are not written.
     #[serde(skip_serializing_if = "Option::is_none", serialize_with = "without_times")]
     pub disocclusion: Option<TerrainReport>,
+    /// Report of ground that an author moved; `None` if the scene moves none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moved: Option<GroundMovesReport>,
     /// Report of the strip along a route; `None` if the scene has no strip.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strip: Option<StripReport>,
