@@ -5,11 +5,12 @@ use belvedere::{output, scene_file};
 use pyo3::prelude::*;
 use std::path::Path;
 
-const SCENES: [(&str, &str); 10] = [
+const SCENES: [(&str, &str); 11] = [
     ("massif", include_str!("../../scenes/massif.toml")),
     ("massif_terrain", include_str!("../../scenes/massif_terrain.toml")),
     ("massif_curved_rays", include_str!("../../scenes/massif_curved_rays.toml")),
     ("massif_panorama", include_str!("../../scenes/massif_panorama.toml")),
+    ("massif_moves", include_str!("../../scenes/massif_moves.toml")),
     ("massif_strip", include_str!("../../scenes/massif_strip.toml")),
     ("church", include_str!("../../scenes/church.toml")),
     ("dna", include_str!("../../scenes/dna.toml")),

@@ -7,6 +7,8 @@ use belvedere::core::presets::PresetDocument;
 pub(crate) enum Handles {
     /// Turns of curved rays.
     Turns,
+    /// Moves of the ground by hand.
+    Moves,
     /// A preset of the spline, by its position.
     Preset(Box<PresetDocument>, usize),
 }

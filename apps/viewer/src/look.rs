@@ -1,6 +1,6 @@
 //! How the scene is viewed; not part of the document.
 
-use belvedere::scene_file::SwitchOrVisibility;
+use belvedere::scene_file::{MoveKindDoc, SwitchOrVisibility};
 use serde::{Deserialize, Serialize};
 
 /// How two pictures are compared.
@@ -29,6 +29,8 @@ pub(crate) enum Tool {
     Residue,
     /// Sets the points of a measurement.
     Measure,
+    /// Sets the place of ground that is moved by hand.
+    Move(MoveKindDoc),
 }
 
 /// How the scene is viewed; not part of the document.

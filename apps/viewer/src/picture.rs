@@ -62,7 +62,7 @@ impl PictureView {
             self.click(share(rect, at), model);
         }
         let cursor = match (model.look.tool, response.dragged()) {
-            (Tool::Track | Tool::Residue | Tool::Measure, _) => CursorIcon::Crosshair,
+            (Tool::Track | Tool::Residue | Tool::Measure | Tool::Move(_), _) => CursorIcon::Crosshair,
             (_, true) => CursorIcon::Grabbing,
             (_, false) => CursorIcon::Grab,
         };
@@ -258,6 +258,13 @@ impl PictureView {
                 return;
             }
             model.look.tool = Tool::Map;
+            return;
+        }
+        if let Tool::Move(kind) = model.look.tool {
+            if let Some(point) = point {
+                crate::panels::moves::place(model, kind, point);
+                model.look.tool = Tool::Map;
+            }
             return;
         }
         if model.look.tool == Tool::Track {

@@ -62,7 +62,7 @@ pub struct Document {
     /// Ids of layers that are not drawn and hide nothing. What a stage or a constructor follows stays known to it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub hidden: Vec<String>,
-    /// Stages in order of application: terrain_disocclusion, strip, relief, spline_bend, curved_rays.
+    /// Stages in order of application: terrain_disocclusion, ground_moves, strip, relief, spline_bend, curved_rays.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stage: Vec<StageDoc>,
     /// Builds stages from an intent.

@@ -72,3 +72,12 @@ pub struct MoveDoc {
     /// Beyond this distance from the place or line nothing moves, metres.
     pub reach_m: f64,
 }
+
+impl MoveDoc {
+    /// A move of a kind that states nothing yet.
+    pub fn of(kind: MoveKindDoc, reach_m: f64) -> Self {
+        let (at, along, path, shift_m, core_m) = (None, None, None, None, None);
+        let (from_m, to_m, angle_deg, by_m, share) = (None, None, None, None, None);
+        Self { kind, at, along, path, from_m, to_m, shift_m, angle_deg, by_m, share, core_m, reach_m }
+    }
+}

@@ -12,6 +12,8 @@ use belvedere_document::{GroundMovesStageDoc, LayerDoc, MoveDoc, MoveKindDoc, St
 
 /// Default distance up to which the ground moves in full, as a share of the reach.
 const CORE: f64 = 0.25;
+/// A route whose length changes by this share of what it may is what ends the moves.
+const NEARLY: f64 = 0.95;
 /// A move that is carried out by less than this is told.
 const TOLD: f64 = 0.9;
 
@@ -55,14 +57,16 @@ fn remarks(report: &GroundMovesReport) -> Vec<Warning> {
     let text = |k: usize| {
         let one = &report.moves[k];
         let done = 100.0 * one.carried_out;
-        let why = if report.share < 1.0 {
-            format!(
-                "all moves are carried out by {:.0} %, for more would fold the ground or change a route's length by more than {} %",
-                100.0 * report.share,
+        let longest = report.routes.iter().map(|r| (r, (r.moved_length_m / r.length_m - 1.0).abs()));
+        let longest = longest.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, change)| *change > NEARLY * ROUTES_WITHIN);
+        let why = match longest {
+            _ if report.share == 1.0 => "lakes, rivers, routes or other moves hold against it".to_owned(),
+            Some((route, _)) => format!(
+                "more would change the length of \"{}\" by more than {} %",
+                route.name,
                 number(100.0 * ROUTES_WITHIN)
-            )
-        } else {
-            "lakes, rivers, routes or other moves hold against it".to_owned()
+            ),
+            None => "more would fold the ground".to_owned(),
         };
         format!(
             "stage ground_moves: move {} ({}) is carried out by {done:.0} %: {why}; move less, or over a longer reach",

@@ -15,6 +15,7 @@ mod figures;
 mod furniture;
 mod generalise;
 mod geopackage;
+mod ground_moves;
 mod layers;
 mod light_and_tints;
 mod marks;

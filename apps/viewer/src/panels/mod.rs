@@ -3,6 +3,7 @@
 mod gallery;
 pub(crate) mod layers;
 pub(crate) mod look;
+pub(crate) mod moves;
 pub(crate) mod rays;
 mod sections;
 pub(crate) mod spline;

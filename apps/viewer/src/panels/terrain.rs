@@ -1,4 +1,4 @@
-//! Terrain disocclusion: required features, limits of the displacement, what stays hidden.
+//! Terrain disocclusion: required features, limits of the displacement, what stays hidden; below it moves by hand.
 
 use super::{choice, percent, set_stage, slider};
 use crate::language::{fill, later, tr};
@@ -50,6 +50,8 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
         }
         shares(ui, model);
     });
+    ui.separator();
+    super::moves::show(ui, model);
 }
 
 const MODES: [(SolverMode, &str); 3] = [

@@ -1,6 +1,8 @@
-//! Handles in the picture: planes and viewpoints of turns while the panel of curved rays is open, the curve while that of the spline is.
+//! Handles in the picture: planes and viewpoints of turns while the panel of curved rays is open, moves of the ground while that of the terrain
+//! is, the curve while that of the spline is.
 
 mod curve;
+mod moves;
 mod planes;
 
 use crate::handles::Handles;
@@ -20,11 +22,12 @@ pub(super) fn show(ui: &mut Ui, rect: Rect, model: &mut Model) {
     let view = if model.look.bent { shown.session.view().clone() } else { shown.session.view().straightened() };
     let id = ui.scope_id().with("handles");
     match handles {
+        Handles::Moves if model.look.bent => moves::show(ui, (id, rect), &view, model),
         Handles::Turns => planes::show(ui, (id, rect), &view, model),
         Handles::Preset(presets, chosen) if model.look.bent => {
             curve::show(ui, (id, rect), &view, (&presets, chosen), model);
         }
-        Handles::Preset(..) => {}
+        Handles::Moves | Handles::Preset(..) => {}
     }
 }
 

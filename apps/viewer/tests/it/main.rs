@@ -17,6 +17,7 @@ mod languages;
 mod layers;
 mod layout;
 mod measuring;
+mod moves;
 mod moving;
 mod narrow;
 mod presets;

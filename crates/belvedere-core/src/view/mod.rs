@@ -43,7 +43,7 @@ pub struct View {
 pub enum ViewError {
     /// Wrong order or a repeated stage.
     #[error(
-        "stage {second} cannot follow stage {first}; the order is earth, terrain_disocclusion, strip, relief, spline_bend, curved_rays, each at most once"
+        "stage {second} cannot follow stage {first}; the order is earth, terrain_disocclusion, ground_moves, strip, relief, spline_bend, curved_rays, each at most once"
     )]
     Order {
         /// Name of the earlier stage.

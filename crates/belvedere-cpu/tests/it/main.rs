@@ -4,6 +4,7 @@ mod areas;
 mod branches;
 mod cache;
 mod exact;
+mod ground_moves;
 mod huge_triangles;
 mod laws;
 mod lines;
