@@ -1,8 +1,14 @@
 //! Errors in the words of the window instead of those of scene files.
 
 /// Keys of scene files that errors name, and what the window calls them.
-const WORDS: [(&str, &str); 41] = [
+const WORDS: [(&str, &str); 47] = [
     ("terrain_disocclusion", "ground that makes way"),
+    ("ground_moves", "ground moved by hand"),
+    ("shift_m", "shift"),
+    ("angle_deg", "angle"),
+    ("by_m", "height or width"),
+    ("core_m", "core"),
+    ("from_m", "start of the stretch"),
     ("curved_rays", "curved rays"),
     ("spline_bend", "spline"),
     ("target_tracking", "keeping in sight"),

@@ -7,7 +7,7 @@ use crate::model::{Model, Tool};
 use crate::widgets::steady;
 use belvedere::core::DVec3;
 use belvedere::scene_file::{GroundMovesStageDoc, LayerDoc, MoveDoc, MoveKindDoc, StageDoc};
-use eframe::egui::{Id, Ui};
+use eframe::egui::{Button, Id, Ui};
 use std::ops::RangeInclusive;
 
 const KIND: &str = "ground_moves";
@@ -60,7 +60,7 @@ pub(crate) fn show(ui: &mut Ui, model: &mut Model) {
     ui.horizontal_wrapped(|ui| {
         for (kind, label) in PLACED {
             let is_chosen = model.look.tool == Tool::Move(kind);
-            if ui.selectable_label(is_chosen, tr(label)).clicked() {
+            if ui.add(Button::new(tr(label)).selected(is_chosen)).clicked() {
                 model.look.tool = if is_chosen { Tool::Map } else { Tool::Move(kind) };
             }
         }
