@@ -157,6 +157,7 @@ pub(crate) fn with_points(session: &Session, points: &[(&str, DVec3)], color: Co
         style: PointStyle { label_px: Some(13.0), ..PointStyle::default() },
         hidden: Hidden::Show,
         lift_m: 0.0,
+        beyond: 0.0,
     };
     scene.layers.push(Layer { id: "marks".into(), must_see: false, kind: layer.into() });
     Session::from_parts(scene, session.view().clone()).with_light(*session.light())

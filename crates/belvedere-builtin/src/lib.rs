@@ -120,6 +120,7 @@ fn line_layer(id: &str, feature: LineFeature) -> Layer {
             markers: None,
             label_px: None,
             marker_px: belvedere_scene::SMALL_LETTERS_PX,
+            beyond: 0.0,
         }
         .into(),
     }

@@ -72,6 +72,7 @@ fn lake_layer(lake: Lake) -> Layer {
             hidden: Hidden::Cut,
             lift_m: 0.5,
             label_px: None,
+            beyond: 0.0,
         }
         .into(),
     }

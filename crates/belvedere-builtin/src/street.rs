@@ -100,6 +100,7 @@ fn area_layer(id: &str, features: Vec<AreaFeature>, fill: Color) -> Layer {
             hidden: Hidden::Cut,
             lift_m: 0.1,
             label_px: None,
+            beyond: 0.0,
         }
         .into(),
     }

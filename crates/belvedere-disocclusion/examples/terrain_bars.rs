@@ -57,6 +57,7 @@ fn main() -> Result<(), Failure> {
                 hidden: Hidden::Dash,
                 lift_m: 1.0,
                 label_px: None,
+                beyond: 0.0,
             };
             layers.push(("lakes", LayerKind::Area(lakes)));
         } else {

@@ -128,6 +128,11 @@ pub(super) fn judged_points(
     let (points, unusable) = collect_points(out, features, settings, spacing);
     let mut beside = [0.0; KINDS];
     unusable.iter().for_each(|point| beside[point.kind.of_feature()] += point.amount);
+    for required in features {
+        if let Shape::Beyond(kind, amount) = required.shape {
+            beside[kind.of_feature()] += amount;
+        }
+    }
     (points, beside)
 }
 
@@ -160,6 +165,8 @@ enum Shape {
     Line(Vec<DVec2>),
     Area(Vec<Vec<DVec2>>),
     Point(DVec2),
+    /// What of a layer's source lies beyond the ground: an amount, see [`ReferencePoint::amount`].
+    Beyond(PointKind, f64),
 }
 
 /// The features of all layers that must be seen. Corners that are not finite are left out.
@@ -184,7 +191,14 @@ pub(super) fn required_features(scene: &Scene) -> Vec<RequiredFeature> {
             | LayerKind::Molecule(_)
             | LayerKind::Volume(_) => (0.0, Vec::new()),
         };
-        shapes.into_iter().enumerate().map(move |(feature, shape)| RequiredFeature { layer, feature, lift_m, shape })
+        let kind = match &content.kind {
+            LayerKind::Area(_) => PointKind::Inside,
+            LayerKind::Point(_) => PointKind::Landmark,
+            _ => PointKind::Line,
+        };
+        let beyond = Some(content.kind.beyond()).filter(|amount| *amount > 0.0);
+        let shapes = shapes.into_iter().chain(beyond.map(|amount| Shape::Beyond(kind, amount)));
+        shapes.enumerate().map(move |(feature, shape)| RequiredFeature { layer, feature, lift_m, shape })
     };
     scene.must_see().flat_map(of_layer).collect()
 }
@@ -201,6 +215,7 @@ impl RequiredFeature {
         let shape = match &self.shape {
             Shape::Line(points) => Shape::Line(line(points)),
             Shape::Area(rings) => Shape::Area(rings.iter().map(ring).collect()),
+            Shape::Beyond(..) => self.shape.clone(),
             Shape::Point(p) => line(&[*p]).first().map_or(Shape::Line(Vec::new()), |p| Shape::Point(*p)),
         };
         Self { shape, ..self.clone() }
@@ -218,7 +233,7 @@ fn collect_points(
     // Shares of short lines are to be as fine as those of long ones.
     let length = |f: &RequiredFeature| match &f.shape {
         Shape::Line(points) => to_grid(points).windows(2).map(|w| w[0].distance(w[1])).sum(),
-        Shape::Area(_) | Shape::Point(_) => 0.0,
+        Shape::Area(_) | Shape::Point(_) | Shape::Beyond(..) => 0.0,
     };
     let lines: f64 = if out.edges { features.iter().map(length).sum() } else { f64::INFINITY };
     let along_lines = spacing.min((lines / LEAST_ON_LINES).max(FINEST));
@@ -235,6 +250,7 @@ fn collect_points(
                 out.amount = 1.0;
                 out.put(field.grid_from_scene(*p), 0.0, PointKind::Landmark);
             }
+            Shape::Beyond(..) => {}
         }
     }
     (out.usable, out.unusable)

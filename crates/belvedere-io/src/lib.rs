@@ -66,5 +66,7 @@ pub use recognise::{Recognised, recognise};
 pub use symbol::load_symbol;
 pub use table::{join_table, split_table};
 pub use terrain::{CrsChoice, LoadedTerrain, ResampleError, TerrainRequest, load_terrain};
-pub use vector::{Geometry, VectorFeature, Vectors, Vertex, areas_on_terrain, lines_on_terrain, points_on_terrain};
+pub use vector::{
+    Geometry, OnGround, VectorFeature, Vectors, Vertex, areas_on_terrain, lines_on_terrain, points_on_terrain,
+};
 pub use volume::{ByteOrder, Number, RawLayout, VolumeFile, VolumeRequest, load_volume};

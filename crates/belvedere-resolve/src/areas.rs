@@ -7,6 +7,7 @@ use crate::BelvedereError;
 use crate::record::AreaRecord;
 use belvedere_core::{Warning, WarningKind};
 use belvedere_document::{AreaDoc, AreaStyleDoc, LayerDoc, Paths, SurfaceDoc};
+use belvedere_io::OnGround;
 use belvedere_io::vector::AreaKind;
 use belvedere_scene::{AreaLayer, AreaSurface, Color, LayerKind, Scene};
 
@@ -17,11 +18,11 @@ pub(super) fn layer(
     doc: &AreaDoc,
     ground: &Ground<'_>,
 ) -> Result<LayerKind, BelvedereError> {
-    let (mut features, found) = match &doc.source {
+    let (OnGround { mut features, beyond }, found) = match &doc.source {
         Paths::One(name) if builtin::is_name(name) => {
             let (features, surface) = loader
                 .builtin(index, name, |kind| kind.areas().map(|layer| (layer.features.clone(), layer.surface)))?;
-            (features, AreaKind { surface, why: format!("{name} says so") })
+            (OnGround { features, beyond: 0.0 }, AreaKind { surface, why: format!("{name} says so") })
         }
         paths => vectors::areas(loader, index, &doc.id, paths, ground)?,
     };
@@ -53,6 +54,7 @@ pub(super) fn layer(
         hidden: style.hidden,
         lift_m: style.lift_m,
         label_px: (style.labels || style.label.is_some()).then_some(style.label_px),
+        beyond,
     }
     .into())
 }

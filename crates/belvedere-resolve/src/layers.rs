@@ -16,6 +16,7 @@ use belvedere_document::{
     AutoOrLength, HeightUnit, LayerDoc, LineDoc, Origin, PaletteDoc, Paths, PointLayerDoc, PositionDoc, RouteDoc,
     SwitchOrLength, SymbolDoc, TerrainDoc, TextDoc,
 };
+use belvedere_io::OnGround;
 use belvedere_io::crs::CoordinateSystem;
 use belvedere_io::terrain::OriginalTerrain;
 use belvedere_io::vector::Vectors;
@@ -321,13 +322,14 @@ fn line(
     doc: &LineDoc,
     ground: &Ground<'_>,
 ) -> Result<LayerKind, BelvedereError> {
-    let mut features = match (&doc.source, &doc.route) {
-        (_, Some(doc)) => vec![route(loader, index, doc, ground)?],
+    let whole = |features| OnGround { features, beyond: 0.0 };
+    let OnGround { mut features, beyond } = match (&doc.source, &doc.route) {
+        (_, Some(doc)) => whole(vec![route(loader, index, doc, ground)?]),
         (Some(Paths::One(name)), None) if builtin::is_name(name) => {
-            loader.builtin(index, name, |kind| kind.lines().map(|layer| layer.features.clone()))?
+            whole(loader.builtin(index, name, |kind| kind.lines().map(|layer| layer.features.clone()))?)
         }
         (Some(paths), None) => vectors::lines(loader, index, paths, ground)?,
-        (None, None) => Vec::new(),
+        (None, None) => whole(Vec::new()),
     };
     if features.is_empty() {
         return Err(loader.fail(index, "source", "no line lies on the terrain; check that the source covers it"));
@@ -355,6 +357,7 @@ fn line(
         }),
         label_px: (style.labels || style.label.is_some()).then_some(style.label_px),
         marker_px: belvedere_scene::SMALL_LETTERS_PX,
+        beyond,
     }))
 }
 
@@ -400,7 +403,7 @@ fn point(
 ) -> Result<LayerKind, BelvedereError> {
     // A wrong name is told before the file is read.
     let symbol = symbol(loader, index, &doc.style.symbol)?;
-    let mut features = vectors::points(loader, index, &doc.source, ground)?;
+    let OnGround { mut features, beyond } = vectors::points(loader, index, &doc.source, ground)?;
     if features.is_empty() {
         return Err(loader.fail(index, "source", "no point lies on the terrain; check that the source covers it"));
     }
@@ -419,6 +422,7 @@ fn point(
         },
         hidden: style.hidden,
         lift_m: style.lift_m,
+        beyond,
     }))
 }
 

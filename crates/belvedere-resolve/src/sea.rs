@@ -23,7 +23,16 @@ pub(super) fn layer(loader: &mut Loader<'_>, doc: &TerrainDoc, terrain: &Terrain
     // Every second ring of a feature is a hole.
     let features = vec![AreaFeature { style: None, name: "Sea".into(), rings: sea.coasts }];
     let (fill, outline, width_px, hidden, lift_m) = (surface.color(), None, 1.0, Hidden::Cut, 0.0);
-    let kind =
-        LayerKind::Area(AreaLayer { features, fill, outline, width_px, surface, hidden, lift_m, label_px: None });
+    let kind = LayerKind::Area(AreaLayer {
+        features,
+        fill,
+        outline,
+        width_px,
+        surface,
+        hidden,
+        lift_m,
+        label_px: None,
+        beyond: 0.0,
+    });
     Some(Layer { id, must_see: false, kind })
 }

@@ -11,7 +11,7 @@ use belvedere_io::city::is_meant;
 use belvedere_io::crs::{CoordinateSystem, Transform};
 use belvedere_io::load_vectors;
 use belvedere_io::vector::{
-    AreaKind, Geometry, Vectors, Vertex, area_kind, areas_on_terrain, lines_on_terrain, points_on_terrain,
+    AreaKind, Geometry, OnGround, Vectors, Vertex, area_kind, areas_on_terrain, lines_on_terrain, points_on_terrain,
 };
 use belvedere_io::{Arrays, IoError, Loaded};
 use belvedere_scene::{AreaFeature, AreaSurface, Crs, Heightfield, LineFeature, PointFeature};
@@ -139,7 +139,7 @@ pub fn read(path: &Path, arrays: &Arrays) -> Result<Loaded<Vectors>, IoError> {
     }
 }
 
-type OnTerrain<T> = fn(&Vectors, Crs, Option<&Heightfield>) -> Result<Loaded<Vec<T>>, IoError>;
+type OnTerrain<T> = fn(&Vectors, Crs, Option<&Heightfield>) -> Result<Loaded<OnGround<T>>, IoError>;
 
 fn all<T>(
     loader: &mut Loader<'_>,
@@ -148,7 +148,7 @@ fn all<T>(
     ground: &Ground<'_>,
     on_terrain: OnTerrain<T>,
     mut inspect: impl FnMut(&Vectors),
-) -> Result<Vec<T>, BelvedereError> {
+) -> Result<OnGround<T>, BelvedereError> {
     let mut all = Vec::new();
     for (name, file) in paths.as_slice().iter().zip(loader.sources(index, paths)?) {
         loader.options.progress.tick("reading features", 0.0)?;
@@ -176,12 +176,13 @@ fn all<T>(
     }
     // Classes are those of all files together.
     by_property::style(loader, index, &mut all)?;
-    let mut features = Vec::new();
+    let mut out = OnGround { features: Vec::new(), beyond: 0.0 };
     for vectors in all {
-        let found = on_terrain(&vectors, ground.crs, ground.terrain)?;
-        features.extend(loader.take(index, found));
+        let found = loader.take(index, on_terrain(&vectors, ground.crs, ground.terrain)?);
+        out.features.extend(found.features);
+        out.beyond += found.beyond;
     }
-    Ok(features)
+    Ok(out)
 }
 
 /// Places lines and points without heights on the ground of the cities if there is no terrain. Lines follow a sloping ground.
@@ -240,7 +241,7 @@ pub(super) fn lines(
     index: usize,
     paths: &Paths,
     ground: &Ground<'_>,
-) -> Result<Vec<LineFeature>, BelvedereError> {
+) -> Result<OnGround<LineFeature>, BelvedereError> {
     all(loader, index, paths, ground, lines_on_terrain, |_| ())
 }
 
@@ -251,7 +252,7 @@ pub(super) fn areas(
     id: &str,
     paths: &Paths,
     ground: &Ground<'_>,
-) -> Result<(Vec<AreaFeature>, AreaKind), BelvedereError> {
+) -> Result<(OnGround<AreaFeature>, AreaKind), BelvedereError> {
     let mut kinds: Vec<AreaKind> = Vec::new();
     let features = all(loader, index, paths, ground, areas_on_terrain, |v| kinds.push(area_kind(v, &[id])))?;
     let known = kinds.iter().position(|k| k.surface != AreaSurface::Outline).unwrap_or(0);
@@ -265,6 +266,6 @@ pub(super) fn points(
     index: usize,
     paths: &Paths,
     ground: &Ground<'_>,
-) -> Result<Vec<PointFeature>, BelvedereError> {
+) -> Result<OnGround<PointFeature>, BelvedereError> {
     all(loader, index, paths, ground, points_on_terrain, |_| ())
 }

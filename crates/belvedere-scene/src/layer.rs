@@ -252,6 +252,8 @@ pub struct LineLayer {
     /// Height of the letters of names, pixels; `None` = no names. Each name is written once, at the middle of the longest stretch that
     /// is seen; names that would overlap earlier ones are left out.
     pub label_px: Option<f64>,
+    /// Length that lies beyond the ground or over its holes and was cut off, scene units; it counts as not visible.
+    pub beyond: f64,
 }
 
 impl LineLayer {
@@ -267,6 +269,7 @@ impl LineLayer {
             markers: None,
             marker_px: crate::SMALL_LETTERS_PX,
             label_px: None,
+            beyond: 0.0,
         }
     }
 }
@@ -359,6 +362,8 @@ pub struct AreaLayer {
     /// Height of the letters of names, pixels; `None` = no names. Each name is written once, in the largest of the areas that bear it, where
     /// the point farthest from its border is seen; names that would overlap earlier ones are left out.
     pub label_px: Option<f64>,
+    /// Area in plan of what lies beyond the ground and was left out, scene units squared; it counts as not visible.
+    pub beyond: f64,
 }
 
 /// One point.
@@ -387,6 +392,8 @@ pub struct PointLayer {
     pub hidden: Hidden,
     /// Height above ground, metres.
     pub lift_m: f64,
+    /// Number of points that lie beyond the ground or over its holes and were left out; they count as not visible.
+    pub beyond: f64,
 }
 
 /// An upright box: a building of a block model.
@@ -516,6 +523,16 @@ impl Layer {
 }
 
 impl LayerKind {
+    /// What of the source of lines, areas or points lies beyond the ground: length, area or number, scene units.
+    pub fn beyond(&self) -> f64 {
+        match self {
+            Self::Line(lines) => lines.beyond,
+            Self::Area(areas) => areas.beyond,
+            Self::Point(points) => points.beyond,
+            _ => 0.0,
+        }
+    }
+
     /// Name of a line, area or point by its index; `None` if there is no such feature or it has no name.
     pub fn feature_name(&self, index: usize) -> Option<&str> {
         let name = match self {

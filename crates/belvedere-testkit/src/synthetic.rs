@@ -59,6 +59,7 @@ pub fn point_layer(id: &str, position: DVec3) -> Layer {
         hidden: Hidden::Fade,
         lift_m: 1.0,
         style: belvedere_scene::PointStyle::default(),
+        beyond: 0.0,
     });
     Layer { id: id.into(), must_see: true, kind }
 }

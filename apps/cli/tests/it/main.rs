@@ -4,6 +4,7 @@ mod animate;
 mod answers;
 mod areas;
 mod bad_scenes;
+mod beyond_the_data;
 mod broken_off;
 mod cities;
 mod city_targets;

@@ -85,6 +85,7 @@ fn picture(hidden: Hidden, edges: f32, name: &str) -> (Frame, Pinhole) {
         style: PointStyle { symbol: Symbol::Dot, casing: None, label_px: Some(14.0) },
         hidden: Hidden::Show,
         lift_m: 0.0,
+        beyond: 0.0,
     };
     let scene = Scene {
         layers: vec![layer("route", LayerKind::Line(route)), layer("hut", LayerKind::Point(hut))],

@@ -111,7 +111,12 @@ pub fn measure_and_hidden(
     let bend = bend::measure_bend(&sight.obstacles, scene, view, &straight_view, &features);
     let warnings = warnings(&sight.obstacles, view, &features);
     let hidden = hidden::all(&features, &bent);
-    Ok((report::summarise(&features, &straight, &bent, options.near_miss_m, bend, warnings), hidden))
+    let of_layer = |k: usize, amount| features.iter().any(|f| f.layer == k && f.amount == amount);
+    let beyond = |amount| {
+        let layers = scene.layers.iter().enumerate().filter(|(k, _)| of_layer(*k, amount));
+        layers.map(|(_, layer)| layer.kind.beyond()).sum()
+    };
+    Ok((report::summarise((&features, &beyond), &straight, &bent, options.near_miss_m, bend, warnings), hidden))
 }
 
 /// Samples by which shares are judged.

@@ -114,8 +114,11 @@ pub struct Clearance {
     pub max: f64,
 }
 
+/// What of the sources of features lies beyond the ground, by what amounts measure.
+pub(super) type Beyond<'a> = &'a dyn Fn(Amount) -> f64;
+
 pub(super) fn summarise(
-    features: &[SampledFeature],
+    (features, beyond): (&[SampledFeature], Beyond<'_>),
     straight: &[Vec<SampleImage>],
     bent: &[Vec<SampleImage>],
     near_miss: f64,
@@ -123,10 +126,11 @@ pub(super) fn summarise(
     warnings: Vec<Warning>,
 ) -> Measures {
     let all: Vec<usize> = (0..features.len()).collect();
-    let one = |members: &[usize]| summarise_group(features, straight, bent, members, near_miss);
+    let one = |members: &[usize], beyond| summarise_group((features, beyond), straight, bent, members, near_miss);
     let group = |unit: Amount, name: &str| {
         let members: Vec<usize> = all.iter().copied().filter(|&i| features[i].amount == unit).collect();
-        (!members.is_empty()).then(|| FeatureMeasure { name: name.to_owned(), feature: members.len(), ..one(&members) })
+        let whole = || FeatureMeasure { name: name.to_owned(), feature: members.len(), ..one(&members, beyond(unit)) };
+        (!members.is_empty()).then(whole)
     };
     let (lines, areas, points) =
         (group(Amount::Length, "all lines"), group(Amount::Area, "all areas"), group(Amount::Count, "all points"));
@@ -137,12 +141,12 @@ pub(super) fn summarise(
         .flat_map(|f| [f.straight.difference, f.bent.difference])
         .flatten()
         .reduce(f64::max);
-    let features = all.iter().map(|&i| one(&[i])).collect();
+    let features = all.iter().map(|&i| one(&[i], 0.0)).collect();
     Measures { features, lines, areas, points, surfaces, largest_difference, bend, warnings }
 }
 
 fn summarise_group(
-    features: &[SampledFeature],
+    (features, beyond): (&[SampledFeature], f64),
     straight: &[Vec<SampleImage>],
     bent: &[Vec<SampleImage>],
     members: &[usize],
@@ -156,7 +160,7 @@ fn summarise_group(
     };
     let (straight_rows, bent_rows) = (rows(straight), rows(bent));
     let displacement = displacement(&straight_rows, &bent_rows);
-    let total: f64 = samples.map(|s| s.amount).sum();
+    let total = samples.map(|s| s.amount).sum::<f64>() + beyond;
     let is_surface = first.amount == Amount::Surface && !straight_rows.is_empty();
     FeatureMeasure {
         layer: first.layer_id.clone(),
@@ -166,8 +170,8 @@ fn summarise_group(
         samples: straight_rows.len(),
         total,
         surface_spacing: is_surface.then(|| (total / straight_rows.len() as f64).sqrt()),
-        straight: visibility(&straight_rows, near_miss),
-        bent: visibility(&bent_rows, near_miss),
+        straight: visibility(&straight_rows, total, near_miss),
+        bent: visibility(&bent_rows, total, near_miss),
         displacement_max: displacement.max,
         displacement_rms: displacement.rms,
         displacement_max_px: displacement.max_px,
@@ -178,7 +182,7 @@ fn ratio(part: f64, whole: f64) -> Option<f64> {
     (whole > 0.0).then(|| part / whole)
 }
 
-fn visibility(rows: &[(f64, SampleImage)], near_miss: f64) -> Visibility {
+fn visibility(rows: &[(f64, SampleImage)], total: f64, near_miss: f64) -> Visibility {
     let framed: Vec<&(f64, SampleImage)> = rows.iter().filter(|(_, j)| j.in_frame).collect();
     // From 0.0, for the sum of nothing is -0.0.
     let sum =
@@ -188,7 +192,6 @@ fn visibility(rows: &[(f64, SampleImage)], near_miss: f64) -> Visibility {
         None => j.clearance.is_some_and(|c| c.abs() >= near_miss),
     };
     let in_frame = sum(&|_| true);
-    let total: f64 = rows.iter().map(|(amount, _)| amount).sum();
     let clear_cut = sum(&sharp);
     let method = |seen: &dyn Fn(&SampleImage) -> bool| MethodShare {
         visible: sum(seen),

@@ -16,6 +16,7 @@ fn square(middle: [f64; 2], half: f64, surface: AreaSurface) -> LayerKind {
         hidden: Hidden::Cut,
         lift_m: 1.0,
         label_px: None,
+        beyond: 0.0,
     })
 }
 

@@ -120,6 +120,7 @@ fn summits() -> PointLayer {
         style: PointStyle { symbol: Symbol::Triangle, label_px: Some(13.0), ..PointStyle::default() },
         hidden: Hidden::Cut,
         lift_m: 1.0,
+        beyond: 0.0,
     }
 }
 
@@ -182,6 +183,7 @@ fn names_of_areas_stand_where_the_area_has_most_room_and_that_is_seen() {
             hidden,
             lift_m: 1.0,
             label_px: Some(14.0),
+            beyond: 0.0,
         };
         render(
             &scene(vec![layer("ground", ground(&hf)), layer("woods", LayerKind::Area(area))]),

@@ -96,6 +96,7 @@ fn lakes() -> Option<AreaLayer> {
         hidden: Hidden::Cut,
         lift_m: 1.0,
         label_px: None,
+        beyond: 0.0,
     })
 }
 

@@ -26,6 +26,7 @@ fn full_scene() -> Scene {
         hidden: Hidden::Fade,
         lift_m: 2.0,
         style: belvedere_scene::PointStyle::default(),
+        beyond: 0.0,
     };
     scene(vec![
         layer("ground", LayerKind::Terrain(terrain(hf))),

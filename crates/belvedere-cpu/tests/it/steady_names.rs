@@ -30,6 +30,7 @@ fn named() -> Scene {
         style: PointStyle { symbol: Symbol::Triangle, casing: None, label_px: Some(12.0) },
         hidden: Hidden::Cut,
         lift_m: 1.0,
+        beyond: 0.0,
     };
     let path = |offset: f64, name: &str| {
         let course = (0..400).map(|i| {

@@ -76,6 +76,7 @@ pub(crate) fn line(points: Vec<DVec3>, hidden: Hidden) -> LineLayer {
         markers: None,
         label_px: None,
         marker_px: belvedere_scene::SMALL_LETTERS_PX,
+        beyond: 0.0,
     }
 }
 

@@ -69,6 +69,7 @@ pub(crate) fn load(name: &str) -> Result<Option<Range>, Failure> {
             hidden: Hidden::Dash,
             lift_m: 1.0,
             label_px: None,
+            beyond: 0.0,
         });
         areas.push(Layer { id: "areas".into(), must_see: true, kind });
     }

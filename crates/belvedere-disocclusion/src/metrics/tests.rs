@@ -17,6 +17,7 @@ fn line(field: &Field, path: &[[f64; 2]]) -> Scene {
         markers: None,
         label_px: None,
         marker_px: belvedere_scene::SMALL_LETTERS_PX,
+        beyond: 0.0,
     });
     Scene { layers: vec![Layer { id: "line".into(), must_see: true, kind }], ..Scene::default() }
 }

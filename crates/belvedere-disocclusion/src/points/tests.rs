@@ -34,6 +34,7 @@ fn lines(field: &Field, features: &[&[[f64; 2]]]) -> Scene {
         markers: None,
         label_px: None,
         marker_px: belvedere_scene::SMALL_LETTERS_PX,
+        beyond: 0.0,
     });
     Scene { layers: vec![Layer { id: "line".into(), must_see: true, kind }], ..Scene::default() }
 }
@@ -51,6 +52,7 @@ fn area(field: &Field, rings: &[&[[f64; 2]]]) -> Scene {
         hidden: Hidden::Cut,
         lift_m: 0.5,
         label_px: None,
+        beyond: 0.0,
     });
     Scene { layers: vec![Layer { id: "area".into(), must_see: true, kind }], ..Scene::default() }
 }
@@ -155,6 +157,7 @@ fn landmarks_are_themselves_and_layers_that_need_not_be_seen_have_no_points() {
         style: belvedere_scene::PointStyle::default(),
         hidden: Hidden::Fade,
         lift_m: 4.0,
+        beyond: 0.0,
     });
     let mut scene = Scene { layers: vec![Layer { id: "huts".into(), must_see: true, kind }], ..Scene::default() };
     let found = points(&scene, &field, 2.0).0;

@@ -19,7 +19,7 @@ fn scene(cols: usize, rows: usize, height: impl Fn(usize, usize) -> f64, points:
     let features = points.iter().map(place).collect();
     let color = Color::rgb(0, 0, 0);
     let (style, hidden) = (PointStyle::default(), Hidden::Fade);
-    let kind = LayerKind::Point(PointLayer { features, color, size_px: 3.0, hidden, lift_m: 1.0, style });
+    let kind = LayerKind::Point(PointLayer { features, color, size_px: 3.0, hidden, lift_m: 1.0, style, beyond: 0.0 });
     let huts = Layer { id: "huts".into(), must_see: true, kind };
     Scene { layers: vec![terrain_layer(hf), huts], ..Scene::default() }
 }

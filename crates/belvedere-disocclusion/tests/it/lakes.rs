@@ -71,6 +71,7 @@ impl Case {
             hidden: Hidden::Cut,
             lift_m: 0.5,
             label_px: None,
+            beyond: 0.0,
         });
         let areas = Layer { id: "lakes".into(), must_see: lake_must_see, kind };
         let route = trail(&hf);

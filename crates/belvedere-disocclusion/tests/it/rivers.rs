@@ -204,6 +204,7 @@ fn a_lake_on_a_river_stays_level_and_the_river_runs_downhill() {
         hidden: Hidden::Cut,
         lift_m: 0.5,
         label_px: None,
+        beyond: 0.0,
     });
     valley.scene.layers[0] = terrain_layer(flat);
     valley.scene.layers.push(Layer { id: "lakes".into(), must_see: false, kind });

@@ -155,7 +155,7 @@ pub fn land_cover_of_areas(
             Err(error) => outside = Some(error),
             Ok(areas) => {
                 filled = true;
-                for area in areas.value {
+                for area in areas.value.features {
                     land.fill(&area.rings.iter().map(|ring| relative(ring, ground)).collect::<Vec<_>>(), cover);
                 }
             }

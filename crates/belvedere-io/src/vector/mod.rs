@@ -30,7 +30,7 @@ pub use area_kind::{AreaKind, area_kind};
 pub use array::{FeatureArray, Shape};
 pub use line_kind::{line_kind, line_words};
 pub use names::name_field;
-pub use on_terrain::{areas_on_terrain, lines_on_terrain, points_on_terrain};
+pub use on_terrain::{OnGround, areas_on_terrain, lines_on_terrain, points_on_terrain};
 pub use place_kind::{number, place_kind, stated_height, stated_people};
 pub use text::FeatureText;
 

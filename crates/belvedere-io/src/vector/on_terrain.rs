@@ -15,6 +15,24 @@ const STEP_M: f64 = 2000.0;
 /// Mean radius of the earth, metres, for lengths that are only reported.
 const EARTH_M: f64 = 6_371_008.8;
 
+/// Features of a scene on its ground, and what of the file lies beyond it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OnGround<T> {
+    /// The features.
+    pub features: Vec<T>,
+    /// What was cut off or left out because the ground ends or has no data there: length of lines, area of polygons, number of points, scene
+    /// units; 0 without terrain.
+    pub beyond: f64,
+}
+
+impl<T> std::ops::Deref for OnGround<T> {
+    type Target = [T];
+
+    fn deref(&self) -> &[T] {
+        &self.features
+    }
+}
+
 /// Lines of a scene from tracks, routes, lines and outlines of polygons; points are passed over.
 ///
 /// Projected to the scene's system (long straight pieces of the source stay straight in the source), cut off where the terrain ends or has
@@ -27,7 +45,7 @@ pub fn lines_on_terrain(
     vectors: &Vectors,
     scene_crs: Crs,
     terrain: Option<&Heightfield>,
-) -> Result<Loaded<Vec<LineFeature>>, IoError> {
+) -> Result<Loaded<OnGround<LineFeature>>, IoError> {
     let mut reprojection = Reprojection::new(vectors, scene_crs, terrain)?;
     let (mut features, mut lengths, mut lines_seen, mut lines_lost) = (Vec::new(), [0.0; 2], 0usize, 0usize);
     for feature in &vectors.features {
@@ -75,7 +93,7 @@ pub fn lines_on_terrain(
         let warning = Warning::new(WarningKind::Ignored, text).with("outside_m", outside).with("length_m", length);
         reprojection.warn(warning.with("lines", lines_lost as f64).with("of", lines_seen as f64));
     }
-    Ok(reprojection.done(features))
+    Ok(reprojection.done(OnGround { features, beyond: outside }))
 }
 
 /// Areas of a scene from polygons, one feature each: outer ring counter-clockwise, holes clockwise, for any orientation in the file.
@@ -87,10 +105,10 @@ pub fn areas_on_terrain(
     vectors: &Vectors,
     scene_crs: Crs,
     terrain: Option<&Heightfield>,
-) -> Result<Loaded<Vec<AreaFeature>>, IoError> {
+) -> Result<Loaded<OnGround<AreaFeature>>, IoError> {
     let mut reprojection = Reprojection::new(vectors, scene_crs, terrain)?;
     let ground = terrain.map(Heightfield::bounds);
-    let (mut features, mut seen, mut outside, mut broken) = (Vec::new(), 0usize, 0usize, 0usize);
+    let (mut features, mut beyond, mut seen, mut outside, mut broken) = (Vec::new(), 0.0, 0usize, 0usize, 0usize);
     for feature in &vectors.features {
         let Geometry::Polygons(polygons) = &feature.geometry else { continue };
         for polygon in polygons {
@@ -116,6 +134,8 @@ pub fn areas_on_terrain(
             let misses = ground.is_some_and(|g| hi.x < g.min.x || hi.y < g.min.y || lo.x > g.max.x || lo.y > g.max.y);
             if misses {
                 outside += 1;
+                // Holes run the other way round.
+                beyond += 0.5 * rings.iter().map(|ring| doubled_area(ring)).sum::<f64>();
             } else {
                 features.push(AreaFeature { style: feature.style, name: feature.name.clone(), rings });
             }
@@ -131,7 +151,7 @@ pub fn areas_on_terrain(
         let text = format!("{} of {seen} areas lie outside the terrain and were dropped", outside + broken);
         reprojection.lost(text, outside + broken, seen);
     }
-    Ok(reprojection.done(features))
+    Ok(reprojection.done(OnGround { features, beyond }))
 }
 
 /// Points of a scene from waypoints and points, on the ground. Points outside the terrain or on voids are dropped and counted.
@@ -143,7 +163,7 @@ pub fn points_on_terrain(
     vectors: &Vectors,
     scene_crs: Crs,
     terrain: Option<&Heightfield>,
-) -> Result<Loaded<Vec<PointFeature>>, IoError> {
+) -> Result<Loaded<OnGround<PointFeature>>, IoError> {
     let mut reprojection = Reprojection::new(vectors, scene_crs, terrain)?;
     let (mut features, mut seen) = (Vec::new(), 0usize);
     for feature in &vectors.features {
@@ -169,12 +189,12 @@ pub fn points_on_terrain(
     if features.is_empty() {
         return Err(reprojection.all_outside("points"));
     }
-    if features.len() < seen {
-        let lost = seen - features.len();
+    let lost = seen - features.len();
+    if lost > 0 {
         let text = format!("{lost} of {seen} points lie outside the terrain or on its voids and were dropped");
         reprojection.lost(text, lost, seen);
     }
-    Ok(reprojection.done(features))
+    Ok(reprojection.done(OnGround { features, beyond: lost as f64 }))
 }
 
 impl Vectors {

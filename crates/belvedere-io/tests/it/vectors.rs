@@ -464,7 +464,7 @@ fn areas_and_points_on_terrain() {
         let v = load_vectors(&path).unwrap().value;
         let areas = areas_on_terrain(&v, Crs::Epsg(32631), Some(&terrain)).unwrap().value;
         assert_eq!(areas.len(), 98);
-        for a in &areas {
+        for a in areas.iter() {
             let area = |r: &[DVec2]| {
                 (0..r.len()).map(|k| 0.5 * (r[k] - r[0]).perp_dot(r[(k + 1) % r.len()] - r[0])).sum::<f64>()
             };

@@ -59,7 +59,7 @@ fn with_point() -> Scene {
     let point = PointFeature { position: DVec3::new(4000.0, 4000.0, 300.0), ..PointFeature::default() };
     let style = PointStyle { symbol: Symbol::Triangle, casing: None, label_px: None };
     let (color, hidden) = (Color::rgb(1, 2, 3), Hidden::Fade);
-    let layer = PointLayer { features: vec![point], color, size_px: 8.0, style, hidden, lift_m: 1.0 };
+    let layer = PointLayer { features: vec![point], color, size_px: 8.0, style, hidden, lift_m: 1.0, beyond: 0.0 };
     hills().with_layer("huts", layer)
 }
 

@@ -8,7 +8,7 @@ fn points(names: impl Iterator<Item = String>) -> Scene {
     let features = names.enumerate().map(feature).collect();
     let color = Color::rgb(0, 0, 0);
     let (size_px, style, hidden, lift_m) = (5.0, PointStyle::default(), Default::default(), 0.0);
-    Scene::default().with_layer("huts", PointLayer { features, color, size_px, style, hidden, lift_m })
+    Scene::default().with_layer("huts", PointLayer { features, color, size_px, style, hidden, lift_m, beyond: 0.0 })
 }
 
 fn names<'i>(index: &'i NameIndex, text: &str) -> Vec<&'i str> {

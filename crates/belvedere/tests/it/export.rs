@@ -16,7 +16,7 @@ fn with_marks(name: &str, places: [[f64; 2]; 3]) -> (Session, [DVec3; 3]) {
     let marks = places.map(|xy| DVec2::from(xy).extend(ground(DVec2::from(xy)) + 5.0));
     let features = marks.map(|position| PointFeature { position, ..PointFeature::default() }).to_vec();
     let (color, style) = (Color::rgb(200, 30, 30), PointStyle::default());
-    let layer = PointLayer { features, color, size_px: 9.0, style, hidden: Hidden::Show, lift_m: 0.0 };
+    let layer = PointLayer { features, color, size_px: 9.0, style, hidden: Hidden::Show, lift_m: 0.0, beyond: 0.0 };
     let scene = session.scene().clone().with_layer("marks", layer);
     (Session::from_parts(scene, session.view().clone()), marks)
 }
@@ -153,7 +153,7 @@ fn single_precision_does_not_move_marks_far_from_the_origin_of_a_zone() {
     let marks = [at(3000.0, 4000.0), at(4500.0, 5000.0), at(6000.0, 7000.0)];
     let features = marks.map(|position| PointFeature { position, ..PointFeature::default() }).to_vec();
     let (color, style) = (Color::rgb(200, 30, 30), PointStyle::default());
-    let layer = PointLayer { features, color, size_px: 9.0, style, hidden: Hidden::Show, lift_m: 0.0 };
+    let layer = PointLayer { features, color, size_px: 9.0, style, hidden: Hidden::Show, lift_m: 0.0, beyond: 0.0 };
     let scene = Scene::default().with_terrain("ground", ground).with_layer("marks", layer);
     let camera = Pinhole::looking(at(4500.0, -6000.0) + 2000.0 * DVec3::Z, at(4500.0, 5000.0)).image([3840, 2160]);
     let session = Session::from_parts(scene, View::straight(camera.build().expect("a camera")));

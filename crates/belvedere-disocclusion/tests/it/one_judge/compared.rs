@@ -77,6 +77,7 @@ pub(crate) fn case(hf: Heightfield, seed: u64, image: [u32; 2]) -> Case {
         hidden: Hidden::Cut,
         lift_m: LIFT_M,
         label_px: None,
+        beyond: 0.0,
     });
     let summit = place(&mut random, 0.2, 0.8);
     let on = |xy: DVec2| xy.extend(hf.surface_at(xy).unwrap());

@@ -11,6 +11,7 @@ fn layer(rings: Vec<Vec<DVec2>>) -> AreaLayer {
         hidden: Hidden::Cut,
         lift_m: 0.0,
         label_px: None,
+        beyond: 0.0,
     }
 }
 
