@@ -41,15 +41,15 @@ fn main() -> Result<(), Failure> {
         if name == "andorra" {
             let Some(gr11) = data("andorra/gr11_andorra_no_elevation.gpx") else { continue };
             let lines = lines_on_terrain(&load_vectors(&gr11)?.value, loaded.crs, Some(&loaded.heightfield))?.value;
-            layers.push(("gr11", line(lines)));
+            layers.push(("gr11", line(lines.features)));
             let Some(roads) = data("andorra/roads.geojson") else { continue };
             let lines = lines_on_terrain(&load_vectors(&roads)?.value, loaded.crs, Some(&loaded.heightfield))?.value;
-            layers.push(("roads", line(lines)));
+            layers.push(("roads", line(lines.features)));
             let Some(water) = data("andorra/water.geojson") else { continue };
             let areas = areas_on_terrain(&load_vectors(&water)?.value, loaded.crs, Some(&loaded.heightfield))?.value;
             let fill = Color::rgb(80, 140, 200);
             let lakes = AreaLayer {
-                features: areas,
+                features: areas.features,
                 fill,
                 outline: None,
                 width_px: 1.0,

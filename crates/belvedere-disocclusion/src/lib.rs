@@ -50,8 +50,8 @@ pub mod report {
     pub use crate::metrics::{FrameChange, TerrainMetrics};
     pub use crate::points::PointKind;
     pub use crate::solve::{
-        BANK_M, CertifiedLine, Covered, Fallback, FeatureCost, GivenUp, HigherEye, LakeReport, LikenessFigures,
-        LikenessReport, LimitsReport, PricePoint, PriceReport, QpReport, Taken, TerrainTimes, TrimReport,
+        BANK_M, CertifiedLine, Covered, Fallback, FeatureCost, HigherEye, LakeReport, LikenessFigures, LikenessReport,
+        LimitsReport, PricePoint, PriceReport, PricedStretch, QpReport, Taken, TerrainTimes, TrimReport,
         UnresolvedReason, UnresolvedRun,
     };
 }

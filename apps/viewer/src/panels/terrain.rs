@@ -63,6 +63,12 @@ const MODES: [(SolverMode, &str); 3] = [
 /// A value of the stage that the document may leave out.
 type ValueOf = fn(&mut TerrainStageDoc) -> &mut Option<f64>;
 
+/// Changes the stage in one step of undo.
+type Put<'a> = &'a dyn Fn(&mut Model, Id, &dyn Fn(&mut TerrainStageDoc));
+
+/// Stretches whose price is listed.
+const PRICES: usize = 6;
+
 fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {
     let put = |model: &mut Model, by: Id, change: &dyn Fn(&mut TerrainStageDoc)| {
         let mut next = stage.clone();
@@ -106,9 +112,52 @@ fn settings(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc) {
             put(model, by, &|stage| *of(stage) = Some(value));
         }
     }
+    price(ui, model, stage, &put);
     if ui.button(tr("Usual values")).clicked() {
         model.begin_gesture();
         put(model, Id::unique("usual values"), &|stage| *stage = TerrainStageDoc::default());
+    }
+}
+
+/// What may be paid for what is shown: a share to show, a largest displacement, and what the stretches of the picture at rest cost.
+fn price(ui: &mut Ui, model: &mut Model, stage: &TerrainStageDoc, put: Put<'_>) {
+    let help =
+        tr("share that the ground makes way for whatever it costs; at 0 as much as leaves the landscape like itself");
+    if let Some((by, value)) = slider(ui, model, tr("share to show"), stage.show.unwrap_or(0.0), 0.0..=1.0, help) {
+        put(model, by, &|stage| stage.show = (value > 0.0).then_some(value));
+    }
+    let help = tr("the dearest stretches are given up until the ground moves no farther; at 0 without limit");
+    let most = stage.move_at_most_m.unwrap_or(0.0);
+    if let Some((by, value)) = slider(ui, model, tr("moves at most, m"), most, 0.0..=2000.0, help) {
+        put(model, by, &|stage| stage.move_at_most_m = (value > 0.0).then_some(value));
+    }
+    let paid = model.shown.as_ref().and_then(|shown| shown.session.terrain_report()?.price.clone());
+    let Some(paid) = paid else { return };
+    let mut go_to = None;
+    for (title, of) in [
+        (fill(tr("Given up ({0}), and its share of the price then:"), &[&paid.given_up.len()]), &paid.given_up),
+        (tr("Shown, and its share of the price:").to_owned(), &paid.dearest),
+    ] {
+        if of.is_empty() {
+            continue;
+        }
+        ui.label(title);
+        for (k, stretch) in of.iter().take(PRICES).enumerate() {
+            let from = fill(tr(" from {0} km"), &[&format!("{:.1}", stretch.from_m / 1000.0)]);
+            let name = model.shown.as_ref().and_then(|shown| {
+                let layer = shown.session.scene().layers.get(stretch.layer)?;
+                Some(layer.kind.feature_name(stretch.feature).unwrap_or(&layer.id).to_owned())
+            });
+            let from = if stretch.length_m > 0.0 { from } else { String::new() };
+            let label = format!("{}{from}: {:.0} %", name.unwrap_or_default(), 100.0 * stretch.share);
+            let button = ui.push_id((&label, k), |ui| ui.button(&label)).inner;
+            if button.on_hover_text(tr("Look there")).clicked() {
+                go_to = Some(stretch.at);
+            }
+        }
+    }
+    if let Some(at) = go_to {
+        look_at(model, at);
     }
 }
 
@@ -135,15 +184,20 @@ fn shares(ui: &mut Ui, model: &mut Model) {
             go_to = Some(run.at);
         }
     }
-    if let Some([x, y]) = go_to {
-        let height = model.shown.as_ref().and_then(|shown| shown.session.scene().terrain()?.surface_at([x, y].into()));
-        let point = DVec3::new(x, y, height.unwrap_or(0.0));
-        model.begin_gesture();
-        model.move_camera(Id::unique("hidden"), |camera| {
-            let by = 0.5 * (point - camera.target);
-            camera.moved(by.truncate().extend(0.0))?.zoomed(point, 1.6)
-        });
+    if let Some(at) = go_to {
+        look_at(model, at);
     }
+}
+
+/// Turns the camera to a place on the ground.
+fn look_at(model: &mut Model, [x, y]: [f64; 2]) {
+    let height = model.shown.as_ref().and_then(|shown| shown.session.scene().terrain()?.surface_at([x, y].into()));
+    let point = DVec3::new(x, y, height.unwrap_or(0.0));
+    model.begin_gesture();
+    model.move_camera(Id::unique("hidden"), |camera| {
+        let by = 0.5 * (point - camera.target);
+        camera.moved(by.truncate().extend(0.0))?.zoomed(point, 1.6)
+    });
 }
 
 /// Shares before and after, and how far the picture was moved.

@@ -15,7 +15,7 @@ fn load(terrain: &str, lines: &str) -> Option<Scene> {
     let features = lines_on_terrain(&vectors, loaded.crs, Some(&loaded.heightfield)).unwrap().value;
     let mut route = line_layer("route", Vec::new());
     if let Some(line) = route.kind.lines_mut() {
-        line.features = features;
+        line.features = features.features;
     }
     Some(Scene { crs: loaded.crs, layers: vec![terrain_layer(loaded.heightfield), route], ..Scene::default() })
 }

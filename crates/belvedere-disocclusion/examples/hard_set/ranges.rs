@@ -61,7 +61,7 @@ pub(crate) fn load(name: &str) -> Result<Option<Range>, Failure> {
     if let Some(path) = outlines.and_then(data) {
         let features = areas_on_terrain(&load_vectors(&path)?.value, loaded.crs, Some(&loaded.heightfield))?.value;
         let kind = LayerKind::Area(AreaLayer {
-            features,
+            features: features.features,
             fill: Color::rgb(80, 140, 200),
             outline: None,
             width_px: 1.0,

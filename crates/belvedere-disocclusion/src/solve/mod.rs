@@ -36,7 +36,7 @@ pub use likeness::{LikenessFigures, LikenessReport};
 pub use limits::LimitsReport;
 pub use live::{LiveFrame, LiveTerrain};
 pub use memory::TerrainMemory;
-pub use price::{GivenUp, PricePoint, PriceReport};
+pub use price::{PricePoint, PriceReport, PricedStretch};
 pub use report::{Covered, FeatureCost, QpReport, Taken, TerrainReport, TerrainTimes, UnresolvedReason, UnresolvedRun};
 pub use sample_grid::{PlanMap, SampleGrid};
 pub use trim::TrimReport;

@@ -70,7 +70,9 @@ pub struct PriceReport {
     /// Solutions, the first of which shows all: one for each time that stretches were given up or taken back.
     pub curve: Vec<PricePoint>,
     /// Stretches given up, the dearest first.
-    pub given_up: Vec<GivenUp>,
+    pub given_up: Vec<PricedStretch>,
+    /// Stretches that are shown and took the largest shares of the energy of the solution taken, the dearest first.
+    pub dearest: Vec<PricedStretch>,
 }
 
 /// A solution on the way to the price that was stated.
@@ -89,10 +91,10 @@ pub struct PricePoint {
     pub strain: Option<f64>,
 }
 
-/// A stretch that was given up.
+/// A stretch of the features and its price.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct GivenUp {
+pub struct PricedStretch {
     /// Index of the layer in the scene.
     pub layer: usize,
     /// Index of the feature in its layer.
@@ -103,17 +105,20 @@ pub struct GivenUp {
     pub length_m: f64,
     /// Scene x, y of its first point.
     pub at: [f64; 2],
-    /// Share of the energy that it took when it was given up, 0..=1.
+    /// Share of the energy that it took, in the end or when it was given up, 0..=1.
     pub share: f64,
 }
 
-impl GivenUp {
+impl PricedStretch {
     /// Whether a point of the same features, on whatever grid, lies on it; every point of an area or of a point feature does.
     pub(super) fn holds(&self, p: &ReferencePoint) -> bool {
         let is_along = p.kind != PointKind::Line || (0.0..self.length_m).contains(&(p.along_m - self.from_m));
         (self.layer, self.feature) == (p.layer, p.feature) && is_along
     }
 }
+
+/// A stretch is dear if it takes this share of the energy.
+const DEAR: f64 = 0.02;
 
 /// The stretches of the features in view, and which of them are given up.
 pub(super) struct Price<'a> {
@@ -133,10 +138,10 @@ pub(super) struct Price<'a> {
     all: [f64; KINDS],
     kept: [f64; KINDS],
     /// In the order in which they were given up, and as a set.
-    given_up: Vec<(Stretch, GivenUp)>,
+    given_up: Vec<(Stretch, PricedStretch)>,
     gone: BTreeSet<Stretch>,
     curve: Vec<PricePoint>,
-    taken: Option<PricePoint>,
+    taken: Option<(PricePoint, Vec<PricedStretch>)>,
 }
 
 /// What a stretch stands for.
@@ -196,7 +201,7 @@ impl<'a> Price<'a> {
     }
 
     /// Gives up a stretch, as the `k`-th.
-    fn give(&mut self, k: usize, (stretch, given): (Stretch, GivenUp)) {
+    fn give(&mut self, k: usize, (stretch, given): (Stretch, PricedStretch)) {
         let Amount { kind, amount, .. } = self.stretches[&stretch];
         self.kept[kind] -= amount;
         self.gone.insert(stretch);
@@ -204,7 +209,7 @@ impl<'a> Price<'a> {
     }
 
     /// Asks for the `k`-th stretch that was given up again.
-    fn ask(&mut self, k: usize) -> (Stretch, GivenUp) {
+    fn ask(&mut self, k: usize) -> (Stretch, PricedStretch) {
         let (stretch, given) = self.given_up.remove(k);
         let Amount { kind, amount, .. } = self.stretches[&stretch];
         self.kept[kind] += amount;
@@ -258,7 +263,7 @@ impl<'a> Price<'a> {
         if self.strain_of(&result) <= room * self.aim {
             result = self.take_back(qp, problem, result, progress)?;
         }
-        self.taken = Some(self.point(&result));
+        self.taken = Some((self.point(&result), self.dearest(&result)));
         Ok(result)
     }
 
@@ -270,6 +275,18 @@ impl<'a> Price<'a> {
             *energy.entry(self.division.of(point)).or_default() += row.multiplier * (-row.bound).max(0.0);
         }
         energy
+    }
+
+    /// The stretches that took most of a solution.
+    fn dearest(&self, result: &QpResult) -> Vec<PricedStretch> {
+        let energy = self.energy(result);
+        let all: f64 = energy.values().sum();
+        let shares = energy.into_iter().map(|(stretch, energy)| (stretch, energy / all));
+        let known = |(stretch, share): &(Stretch, f64)| *share >= DEAR && self.stretches.contains_key(stretch);
+        let mut dearest: Vec<PricedStretch> =
+            shares.filter(known).map(|(stretch, share)| self.given(stretch, share)).collect();
+        dearest.sort_by(|a, b| b.share.total_cmp(&a.share));
+        dearest
     }
 
     /// Part of the features of its kind that a stretch stands for.
@@ -301,7 +318,7 @@ impl<'a> Price<'a> {
         if !(strain.is_finite() && strain > 1.0) {
             return false;
         }
-        let came = self.taken.and_then(|taken| taken.strain).unwrap_or(self.aim);
+        let came = self.taken.as_ref().and_then(|(taken, _)| taken.strain).unwrap_or(self.aim);
         self.aim = came * (AIM / strain).max(LOWER);
         self.exceeded += 1;
         if self.exceeded >= ROUNDS && self.show == 0.0 {
@@ -388,10 +405,10 @@ impl<'a> Price<'a> {
         Ok(best)
     }
 
-    fn given(&self, stretch: Stretch, share: f64) -> GivenUp {
+    fn given(&self, stretch: Stretch, share: f64) -> PricedStretch {
         let Amount { first, .. } = self.stretches[&stretch];
         let is_line = first.kind == PointKind::Line;
-        GivenUp {
+        PricedStretch {
             layer: stretch.0,
             feature: stretch.1,
             from_m: if is_line { stretch.2 as f64 * self.division.length } else { 0.0 },
@@ -404,7 +421,7 @@ impl<'a> Price<'a> {
     /// What was paid in the end.
     pub(super) fn paid(self) -> Paid {
         let given_up = self.given_up.into_iter().map(|(_, given)| given).collect();
-        let report = self.taken.map(|taken| PriceReport { taken, curve: self.curve, given_up });
+        let report = self.taken.map(|(taken, dearest)| PriceReport { taken, curve: self.curve, given_up, dearest });
         Paid { division: self.division, gone: self.gone, report }
     }
 }
