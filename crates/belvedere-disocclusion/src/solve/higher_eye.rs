@@ -1,6 +1,6 @@
 //! Advice where features were given up: how much of the displacement a higher eye saves.
 
-use super::super::visibility_qp::{Candidate, QpProblem, StraightSight};
+use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, StraightSight};
 use super::super::{Field, Hierarchy, TerrainSettings};
 use super::PointsInView;
 use super::memory::{self, Prepared, Weights};
@@ -13,6 +13,8 @@ const FIRST_M: f64 = 50.0;
 /// Share of the displacement that is worth a higher eye, and that ends the search.
 const WORTH: f64 = 0.2;
 const ENOUGH: f64 = 0.6;
+/// Rounds of each solution: the displacements are compared, not drawn.
+const ROUNDS: usize = 6;
 /// Nodes of the grid on which displacements are compared, and candidates, about.
 const NODES: usize = 65;
 const CANDIDATES: usize = 400;
@@ -39,12 +41,11 @@ pub(super) fn higher_eye(
     let progress = &progress.unheard();
     let grid = Hierarchy::whole(field.cols(), field.rows(), NODES);
     let weights = Weights { g: 0.0, ..Weights::new(settings, &prepared.despiked, None) };
-    let options = memory::options(settings, false);
+    let options = QpOptions { rounds: ROUNDS, ..memory::options(settings, false) };
     let mut solver = memory::program(field, &grid, weights, options, &prepared.waters)?;
     let every = in_view.candidates.len().div_ceil(CANDIDATES).max(1);
     let few: Vec<Candidate> = in_view.candidates.iter().step_by(every).copied().collect();
     let mut energy = |up_m: f64| {
-        solver.reset();
         let sight = StraightSight { eye, z: z + up_m };
         let problem = QpProblem { candidates: &few, sight: &sight, target: None, ceilings: None };
         solver.solve_with(&problem, progress).map(|result| result.energy)

@@ -25,6 +25,8 @@ const PROGRAM_TIME: f64 = 0.6;
 
 /// Ground that sinks below the limits by more than this share of the relief is not refined.
 const FAR_BEYOND: f64 = 0.2;
+/// With so many candidates what is given up is chosen by solutions that are met only roughly.
+const MANY: usize = 2000;
 
 pub(super) struct Passes<'a> {
     pub(super) settings: &'a TerrainSettings,
@@ -273,9 +275,12 @@ impl Passes<'_> {
         let likeness = self.likeness(prepared, in_view);
         let in_order = likeness.as_ref().map_or_else(Vec::new, |likeness| likeness.in_order(&prepared.level, qp));
         qp.keep_clear(&in_order);
-        let mut result = qp.solve_with(&problem_of(&wider, sight, target.as_deref()), self.progress)?;
         let mut price =
             Price::new(self.settings, prepared, likeness, [&asked, &check]).filter(|_| self.frame.is_none());
+        if let Some(price) = price.as_mut().filter(|_| asked.len() > MANY) {
+            qp.set_options(price.compare_roughly(options));
+        }
+        let mut result = qp.solve_with(&problem_of(&wider, sight, target.as_deref()), self.progress)?;
         let detail_before = price.is_some().then(|| detail.clone());
         let (result, foreign) = loop {
             if let Some(price) = &mut price {
@@ -283,6 +288,7 @@ impl Passes<'_> {
                     qp,
                     &problem_of(&in_view.candidates, sight, target.as_deref()),
                     result,
+                    options,
                     self.progress,
                 )?;
                 (asked, check) = (price.kept(&asked), price.kept(&check));

@@ -4,7 +4,7 @@
 //! without a further solution. A price per metre would spread the loss over all points and save little; whole stretches that are left
 //! out give most of the displacement back. Ours.
 
-use super::super::visibility_qp::{Candidate, QpProblem, QpResult, QpSolver};
+use super::super::visibility_qp::{Candidate, QpOptions, QpProblem, QpResult, QpSolver};
 use super::super::{Hierarchy, KINDS, PointKind, ReferencePoint, TerrainSettings};
 use super::likeness::Likeness;
 use super::memory::Prepared;
@@ -23,9 +23,11 @@ const AT_ONCE: f64 = 0.08;
 const SHORT_OF: f64 = 1.3;
 /// Share of the features that a stretch counts for at least, so that those without length or area come first.
 const LEAST_PART: f64 = 1e-9;
-/// Most solutions in which stretches are given up, and in which they are taken back.
+/// Most solutions in which stretches are given up, and in which they are taken back: where all are met, and where they are compared roughly.
 const GIVEN_UP: usize = 60;
-const TAKEN_BACK: usize = 5;
+const TAKEN_BACK: [usize; 2] = [5, 3];
+/// Roughly compared solutions miss clearances by no more than this share of the relief.
+const ROUGH: f64 = 0.005;
 /// Share of the stated move that the program aims at: agreement with the judge moves the ground a little more.
 const AIM: f64 = 0.97;
 /// Share of the aim below which stretches are taken back although the judge asked for more than is allowed.
@@ -128,6 +130,8 @@ pub(super) struct Price<'a> {
     most_m: Option<f64>,
     /// The picture that must stay like itself.
     likeness: Option<Likeness<'a>>,
+    /// How solutions are compared where there are many candidates: met only roughly.
+    rough: Option<QpOptions>,
     /// Share of the largest displacement that the program aims at.
     aim: f64,
     /// Times that the judge made the ground move more than is allowed.
@@ -187,6 +191,7 @@ impl<'a> Price<'a> {
             show,
             most_m,
             likeness,
+            rough: None,
             aim: AIM,
             exceeded: 0,
             division,
@@ -237,31 +242,51 @@ impl<'a> Price<'a> {
         kinds.map(|k| (self.kept[k] / self.all[k]).max(0.0)).fold(1.0, f64::min)
     }
 
+    /// From now on solutions are compared that are met only roughly; the one that is taken is met as `exact` says.
+    pub(super) fn compare_roughly(&mut self, exact: QpOptions) -> QpOptions {
+        let rough = QpOptions { enough: ROUGH * self.prepared.level.relief(), ..exact };
+        *self.rough.insert(rough)
+    }
+
     /// Solves until the ground moves no more than is allowed, or gives up as much as is allowed.
     ///
-    /// * `result`: a solution for the candidates that are asked for.
+    /// * `result`: a solution for the candidates that are asked for; `exact`: how the one that is taken is met.
     pub(super) fn settle(
         &mut self,
         qp: &mut QpSolver,
         problem: &QpProblem<'_>,
         mut result: QpResult,
+        exact: QpOptions,
         progress: &Progress,
     ) -> Result<QpResult, DisocclusionError> {
         if self.curve.is_empty() {
             self.note(&result);
         }
-        for _ in 0..GIVEN_UP {
-            let strain = self.strain_of(&result);
-            if strain <= self.aim || progress.should_end() || !self.give_up(&result, strain) {
-                break;
-            }
-            progress.tick("the price of the displacement", 0.7)?;
-            result = self.solved(qp, problem, progress)?;
-        }
         // Stretches that were given up for the judge would make it ask for more again, unless that left much room.
         let room = if self.exceeded == 0 { 1.0 } else { ROOM };
-        if self.strain_of(&result) <= room * self.aim {
-            result = self.take_back(qp, problem, result, progress)?;
+        let (mut takes_back, mut is_exact) = (true, false);
+        for _ in 0..GIVEN_UP {
+            qp.set_options(self.rough.unwrap_or(exact));
+            let strain = self.strain_of(&result);
+            if strain > self.aim && !progress.should_end() && self.give_up(&result, strain) {
+                progress.tick("the price of the displacement", 0.7)?;
+                (result, is_exact) = (self.solved(qp, problem, progress)?, false);
+                continue;
+            }
+            if is_exact {
+                break;
+            }
+            if strain <= room * self.aim && std::mem::take(&mut takes_back) {
+                result = self.take_back(qp, problem, result, progress)?;
+            }
+            qp.set_options(exact);
+            if self.rough.is_none() {
+                break;
+            }
+            (result, is_exact) = (self.solved(qp, problem, progress)?, true);
+            if self.strain_of(&result) <= 1.0 || progress.should_end() {
+                break;
+            }
         }
         self.taken = Some((self.point(&result), self.dearest(&result)));
         Ok(result)
@@ -390,7 +415,8 @@ impl<'a> Price<'a> {
         mut best: QpResult,
         progress: &Progress,
     ) -> Result<QpResult, DisocclusionError> {
-        for k in (0..self.given_up.len()).rev().take(TAKEN_BACK) {
+        let most = TAKEN_BACK[usize::from(self.rough.is_some())];
+        for k in (0..self.given_up.len()).rev().take(most) {
             if progress.should_end() {
                 break;
             }

@@ -73,6 +73,8 @@ pub struct QpOptions {
     pub slack_price: Option<f64>,
     /// Rounds of row generation at most.
     pub rounds: usize,
+    /// Rounds end where no clearance is missed by more than this, metres; 0 = where each is met.
+    pub enough: f64,
 }
 
 impl QpOptions {
@@ -88,6 +90,7 @@ impl QpOptions {
             ceiling_tolerance: 0.24,
             slack_price: settings.slack_price,
             rounds: 80,
+            enough: 0.0,
         }
     }
 }

@@ -270,6 +270,9 @@ impl QpSolver {
             let all = missed.iter().map(|(_, touch)| touch.excess).fold(0.0, f64::max);
             first = first.max(all);
             frame.tell(out.rounds, all, first);
+            if o.enough > 0.0 && all <= o.enough {
+                break;
+            }
             if frame.soft == 0.0 && self.surface.u.iter().any(|u| *u < -depth) {
                 self.soften(&mut frame);
                 continue;

@@ -31,6 +31,7 @@ fn solver(nodes: usize) -> (QpSolver, Hierarchy) {
         ceiling_tolerance: 1e-4,
         slack_price: None,
         rounds: 200,
+        enough: 0.0,
     };
     (QpSolver::new(&field(), &grid, smoother, options), grid)
 }

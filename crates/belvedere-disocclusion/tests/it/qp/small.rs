@@ -41,6 +41,7 @@ fn exact() -> QpOptions {
         ceiling_tolerance: 1e-7,
         slack_price: None,
         rounds: 200,
+        enough: 0.0,
     }
 }
 
