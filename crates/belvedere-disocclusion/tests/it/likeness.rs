@@ -100,3 +100,33 @@ fn by_default_a_landscape_stays_like_itself_and_what_is_given_up_is_named() {
     assert!(changed >= 3 && kept >= 2, "{changed} changed, {kept} kept");
     assert!(pairs > 50 && swapped >= 3, "{pairs} pairs of summits, {swapped} swapped where nobody asks");
 }
+
+#[test]
+fn what_is_given_up_for_very_many_points_is_chosen_roughly_and_the_rest_is_shown_as_well() {
+    let mut changed = 0;
+    for seed in SEEDS {
+        let case = case(seed);
+        let settings = TerrainSettings { candidates: 0.04, ..TerrainSettings::default() };
+        let solver = TerrainSolver::new(settings).expect("settings");
+        let many =
+            solver.solve(&case.0, &case.1, &mut TerrainMemory::default(), &Progress::silent()).expect("a solution");
+        assert!(likeness(&many).strain <= 1.0, "{seed}: {:?}", likeness(&many));
+        let price = many.report.price.as_ref().expect("a price");
+        let shares: Vec<f64> = price.dearest.iter().map(|stretch| stretch.share).collect();
+        assert!(shares.windows(2).all(|pair| pair[0] >= pair[1]) && shares.iter().sum::<f64>() <= 1.0 + 1e-9);
+        if many.report.asked <= 2000 || price.given_up.is_empty() {
+            continue;
+        }
+        changed += 1;
+        let few = solved(&case, None);
+        let [rough, exact] = [&many, &few].map(|s| s.report.metrics.visible_dense);
+        assert!(rough > exact - 0.1, "{seed}: {rough} instead of {exact}");
+        // All that stays hidden was given up.
+        let is_given = |reason: &UnresolvedReason| matches!(reason, UnresolvedReason::GivenUp { .. });
+        let hidden: f64 =
+            many.report.hidden.iter().filter(|run| !is_given(&run.reason)).map(|run| run.to_m - run.from_m).sum();
+        assert!(hidden < 60.0, "{seed}: {hidden} m hidden that were not given up: {:?}", many.report.hidden);
+        assert!(price.dearest.iter().all(|stretch| !price.given_up.contains(stretch)));
+    }
+    assert!(changed >= 2, "{changed}");
+}
