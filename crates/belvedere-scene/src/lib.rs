@@ -2,6 +2,7 @@
 //! and the interface between renderers and their callers ([`Renderer`], [`RenderJob`], [`Frame`]).
 
 pub mod bodies;
+mod boxes;
 pub mod cell;
 mod chain;
 pub mod city;
@@ -35,6 +36,7 @@ pub mod texture;
 pub mod volume;
 
 pub use bodies::Bodies;
+pub use boxes::{BoxLayer, BoxShape};
 pub use cell::CellTriangle;
 pub use city::{
     Building, City, CityArea, CityFace, FacePicture, HeightSource, LandCover, Polygon, Structure, StructureKind,
@@ -51,8 +53,8 @@ pub use frame::{
 pub use heightfield::{Heightfield, HeightfieldError, NodeState, States};
 pub use land_cover::{Cover, CoverMap};
 pub use layer::{
-    AreaFeature, AreaLayer, AreaSurface, BoxLayer, BoxShape, Contours, Drape, Edge, Layer, LayerKind, LineFeature,
-    LineLayer, Palette, PaletteName, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
+    AreaFeature, AreaLayer, AreaSurface, Contours, Drape, Edge, Layer, LayerKind, LineFeature, LineLayer, Palette,
+    PaletteName, PointFeature, PointLayer, Relief, Shading, TerrainLayer,
 };
 pub use light::{Haze, Light, Sky};
 pub use line_class::{LineClass, LineLook};

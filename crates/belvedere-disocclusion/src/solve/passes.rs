@@ -26,7 +26,7 @@ const PROGRAM_TIME: f64 = 0.6;
 /// Ground that sinks below the limits by more than this share of the relief is not refined.
 const FAR_BEYOND: f64 = 0.2;
 /// With so many candidates what is given up is chosen by solutions that are met only roughly.
-const MANY: usize = 2000;
+const MANY_ASKED: usize = 2000;
 
 pub(super) struct Passes<'a> {
     pub(super) settings: &'a TerrainSettings,
@@ -277,7 +277,7 @@ impl Passes<'_> {
         qp.keep_clear(&in_order);
         let mut price =
             Price::new(self.settings, prepared, likeness, [&asked, &check]).filter(|_| self.frame.is_none());
-        if let Some(price) = price.as_mut().filter(|_| asked.len() > MANY) {
+        if let Some(price) = price.as_mut().filter(|_| asked.len() > MANY_ASKED) {
             qp.set_options(price.compare_roughly(options));
         }
         let mut result = qp.solve_with(&problem_of(&wider, sight, target.as_deref()), self.progress)?;
