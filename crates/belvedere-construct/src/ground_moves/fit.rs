@@ -169,7 +169,7 @@ impl Unknowns {
             let (column, row) = (i % cols, i / cols);
             let is_rim = column.min(row).min(cols - 1 - column).min(rows - 1 - row) < 3;
             let at = place.first + place.step * DVec2::new(column as f64, row as f64);
-            !is_rim && moves.iter().any(|m| m.distance(at) <= (m.reach - SUPPORT * place.step).max(0.5 * place.step))
+            !is_rim && moves.iter().any(|m| m.distance(at) <= m.reach - SUPPORT * place.step)
         };
         let of: Vec<Option<usize>> = (0..cols * rows).map(|i| is_free(i).then_some(i)).collect();
         Self { count: of.len(), of }

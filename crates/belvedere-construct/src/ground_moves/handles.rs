@@ -71,6 +71,17 @@ pub enum HandleError {
         /// Most.
         max: f64,
     },
+    /// The moves lie too far apart for a short reach.
+    #[error(
+        "reach_m is {}; moves that lie so far apart need at least {}: let it reach farther, or take moves that lie closer together",
+        number(*reach), number(least.ceil())
+    )]
+    Apart {
+        /// Reach of the move.
+        reach: f64,
+        /// Least reach, for moves over so much ground.
+        least: f64,
+    },
     /// The line has no length.
     #[error("the line has {points} points and is {} long; at least 2 points apart from each other are needed", number(*length))]
     TooShort {

@@ -18,7 +18,9 @@ use serde::Serialize;
 /// Routes become no longer or shorter than by this share.
 pub const ROUTES_WITHIN: f64 = 0.03;
 /// Coefficients of the net along one side at most.
-const MOST_COEFFICIENTS: f64 = 161.0;
+const MOST_COEFFICIENTS: f64 = 321.0;
+/// Least reach of a move, in steps of the net: less holds no coefficient that moves nothing beyond it.
+const LEAST_REACH: f64 = 4.0;
 /// Coefficients across the shorter of what moves in full and what gives way around it.
 const COEFFICIENTS: f64 = 2.5;
 /// Rounds in which ground that folds and routes that change become stiffer, until all can be carried out.
@@ -102,6 +104,11 @@ pub fn ground_moves(moves: &[Move], kept: &Kept) -> Result<(GroundMoves, GroundM
         one.check().map_err(|error| GroundMovesFailure::Handle { index, error })?;
     }
     let place = net_over(moves);
+    let least = LEAST_REACH * place.step;
+    if let Some(index) = moves.iter().position(|one| one.reach < least) {
+        let error = HandleError::Apart { reach: moves[index].reach, least };
+        return Err(GroundMovesFailure::Handle { index, error });
+    }
     let moves: Vec<Move> = moves.iter().map(|m| m.thinned(0.5 * place.step)).collect();
     let mut best: Option<(f64, GroundMoves, GroundMovesReport)> = None;
     let mut stiffness = fit::Stiffness::new(&place);

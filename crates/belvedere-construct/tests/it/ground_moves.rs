@@ -146,3 +146,20 @@ fn handles_are_checked() {
         assert!(error.starts_with(text), "{error}");
     }
 }
+
+#[test]
+fn moves_far_apart_move_nothing_beyond_their_reach_or_are_refused() {
+    let pair = |apart: f64| [raise(0.0, 0.0, 200.0, 300.0, 1500.0), raise(apart, 0.5 * apart, 300.0, 300.0, 1500.0)];
+    let apart = 60_000.0;
+    let (map, report) = done(&pair(apart), &Kept::default());
+    assert!(report.moves.iter().all(|one| one.carried_out > 0.9), "{report:?}");
+    for (x, y) in [(0.0, 0.0), (apart, 0.5 * apart)] {
+        assert!(at(&map, x, y).z > 180.0);
+        for k in 0..64 {
+            let rim = 1501.0 * DVec2::from_angle(f64::from(k) * 0.1);
+            assert_eq!(at(&map, x + rim.x, y + rim.y), DVec3::ZERO);
+        }
+    }
+    let error = ground_moves(&pair(600_000.0), &Kept::default()).expect_err("too far apart").to_string();
+    assert!(error.starts_with("reach_m is 1500; moves that lie so far apart need at least 77"), "{error}");
+}
