@@ -114,6 +114,11 @@ impl Screen {
         planes.into_iter().chain(sides).enumerate().fold(0, |code, (i, off)| code | (u8::from(off > 0.0) << i))
     }
 
+    /// Pixels that a move of one scene unit at depth 1, to any side, changes the image by, at the corners of the picture.
+    pub fn scale_at_rim(&self) -> f64 {
+        if self.ortho { self.scale } else { self.scale.hypot(self.center.length()) }
+    }
+
     /// Bound on the pixels that an edge fills, in whatever direction from the eye.
     ///
     /// * `length`: of the edge, scene units; `distance`: of the nearer of its ends from the eye.

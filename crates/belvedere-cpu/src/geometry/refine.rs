@@ -6,11 +6,9 @@ use belvedere_core::{DVec3, EdgeError};
 use belvedere_sight::pass::Pass;
 use belvedere_sight::screen::COARSE_PX;
 
-/// An edge is halved at most this often, and at most [`MOST_HALVINGS`] times while its image is longer than the tolerance: of an edge of
-/// 10^8 m a tenth of a millimetre is left.
-const MAX_HALVINGS: u8 = 10;
+/// An edge is halved at most this often: of an edge of 10^8 m a tenth of a millimetre is left.
 const MOST_HALVINGS: u8 = 40;
-/// The same where the error in pixels has no bound: beside the near plane, where images are large, and at the borders of a strip, which
+/// The same where the error has no bound, at the borders of a domain, unless the image is longer than the tolerance; the borders of a strip
 /// are long.
 const MAX_BLIND_HALVINGS: u8 = 9;
 const MAX_BLIND_HALVINGS_BESIDE_STRIPS: u8 = 6;
@@ -105,9 +103,11 @@ impl<'a> Refiner<'a> {
             return;
         }
         let split: [bool; 3] = std::array::from_fn(|i| {
-            let limit = if errors[i].px.is_finite() { MAX_HALVINGS } else { self.blind_halvings };
-            let is_long = || levels[i] < MOST_HALVINGS && self.is_long(&c[i], &c[(i + 1) % 3]);
-            errors[i].px > self.tolerance_px && (levels[i] < limit || is_long())
+            let allowed = || {
+                let limit = if errors[i].length.is_finite() { MOST_HALVINGS } else { self.blind_halvings };
+                levels[i] < limit || levels[i] < MOST_HALVINGS && self.is_long(&c[i], &c[(i + 1) % 3])
+            };
+            self.error_px(&errors[i]) > self.tolerance_px && allowed()
         });
         if split == [false; 3] {
             return self.emit(&c, parent);
@@ -138,6 +138,15 @@ impl<'a> Refiner<'a> {
         let swap = a.p.to_array().partial_cmp(&b.p.to_array()) == Some(std::cmp::Ordering::Greater);
         let (from, to) = if swap { (b, a) } else { (a, b) };
         self.pass.edge_error(from.p, to.p)
+    }
+
+    /// Error of an edge in pixels. Of an edge that passes the eye what is drawn lies beyond the near plane.
+    fn error_px(&self, error: &EdgeError) -> f64 {
+        if error.px.is_finite() {
+            return error.px;
+        }
+        let beyond = self.screen.near - error.length;
+        if beyond > 0.0 { error.length * self.screen.scale_at_rim() / beyond } else { f64::INFINITY }
     }
 
     /// Error of an edge that crosses the border of the domain: it is halved towards the border until it is too short to be seen.

@@ -1,9 +1,10 @@
 //! Compares the rasteriser with the exact tracer where things stand on ground of few triangles, of any size, under bends.
 
-use crate::exact::{Difference, difference};
-use crate::support::{layer, pinhole, scene};
-use crate::support_views::spline;
-use belvedere_core::{DVec2, DVec3, View};
+use crate::exact::{exactly, on_silhouette, trace};
+use crate::strip;
+use crate::support::{layer, pinhole, render, scene};
+use crate::support_views::{spline, turns};
+use belvedere_core::{DVec2, DVec3, EarthCurvature, Stage, View};
 use belvedere_scene::{BoxLayer, BoxShape, Color, LayerKind, Mesh, MeshColors, MeshLayer, Scene};
 use belvedere_testkit::Random;
 use belvedere_testkit::rays::{MODELS, RandomRays};
@@ -43,7 +44,7 @@ fn ground(kind: Ground, middle: DVec3, size: f64, yaw: f64) -> LayerKind {
 fn with_blocks(kind: Ground, size: f64, places: &[DVec3], random: &mut Random) -> Scene {
     let z = places[0].z;
     let mut block = |p: &DVec3| BoxShape {
-        base: p.with_z(z),
+        base: p.with_z(z - 0.25),
         size: DVec3::new(random.range(2.0, 20.0), random.range(2.0, 20.0), random.range(1.0, 20.0)),
         yaw: random.range(0.0, 3.0),
         color: Color::rgb(200, 60, 50),
@@ -64,55 +65,88 @@ fn places(view: &View, random: &mut Random) -> Option<Vec<DVec3>> {
     Some(std::iter::once(first).chain((0..24).filter_map(|_| any(random))).collect())
 }
 
-/// Requires that ids differ at fewer than a share of the pixels away from silhouettes.
-fn ids_agree(all: &Difference, share: f64) -> bool {
-    all.judged > all.pixels / 3 && all.ids as f64 <= share * all.judged as f64
+/// What was compared, and where rasteriser and tracer see other surfaces.
+#[derive(Debug, Default, Clone, Copy)]
+struct Compared {
+    /// Pixels away from silhouettes.
+    judged: usize,
+    /// How many of them see a surface that lies farther from the traced one than a pixel is wide there, or another place on the same.
+    wrong: usize,
+}
+
+impl Compared {
+    /// Bent edges are drawn straight within half a pixel, also in depth: surfaces that lie nearer together may take each other's place.
+    fn add(&mut self, scene: &Scene, view: &View) {
+        let (traced, drawn) = (trace(scene, view, &exactly()), render(scene, view, &exactly()));
+        for i in (0..traced.id.len()).filter(|&i| !on_silhouette(&traced, i)) {
+            self.judged += 1;
+            let [at, seen] = [&traced, &drawn].map(|frame| (frame.id[i], f64::from(frame.depth[i])));
+            let allowed = at.1 / view.pinhole().scale_px();
+            let same = at.0 == 0 && seen.0 == 0;
+            self.wrong += usize::from(!same && !((at.1 - seen.1).abs() <= allowed));
+        }
+    }
 }
 
 #[test]
 fn what_stands_on_ground_of_few_triangles_is_seen_along_curved_rays_whatever_the_size_of_the_ground() {
-    let mut found = Vec::new();
+    const VIEWS: usize = 60;
     for (s, size) in SIZES.into_iter().enumerate() {
-        let (mut all, mut views) = (Difference::default(), 0);
+        let (mut all, mut views, mut found) = (Compared::default(), 0, Vec::new());
         for seed in 0.. {
             let mut random = Random::new(0x9047 + 977 * seed + s as u64);
-            let (model, turns) = (MODELS[views % 5], 1 + views / 5 % 2);
+            let (model, turns) = (MODELS[views % 5], 1 + views / 5 % 3);
             let Some(view) = RandomRays::new(&mut random, model, turns, IMAGE).map(|made| made.view()) else {
                 continue;
             };
             let Some(places) = places(&view, &mut random) else { continue };
             let kind = if views % 3 == 0 { Ground::Slab } else { Ground::Mesh };
-            let scene = with_blocks(kind, size, &places, &mut random);
-            all.add(difference(&scene, &view));
+            let before = all;
+            all.add(&with_blocks(kind, size, &places, &mut random), &view);
+            if all.wrong > before.wrong {
+                found.push((seed, model, turns, kind, all.wrong - before.wrong));
+            }
             views += 1;
-            if views == 30 {
+            if views == VIEWS {
                 break;
             }
         }
-        found.push((size, all));
+        assert!(all.judged > VIEWS * 1000 && all.wrong == 0, "{size}: {all:?}, {found:?}");
     }
-    // 1.3 % differed at most when this was written: a limit (docs/unsupported.md).
-    assert!(found.iter().all(|(size, all)| ids_agree(all, if *size > 1e3 { 0.02 } else { 1e-3 })), "{found:?}");
 }
 
 #[test]
-fn what_stands_on_ground_of_few_triangles_is_seen_behind_a_spline_bend() {
-    let mut all = Difference::default();
-    for (k, preset) in ["progressive", "degressive", "hybrid-flat-steep-flat"].into_iter().enumerate() {
-        for (s, size) in SIZES.into_iter().enumerate().skip(1) {
-            for height in [0.0, 3.0] {
-                let mut random = Random::new((10 * k + s) as u64);
-                let eye = DVec3::new(0.0, -500.0, 300.0);
-                let view = spline(pinhole(eye, DVec3::new(0.0, 50.0, 0.0), 50.0, IMAGE), preset);
-                let at =
-                    |random: &mut Random| DVec3::new(random.range(-200.0, 200.0), random.range(-250.0, 900.0), height);
-                let places: Vec<DVec3> = (0..40).map(|_| at(&mut random)).collect();
-                for kind in [Ground::Mesh, Ground::Slab] {
-                    let scene = with_blocks(kind, size, &places, &mut random);
-                    all.add(difference(&scene, &view));
-                }
+fn what_stands_on_ground_of_few_triangles_is_seen_in_every_chain() {
+    let camera = || pinhole(DVec3::new(0.0, -500.0, 300.0), DVec3::new(0.0, 50.0, 0.0), 50.0, IMAGE);
+    let mut views: Vec<(String, View)> = ["progressive", "degressive", "hybrid-flat-steep-flat"]
+        .map(|preset| (preset.to_owned(), spline(camera(), preset)))
+        .into();
+    let earth = Stage::EarthCurvature(EarthCurvature { eye: camera().eye, radius: 6.371e6, refraction: 0.13 });
+    for (name, view) in views.clone() {
+        let stages = [std::slice::from_ref(&earth), view.stages()].concat();
+        views.push((format!("earth, {name}"), View::new(view.pinhole().clone(), stages).expect("in order")));
+        let rays = turns(view.pinhole().clone(), MODELS[views.len() % 5], &[(700.0, 200.0)]);
+        let stages = [view.stages(), rays.stages()].concat();
+        views.push((format!("{name}, rays"), View::new(view.pinhole().clone(), stages).expect("in order")));
+    }
+    views.extend(strip::views(IMAGE).into_iter().take(4).map(|(name, view)| (name.to_owned(), view)));
+    let mut all = Compared::default();
+    for (k, (name, view)) in views.iter().enumerate() {
+        // Ground that is larger than the planet has no horizon that it could end at.
+        let sizes = SIZES.into_iter().filter(|size| *size > 1e3 && (*size < 1e7 || !name.starts_with("earth")));
+        for (s, size) in sizes.enumerate() {
+            let mut random = Random::new((10 * k + s) as u64);
+            let height = if s % 2 == 0 { 3.0 } else { 0.0 };
+            let at = |random: &mut Random| DVec3::new(random.range(-200.0, 200.0), random.range(-250.0, 900.0), height);
+            let places: Vec<DVec3> = (0..40).map(|_| at(&mut random)).collect();
+            for kind in [Ground::Mesh, Ground::Slab] {
+                let before = all;
+                all.add(&with_blocks(kind, size, &places, &mut random), view);
+                let (judged, wrong) = (all.judged - before.judged, all.wrong - before.wrong);
+                // The corner of a block may fill a pixel that the tracer just misses.
+                assert!(judged > 800 && wrong <= 1, "{name}, {size}, {height}, {kind:?}: {wrong} of {judged}");
             }
         }
     }
-    assert!(ids_agree(&all, 1e-3), "{all:?}");
+    assert!(all.wrong * 20_000 <= all.judged, "{all:?}");
 }

@@ -35,7 +35,7 @@ fn cameras(image: [u32; 2]) -> [Pinhole; 3] {
     ]
 }
 
-fn views(image: [u32; 2]) -> Vec<(&'static str, View)> {
+pub(crate) fn views(image: [u32; 2]) -> Vec<(&'static str, View)> {
     let mut out = Vec::new();
     for camera in cameras(image) {
         let mut add = |name, stages| out.push((name, View::new(camera.clone(), stages).expect("in order")));
