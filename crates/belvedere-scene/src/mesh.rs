@@ -168,6 +168,12 @@ impl Mesh {
         Ok(mesh)
     }
 
+    /// Whether both are the same triangles in the same parts, in the same memory: a copy of a mesh, with other colours perhaps.
+    pub fn shares_triangles(&self, other: &Self) -> bool {
+        let same = Arc::ptr_eq(&self.positions, &other.positions) && Arc::ptr_eq(&self.triangles, &other.triangles);
+        same && self.origin == other.origin && self.parts == other.parts
+    }
+
     /// This mesh with a unit normal per vertex, for smooth shading; zero = not known there.
     ///
     /// # Errors

@@ -37,7 +37,7 @@ pub use field::{Field, FieldError};
 pub use ground::{Ground, Lift};
 pub use light_buffer::{Blocker, Found, LightBuffer};
 pub use line::{Edge, EdgeFamily, GridLine, floor};
-pub use mesh_tree::MeshTree;
+pub use mesh_tree::{MeshTree, TreeMemory};
 pub use obstacles::{Obstacles, SightOptions};
 pub use openness::{GroundHeight, Occluded, OpennessSettings, with_ambient_occlusion};
 pub use pyramid::Pyramid;

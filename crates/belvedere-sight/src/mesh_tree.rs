@@ -1,5 +1,9 @@
 //! A bounding volume hierarchy over the triangles of a mesh, for rays and lines of sight.
 
+mod memory;
+
+pub use memory::TreeMemory;
+
 use crate::beam::Beam;
 use crate::clip_segment;
 use belvedere_core::{Aabb, DVec3};
@@ -11,6 +15,7 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::leaf_collapser::collapse;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Most triangles of a leaf, and the cost of a step down the tree, in triangle tests.
 const LEAF: u32 = 4;
@@ -21,7 +26,7 @@ const STEP_COST: f32 = 2.0;
 /// The bounds are exact: vertices are single precision relative to [`Mesh::origin`], and so are they. Segments are double precision.
 pub struct MeshTree<'a> {
     mesh: Cow<'a, Mesh>,
-    tree: Bvh2,
+    tree: Arc<Bvh2>,
     lift: [f64; 2],
 }
 
@@ -74,7 +79,12 @@ impl<'a> MeshTree<'a> {
             collapse(&mut tree, LEAF, STEP_COST);
             tree.primitive_indices.iter_mut().for_each(|i| *i = held[*i as usize]);
         }
-        Self { mesh, tree, lift: [lift[0].min(0.0), lift[1].max(0.0)] }
+        Self { mesh, tree: tree.into(), lift: [lift[0].min(0.0), lift[1].max(0.0)] }
+    }
+
+    /// The mesh with a tree that was built over the same triangles.
+    fn with_tree(mesh: &'a Mesh, tree: Arc<Bvh2>) -> Self {
+        Self { mesh: Cow::Borrowed(mesh), tree, lift: [0.0; 2] }
     }
 
     /// The mesh.

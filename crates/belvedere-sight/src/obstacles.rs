@@ -1,6 +1,6 @@
 //! Lines of sight along straight and curved rays, past terrain, boxes and meshes.
 
-use crate::{BoxTree, Carried, Ground, LayerPart, Lift, MeshTree, Solids};
+use crate::{BoxTree, Carried, Ground, LayerPart, Lift, MeshTree, Solids, TreeMemory};
 use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::{LayerKind, Scene};
 
@@ -22,6 +22,8 @@ struct Without<'w> {
     parts: Option<(usize, &'w [u32])>,
     /// Those that are kept.
     solids: Solids,
+    /// Trees of meshes that were built before.
+    trees: Option<&'w TreeMemory>,
 }
 
 /// Options of the test of a line of sight.
@@ -52,14 +54,12 @@ impl<'a> Obstacles<'a> {
         Self::of(scene, Without { solids, layers, ..Without::default() }, None, None)
     }
 
-    /// The same without some layers, by their index, so that a feature does not hide itself.
-    pub fn without(scene: &'a Scene, layers: &[usize]) -> Self {
-        Self::of(scene, Without { layers, ..Without::default() }, None, None)
-    }
-
-    /// The same without some parts of a mesh, or some boxes of a layer of boxes, by the index of the layer and their numbers.
-    pub fn without_parts(scene: &'a Scene, layer: usize, parts: &[u32]) -> Self {
-        Self::of(scene, Without { parts: Some((layer, parts)), ..Without::default() }, None, None)
+    /// The same without some layers, by their index, so that a feature does not hide itself, and without some parts of a mesh, or some
+    /// boxes of a layer of boxes, by the index of the layer and their numbers.
+    ///
+    /// * `trees`: remembers what takes long to build.
+    pub fn without(scene: &'a Scene, layers: &[usize], parts: Option<(usize, &[u32])>, trees: &TreeMemory) -> Self {
+        Self::of(scene, Without { layers, parts, trees: Some(trees), ..Without::default() }, None, None)
     }
 
     /// The same where the ground, and boxes and meshes with it, may be displaced vertically.
@@ -119,8 +119,8 @@ impl<'a> Obstacles<'a> {
                 }
                 LayerKind::Mesh(_) | LayerKind::Own(_) | LayerKind::Molecule(_) => {
                     let Some(m) = layer.kind.triangles() else { continue };
-                    if !left_out.is_empty() && held == LayerPart::Everything {
-                        meshes.push((i, MeshTree::without_parts(&m.mesh, left_out)));
+                    if let (Some(trees), LayerPart::Everything) = (without.trees, held) {
+                        meshes.push((i, trees.without_parts(&m.mesh, left_out)));
                         continue;
                     }
                     let b = m.mesh.bounds();

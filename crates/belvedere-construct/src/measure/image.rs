@@ -4,7 +4,7 @@ use super::displaced::DisplacedSight;
 use crate::sample::{Sample, SampledFeature};
 use belvedere_core::{DVec2, DVec3, View};
 use belvedere_scene::Scene;
-use belvedere_sight::{Carried, DisplacedGround, Obstacles, SightOptions};
+use belvedere_sight::{Carried, DisplacedGround, Obstacles, SightOptions, TreeMemory};
 use rayon::prelude::*;
 use std::borrow::Cow;
 
@@ -69,7 +69,7 @@ impl<'a> Sight<'a> {
     pub(super) fn new(scene: &'a Scene, view: &View) -> Self {
         let bodies = BodyViews::new(scene, view);
         let displaced = DisplacedSight::new(scene, view).filter(|_| bodies.0.is_none());
-        let beside = displaced.as_ref().map(|d| Obstacles::without(scene, &[d.layer()]));
+        let beside = displaced.as_ref().map(|d| Obstacles::without(scene, &[d.layer()], None, &TreeMemory::default()));
         Self { obstacles: Obstacles::seen_by(scene, view), bodies, displaced, beside }
     }
 }

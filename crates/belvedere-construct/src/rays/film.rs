@@ -68,7 +68,7 @@ impl FilmPlanner {
 
     /// The next frame of the pass; the arguments are those of [`super::track_target`].
     pub fn add(&mut self, scene: &Scene, base: &View, target: &Target) {
-        let sight = TargetSight::new(scene, target);
+        let sight = TargetSight::remembering(scene, target, &self.memory.trees);
         let search = Search::new(base, target, &self.options, &sight, &self.memory);
         let grow = self.options.grow_px;
         let seen = |[x, y]: [f64; 2]| -> Seen {
@@ -116,7 +116,7 @@ impl FilmPlanner {
         });
         self.bends = bends(offsets);
         // The next pass begins at the first frame, whose right may be the left of the last.
-        self.memory = TrackingMemory::default();
+        self.memory = self.memory.begun_again();
         (self.pass, self.next) = (self.pass + 1, 0);
         let better = least >= HIDDEN || (self.pass == 1 && turnings(&self.bends) > 1);
         better && self.pass <= WIDE.len()

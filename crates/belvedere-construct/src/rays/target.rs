@@ -4,7 +4,7 @@ use super::surface_points;
 use crate::surface_samples::spread;
 use belvedere_core::{Aabb, DVec2, DVec3, View};
 use belvedere_scene::{LayerKind, OwnLayer, Scene, Unit};
-use belvedere_sight::{Obstacles, SightOptions, Voxels};
+use belvedere_sight::{Obstacles, SightOptions, TreeMemory, Voxels};
 use std::sync::Arc;
 
 /// A thing that must be seen, as points.
@@ -214,6 +214,11 @@ pub struct TargetSight<'a> {
 impl<'a> TargetSight<'a> {
     /// One pass over the scene.
     pub fn new(scene: &'a Scene, target: &'a Target) -> Self {
+        Self::remembering(scene, target, &TreeMemory::default())
+    }
+
+    /// The same with trees over meshes that earlier calls built.
+    pub fn remembering(scene: &'a Scene, target: &'a Target, trees: &TreeMemory) -> Self {
         let extent = (2.0 * target.extent()).max(1e-9);
         let cell = scene.terrain().map_or(0.0, |t| t.spacing().max_element());
         let bounds = scene.bounds();
@@ -221,10 +226,8 @@ impl<'a> TargetSight<'a> {
         let chord_m = (1e-3 * extent).max(2e-5 * whole) + 0.05 * cell;
         let sight = SightOptions { chord_m, cap_m: 0.0, guard_m: 1.5 * cell };
         let voxels = Voxels::without(scene, &target.own_layers);
-        let obstacles = match &target.own_parts {
-            Some((layer, parts)) => Obstacles::without_parts(scene, *layer, parts),
-            None => Obstacles::without(scene, &target.own_layers),
-        };
+        let own_parts = target.own_parts.as_ref().map(|(layer, parts)| (*layer, &parts[..]));
+        let obstacles = Obstacles::without(scene, &target.own_layers, own_parts, trees);
         // Molecules and volumes have no ground.
         let lowest = (scene.unit == Unit::Metre && !bounds.is_empty()).then_some(bounds.min.z);
         let is_clear = !scene.layers.iter().any(|layer| layer.kind.volume().is_some());

@@ -8,6 +8,7 @@ use super::{PlannedBend, Sidestep, Target, TargetSight};
 use crate::ConstructError;
 use belvedere_core::{DVec3, View};
 use belvedere_scene::Scene;
+use belvedere_sight::TreeMemory;
 use serde::{Deserialize, Serialize};
 
 /// Directions of f > 0 across the view that a search tries, degrees from the right of the picture upwards; the first is that of the paper.
@@ -79,12 +80,19 @@ pub struct TrackingMemory {
     direction_deg: f64,
     /// Bend that a plan sets for the next frame.
     planned: Option<PlannedBend>,
+    /// Trees over what may hide the target.
+    pub(super) trees: TreeMemory,
 }
 
 impl TrackingMemory {
     /// Sets the bend of the next frame; with `None` the tracker searches for one.
     pub fn follow(&mut self, bend: Option<PlannedBend>) {
         self.planned = bend;
+    }
+
+    /// The memory before the first frame, but for the trees.
+    pub(super) fn begun_again(&self) -> Self {
+        Self { trees: self.trees.clone(), ..Self::default() }
     }
 
     pub(super) fn keep_side(&mut self, right: DVec3) {
@@ -136,7 +144,8 @@ pub fn track_target(
     memory: &mut TrackingMemory,
 ) -> Result<Tracked, ConstructError> {
     options.check()?;
-    let sight = TargetSight::new(scene, target);
+    let trees = memory.trees.clone();
+    let sight = TargetSight::remembering(scene, target, &trees);
     let mut search = Search::new(base, target, options, &sight, memory);
     let straight = search.share(0.0, 0.0);
     let planned = memory.planned.take();

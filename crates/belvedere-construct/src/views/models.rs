@@ -17,8 +17,6 @@ const KEPT: usize = 8;
 const WORTH: f64 = 0.03;
 /// Share of half the picture's width and height that the model takes up.
 const FITTED: f64 = 0.92;
-/// Share of the picture's height that the target takes up at least.
-const LEAST_TARGET: f64 = 0.22;
 /// Triangles by which a layer is framed, at most about, when many views are tried.
 const FEW: usize = 3000;
 /// The same when the view that was chosen is refitted.
@@ -156,7 +154,7 @@ pub fn around_model(
     Ok(judged.into_iter().map(|(_, view)| view).collect())
 }
 
-/// The camera in a direction from which the model fills the picture; nearer, at the target, where that is small.
+/// The camera in a direction from which the model fills the picture.
 pub(super) fn fitted(
     points: &[DVec3],
     target: &Target,
@@ -177,17 +175,8 @@ pub(super) fn fitted(
     let aside = 0.5 * (least + most);
     let reach = (depths[1] - depths[0]).max(1e-6);
     let z = (0.5 * (least - most) / tangent).min_element().min(depths[0] - 0.05 * reach);
-    let mut eye = aside.x * right + aside.y * above + z * forward;
-    let center = target.center();
-    let distance = (center - eye).dot(forward);
-    // A small target is looked at from nearer, and towards its middle.
-    let size = target.extent() / (distance * half);
-    if size < LEAST_TARGET && size > 0.0 {
-        let nearer = distance * (size / LEAST_TARGET).max(0.35);
-        let onto = eye + distance * forward;
-        let middle = onto.lerp(center, ((distance - nearer) / (0.65 * distance)).clamp(0.0, 1.0));
-        eye = middle - nearer * forward;
-    }
+    let eye = aside.x * right + aside.y * above + z * forward;
+    let distance = (target.center() - eye).dot(forward);
     let middle = eye + distance.max(1e-6) * forward;
     // Rays may bend long before they reach the model.
     let near = 0.02 * (depths[0] - eye.dot(forward)).max(0.05 * distance).max(1e-6);

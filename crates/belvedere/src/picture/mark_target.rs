@@ -1,4 +1,4 @@
-//! Marks of targets in pictures: a ring around points, an outline around everything that has a surface.
+//! Marks of targets in pictures: a ring around points, an outline around everything that has a surface, with a ring where that is small.
 
 use super::{Picture, PictureOptions, TargetPlace};
 use crate::fallback::in_sight::Judge;
@@ -67,6 +67,9 @@ impl Picture {
             *share = mask.share();
             if has_others {
                 contour::draw(frame, &mask.own, &mask.seen);
+                for (at, is_seen) in contour::small_parts(&mask.own, &mask.seen, frame.width) {
+                    ring::draw(frame, at, !is_seen, options.density);
+                }
             }
         }
         Ok(Some(shares))

@@ -131,14 +131,24 @@ impl<'a> Search<'a> {
 
     /// Turns and zooms the camera so that what the bend moved lies inside.
     fn refit(&self, chosen: &mut Chosen) -> Result<(), BelvedereError> {
-        let sidestep = chosen.bend.as_ref().and_then(Bend::sidestep);
-        let Some(found) = self.opened.refitted(&self.sight, &chosen.view, sidestep) else { return Ok(()) };
-        (chosen.view, chosen.refit) = (found.straight, Some(found.record));
-        // The refitted view may show as much without a bend.
-        if chosen.bend.is_some() && !self.judge.gains(self.judging(), &chosen.view, &chosen.bent()?)? {
+        let unframed = chosen.view.clone();
+        if !self.frame(chosen, &unframed) || chosen.bend.is_none() {
+            return Ok(());
+        }
+        // The refitted view may show as much without a bend, and is then framed without one.
+        if !self.judge.gains(self.judging(), &chosen.view, &chosen.bent()?)? {
             chosen.bend = None;
+            self.frame(chosen, &unframed);
         }
         Ok(())
+    }
+
+    /// Frames `view` with the bend that was chosen; `false` where another frame shows less of the target.
+    fn frame(&self, chosen: &mut Chosen, view: &View) -> bool {
+        let sidestep = chosen.bend.as_ref().and_then(Bend::sidestep);
+        let Some(found) = self.opened.refitted(&self.sight, view, sidestep) else { return false };
+        (chosen.view, chosen.refit) = (found.straight, Some(found.record));
+        true
     }
 
     /// Finds the shares of the chosen view.
