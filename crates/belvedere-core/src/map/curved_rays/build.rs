@@ -19,26 +19,65 @@ pub(super) fn build(
     corners: &[DVec2],
     advise: bool,
 ) -> Result<CurvedRays, CurvedRaysError> {
-    if root.is_orthographic() {
-        return Err(CurvedRaysError::Orthographic);
+    let mut chain = Chain::new(root, model, corners, advise)?;
+    spec.iter().try_for_each(|turn| chain.add(turn))?;
+    Ok(chain.finish())
+}
+
+/// A chain of valid turns that grows by one turn after the other.
+pub(super) struct Chain<'a> {
+    root: &'a Pinhole,
+    model: Model,
+    corners: &'a [DVec2],
+    advise: bool,
+    part: StraightPart,
+    previous: Option<PreviousTurn>,
+    spec: Vec<TurnSpec>,
+    turns: Vec<Turn>,
+}
+
+impl<'a> Chain<'a> {
+    /// A chain without turns.
+    pub(super) fn new(
+        root: &'a Pinhole,
+        model: Model,
+        corners: &'a [DVec2],
+        advise: bool,
+    ) -> Result<Self, CurvedRaysError> {
+        if root.is_orthographic() {
+            return Err(CurvedRaysError::Orthographic);
+        }
+        let part = StraightPart { viewpoint: root.eye, linear: DMat3::IDENTITY, inverse: DMat3::IDENTITY };
+        Ok(Self { root, model, corners, advise, part, previous: None, spec: Vec::new(), turns: Vec::new() })
     }
-    let mut part = StraightPart { viewpoint: root.eye, linear: DMat3::IDENTITY, inverse: DMat3::IDENTITY };
-    let mut previous: Option<PreviousTurn<'_>> = None;
-    let mut turns: Vec<Turn> = Vec::with_capacity(spec.len());
-    for (index, turn_spec) in spec.iter().enumerate() {
-        let context = TurnContext { root, corners, turn: index + 1, part, previous, advise };
-        numbers(turn_spec, context.turn)?;
-        let unscaled = UnscaledTurn::new(turn_spec, context.turn, &part)?;
-        let forms = unscaled.check(turn_spec, &context).map_err(|violation| report(violation, turn_spec, &context))?;
-        let hinge = hinge(model, turn_spec, &forms, &context)?;
-        let ends = corners.iter().map(|px| forms.end(corner_direction(*px, root, &part))).collect();
-        previous = Some(PreviousTurn { spec: turn_spec, part, ends });
-        let turn = Turn::new(&part, turn_spec, &forms, hinge);
-        part = turn.part_after();
-        turns.push(turn);
+
+    /// The context of the turn that comes next.
+    pub(super) fn context(&self) -> TurnContext<'a> {
+        let Self { root, corners, part, advise, .. } = *self;
+        TurnContext { root, corners, turn: self.turns.len() + 1, part, previous: self.previous.clone(), advise }
     }
-    let separators = turns.windows(2).map(|pair| separator(&pair[0], &pair[1])).collect();
-    Ok(CurvedRays { root: root.clone(), model, spec: spec.to_vec(), turns, separators, scale_px: root.scale_px() })
+
+    /// Adds a turn if it is valid.
+    pub(super) fn add(&mut self, spec: &TurnSpec) -> Result<(), CurvedRaysError> {
+        let context = self.context();
+        numbers(spec, context.turn)?;
+        let unscaled = UnscaledTurn::new(spec, context.turn, &self.part)?;
+        let forms = unscaled.check(spec, &context).map_err(|violation| report(violation, spec, &context))?;
+        let hinge = hinge(self.model, spec, &forms, &context)?;
+        let ends = self.corners.iter().map(|px| forms.end(corner_direction(*px, self.root, &self.part))).collect();
+        self.previous = Some(PreviousTurn { spec: *spec, part: self.part, ends });
+        let turn = Turn::new(&self.part, spec, &forms, hinge);
+        self.part = turn.part_after();
+        self.spec.push(*spec);
+        self.turns.push(turn);
+        Ok(())
+    }
+
+    pub(super) fn finish(self) -> CurvedRays {
+        let Self { root, model, spec, turns, .. } = self;
+        let separators = turns.windows(2).map(|pair| separator(&pair[0], &pair[1])).collect();
+        CurvedRays { root: root.clone(), model, spec, turns, separators, scale_px: root.scale_px() }
+    }
 }
 
 /// Hinge of a turn by the ray model.

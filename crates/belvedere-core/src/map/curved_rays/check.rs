@@ -25,15 +25,15 @@ pub(super) struct TurnContext<'a> {
     /// The chain before the turn.
     pub(super) part: StraightPart,
     /// The turn before.
-    pub(super) previous: Option<PreviousTurn<'a>>,
+    pub(super) previous: Option<PreviousTurn>,
     /// Whether the error of a violated condition names the nearest valid value; that search costs a hundred times the check.
     pub(super) advise: bool,
 }
 
 /// The turn before the one that is checked.
 #[derive(Debug, Clone)]
-pub(super) struct PreviousTurn<'a> {
-    pub(super) spec: &'a TurnSpec,
+pub(super) struct PreviousTurn {
+    pub(super) spec: TurnSpec,
     /// The chain before that turn.
     pub(super) part: StraightPart,
     /// Depth of its t2 on the rays of the corners.

@@ -15,6 +15,7 @@ mod build;
 mod check;
 mod form;
 mod location;
+mod mend;
 mod phi;
 mod ray;
 mod remedy;
@@ -24,6 +25,7 @@ mod turn;
 
 pub(crate) use bounds::EdgeEnd;
 pub use form::LinearForm;
+pub use mend::Mended;
 pub use phi::ViewpointValues;
 pub use ray::{Bend, C2Arc, RayPiece, Shape};
 pub use segments::StraightMap;

@@ -1,6 +1,7 @@
 //! Errors of violated conditions, with the nearest valid value.
 
 use super::check::{PreviousTurn, TurnContext, UnscaledTurn, Violation, axis, corner_direction, crossing};
+use super::mend::nearest_turn;
 use super::spec::{CurvedRaysError, Pencil, Remedy, TurnSpec};
 use glam::{DVec2, DVec3};
 
@@ -72,8 +73,32 @@ fn remedy(violation: Violation, spec: &TurnSpec, context: &TurnContext<'_>) -> R
             if near > 0.0 { Some(Remedy::Near { near }) } else { start_towards_bend(spec, context, &healed) }
         }
     };
-    found.unwrap_or(Remedy::Rebuild)
+    // One value is easier to change than several, but not if it changes much more.
+    let far = found.as_ref().map_or(f64::INFINITY, |remedy| distance(remedy, spec));
+    let nearest = || nearest_turn(spec, context).filter(|turn| FARTHER * turn.distance(spec) < far);
+    let several = if far == 0.0 { None } else { nearest().map(|turn| Remedy::Turn { turn }) };
+    several.or(found).unwrap_or(Remedy::Rebuild)
 }
+
+/// Factor by which the change of one value may be larger than that of several.
+const FARTHER: f64 = 10.0;
+
+/// How far a remedy moves points of a turn, scene units; 0 where it moves none.
+fn distance(remedy: &Remedy, spec: &TurnSpec) -> f64 {
+    match (*remedy, spec.pencil) {
+        (Remedy::MovePoint { name: "line.point", to }, Pencil::Line { point, .. }) => to.distance(point),
+        (Remedy::MovePoint { name, to }, _) => match name {
+            "t0" => to.distance(spec.t0),
+            "t2" => to.distance(spec.t2),
+            _ => to.distance(spec.viewpoint),
+        },
+        (Remedy::MovePlanes { by }, _) => by.length(),
+        _ => 0.0,
+    }
+}
+
+/// A turn that is made anew ends for every ray of the picture within this multiple of its distance.
+const LATEST_END: f64 = 8.0;
 
 /// Whether a changed turn meets all conditions.
 fn heals(candidate: &TurnSpec, context: &TurnContext<'_>) -> bool {
@@ -81,11 +106,23 @@ fn heals(candidate: &TurnSpec, context: &TurnContext<'_>) -> bool {
         .is_ok_and(|unscaled| unscaled.check(candidate, context).is_ok())
 }
 
+/// Whether it meets them, and ends in reasonable distance: one that is only just valid ends nowhere near, and no turn fits behind it.
+pub(super) fn heals_well(candidate: &TurnSpec, context: &TurnContext<'_>) -> bool {
+    let Ok(unscaled) = UnscaledTurn::new(candidate, context.turn, &context.part) else { return false };
+    let Ok(forms) = unscaled.check(candidate, context) else { return false };
+    let distance = [candidate.t1, candidate.t2].map(|p| p.distance(context.part.viewpoint));
+    let latest = LATEST_END * distance[0].max(distance[1]);
+    context.corners.iter().all(|px| {
+        let direction = corner_direction(*px, context.root, &context.part);
+        forms.end(direction) * direction.length() <= latest
+    })
+}
+
 /// Share of the distance to the bend point to which remedies are rounded.
 const GRAIN: f64 = 1e-6;
 
 /// A point with as few decimals as the turn's size allows: what is printed is what was tried.
-fn rounded(p: DVec3, spec: &TurnSpec, context: &TurnContext<'_>) -> DVec3 {
+pub(super) fn rounded(p: DVec3, spec: &TurnSpec, context: &TurnContext<'_>) -> DVec3 {
     let size = (spec.t1 - context.part.viewpoint).length().max((spec.viewpoint - context.part.viewpoint).length());
     let decimals = (-(GRAIN * size).log10().floor()).clamp(0.0, 15.0) as usize;
     let one = |v: f64| format!("{v:.decimals$}").parse().unwrap_or(v) + 0.0;
@@ -103,7 +140,7 @@ fn floor(value: f64) -> f64 {
 }
 
 /// Smallest `t` in (0, `end`] with `valid(t)`, to about a millionth, assuming that `valid` stays once it holds.
-fn smallest(valid: impl Fn(f64) -> bool, end: f64) -> Option<f64> {
+pub(super) fn smallest(valid: impl Fn(f64) -> bool, end: f64) -> Option<f64> {
     let steps = (0..=120).map(|i| end * 1.2f64.powi(i - 120));
     let mut low = 0.0;
     for t in steps {
@@ -196,7 +233,7 @@ fn shrunk(spec: &TurnSpec, context: &TurnContext<'_>) -> Option<Remedy> {
     let previous = context.previous.as_ref()?;
     let narrower = |s: &TurnSpec, t: f64| TurnSpec { t0: s.t0.lerp(s.t1, t), t2: s.t2.lerp(s.t1, t), ..*s };
     let valid = |t: f64| {
-        let before = narrower(previous.spec, t);
+        let before = narrower(&previous.spec, t);
         let Ok(unscaled) = UnscaledTurn::new(&before, context.turn - 1, &previous.part) else { return false };
         let forms = unscaled.forms(&previous.part, before.viewpoint);
         let end = |px: &DVec2| forms.end(corner_direction(*px, context.root, &previous.part));

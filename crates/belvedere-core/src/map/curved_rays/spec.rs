@@ -110,6 +110,18 @@ pub struct TurnSpec {
 }
 
 impl TurnSpec {
+    /// Largest distance between a point of this turn, or of its common line, and that of another, scene units.
+    pub(crate) fn distance(&self, other: &Self) -> f64 {
+        let pairs = [(self.viewpoint, other.viewpoint), (self.t0, other.t0), (self.t1, other.t1), (self.t2, other.t2)];
+        let line = match (self.pencil, other.pencil) {
+            (Pencil::Line { point, .. }, Pencil::Line { point: other, .. }) => point.distance(other),
+            (Pencil::Line { point, .. }, Pencil::Parallel { .. }) => point.distance(self.t1),
+            (Pencil::Parallel { .. }, Pencil::Line { point, .. }) => point.distance(other.t1),
+            (Pencil::Parallel { .. }, Pencil::Parallel { .. }) => 0.0,
+        };
+        pairs.into_iter().map(|(a, b)| a.distance(b)).fold(line, f64::max)
+    }
+
     /// This turn with its viewpoint interpolated from the eye (`share` 0) to its own (1).
     pub(crate) fn eased(self, eye: DVec3, share: f64) -> Self {
         Self { viewpoint: eye.lerp(self.viewpoint, share), ..self }
@@ -153,7 +165,12 @@ pub enum Remedy {
     BendInPicture,
     /// Choose another model of rays.
     OtherModel,
-    /// No change of a single parameter makes it valid.
+    /// Give the turn other values: no change of a single parameter makes it valid.
+    Turn {
+        /// The nearest valid turn found.
+        turn: TurnSpec,
+    },
+    /// No valid turn was found.
     Rebuild,
 }
 
@@ -171,9 +188,36 @@ impl std::fmt::Display for Remedy {
             Self::SwapPlanes => write!(f, "exchange t0 and t2"),
             Self::BendInPicture => write!(f, "move t1 into the picture, or give m as a number"),
             Self::OtherModel => write!(f, "no t2 parts them"),
+            Self::Turn { turn } => {
+                let [viewpoint, t0, t1, t2] = [turn.viewpoint, turn.t0, turn.t1, turn.t2].map(point);
+                write!(f, "the nearest valid turn has viewpoint {viewpoint}, t0 {t0}, t1 {t1}, t2 {t2}, ")?;
+                match turn.pencil {
+                    Pencil::Line { point: at, dir } => write!(f, "line.point {}, line.dir {}", point(at), point(dir)),
+                    Pencil::Parallel { normal } => write!(f, "normal {}", point(normal)),
+                }
+            }
             Self::Rebuild => {
                 write!(f, "place t0, t1, t2 in this order ahead of both viewpoints, or use parallel planes")
             }
+        }
+    }
+}
+
+impl CurvedRaysError {
+    /// How the camera becomes valid; `None` where the error says so itself.
+    pub fn remedy(&self) -> Option<&Remedy> {
+        match self {
+            Self::PlaneOrder { remedy, .. }
+            | Self::PreviousPastBend { remedy, .. }
+            | Self::PreviousPastStart { remedy, .. }
+            | Self::ViewpointPastBend { remedy, .. }
+            | Self::BendNotMet { remedy, .. }
+            | Self::LineInPicture { remedy, .. }
+            | Self::EndNotReached { remedy, .. }
+            | Self::RaysCross { remedy, .. }
+            | Self::TurnsOverlap { remedy, .. }
+            | Self::NearPastStart { remedy, .. } => Some(remedy),
+            _ => None,
         }
     }
 }

@@ -7,6 +7,7 @@ mod chains;
 mod every_ray;
 mod laws;
 mod literal;
+mod mend;
 mod pieces;
 mod scene_example;
 mod validity;
