@@ -97,7 +97,7 @@ pub(crate) enum Verb {
     /// Measure the visible share of required features, straight and bent, by two methods
     Measure(MeasureArgs),
     /// Validate a scene
-    Check(SceneArgs),
+    Check(CheckArgs),
     /// Describe data: size, system, range, voids, features
     Info(InfoArgs),
     /// Print a scene with every default filled in and every rule replaced by its value
@@ -174,11 +174,15 @@ fn parse_figures(text: &str) -> Result<FigureKinds, String> {
     Ok(FigureKinds(text.split(',').map(kind).collect::<Result<_, _>>()?))
 }
 
-/// A scene.
+/// The check of a scene.
 #[derive(Debug, Args)]
-pub(crate) struct SceneArgs {
+pub(crate) struct CheckArgs {
     /// Scene file, TOML or JSON; - = standard input
     pub(crate) scene: PathBuf,
+
+    /// Write the scene with valid curved rays in place of those that are not: the nearest valid values are set
+    #[arg(long, value_name = "OUT.toml")]
+    pub(crate) mend: Option<PathBuf>,
 }
 
 /// The demo.

@@ -1,6 +1,6 @@
 //! One function per verb: open, call the library, deliver.
 
-use crate::args::{DemoArgs, FigureKind, FiguresArgs, MeasureArgs, SceneArgs, SchemaArgs, ShowArgs, Verb};
+use crate::args::{CheckArgs, DemoArgs, FigureKind, FiguresArgs, MeasureArgs, SchemaArgs, ShowArgs, Verb};
 use crate::goal::Goal;
 use crate::info_args::InfoArgs;
 use crate::inputs::as_text;
@@ -231,13 +231,25 @@ fn pick_pixels(args: &PickArgs, context: &Context) -> anyhow::Result<Goal> {
     answer("pick", &session, args.out.as_ref(), &warned(report, &session), context)
 }
 
-fn check_scene(args: &SceneArgs, context: &Context) -> anyhow::Result<Goal> {
-    ready(None, &[&args.scene], context)?;
+fn check_scene(args: &CheckArgs, context: &Context) -> anyhow::Result<Goal> {
+    ready(args.mend.as_ref(), &[&args.scene], context)?;
     let options = OpenOptions { unsolved: true, undrawn: true, ..context.options(Needs::Everything, None) };
-    let session = context.open_with(&args.scene, &options)?;
+    let (session, outputs) = match &args.mend {
+        None => (context.open_with(&args.scene, &options)?, Vec::new()),
+        Some(out) => {
+            let made = check::mend(context.stdin.scene(&args.scene)?, &options, out)?;
+            output::write_text(out, &made.text, context.common.overwrite)?;
+            let said = made.wrong.iter().map(|wrong| format!("mended: {wrong}\n")).collect::<String>();
+            let said = if said.is_empty() { "nothing to mend\n".to_owned() } else { said };
+            if !context.common.quiet && !context.common.json {
+                print(&said)?;
+            }
+            (made.session, vec![out.clone()])
+        }
+    };
     let report = check::check(&session)?;
     if context.common.json {
-        context.print("check", &[], &report)?;
+        context.print("check", &outputs, &report)?;
     } else if !context.common.quiet {
         print(&report.to_string())?;
     }

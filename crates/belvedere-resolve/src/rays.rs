@@ -28,6 +28,46 @@ pub(super) fn resolve(root: &Pinhole, doc: &RaysStageDoc, at: Table<'_>) -> Resu
     Ok((Stage::CurvedRays(rays), StageDoc::CurvedRays(resolved)))
 }
 
+/// A stage of curved rays that was made valid.
+#[derive(Debug, Clone)]
+pub struct MendedRays {
+    /// The stage.
+    pub stage: RaysStageDoc,
+    /// Near distance of the camera, scene units.
+    pub near: f64,
+    /// What was wrong, in words, in the order in which it was put right.
+    pub wrong: Vec<String>,
+}
+
+/// A valid stage near one of a document, behind `root`; `None` where there is none, and for rays that part.
+pub fn mended(root: &Pinhole, doc: &RaysStageDoc) -> Option<MendedRays> {
+    if doc.split.is_some() {
+        return None;
+    }
+    let specs: Vec<TurnSpec> = doc.turn.iter().map(|turn| stated(turn, root)).collect();
+    let made = CurvedRays::mended(root, doc.model, &specs)?;
+    let turn = made.rays.spec().iter().zip(&doc.turn).map(|(spec, own)| match stated(own, root) == *spec {
+        true => TurnDoc { m: spec.m, ..own.clone() },
+        false => turn_doc(spec),
+    });
+    let stage = RaysStageDoc { model: made.rays.model(), turn: turn.collect(), split: None };
+    let wrong = made.changes.iter().map(ToString::to_string).collect();
+    Some(MendedRays { stage, near: made.rays.root().near, wrong })
+}
+
+/// A turn as it is stated, in range or not; planes without a line or normal are parallel, across the axis.
+fn stated(doc: &TurnDoc, root: &Pinhole) -> TurnSpec {
+    let pencil = match (&doc.line, doc.normal) {
+        (Some(AxisDoc { point, dir }), _) => {
+            Pencil::Line { point: DVec3::from_array(*point), dir: DVec3::from_array(*dir) }
+        }
+        (None, Some(normal)) => Pencil::Parallel { normal: DVec3::from_array(normal) },
+        (None, None) => Pencil::Parallel { normal: root.forward },
+    };
+    let [viewpoint, t0, t1, t2] = [doc.viewpoint, doc.t0, doc.t1, doc.t2].map(DVec3::from_array);
+    TurnSpec { viewpoint, t0, t1, t2, pencil, m: doc.m }
+}
+
 /// Resolves rays that part.
 fn parting(
     root: &Pinhole,

@@ -393,6 +393,18 @@ fn z_up() -> [f64; 3] {
 /// Eye, look_at, up and field of view of a saved camera, as one vector of numbers.
 type Numbers = [f64; 10];
 
+/// Reads the cameras of the animation that a scene states, if it names any.
+///
+/// # Errors
+/// [`BelvedereError`] if the file is not there, or holds none.
+pub(crate) fn check(session: &Session) -> Result<(), BelvedereError> {
+    let Some(Description { source, resolved, roots }) = &session.resolved.description else { return Ok(()) };
+    let Some(animation) = &resolved.animation else { return Ok(()) };
+    let Some(file) = &animation.camera else { return Ok(()) };
+    let path = roots.resolve(file).map_err(|e| source.origin.refusal(&["animation", "camera"], "animation: ", e))?;
+    through_cameras(resolved, &path, &mut animation.clone()).map(|_| ())
+}
+
 fn through_cameras(scene: &Document, path: &Path, animation: &mut AnimationDoc) -> Result<Vec<Pose>, BelvedereError> {
     let fail = |reason: String| BelvedereError::Points { path: path.to_owned(), reason };
     let tree = scene_file::json_points(&scene_file::read_text(path)?.0).map_err(|e| fail(e.to_string()))?;

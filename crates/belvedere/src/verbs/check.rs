@@ -1,11 +1,13 @@
-//! `check`: contents of a scene.
+//! `check`: contents of a scene, and a valid one in place of one whose rays are not.
 
-use crate::scene_file::StageDoc;
-use crate::{BelvedereError, Session};
+use crate::scene_file::{SourceDocument, StageDoc};
+use crate::{BelvedereError, OpenOptions, Session, camera_path, output, scene_file};
 use belvedere_core::Warning;
+use belvedere_resolve::rays::mended;
 use belvedere_scene::Bodies;
 use schemars::JsonSchema;
 use serde::Serialize;
+use std::path::{Path, PathBuf};
 
 /// Answer of [`check`].
 #[derive(Debug, Clone, JsonSchema, Serialize)]
@@ -20,6 +22,17 @@ pub struct CheckReport {
     pub stages: Vec<&'static str>,
     /// Warnings.
     pub warnings: Vec<Warning>,
+}
+
+/// A scene whose camera was made valid.
+#[derive(Debug, Clone)]
+pub struct Mended {
+    /// The scene, opened.
+    pub session: Session,
+    /// Its text.
+    pub text: String,
+    /// What was wrong, in words; empty for a scene that was valid.
+    pub wrong: Vec<String>,
 }
 
 /// One checked layer.
@@ -56,6 +69,7 @@ impl std::fmt::Display for CheckReport {
 /// [`BelvedereError`] if the scene can be opened but not drawn.
 pub fn check(session: &Session) -> Result<CheckReport, BelvedereError> {
     session.check_drawable()?;
+    camera_path::check(session)?;
     let layers = session.scene().layers.iter().map(|layer| {
         let (kind, count) = (layer.kind.name(), layer.kind.count());
         let rigid = Bodies::of(&layer.kind).is_some();
@@ -68,6 +82,54 @@ pub fn check(session: &Session) -> Result<CheckReport, BelvedereError> {
         stages: stages(session),
         warnings: session.warnings(),
     })
+}
+
+/// A scene whose curved rays are made valid where they are not: the nearest valid values that errors name are set. Everything else stays
+/// as it is written, where `out` lies beside the scene file.
+///
+/// * `out`: the file that is to hold the text.
+///
+/// # Errors
+/// Those of opening the scene that are no matter of its curved rays, and the first of these where no valid camera is found.
+pub fn mend(source: SourceDocument, options: &OpenOptions, out: &Path) -> Result<Mended, BelvedereError> {
+    let mut document = source.document.clone();
+    let is_rays = |stage: &StageDoc| matches!(stage, StageDoc::CurvedRays(_));
+    let mut wrong = Vec::new();
+    if document.stage.iter().any(is_rays) {
+        let mut straight = source.clone();
+        straight.document.stage.retain(|stage| !is_rays(stage));
+        let root = Session::from_document(straight, options)?.view().pinhole().clone();
+        for stage in &mut document.stage {
+            let StageDoc::CurvedRays(rays) = stage else { continue };
+            let Some(made) = mended(&root, rays) else { continue };
+            if !made.wrong.is_empty() {
+                (*rays, document.camera.near) = (made.stage, made.near);
+                wrong.extend(made.wrong);
+            }
+        }
+    }
+    let (path, written) = (source.path().map(Path::to_owned), source.document.clone());
+    let session = Session::from_document(SourceDocument { document: document.clone(), ..source }, options)?;
+    let is_beside = path.as_deref().is_some_and(|path| folder(path) == folder(out));
+    let text = path.filter(|_| is_beside).and_then(|path| scene_file::read_text(&path).ok()).map(|(text, _)| text);
+    let is_json = out.extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
+    let kept = text.filter(|text| scene_file::is_json(text) == is_json).and_then(|text| match document == written {
+        true => Some(text),
+        false => scene_file::rewritten(&text, &document),
+    });
+    let text = match (kept, session.resolved_for(out)) {
+        (Some(text), _) => text,
+        (None, Some(made)) if is_json => output::document_json(&made)?,
+        (None, Some(made)) => output::document_toml(&made)?,
+        (None, None) => output::document_toml(&document)?,
+    };
+    Ok(Mended { session, text, wrong })
+}
+
+/// The folder of a file.
+fn folder(path: &Path) -> Option<PathBuf> {
+    let parent = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    belvedere_io::fs::canonicalize(parent).ok()
 }
 
 /// Names of the stages, including those that are not solved yet.
