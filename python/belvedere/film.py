@@ -31,6 +31,8 @@ def animate(
     frames: int | None = None,
     fps: float | None = None,
     speed_mps: float | None = None,
+    trajectory: str | os.PathLike[str] | None = None,
+    follow: str | None = None,
     marker: bool | None = None,
     clock: bool | None = None,
     profile: bool | None = None,
@@ -54,6 +56,8 @@ def animate(
     * ``along``: id of a line layer that the camera follows; or ``sweep_deg``: viewing angles (first, last, step), ``True``: those of the presets; or
       ``turntable_deg_per_s``: a turn, ``True``: at the usual speed; or what the scene's ``[animation]`` says.
     * ``frames``: their number; ``fps``: frames per second, 25 by default; ``speed_mps``: ground speed, metres per second of film.
+    * ``trajectory``: places of the atoms of the scene's molecule over time, XTC or DCD; ``follow``: id of a layer that moves, with which the camera
+      moves.
     * ``marker``, ``clock``, ``profile``: what is drawn over a film along a route. ``furniture``, ``title``: see
       :meth:`belvedere.Scene.render`.
     * ``resume``: goes on with existing frames, to the same bytes as an uninterrupted film. Ctrl-C leaves whole frames.
@@ -80,6 +84,7 @@ def animate(
         {
             **drawing(straight=straight, compare=compare, samples=samples, stylise=stylise, furniture=furniture, title=title),
             "along": along,
+            "follow": follow,
             "sweep": sweep,
             "turntable": turn,
             "frames": frames,
@@ -97,7 +102,7 @@ def animate(
     with asked(threads, progress) as ask:
         sheet, pixels = scene._sheet(size_of(size), paper)
         # The ground is solved for every frame, not on opening.
-        native = scene._open({"unsolved": True, "size": pixels}, ask)
+        native = scene._open({"unsolved": True, "size": pixels, "trajectory": None if trajectory is None else os.fspath(trajectory)}, ask)
         answer = _native.animate(native, os.fspath(out), text("animate", {**request, **sheet}), bool(overwrite), ask)
     return FilmReport.of(json.loads(answer))
 

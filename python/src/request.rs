@@ -39,6 +39,8 @@ pub(crate) struct Opening {
     /// What data without a scene file do not say.
     pub(crate) data: OfData,
     unsolved: bool,
+    /// A trajectory of the molecule.
+    trajectory: Option<String>,
     /// What is shown otherwise than the scene says.
     shows: Option<Render>,
 }
@@ -53,6 +55,7 @@ impl Opening {
             fonts: self.fonts,
             arrays,
             unsolved: self.unsolved,
+            trajectory: self.trajectory,
             max_bytes: Some(belvedere::io::budget::bytes()),
             progress,
             ..OpenOptions::default()

@@ -36,7 +36,8 @@ pub(crate) fn animate(args: &AnimateArgs, context: &Context) -> anyhow::Result<G
     request.picture = context.running(request.picture);
     // The ground is solved for every frame, not on opening.
     let furniture = Some(asked.furnishing.wish());
-    let options = OpenOptions { unsolved: true, furniture, ..context.options(Needs::Everything, size) };
+    let trajectory = asked.trajectory.clone();
+    let options = OpenOptions { unsolved: true, furniture, trajectory, ..context.options(Needs::Everything, size) };
     let session = Session::from_document(source, &options)?;
     let made = verb::animate(&session, &request, &context.progress)?;
     context.finish();

@@ -140,6 +140,10 @@ pub struct AnimationDoc {
     /// Turn about the pivot.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub turntable: Option<TurntableDoc>,
+    /// Layer that moves and is followed: eye and target move with the middle of it, of a molecule with `select` with that of the selection,
+    /// without its quick motions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub follow: Option<String>,
     /// Number of frames, > 0; by default 250, or as many as speed, sweep or turn need.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frames: Option<u32>,

@@ -133,8 +133,15 @@ impl LayerDoc {
         match self {
             Self::Boxes(l) => l.motion.as_deref(),
             Self::Mesh(l) => l.motion.as_deref(),
+            Self::Molecule(l) => l.motion.as_deref(),
             _ => None,
         }
+    }
+
+    /// Whether the layer moves in films.
+    pub fn moves(&self) -> bool {
+        let changes = matches!(self, Self::Molecule(l) if l.models_per_s.is_some() || l.trajectory.is_some());
+        changes || self.motion().is_some()
     }
 
     /// Name of the kind, as files write it.

@@ -29,9 +29,19 @@ pub struct MoleculeDoc {
     /// Model of the file, from 1, or `all`: all of them side by side, chain `A` of model 2 as `A-2`; by default the first.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub model: Option<ModelsDoc>,
-    /// Shows the models of the file one after the other in films, so many per second; the last one stays. Pictures show the first.
+    /// A file of places of the same atoms over time (.xtc, .dcd), whose frames films show one after the other. Pictures show the first.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trajectory: Option<String>,
+    /// Every how manieth frame of the trajectory is shown, from 1; by default every one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trajectory_every: Option<usize>,
+    /// Shows the models of the file, or the frames of its trajectory, one after the other in films, so many per second; the last one stays.
+    /// Pictures show the first. Of a trajectory 25 by default.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub models_per_s: Option<f64>,
+    /// CSV of its motion, as of boxes: `t,x,y,z[,yaw_deg]`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<String>,
     /// How it is drawn.
     #[serde(default)]
     pub style: MoleculeStyleDoc,
@@ -76,8 +86,20 @@ impl MoleculeDoc {
     pub fn of(id: String, source: &str) -> Self {
         let source = source.to_owned();
         let style = MoleculeStyleDoc::default();
-        let (must_see, models_per_s) = (false, None);
-        Self { id, source, must_see, select: None, assembly: None, model: None, models_per_s, style, transform: None }
+        Self {
+            id,
+            source,
+            must_see: false,
+            select: None,
+            assembly: None,
+            model: None,
+            trajectory: None,
+            trajectory_every: None,
+            models_per_s: None,
+            motion: None,
+            style,
+            transform: None,
+        }
     }
 }
 

@@ -69,7 +69,10 @@ impl Document {
                     l.motion.iter_mut().for_each(&mut one);
                 }
                 LayerDoc::City(l) => l.source.each(&mut one),
-                LayerDoc::Molecule(l) => one(&mut l.source),
+                LayerDoc::Molecule(l) => {
+                    one(&mut l.source);
+                    l.trajectory.iter_mut().chain(&mut l.motion).for_each(&mut one);
+                }
                 LayerDoc::Volume(l) => {
                     one(&mut l.source);
                     if names_a_document(&l.transfer) {

@@ -79,6 +79,7 @@ enum Mark {
 pub(crate) const HEAD: u64 = 64 << 10;
 
 const ATOMS: &str = "atoms of a molecule";
+const OVER_TIME: &str = "places of atoms over time";
 const VOXELS: &str = "a volume of voxels";
 const CITY: &str = "a city model";
 const FEATURES: &str = "map features";
@@ -94,6 +95,7 @@ const WATCH: &str = "the track of a watch";
 const UNPLACED: &str = "a picture without a georeference";
 
 const AS_PDB: &str = "turn it into PDB or mmCIF";
+const AS_TRAJECTORY: &str = "name it as trajectory of the molecule that it moves: animate MOLECULE --trajectory FILE";
 const AS_GEOJSON: &str = "ogr2ogr or QGIS turn it into GeoJSON";
 const AS_GEOTIFF: &str = "gdal_translate turns it into GeoTIFF";
 const AS_DEM: &str = "grid its ground points into a GeoTIFF, as with pdal";
@@ -262,6 +264,9 @@ pub const FORMATS: &[Format] = &[
     unread("SDF", ATOMS, &[".sdf"], &[], AS_PDB),
     unread("Mol2", ATOMS, &[".mol2"], &[], AS_PDB),
     unread("GROMACS coordinates", ATOMS, &[".gro"], &[], AS_PDB),
+    unread("XTC", OVER_TIME, &[".xtc"], &[At(0, b"\0\0\x07\xcb"), At(0, b"\0\0\x07\xe7")], AS_TRAJECTORY),
+    unread("DCD", OVER_TIME, &[".dcd"], &[At(4, b"CORD")], AS_TRAJECTORY),
+    unread("GROMACS trajectory", OVER_TIME, &[".trr"], &[], "turn it into XTC with gmx trjconv"),
     unread("FIT", WATCH, &[".fit"], &[At(8, b".FIT")], AS_GPX),
     unread("IGC", WATCH, &[".igc"], &[], AS_GPX),
     unread("NMEA", WATCH, &[".nmea"], &[First("$GP"), First("$GN")], AS_GPX),

@@ -57,7 +57,7 @@ pub use input::{InputFile, sha256, sha256_of_file};
 pub use known::{Known, is_picture, readable};
 pub use loaded::Loaded;
 pub use mesh::{MeshFile, load_mesh};
-pub use molecule::{Models, MoleculeFile, load_frames, load_model, load_molecule};
+pub use molecule::{Models, MoleculeFile, Trajectory, Wanted, load_frames, load_model, load_molecule, load_trajectory};
 pub use packed::{inside, tiles};
 pub use pyramid::is_pyramid;
 pub use ramp::load_ramp;

@@ -60,7 +60,7 @@ pub use areas::{fill_surfaces, restyle};
 pub use belvedere_construct::ground_moves::{GroundMovesReport, MoveReport, RouteReport};
 pub use error::BelvedereError;
 pub use layers::{LayerRequest, load};
-pub use options::{Needs, OpenOptions, show_molecules};
+pub use options::{Needs, OpenOptions, set_in_motion, show_molecules};
 pub use record::AreaRecord;
 pub use strip::StripReport;
 pub use trust::Trust;

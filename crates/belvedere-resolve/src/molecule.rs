@@ -8,7 +8,7 @@ use crate::BelvedereError;
 use belvedere_core::DVec3;
 use belvedere_core::{Warning, WarningKind};
 use belvedere_document::{ModelsDoc, MoleculeDoc, TransformDoc};
-use belvedere_io::{Models, MoleculeFile, load_frames, load_model};
+use belvedere_io::{Models, MoleculeFile, Wanted, load_frames, load_model, load_trajectory};
 use belvedere_scene::molecule::{ModelTransform, MoleculeColor, MoleculeFilm, Paint, Representation, Selection};
 use belvedere_scene::{LayerKind, Molecule, MoleculeLayer, MoleculeStyle};
 
@@ -47,7 +47,7 @@ pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &MoleculeDoc) ->
     };
     let layer = MoleculeLayer::new(molecule, &style, placement).map_err(|e| loader.fail(index, "source", e))?;
     let layer = MoleculeLayer { label_px: doc.style.labels.then_some(doc.style.label_px), ..layer };
-    let layer = match doc.models_per_s {
+    let layer = match models_per_s(doc) {
         Some(models_per_s) => layer.filmed(MoleculeFilm { models, models_per_s, style }),
         None => layer,
     };
@@ -56,6 +56,16 @@ pub(super) fn layer(loader: &mut Loader<'_>, index: usize, doc: &MoleculeDoc) ->
         None => layer,
     };
     Ok(layer.into())
+}
+
+/// Frames of a trajectory per second of film, unless stated.
+const FRAMES_PER_S: f64 = 25.0;
+/// Longest bond that is taken for one, angstrom: longer ones are those of molecules that a periodic box cuts.
+const LONGEST_BOND: f64 = 4.0;
+
+/// Models per second; `None` for what stands still.
+fn models_per_s(doc: &MoleculeDoc) -> Option<f64> {
+    doc.models_per_s.or(doc.trajectory.as_ref().map(|_| FRAMES_PER_S))
 }
 
 /// Bytes at the peak of making the triangles of an atom: 120 for each triangle, in sizes from 100,000 atoms on.
@@ -68,6 +78,47 @@ fn per_atom(doc: &MoleculeDoc, molecule: &Molecule) -> u64 {
     }
 }
 
+/// A molecule in the first frame of a trajectory, and the places of its atoms in all of them.
+fn over_time(
+    loader: &mut Loader<'_>,
+    index: usize,
+    (name, every): (&str, usize),
+    file: MoleculeFile,
+) -> Result<(Molecule, Vec<Vec<DVec3>>), BelvedereError> {
+    let path = loader.file(index, "trajectory", name)?;
+    loader.options.progress.tick("reading trajectories", 0.0)?;
+    let read = load_trajectory(&path, &Wanted { first: 0, every, most: usize::MAX }, &loader.options.limits())?;
+    let read = loader.take(index, read);
+    let molecule = file.molecule;
+    let count = molecule.atoms().len();
+    if read.atoms != count {
+        let left_out = match file.alternates {
+            0 => String::new(),
+            n => format!(", without {n} at alternate locations"),
+        };
+        let reason = format!(
+            "trajectory {name} has {} atoms, the source {count}{left_out}; give the structure from which it was made, or write both for the same atoms",
+            read.atoms
+        );
+        return Err(loader.fail(index, "trajectory", reason));
+    }
+    let place = |p: &[f32; 3]| DVec3::from_array(p.map(f64::from));
+    let frames: Vec<Vec<DVec3>> = read.frames.iter().map(|frame| frame.iter().map(place).collect()).collect();
+    let broken = |frame: &Vec<DVec3>| {
+        let is_long = |[a, b]: [u32; 2]| frame[a as usize].distance(frame[b as usize]) > LONGEST_BOND;
+        molecule.bonds().iter().filter(|bond| is_long(**bond)).count()
+    };
+    if let Some((k, n)) = frames.iter().map(broken).enumerate().find(|(_, n)| *n > 0) {
+        let note = format!(
+            "{n} bonds are longer than {LONGEST_BOND} angstrom in frame {}: the periodic box cuts molecules; make them whole in the trajectory first",
+            k * every + 1
+        );
+        loader.note(index, [Warning::new(WarningKind::Suspect, note).with("bonds", n as f64)]);
+    }
+    let first = frames.first().map(|frame| molecule.at(frame)).unwrap_or(molecule);
+    Ok((first, frames))
+}
+
 /// An error where keys about models contradict one another.
 fn check_models(loader: &Loader<'_>, index: usize, doc: &MoleculeDoc) -> Result<(), BelvedereError> {
     if doc.model == Some(ModelsDoc::Number(0)) {
@@ -77,10 +128,18 @@ fn check_models(loader: &Loader<'_>, index: usize, doc: &MoleculeDoc) -> Result<
         let reason = "an assembly is made of one model; name one as model, or leave assembly out";
         return Err(loader.fail(index, "assembly", reason));
     }
-    if let Some(rate) = doc.models_per_s {
+    if doc.trajectory_every.is_some_and(|every| every == 0 || doc.trajectory.is_none()) {
+        let reason = "trajectory_every is the step from 1 between the frames of a trajectory; name one as trajectory";
+        return Err(loader.fail(index, "trajectory_every", reason));
+    }
+    if matches!(doc.model, Some(ModelsDoc::All(_))) && doc.trajectory.is_some() {
+        let reason = "a trajectory is of one model; leave model or trajectory out";
+        return Err(loader.fail(index, "model", reason));
+    }
+    if let Some(rate) = models_per_s(doc) {
         let reason = match rate > 0.0 && rate.is_finite() {
             false => format!("models_per_s is {rate}, it must be greater than 0"),
-            true if doc.model.is_some() => {
+            true if doc.model.is_some() && doc.trajectory.is_none() => {
                 "model chooses what stands still, models_per_s shows all one after the other; leave one of them out"
                     .into()
             }
@@ -107,6 +166,7 @@ fn source(
             ("assembly", doc.assembly.is_some()),
             ("model", doc.model.is_some()),
             ("models_per_s", doc.models_per_s.is_some()),
+            ("trajectory", doc.trajectory.is_some()),
         ];
         if let Some((key, _)) = asked.into_iter().find(|(_, asked)| *asked) {
             let reason = format!("{key} is for files, built-in molecules have none; leave it out");
@@ -125,7 +185,8 @@ fn source(
         Some(ModelsDoc::All(_)) => Models::All,
     };
     let (options, limits) = (loader.options, loader.options.limits());
-    let file = match (options.arrays.find(&path)?, doc.models_per_s) {
+    let of_models = doc.models_per_s.filter(|_| doc.trajectory.is_none());
+    let file = match (options.arrays.find(&path)?, of_models) {
         (Some(array), rate) => {
             let loaded = array.atoms()?.molecule(&path, (models, rate.is_some()), &limits)?;
             loader.of_array(index, array, loaded)
@@ -133,8 +194,11 @@ fn source(
         (None, Some(_)) => loader.take(index, load_frames(&path, &limits)?),
         (None, None) => loader.take(index, load_model(&path, models, &limits)?),
     };
-    if doc.models_per_s.is_some() {
+    if of_models.is_some() {
         return Ok((file.molecule, file.frames));
+    }
+    if let Some(name) = &doc.trajectory {
+        return over_time(loader, index, (name, doc.trajectory_every.unwrap_or(1)), file);
     }
     let molecule = match doc.assembly.as_deref() {
         Some(ASYMMETRIC) => Ok(file.molecule),

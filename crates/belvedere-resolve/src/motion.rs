@@ -51,11 +51,6 @@ impl Motions {
     /// The scene at a time, seconds.
     pub fn at(&self, t: f64) -> Scene {
         let mut scene = (*self.rest).clone();
-        for (index, motion) in &self.layers {
-            if let Some(kind) = self.rest.layers[*index].kind.placed(&motion.at(t)) {
-                scene.layers[*index].kind = kind;
-            }
-        }
         for (index, _) in &self.films {
             // A model that cannot be drawn leaves the first.
             if let LayerKind::Molecule(molecule) = &self.rest.layers[*index].kind
@@ -64,7 +59,33 @@ impl Motions {
                 scene.layers[*index].kind = LayerKind::Molecule(Box::new(made));
             }
         }
+        for (index, motion) in &self.layers {
+            if let Some(kind) = scene.layers[*index].kind.placed(&motion.at(t)) {
+                scene.layers[*index].kind = kind;
+            }
+        }
         scene
+    }
+
+    /// The middle of a layer at a time, seconds, scene coordinates: of a molecule that of the atoms that must be seen, or else of all.
+    /// `None` without a layer of that id, or if it holds nothing.
+    pub fn middle(&self, id: &str, t: f64) -> Option<DVec3> {
+        let index = self.rest.layers.iter().position(|layer| layer.id == id)?;
+        let layer = &self.rest.layers[index];
+        let bounds = layer.bounds();
+        let resting = match &layer.kind {
+            LayerKind::Molecule(molecule) => molecule.middle(t)?,
+            _ if bounds.is_empty() => return None,
+            _ => bounds.center(),
+        };
+        let motion = self.layers.iter().find(|(moved, _)| *moved == index);
+        Some(motion.map_or(resting, |(_, motion)| motion.at(t).apply(resting)))
+    }
+
+    /// Ids of the layers that move.
+    pub fn moving(&self) -> Vec<&str> {
+        let indices = self.layers.iter().map(|(index, _)| *index).chain(self.films.iter().map(|(index, _)| *index));
+        indices.map(|index| self.rest.layers[index].id.as_str()).collect()
     }
 
     /// Time at which the last layer comes to rest, seconds.

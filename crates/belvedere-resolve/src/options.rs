@@ -61,6 +61,8 @@ pub struct OpenOptions {
     pub area_style: Option<SurfaceDoc>,
     /// What molecules are shown as, instead of the scene's settings.
     pub molecule: Molecules,
+    /// A trajectory of the one molecule of the scene, see [`belvedere_document::MoleculeDoc::trajectory`].
+    pub trajectory: Option<String>,
     /// Leaves stages that need a solver out of the view, for callers that need the document alone.
     pub unsolved: bool,
     /// Leaves out what only pictures need, such as ambient occlusion, for callers that draw none.
@@ -94,6 +96,28 @@ pub fn show_molecules(asked: &Molecules, layers: &mut [LayerDoc]) -> Result<(), 
         return Ok(());
     }
     Err(BelvedereError::Argument(Advice::of_options(&options, "for molecules, and there is none")))
+}
+
+/// Puts a trajectory into the one molecule of a scene.
+///
+/// # Errors
+/// [`BelvedereError::Argument`] if the scene does not hold exactly one molecule.
+pub fn set_in_motion(trajectory: &str, layers: &mut [LayerDoc]) -> Result<(), BelvedereError> {
+    let mut molecules = layers.iter_mut().filter_map(|layer| match layer {
+        LayerDoc::Molecule(molecule) => Some(molecule),
+        _ => None,
+    });
+    match (molecules.next(), molecules.count()) {
+        (Some(molecule), 0) => {
+            molecule.trajectory = Some(trajectory.to_owned());
+            Ok(())
+        }
+        (first, more) => {
+            let count = usize::from(first.is_some()) + more;
+            let advice = Advice::new("{} is for a scene of one molecule, and there are ", &["trajectory"]);
+            Err(BelvedereError::Argument(advice.then(format!("{count}; name it in its layer"))))
+        }
+    }
 }
 
 impl OpenOptions {

@@ -68,7 +68,7 @@ pub fn document(source: &SourceDocument) -> Result<(), BelvedereError> {
     if let Some(doc) = &source.document.animation {
         let goes_on = |kind| matches!(kind, ConstructorKind::PathPreview | ConstructorKind::AutoProbe);
         let constructs = source.document.constructor.as_ref().is_some_and(|c| goes_on(c.kind));
-        let moves = constructs || source.document.layer.iter().any(|l| l.motion().is_some());
+        let moves = constructs || source.document.layer.iter().any(LayerDoc::moves);
         animation(doc, moves)
             .map_err(|(key, reason)| source.error(&["animation", key], format!("animation: {reason}")))?;
     }

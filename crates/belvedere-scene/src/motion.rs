@@ -94,6 +94,12 @@ impl LayerKind {
                 placed.mesh_mut().into_iter().for_each(|layer| layer.mesh = layer.mesh.placed(at));
                 Some(placed)
             }
+            Self::Molecule(layer) => {
+                let mut placed = layer.clone();
+                placed.surface.mesh = layer.surface.mesh.placed(at);
+                placed.placement = layer.placement.placed(at);
+                Some(Self::Molecule(placed))
+            }
             _ => None,
         }
     }

@@ -12,10 +12,10 @@ use crate::{Advice, BelvedereError, Needs, OpenOptions, Session};
 use belvedere_io::crs::utm_epsg;
 use belvedere_resolve::constructor;
 use belvedere_resolve::motion::Motions;
-use belvedere_resolve::show_molecules;
 use belvedere_resolve::solving::Memory;
 use belvedere_resolve::solving::Solving;
 use belvedere_resolve::{self, LayerRequest, hidden, representations, validate};
+use belvedere_resolve::{set_in_motion, show_molecules};
 use belvedere_scene::{Crs, Scene};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -128,6 +128,9 @@ fn change(document: &mut Document, options: &OpenOptions, allowed: &mut Vec<Path
     }
     let land_cover = options.land_cover.as_ref().map(|name| of_user(name, allowed)).transpose()?;
     show_molecules(&options.molecule, &mut document.layer)?;
+    if let Some(trajectory) = &options.trajectory {
+        set_in_motion(&of_user(trajectory, allowed)?, &mut document.layer)?;
+    }
     for layer in &mut document.layer {
         match layer {
             LayerDoc::Area(area) => {

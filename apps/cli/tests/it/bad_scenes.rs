@@ -225,3 +225,41 @@ fn arguments_are_checked_in_one_line() {
     let help = place.ok(&["--help"]);
     assert!(!help.contains("migrate"), "what does not exist yet is in the help");
 }
+
+#[test]
+fn rays_that_are_not_valid_are_mended_and_everything_else_stays_as_it_is_written() {
+    let turn = |m: &str| {
+        format!(
+            "[[stage]] # the bend\nkind = 'curved_rays'\n[[stage.turn]]\nviewpoint = [60, 200, 20]\nt0 = [0, -40, 0]\nt1 = [0, -20, 0]\nt2 = [0, -60, 0]\nnormal = [1, 0.2, 0]\nm = {m}\n"
+        )
+    };
+    let place = Place::new();
+    let scene = BARE.replace("[0.0, 0.0, 0.0]", "[0.0, -100.0, 20.0]").replace("[0.0, 1.0, 0.0]", "[0.0, 0.0, 5.0]");
+    for m in ["40", "'bend'"] {
+        let text = format!("# As it was sent.\n{scene}{}", turn(m));
+        place.write("s.toml", &text);
+        place.fails(&["check", "s.toml"]);
+        let said = place.ok(&["check", "s.toml", "--mend", "good.toml", "--overwrite"]);
+        assert!(said.contains("mended: turn 1") && said.contains("valid"), "{said}");
+        let made = String::from_utf8(super::read(&place.path("good.toml"))).expect("text");
+        assert!(made.starts_with("# As it was sent.\n") && made.contains("[[stage]] # the bend"), "{made}");
+        let lines = |text: &str| text.lines().map(str::to_owned).collect::<Vec<_>>();
+        let (before, after) = (lines(&text), lines(&made));
+        let differ = before.iter().zip(&after).filter(|(a, b)| a != b).count();
+        assert!(before.len() == after.len() && (1..=7).contains(&differ), "{made}");
+        place.ok(&["check", "good.toml"]);
+        place.ok(&["render", "good.toml", "-o", "good.png", "--size", "16x9", "--overwrite"]);
+        // What is valid stays, byte by byte.
+        assert!(place.ok(&["check", "good.toml", "--mend", "again.toml", "--overwrite"]).contains("nothing to mend"));
+        assert_eq!(super::read(&place.path("again.toml")), made.as_bytes());
+    }
+    // What rays do not cause is told as ever, and nothing is written.
+    place.write("s.toml", &format!("{scene}{}", turn("40")).replace("viewpoint", "viewpiont"));
+    assert!(place.fails(&["check", "s.toml", "--mend", "none.toml"]).contains("viewpiont"));
+    assert!(!place.path("none.toml").exists());
+}
+
+#[test]
+fn the_file_of_a_film_is_checked() {
+    refuses(&with("[animation]\ncamera = 'gone.json'"), "gone.json\" is not there");
+}

@@ -231,3 +231,76 @@ fn models_follow_each_other_in_films() {
     assert_eq!(frames.len(), 3);
     assert!(frames[0] != frames[1], "the second model");
 }
+
+/// A DCD file of frames of atoms, as NAMD writes it without a unit cell.
+fn dcd(frames: &[Vec<[f32; 3]>]) -> Vec<u8> {
+    let record = |content: Vec<u8>| {
+        let length = (content.len() as u32).to_le_bytes();
+        [&length[..], &content, &length].concat()
+    };
+    let words = |words: &[u32]| words.iter().flat_map(|w| w.to_le_bytes()).collect::<Vec<u8>>();
+    let mut control = [0u32; 20];
+    (control[0], control[2], control[19]) = (frames.len() as u32, 1, 24);
+    let mut out = record([b"CORD".to_vec(), words(&control)].concat());
+    out.extend(record([words(&[1]), vec![b' '; 80]].concat()));
+    out.extend(record(words(&[frames[0].len() as u32])));
+    for frame in frames {
+        for axis in 0..3 {
+            out.extend(record(frame.iter().flat_map(|p| p[axis].to_le_bytes()).collect()));
+        }
+    }
+    out
+}
+
+#[test]
+fn a_trajectory_moves_its_atoms_and_a_camera_follows_them() {
+    let place = Place::new();
+    place.write("w.pdb", WATER);
+    let at = |x: f32| vec![[x, 0.0, 0.0], [x + 0.96, 0.0, 0.0], [x, 0.0, 8.0]];
+    let frames: Vec<_> = (0..40).map(|k| at(0.5 * k as f32)).collect();
+    std::fs::write(place.path("w.dcd"), dcd(&frames)).expect("written");
+    std::fs::write(place.path("two.dcd"), dcd(&[vec![[0.0; 3]; 2]])).expect("written");
+    let layer = "[[layer]]\nkind = 'molecule'\nid = 'w'\nsource = 'w.pdb'\nstyle.selection = 'all'\nstyle.representation = 'space_filling'\n";
+    let scene = |keys: &str, animation: &str| format!("{HEAD}{layer}{keys}\n[animation]\nfps = 10\n{animation}\n");
+    let film = |name: &str, text: &str| -> (Vec<f64>, usize) {
+        place.write("s.toml", text);
+        place.ok(&["animate", "s.toml", "-o", name]);
+        let manifest = read(&place.path(&format!("{name}/animation.json")));
+        let manifest: serde_json::Value = serde_json::from_slice(&manifest).expect("json");
+        let frames = manifest["frames"].as_array().expect("frames");
+        let eyes = frames.iter().map(|frame| frame["view"]["eye"][0].as_f64().expect("a number")).collect();
+        let mut pictures: Vec<&str> = frames.iter().filter_map(|frame| frame["sha256"].as_str()).collect();
+        pictures.sort_unstable();
+        pictures.dedup();
+        (eyes, pictures.len())
+    };
+    // Every fourth of forty frames, ten per second: one per frame of the film.
+    let keys = "trajectory = 'w.dcd'\ntrajectory_every = 4\nmodels_per_s = 10.0";
+    let (eyes, pictures) = film("free", &scene(keys, ""));
+    assert!(eyes == [0.0; 10] && pictures == 10, "{eyes:?} {pictures}");
+    let (eyes, pictures) = film("followed", &scene(keys, "follow = 'w'"));
+    // The atoms move by two angstrom a frame; at the ends, where they start and stop, the camera lags behind.
+    assert!(eyes.windows(2).all(|pair| (0.3..2.1).contains(&(pair[1] - pair[0]))), "{eyes:?}");
+    assert!((6.0..18.1).contains(&eyes[9]) && pictures == 10, "{eyes:?}");
+    // A molecule as a whole moves by a file, too.
+    place.write("m.csv", "t,x,y,z\n0,0,0,0\n1,20,0,0\n");
+    let (_, pictures) = film("pushed", &scene("motion = 'm.csv'", "frames = 3"));
+    assert_eq!(pictures, 3);
+    // Data alone, by an option.
+    place.ok(&["animate", "w.pdb", "--trajectory", "w.dcd", "-o", "alone", "--frames", "2", "--size", "40x40"]);
+    for (keys, animation, said) in [
+        ("trajectory = 'two.dcd'", "", "trajectory two.dcd has 2 atoms, the source 3"),
+        ("trajectory = 'w.pdb'", "", "which is neither XTC nor DCD"),
+        ("trajectory = 'gone.xtc'", "", "gone.xtc"),
+        ("trajectory = 'w.dcd'\ntrajectory_every = 0", "", "trajectory_every"),
+        ("trajectory_every = 2", "turntable = { deg_per_s = 9 }", "trajectory_every"),
+        ("trajectory = 'w.dcd'\nmodel = 'all'", "", "leave model or trajectory out"),
+        (keys, "follow = 'v'", "\"v\" is no layer that moves"),
+    ] {
+        place.write("s.toml", &scene(keys, animation));
+        let text = place.fails(&["animate", "s.toml", "-o", "bad"]);
+        assert!(text.contains(said), "{keys}: {text}");
+    }
+    let text = place.fails(&["info", "w.dcd"]);
+    assert!(text.contains("--trajectory"), "{text}");
+}

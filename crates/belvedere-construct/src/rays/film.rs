@@ -2,7 +2,8 @@
 //!
 //! Ours: the paper tracks live, where future motion is unknown. In a film it is known. In every frame the visible share of the target
 //! is found for positions of the second viewpoint to the left and right. If no path over these shows the whole target throughout, or
-//! f turns round more than once, positions up, down and aslant are added, first few, then more. The path that hides the target in the
+//! f turns round more than once, rays that begin to bend nearer or farther away are tried, and positions up, down and aslant are added, first
+//! few, then more. The path that hides the target in the
 //! fewest frames, and of those the one that turns, moves and bends least, is a shortest path over frames and positions.
 
 use super::tracking::{Search, WHOLE};
@@ -41,18 +42,40 @@ struct Known {
     side: usize,
 }
 
-/// Plans the bends of a film in one to three passes over its frames: [`Self::add`] every frame, then ask [`Self::wants_more`].
+/// Where rays begin to bend, shares of the target's distance, in the order in which they are tried.
+const STARTS: [f64; 4] = [PlannedBend::START, 0.3, 0.7, 0.12];
+
+/// What is known of a film whose rays begin to bend at one share of the target's distance.
+#[derive(Debug, Clone)]
+struct Attempt {
+    start: f64,
+    frames: Vec<Known>,
+    /// Cost of the cheapest path, and its bends.
+    least: f64,
+    bends: Vec<PlannedBend>,
+}
+
+/// What a pass over the frames finds out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Pass {
+    /// Positions to the left and right, for one of [`STARTS`].
+    Sideways,
+    /// Positions all around, with so many of [`WIDE`]'s rings, for the best of them.
+    Around(usize),
+}
+
+/// Plans the bends of a film in one to six passes over its frames: [`Self::add`] every frame, then ask [`Self::wants_more`].
 /// Same frames, same plan.
 #[derive(Debug)]
 pub struct FilmPlanner {
     options: TrackingOptions,
     time_step_s: f64,
     memory: TrackingMemory,
-    frames: Vec<Known>,
-    /// The pass, from 0, and the next frame of it.
-    pass: usize,
+    /// The last is the one that is worked on.
+    attempts: Vec<Attempt>,
+    pass: Pass,
+    /// The next frame of the pass.
     next: usize,
-    bends: Vec<PlannedBend>,
 }
 
 impl FilmPlanner {
@@ -62,32 +85,38 @@ impl FilmPlanner {
     /// [`ConstructError::Parameter`].
     pub fn new(options: TrackingOptions, time_step_s: f64) -> Result<Self, ConstructError> {
         options.check()?;
-        let memory = TrackingMemory::default();
-        Ok(Self { options, time_step_s, memory, frames: Vec::new(), pass: 0, next: 0, bends: Vec::new() })
+        let (memory, attempts) = (TrackingMemory::default(), vec![Attempt::new(STARTS[0])]);
+        Ok(Self { options, time_step_s, memory, attempts, pass: Pass::Sideways, next: 0 })
     }
 
     /// The next frame of the pass; the arguments are those of [`super::track_target`].
     pub fn add(&mut self, scene: &Scene, base: &View, target: &Target) {
         let sight = TargetSight::remembering(scene, target, &self.memory.trees);
-        let search = Search::new(base, target, &self.options, &sight, &self.memory);
+        let mut search = Search::new(base, target, &self.options, &sight, &self.memory);
         let grow = self.options.grow_px;
+        let Some(attempt) = self.attempts.last_mut() else { return };
+        search.begin_at(attempt.start);
         let seen = |[x, y]: [f64; 2]| -> Seen {
             let at = if y == 0.0 { (x, 0.0) } else { (x.hypot(y), y.atan2(x).to_degrees()) };
             let share = search.seen(at, 0.0);
             (share as f32, share >= WHOLE && (grow == 0.0 || search.seen(at, grow) >= WHOLE))
         };
-        if self.pass == 0 {
-            let grid = ((1.0 / self.options.f_step).ceil() as usize).clamp(1, POSITIONS);
-            let at = |k: usize| [k as f64 / grid as f64 - 1.0, 0.0];
-            let sideways = (0..=2 * grid).into_par_iter().map(|k| seen(at(k))).collect();
-            self.frames.push(Known { sideways, ..Known::default() });
-        } else if let Some(known) = self.frames.get(self.next) {
-            let side = WIDE[self.pass - 1];
-            let nodes: Vec<[f64; 2]> = (1..=side).flat_map(|ring| on_ring(ring, side)).collect();
-            let node = |&at: &[f64; 2]| known.exactly(at).unwrap_or_else(|| seen(at));
-            let wide = nodes.par_iter().map(node).collect();
-            let sideways = known.sideways.clone();
-            self.frames[self.next] = Known { sideways, wide, side };
+        match (self.pass, attempt.frames.get(self.next)) {
+            (Pass::Around(round), Some(known)) => {
+                let side = WIDE[round];
+                let nodes: Vec<[f64; 2]> = (1..=side).flat_map(|ring| on_ring(ring, side)).collect();
+                let node = |&at: &[f64; 2]| known.exactly(at).unwrap_or_else(|| seen(at));
+                let wide = nodes.par_iter().map(node).collect();
+                let sideways = known.sideways.clone();
+                attempt.frames[self.next] = Known { sideways, wide, side };
+            }
+            (Pass::Sideways, _) => {
+                let grid = ((1.0 / self.options.f_step).ceil() as usize).clamp(1, POSITIONS);
+                let at = |k: usize| [k as f64 / grid as f64 - 1.0, 0.0];
+                let sideways = (0..=2 * grid).into_par_iter().map(|k| seen(at(k))).collect();
+                attempt.frames.push(Known { sideways, ..Known::default() });
+            }
+            (Pass::Around(_), None) => {}
         }
         let right = search.right();
         self.memory.keep_side(right);
@@ -96,11 +125,42 @@ impl FilmPlanner {
 
     /// Plans the bends from the passes so far. Returns whether another pass over all frames, with more positions, may find a better path.
     pub fn wants_more(&mut self) -> bool {
-        let disc = Disc::new(self.options.cap_per_s * self.time_step_s, self.pass == 0);
-        let knots = self.frames.len().div_ceil(disc.stride);
+        self.plan();
+        // The next pass begins at the first frame, whose right may be the left of the last.
+        self.memory = self.memory.begun_again();
+        self.next = 0;
+        let Some(now) = self.attempts.last() else { return false };
+        let hides = now.least >= HIDDEN;
+        let hunts = turnings(&now.bends) > 1;
+        let starts = if self.options.z0.is_some() { 1 } else { STARTS.len() };
+        match self.pass {
+            Pass::Sideways if !(hides || hunts) => return false,
+            Pass::Sideways if hides && self.attempts.len() < starts => {
+                self.attempts.push(Attempt::new(STARTS[self.attempts.len()]));
+                return true;
+            }
+            Pass::Sideways => self.pass = Pass::Around(0),
+            Pass::Around(round) if hides && round + 1 < WIDE.len() => self.pass = Pass::Around(round + 1),
+            Pass::Around(_) => return false,
+        }
+        // Later starts must be better to be taken.
+        let better = |a: usize, b: usize| if self.attempts[b].least < self.attempts[a].least { b } else { a };
+        if let Some(best) = (0..self.attempts.len()).reduce(better) {
+            self.attempts.swap(0, best);
+            self.attempts.truncate(1);
+        }
+        true
+    }
+
+    /// Finds the cheapest path through what is known.
+    fn plan(&mut self) {
+        let disc = Disc::new(self.options.cap_per_s * self.time_step_s, self.pass == Pass::Sideways);
+        let Some(attempt) = self.attempts.last() else { return };
+        let frames = &attempt.frames;
+        let knots = frames.len().div_ceil(disc.stride);
         let cost = |knot: usize| {
             let mut sum = vec![0.0; disc.places.len()];
-            for known in self.frames.iter().skip(knot * disc.stride).take(disc.stride) {
+            for known in frames.iter().skip(knot * disc.stride).take(disc.stride) {
                 for (sum, place) in sum.iter_mut().zip(&disc.places) {
                     *sum += self.cost(known, *place);
                 }
@@ -109,17 +169,15 @@ impl FilmPlanner {
         };
         let (least, way) = disc.cheapest(knots, cost);
         let place = |knot: usize| way.get(knot).map(|&n| disc.places[n]);
-        let offsets = (0..self.frames.len()).map(|k| {
+        let offsets = (0..frames.len()).map(|k| {
             let from = place(k / disc.stride).unwrap_or_default();
             let to = place(k / disc.stride + 1).unwrap_or(from);
             between(from, to, (k % disc.stride) as f64 / disc.stride as f64)
         });
-        self.bends = bends(offsets);
-        // The next pass begins at the first frame, whose right may be the left of the last.
-        self.memory = self.memory.begun_again();
-        (self.pass, self.next) = (self.pass + 1, 0);
-        let better = least >= HIDDEN || (self.pass == 1 && turnings(&self.bends) > 1);
-        better && self.pass <= WIDE.len()
+        let bends = bends(offsets, attempt.start);
+        if let Some(attempt) = self.attempts.last_mut() {
+            (attempt.least, attempt.bends) = (least, bends);
+        }
     }
 
     /// Cost of a position in a frame.
@@ -134,8 +192,14 @@ impl FilmPlanner {
     }
 
     /// The bend of every frame.
-    pub fn finish(self) -> Vec<PlannedBend> {
-        self.bends
+    pub fn finish(mut self) -> Vec<PlannedBend> {
+        self.attempts.pop().map_or_else(Vec::new, |attempt| attempt.bends)
+    }
+}
+
+impl Attempt {
+    fn new(start: f64) -> Self {
+        Self { start, frames: Vec::new(), least: f64::INFINITY, bends: Vec::new() }
     }
 }
 
@@ -203,8 +267,8 @@ fn between(from: [f64; 2], to: [f64; 2], share: f64) -> [f64; 2] {
 }
 
 /// Offsets, shares of `a` to the right and upwards, as f and a direction that does not jump.
-fn bends(offsets: impl Iterator<Item = [f64; 2]>) -> Vec<PlannedBend> {
-    let mut before = PlannedBend::default();
+fn bends(offsets: impl Iterator<Item = [f64; 2]>, start: f64) -> Vec<PlannedBend> {
+    let mut before = PlannedBend { start, ..PlannedBend::default() };
     let mut out = Vec::new();
     for [x, y] in offsets {
         let length = x.hypot(y);
@@ -220,7 +284,7 @@ fn bends(offsets: impl Iterator<Item = [f64; 2]>) -> Vec<PlannedBend> {
             // Straight through the middle f changes its sign, not its direction; from the middle as soon as it goes on to the other side.
             let most = if before.f == 0.0 { 90.0 + 1e-9 } else { 179.0 };
             let sign = if turn(sign).abs() > most { -sign } else { sign };
-            before = PlannedBend { f: sign * length, direction_deg: toward(sign) };
+            before = PlannedBend { f: sign * length, direction_deg: toward(sign), start };
         }
         out.push(before);
     }

@@ -43,10 +43,23 @@ impl Sidestep {
 }
 
 /// The second viewpoint of a frame.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlannedBend {
     /// Its signed distance from the eye, -1..=1, in units of `a`.
     pub f: f64,
     /// Direction of f > 0 across the view, degrees from the right of the picture upwards.
     pub direction_deg: f64,
+    /// Distance of plane t0 from the eye, share of the target's; a distance that is stated comes before it.
+    pub start: f64,
+}
+
+impl Default for PlannedBend {
+    fn default() -> Self {
+        Self { f: 0.0, direction_deg: 0.0, start: Self::START }
+    }
+}
+
+impl PlannedBend {
+    /// Usual share of the target's distance at which rays begin to bend, that of the paper.
+    pub const START: f64 = 0.5;
 }

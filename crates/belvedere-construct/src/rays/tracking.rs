@@ -152,6 +152,7 @@ pub fn track_target(
     let goal = match planned {
         Some(bend) => {
             search.direction_deg = bend.direction_deg;
+            search.begin_at(bend.start);
             bend.f
         }
         None => {
@@ -188,6 +189,9 @@ pub(super) struct Search<'a> {
     right: DVec3,
     /// Distance of the second viewpoint at f = 1.
     reach: f64,
+    /// Distance and extent of the target, scene units.
+    depth: f64,
+    extent: f64,
     /// Distances of t0, t1, t2 from the eye; `None` if the target is too near for a bend.
     planes: Option<[f64; 3]>,
     direction_deg: f64,
@@ -206,13 +210,21 @@ impl<'a> Search<'a> {
         // The bend follows the other stages, and so does the target it is made for.
         let center = base.displace(target.center()).map_or(target.center(), |d| d.point);
         let depth = (center - pinhole.eye).dot(pinhole.forward);
-        let planes = planes(depth, target.extent(), pinhole.near, options.z0);
         // Passing overhead turns the camera's right round; the viewpoint stays on its side.
         let turned = memory.right.is_some_and(|before| before.dot(pinhole.right) < 0.0);
         let right = if turned { -pinhole.right } else { pinhole.right };
         let direction_deg = if memory.f == 0.0 { DIRECTIONS_DEG[0] } else { memory.direction_deg };
         let reach = options.a.unwrap_or(0.5 * depth);
-        Self { base, sight, options, right, reach, planes, direction_deg, tried: 0 }
+        let extent = target.extent();
+        let mut out = Self { base, sight, options, right, reach, depth, extent, planes: None, direction_deg, tried: 0 };
+        out.begin_at(PlannedBend::START);
+        out
+    }
+
+    /// Sets where rays begin to bend, as a share of the target's distance, unless the options state a distance.
+    pub(super) fn begin_at(&mut self, start: f64) {
+        let z0 = self.options.z0.unwrap_or(start * self.depth);
+        self.planes = planes(self.depth, self.extent, self.base.pinhole().near, z0);
     }
 
     pub(super) fn right(&self) -> DVec3 {
@@ -331,13 +343,13 @@ impl<'a> Search<'a> {
 }
 
 /// Distances of t0, t1, t2 from the eye for a target at `depth`: t2 stays before the target, by its radius.
-fn planes(depth: f64, radius: f64, near: f64, z0: Option<f64>) -> Option<[f64; 3]> {
+fn planes(depth: f64, radius: f64, near: f64, z0: f64) -> Option<[f64; 3]> {
     if !(depth > 2.0 * near) {
         return None;
     }
     let least = depth / 20.0;
     let last = depth - 2.0 * radius;
-    let first = z0.unwrap_or(0.5 * depth).min(last - least).max(1.001 * near);
+    let first = z0.min(last - least).max(1.001 * near);
     let end = (first + 0.25 * depth).min(last);
     (end - first >= 0.999 * least).then_some([first, 0.5 * (first + end), end])
 }

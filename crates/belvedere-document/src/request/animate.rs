@@ -30,6 +30,12 @@ pub struct Animate {
     /// Turn once around the point looked at, or as the scene says; with a value at so many degrees per second
     #[cfg_attr(feature = "clap", arg(long, value_name = "DEG_PER_S", group = "way", num_args = 0..=1, require_equals = true, default_missing_value = "0", allow_hyphen_values = true, value_parser = value::number))]
     pub turntable: Option<f64>,
+    /// Frames of a molecule over time, XTC or DCD: shows them one after the other
+    #[cfg_attr(feature = "clap", arg(long, value_name = "FILE"))]
+    pub trajectory: Option<String>,
+    /// Follow this layer, which moves: the camera moves with its middle, or with that of the selected atoms
+    #[cfg_attr(feature = "clap", arg(long, value_name = "LAYER"))]
+    pub follow: Option<String>,
     /// Mark the walker, along a route; he is seen through ground that hides him
     #[cfg_attr(feature = "clap", arg(long, value_name = "true|false", num_args = 0..=1, require_equals = true, default_missing_value = "true"))]
     pub marker: Option<bool>,
@@ -68,6 +74,7 @@ impl Animate {
     pub fn motion(&self) -> AnimationDoc {
         AnimationDoc {
             along: self.along.clone(),
+            follow: self.follow.clone(),
             sweep: self.sweep.map(|phi_deg| SweepDoc { phi_deg }),
             turntable: self.turntable.map(|deg_per_s| TurntableDoc { deg_per_s }),
             frames: self.frames,

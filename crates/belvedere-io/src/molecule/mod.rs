@@ -1,4 +1,4 @@
-//! Molecules: PDB, mmCIF and XYZ, plain or gzipped.
+//! Molecules: PDB, mmCIF and XYZ, plain or gzipped; their trajectories: XTC and DCD.
 
 mod assembly;
 mod categories;
@@ -8,15 +8,17 @@ mod pdb;
 mod sites;
 mod structure;
 mod table;
+mod trajectory;
 mod xyz;
 
 pub use assembly::{Assemblies, Assembly, MOST_COPIES};
 pub use table::{AtomColumns, AtomTable};
+pub use trajectory::{Trajectory, Wanted};
 
 use crate::formats::Reader;
 use crate::packed::content;
 use crate::{InputFile, IoError, Limits, Loaded, budget, fs};
-use belvedere_core::DVec3;
+use belvedere_core::{DVec3, Warning, WarningKind};
 use belvedere_scene::Molecule;
 use sites::{Found, Sites};
 use std::path::Path;
@@ -89,6 +91,32 @@ pub fn load_frames(path: &Path, limits: &Limits) -> Result<Loaded<MoleculeFile>,
 /// As [`load_molecule`]; [`IoError::Format`] if there are fewer models.
 pub fn load_model(path: &Path, models: Models, limits: &Limits) -> Result<Loaded<MoleculeFile>, IoError> {
     load(path, models, false, limits)
+}
+
+/// Bytes of the place of an atom in a frame, as it is read and as it is kept.
+const PER_PLACE: u64 = 36;
+
+/// Reads the wanted frames of a trajectory.
+///
+/// # Errors
+/// [`IoError::Os`]; [`IoError::Format`] for a file that is damaged, no trajectory, or whose frames exceed `limits`.
+pub fn load_trajectory(path: &Path, wanted: &Wanted, limits: &Limits) -> Result<Loaded<Trajectory>, IoError> {
+    let bad = |reason: String| IoError::format(path, reason);
+    let length = fs::metadata(path).map_err(|e| IoError::os(path, e))?.len();
+    let _work = budget::work_on(path);
+    limits.ask("the trajectory", length).map_err(|e| bad(e.to_string()))?;
+    let (bytes, file) = InputFile::read(path)?;
+    let counted = trajectory::read(&bytes, &Wanted { most: 0, ..*wanted }).map_err(bad)?;
+    let frames = counted.frames_in_file.saturating_sub(wanted.first).div_ceil(wanted.every.max(1)).min(wanted.most);
+    let places = (frames as u64).saturating_mul(counted.atoms as u64).saturating_mul(PER_PLACE);
+    limits.ask("the frames of the trajectory", length.saturating_add(places)).map_err(|e| bad(e.to_string()))?;
+    let read = trajectory::read(&bytes, wanted).map_err(bad)?;
+    let mut warnings = Vec::new();
+    if read.cut_off {
+        let note = format!("the file ends within a frame; the {} whole ones before it are read", read.frames_in_file);
+        warnings.push(Warning::new(WarningKind::Repaired, note).in_file(path));
+    }
+    Ok(Loaded::new(read, warnings).with_file(file))
 }
 
 fn load(path: &Path, models: Models, frames: bool, limits: &Limits) -> Result<Loaded<MoleculeFile>, IoError> {

@@ -46,6 +46,11 @@ pub struct MoleculeFilm {
 }
 
 impl MoleculeFilm {
+    /// Number of the model at a time, seconds; `None` without models.
+    fn model_at(&self, t: f64) -> Option<usize> {
+        Some(((t * self.models_per_s + 1e-9).max(0.0) as usize).min(self.models.len().checked_sub(1)?))
+    }
+
     /// Time at which the last model comes, seconds.
     pub fn end(&self) -> f64 {
         self.models.len().saturating_sub(1) as f64 / self.models_per_s
@@ -111,14 +116,28 @@ impl MoleculeLayer {
     /// As [`MoleculeLayer::new`].
     pub fn at(&self, t: f64) -> Option<Result<Self, MeshError>> {
         let film = self.film.as_ref()?;
-        let model = ((t * film.models_per_s + 1e-9).max(0.0) as usize).min(film.models.len().checked_sub(1)?);
-        let molecule = self.molecule.at(&film.models[model]);
+        let molecule = self.molecule.at(&film.models[film.model_at(t)?]);
         let made = Self::new(molecule, &film.style, self.placement);
         let keep = |mut made: Self| {
             made.surface.opacity = self.surface.opacity;
             Self { film: self.film.clone(), label_px: self.label_px, wanted: self.wanted.clone(), ..made }
         };
         Some(made.map(keep))
+    }
+
+    /// The middle of the atoms that must be seen, or else of all that are drawn, at a time of its film, seconds; scene coordinates. `None`
+    /// without any.
+    pub fn middle(&self, t: f64) -> Option<DVec3> {
+        let places = self.film.as_ref().and_then(|film| film.models.get(film.model_at(t)?));
+        let wanted = self.wanted.as_ref().map(|wanted| wanted.mask(&self.molecule));
+        let is_meant = |i: usize| match &wanted {
+            Some(mask) => mask[i],
+            None => self.stand_in(i).is_some(),
+        };
+        let place = |i: usize| places.map_or(self.molecule.atoms()[i].position, |places| places[i]);
+        let meant = (0..self.molecule.atoms().len()).filter(|&i| is_meant(i));
+        let (sum, count) = meant.fold((DVec3::ZERO, 0), |(sum, count), i| (sum + place(i), count + 1));
+        (count > 0).then(|| self.placement.apply(sum / f64::from(count)))
     }
 
     /// The same where `must_see` means some of the atoms only.

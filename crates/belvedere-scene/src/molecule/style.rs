@@ -2,6 +2,7 @@
 
 use super::{Atom, Element, Molecule, Selection};
 use crate::Color;
+use crate::Placement;
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -140,5 +141,10 @@ impl ModelTransform {
     /// Scene position of a point given in angstrom.
     pub fn apply(&self, p: DVec3) -> DVec3 {
         self.turn * (self.scale * p) + self.to
+    }
+
+    /// The same, moved as a whole.
+    pub fn placed(&self, at: &Placement) -> Self {
+        Self { turn: DMat3::from_rotation_z(at.yaw) * self.turn, to: at.apply(self.to), ..*self }
     }
 }

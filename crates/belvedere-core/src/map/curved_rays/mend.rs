@@ -1,10 +1,10 @@
 //! The nearest valid camera to one that is not.
 
+use super::CurvedRays;
 use super::build::Chain;
 use super::check::{TurnContext, axis, corner_direction, corner_pixels};
 use super::remedy::{heals_well, rounded, smallest};
 use super::spec::{CurvedRaysError, Model, Pencil, Remedy, Sharpness, TurnSpec};
-use super::CurvedRays;
 use crate::Pinhole;
 use glam::DVec3;
 

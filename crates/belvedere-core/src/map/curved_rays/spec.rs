@@ -15,7 +15,7 @@ pub enum Model {
     Modified,
     /// Quadratic Bezier arcs (Cui et al. 2010, original model).
     Original,
-    /// Broken rays that bend at t1: the general linear ("graph") camera that the paper compares with.
+    /// Broken rays that bend at t1: the C0 camera that the paper compares with.
     C0,
     /// Curvature-continuous rays; ours, beyond the paper.
     C2,

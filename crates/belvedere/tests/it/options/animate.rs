@@ -13,7 +13,9 @@ use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
 /// Options that another test tries.
-const ELSEWHERE: [(&str, &str); 5] = [
+const ELSEWHERE: [(&str, &str); 6] = [
+    // It is an option of opening, and needs a molecule.
+    ("trajectory", "molecules.rs of the command line"),
     // It needs large ground.
     ("lod", "lod.rs of the renderer"),
     // The frames are the same.
@@ -34,6 +36,7 @@ fn rows() -> Vec<(&'static str, Does)> {
         ("frames", Changes(json!(3), none())),
         ("fps", Changes(json!(10), none())),
         ("along", IsRefused(json!("gone"), "gone")),
+        ("follow", IsRefused(json!("gone"), "follow")),
         ("speed", Changes(json!(30), none())),
         ("sweep", Changes(json!([30, 60, 0]), json!({ "along": null, "sweep": [20, 50, 0] }))),
         ("turntable", Changes(json!(90), free())),
