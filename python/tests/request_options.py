@@ -24,7 +24,7 @@ OWN: dict[str, tuple[str, dict[str, str]]] = {
     }),
     "animate": ("animate", {
         **DRAWN, "frames": "frames", "fps": "fps", "along": "along", "speed": "speed_mps", "sweep": "sweep_deg", "turntable": "turntable_deg_per_s",
-        "marker": "marker", "clock": "clock", "profile": "profile", "resume": "resume", "part": "part",
+        "trajectory": "trajectory", "follow": "follow", "marker": "marker", "clock": "clock", "profile": "profile", "resume": "resume", "part": "part",
     }),
     "disocclude": ("disocclude", {
         "data": "dem", "features": "features", "rivers": "rivers", "eye": "eye", "look": "look_at", "fov": "fov_x_deg", "mode": "mode",
