@@ -261,5 +261,8 @@ fn rays_that_are_not_valid_are_mended_and_everything_else_stays_as_it_is_written
 
 #[test]
 fn the_file_of_a_film_is_checked() {
-    refuses(&with("[animation]\ncamera = 'gone.json'"), "gone.json\" is not there");
+    refuses(
+        &with("[animation]\ncamera = 'gone.json'"),
+        "6: animation: path \"gone.json\" is not there (looked in .); check the name, or allow its folder with --allow-root DIR, or for good with: belvedere trust SCENE",
+    );
 }

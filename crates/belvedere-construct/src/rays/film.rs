@@ -143,8 +143,9 @@ impl FilmPlanner {
             Pass::Around(round) if hides && round + 1 < WIDE.len() => self.pass = Pass::Around(round + 1),
             Pass::Around(_) => return false,
         }
-        // Later starts must be better to be taken.
-        let better = |a: usize, b: usize| if self.attempts[b].least < self.attempts[a].least { b } else { a };
+        // Another start is taken where it hides the target in fewer frames.
+        let fewer = |a: usize, b: usize| self.attempts[b].least + 0.5 * HIDDEN < self.attempts[a].least;
+        let better = |a: usize, b: usize| if fewer(a, b) { b } else { a };
         if let Some(best) = (0..self.attempts.len()).reduce(better) {
             self.attempts.swap(0, best);
             self.attempts.truncate(1);

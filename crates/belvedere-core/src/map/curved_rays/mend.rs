@@ -15,6 +15,8 @@ const APART: f64 = 0.02;
 const BEFORE_BEND: f64 = 0.1;
 /// Share of a viewpoint's distance from the eye at which it stands after turns were made gentler once.
 const GENTLER: f64 = 0.8;
+/// Shares of the distance of a viewpoint from the one before that are tried.
+const SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.1, 0.03];
 /// A point that is no number lies at this multiple of the near distance.
 const AHEAD: f64 = 10.0;
 
@@ -43,6 +45,7 @@ impl CurvedRays {
             let again = last.replace(k) == Some(k) && changes.len() > 2;
             let (near, other) = match error.remedy() {
                 // The same turn may need several values; if it needs many it is made anew.
+                _ if changes.last() == Some(&error) => (None, valid_turn(&turns[k], &context, Way::End)),
                 _ if again && changes.len() % 4 == 3 => (None, nearest_turn(&turns[k], &context)),
                 Some(Remedy::Near { near }) => (Some(*near), None),
                 Some(Remedy::Shrink { factor }) if k > 0 => {
@@ -111,6 +114,17 @@ fn gentler(turns: &mut [TurnSpec], eye: DVec3) {
 /// The nearest valid turn on the way from a turn to one with parallel planes across the axis, in order and apart, and a viewpoint
 /// before them; `None` if there is none.
 pub(super) fn nearest_turn(spec: &TurnSpec, context: &TurnContext<'_>) -> Option<TurnSpec> {
+    valid_turn(spec, context, Way::First)
+}
+
+/// Which valid turn on the way is meant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Way {
+    First,
+    End,
+}
+
+fn valid_turn(spec: &TurnSpec, context: &TurnContext<'_>, way: Way) -> Option<TurnSpec> {
     let (eye, axis) = (context.part.viewpoint, middle(context));
     let start = start(context, axis);
     let ahead = |p: DVec3| (p - eye).dot(axis);
@@ -125,7 +139,7 @@ pub(super) fn nearest_turn(spec: &TurnSpec, context: &TurnContext<'_>) -> Option
     }
     let at = |p: DVec3, depth: f64| p + (depth - ahead(p)) * axis;
     let latest = depths[1] - BEFORE_BEND * reach;
-    let goal = TurnSpec {
+    let upright = TurnSpec {
         viewpoint: at(given.viewpoint, ahead(given.viewpoint).min(latest)),
         t0: at(given.t0, depths[0]),
         t1: at(given.t1, depths[1]),
@@ -133,8 +147,22 @@ pub(super) fn nearest_turn(spec: &TurnSpec, context: &TurnContext<'_>) -> Option
         pencil: Pencil::Parallel { normal: axis },
         m: given.m,
     };
-    let between = |t: f64| {
-        let point = |a: DVec3, b: DVec3| rounded(a.lerp(b, t), &goal, context);
+    // A viewpoint that stands far aside is brought nearer to the one before.
+    SHARES.into_iter().find_map(|share| {
+        let goal = TurnSpec { viewpoint: eye.lerp(upright.viewpoint, share), ..upright };
+        between(&given, &goal, (axis, context), way)
+    })
+}
+
+/// A valid turn on the way from one to another.
+fn between(
+    given: &TurnSpec,
+    goal: &TurnSpec,
+    (axis, context): (DVec3, &TurnContext<'_>),
+    way: Way,
+) -> Option<TurnSpec> {
+    let at = |t: f64| {
+        let point = |a: DVec3, b: DVec3| rounded(a.lerp(b, t), goal, context);
         let t1 = point(given.t1, goal.t1);
         TurnSpec {
             viewpoint: point(given.viewpoint, goal.viewpoint),
@@ -145,7 +173,10 @@ pub(super) fn nearest_turn(spec: &TurnSpec, context: &TurnContext<'_>) -> Option
             m: given.m,
         }
     };
-    smallest(|t| heals_well(&between(t), context), 1.0).map(between)
+    match way {
+        Way::First => smallest(|t| heals_well(&at(t), context), 1.0).map(at),
+        Way::End => Some(at(1.0)).filter(|turn| heals_well(turn, context)),
+    }
 }
 
 /// The planes on the way to parallel ones across the axis: a common line turns across the axis and moves away from the bend point.
