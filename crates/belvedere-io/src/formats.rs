@@ -95,7 +95,7 @@ const WATCH: &str = "the track of a watch";
 const UNPLACED: &str = "a picture without a georeference";
 
 const AS_PDB: &str = "turn it into PDB or mmCIF";
-const AS_TRAJECTORY: &str = "name it as trajectory of the molecule that it moves: animate MOLECULE --trajectory FILE";
+const AS_TRAJECTORY: &str = "name it as trajectory of the molecule that it moves";
 const AS_GEOJSON: &str = "ogr2ogr or QGIS turn it into GeoJSON";
 const AS_GEOTIFF: &str = "gdal_translate turns it into GeoTIFF";
 const AS_DEM: &str = "grid its ground points into a GeoTIFF, as with pdal";

@@ -1,6 +1,6 @@
 //! Cameras of the frames of an animation.
 
-use crate::film::{Adjustment, Following, FollowingBends, RouteLine};
+use crate::film::{Adjustment, Following, FollowingBends, RouteLine, followed};
 use crate::scene_file::{
     self, AnimationDoc, CameraDoc, Document, PointDoc, PresetsDoc, RaysStageDoc, SplitDoc, StageDoc, SweepDoc, TurnDoc,
     TurntableDoc,
@@ -345,9 +345,6 @@ fn resting(
     Ok(vec![pose; frames as usize])
 }
 
-/// Motions quicker than this are not followed, seconds.
-const QUICK_S: f64 = 0.4;
-
 /// The cameras, moved with the layer that is followed, if there is one.
 fn follow(
     session: &Session,
@@ -356,34 +353,13 @@ fn follow(
     mut poses: Vec<Pose>,
 ) -> Result<Vec<Pose>, BelvedereError> {
     let Some(layer) = &animation.follow else { return Ok(poses) };
-    let fail = |reason: String| BelvedereError::Animation(format!("animation: follow: {reason}"));
-    if animation.along.is_some() {
-        return Err(fail("a camera along a route follows its walker; leave along or follow out".into()));
-    }
-    let motions = session.loaded.motions.as_ref().ok_or_else(|| fail("no layer of the scene moves".into()))?;
-    let moving = motions.moving();
-    if !moving.contains(&layer.as_str()) {
-        return Err(fail(format!("\"{layer}\" is no layer that moves; {}", scene_file::suggestion(layer, &moving))));
-    }
-    let middle = |k: usize| motions.middle(layer, k as f64 / fps);
-    let middles: Option<Vec<DVec3>> = (0..poses.len()).map(middle).collect();
-    let middles = middles.ok_or_else(|| fail(format!("\"{layer}\" holds nothing that can be followed")))?;
-    let steady = smoothed(&middles, QUICK_S * fps);
-    for (pose, middle) in poses.iter_mut().zip(&steady) {
-        let by = *middle - steady[0];
+    let motions = session.loaded.motions.as_deref().filter(|_| animation.along.is_none());
+    let steps = followed::steps(motions, layer, poses.len(), fps)
+        .map_err(|reason| BelvedereError::Animation(format!("animation: follow: {reason}")))?;
+    for (pose, by) in poses.iter_mut().zip(steps) {
         (pose.eye, pose.look_at) = (pose.eye + by, pose.look_at + by);
     }
     Ok(poses)
-}
-
-/// Places over time without quick motions: the mean under a bell of a standard deviation of `sigma` frames; the ends are held.
-fn smoothed(places: &[DVec3], sigma: f64) -> Vec<DVec3> {
-    let reach = (3.0 * sigma).ceil().min(places.len() as f64) as isize;
-    let weight = |d: isize| (-0.5 * (d as f64 / sigma.max(1e-9)).powi(2)).exp();
-    let at = |k: isize| places[k.clamp(0, places.len() as isize - 1) as usize];
-    let all: f64 = (-reach..=reach).map(weight).sum();
-    let mean = |k: isize| (-reach..=reach).map(|d| weight(d) * at(k + d)).sum::<DVec3>() / all;
-    (0..places.len() as isize).map(mean).collect()
 }
 
 /// The point that the camera of the scene looks at.

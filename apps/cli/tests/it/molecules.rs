@@ -302,5 +302,5 @@ fn a_trajectory_moves_its_atoms_and_a_camera_follows_them() {
         assert!(text.contains(said), "{keys}: {text}");
     }
     let text = place.ok(&["info", "w.dcd"]);
-    assert!(text.contains("--trajectory"), "{text}");
+    assert!(text.contains("name it as trajectory"), "{text}");
 }

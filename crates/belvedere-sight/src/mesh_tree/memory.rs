@@ -1,4 +1,4 @@
-//! Trees that were built, for those who look at the same scene again: frames of a film.
+//! Trees over meshes that are kept for the next frame of a film.
 
 use super::MeshTree;
 use belvedere_scene::Mesh;
@@ -7,7 +7,7 @@ use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Trees that are remembered, at most; the one that was used longest ago is forgotten first.
-const MOST: usize = 8;
+const TREES: usize = 8;
 
 /// Trees of meshes without some of their parts. What is asked for again is not built again; results are those without it.
 #[derive(Clone, Default)]
@@ -32,7 +32,7 @@ impl TreeMemory {
             return tree;
         }
         let made = if left_out.is_empty() { MeshTree::new(mesh) } else { MeshTree::without_parts(mesh, left_out) };
-        if kept.len() == MOST {
+        if kept.len() == TREES {
             kept.remove(0);
         }
         kept.push(Kept { mesh: mesh.clone(), left_out: left_out.to_vec(), tree: made.tree.clone() });
@@ -76,9 +76,9 @@ mod tests {
         let moved = memory.without_parts(&other, &[1]);
         assert!(!Arc::ptr_eq(&moved.tree, &first.tree));
         assert_eq!(moved.first_crossing(below, above), Some((0.75, 0)));
-        for k in 0..2 * MOST {
+        for k in 0..2 * TREES {
             memory.without_parts(&quad(k as f64), &[]);
         }
-        assert_eq!(memory.0.lock().expect("free").len(), MOST);
+        assert_eq!(memory.0.lock().expect("free").len(), TREES);
     }
 }

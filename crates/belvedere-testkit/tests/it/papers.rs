@@ -33,7 +33,7 @@ fn quoted(cell: &str) -> Vec<&str> {
 fn exists(reference: &str) -> bool {
     let Some((file, name)) = reference.rsplit_once("::") else { return false };
     let Ok(text) = fs::read_to_string(belvedere_testkit::workspace_root().join(file)) else { return false };
-    ["fn ", "struct ", "enum ", "const ", "static ", "trait "].iter().any(|keyword| {
+    ["fn ", "struct ", "enum ", "const ", "static ", "trait ", "def ", "class "].iter().any(|keyword| {
         text.match_indices(&format!("{keyword}{name}"))
             .any(|(at, found)| !text[at + found.len()..].starts_with(|c: char| c.is_alphanumeric() || c == '_'))
     })

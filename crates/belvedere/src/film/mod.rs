@@ -1,7 +1,8 @@
-//! Films along a route: the mover, the bends that follow it, and the ground as a frame draws it.
+//! Films: along a route the mover, the bends that follow it, and the ground as a frame draws it; what a camera follows that moves.
 
 mod bends;
 mod follow;
+pub(crate) mod followed;
 mod ground;
 mod route;
 

@@ -16,6 +16,7 @@ mod check;
 mod form;
 mod location;
 mod mend;
+mod nearest;
 mod phi;
 mod ray;
 mod remedy;

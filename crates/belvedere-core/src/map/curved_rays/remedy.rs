@@ -1,7 +1,7 @@
 //! Errors of violated conditions, with the nearest valid value.
 
 use super::check::{PreviousTurn, TurnContext, UnscaledTurn, Violation, axis, corner_direction, crossing};
-use super::mend::nearest_turn;
+use super::nearest::{heals, nearest_turn, rounded, smallest};
 use super::spec::{CurvedRaysError, Pencil, Remedy, TurnSpec};
 use glam::{DVec2, DVec3};
 
@@ -97,38 +97,6 @@ fn distance(remedy: &Remedy, spec: &TurnSpec) -> f64 {
     }
 }
 
-/// A turn that is made anew ends for every ray of the picture within this multiple of its distance.
-const LATEST_END: f64 = 8.0;
-
-/// Whether a changed turn meets all conditions.
-fn heals(candidate: &TurnSpec, context: &TurnContext<'_>) -> bool {
-    UnscaledTurn::new(candidate, context.turn, &context.part)
-        .is_ok_and(|unscaled| unscaled.check(candidate, context).is_ok())
-}
-
-/// Whether it meets them, and ends in reasonable distance: one that is only just valid ends nowhere near, and no turn fits behind it.
-pub(super) fn heals_well(candidate: &TurnSpec, context: &TurnContext<'_>) -> bool {
-    let Ok(unscaled) = UnscaledTurn::new(candidate, context.turn, &context.part) else { return false };
-    let Ok(forms) = unscaled.check(candidate, context) else { return false };
-    let distance = [candidate.t1, candidate.t2].map(|p| p.distance(context.part.viewpoint));
-    let latest = LATEST_END * distance[0].max(distance[1]);
-    context.corners.iter().all(|px| {
-        let direction = corner_direction(*px, context.root, &context.part);
-        forms.end(direction) * direction.length() <= latest
-    })
-}
-
-/// Share of the distance to the bend point to which remedies are rounded.
-const GRAIN: f64 = 1e-6;
-
-/// A point with as few decimals as the turn's size allows: what is printed is what was tried.
-pub(super) fn rounded(p: DVec3, spec: &TurnSpec, context: &TurnContext<'_>) -> DVec3 {
-    let size = (spec.t1 - context.part.viewpoint).length().max((spec.viewpoint - context.part.viewpoint).length());
-    let decimals = (-(GRAIN * size).log10().floor()).clamp(0.0, 15.0) as usize;
-    let one = |v: f64| format!("{v:.decimals$}").parse().unwrap_or(v) + 0.0;
-    DVec3::new(one(p.x), one(p.y), one(p.z))
-}
-
 /// At most `value`, with six digits.
 fn floor(value: f64) -> f64 {
     if !(value > 0.0) {
@@ -137,24 +105,6 @@ fn floor(value: f64) -> f64 {
     let scale = 10f64.powi(5 - value.log10().floor() as i32);
     let down = (value * scale).floor() / scale;
     format!("{down:.5e}").parse().unwrap_or(down)
-}
-
-/// Smallest `t` in (0, `end`] with `valid(t)`, to about a millionth, assuming that `valid` stays once it holds.
-pub(super) fn smallest(valid: impl Fn(f64) -> bool, end: f64) -> Option<f64> {
-    let steps = (0..=120).map(|i| end * 1.2f64.powi(i - 120));
-    let mut low = 0.0;
-    for t in steps {
-        if valid(t) {
-            let mut high = t;
-            for _ in 0..30 {
-                let middle = 0.5 * (low + high);
-                if valid(middle) { high = middle } else { low = middle }
-            }
-            return Some(high);
-        }
-        low = t;
-    }
-    None
 }
 
 fn shifted_planes(spec: &TurnSpec, context: &TurnContext<'_>, healed: &dyn Fn(&TurnSpec) -> bool) -> Option<Remedy> {
