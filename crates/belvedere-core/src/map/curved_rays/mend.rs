@@ -76,19 +76,21 @@ impl CurvedRays {
 /// A turn with the value that a remedy names.
 fn applied(remedy: &Remedy, spec: &TurnSpec) -> Option<TurnSpec> {
     let mut turn = *spec;
-    match (*remedy, &mut turn.pencil) {
-        (Remedy::MovePoint { name: "line.point", to }, Pencil::Line { point, .. }) => *point = to,
-        (Remedy::MovePoint { name, to }, _) => match name {
-            "t0" => turn.t0 = to,
-            "t2" => turn.t2 = to,
-            "viewpoint" => turn.viewpoint = to,
+    match (remedy, &mut turn.pencil) {
+        (Remedy::MovePoint { name: "line.point", to }, Pencil::Line { point, .. }) => *point = *to,
+        (Remedy::MovePoint { name, to }, _) => match *name {
+            "t0" => turn.t0 = *to,
+            "t2" => turn.t2 = *to,
+            "viewpoint" => turn.viewpoint = *to,
             _ => return None,
         },
-        (Remedy::MovePlanes { by }, _) => [&mut turn.t0, &mut turn.t1, &mut turn.t2].into_iter().for_each(|t| *t += by),
-        (Remedy::Normal { normal }, _) => turn.pencil = Pencil::Parallel { normal },
+        (Remedy::MovePlanes { by }, _) => {
+            [&mut turn.t0, &mut turn.t1, &mut turn.t2].into_iter().for_each(|t| *t += *by)
+        }
+        (Remedy::Normal { normal }, _) => turn.pencil = Pencil::Parallel { normal: *normal },
         (Remedy::SwapPlanes, _) => std::mem::swap(&mut turn.t0, &mut turn.t2),
         (Remedy::BendInPicture, _) => turn.m = Sharpness::Value(1.0),
-        (Remedy::Turn { turn: other }, _) => turn = other,
+        (Remedy::Turn { turn: other }, _) => turn = **other,
         _ => return None,
     }
     Some(turn)

@@ -76,7 +76,7 @@ fn remedy(violation: Violation, spec: &TurnSpec, context: &TurnContext<'_>) -> R
     // One value is easier to change than several, but not if it changes much more.
     let far = found.as_ref().map_or(f64::INFINITY, |remedy| distance(remedy, spec));
     let nearest = || nearest_turn(spec, context).filter(|turn| FARTHER * turn.distance(spec) < far);
-    let several = if far == 0.0 { None } else { nearest().map(|turn| Remedy::Turn { turn }) };
+    let several = if far == 0.0 { None } else { nearest().map(|turn| Remedy::Turn { turn: Box::new(turn) }) };
     several.or(found).unwrap_or(Remedy::Rebuild)
 }
 
@@ -85,9 +85,9 @@ const FARTHER: f64 = 10.0;
 
 /// How far a remedy moves points of a turn, scene units; 0 where it moves none.
 fn distance(remedy: &Remedy, spec: &TurnSpec) -> f64 {
-    match (*remedy, spec.pencil) {
+    match (remedy, spec.pencil) {
         (Remedy::MovePoint { name: "line.point", to }, Pencil::Line { point, .. }) => to.distance(point),
-        (Remedy::MovePoint { name, to }, _) => match name {
+        (Remedy::MovePoint { name, to }, _) => match *name {
             "t0" => to.distance(spec.t0),
             "t2" => to.distance(spec.t2),
             _ => to.distance(spec.viewpoint),

@@ -129,7 +129,7 @@ impl TurnSpec {
 }
 
 /// The nearest valid value for a parameter that is not.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Remedy {
     /// Move one point.
@@ -168,7 +168,7 @@ pub enum Remedy {
     /// Give the turn other values: no change of a single parameter makes it valid.
     Turn {
         /// The nearest valid turn found.
-        turn: TurnSpec,
+        turn: Box<TurnSpec>,
     },
     /// No valid turn was found.
     Rebuild,
