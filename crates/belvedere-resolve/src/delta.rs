@@ -8,6 +8,9 @@ use belvedere_io::{Affine, CrsKind, Limits, Raster, RasterInfo, SampleType, Samp
 use belvedere_scene::{Crs, Progress};
 use std::path::Path;
 
+/// Largest height change, metres.
+const MOST_M: f64 = 100_000.0;
+
 /// The grid of height changes in a GeoTIFF: one band, in the scene's coordinate system, no-data = 0.
 pub(super) fn read(path: &Path, bytes: Vec<u8>, crs: Crs) -> Result<Grid, String> {
     let file = GeoTiff::from_bytes(path, bytes, Limits::default()).map_err(|e| e.to_string())?.value;
@@ -33,7 +36,15 @@ pub(super) fn read(path: &Path, bytes: Vec<u8>, crs: Crs) -> Result<Grid, String
     let raster = file.read(0, &Progress::silent()).map_err(|e| e.to_string())?;
     let (cols, rows) = (info.width, info.height);
     let value = |i: usize| raster.sample_f64(0, i % cols, i / cols).filter(|v| v.is_finite()).unwrap_or(0.0);
-    let values = (0..cols * rows).map(value).collect();
+    let values: Vec<f64> = (0..cols * rows).map(value).collect();
+    if let Some(i) = values.iter().position(|v| v.abs() > MOST_M) {
+        return Err(format!(
+            "{shown}: the height change in column {}, row {} is {:e} m, at most {MOST_M} m either way can be drawn; solve it again",
+            i % cols,
+            i / cols,
+            values[i]
+        ));
+    }
     let [x, y] = map.apply(0.5, 0.5);
     let spacing = DVec2::new(map.0[0], -map.0[4]);
     Grid::new(DVec2::new(x, y), spacing, cols, rows, values).map_err(|e| format!("{shown}: {e}"))

@@ -196,7 +196,9 @@ pub fn pictures() -> Vec<Vec<u8>> {
 /// Grids of height changes.
 pub fn deltas() -> Vec<Vec<u8>> {
     let lowered = (0..NODES * NODES).map(|i| -((i % 7) as f64)).collect();
-    vec![geotiff(info(SampleType::F64, 1), Samples::F64(lowered), None)]
+    // As steep as any that is accepted.
+    let jagged = (0..NODES * NODES).map(|i| if i % 2 == 0 { 99_000.0 } else { -99_000.0 }).collect();
+    [lowered, jagged].map(|values| geotiff(info(SampleType::F64, 1), Samples::F64(values), None)).into()
 }
 
 /// A picture of colours.
