@@ -34,7 +34,7 @@ pub use map::ground_moves::GroundMoves;
 pub use map::rigid::RigidMotion;
 pub use map::spline::SplineBend;
 pub use map::split_rays::SplitRays;
-pub use map::strip::Strip;
+pub use map::straighten::{Strip, Tube};
 pub use map::terrain::TerrainDisocclusion;
 pub use map::{Displaced, SpaceMap, Stage};
 pub use miss::Miss;

@@ -39,6 +39,7 @@ pub mod sun;
 mod symbol;
 mod text;
 mod toml_tree;
+mod tube;
 mod volume;
 
 pub use by_property::{ColorByDoc, ScaleName, SizeByDoc, StepsDoc};
@@ -75,6 +76,7 @@ pub use strip::StripStageDoc;
 pub use stylisation::{StylisationDoc, SwitchOrStrength};
 pub use symbol::SymbolDoc;
 pub use text::{HeightUnit, TextDoc};
+pub use tube::TubeStageDoc;
 pub use volume::VolumeDoc;
 
 use belvedere_core::presets::PresetDocument;
@@ -416,6 +418,7 @@ fn stage(kind: &str, node: &Node) -> Result<Option<StageDoc>, DocError> {
         "terrain_disocclusion" => StageDoc::TerrainDisocclusion(de::from_node(node)?),
         "ground_moves" => StageDoc::GroundMoves(de::from_node(node)?),
         "strip" => StageDoc::Strip(de::from_node(node)?),
+        "tube" => StageDoc::Tube(de::from_node(node)?),
         "relief" => StageDoc::Relief(de::from_node(node)?),
         "spline_bend" => StageDoc::SplineBend(de::from_node(node)?),
         "curved_rays" => StageDoc::CurvedRays(de::from_node(node)?),

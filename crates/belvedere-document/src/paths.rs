@@ -81,8 +81,10 @@ impl Document {
                 }
             }
         }
+        let ids: Vec<String> = self.layer.iter().map(|layer| layer.id().to_owned()).collect();
         for stage in &mut self.stage {
             match stage {
+                StageDoc::Tube(stage) => stage.path.iter_mut().filter(|path| !ids.contains(path)).for_each(&mut one),
                 StageDoc::TerrainDisocclusion(stage) => stage.delta.iter_mut().for_each(&mut one),
                 StageDoc::SplineBend(stage) => match &mut stage.presets {
                     PresetsDoc::Named(name) if names_a_preset_file(name) => one(name),
@@ -93,9 +95,8 @@ impl Document {
         }
         self.text.iter_mut().filter_map(|text| text.fonts.as_mut()).for_each(|fonts| fonts.each(&mut one));
         self.animation.iter_mut().filter_map(|a| a.camera.as_mut()).for_each(&mut one);
-        let ids: Vec<&str> = self.layer.iter().map(LayerDoc::id).collect();
         let paths = self.constructor.iter_mut().filter_map(|c| c.path.as_mut());
-        paths.filter(|path| !ids.contains(&path.as_str())).for_each(&mut one);
+        paths.filter(|path| !ids.contains(path)).for_each(&mut one);
     }
 }
 

@@ -4,6 +4,7 @@ use super::common::PlaneDoc;
 use super::ground_moves::GroundMovesStageDoc;
 use super::relief::ReliefStageDoc;
 use super::strip::StripStageDoc;
+use super::tube::TubeStageDoc;
 use belvedere_core::map::curved_rays::{Model, Sharpness};
 use belvedere_core::presets::PresetDocument;
 use schemars::JsonSchema;
@@ -21,6 +22,8 @@ pub enum StageDoc {
     GroundMoves(GroundMovesStageDoc),
     /// A strip along a route is straightened.
     Strip(StripStageDoc),
+    /// What lies around a line in space is straightened with it.
+    Tube(TubeStageDoc),
     /// Heights are raised, lowered, shown in plan or levelled.
     Relief(ReliefStageDoc),
     /// Space is carried onto a B-spline over the reference plane.
@@ -31,7 +34,7 @@ pub enum StageDoc {
 
 /// Names of the kinds of stages.
 pub(super) const STAGE_KINDS: &[&str] =
-    &["terrain_disocclusion", "ground_moves", "strip", "relief", "spline_bend", "curved_rays"];
+    &["terrain_disocclusion", "ground_moves", "strip", "tube", "relief", "spline_bend", "curved_rays"];
 
 impl StageDoc {
     /// Name of the kind, as files write it.
@@ -40,6 +43,7 @@ impl StageDoc {
             Self::TerrainDisocclusion(_) => "terrain_disocclusion",
             Self::GroundMoves(_) => "ground_moves",
             Self::Strip(_) => "strip",
+            Self::Tube(_) => "tube",
             Self::Relief(_) => "relief",
             Self::SplineBend(_) => "spline_bend",
             Self::CurvedRays(_) => "curved_rays",

@@ -1,18 +1,20 @@
-//! Centrelines of volumes, from `[constructor] centreline`.
+//! Centrelines of volumes, from `centreline` of a constructor or a tube.
 
 use crate::BelvedereError;
 use belvedere_construct::centreline::{Centreline, centreline};
 use belvedere_core::DVec3;
-use belvedere_document::{CentrelineDoc, SourceDocument};
+use belvedere_document::{CentrelineDoc, DocumentError};
 use belvedere_scene::volume::threshold;
 use belvedere_scene::{LayerKind, Scene, Volume};
 
 /// The centreline that a document requests.
-pub(super) fn read(source: &SourceDocument, scene: &Scene, doc: &CentrelineDoc) -> Result<Centreline, BelvedereError> {
-    let fail = |key: &str, reason: String| {
-        let keys: &[&str] = &["constructor", "centreline", key];
-        source.error(keys, format!("constructor: centreline: {reason}"))
-    };
+///
+/// * `fail`: the error at a key of its table.
+pub(super) fn read(
+    scene: &Scene,
+    doc: &CentrelineDoc,
+    fail: &dyn Fn(&str, String) -> DocumentError,
+) -> Result<Centreline, BelvedereError> {
     let layer = scene.layers.iter().find(|l| l.id == doc.volume);
     let volume = match layer.map(|l| &l.kind) {
         Some(LayerKind::Volume(layer)) => &*layer.volume,

@@ -15,7 +15,7 @@ use belvedere_construct::rays::{
 use belvedere_core::{EarthCurvature, Stage, View};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_document::paths::Roots;
-use belvedere_document::{ConstructorDoc, ConstructorKind, SourceDocument, StageDoc};
+use belvedere_document::{ConstructorDoc, ConstructorKind, DocumentError, SourceDocument, StageDoc};
 use belvedere_io::InputFile;
 use belvedere_scene::{LayerKind, Scene};
 use belvedere_sight::refusal;
@@ -154,6 +154,7 @@ pub(super) fn check_stages(source: &SourceDocument) -> Result<(), BelvedereError
         StageDoc::Strip(_) if previews || probes => {
             Some("it works in space as it is, not as a strip unrolls it; remove the strip stage")
         }
+        StageDoc::Tube(_) => Some("it works in space as it is, not as a tube straightens it; remove the tube stage"),
         StageDoc::Relief(_) if previews || probes => {
             Some("it works in space as it is, not as a relief stage changes it; remove the relief stage")
         }
@@ -176,7 +177,12 @@ pub(super) fn check_stages(source: &SourceDocument) -> Result<(), BelvedereError
 pub(super) fn check_path(source: &SourceDocument, roots: &Roots, scene: &Scene) -> Result<(), BelvedereError> {
     let doc = stated(source).filter(|doc| doc.kind == ConstructorKind::PathPreview);
     let Some(name) = doc.and_then(|doc| doc.path.as_deref()) else { return Ok(()) };
-    path::read(source, roots, scene, name).map(drop)
+    path::read(source, roots, scene, name, &|reason| of_path(source, reason)).map(drop)
+}
+
+/// An error of the path of a preview.
+fn of_path(source: &SourceDocument, reason: String) -> DocumentError {
+    source.error(&["constructor", "path"], format!("constructor: {reason}"))
 }
 
 /// The view `base` with the turns of the document's constructor.
@@ -301,10 +307,13 @@ fn prepared<'m>(
     let made_from = (doc, image);
     if memory.as_ref().is_none_or(|known| known.made_from != made_from) {
         let doc = &made_from.0;
-        let traced = doc.centreline.as_ref().map(|doc| centreline::read(source, scene, doc)).transpose()?;
+        let of_centreline = |key: &str, reason: String| {
+            source.error(&["constructor", "centreline", key], format!("constructor: centreline: {reason}"))
+        };
+        let traced = doc.centreline.as_ref().map(|doc| centreline::read(scene, doc, &of_centreline)).transpose()?;
         let (points, file) = match &traced {
             Some(traced) => (traced.points.clone(), None),
-            None => path::read(source, roots, scene, doc.path.as_deref().unwrap_or_default())?,
+            None => path::read(source, roots, scene, doc.path.as_deref().unwrap_or_default(), &|r| of_path(source, r))?,
         };
         let centreline = traced.map(|t| t.report);
         let (walls, warnings) = wall::around(source, scene, &points)?;

@@ -4,20 +4,22 @@ use super::motion;
 use crate::BelvedereError;
 use belvedere_core::DVec3;
 use belvedere_document::paths::Roots;
-use belvedere_document::{DocError, SourceDocument};
+use belvedere_document::{DocError, DocumentError, SourceDocument};
 use belvedere_io::InputFile;
 use belvedere_scene::Scene;
 use serde::Deserialize;
 use std::path::Path;
 
-/// The points of the path that `[constructor] path` names, and the file of the path, if any.
+/// The points of the path that a constructor or a tube names, and the file of the path, if any.
+///
+/// * `fail`: the error at its key.
 pub(super) fn read(
     source: &SourceDocument,
     roots: &Roots,
     scene: &Scene,
     name: &str,
+    fail: &dyn Fn(String) -> DocumentError,
 ) -> Result<(Vec<DVec3>, Option<InputFile>), BelvedereError> {
-    let keys = ["constructor", "path"];
     if let Some(layer) = scene.layers.iter().find(|l| l.id == name) {
         if let Some(line) = layer.kind.lines() {
             let gap = scene.terrain().map_or(1.0, |t| 20.0 * t.spacing().max_element());
@@ -25,20 +27,19 @@ pub(super) fn read(
         }
         let moves = source.document.layer.iter().find(|l| l.id() == name).and_then(|l| l.motion());
         if let Some(file) = moves {
-            let path = roots.resolve(file).map_err(|e| source.origin.refusal(&keys, "", e))?;
+            let path = roots.resolve(file).map_err(|e| fail(e.to_string()))?;
             let (text, _) = belvedere_document::read_text(&path)?;
             return Ok((motion::parse(&text).map_err(|e| e.in_file(&path))?.path(), None));
         }
-        let reason = format!(
-            "constructor: layer \"{name}\" is no line and does not move; name a line layer, a layer with motion, or a file"
-        );
-        return Err(source.error(&keys, reason).into());
+        let reason =
+            format!("layer \"{name}\" is no line and does not move; name a line layer, a layer with motion, or a file");
+        return Err(fail(reason).into());
     }
     let path = roots.resolve(name).map_err(|e| {
         let ids: Vec<&str> = scene.layers.iter().map(|l| l.id.as_str()).collect();
         let hint =
             if ids.is_empty() { String::new() } else { format!("; {}", belvedere_document::suggestion(name, &ids)) };
-        source.error(&keys, format!("constructor: \"{name}\" is no layer of the scene, and as a file: {e}{hint}"))
+        fail(format!("\"{name}\" is no layer of the scene, and as a file: {e}{hint}"))
     })?;
     let (text, file) = belvedere_document::read_text(&path)?;
     let points = parse(&path, &text).map_err(|e| e.in_file(&path))?;

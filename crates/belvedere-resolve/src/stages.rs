@@ -5,6 +5,7 @@ use super::solving::Solving;
 use super::spline::spline;
 use super::strip::StripReport;
 use super::terrain;
+use super::tube::TubeReport;
 use crate::BelvedereError;
 use belvedere_construct::ground_moves::GroundMovesReport;
 use belvedere_core::Warning;
@@ -35,6 +36,8 @@ pub(super) struct ResolvedStages {
     pub(super) moved: Option<GroundMovesReport>,
     /// Report of the strip, if there is one.
     pub(super) strip: Option<StripReport>,
+    /// Report of the tube, if there is one.
+    pub(super) tube: Option<TubeReport>,
 }
 
 /// Resolves the stages. Without `solving` an intent of terrain disocclusion gives no stage.
@@ -45,8 +48,15 @@ pub(super) fn resolve(
     warnings: &mut Vec<Warning>,
 ) -> Result<ResolvedStages, BelvedereError> {
     let pinhole = context.camera.pinhole.clone();
-    let mut out =
-        ResolvedStages { stages: Vec::new(), pinhole, documents: Vec::new(), terrain: None, moved: None, strip: None };
+    let mut out = ResolvedStages {
+        stages: Vec::new(),
+        pinhole,
+        documents: Vec::new(),
+        terrain: None,
+        moved: None,
+        strip: None,
+        tube: None,
+    };
     let mut intent = None;
     for (i, stage) in context.source.document.stage.iter().enumerate() {
         let at = context.at(i);
@@ -66,6 +76,11 @@ pub(super) fn resolve(
             StageDoc::Strip(doc) => {
                 let (stage, document, report) = super::strip::resolve(context, doc, warnings, at)?;
                 out.strip = Some(report);
+                (stage, document)
+            }
+            StageDoc::Tube(doc) => {
+                let (stage, document, report) = super::tube::resolve(context, doc, (&mut *inputs, &mut *warnings), at)?;
+                out.tube = Some(report);
                 (stage, document)
             }
             StageDoc::Relief(doc) => super::relief::resolve(context, doc, at)?,

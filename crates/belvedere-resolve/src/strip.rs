@@ -4,7 +4,7 @@ use super::context::{StageContext, plane};
 use super::line_of_stage::LineOfStage;
 use crate::BelvedereError;
 use belvedere_core::map::spline::default_pivot;
-use belvedere_core::map::strip::{SmoothedRoute, Strip, StripError};
+use belvedere_core::map::straighten::{SmoothedRoute, StraightenError, Strip};
 use belvedere_core::{DVec2, Stage};
 use belvedere_core::{Warning, WarningKind};
 use belvedere_document::{StageDoc, StripStageDoc, Table};
@@ -41,7 +41,7 @@ pub(super) fn resolve(
     let (points, named) = line.find(context, at)?;
     let length: f64 = points.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
     let half_width = doc.half_width_m.unwrap_or(WIDTH * length);
-    let fail = |e: StripError| at.error(&[key(&e, named)], words(&e));
+    let fail = |e: StraightenError| at.error(&[key(&e, named)], words(&e));
     let route = SmoothedRoute::new(&points, half_width, doc.smoothing_m).map_err(fail)?;
     let anchor = match doc.anchor {
         Some(anchor) => DVec2::from_array(anchor),
@@ -87,23 +87,23 @@ fn looked_at(context: &StageContext<'_>) -> DVec2 {
 }
 
 /// The error with the keys of the document.
-fn words(error: &StripError) -> String {
+fn words(error: &StraightenError) -> String {
     let text = error.to_string();
     match error {
-        StripError::Range { key: short, .. } => text.replacen(short, key(error, short), 1),
+        StraightenError::Range { key: short, .. } => text.replacen(short, key(error, short), 1),
         _ => text,
     }
 }
 
 /// Key of the document to which an error refers.
-fn key(error: &StripError, route: &'static str) -> &'static str {
+fn key(error: &StraightenError, route: &'static str) -> &'static str {
     match error {
-        StripError::Range { key: "half_width", .. } | StripError::Radius { .. } | StripError::Overlap { .. } => {
-            "half_width_m"
-        }
-        StripError::Range { key: "smoothing", .. } => "smoothing_m",
-        StripError::Range { key, .. } => key,
-        StripError::TooFine { .. } => "half_width_m",
+        StraightenError::Range { key: "half_width", .. }
+        | StraightenError::Radius { .. }
+        | StraightenError::Overlap { .. } => "half_width_m",
+        StraightenError::Range { key: "smoothing", .. } => "smoothing_m",
+        StraightenError::Range { key, .. } => key,
+        StraightenError::TooFine { .. } => "half_width_m",
         _ => route,
     }
 }

@@ -4,6 +4,7 @@ use super::constructor::{self, ConstructorReport};
 use super::ground::{Ground, earth};
 use super::solving::Solving;
 use super::strip::StripReport;
+use super::tube::TubeReport;
 use super::{camera, context, light, stages, terrain};
 use crate::BelvedereError;
 use belvedere_construct::ground_moves::GroundMovesReport;
@@ -29,6 +30,8 @@ pub struct ResolvedView {
     pub moved: Option<GroundMovesReport>,
     /// Report of the strip, if there is one.
     pub strip: Option<StripReport>,
+    /// Report of the tube, if there is one.
+    pub tube: Option<TubeReport>,
     /// Report of the constructor of curved rays, if there is one.
     pub constructor: Option<ConstructorReport>,
     /// Files that were read.
@@ -74,6 +77,6 @@ pub fn resolve(
     document.crs = scene.crs.to_string();
     document.camera = camera.document;
     document.stage = resolved.documents;
-    let (terrain, moved, strip) = (resolved.terrain, resolved.moved, resolved.strip);
-    Ok(ResolvedView { document, view, light, terrain, moved, strip, constructor, inputs, warnings })
+    let (terrain, moved, strip, tube) = (resolved.terrain, resolved.moved, resolved.strip, resolved.tube);
+    Ok(ResolvedView { document, view, light, terrain, moved, strip, tube, constructor, inputs, warnings })
 }

@@ -7,6 +7,7 @@
 //! Layers that are one surface in different colours need no thresholds: the surface is drawn once, and its colours are mixed by weight.
 
 use belvedere_core::map::spline::SplineBend;
+use belvedere_core::map::straighten::{Dimension, Plan};
 use belvedere_core::sections::{MOST_REPRESENTATIONS, StylingSections};
 use belvedere_core::{Aabb, DVec3, SpaceMap, Strip, View};
 use belvedere_scene::{Compositing, RenderJob, Scene};
@@ -223,10 +224,10 @@ fn one_surface(scene: &Scene, shown_by: &[u32]) -> Vec<Vec<usize>> {
 /// triangles across the border have a position along the curve.
 fn unrolled(strip: &Strip, p: DVec3) -> DVec3 {
     strip.apply(p).unwrap_or_else(|_| {
-        let g = strip.route().nearest(p.truncate());
-        let (from, to) = (strip.route().at(g), strip.unrolled().at(g));
-        let v = p.truncate() - from.p;
-        (to.p + v.dot(from.tangent) * to.tangent + v.dot(from.normal()) * to.normal()).extend(p.z)
+        let g = strip.line().nearest(p.truncate());
+        let (from, to) = (strip.line().at(g), strip.unrolled().at(g));
+        let (along, across) = Plan::parts(from.turn, p.truncate() - from.p);
+        (to.p + Plan::vector(to.turn, along, across)).extend(p.z)
     })
 }
 

@@ -109,6 +109,7 @@ fn stage_name(kind: &str) -> &'static str {
     match kind {
         "terrain_disocclusion" => "ground that makes way",
         "strip" => "strip",
+        "tube" => "tube",
         "relief" => "relief",
         "spline_bend" => "spline",
         "curved_rays" => "curved rays",

@@ -166,6 +166,7 @@ pub mod record;
 pub mod renderers;
 mod session;
 mod shown;
+mod straightened;
 pub mod threads;
 pub mod verbs;
 

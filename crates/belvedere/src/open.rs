@@ -8,6 +8,7 @@ use crate::scene_file::{
 };
 use crate::session::Loaded;
 use crate::shown::{end_ground, show_all};
+use crate::straightened;
 use crate::{Advice, BelvedereError, Needs, OpenOptions, Session};
 use belvedere_io::crs::utm_epsg;
 use belvedere_resolve::constructor;
@@ -74,7 +75,9 @@ impl Session {
         hidden::apply(&mut scene, document);
         if source.of_files.is_some() {
             let shown = show_all(&mut source.document, &scene)?;
-            loaded.warnings.push(shown.said());
+            if options.straighten.straighten.is_none() {
+                loaded.warnings.push(shown.said());
+            }
         }
         belvedere_resolve::fill_surfaces(&mut source.document.layer, &scene);
         let (mut scene, mut inputs) = (Arc::new(scene), loaded.inputs);
@@ -93,12 +96,13 @@ impl Session {
             inputs: source.input().cloned().into_iter().chain(inputs).collect(),
             warnings: loaded.warnings,
         };
-        Self::of_document(loaded, source, roots, (!options.unsolved).then_some(&mut solving))
+        let session = Self::of_document(loaded, source, roots, (!options.unsolved).then_some(&mut solving))?;
+        straightened::aimed(session, options)
     }
 }
 
 /// The full path of a file that the user named, whose folder is allowed from now on.
-fn of_user(name: &str, allowed: &mut Vec<PathBuf>) -> Result<String, BelvedereError> {
+pub(crate) fn of_user(name: &str, allowed: &mut Vec<PathBuf>) -> Result<String, BelvedereError> {
     let path = belvedere_io::fs::canonicalize(name).map_err(|e| belvedere_io::IoError::os(Path::new(name), e))?;
     allowed.extend(path.parent().map(Path::to_owned));
     path.to_str().map(str::to_owned).ok_or_else(|| BelvedereError::not_utf8(name))
@@ -127,6 +131,7 @@ fn change(document: &mut Document, options: &OpenOptions, allowed: &mut Vec<Path
         return Err(BelvedereError::Argument(advice));
     }
     let land_cover = options.land_cover.as_ref().map(|name| of_user(name, allowed)).transpose()?;
+    straightened::put_into(document, &options.straighten, allowed)?;
     show_molecules(&options.molecule, &mut document.layer)?;
     if let Some(trajectory) = &options.trajectory {
         set_in_motion(&of_user(trajectory, allowed)?, &mut document.layer)?;
@@ -171,6 +176,7 @@ fn needs_layers(stage: &StageDoc) -> bool {
     match stage {
         StageDoc::Strip(strip) => strip.along.is_some(),
         StageDoc::GroundMoves(_) => true,
+        StageDoc::Tube(tube) => tube.points.is_none(),
         _ => false,
     }
 }
@@ -188,7 +194,7 @@ fn ground_is_needed(doc: &Document) -> bool {
         StageDoc::TerrainDisocclusion(_) | StageDoc::GroundMoves(_) => true,
         // Without an anchor the point that the camera looks at is used, which may lie on the terrain.
         StageDoc::Strip(strip) => strip.anchor.is_none(),
-        StageDoc::CurvedRays(_) => false,
+        StageDoc::Tube(_) | StageDoc::CurvedRays(_) => false,
     });
     let needs_crs = points.into_iter().flatten().any(geographic)
         || doc.earth == EarthDoc::Curved

@@ -8,7 +8,7 @@ use crate::renderers::{self, Renderers, SharedRenderer};
 use crate::scene_file::camera;
 use crate::scene_file::paths::{Roots, folder_of, stays_below};
 use crate::scene_file::request::RendererName;
-use crate::scene_file::{Document, FurnitureDoc, FurnitureWish, OverlayDoc, SourceDocument, StageDoc};
+use crate::scene_file::{CameraDoc, Document, FurnitureDoc, FurnitureWish, OverlayDoc, SourceDocument, StageDoc};
 use crate::{BelvedereError, OpenOptions};
 use belvedere_core::Warning;
 use belvedere_core::{Pinhole, SpaceMap, View};
@@ -19,7 +19,7 @@ use belvedere_resolve::constructor::{self, ConstructorReport};
 use belvedere_resolve::motion::Motions;
 use belvedere_resolve::solving::{Memory, Solving};
 use belvedere_resolve::terrain;
-use belvedere_resolve::{GroundMovesReport, StripReport};
+use belvedere_resolve::{GroundMovesReport, StripReport, TubeReport};
 use belvedere_resolve::{validate, view, wall};
 use belvedere_scene::{Light, Progress, Scene, Stylisation};
 use std::path::{MAIN_SEPARATOR, Path, PathBuf};
@@ -62,6 +62,7 @@ pub(crate) struct Resolved {
     pub(crate) terrain: Option<TerrainReport>,
     pub(crate) moved: Option<GroundMovesReport>,
     pub(crate) strip: Option<StripReport>,
+    pub(crate) tube: Option<TubeReport>,
     pub(crate) constructor: Option<ConstructorReport>,
     pub(crate) inputs: Vec<InputFile>,
     pub(crate) warnings: Vec<Warning>,
@@ -106,6 +107,7 @@ impl Resolved {
             terrain: None,
             moved: None,
             strip: None,
+            tube: None,
             constructor: None,
             inputs: Vec::new(),
             warnings: Vec::new(),
@@ -130,6 +132,7 @@ impl Resolved {
             terrain: made.terrain,
             moved: made.moved,
             strip: made.strip,
+            tube: made.tube,
             constructor: made.constructor,
             inputs: made.inputs,
             warnings: made.warnings,
@@ -228,6 +231,16 @@ impl Session {
         Self { resolved: Resolved { light, overlay, furniture, stylisation, ..Resolved::of_view(view) }, ..self }
     }
 
+    /// The same scene, stages and all, seen by another camera.
+    pub(crate) fn seen_by(mut self, pinhole: Pinhole, camera: CameraDoc) -> Result<Self, BelvedereError> {
+        self.resolved.view = View::new(pinhole, self.view().stages().to_vec())?;
+        if let Some(description) = &mut self.resolved.description {
+            description.source.document.camera = camera.clone();
+            description.resolved.camera = camera;
+        }
+        Ok(self)
+    }
+
     /// The same scene by another document of the same layers: everything that depends on camera and stages is resolved again, marks and
     /// stylisation stay. Without `solving` an intent of terrain disocclusion is left out.
     pub(crate) fn with_document(
@@ -301,6 +314,11 @@ impl Session {
     /// Report of ground that an author moved; `None` if the scene has no stage of that kind.
     pub fn moves_report(&self) -> Option<&GroundMovesReport> {
         self.resolved.moved.as_ref()
+    }
+
+    /// Report of the tube along a centreline; `None` if the scene has no tube.
+    pub fn tube_report(&self) -> Option<&TubeReport> {
+        self.resolved.tube.as_ref()
     }
 
     /// Report of the strip along a route; `None` if the scene has no strip.

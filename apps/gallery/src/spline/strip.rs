@@ -4,7 +4,7 @@ use super::bent::TILE;
 use crate::easel::{Easel, straight};
 use crate::figure_set::Figure;
 use anyhow::{Context, Result};
-use belvedere::core::map::strip::Strip;
+use belvedere::core::map::straighten::Strip;
 use belvedere::core::{DVec2, DVec3, Pinhole, Projection, Stage, View};
 
 const SCENE: &str = include_str!("../../../../scenes/massif_strip.toml");
@@ -33,7 +33,7 @@ pub(super) fn unrolled(easel: &Easel<'_>) -> Result<Figure> {
 
 /// The strip unrolled by a share, from straight above; the same picture extent for all three shares.
 fn plan(strip: &Strip, share: f64, image: [u32; 2]) -> Result<View> {
-    let at = |share: f64| Strip::new(strip.route().clone(), strip.half_width(), share, strip.anchor());
+    let at = |share: f64| Strip::new(strip.line().clone(), strip.half_width(), share, strip.anchor());
     let shapes = [0.0, 0.5, 1.0].map(at).into_iter().collect::<Result<Vec<_>, _>>()?;
     let places: Vec<DVec2> = shapes.iter().flat_map(|s| s.unrolled().positions()).collect();
     let (low, high) = places.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)));

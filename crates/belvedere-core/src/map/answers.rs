@@ -7,7 +7,8 @@ use super::relief::Relief;
 use super::rigid::RigidMotion;
 use super::spline::SplineBend;
 use super::split_rays::SplitRays;
-use super::strip::Strip;
+use super::stage::bow;
+use super::straighten::{Strip, Tube};
 use super::terrain::TerrainDisocclusion;
 use super::{Displaced, Miss, SpaceMap, Stage, StageMap};
 use crate::Aabb;
@@ -120,6 +121,12 @@ impl StageMap for Strip {
     fn misses(&self, bounds: &Aabb) -> bool {
         self.misses(bounds)
     }
+    fn may_hold(&self, way: [DVec3; 3]) -> Option<bool> {
+        Some(self.may_hold(way))
+    }
+    fn points_within(&self, bounds: &Aabb) -> Vec<DVec3> {
+        self.points_within(bounds)
+    }
     fn turns_heights(&self) -> bool {
         false
     }
@@ -127,6 +134,38 @@ impl StageMap for Strip {
     fn rotation_of_body(&self, foot: DVec3) -> Result<DMat3, Miss> {
         let [x, y] = self.jacobian(foot).map(|j| [j.x_axis, j.y_axis])?;
         Ok(DMat3::from_rotation_z((x.y - y.x).atan2(x.x + y.y)))
+    }
+}
+
+impl StageMap for Tube {
+    fn name(&self) -> &'static str {
+        "tube"
+    }
+    fn eased(&self, share: f64) -> Option<Stage> {
+        self.eased(share).map(Stage::Tube)
+    }
+    // Without bounds over edges an estimate, as by default.
+    fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
+        if self.is_whole() { self.edge_bound(p0, p1) } else { bow(self, p0, p1) }
+    }
+    // One search for the feet serves both ends and their bound.
+    fn edge(&self, p0: DVec3, p1: DVec3) -> Option<(DVec3, DVec3, f64)> {
+        if self.is_whole() {
+            return self.edge(p0, p1);
+        }
+        Some((self.apply(p0).ok()?, self.apply(p1).ok()?, bow(self, p0, p1)))
+    }
+    fn displaced_bounds(&self, bounds: &Aabb) -> Option<Aabb> {
+        self.displaced_bounds(bounds)
+    }
+    fn misses(&self, bounds: &Aabb) -> bool {
+        self.misses(bounds)
+    }
+    fn may_hold(&self, way: [DVec3; 3]) -> Option<bool> {
+        Some(self.may_hold(way))
+    }
+    fn points_within(&self, bounds: &Aabb) -> Vec<DVec3> {
+        self.points_within(bounds)
     }
 }
 

@@ -9,7 +9,7 @@ pub mod rigid;
 pub mod spline;
 pub mod split_rays;
 mod stage;
-pub mod strip;
+pub mod straighten;
 pub mod terrain;
 
 pub use stage::{OwnMap, Stage, StageMap};

@@ -1,7 +1,7 @@
 //! The stages of a view: their trait for drawing, picking and measuring, the maps of scene files, and users' own maps.
 
 use super::{
-    Displaced, Miss, SpaceMap, curved_rays, earth, ground_moves, relief, rigid, spline, split_rays, strip, terrain,
+    Displaced, Miss, SpaceMap, curved_rays, earth, ground_moves, relief, rigid, spline, split_rays, straighten, terrain,
 };
 use crate::Aabb;
 use glam::{DMat3, DVec3};
@@ -45,9 +45,7 @@ pub trait StageMap: SpaceMap + Debug + Send + Sync {
     ///
     /// By default an estimate: 1.5 times the largest distance at the quarters of the edge, which is a bound for parabolas and cubics.
     fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
-        let (Ok(a), Ok(b)) = (self.apply(p0), self.apply(p1)) else { return f64::INFINITY };
-        let off = |t: f64| self.apply(p0.lerp(p1, t)).map_or(f64::INFINITY, |p| p.distance(a.lerp(b, t)));
-        1.5 * [0.25, 0.5, 0.75].into_iter().map(off).fold(0.0, f64::max)
+        bow(self, p0, p1)
     }
 
     /// Images of both ends of an edge and [`StageMap::edge_bound`]; `None` if an end has no image.
@@ -70,6 +68,17 @@ pub trait StageMap: SpaceMap + Debug + Send + Sync {
     /// `true`.
     fn has_border(&self) -> bool {
         true
+    }
+
+    /// Whether points of a nearly straight way between displaced points, its ends and its middle, may be images of points; `None` where that
+    /// is not known, as by default.
+    fn may_hold(&self, _way: [DVec3; 3]) -> Option<bool> {
+        None
+    }
+
+    /// Points of a domain that is small or winding, all through its part in `bounds`, so that renderers do not miss it; by default none.
+    fn points_within(&self, _bounds: &Aabb) -> Vec<DVec3> {
+        Vec::new()
     }
 
     /// Whether the stage belongs to the world: it stays in the straight picture, and is no bend. By default `false`.
@@ -99,6 +108,13 @@ pub trait StageMap: SpaceMap + Debug + Send + Sync {
     fn rotation_of_body(&self, foot: DVec3) -> Result<DMat3, Miss> {
         nearest_rotation(self.jacobian(foot)?).ok_or(Miss::OutsideDomain)
     }
+}
+
+/// 1.5 times the largest distance between the image of a straight edge and the edge between the images of its ends at the quarters.
+pub(super) fn bow<M: SpaceMap + ?Sized>(map: &M, p0: DVec3, p1: DVec3) -> f64 {
+    let (Ok(a), Ok(b)) = (map.apply(p0), map.apply(p1)) else { return f64::INFINITY };
+    let off = |t: f64| map.apply(p0.lerp(p1, t)).map_or(f64::INFINITY, |p| p.distance(a.lerp(b, t)));
+    1.5 * [0.25, 0.5, 0.75].into_iter().map(off).fold(0.0, f64::max)
 }
 
 /// The rotation nearest to a matrix of positive determinant, by Higham's iteration `q <- (q + q^-T) / 2`. `None` where the determinant is
@@ -132,7 +148,9 @@ pub enum Stage {
     /// The ground moves sideways and up or down as an author set it.
     GroundMoves(ground_moves::GroundMoves),
     /// A strip along a route is unrolled in plan.
-    Strip(strip::Strip),
+    Strip(straighten::Strip),
+    /// A tube along a centreline is straightened.
+    Tube(straighten::Tube),
     /// Heights are raised, lowered, shown in plan or levelled.
     Relief(relief::Relief),
     /// Space is carried onto a B-spline over the reference plane (Pasewaldt et al. 2011).
@@ -191,13 +209,13 @@ impl Stage {
         Self::Own(OwnMap(Arc::new(map)))
     }
 
-    /// Position in the fixed order of application: earth, terrain, moved ground, strip, relief, spline, own maps, curved rays.
+    /// Position in the fixed order of application: earth, terrain, moved ground, strip or tube, relief, spline, own maps, curved rays.
     pub fn rank(&self) -> u32 {
         match self {
             Self::EarthCurvature(_) => 0,
             Self::TerrainDisocclusion(_) => 1,
             Self::GroundMoves(_) => 2,
-            Self::Strip(_) => 3,
+            Self::Strip(_) | Self::Tube(_) => 3,
             Self::Relief(_) => 4,
             Self::SplineBend(_) | Self::Body(_) => 5,
             Self::Own(_) => 6,
@@ -220,6 +238,7 @@ impl Deref for Stage {
             Self::TerrainDisocclusion(m) => m,
             Self::GroundMoves(m) => m,
             Self::Strip(m) => m,
+            Self::Tube(m) => m,
             Self::Relief(m) => m,
             Self::SplineBend(m) => m,
             Self::Body(m) => m,

@@ -43,7 +43,7 @@ pub struct View {
 pub enum ViewError {
     /// Wrong order or a repeated stage.
     #[error(
-        "stage {second} cannot follow stage {first}; the order is earth, terrain_disocclusion, ground_moves, strip, relief, spline_bend, curved_rays, each at most once"
+        "stage {second} cannot follow stage {first}; the order is earth, terrain_disocclusion, ground_moves, strip or tube, relief, spline_bend, curved_rays, each at most once"
     )]
     Order {
         /// Name of the earlier stage.
@@ -170,6 +170,11 @@ impl View {
     /// The displacement of the ground, if it is a stage.
     pub fn ground(&self) -> Option<&TerrainDisocclusion> {
         self.stages.iter().find_map(|s| if let Stage::TerrainDisocclusion(ground) = s { Some(ground) } else { None })
+    }
+
+    /// The stage that straightens a strip or tube, if there is one.
+    pub fn straightener(&self) -> Option<&Stage> {
+        self.stages.iter().find(|s| matches!(s, Stage::Strip(_) | Stage::Tube(_)))
     }
 
     /// The strip, if it is a stage.

@@ -16,4 +16,5 @@ mod spline_figures;
 mod split_rays;
 mod strip;
 mod terrain;
+mod tube;
 mod views;

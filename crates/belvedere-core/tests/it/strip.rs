@@ -1,6 +1,6 @@
 //! Unrolled strips along a route: laws, an independent reference, bounds, and routes that are refused.
 
-use belvedere_core::map::strip::{BEND_SHARE, SmoothedRoute, Strip, StripError};
+use belvedere_core::map::straighten::{BEND_SHARE, SmoothedRoute, StraightenError, Strip};
 use belvedere_core::{Aabb, DVec2, DVec3, Miss, Pinhole, Projection, SpaceMap, Stage, View};
 use belvedere_testkit::Random;
 use belvedere_testkit::laws::{Continuity, Joint, MapCase, Similarity};
@@ -40,10 +40,10 @@ fn case(name: &str, make: fn(&Similarity) -> Strip) -> MapCase<Strip> {
     let map = make(&Similarity::IDENTITY);
     // Where the curve becomes straight its curvature begins to change at once.
     let joint = |g: f64| {
-        let at = map.route().at(g);
-        Joint { point: (at.p + 150.0 * at.normal()).extend(50.0), across: at.tangent.extend(0.0) }
+        let at = map.line().at(g);
+        Joint { point: (at.p + 150.0 * at.tangent().perp()).extend(50.0), across: at.tangent().extend(0.0) }
     };
-    let joints = [joint(0.0), joint(map.route().length()), joint(20.0 * map.route().spacing())];
+    let joints = [joint(0.0), joint(map.line().length()), joint(20.0 * map.line().spacing())];
     // Rounding may put points very near the border on either side of it once the case is moved.
     MapCase::new(name, region(), make)
         .continuity(Continuity::C1)
@@ -82,7 +82,7 @@ fn dense_foot(line: &[DVec2], p: DVec2) -> (f64, f64, DVec2, DVec2) {
 #[test]
 fn a_dense_polyline_unrolled_agrees() {
     let map = strip(&Similarity::IDENTITY);
-    let curve = map.route();
+    let curve = map.line();
     let per = 400;
     let steps = (curve.curvature().len() - 1) * per;
     let line: Vec<DVec2> = (0..=steps).map(|i| curve.at(curve.length() * i as f64 / steps as f64).p).collect();
@@ -111,14 +111,14 @@ fn a_dense_polyline_unrolled_agrees() {
 #[test]
 fn positions_tangents_and_curvatures_belong_together() {
     let map = shared(&Similarity::IDENTITY, 0.4);
-    for curve in [map.route(), map.unrolled()] {
+    for curve in [map.line(), map.unrolled()] {
         let mut random = Random::new(4);
         for _ in 0..2000 {
             let (g, h) = (random.range(-300.0, curve.length() + 300.0), 1e-3);
             let [before, at, after] = [g - h, g, g + h].map(|g| curve.at(g));
-            assert!(((after.p - before.p) / (2.0 * h) - at.tangent).length() < 1e-8);
-            let bend = (after.tangent - before.tangent).dot(at.normal()) / (2.0 * h);
-            assert!((bend - at.curvature).abs() < 1e-8 && (at.tangent.length() - 1.0).abs() < 1e-14);
+            assert!(((after.p - before.p) / (2.0 * h) - at.tangent()).length() < 1e-8);
+            let bend = (after.tangent() - before.tangent()).dot(at.tangent().perp()) / (2.0 * h);
+            assert!((bend - at.curvature).abs() < 1e-8 && (at.tangent().length() - 1.0).abs() < 1e-14);
         }
         // Arc length, by fine chords.
         let n = 400_000;
@@ -132,9 +132,9 @@ fn positions_tangents_and_curvatures_belong_together() {
 fn nothing_moves_at_the_anchor() {
     for share in [0.3, 1.0] {
         let map = shared(&Similarity::IDENTITY, share);
-        let at = map.route().at(map.route().nearest(map.anchor()));
+        let at = map.line().at(map.line().nearest(map.anchor()));
         for (t, n) in [(0.0, 0.0), (1.0, 3.0), (-2.0, 1.0)] {
-            let p = (at.p + t * at.tangent + n * at.normal()).extend(7.0);
+            let p = (at.p + t * at.tangent() + n * at.tangent().perp()).extend(7.0);
             assert!(map.apply(p).unwrap().distance(p) < 0.01, "{p} {}", map.apply(p).unwrap());
         }
         let p = at.p.extend(3.0);
@@ -144,8 +144,8 @@ fn nothing_moves_at_the_anchor() {
 
 /// A random point of the strip.
 fn places(map: &Strip, random: &mut Random) -> DVec3 {
-    let at = map.route().at(random.range(-400.0, map.route().length() + 400.0));
-    (at.p + random.range(-1.0, 1.0) * map.half_width() * at.normal()).extend(random.range(0.0, 500.0))
+    let at = map.line().at(random.range(-400.0, map.line().length() + 400.0));
+    (at.p + random.range(-1.0, 1.0) * map.half_width() * at.tangent().perp()).extend(random.range(0.0, 500.0))
 }
 
 #[test]
@@ -231,7 +231,7 @@ fn eased_strips_unroll_by_and_by() {
     )
     .unwrap();
     let view = View::new(camera, vec![Stage::Strip(strip(&Similarity::IDENTITY))]).unwrap();
-    let p = strip(&Similarity::IDENTITY).route().at(6000.0).p.extend(0.0);
+    let p = strip(&Similarity::IDENTITY).line().at(6000.0).p.extend(0.0);
     let moved = |share: f64| view.eased(share).unwrap().displace(p).unwrap().point.distance(p);
     let ways = [0.001, 0.25, 0.5, 0.75, 1.0].map(moved);
     assert!(ways[0] < 5.0 && ways.windows(2).all(|w| w[0] < w[1]), "{ways:?}");
@@ -264,8 +264,8 @@ fn strips_that_overlap_are_refused_and_smoothing_cures_them() {
     .map(DVec2::from_array)
     .to_vec();
     let refused = SmoothedRoute::new(&turns, 400.0, Some(240.0)).unwrap_err();
-    let StripError::Overlap { at, distance, widest, .. } = refused else { panic!("{refused:?}") };
-    assert!(at.distance(DVec2::new(5200.0, 350.0)) < 100.0 && (distance - 700.0).abs() < 30.0, "{at} {distance}");
+    let StraightenError::Overlap { at, distance, widest, .. } = refused else { panic!("{refused:?}") };
+    assert!(at.distance(DVec3::new(5200.0, 350.0, 0.0)) < 100.0 && (distance - 700.0).abs() < 30.0, "{at} {distance}");
     let narrow = SmoothedRoute::new(&turns, 0.99 * widest, Some(240.0)).unwrap();
     // The straight extension would cross the road: it ends before.
     assert!(narrow.curve.reach()[1] < narrow.curve.length() + 100.0);
@@ -274,9 +274,9 @@ fn strips_that_overlap_are_refused_and_smoothing_cures_them() {
     assert!(smoother.smoothing > 240.0 && smoother.off > 100.0, "{}", smoother.smoothing);
     let map = Strip::new(smoother.curve, 400.0, 1.0, turns[0]).unwrap();
     for i in 0..200 {
-        let at = map.route().at(f64::from(i) / 199.0 * map.route().length());
+        let at = map.line().at(f64::from(i) / 199.0 * map.line().length());
         for a in [-399.0, 399.0] {
-            let p = (at.p + a * at.normal()).extend(0.0);
+            let p = (at.p + a * at.tangent().perp()).extend(0.0);
             let back = map.invert(map.apply(p).unwrap()).unwrap();
             assert!(back.distance(p) < 1e-6);
         }
@@ -287,13 +287,13 @@ fn strips_that_overlap_are_refused_and_smoothing_cures_them() {
 fn widths_keep_their_share_of_the_radius() {
     let pin = hairpin(1000.0, 3000.0);
     let refused = SmoothedRoute::new(&pin, 900.0, Some(60.0)).unwrap_err();
-    let StripError::Radius { radius, widest, .. } = refused else { panic!("{refused:?}") };
+    let StraightenError::Radius { radius, widest, .. } = refused else { panic!("{refused:?}") };
     assert!((radius - 1000.0).abs() < 30.0 && (widest - BEND_SHARE * radius).abs() < 1e-9, "{refused}");
     assert!(SmoothedRoute::new(&pin, 0.99 * widest, Some(60.0)).is_ok());
     let route = SmoothedRoute::new(&pin, 700.0, None).unwrap();
     assert!(route.curve.largest_curvature() <= BEND_SHARE / 700.0 && route.off < 60.0, "{}", route.off);
     let wide = Strip::new(route.curve, 5000.0, 1.0, pin[0]).unwrap_err();
-    assert!(matches!(wide, StripError::Radius { .. }), "{wide}");
+    assert!(matches!(wide, StraightenError::Radius { .. }), "{wide}");
 }
 
 #[test]
@@ -310,19 +310,19 @@ fn smoothed_routes_stay_near_and_keep_their_ends() {
 fn routes_that_make_no_strip_are_refused() {
     let refused = |points: &[DVec2], width: f64, smoothing| SmoothedRoute::new(points, width, smoothing).unwrap_err();
     let line = [DVec2::ZERO, DVec2::new(1000.0, 0.0)];
-    assert!(matches!(refused(&[], 10.0, None), StripError::TooShort { points: 0, .. }));
-    assert!(matches!(refused(&line[..1], 10.0, None), StripError::TooShort { points: 1, .. }));
-    assert!(matches!(refused(&[line[1]; 5], 10.0, None), StripError::TooShort { points: 5, .. }));
+    assert!(matches!(refused(&[], 10.0, None), StraightenError::TooShort { points: 0, .. }));
+    assert!(matches!(refused(&line[..1], 10.0, None), StraightenError::TooShort { points: 1, .. }));
+    assert!(matches!(refused(&[line[1]; 5], 10.0, None), StraightenError::TooShort { points: 5, .. }));
     let hole = [line[0], DVec2::new(f64::NAN, 0.0), line[1]];
-    assert!(matches!(refused(&hole, 10.0, None), StripError::NotFinite { index: 1, .. }));
-    assert!(matches!(refused(&[DVec2::ZERO, DVec2::splat(1e300)], 10.0, None), StripError::NotFinite { .. }));
+    assert!(matches!(refused(&hole, 10.0, None), StraightenError::NotFinite { index: 1, .. }));
+    assert!(matches!(refused(&[DVec2::ZERO, DVec2::splat(1e300)], 10.0, None), StraightenError::NotFinite { .. }));
     for width in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(refused(&line, width, None), StripError::Range { key: "half_width", .. }));
-        assert!(matches!(refused(&line, 10.0, Some(width)), StripError::Range { key: "smoothing", .. }));
+        assert!(matches!(refused(&line, width, None), StraightenError::Range { key: "half_width", .. }));
+        assert!(matches!(refused(&line, 10.0, Some(width)), StraightenError::Range { key: "smoothing", .. }));
     }
     let circle: Vec<DVec2> = (0..=90).map(|i| 1000.0 * DVec2::from_angle(f64::from(i) * 4f64.to_radians())).collect();
-    assert!(matches!(refused(&circle, 100.0, None), StripError::Winds { .. }));
-    assert!(matches!(refused(&line, 1e-3, None), StripError::TooFine { .. }));
+    assert!(matches!(refused(&circle, 100.0, None), StraightenError::Winds { .. }));
+    assert!(matches!(refused(&line, 1e-3, None), StraightenError::TooFine { .. }));
     // The route leads there and back, with doubled points: only the straight line between the ends is left.
     let back = [line[0], line[0], line[1], line[1], DVec2::new(500.0, 1.0), DVec2::new(500.0, 1.0)];
     let folded = SmoothedRoute::new(&back, 50.0, None).unwrap();
@@ -330,10 +330,10 @@ fn routes_that_make_no_strip_are_refused() {
     let route = SmoothedRoute::new(&road(), HALF_WIDTH, None).unwrap();
     for share in [-0.1, 1.1, f64::NAN] {
         let made = Strip::new(route.curve.clone(), HALF_WIDTH, share, DVec2::ZERO);
-        assert!(matches!(made, Err(StripError::Range { key: "share", .. })));
+        assert!(matches!(made, Err(StraightenError::Range { key: "share", .. })));
     }
     let made = Strip::new(route.curve, HALF_WIDTH, 1.0, DVec2::NAN);
-    assert!(matches!(made, Err(StripError::Range { key: "anchor", .. })));
+    assert!(matches!(made, Err(StraightenError::Range { key: "anchor", .. })));
 }
 
 #[test]
@@ -364,4 +364,21 @@ fn hairpins_are_smoothed_or_refused_but_never_folded() {
         }
     }
     assert!(made > 80, "{made}");
+}
+
+/// Wherever the ground stands, also around the origin, and however short the route is.
+#[test]
+fn points_of_a_strip_reach_both_ends_of_the_ground() {
+    for middle in [DVec2::ZERO, DVec2::new(4e5, -3e6)] {
+        let route = [[25.0, -300.0], [26.0, -250.0], [25.0, -200.0]].map(|p| middle + DVec2::from_array(p));
+        let route = SmoothedRoute::new(&route, 12.0, None).expect("it fits");
+        let strip = Strip::new(route.curve, 12.0, 1.0, middle).expect("it fits");
+        let side = DVec2::splat(575.0);
+        let bounds = Aabb { min: (middle - side).extend(0.0), max: (middle + side).extend(10.0) };
+        let points = strip.points_within(&bounds);
+        let along = |p: &DVec3| p.y - middle.y;
+        let ends = points.iter().map(along).fold([0.0f64; 2], |[south, north], y| [south.min(y), north.max(y)]);
+        assert!(ends[0] < -550.0 && ends[1] > 550.0, "{ends:?} around {middle}");
+        assert!(points.iter().all(|p| p.cmpge(bounds.min).all() && p.cmple(bounds.max).all()));
+    }
 }

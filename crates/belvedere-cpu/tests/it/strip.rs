@@ -3,7 +3,7 @@
 use crate::exact::difference;
 use crate::support::{hills, layer, options, pinhole, render, scene, terrain};
 use belvedere_core::map::spline::{ReferencePlane, SplineBend, default_pivot};
-use belvedere_core::map::strip::{SmoothedRoute, Strip};
+use belvedere_core::map::straighten::{SmoothedRoute, Strip};
 use belvedere_core::presets::PresetDocument;
 use belvedere_core::{DVec2, DVec3, EarthCurvature, Pinhole, Stage, View};
 use belvedere_scene::{LayerKind, Scene};
@@ -26,7 +26,7 @@ fn ground() -> Scene {
 
 /// A view along the road from above its start, and one from the side and above.
 fn cameras(image: [u32; 2]) -> [Pinhole; 3] {
-    let along = strip(1.0).route().at(0.0).tangent.extend(0.0);
+    let along = strip(1.0).line().at(0.0).tangent().extend(0.0);
     let start = DVec3::new(0.0, -560.0, 0.0);
     [
         pinhole(start - 150.0 * along + DVec3::Z * 190.0, start + 500.0 * along, 55.0, image),

@@ -17,6 +17,7 @@ mod others;
 mod paper;
 mod render;
 mod reveal;
+mod straighten;
 #[cfg_attr(not(feature = "clap"), allow(dead_code, unreachable_pub))]
 mod value;
 
@@ -35,6 +36,7 @@ pub use others::{Export, Generalise, Measure};
 pub use paper::Paper;
 pub use render::{AuxBuffer, AuxFormat, Outside, Render};
 pub use reveal::{Reveal, Technique};
+pub use straighten::{Straighten, StraightenedLine};
 pub use value::EXAGGERATION;
 
 /// Parsers of values of options that requests and doors have in common.

@@ -8,7 +8,7 @@ mod transfer;
 
 pub use bricks::{BRICK, Bricks};
 pub use layer::{VolumeLayer, VolumeModel};
-pub use presets::{TRANSFER_NAMES, WALL, threshold};
+pub use presets::{SLICE, TRANSFER_NAMES, WALL, threshold};
 pub use transfer::{TransferError, TransferFunction, TransferPoint, absorbed};
 
 use belvedere_core::{Aabb, DMat3, DVec3};

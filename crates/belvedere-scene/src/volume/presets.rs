@@ -5,7 +5,10 @@ use super::{TransferFunction, TransferPoint, Volume};
 use crate::Color;
 
 /// Names that [`TransferFunction::named`] knows.
-pub const TRANSFER_NAMES: &[&str] = &["auto", "solid", "engine", "ct-bone", "ct-soft", "vessels", "grey"];
+pub const TRANSFER_NAMES: &[&str] = &["auto", "solid", "engine", "ct-bone", "ct-soft", "vessels", "grey", SLICE];
+
+/// Name of the function for cuts: grey levels, opaque, so that what the cut meets is seen.
+pub const SLICE: &str = "slice";
 
 /// Name of the function that draws the wall of a vessel alone, which a path preview fits to its path: [`TransferFunction::wall`].
 pub const WALL: &str = "wall";
@@ -70,6 +73,9 @@ const VESSELS: &[Stop] = &[
 const GREY: &[Stop] =
     &[(0.0, [0, 0, 0], 0.0), (0.12, [50, 50, 50], 0.0), (0.5, [150, 150, 150], 0.05), (1.0, [255, 255, 255], 0.30)];
 
+/// Grey levels, opaque.
+const LEVELS: &[Stop] = &[(0.0, [0, 0, 0], 1.0), (1.0, [255, 255, 255], 1.0)];
+
 /// Window of the CT functions over values in Hounsfield units (air -1000, water 0): that of bone.
 const HOUNSFIELD: [f64; 2] = [-450.0, 1050.0];
 /// A volume whose values reach below and above these is in Hounsfield units.
@@ -96,6 +102,7 @@ impl TransferFunction {
             "ct-soft" => CT_SOFT,
             "vessels" => VESSELS,
             "grey" => GREY,
+            SLICE => LEVELS,
             _ => return None,
         };
         if volume.is_constant() {
@@ -103,7 +110,11 @@ impl TransferFunction {
         }
         let [lo, hi] = volume.range();
         let is_hounsfield = lo < AIR_TO_BONE[0] && hi > AIR_TO_BONE[1];
-        let range = if name.starts_with("ct-") && is_hounsfield { HOUNSFIELD } else { [lo, hi].map(f64::from) };
+        let range = if (name.starts_with("ct-") || name == SLICE) && is_hounsfield {
+            HOUNSFIELD
+        } else {
+            [lo, hi].map(f64::from)
+        };
         Some(of_stops(name, stops, range))
     }
 

@@ -3,7 +3,7 @@
 use crate::fast::Fast;
 use crate::trace::row::Row;
 use belvedere_core::map::curved_rays::{RayPiece, Shape};
-use belvedere_core::{DVec2, DVec3, EarthCurvature, RayPath, SplineBend, Stage, Strip, TerrainDisocclusion, View};
+use belvedere_core::{DVec2, DVec3, EarthCurvature, RayPath, SplineBend, Stage, TerrainDisocclusion, View};
 use std::borrow::Cow;
 
 /// Number of spans into which a ray of unknown shape is first divided.
@@ -22,7 +22,7 @@ pub struct Split<'a> {
     pub ground: Option<&'a TerrainDisocclusion>,
     earth: Option<Parabola>,
     bend: Option<&'a SplineBend>,
-    strip: Option<(&'a Strip, View)>,
+    straightened: Option<(&'a Stage, View)>,
     kind: Kind,
 }
 
@@ -66,7 +66,7 @@ impl Parabola {
 impl<'a> Split<'a> {
     /// Splits a view.
     pub fn new(view: &'a View) -> Self {
-        Self::of(Cow::Borrowed(view), view.ground(), view.strip(), view.spline_bend())
+        Self::of(Cow::Borrowed(view), view.ground(), view.straightener(), view.spline_bend())
     }
 
     /// For a view of carried rigid bodies, bent by curved rays alone.
@@ -77,16 +77,16 @@ impl<'a> Split<'a> {
     fn of(
         view: Cow<'a, View>,
         ground: Option<&'a TerrainDisocclusion>,
-        strip: Option<&'a Strip>,
+        straightened: Option<&'a Stage>,
         bend: Option<&'a SplineBend>,
     ) -> Self {
         let stages: Vec<Stage> =
             view.stages().iter().filter(|s| !matches!(Fast::of(s), Fast::Ground(_))).cloned().collect();
         let earth = view.earth().map(Parabola::new);
-        let strip = strip.and_then(|strip| {
+        let straightened = straightened.and_then(|stage| {
             let later = view.stages().iter().skip_while(|s| !s.has_border()).skip(1).cloned().collect();
             // The tail of a chain is a valid chain.
-            Some((strip, View::new(view.pinhole().clone(), later).ok()?))
+            Some((stage, View::new(view.pinhole().clone(), later).ok()?))
         });
         let unknown = stages.iter().any(|s| matches!(Fast::of(s), Fast::None) && !s.bends_rays());
         let kind = match (bend, stages.iter().any(Stage::bends_rays)) {
@@ -100,7 +100,7 @@ impl<'a> Split<'a> {
         };
         // A chain without one of its stages is valid if the chain is.
         let smooth = View::new(view.pinhole().clone(), stages).unwrap_or_else(|_| view.as_ref().clone());
-        Self { view, smooth, ground, earth, bend, strip, kind }
+        Self { view, smooth, ground, earth, bend, straightened, kind }
     }
 
     /// Height by which the ground at a point is displaced, scene units.
@@ -135,8 +135,8 @@ impl<'a> Split<'a> {
             _ => Curved::Any(ray),
         };
         let earth = if matches!(shape, Curved::Any(_)) { None } else { self.earth };
-        let strip = self.strip.as_ref().map(|(strip, later)| (*strip, later.ray(pixel)));
-        Curve { shape, earth, strip }
+        let straightened = self.straightened.as_ref().map(|(stage, later)| (*stage, later.ray(pixel)));
+        Curve { shape, earth, straightened }
     }
 
     /// Whether the rays of a row lie evenly on a line at every depth, so that space clear between two of them is clear for all between.
@@ -154,8 +154,8 @@ impl<'a> Split<'a> {
 pub struct Curve<'s, 'a> {
     shape: Curved<'s, 'a>,
     earth: Option<Parabola>,
-    /// The strip, and the ray up to it.
-    strip: Option<(&'a Strip, RayPath<'s>)>,
+    /// The stage that straightens a strip or tube, and the ray up to it.
+    straightened: Option<(&'a Stage, RayPath<'s>)>,
 }
 
 enum Curved<'s, 'a> {
@@ -214,16 +214,13 @@ impl Curve<'_, '_> {
         Some(self.raised(p))
     }
 
-    /// Whether the ray may have points between two depths at which it has none; `None` where there is no strip to tell.
+    /// Whether the ray may have points between two depths at which it has none; `None` where there is no strip or tube to tell.
     ///
-    /// Up to the strip the ray is nearly straight: it stays no farther from the middle of the span than its ends.
+    /// Up to it the ray is nearly straight: it stays no farther from the middle of the span than its ends.
     pub(crate) fn may_enter(&self, span: &Span) -> Option<bool> {
-        let (strip, before) = self.strip.as_ref()?;
+        let (stage, before) = self.straightened.as_ref()?;
         let at = |w: f64| before.at(w).ok().map(|p| p.point);
-        let middle = at(span.depth_at(0.5))?;
-        let ends = [at(span.depth[0])?, at(span.depth[1])?];
-        let way = ends.into_iter().map(|p| p.truncate().distance(middle.truncate())).fold(0.0, f64::max);
-        Some(strip.outside(middle) <= 1.05 * way)
+        stage.may_hold([at(span.depth[0])?, at(span.depth_at(0.5))?, at(span.depth[1])?])
     }
 
     /// Segment of the ray at a depth, see [`belvedere_core::Displaced::segment`].

@@ -256,25 +256,11 @@ fn deepest_in(bounds: &Aabb, view: &View) -> f64 {
             }
         }
     }
-    for depth in strip_points(view, bounds).into_iter().filter_map(|p| view.project(p).ok()).map(|image| image.depth) {
+    let straightened = view.straightener().map(|stage| stage.points_within(bounds)).unwrap_or_default();
+    for depth in straightened.into_iter().filter_map(|p| view.project(p).ok()).map(|image| image.depth) {
         largest = largest.max(depth);
     }
     (largest + step + 1e-6 * largest).min(far).max(near * (1.0 + 1e-9))
-}
-
-/// Points of the part of a strip that lies in a box in plan, at the box's least and largest height; empty without a strip.
-fn strip_points(view: &View, bounds: &Aabb) -> Vec<DVec3> {
-    const ALONG: usize = 400;
-    let Some(strip) = view.strip() else { return Vec::new() };
-    let size = (bounds.max - bounds.min).truncate().length();
-    let (length, [first, last]) = (strip.route().length(), strip.route().reach());
-    let (from, to) = (first.max(-size), last.min(length + size));
-    let places = (0..=ALONG).flat_map(|i| {
-        let at = strip.route().at(from + (to - from) * i as f64 / ALONG as f64);
-        [-1.0, -0.5, 0.0, 0.5, 1.0].map(|a| at.p + 0.999 * a * strip.half_width() * at.normal())
-    });
-    let inside = |xy: &DVec2| xy.cmpge(bounds.min.truncate()).all() && xy.cmple(bounds.max.truncate()).all();
-    places.filter(inside).flat_map(|xy| [bounds.min.z, bounds.max.z].map(|z| xy.extend(z))).collect()
 }
 
 /// Depth, layer and part of a hit.
@@ -528,32 +514,5 @@ impl Follow<'_, '_, '_> {
             return Some(root(start, here, gap));
         }
         self.graze(start, here, gap, halvings + 1).or_else(|| self.graze(here, end, gap, halvings + 1))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use belvedere_core::map::strip::SmoothedRoute;
-    use belvedere_core::{Pinhole, Projection, Stage, Strip};
-
-    /// Wherever the ground stands, also around the origin, and however short the route is.
-    #[test]
-    fn points_of_a_strip_reach_both_ends_of_the_ground() {
-        for middle in [DVec2::ZERO, DVec2::new(4e5, -3e6)] {
-            let route = [[25.0, -300.0], [26.0, -250.0], [25.0, -200.0]].map(|p| middle + DVec2::from_array(p));
-            let route = SmoothedRoute::new(&route, 12.0, None).expect("it fits");
-            let strip = Strip::new(route.curve, 12.0, 1.0, middle).expect("it fits");
-            let (eye, lens) = (middle.extend(400.0), Projection::Perspective { fov_y: 0.8 });
-            let pinhole = Pinhole::look_at(eye, middle.extend(0.0) + DVec3::Y, DVec3::Z, lens, [64, 48], 1.0, None);
-            let view = View::new(pinhole.expect("a camera"), vec![Stage::Strip(strip)]).expect("in order");
-            let side = DVec2::splat(575.0);
-            let bounds = Aabb { min: (middle - side).extend(0.0), max: (middle + side).extend(10.0) };
-            let points = strip_points(&view, &bounds);
-            let along = |p: &DVec3| p.y - middle.y;
-            let ends = points.iter().map(along).fold([0.0f64; 2], |[south, north], y| [south.min(y), north.max(y)]);
-            assert!(ends[0] < -550.0 && ends[1] > 550.0, "{ends:?} around {middle}");
-            assert!(points.iter().all(|p| p.cmpge(bounds.min).all() && p.cmple(bounds.max).all()));
-        }
     }
 }

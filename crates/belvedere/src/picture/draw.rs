@@ -130,6 +130,7 @@ pub(super) fn sidecar(
         disocclusion: session.terrain_report().filter(|_| !request.straight).cloned(),
         moved: session.moves_report().filter(|_| !request.straight).cloned(),
         strip: session.strip_report().filter(|_| !request.straight).cloned(),
+        tube: session.tube_report().filter(|_| !request.straight).cloned(),
         constructor: session.constructor_report().filter(|_| !request.straight).cloned(),
         target: None,
         fallback,

@@ -17,7 +17,7 @@ use belvedere_disocclusion::TerrainReport;
 use belvedere_overlay::furniture::FurnitureRecord;
 use belvedere_overlay::highlight::HighlightRecord;
 use belvedere_resolve::constructor::ConstructorReport;
-use belvedere_resolve::{GroundMovesReport, StripReport};
+use belvedere_resolve::{GroundMovesReport, StripReport, TubeReport};
 use belvedere_scene::{Cover, Crs, Frame, FrameStats, Layer, LayerKind, NodeState, Palette, Scene, TerrainLayer, Unit};
 use belvedere_sight::RigidLayers;
 use serde::ser::Error as _;
@@ -241,6 +241,9 @@ pub struct Sidecar {
     /// Report of the strip along a route; `None` if the scene has no strip.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub strip: Option<StripReport>,
+    /// Report of the tube along a centreline; `None` if the scene has no tube.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tube: Option<TubeReport>,
     /// Report of the constructor of curved rays; `None` if the scene has no constructor.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub constructor: Option<ConstructorReport>,

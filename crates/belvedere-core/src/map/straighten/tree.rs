@@ -1,39 +1,32 @@
-//! Bounding tree of discs over the pieces of a curve.
+//! Bounding tree of balls (discs in plan) over the pieces of a curve.
 
-use glam::DVec2;
+use super::dimension::Vector;
 
-/// Position, relative to the curve's origin, and unit tangent at a node.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Node {
-    pub(super) p: DVec2,
-    pub(super) tangent: DVec2,
-}
-
-/// A tree over pieces of equal length: each disc encloses two of the level below.
+/// A tree over pieces of equal length: each ball encloses two of the level below.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Discs {
+pub(super) struct Balls<V> {
     /// From the pieces up to the whole curve.
-    levels: Vec<Vec<Disc>>,
+    levels: Vec<Vec<Ball<V>>>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Disc {
-    center: DVec2,
+struct Ball<V> {
+    center: V,
     radius: f64,
     /// Largest curvature of its pieces.
     bend: f64,
 }
 
-impl Discs {
-    /// * `spacing`: arc length between nodes; `curvature`: at the nodes, linear between them.
-    pub(super) fn new(nodes: &[Node], spacing: f64, curvature: &[f64]) -> Self {
+impl<V: Vector> Balls<V> {
+    /// * `nodes`: positions; `spacing`: arc length between them; `bends`: lengths of the curvature there, which changes linearly between them.
+    pub(super) fn new(nodes: &[V], spacing: f64, bends: &[f64]) -> Self {
         // No point of a piece is farther from the middle of its chord than half its length.
-        let leaf = |(pair, k): (&[Node], &[f64])| Disc {
-            center: 0.5 * (pair[0].p + pair[1].p),
+        let leaf = |(pair, k): (&[V], &[f64])| Ball {
+            center: (pair[0] + pair[1]) * 0.5,
             radius: 0.5 * spacing,
-            bend: k[0].abs().max(k[1].abs()),
+            bend: k[0].max(k[1]),
         };
-        let mut levels = vec![nodes.windows(2).zip(curvature.windows(2)).map(leaf).collect::<Vec<_>>()];
+        let mut levels = vec![nodes.windows(2).zip(bends.windows(2)).map(leaf).collect::<Vec<_>>()];
         while let Some(below) = levels.last().filter(|level| level.len() > 1) {
             levels.push(below.chunks(2).map(around).collect());
         }
@@ -45,7 +38,7 @@ impl Discs {
     /// * `ahead`: distance by which `q` lies ahead of a node, along the tangent there.
     pub(super) fn find<T>(
         &self,
-        q: DVec2,
+        q: V,
         width: f64,
         ahead: &impl Fn(usize) -> f64,
         ask: &mut impl FnMut(usize) -> Option<T>,
@@ -57,15 +50,15 @@ impl Discs {
         &self,
         level: usize,
         i: usize,
-        (q, width): (DVec2, f64),
+        (q, width): (V, f64),
         ahead: &impl Fn(usize) -> f64,
         ask: &mut impl FnMut(usize) -> Option<T>,
     ) -> Option<T> {
-        let disc = self.levels[level][i];
-        if disc.center.distance_squared(q) > (width + disc.radius) * (width + disc.radius) {
+        let ball = self.levels[level][i];
+        if (ball.center - q).length_squared() > (width + ball.radius) * (width + ball.radius) {
             return None;
         }
-        if level == 0 || disc.bend * (width + 2.0 * disc.radius) < 1.0 {
+        if level == 0 || ball.bend * (width + 2.0 * ball.radius) < 1.0 {
             // The point is nearer than the centres of curvature: `ahead` falls along these pieces and has at most one zero.
             return passed([i << level, ((i + 1) << level).min(self.levels[0].len())], ahead).and_then(ask);
         }
@@ -74,19 +67,19 @@ impl Discs {
         if b >= below.len() {
             return self.visit(level - 1, a, (q, width), ahead, ask);
         }
-        let off = |k: usize| below[k].center.distance_squared(q);
+        let off = |k: usize| (below[k].center - q).length_squared();
         let (first, second) = if off(b) < off(a) { (b, a) } else { (a, b) };
         let found = self.visit(level - 1, first, (q, width), ahead, ask);
         found.or_else(|| self.visit(level - 1, second, (q, width), ahead, ask))
     }
 
     /// Whether a piece may come within `width` of a point; never wrongly false.
-    pub(super) fn come_within(&self, q: DVec2, width: f64) -> bool {
+    pub(super) fn come_within(&self, q: V, width: f64) -> bool {
         self.comes_within(self.levels.len() - 1, 0, q, width)
     }
 
-    fn comes_within(&self, level: usize, i: usize, q: DVec2, width: f64) -> bool {
-        let Disc { center, radius, .. } = self.levels[level][i];
+    fn comes_within(&self, level: usize, i: usize, q: V, width: f64) -> bool {
+        let Ball { center, radius, .. } = self.levels[level][i];
         let off = center.distance(q);
         if off > width + radius {
             return false;
@@ -96,31 +89,38 @@ impl Discs {
     }
 
     /// The piece whose middle is nearest, and its distance.
-    pub(super) fn nearest(&self, q: DVec2) -> (usize, f64) {
-        let mut best = (0, f64::INFINITY);
-        self.closer(self.levels.len() - 1, 0, q, &mut best);
+    pub(super) fn nearest(&self, q: V) -> (usize, f64) {
+        let (distance, piece) = self.closest(q, (f64::INFINITY, 0), &|i| (self.levels[0][i].center.distance(q), i));
+        (piece, distance)
+    }
+
+    /// The least of the distances that `ask` gives for pieces, and what it gives with it.
+    ///
+    /// * `best`: what is returned if no distance is less. `ask`: the distance of a piece, no less than that of its ball, and anything.
+    pub(super) fn closest<T>(&self, q: V, mut best: (f64, T), ask: &impl Fn(usize) -> (f64, T)) -> (f64, T) {
+        self.closer(self.levels.len() - 1, 0, q, &mut best, ask);
         best
     }
 
-    fn closer(&self, level: usize, i: usize, q: DVec2, best: &mut (usize, f64)) {
-        let disc = self.levels[level][i];
-        let distance = disc.center.distance(q);
-        if level == 0 {
-            if distance < best.1 {
-                *best = (i, distance);
-            }
+    fn closer<T>(&self, level: usize, i: usize, q: V, best: &mut (f64, T), ask: &impl Fn(usize) -> (f64, T)) {
+        let ball = self.levels[level][i];
+        if ball.center.distance(q) - ball.radius > best.0 {
             return;
         }
-        if distance - disc.radius > best.1 {
+        if level == 0 {
+            let found = ask(i);
+            if found.0 < best.0 {
+                *best = found;
+            }
             return;
         }
         let below = &self.levels[level - 1];
         let (a, b) = (2 * i, 2 * i + 1);
-        let off = |k: usize| below[k].center.distance_squared(q);
+        let off = |k: usize| (below[k].center - q).length_squared();
         let turned = b < below.len() && off(b) < off(a);
         for k in if turned { [b, a] } else { [a, b] } {
             if k < below.len() {
-                self.closer(level - 1, k, q, best);
+                self.closer(level - 1, k, q, best, ask);
             }
         }
     }
@@ -138,18 +138,18 @@ fn passed([mut first, mut last]: [usize; 2], ahead: &impl Fn(usize) -> f64) -> O
     Some(first)
 }
 
-fn around(discs: &[Disc]) -> Disc {
-    let bend = discs.iter().map(|d| d.bend).fold(0.0, f64::max);
-    let [a, b] = [discs[0], discs[discs.len() - 1]];
+fn around<V: Vector>(balls: &[Ball<V>]) -> Ball<V> {
+    let bend = balls.iter().map(|d| d.bend).fold(0.0, f64::max);
+    let [a, b] = [balls[0], balls[balls.len() - 1]];
     let apart = a.center.distance(b.center);
     if apart + b.radius <= a.radius {
-        return Disc { bend, ..a };
+        return Ball { bend, ..a };
     }
     if apart + a.radius <= b.radius {
-        return Disc { bend, ..b };
+        return Ball { bend, ..b };
     }
     let radius = 0.5 * (apart + a.radius + b.radius);
-    let center = a.center + (radius - a.radius) / apart * (b.center - a.center);
+    let center = a.center + (b.center - a.center) * ((radius - a.radius) / apart);
     // A little more, for rounding.
-    Disc { center, radius: radius * (1.0 + 1e-12), bend }
+    Ball { center, radius: radius * (1.0 + 1e-12), bend }
 }
