@@ -5,7 +5,7 @@ use belvedere::{output, scene_file};
 use pyo3::prelude::*;
 use std::path::Path;
 
-const SCENES: [(&str, &str); 11] = [
+const SCENES: [(&str, &str); 12] = [
     ("massif", include_str!("../../scenes/massif.toml")),
     ("massif_terrain", include_str!("../../scenes/massif_terrain.toml")),
     ("massif_curved_rays", include_str!("../../scenes/massif_curved_rays.toml")),
@@ -17,6 +17,7 @@ const SCENES: [(&str, &str); 11] = [
     ("engine", include_str!("../../scenes/engine_curved_rays.toml")),
     ("street", include_str!("../../scenes/street.toml")),
     ("tube", include_str!("../../scenes/tube_preview.toml")),
+    ("tube_straight", include_str!("../../scenes/tube_straight.toml")),
 ];
 
 /// Names of the built-in scenes.

@@ -25,7 +25,7 @@ pub struct VolumeDoc {
     /// Whether constructors and measures work for it.
     #[serde(default)]
     pub must_see: bool,
-    /// Distance between samples along a ray, voxel edges, in [0.05, 8].
+    /// Distance between samples along a ray, voxel edges, in [0.01, 8].
     #[serde(default = "half")]
     pub step: f64,
     /// How it is coloured.

@@ -224,8 +224,8 @@ fn layer_style(layer: &LayerDoc) -> Result<(), Complaint> {
         LayerDoc::Mesh(l) => color("color", &l.style.color).map(|_| ()),
         LayerDoc::Molecule(l) => super::molecule::style(l, None).map(|_| ()),
         LayerDoc::Volume(l) => {
-            if !(0.05..=8.0).contains(&l.step) {
-                return Err(("step", format!("step is {}, it must be in 0.05..=8 voxel edges", number(l.step))));
+            if !(0.01..=8.0).contains(&l.step) {
+                return Err(("step", format!("step is {}, it must be in 0.01..=8 voxel edges", number(l.step))));
             }
             match l.spacing.filter(|s| !s.iter().all(|v| *v > 0.0 && v.is_finite())) {
                 Some(s) => Err(("spacing", format!("spacing is {s:?}, every distance must be greater than 0"))),

@@ -16,7 +16,7 @@ const ROOM: f64 = 1.03;
 const LONG_PX: f64 = 1600.0;
 const SHORT_PX: f64 = 160.0;
 /// Distance between samples of volumes that are cut open, voxel edges: the first one is what is seen.
-const CUT_STEP: f64 = 0.05;
+const CUT_STEP: f64 = 0.01;
 
 /// Puts the stage into a document, and cuts through volumes into their style.
 ///
@@ -86,14 +86,15 @@ pub(crate) fn aimed(session: Session, options: &OpenOptions) -> Result<Session, 
 
 /// An orthographic camera that looks across the straightened line; the near plane goes through the line where it is cut open.
 fn camera(tube: &Tube, asked: &Straighten, image: Option<[u32; 2]>) -> Result<(Pinhole, DVec3), BelvedereError> {
-    let length = tube.line().length() + 2.0 * tube.half_width();
-    let [start, end] = [0.0, tube.line().length()].map(|g| tube.unrolled().at(g).p);
+    let ([first, last], beyond) = (tube.line().reach(), tube.half_width());
+    let ends = [first.max(-beyond), last.min(tube.line().length() + beyond)];
+    let [start, end] = ends.map(|g| tube.unrolled().at(g).p);
     let (middle, along) = (0.5 * (start + end), (end - start).normalize_or(DVec3::X));
     let upright = [DVec3::Z, DVec3::Y].map(|axis| axis.reject_from_normalized(along));
     let upright = upright[usize::from(upright[0].length() < 0.1)].normalize_or(along.any_orthonormal_vector());
     let turn = DMat3::from_axis_angle(along, asked.side.unwrap_or(0.0).to_radians());
     let (up, forward) = (turn * upright, turn * upright.cross(along));
-    let [width, height] = [length, 2.0 * tube.half_width()].map(|side| ROOM * side);
+    let [width, height] = [start.distance(end), 2.0 * tube.half_width()].map(|side| ROOM * side);
     let image = image.unwrap_or_else(|| {
         let per_unit = LONG_PX / width.max(height);
         [width, height].map(|side| (side * per_unit).max(SHORT_PX).round() as u32)

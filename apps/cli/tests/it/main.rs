@@ -49,6 +49,7 @@ mod terrain;
 mod time_limit;
 mod town_heights;
 mod trusted;
+mod tube;
 mod typed_warnings;
 mod volume_targets;
 mod volumes;

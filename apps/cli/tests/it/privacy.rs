@@ -180,13 +180,14 @@ fn the_same_scene_and_data_in_two_folders_give_the_same_bytes() {
 }
 
 /// Ready scenes, smaller than they are.
-const SCENES: [&str; 15] = [
+const SCENES: [&str; 16] = [
     "massif",
     "massif_curved_rays",
     "massif_plan_oblique",
     "massif_panorama",
     "massif_moves",
     "massif_strip",
+    "tube_straight",
     "massif_terrain",
     "street",
     "street_split",

@@ -139,7 +139,7 @@ fn mistakes_are_told_in_one_line() {
     for (from, to, wanted) in [
         ("'ball.toml'", "'ct-bon'", "did you mean \"ct-bone\""),
         ("'ball.toml'", "'none.toml'", "is not there"),
-        ("kind = 'volume'", "kind = 'volume'\nstep = 0", "step is 0, it must be in 0.05..=8"),
+        ("kind = 'volume'", "kind = 'volume'\nstep = 0", "step is 0, it must be in 0.01..=8"),
         ("kind = 'volume'", "kind = 'volume'\ntype = 'int9'", "type \"int9\" is not known"),
         ("transform = { translate", "transform = { scale = 0, translate", "scale is 0"),
     ] {

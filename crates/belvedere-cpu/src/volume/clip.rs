@@ -230,6 +230,10 @@ impl<'v, 's> Clip<'v, 's> {
             return;
         }
         let Some((a, b)) = span.chord().filter(|_| span.reach.is_finite()) else {
+            if !span.has_point() && curve.may_enter(span) == Some(false) {
+                self.goes_on = false;
+                return;
+            }
             let most = if span.has_point() { MAX_HALVINGS } else { MAX_HALVINGS_OF_NOTHING };
             if halvings >= most {
                 self.goes_on = false;

@@ -54,8 +54,12 @@ impl Difference {
 
     /// Requires that at most one in a thousand pixels away from the silhouettes differs in id, and one in a thousand in depth.
     pub(crate) fn is_small(&self) -> bool {
-        let few = |n: usize| n as f64 <= 1e-3 * self.judged as f64;
-        few(self.ids) && few(self.depths)
+        self.is_below([1e-3; 2])
+    }
+
+    /// Requires at most these shares of pixels that differ in id, and in depth.
+    pub(crate) fn is_below(&self, [ids, depths]: [f64; 2]) -> bool {
+        self.ids as f64 <= ids * self.judged as f64 && self.depths as f64 <= depths * self.judged as f64
     }
 }
 

@@ -27,4 +27,5 @@ mod strip;
 mod subdivision;
 mod support;
 mod support_views;
+mod tube;
 mod volume_edges;

@@ -9,6 +9,8 @@ pub const TRANSFER_NAMES: &[&str] = &["auto", "solid", "engine", "ct-bone", "ct-
 
 /// Name of the function for cuts: grey levels, opaque, so that what the cut meets is seen.
 pub const SLICE: &str = "slice";
+/// Depth within which a cut absorbs all light, voxel edges.
+const SLICE_DEPTH: f64 = 0.01;
 
 /// Name of the function that draws the wall of a vessel alone, which a path preview fits to its path: [`TransferFunction::wall`].
 pub const WALL: &str = "wall";
@@ -115,7 +117,8 @@ impl TransferFunction {
         } else {
             [lo, hi].map(f64::from)
         };
-        Some(of_stops(name, stops, range))
+        let made = of_stops(name, stops, range);
+        Some(if name == SLICE { made.with_reference_step(SLICE_DEPTH) } else { made })
     }
 
     /// The wall of a vessel alone, as it is seen from within: values on the side of the lumen are clear, all others opaque, so that the

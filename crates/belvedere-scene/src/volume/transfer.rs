@@ -101,6 +101,11 @@ impl TransferFunction {
         Self { name: name.to_owned(), points, reference_step: 1.0 }
     }
 
+    /// The same with another reference step, voxel edges, > 0.
+    pub(super) fn with_reference_step(self, reference_step: f64) -> Self {
+        Self { reference_step, ..self }
+    }
+
     /// Name for records.
     pub fn name(&self) -> &str {
         &self.name

@@ -217,7 +217,7 @@ impl Curve<'_, '_> {
     /// Whether the ray may have points between two depths at which it has none; `None` where there is no strip or tube to tell.
     ///
     /// Up to it the ray is nearly straight: it stays no farther from the middle of the span than its ends.
-    pub(crate) fn may_enter(&self, span: &Span) -> Option<bool> {
+    pub fn may_enter(&self, span: &Span) -> Option<bool> {
         let (stage, before) = self.straightened.as_ref()?;
         let at = |w: f64| before.at(w).ok().map(|p| p.point);
         stage.may_hold([at(span.depth[0])?, at(span.depth_at(0.5))?, at(span.depth[1])?])

@@ -167,8 +167,9 @@ impl<D: Dimension> Curve<D> {
     /// The frame at arc length `g`, relative to the origin.
     pub(super) fn relative(&self, g: f64) -> Frame<D> {
         let length = self.length();
-        if g <= 0.0 || g >= length {
-            let (node, by) = if g <= 0.0 { (self.nodes[0], g) } else { (self.nodes[self.last() + 1], g - length) };
+        if g <= 0.0 || g >= length || self.straight {
+            let (node, by) =
+                if g <= 0.0 || self.straight { (self.nodes[0], g) } else { (self.nodes[self.last() + 1], g - length) };
             let p = node.p + D::vector(node.turn, by, D::Across::default());
             return Frame { p, turn: node.turn, curvature: D::Across::default() };
         }
@@ -248,29 +249,38 @@ impl<D: Dimension> Curve<D> {
         self.closest_between(p - self.origin).1.g
     }
 
-    /// The foot of `p` at the nearest point of the curve and its straight ends.
-    pub(super) fn closest(&self, p: D::Vector) -> Foot<D> {
+    /// The foot of `p` at the nearest point of the curve; `None` if that is an end that `p` lies beyond.
+    pub(super) fn closest(&self, p: D::Vector) -> Option<Foot<D>> {
         let q = p - self.origin;
         if self.straight {
-            return self.beside_start(q);
+            return Some(self.beside_start(q));
         }
-        let ends = self.on_end(q).into_iter().flatten().map(|foot| (foot.a.length(), foot));
-        ends.fold(self.closest_between(q), |best, end| if end.0 < best.0 { end } else { best }).1
+        let (distance, foot) = self.closest_between(q);
+        (foot.a.length() >= distance - 1e-6 * self.spacing).then_some(foot)
     }
 
     /// Distance and foot of the nearest point between the ends.
     fn closest_between(&self, q: D::Vector) -> (f64, Foot<D>) {
-        let parts = |i: usize| D::parts(self.nodes[i].turn, q - self.nodes[i].p);
         let at_node =
             |i: usize, across: D::Across| (self.nodes[i].p.distance(q), Foot { g: i as f64 * self.spacing, a: across });
-        let ask = |i: usize| {
-            let (from, to) = (parts(i), parts(i + 1));
+        let ask = |i: usize, best: f64| {
+            let [from, to] = [i, i + 1].map(|i| q - self.nodes[i].p);
+            // No point of a piece is farther from its chord than this.
+            let sag =
+                0.125 * self.spacing * self.spacing * self.curvature[i].length().max(self.curvature[i + 1].length());
+            let chord = from - to;
+            let share = (from.dot(chord) / chord.length_squared()).clamp(0.0, 1.0);
+            let far = best + 1.001 * sag;
+            if (from - chord * share).length_squared() > far * far {
+                return None;
+            }
+            let (from, to) = (D::parts(self.nodes[i].turn, from), D::parts(self.nodes[i + 1].turn, to));
             if from.0 >= 0.0 && to.0 <= 0.0 {
                 let foot = self.foot_on(q, i, [from.0, to.0]);
-                return (foot.a.length(), foot);
+                return Some((foot.a.length(), foot));
             }
             let ends = [at_node(i, from.1), at_node(i + 1, to.1)];
-            if ends[0].0 <= ends[1].0 { ends[0] } else { ends[1] }
+            Some(if ends[0].0 <= ends[1].0 { ends[0] } else { ends[1] })
         };
         self.balls.closest(q, (f64::INFINITY, Foot { g: 0.0, a: D::Across::default() }), &ask)
     }

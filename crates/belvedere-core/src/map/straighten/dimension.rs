@@ -163,6 +163,8 @@ pub trait Dimension: Copy + Debug + PartialEq + Send + Sync + Sized + 'static {
     /// Way and turn over the first `s` of a piece of length `spacing` whose curvature is linear, in the frame of its start. `spacing` times
     /// either curvature is at most 0.06.
     fn advance(curvature: [Self::Across; 2], spacing: f64, s: f64) -> (Self::Vector, Self::Turn);
+    /// Those of the bounds `normal . offset <= distance` that shorter offsets than `most` may pass without passing another one.
+    fn needed(bounds: Vec<(Self::Across, f64)>, most: f64) -> Vec<(Self::Across, f64)>;
     /// Offsets of this length to several sides of the curve; of the negative length those to the other sides.
     fn spread(length: f64) -> Vec<Self::Across>;
 }
@@ -272,6 +274,12 @@ impl Dimension for Plan {
         (s * way, DVec2::from_angle(angle(s)))
     }
 
+    fn needed(bounds: Vec<(f64, f64)>, _: f64) -> Vec<(f64, f64)> {
+        let least =
+            |side: f64| bounds.iter().filter(|(normal, _)| *normal == side).copied().min_by(|a, b| a.1.total_cmp(&b.1));
+        [-1.0, 1.0].into_iter().filter_map(least).collect()
+    }
+
     fn spread(length: f64) -> Vec<f64> {
         vec![length]
     }
@@ -339,6 +347,40 @@ impl Dimension for Space {
         let [sine, cosine] = sine_and_cosine(0.25 * turn.length_squared());
         let v = 0.5 * sine * turn;
         (s * way, DQuat::from_xyzw(v.x, v.y, v.z, 1.0 - 0.25 * cosine * turn.length_squared()))
+    }
+
+    fn needed(mut bounds: Vec<(DVec2, f64)>, most: f64) -> Vec<(DVec2, f64)> {
+        // A square is cut by one bound after the other, the nearest first; of each side is kept which bound it is.
+        bounds.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let corner = |x: f64, y: f64| (DVec2::new(x * most, y * most), None);
+        let mut polygon: Vec<(DVec2, Option<usize>)> =
+            vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+        for (k, (normal, distance)) in bounds.iter().enumerate() {
+            let beyond = |p: DVec2| normal.dot(p) - distance;
+            if polygon.iter().all(|(p, _)| beyond(*p) <= 0.0) {
+                continue;
+            }
+            let mut cut = Vec::with_capacity(polygon.len() + 1);
+            for (i, (p, side)) in polygon.iter().enumerate() {
+                let q = polygon[(i + 1) % polygon.len()].0;
+                let (a, b) = (beyond(*p), beyond(q));
+                if a <= 0.0 {
+                    cut.push((*p, *side));
+                }
+                if (a <= 0.0) != (b <= 0.0) {
+                    let crossing = p.lerp(q, a / (a - b));
+                    cut.push((crossing, if a <= 0.0 { Some(k) } else { *side }));
+                }
+            }
+            polygon = cut;
+        }
+        if polygon.is_empty() {
+            return vec![(DVec2::X, f64::NEG_INFINITY)];
+        }
+        let mut kept: Vec<usize> = polygon.into_iter().filter_map(|(_, side)| side).collect();
+        kept.sort_unstable();
+        kept.dedup();
+        kept.into_iter().map(|k| bounds[k]).collect()
     }
 
     fn spread(length: f64) -> Vec<DVec2> {

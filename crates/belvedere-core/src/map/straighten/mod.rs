@@ -140,9 +140,6 @@ pub enum StraightenError {
     },
 }
 
-/// Difference of two arc lengths up to which they are one, as a share of the spacing of nodes.
-const SAME: f64 = 1e-4;
-
 /// A position as a point of the scene, at height 0 in plan.
 fn place<D: Dimension>(at: D::Vector) -> DVec3 {
     D::with(at, DVec3::ZERO)
@@ -188,6 +185,8 @@ pub struct Straightened<D: Dimension> {
     /// Whether no point within the half width has two feet, neither on the line nor on the unrolled one. Else points belong to the nearest
     /// place of the line, as far as they are the nearest to it after it is unrolled, too.
     single: bool,
+    /// If not, the offsets that belong to each node of the line: those on this side of lines across it, `normal . offset <= distance`.
+    cells: Arc<Vec<overlap::Cell<D>>>,
 }
 
 impl<D: Dimension> Straightened<D> {
@@ -218,11 +217,21 @@ impl<D: Dimension> Straightened<D> {
         let unrolled = unrolled(&line, half_width, share, anchor)?;
         let reach = unrolled.reach();
         let line = Arc::new(line.with_reach(reach));
-        Ok(Self { line, unrolled: Arc::new(unrolled), half_width, share, anchor, largest_curvature, single: true })
+        Ok(Self {
+            line,
+            unrolled: Arc::new(unrolled),
+            half_width,
+            share,
+            anchor,
+            largest_curvature,
+            single: true,
+            cells: Arc::default(),
+        })
     }
 
     /// The same for any half width: where parts of the line come nearer to each other, or where it bends too sharply, what lies between them
-    /// belongs to the nearest one, and has no image where the line bends with less than 1.25 times its distance.
+    /// belongs to the nearest one, and has no image where the line bends with less than 1.25 times its distance. It has none beyond the ends of
+    /// the line either.
     ///
     /// # Errors
     /// [`StraightenError::Range`].
@@ -231,20 +240,22 @@ impl<D: Dimension> Straightened<D> {
             Err(StraightenError::Radius { .. } | StraightenError::Overlap { .. }) => {}
             done => return done,
         }
-        let reach = [-half_width, line.length() + half_width];
+        let reach = [0.0, line.length()];
         let largest_curvature = line.largest_curvature();
         let line = line.with_reach(reach);
         let anchor = line.nearest(anchor);
         let unrolled = Arc::new(line.unbent(1.0 - share, anchor));
-        Ok(Self { line: Arc::new(line), unrolled, half_width, share, anchor, largest_curvature, single: false })
+        let cells = Arc::new(overlap::cells(&line, &unrolled, half_width));
+        Ok(Self { line: Arc::new(line), unrolled, half_width, share, anchor, largest_curvature, single: false, cells })
     }
 
     /// The same at a share of its strength, 0 < share <= 1; `None` where that curve overlaps itself.
     pub(crate) fn eased(&self, share: f64) -> Option<Self> {
         let share = share * self.share;
         if !self.single {
-            let unrolled = Arc::new(self.line.unbent(1.0 - share, self.anchor));
-            return Some(Self { unrolled, share, ..self.clone() });
+            let unrolled = self.line.unbent(1.0 - share, self.anchor);
+            let cells = Arc::new(overlap::cells(&self.line, &unrolled, self.half_width));
+            return Some(Self { unrolled: Arc::new(unrolled), cells, share, ..self.clone() });
         }
         let unrolled = unrolled(&self.line, self.half_width, share, self.anchor).ok()?;
         let line = Arc::new(self.line.as_ref().clone().with_reach(unrolled.reach()));
@@ -287,34 +298,28 @@ impl<D: Dimension> Straightened<D> {
             return None;
         }
         let p = D::of(p);
-        if self.single {
-            return self.line.foot(p, self.half_width);
-        }
-        let foot = self.held(&self.line, p)?;
-        self.belongs(&self.unrolled, carried(&self.line, &self.unrolled, foot.g, p), foot.g).then_some(foot)
+        if self.single { self.line.foot(p, self.half_width) } else { self.held(&self.line, p) }
     }
 
     /// The foot of a displaced point on the unrolled line; `None` outside the image of the domain.
     fn displaced_coordinates(&self, q: D::Vector) -> Option<Foot<D>> {
-        if self.single {
-            return self.unrolled.foot(q, self.half_width);
-        }
-        let foot = self.held(&self.unrolled, q)?;
-        self.belongs(&self.line, carried(&self.unrolled, &self.line, foot.g, q), foot.g).then_some(foot)
+        if self.single { self.unrolled.foot(q, self.half_width) } else { self.held(&self.unrolled, q) }
     }
 
-    /// The nearest foot on a curve, if it is near enough for both curves.
+    /// The nearest foot on a curve, if the offset belongs to it.
     fn held(&self, curve: &Curve<D>, p: D::Vector) -> Option<Foot<D>> {
-        let foot = curve.closest(p);
+        let foot = curve.closest(p)?;
         let [first, last] = curve.reach();
         let is_inside = foot.a.length() <= self.half_width && (first..=last).contains(&foot.g);
-        // The line bends more than the unrolled one.
-        (is_inside && self.line.relative(foot.g).curvature.dot(foot.a) <= BEND_SHARE).then_some(foot)
+        (is_inside && self.has_room(foot)).then_some(foot)
     }
 
-    /// Whether the nearest foot of a point lies at this arc length.
-    fn belongs(&self, curve: &Curve<D>, p: D::Vector, g: f64) -> bool {
-        (curve.closest(p).g - g).abs() <= SAME * curve.spacing()
+    /// Whether an offset belongs to its place of the line: to the nodes before and behind it.
+    fn has_room(&self, foot: Foot<D>) -> bool {
+        let last = self.cells.len() - 1;
+        let i = ((foot.g / self.line.spacing()).floor().max(0.0) as usize).min(last);
+        let holds = |cell: &overlap::Cell<D>| cell.iter().all(|(normal, most)| normal.dot(foot.a) <= *most);
+        holds(&self.cells[i]) && holds(&self.cells[(i + 1).min(last)])
     }
 
     /// Image of a point with these coordinates.

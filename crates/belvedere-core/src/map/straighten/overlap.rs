@@ -1,8 +1,8 @@
 //! Whether the strip or tube around a curve overlaps itself.
 
 use super::curve::{Curve, Node};
-use super::dimension::{Dimension, Vector};
-use super::{StraightenError, place};
+use super::dimension::{Across, Dimension, Vector};
+use super::{BEND_SHARE, StraightenError, place};
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
@@ -35,6 +35,63 @@ pub(super) fn reach<D: Dimension>(curve: &Curve<D>, half_width: f64) -> Result<[
     Ok([-before.min(both), curve.length() + beyond.min(both)])
 }
 
+/// Offsets that belong to a node: `normal . offset <= distance` for each of these.
+pub(super) type Cell<D> = Vec<(<D as Dimension>::Across, f64)>;
+
+/// For each node of a curve and its unrolled form the offsets up to `most` that are nearer to it than to every other place of either, with
+/// a spacing of nodes in hand, and whose bend is no sharper than [`super::BEND_SHARE`] allows.
+///
+/// An offset `a` is nearer to the node than to a place in the way `d` from it where `2 d' a <= |d|^2`, `d'` the part of `d` across the curve: what
+/// belongs to a node is convex, and the least `|d|^2 / (2 |d'|)` is the global radius of curvature there (Gonzalez and Maddocks 1999).
+pub(super) fn cells<D: Dimension>(line: &Curve<D>, unrolled: &Curve<D>, most: f64) -> Vec<Cell<D>> {
+    let lattices = [line, unrolled].map(|curve| (curve, Cells::new::<D>(curve.nodes(), 2.0 * most)));
+    let cell = |i: usize| {
+        let mut bounds: Cell<D> = Vec::new();
+        let mut bound = |across: D::Across, distance: f64| {
+            if distance < most {
+                bounds.push((across, distance));
+            }
+        };
+        let curvature = line.curvature()[i];
+        bound(curvature * (1.0 / curvature.length()), BEND_SHARE / curvature.length());
+        for (curve, lattice) in &lattices {
+            let node = curve.nodes()[i];
+            for j in lattice.around(node.p).filter(|j| *j != i) {
+                let way = curve.nodes()[j].p - node.p;
+                let across = D::parts(node.turn, way).1;
+                let length = across.length();
+                bound(across * (1.0 / length), 0.5 * way.length_squared() / length - curve.spacing());
+            }
+        }
+        D::needed(bounds, most)
+    };
+    (0..line.nodes().len()).map(cell).collect()
+}
+
+/// Nodes by the cells of a lattice.
+struct Cells {
+    cells: HashMap<[i64; 3], Vec<usize>>,
+    spacing: f64,
+}
+
+impl Cells {
+    fn new<D: Dimension>(nodes: &[Node<D>], spacing: f64) -> Self {
+        let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+        nodes.iter().enumerate().for_each(|(i, node)| cells.entry(node.p.cell(spacing)).or_default().push(i));
+        Self { cells, spacing }
+    }
+
+    /// Numbers of the nodes in the cell of a point and those beside it: all within the spacing, and others.
+    fn around<V: Vector>(&self, p: V) -> impl Iterator<Item = usize> + '_ {
+        let beside = |along: bool| if along { -1..=1 } else { 0..=0 };
+        let [x, y, z] = p.cell(self.spacing);
+        let layers = beside(V::AXES.len() > 2).map(move |dz| z + dz);
+        let rows = layers.flat_map(move |z| beside(true).map(move |dy| [y + dy, z]));
+        let around = rows.flat_map(move |[y, z]| beside(true).map(move |dx| [x + dx, y, z]));
+        around.filter_map(|cell| self.cells.get(&cell)).flatten().copied()
+    }
+}
+
 /// Two nodes nearer than `least` that are more than `apart` along the curve from each other: the closest.
 fn closest<D: Dimension>(curve: &Curve<D>, least: f64, apart: f64) -> Option<(usize, usize, f64)> {
     let nodes = curve.nodes();
@@ -43,16 +100,10 @@ fn closest<D: Dimension>(curve: &Curve<D>, least: f64, apart: f64) -> Option<(us
         return None;
     }
     let gap = gap as usize;
-    let mut cells: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
-    nodes.iter().enumerate().for_each(|(i, node)| cells.entry(node.p.cell(least)).or_default().push(i));
+    let cells = Cells::new::<D>(nodes, least);
     let mut best: Option<(usize, usize, f64)> = None;
-    let beside = |along: bool| if along { -1..=1 } else { 0..=0 };
     for (i, node) in nodes.iter().enumerate() {
-        let [x, y, z] = node.p.cell(least);
-        let layers = beside(D::Vector::AXES.len() > 2).map(|dz| z + dz);
-        let rows = layers.flat_map(|z| beside(true).map(move |dy| [y + dy, z]));
-        let around = rows.flat_map(|[y, z]| beside(true).map(move |dx| [x + dx, y, z]));
-        for &j in around.filter_map(|c| cells.get(&c)).flatten().filter(|&&j| j > i + gap) {
+        for j in cells.around(node.p).filter(|&j| j > i + gap) {
             let distance = nodes[j].p.distance(node.p);
             if distance <= least && best.is_none_or(|b| distance < b.2) {
                 best = Some((i, j, distance));

@@ -90,26 +90,38 @@ impl<V: Vector> Balls<V> {
 
     /// The piece whose middle is nearest, and its distance.
     pub(super) fn nearest(&self, q: V) -> (usize, f64) {
-        let (distance, piece) = self.closest(q, (f64::INFINITY, 0), &|i| (self.levels[0][i].center.distance(q), i));
+        let (distance, piece) =
+            self.closest(q, (f64::INFINITY, 0), &|i, _| Some((self.levels[0][i].center.distance(q), i)));
         (piece, distance)
     }
 
     /// The least of the distances that `ask` gives for pieces, and what it gives with it.
     ///
-    /// * `best`: what is returned if no distance is less. `ask`: the distance of a piece, no less than that of its ball, and anything.
-    pub(super) fn closest<T>(&self, q: V, mut best: (f64, T), ask: &impl Fn(usize) -> (f64, T)) -> (f64, T) {
+    /// * `best`: what is returned if no distance is less. `ask`: `None` for a piece that is no nearer than the best so far, else its distance, no less than that of its ball, and anything.
+    pub(super) fn closest<T>(
+        &self,
+        q: V,
+        mut best: (f64, T),
+        ask: &impl Fn(usize, f64) -> Option<(f64, T)>,
+    ) -> (f64, T) {
         self.closer(self.levels.len() - 1, 0, q, &mut best, ask);
         best
     }
 
-    fn closer<T>(&self, level: usize, i: usize, q: V, best: &mut (f64, T), ask: &impl Fn(usize) -> (f64, T)) {
+    fn closer<T>(
+        &self,
+        level: usize,
+        i: usize,
+        q: V,
+        best: &mut (f64, T),
+        ask: &impl Fn(usize, f64) -> Option<(f64, T)>,
+    ) {
         let ball = self.levels[level][i];
         if ball.center.distance(q) - ball.radius > best.0 {
             return;
         }
         if level == 0 {
-            let found = ask(i);
-            if found.0 < best.0 {
+            if let Some(found) = ask(i, best.0).filter(|found| found.0 < best.0) {
                 *best = found;
             }
             return;

@@ -10,7 +10,11 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// Options that another test tries.
-const ELSEWHERE: [(&str, &str); 4] = [
+const ELSEWHERE: [(&str, &str); 8] = [
+    ("straighten", "tube.rs of the command line"),
+    ("radius", "tube.rs of the command line"),
+    ("side", "tube.rs of the command line"),
+    ("uncut", "tube.rs of the command line"),
     // It needs large ground.
     ("lod", "lod.rs of the renderer"),
     // The bytes are the same.
