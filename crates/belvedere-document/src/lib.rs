@@ -40,6 +40,7 @@ mod symbol;
 mod text;
 mod toml_tree;
 mod tube;
+mod unroll;
 mod volume;
 
 pub use by_property::{ColorByDoc, ScaleName, SizeByDoc, StepsDoc};
@@ -77,6 +78,7 @@ pub use stylisation::{StylisationDoc, SwitchOrStrength};
 pub use symbol::SymbolDoc;
 pub use text::{HeightUnit, TextDoc};
 pub use tube::TubeStageDoc;
+pub use unroll::UnrollStageDoc;
 pub use volume::VolumeDoc;
 
 use belvedere_core::presets::PresetDocument;
@@ -419,6 +421,7 @@ fn stage(kind: &str, node: &Node) -> Result<Option<StageDoc>, DocError> {
         "ground_moves" => StageDoc::GroundMoves(de::from_node(node)?),
         "strip" => StageDoc::Strip(de::from_node(node)?),
         "tube" => StageDoc::Tube(de::from_node(node)?),
+        "unroll" => StageDoc::Unroll(de::from_node(node)?),
         "relief" => StageDoc::Relief(de::from_node(node)?),
         "spline_bend" => StageDoc::SplineBend(de::from_node(node)?),
         "curved_rays" => StageDoc::CurvedRays(de::from_node(node)?),

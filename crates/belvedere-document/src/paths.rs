@@ -90,7 +90,11 @@ impl Document {
                     PresetsDoc::Named(name) if names_a_preset_file(name) => one(name),
                     _ => {}
                 },
-                StageDoc::GroundMoves(_) | StageDoc::Strip(_) | StageDoc::Relief(_) | StageDoc::CurvedRays(_) => {}
+                StageDoc::GroundMoves(_)
+                | StageDoc::Strip(_)
+                | StageDoc::Unroll(_)
+                | StageDoc::Relief(_)
+                | StageDoc::CurvedRays(_) => {}
             }
         }
         self.text.iter_mut().filter_map(|text| text.fonts.as_mut()).for_each(|fonts| fonts.each(&mut one));

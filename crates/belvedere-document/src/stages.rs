@@ -5,6 +5,7 @@ use super::ground_moves::GroundMovesStageDoc;
 use super::relief::ReliefStageDoc;
 use super::strip::StripStageDoc;
 use super::tube::TubeStageDoc;
+use super::unroll::UnrollStageDoc;
 use belvedere_core::map::curved_rays::{Model, Sharpness};
 use belvedere_core::presets::PresetDocument;
 use schemars::JsonSchema;
@@ -24,6 +25,8 @@ pub enum StageDoc {
     Strip(StripStageDoc),
     /// What lies around a line in space is straightened with it.
     Tube(TubeStageDoc),
+    /// The circle around the eye is unrolled.
+    Unroll(UnrollStageDoc),
     /// Heights are raised, lowered, shown in plan or levelled.
     Relief(ReliefStageDoc),
     /// Space is carried onto a B-spline over the reference plane.
@@ -34,7 +37,7 @@ pub enum StageDoc {
 
 /// Names of the kinds of stages.
 pub(super) const STAGE_KINDS: &[&str] =
-    &["terrain_disocclusion", "ground_moves", "strip", "tube", "relief", "spline_bend", "curved_rays"];
+    &["terrain_disocclusion", "ground_moves", "strip", "tube", "unroll", "relief", "spline_bend", "curved_rays"];
 
 impl StageDoc {
     /// Name of the kind, as files write it.
@@ -44,6 +47,7 @@ impl StageDoc {
             Self::GroundMoves(_) => "ground_moves",
             Self::Strip(_) => "strip",
             Self::Tube(_) => "tube",
+            Self::Unroll(_) => "unroll",
             Self::Relief(_) => "relief",
             Self::SplineBend(_) => "spline_bend",
             Self::CurvedRays(_) => "curved_rays",

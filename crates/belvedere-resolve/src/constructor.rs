@@ -155,6 +155,7 @@ pub(super) fn check_stages(source: &SourceDocument) -> Result<(), BelvedereError
             Some("it works in space as it is, not as a strip unrolls it; remove the strip stage")
         }
         StageDoc::Tube(_) => Some("it works in space as it is, not as a tube straightens it; remove the tube stage"),
+        StageDoc::Unroll(_) => Some("it works in the picture of one direction; remove the unroll stage"),
         StageDoc::Relief(_) if previews || probes => {
             Some("it works in space as it is, not as a relief stage changes it; remove the relief stage")
         }

@@ -50,6 +50,7 @@ pub mod terrain;
 mod transfer;
 pub mod trust;
 mod tube;
+mod unroll;
 pub mod validate;
 pub mod vectors;
 pub mod view;

@@ -2,7 +2,7 @@
 
 use crate::trust::Trust;
 use crate::{Advice, BelvedereError};
-use belvedere_document::request::{Air, Molecules, Render, Straighten, given_of};
+use belvedere_document::request::{Air, Molecules, Panorama, Render, Straighten, given_of};
 use belvedere_document::{FurnitureWish, LayerDoc, PaletteDoc, SurfaceDoc, SwitchOrLength, SwitchOrVisibility};
 use belvedere_io::{Arrays, Limits};
 use belvedere_scene::{Edge, Progress};
@@ -63,6 +63,8 @@ pub struct OpenOptions {
     pub molecule: Molecules,
     /// A trajectory of the one molecule of the scene, see [`belvedere_document::MoleculeDoc::trajectory`].
     pub trajectory: Option<String>,
+    /// A place around which the whole circle is seen.
+    pub panorama: Panorama,
     /// A line along which what lies around it is straightened, by a camera of its own.
     pub straighten: Straighten,
     /// Leaves stages that need a solver out of the view, for callers that need the document alone.
@@ -154,6 +156,7 @@ impl OpenOptions {
             unsolved: asked.drawing.straight,
             molecule: asked.molecules.clone(),
             straighten: asked.straighten.clone(),
+            panorama: asked.panorama,
             ..self.airy(air)
         }
     }

@@ -83,6 +83,11 @@ pub(super) fn resolve(
                 out.tube = Some(report);
                 (stage, document)
             }
+            StageDoc::Unroll(doc) => {
+                let (stage, document, pinhole) = super::unroll::resolve(context, doc, at)?;
+                out.pinhole = pinhole;
+                (stage, document)
+            }
             StageDoc::Relief(doc) => super::relief::resolve(context, doc, at)?,
             StageDoc::SplineBend(doc) => {
                 let (bend, document) = spline(context, doc, inputs, warnings, at)?;

@@ -255,7 +255,7 @@ fn rank(stage: &StageDoc) -> u32 {
     match stage {
         StageDoc::TerrainDisocclusion(_) => 1,
         StageDoc::GroundMoves(_) => 2,
-        StageDoc::Strip(_) | StageDoc::Tube(_) => 3,
+        StageDoc::Strip(_) | StageDoc::Tube(_) | StageDoc::Unroll(_) => 3,
         StageDoc::Relief(_) => 4,
         StageDoc::SplineBend(_) => 5,
         StageDoc::CurvedRays(_) => 6,

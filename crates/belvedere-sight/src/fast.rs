@@ -1,6 +1,7 @@
 //! Stages that are computed faster than through [`belvedere_core::map::StageMap`]: the only file of what draws and judges that names
 //! techniques; all others ask a stage for its properties.
 
+use belvedere_core::map::unroll::Unroll;
 use belvedere_core::{CurvedRays, EarthCurvature, SplineBend, Stage, TerrainDisocclusion};
 
 /// A stage by its faster form.
@@ -14,6 +15,8 @@ pub enum Fast<'a> {
     Spline(&'a SplineBend),
     /// Closed forms of records and of the pieces of rays.
     Rays(&'a CurvedRays),
+    /// Rays are straight in the world.
+    Circle(&'a Unroll),
     /// No faster form: the stage's own methods are called.
     None,
 }
@@ -26,6 +29,7 @@ impl<'a> Fast<'a> {
             Stage::TerrainDisocclusion(ground) => Self::Ground(ground),
             Stage::SplineBend(bend) => Self::Spline(bend),
             Stage::CurvedRays(rays) => Self::Rays(rays),
+            Stage::Unroll(circle) => Self::Circle(circle),
             _ => Self::None,
         }
     }

@@ -110,6 +110,7 @@ fn stage_name(kind: &str) -> &'static str {
         "terrain_disocclusion" => "ground that makes way",
         "strip" => "strip",
         "tube" => "tube",
+        "unroll" => "circle",
         "relief" => "relief",
         "spline_bend" => "spline",
         "curved_rays" => "curved rays",

@@ -147,6 +147,7 @@
 
 pub mod answers;
 mod camera_path;
+mod circle;
 pub mod city_map;
 mod data;
 pub mod export;

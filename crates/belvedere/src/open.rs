@@ -8,8 +8,8 @@ use crate::scene_file::{
 };
 use crate::session::Loaded;
 use crate::shown::{end_ground, show_all};
-use crate::straightened;
 use crate::{Advice, BelvedereError, Needs, OpenOptions, Session};
+use crate::{circle, straightened};
 use belvedere_io::crs::utm_epsg;
 use belvedere_resolve::constructor;
 use belvedere_resolve::motion::Motions;
@@ -75,7 +75,7 @@ impl Session {
         hidden::apply(&mut scene, document);
         if source.of_files.is_some() {
             let shown = show_all(&mut source.document, &scene)?;
-            if options.straighten.straighten.is_none() {
+            if options.straighten.straighten.is_none() && options.panorama.panorama.is_none() {
                 loaded.warnings.push(shown.said());
             }
         }
@@ -97,7 +97,7 @@ impl Session {
             warnings: loaded.warnings,
         };
         let session = Self::of_document(loaded, source, roots, (!options.unsolved).then_some(&mut solving))?;
-        straightened::aimed(session, options)
+        circle::aimed(straightened::aimed(session, options)?, options)
     }
 }
 
@@ -194,7 +194,7 @@ fn ground_is_needed(doc: &Document) -> bool {
         StageDoc::TerrainDisocclusion(_) | StageDoc::GroundMoves(_) => true,
         // Without an anchor the point that the camera looks at is used, which may lie on the terrain.
         StageDoc::Strip(strip) => strip.anchor.is_none(),
-        StageDoc::Tube(_) | StageDoc::CurvedRays(_) => false,
+        StageDoc::Tube(_) | StageDoc::Unroll(_) | StageDoc::CurvedRays(_) => false,
     });
     let needs_crs = points.into_iter().flatten().any(geographic)
         || doc.earth == EarthDoc::Curved

@@ -89,8 +89,8 @@ impl Panels {
 
 /// Inserts a stage at its position in the chain, in place of another of its kind.
 pub(crate) fn set_stage(document: &mut Document, stage: StageDoc) {
-    const ORDER: [&str; 7] =
-        ["terrain_disocclusion", "ground_moves", "strip", "tube", "relief", "spline_bend", "curved_rays"];
+    const ORDER: [&str; 8] =
+        ["terrain_disocclusion", "ground_moves", "strip", "tube", "unroll", "relief", "spline_bend", "curved_rays"];
     let rank = |stage: &StageDoc| ORDER.iter().position(|kind| *kind == stage.kind());
     document.stage.retain(|other| other.kind() != stage.kind());
     let at = document.stage.iter().take_while(|other| rank(other) < rank(&stage)).count();

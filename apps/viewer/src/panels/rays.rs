@@ -175,7 +175,7 @@ pub(crate) fn track(model: &mut Model, target: &str) {
 fn goes_with(kind: ConstructorKind, stage: &StageDoc, solves: bool) -> bool {
     let moves = kind == ConstructorKind::PathPreview || kind == ConstructorKind::AutoProbe;
     match stage {
-        StageDoc::CurvedRays(_) | StageDoc::Tube(_) => false,
+        StageDoc::CurvedRays(_) | StageDoc::Tube(_) | StageDoc::Unroll(_) => false,
         StageDoc::SplineBend(_) | StageDoc::GroundMoves(_) | StageDoc::Strip(_) | StageDoc::Relief(_) => !moves,
         StageDoc::TerrainDisocclusion(_) => !solves,
     }

@@ -203,6 +203,11 @@ impl Tracer<'_> {
             self.open = false;
             return;
         };
+        // Both ends are seen, at opposite sides of the picture.
+        if self.pass.seam().is_some_and(|seam| seam.parts(a.on_line.p, b.on_line.p)) {
+            self.open = false;
+            return;
+        }
         let Some([s, t]) = self.clip((va, a.margins), (vb, b.margins)) else {
             self.open = false;
             return;

@@ -10,6 +10,7 @@ use super::split_rays::SplitRays;
 use super::stage::bow;
 use super::straighten::{Strip, Tube};
 use super::terrain::TerrainDisocclusion;
+use super::unroll::{Seam, Unroll};
 use super::{Displaced, Miss, SpaceMap, Stage, StageMap};
 use crate::Aabb;
 use glam::{DMat3, DVec3};
@@ -166,6 +167,27 @@ impl StageMap for Tube {
     }
     fn points_within(&self, bounds: &Aabb) -> Vec<DVec3> {
         self.points_within(bounds)
+    }
+}
+
+impl StageMap for Unroll {
+    fn name(&self) -> &'static str {
+        "unroll"
+    }
+    fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
+        self.edge_bound(p0, p1)
+    }
+    fn displaced_bounds(&self, bounds: &Aabb) -> Option<Aabb> {
+        self.displaced_bounds(bounds)
+    }
+    fn misses(&self, bounds: &Aabb) -> bool {
+        self.misses(bounds)
+    }
+    fn seam(&self) -> Option<Seam> {
+        Some(self.seam())
+    }
+    fn turns_heights(&self) -> bool {
+        self.is_sphere()
     }
 }
 

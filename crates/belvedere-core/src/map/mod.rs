@@ -11,6 +11,7 @@ pub mod split_rays;
 mod stage;
 pub mod straighten;
 pub mod terrain;
+pub mod unroll;
 
 pub use stage::{OwnMap, Stage, StageMap};
 

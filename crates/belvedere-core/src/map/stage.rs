@@ -1,7 +1,8 @@
 //! The stages of a view: their trait for drawing, picking and measuring, the maps of scene files, and users' own maps.
 
 use super::{
-    Displaced, Miss, SpaceMap, curved_rays, earth, ground_moves, relief, rigid, spline, split_rays, straighten, terrain,
+    Displaced, Miss, SpaceMap, curved_rays, earth, ground_moves, relief, rigid, spline, split_rays, straighten,
+    terrain, unroll,
 };
 use crate::Aabb;
 use glam::{DMat3, DVec3};
@@ -73,6 +74,11 @@ pub trait StageMap: SpaceMap + Debug + Send + Sync {
     /// Whether points of a nearly straight way between displaced points, its ends and its middle, may be images of points; `None` where that
     /// is not known, as by default.
     fn may_hold(&self, _way: [DVec3; 3]) -> Option<bool> {
+        None
+    }
+
+    /// Where the images of points beside each other lie apart; `None` where that is nowhere, as by default.
+    fn seam(&self) -> Option<unroll::Seam> {
         None
     }
 
@@ -151,6 +157,8 @@ pub enum Stage {
     Strip(straighten::Strip),
     /// A tube along a centreline is straightened.
     Tube(straighten::Tube),
+    /// The circle around the eye is unrolled.
+    Unroll(unroll::Unroll),
     /// Heights are raised, lowered, shown in plan or levelled.
     Relief(relief::Relief),
     /// Space is carried onto a B-spline over the reference plane (Pasewaldt et al. 2011).
@@ -209,13 +217,13 @@ impl Stage {
         Self::Own(OwnMap(Arc::new(map)))
     }
 
-    /// Position in the fixed order of application: earth, terrain, moved ground, strip or tube, relief, spline, own maps, curved rays.
+    /// Position in the fixed order of application: earth, terrain, moved ground, strip, tube or circle, relief, spline, own maps, curved rays.
     pub fn rank(&self) -> u32 {
         match self {
             Self::EarthCurvature(_) => 0,
             Self::TerrainDisocclusion(_) => 1,
             Self::GroundMoves(_) => 2,
-            Self::Strip(_) | Self::Tube(_) => 3,
+            Self::Strip(_) | Self::Tube(_) | Self::Unroll(_) => 3,
             Self::Relief(_) => 4,
             Self::SplineBend(_) | Self::Body(_) => 5,
             Self::Own(_) => 6,
@@ -239,6 +247,7 @@ impl Deref for Stage {
             Self::GroundMoves(m) => m,
             Self::Strip(m) => m,
             Self::Tube(m) => m,
+            Self::Unroll(m) => m,
             Self::Relief(m) => m,
             Self::SplineBend(m) => m,
             Self::Body(m) => m,

@@ -8,6 +8,7 @@ pub use edges::{EdgeError, EdgePoint, Edges};
 pub use ray_path::{RayPath, RayPoint};
 
 use crate::map::split_rays::{Branch, SplitRays};
+use crate::map::unroll::Seam;
 use crate::{
     Aabb, CurvedRays, Displaced, EarthCurvature, ImageBox, Miss, Pinhole, SpaceMap, SplineBend, Stage, Strip,
     TerrainDisocclusion,
@@ -43,7 +44,7 @@ pub struct View {
 pub enum ViewError {
     /// Wrong order or a repeated stage.
     #[error(
-        "stage {second} cannot follow stage {first}; the order is earth, terrain_disocclusion, ground_moves, strip or tube, relief, spline_bend, curved_rays, each at most once"
+        "stage {second} cannot follow stage {first}; the order is earth, terrain_disocclusion, ground_moves, strip, tube or unroll, relief, spline_bend, curved_rays, each at most once"
     )]
     Order {
         /// Name of the earlier stage.
@@ -175,6 +176,13 @@ impl View {
     /// The stage that straightens a strip or tube, if there is one.
     pub fn straightener(&self) -> Option<&Stage> {
         self.stages.iter().find(|s| matches!(s, Stage::Strip(_) | Stage::Tube(_)))
+    }
+
+    /// Where the images of world points beside each other lie apart, if that is a half plane: where a circle is unrolled and earlier stages move
+    /// points up and down alone.
+    pub fn seam(&self) -> Option<Seam> {
+        let at = self.stages.iter().position(|s| s.seam().is_some())?;
+        if self.stages[..at].iter().all(|s| s.is_upright()) { self.stages[at].seam() } else { None }
     }
 
     /// The strip, if it is a stage.

@@ -17,4 +17,5 @@ mod split_rays;
 mod strip;
 mod terrain;
 mod tube;
+mod unroll;
 mod views;

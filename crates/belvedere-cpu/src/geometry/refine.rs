@@ -2,6 +2,7 @@
 
 use crate::geometry::block::{SoupTriangle, SoupVertex};
 use crate::screen::{PLANES, SUB, Screen, ScreenVertex, Snap};
+use belvedere_core::map::unroll::Seam;
 use belvedere_core::{DVec3, EdgeError};
 use belvedere_sight::pass::Pass;
 use belvedere_sight::screen::COARSE_PX;
@@ -56,6 +57,7 @@ pub(crate) struct Refiner<'a> {
     screen: &'a Screen,
     tolerance_px: f64,
     blind_halvings: u8,
+    seam: Option<Seam>,
     pub(crate) out: Vec<SoupTriangle>,
     pub(crate) splits: u64,
 }
@@ -67,7 +69,7 @@ impl<'a> Refiner<'a> {
         let most = if pass.has_border() { MAX_BLIND_HALVINGS_BESIDE_STRIPS } else { MAX_BLIND_HALVINGS };
         let saved = (tolerance_px / FINE_PX).log2().floor().clamp(0.0, 16.0) as u8;
         let blind_halvings = most.saturating_sub(saved).max(LEAST_BLIND_HALVINGS);
-        Self { pass, screen, tolerance_px, blind_halvings, out, splits: 0 }
+        Self { pass, screen, tolerance_px, blind_halvings, seam: pass.seam(), out, splits: 0 }
     }
 
     pub(crate) fn corner(&self, p: DVec3) -> Corner {
@@ -86,7 +88,31 @@ impl<'a> Refiner<'a> {
         for (corner, weights) in corners.iter_mut().zip(weights) {
             corner.weights = weights.map(f64::from);
         }
-        self.refine(corners, split.map(|s| if s { 0 } else { FROZEN }), parent);
+        let levels = split.map(|s| if s { 0 } else { FROZEN });
+        match self.seam.filter(|seam| (0..3).any(|i| seam.parts(corners[i].p, corners[(i + 1) % 3].p))) {
+            Some(seam) => self.cut_open(&seam, corners, parent),
+            None => self.refine(corners, levels, parent),
+        }
+    }
+
+    /// Cuts a triangle along the plane of a seam, on which new corners lie close to either side. Neighbours cut a common edge at one place.
+    fn cut_open(&mut self, seam: &Seam, c: [Corner; 3], parent: u32) {
+        let mut sides: [Vec<Corner>; 2] = [Vec::new(), Vec::new()];
+        for (i, from) in c.iter().enumerate() {
+            let to = &c[(i + 1) % 3];
+            sides[usize::from(!seam.is_left(from.p))].push(*from);
+            if let Some((share, points)) = seam.crossing(from.p, to.p) {
+                let weights = [0, 1].map(|k| from.weights[k] + share * (to.weights[k] - from.weights[k]));
+                for (side, p) in sides.iter_mut().zip(points) {
+                    side.push(Corner { weights, ..self.corner(p) });
+                }
+            }
+        }
+        for side in sides {
+            for k in 1..side.len().saturating_sub(1) {
+                self.refine([side[0], side[k], side[k + 1]], [0; 3], parent);
+            }
+        }
     }
 
     fn refine(&mut self, c: [Corner; 3], levels: [u8; 3], parent: u32) {

@@ -28,4 +28,5 @@ mod subdivision;
 mod support;
 mod support_views;
 mod tube;
+mod unroll;
 mod volume_edges;

@@ -2,7 +2,7 @@
 
 #[cfg(feature = "clap")]
 use super::args::one_of;
-use super::{Air, Drawing, Molecules, OfData, Paper, Straighten, value};
+use super::{Air, Drawing, Molecules, OfData, Panorama, Paper, Straighten, value};
 use crate::place::Place;
 use crate::{HighlightMark, SurfaceDoc, SwitchOrLength};
 use schemars::JsonSchema;
@@ -70,6 +70,10 @@ pub struct Render {
     #[cfg_attr(feature = "clap", command(flatten))]
     #[serde(flatten)]
     pub molecules: Molecules,
+    /// A panorama from a place.
+    #[cfg_attr(feature = "clap", command(flatten))]
+    #[serde(flatten)]
+    pub panorama: Panorama,
     /// A line that is straightened.
     #[cfg_attr(feature = "clap", command(flatten))]
     #[serde(flatten)]

@@ -95,7 +95,7 @@ impl<'a> Displacer<'a> {
                     None => Step::record(rays, number as usize / 2),
                 },
             },
-            Fast::Earth(_) | Fast::Ground(_) | Fast::None => Step::Stage(stage),
+            Fast::Earth(_) | Fast::Ground(_) | Fast::Circle(_) | Fast::None => Step::Stage(stage),
         };
         Self { steps: view.stages().iter().map(step).collect() }
     }

@@ -7,6 +7,7 @@ mod spline_table;
 mod way;
 
 use crate::screen::Screen;
+use belvedere_core::map::unroll::Seam;
 use belvedere_core::{Aabb, CurvedRays, DVec2, DVec3, EdgeError, EdgePoint, Edges, Stage, View};
 use displace::Displacer;
 pub use points::Points;
@@ -157,6 +158,11 @@ impl<'a> Pass<'a> {
     /// Whether an edge may have an image between its ends where neither end has one.
     pub fn crosses(&self, a: DVec3, b: DVec3) -> bool {
         self.has_border() && !is_missed(self.view.stages(), &Aabb::of([a, b]))
+    }
+
+    /// See [`View::seam`].
+    pub fn seam(&self) -> Option<Seam> {
+        self.view.seam()
     }
 
     /// See [`belvedere_core::map::StageMap::has_border`].

@@ -3,6 +3,7 @@
 use crate::fast::Fast;
 use crate::trace::row::Row;
 use belvedere_core::map::curved_rays::{RayPiece, Shape};
+use belvedere_core::map::unroll::Unroll;
 use belvedere_core::{DVec2, DVec3, EarthCurvature, RayPath, SplineBend, Stage, TerrainDisocclusion, View};
 use std::borrow::Cow;
 
@@ -23,6 +24,7 @@ pub struct Split<'a> {
     earth: Option<Parabola>,
     bend: Option<&'a SplineBend>,
     straightened: Option<(&'a Stage, View)>,
+    circle: Option<Unroll>,
     kind: Kind,
 }
 
@@ -33,6 +35,8 @@ enum Kind {
     Pieces,
     /// A spline whose curve lies across the image's rows.
     Rows,
+    /// A circle around the eye is unrolled: straight rays.
+    Circle,
     /// Any other stages.
     Any,
 }
@@ -88,8 +92,14 @@ impl<'a> Split<'a> {
             // The tail of a chain is a valid chain.
             Some((stage, View::new(view.pinhole().clone(), later).ok()?))
         });
-        let unknown = stages.iter().any(|s| matches!(Fast::of(s), Fast::None) && !s.bends_rays());
+        let unknown = stages.iter().any(|s| matches!(Fast::of(s), Fast::None | Fast::Circle(_)) && !s.bends_rays());
+        let circle = match stages.iter().map(Fast::of).filter(|s| !matches!(s, Fast::Earth(_))).collect::<Vec<_>>()[..]
+        {
+            [Fast::Circle(circle)] => Some(*circle),
+            _ => None,
+        };
         let kind = match (bend, stages.iter().any(Stage::bends_rays)) {
+            _ if circle.is_some() => Kind::Circle,
             _ if unknown => Kind::Any,
             (None, _) => Kind::Pieces,
             (Some(bend), false) => {
@@ -100,7 +110,7 @@ impl<'a> Split<'a> {
         };
         // A chain without one of its stages is valid if the chain is.
         let smooth = View::new(view.pinhole().clone(), stages).unwrap_or_else(|_| view.as_ref().clone());
-        Self { view, smooth, ground, earth, bend, straightened, kind }
+        Self { view, smooth, ground, earth, bend, straightened, circle, kind }
     }
 
     /// Height by which the ground at a point is displaced, scene units.
@@ -128,6 +138,13 @@ impl<'a> Split<'a> {
         let ray = self.smooth.ray(pixel);
         let shape = match (self.kind, row) {
             (Kind::Rows, Some(row)) => Curved::Row { row, lateral: row.lateral(self.view.pinhole().line(pixel)) },
+            (Kind::Circle, _) => {
+                let (from, per_depth) = self.view.pinhole().line(pixel);
+                match self.circle.map(|circle| circle.straight_ray(from, per_depth)) {
+                    Some(Ok(line)) => Curved::Pieces(line.into_iter().map(straight).collect()),
+                    _ => Curved::Any(ray),
+                }
+            }
             (Kind::Pieces, _) => match ray.pieces() {
                 Ok(pieces) => Curved::Pieces(pieces),
                 Err(_) => Curved::Any(ray),
@@ -148,6 +165,11 @@ impl<'a> Split<'a> {
     pub(crate) fn sag(&self, a: DVec3, b: DVec3) -> f64 {
         self.earth.map_or(0.0, |e| 0.25 * e.factor.abs() * (a - b).truncate().length_squared())
     }
+}
+
+/// One straight piece, by its point and step per unit of depth.
+fn straight([from, per_depth]: [DVec3; 2]) -> RayPiece {
+    RayPiece { segment: 0, depth: [0.0, f64::INFINITY], shape: Shape::Line { from, per_depth } }
 }
 
 /// A ray.
