@@ -11,7 +11,8 @@ from .errors import InputError
 #: Buffers that every picture has in memory.
 BUFFERS = ["depth", "id", "world"]
 #: Options of pictures that change what a scene is opened as.
-OF_SCENE = ("palette", "sky", "haze", "clouds", "contours", "edge", "plain", "landcover", "area_style", "no_sea", "representation", "color_by", "assembly", "model", "straighten", "radius", "side", "uncut")
+OF_SCENE = ("palette", "sky", "haze", "clouds", "contours", "edge", "plain", "landcover", "area_style", "no_sea", "representation", "color_by", "assembly", "model", "straighten", "radius", "side", "uncut",
+            "panorama", "heading", "span", "pitch", "sphere")
 
 
 def drawing(

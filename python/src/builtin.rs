@@ -5,13 +5,14 @@ use belvedere::{output, scene_file};
 use pyo3::prelude::*;
 use std::path::Path;
 
-const SCENES: [(&str, &str); 12] = [
+const SCENES: [(&str, &str); 13] = [
     ("massif", include_str!("../../scenes/massif.toml")),
     ("massif_terrain", include_str!("../../scenes/massif_terrain.toml")),
     ("massif_curved_rays", include_str!("../../scenes/massif_curved_rays.toml")),
     ("massif_panorama", include_str!("../../scenes/massif_panorama.toml")),
     ("massif_moves", include_str!("../../scenes/massif_moves.toml")),
     ("massif_strip", include_str!("../../scenes/massif_strip.toml")),
+    ("massif_circle", include_str!("../../scenes/massif_circle.toml")),
     ("church", include_str!("../../scenes/church.toml")),
     ("dna", include_str!("../../scenes/dna.toml")),
     ("engine", include_str!("../../scenes/engine_curved_rays.toml")),

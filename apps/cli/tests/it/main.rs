@@ -28,6 +28,7 @@ mod numbers;
 mod odd_files;
 mod outputs;
 mod packed;
+mod panorama;
 mod pick;
 mod pictures;
 mod places;

@@ -180,7 +180,7 @@ fn the_same_scene_and_data_in_two_folders_give_the_same_bytes() {
 }
 
 /// Ready scenes, smaller than they are.
-const SCENES: [&str; 16] = [
+const SCENES: [&str; 17] = [
     "massif",
     "massif_curved_rays",
     "massif_plan_oblique",
@@ -188,6 +188,7 @@ const SCENES: [&str; 16] = [
     "massif_moves",
     "massif_strip",
     "tube_straight",
+    "massif_circle",
     "massif_terrain",
     "street",
     "street_split",

@@ -10,7 +10,12 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// Options that another test tries.
-const ELSEWHERE: [(&str, &str); 8] = [
+const ELSEWHERE: [(&str, &str); 13] = [
+    ("panorama", "panorama.rs of the command line"),
+    ("heading", "panorama.rs of the command line"),
+    ("span", "panorama.rs of the command line"),
+    ("pitch", "panorama.rs of the command line"),
+    ("sphere", "panorama.rs of the command line"),
     ("straighten", "tube.rs of the command line"),
     ("radius", "tube.rs of the command line"),
     ("side", "tube.rs of the command line"),
