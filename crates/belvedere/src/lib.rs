@@ -169,6 +169,7 @@ mod session;
 mod shown;
 mod straightened;
 pub mod threads;
+mod user_files;
 pub mod verbs;
 
 pub use belvedere_builtin as builtin;

@@ -8,6 +8,7 @@ use crate::scene_file::{
 };
 use crate::session::Loaded;
 use crate::shown::{end_ground, show_all};
+use crate::user_files::of_user;
 use crate::{Advice, BelvedereError, Needs, OpenOptions, Session};
 use crate::{circle, straightened};
 use belvedere_io::crs::utm_epsg;
@@ -99,13 +100,6 @@ impl Session {
         let session = Self::of_document(loaded, source, roots, (!options.unsolved).then_some(&mut solving))?;
         circle::aimed(straightened::aimed(session, options)?, options)
     }
-}
-
-/// The full path of a file that the user named, whose folder is allowed from now on.
-pub(crate) fn of_user(name: &str, allowed: &mut Vec<PathBuf>) -> Result<String, BelvedereError> {
-    let path = belvedere_io::fs::canonicalize(name).map_err(|e| belvedere_io::IoError::os(Path::new(name), e))?;
-    allowed.extend(path.parent().map(Path::to_owned));
-    path.to_str().map(str::to_owned).ok_or_else(|| BelvedereError::not_utf8(name))
 }
 
 /// Puts what is asked for instead of what a document says into it.

@@ -1,8 +1,8 @@
 //! Data straightened along a line, and the camera that shows all of it.
 
-use crate::open::of_user;
 use crate::scene_file::request::{Straighten, StraightenedLine};
 use crate::scene_file::{CameraDoc, CentrelineDoc, Document, LayerDoc, StageDoc, TubeStageDoc};
+use crate::user_files::of_user;
 use crate::{Advice, BelvedereError, OpenOptions, Session};
 use belvedere_core::map::straighten::Tube;
 use belvedere_core::{DMat3, DVec3, Pinhole, Projection, Stage};

@@ -87,7 +87,7 @@ fn stages_are_checked_with_their_line() {
     let spline = "[[stage]]\nkind = 'spline_bend'\npresets = 'map'\n";
     refuses(
         &with(&format!("{turn}{spline}")),
-        "9: stage spline_bend cannot follow stage curved_rays; the order is earth, terrain_disocclusion, ground_moves, strip, relief, spline_bend, curved_rays, each at most once",
+        "9: stage spline_bend cannot follow stage curved_rays; the order is earth, terrain_disocclusion, ground_moves, strip, tube or unroll, relief, spline_bend, curved_rays, each at most once",
     );
     let relief = |key: &str| with(&format!("[[stage]]\nkind = 'relief'\n{key}"));
     refuses(&relief("oblique = 9"), "7: oblique is 9, it must be in 0..=5");

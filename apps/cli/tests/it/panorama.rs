@@ -35,14 +35,18 @@ fn columns_of_a_scene_are_azimuths_and_rows_are_slopes() {
     let per_degree = 1.0;
     let middle = 30.0 - 5f64.to_radians().tan() * per_degree * 180.0 / std::f64::consts::PI;
     assert!((pixels[0][0] - 180.0).abs() < 1e-6 && (pixels[0][1] - middle).abs() < 1e-6, "{found}");
-    assert!((pixels[1][0] - 90.0).abs() < 1e-6 && (pixels[1][1] - middle - 0.1 * 180.0 / std::f64::consts::PI).abs() < 1e-6);
+    assert!(
+        (pixels[1][0] - 90.0).abs() < 1e-6 && (pixels[1][1] - middle - 0.1 * 180.0 / std::f64::consts::PI).abs() < 1e-6
+    );
     assert!(pixels[2][0] < 1.0 || pixels[2][0] > 359.0, "{found}");
     assert_eq!(pixels.len(), 3, "what lies straight below has no azimuth: {found}");
 }
 
 #[test]
 fn what_is_resolved_opens_to_the_same_view() {
-    for (camera, stage) in [("heading_deg = 20", ""), ("look_at = [0, 0, 2500]", "span_deg = 200\nfrom = 'sphere'")] {
+    for (camera, stage) in
+        [("heading_deg = 20\npitch_deg = 0", ""), ("look_at = [0, 0, 2500]", "span_deg = 200\nfrom = 'sphere'")]
+    {
         let place = Place::new();
         place.write("s.toml", &scene(camera, stage));
         place.write("p.json", "[[-2000, -3500, 1000], [500, 0, 900], [-4000, -4500, 1500]]");
@@ -56,7 +60,10 @@ fn what_is_resolved_opens_to_the_same_view() {
 #[test]
 fn data_are_seen_all_around_from_a_place_on_them() {
     let place = Place::new();
-    place.write("g.toml", &format!("format = 1\ncrs = \"local\"\n[camera]\neye = [0, 0, 9000]\nlook_at = [0, 1, 0]\n{GROUND}"));
+    place.write(
+        "g.toml",
+        &format!("format = 1\ncrs = \"local\"\n[camera]\neye = [0, 0, 9000]\nlook_at = [0, 1, 0]\n{GROUND}"),
+    );
     let draw = |out: &str, more: &[&str]| {
         let args = [&["render", "g.toml", "--panorama=-3000,-3000,+30", "-o", out, "--size", "360x60"], more].concat();
         place.ok(&args);
@@ -80,15 +87,15 @@ fn data_are_seen_all_around_from_a_place_on_them() {
 fn what_cannot_be_unrolled_is_said() {
     let place = Place::new();
     for (camera, stage, said) in [
-        ("heading_deg = 0", "span_deg = 400", "span_deg is 400"),
+        ("heading_deg = 0\npitch_deg = 0", "span_deg = 400", "span_deg is 400"),
         ("heading_deg = 0\npitch_deg = 80", "", "80 degrees below the horizon"),
-        ("heading_deg = 0\nprojection = 'orthographic'\northo_height_m = 100", "", "needs an eye"),
+        ("heading_deg = 0\npitch_deg = 0\nprojection = 'orthographic'\northo_height_m = 100", "", "needs an eye"),
     ] {
         place.write("s.toml", &scene(camera, stage));
         let refused = place.fails(&["render", "s.toml", "-o", "x.png"]);
         assert!(refused.contains(said) && refused.contains("s.toml:"), "{stage}: {refused}");
     }
-    place.write("s.toml", &scene("heading_deg = 0", ""));
+    place.write("s.toml", &scene("heading_deg = 0\npitch_deg = 0", ""));
     let two = place.fails(&["render", "s.toml", "--panorama", "0,0,+5", "-o", "x.png"]);
     assert!(two.contains("--panorama"), "{two}");
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Least distance in plan from the eye, as a share of the distance, at which a point has an azimuth.
-const LEAST: f64 = 1e-12;
+const NEAREST: f64 = 1e-12;
 /// No point farther away from the eye has an image, scene units.
 const MOST: f64 = 1e150;
 /// Largest second derivative of `r atan(z / r)` by `z`, times `r`: at a slope of 1 / sqrt(3).
@@ -111,7 +111,7 @@ impl Unroll {
         let v = p - self.eye;
         let (s, f) = (v.truncate().dot(self.right), v.truncate().dot(self.forward));
         let (r, psi) = (s.hypot(f), s.atan2(f));
-        let is_inside = r > LEAST * v.z.abs() && r > f64::MIN_POSITIVE && psi.abs() <= self.half;
+        let is_inside = r > NEAREST * v.z.abs() && r > f64::MIN_POSITIVE && psi.abs() <= self.half;
         (is_inside && r.max(v.z.abs()) < MOST).then_some(Around { psi, r, z: v.z })
     }
 
@@ -277,7 +277,7 @@ impl SpaceMap for Unroll {
         let w = p_displaced - self.eye;
         let (x, r) = (w.truncate().dot(self.right), w.truncate().dot(self.forward));
         let (psi, up) = (x / r, w.z + self.slope * r);
-        if !(r > LEAST * up.abs() && psi.abs() <= self.half && r.max(up.abs()) < MOST) {
+        if !(r > NEAREST * up.abs() && psi.abs() <= self.half && r.max(up.abs()) < MOST) {
             return Err(Miss::OutsideDomain);
         }
         let z = match self.roll {

@@ -9,7 +9,8 @@ mod tree;
 
 pub use curve::{Curve, Foot, Frame};
 pub use dimension::{Across, Dimension, Plan, Shape, Space, Vector};
-pub use smooth::{BEND_SHARE, Smoothed};
+pub use overlap::BEND_SHARE;
+pub use smooth::Smoothed;
 
 use super::{Miss, SpaceMap};
 use crate::plain::number;

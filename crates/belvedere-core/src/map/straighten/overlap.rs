@@ -2,10 +2,12 @@
 
 use super::curve::{Curve, Node};
 use super::dimension::{Across, Dimension, Vector};
-use super::{BEND_SHARE, StraightenError, place};
+use super::{StraightenError, place};
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
+/// The least radius of curvature is the half width over this, so that lengths along the curve change by no more than a factor of 5.
+pub const BEND_SHARE: f64 = 0.8;
 /// Longest straight end, in multiples of the curve's length plus the half width.
 const FAR: f64 = 1e4;
 
@@ -39,7 +41,7 @@ pub(super) fn reach<D: Dimension>(curve: &Curve<D>, half_width: f64) -> Result<[
 pub(super) type Cell<D> = Vec<(<D as Dimension>::Across, f64)>;
 
 /// For each node of a curve and its unrolled form the offsets up to `most` that are nearer to it than to every other place of either, with
-/// a spacing of nodes in hand, and whose bend is no sharper than [`super::BEND_SHARE`] allows.
+/// a spacing of nodes in hand, and whose bend is no sharper than [`BEND_SHARE`] allows.
 ///
 /// An offset `a` is nearer to the node than to a place in the way `d` from it where `2 d' a <= |d|^2`, `d'` the part of `d` across the curve: what
 /// belongs to a node is convex, and the least `|d|^2 / (2 |d'|)` is the global radius of curvature there (Gonzalez and Maddocks 1999).

@@ -2,10 +2,9 @@
 
 use super::curve::Curve;
 use super::dimension::{Dimension, Vector};
-use super::{StraightenError, in_range, overlap, place};
+use super::overlap::{self, BEND_SHARE};
+use super::{StraightenError, in_range, place};
 
-/// The least radius of curvature is the half width over this, so that lengths along it change by no more than a factor of 5.
-pub const BEND_SHARE: f64 = 0.8;
 /// Samples per smoothing width.
 const SAMPLES: f64 = 8.0;
 /// Nodes of the curve per half width.
