@@ -67,19 +67,19 @@ fn data_are_straightened_along_two_points_or_a_file_and_cut_open() {
     place.ok(&["render", "v.toml", "--straighten", between, "--size", "160x40", "-o", "x.png"]);
     assert!(number(&record(&place, "x.png.json")["tube"]["centreline"]["length"]) > 100.0);
     place.write("line.csv", "x,y,z\n97,63,25\n60,97,30\n22,60,38\n60,23,46\n97,60,54\n");
-    place.ok(&["render", "v.toml", "--straighten", "line.csv", "--radius", "9", "-o", "cut.png"]);
+    place.ok(&["render", "v.toml", "--straighten", "line.csv", "--radius", "16", "-o", "cut.png"]);
     let said = record(&place, "cut.png.json");
     let camera = &said["scene"]["camera"];
-    assert_eq!((camera["projection"].as_str(), number(&said["tube"]["radius_m"])), (Some("orthographic"), 9.0));
+    assert_eq!((camera["projection"].as_str(), number(&said["tube"]["radius_m"])), (Some("orthographic"), 16.0));
     // As wide as it is long: the picture takes the shape of the tube.
     let image: [f64; 2] = serde_json::from_value(camera["image"].clone()).expect("a size");
-    let beyond = if said["tube"]["whole"] == true { 18.0 } else { 0.0 };
-    let shape = (number(&said["tube"]["length_m"]) + beyond) / 18.0;
+    let beyond = if said["tube"]["whole"] == true { 32.0 } else { 0.0 };
+    let shape = (number(&said["tube"]["length_m"]) + beyond) / 32.0;
     assert!((image[0] / image[1] / shape - 1.0).abs() < 0.02, "{image:?} for {shape}");
     assert_eq!(said["scene"]["layer"][0]["transfer"], "slice");
     for more in [&["--uncut"][..], &["--side", "90"]] {
         place.ok(&[
-            &["render", "v.toml", "--straighten", "line.csv", "--radius", "9", "-o", "o.png", "--overwrite"],
+            &["render", "v.toml", "--straighten", "line.csv", "--radius", "16", "-o", "o.png", "--overwrite"],
             more,
         ]
         .concat());
