@@ -187,7 +187,7 @@ impl<D: Dimension> Curve<D> {
         }
     }
 
-    /// The foot of `p` within `width` of the curve and its straight ends, if there is one inside [`PlanCurve::reach`]. Unique where what
+    /// The foot of `p` within `width` of the curve and its straight ends, if there is one inside [`Curve::reach`]. Unique where what
     /// lies so near is single.
     pub fn foot(&self, p: D::Vector, width: f64) -> Option<Foot<D>> {
         let q = p - self.origin;
