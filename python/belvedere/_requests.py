@@ -138,6 +138,9 @@ class RenderOptions(TypedDict, total=False):
     #: Haze: on (the default: dims the farther part of the view), off, or the visibility in kilometres
     haze: bool | float | None
 
+    #: Direction in the middle of the panorama, degrees clockwise from north; 0 by default
+    heading: float | None
+
     #: What covers the ground instead of a guess by climate and relief: a raster of ESA WorldCover, CORINE or NLCD, or areas of OpenStreetMap
     landcover: str | None
 
@@ -150,17 +153,41 @@ class RenderOptions(TypedDict, total=False):
     #: Tint of the terrain instead of the scene's: a name, as of `reveal`, or a file of colours by height (GDAL text, GMT .cpt)
     palette: str | None
 
+    #: Draw the whole circle around a place: x,y of the scene, lon,lat in degrees, or 46.5N,11.3E, and the height of the eye in metres or as +20 over the ground; 2 m over it by default
+    panorama: str | Sequence[Any] | None
+
+    #: Direction of the middle row, degrees below the horizon; 0 by default
+    pitch: float | None
+
     #: Tint the ground by height alone: no forest, rock or snow by rule, and no relief finer than the data
     plain: bool
+
+    #: Largest distance from the line that is shown; by default four times the clearance of a traced centreline, else a tenth of its length
+    radius: float | None
 
     #: What molecules are shown as, instead of what the scene says; without a scene auto
     representation: Literal["ball_and_stick", "space_filling", "sticks", "ribbon", "surface", "auto"] | None
 
+    #: Side from which the line is seen, degrees about it; 0 by default, where what was above stays above as far as it can
+    side: float | None
+
     #: Sky: auto (by the height of the sun), day, dusk, night, white, a colour #rrggbb, or transparent (PNG and SVG)
     sky: str | None
 
+    #: Angle from the left to the right side of the panorama, degrees; 360 by default
+    span: float | None
+
+    #: Unroll it from a sphere, with evenly spaced angles from row to row, instead of a cylinder
+    sphere: bool
+
+    #: Straighten what lies around a line, such as a vessel, and cut it open along the line: a file (CSV `x,y,z`, OBJ, JSON), a line layer, or X,Y,Z:X,Y,Z, two points of a volume between which the centreline is traced
+    straighten: Sequence[Any] | str | None
+
     #: Thresholds per pixel in transitions between styling sections, 1 to 4096; 64 by default, 1 is a dither
     thresholds: int | None
+
+    #: Look at it from outside instead of cutting it open
+    uncut: bool
 
 
 class AnimateOptions(TypedDict, total=False):
