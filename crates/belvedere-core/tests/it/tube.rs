@@ -269,6 +269,9 @@ fn refusals_speak_of_tubes() {
     assert!(wide.to_string().contains("centreline bends") && wide.to_string().contains("a radius of 60"), "{wide}");
     let short = SmoothedCentreline::new(&points[..1], 1.0, None).unwrap_err();
     assert!(short.to_string().contains("the centreline has 1 points"), "{short}");
+    let fine = SmoothedCentreline::new(&points, 0.05, None).expect("it fits").curve;
+    let many = Tube::parted(fine, 200.0, 1.0, points[0]).unwrap_err();
+    assert!(matches!(many, StraightenError::TooMany { .. }) && many.to_string().contains("smooth more"), "{many}");
     let hole = SmoothedCentreline::new(&[DVec3::ZERO, DVec3::NAN], 1.0, None).unwrap_err();
     assert!(matches!(hole, StraightenError::NotFinite { index: 1, .. }));
 }

@@ -127,6 +127,23 @@ pub enum StraightenError {
         /// Most nodes.
         most: f64,
     },
+    /// Too many places of the line lie within reach of each other.
+    #[error(
+        "a {width} of {half_width} reaches about {near:.0} of the {nodes} nodes of the {line} from each of them, more than {most:.0} pairs; smooth more, or take a narrower {name}",
+        width = shape.width(), line = shape.line(), name = shape.name()
+    )]
+    TooMany {
+        /// What was asked for.
+        shape: Shape,
+        /// Half width or radius that was asked for.
+        half_width: f64,
+        /// Nodes of the curve.
+        nodes: usize,
+        /// Those within reach of one of them, about.
+        near: f64,
+        /// Most pairs.
+        most: f64,
+    },
     /// Out of range.
     #[error("{key} is {}, it must be in {}..={}", number(*value), number(*min), number(*max))]
     Range {
@@ -140,6 +157,9 @@ pub enum StraightenError {
         max: f64,
     },
 }
+
+/// Most pairs of nodes within reach of each other of a line whose surroundings are parted: about ten seconds of a core.
+const MOST_PAIRS: f64 = 3e8;
 
 /// A position as a point of the scene, at height 0 in plan.
 fn place<D: Dimension>(at: D::Vector) -> DVec3 {
@@ -235,11 +255,16 @@ impl<D: Dimension> Straightened<D> {
     /// the line either.
     ///
     /// # Errors
-    /// [`StraightenError::Range`].
+    /// [`StraightenError::Range`], [`StraightenError::TooMany`].
     pub fn parted(line: Curve<D>, half_width: f64, share: f64, anchor: D::Vector) -> Result<Self, StraightenError> {
         match Self::new(line.clone(), half_width, share, anchor) {
             Err(StraightenError::Radius { .. } | StraightenError::Overlap { .. }) => {}
             done => return done,
+        }
+        let nodes = line.curvature().len();
+        let near = (4.0 * half_width / line.spacing()).min(nodes as f64);
+        if !(near * nodes as f64 <= MOST_PAIRS) {
+            return Err(StraightenError::TooMany { shape: D::SHAPE, half_width, nodes, near, most: MOST_PAIRS });
         }
         let reach = [0.0, line.length()];
         let largest_curvature = line.largest_curvature();
