@@ -60,42 +60,15 @@ pub(super) fn resolve(
     let mut intent = None;
     for (i, stage) in context.source.document.stage.iter().enumerate() {
         let at = context.at(i);
-        let (stage, document) = match stage {
-            StageDoc::TerrainDisocclusion(doc) if doc.delta.is_none() => {
-                let settings = terrain::settings(doc).map_err(|(key, reason)| at.error(&[key], reason))?;
-                out.documents.push(StageDoc::TerrainDisocclusion(terrain::document(&settings, context.scene)));
-                intent = Some((i, settings));
-                continue;
-            }
-            StageDoc::TerrainDisocclusion(doc) => solved_terrain(context, doc, inputs, at)?,
-            StageDoc::GroundMoves(doc) => {
-                let (stage, document, report) = super::ground_moves::resolve(context, doc, warnings, at)?;
-                out.moved = Some(report);
-                (stage, document)
-            }
-            StageDoc::Strip(doc) => {
-                let (stage, document, report) = super::strip::resolve(context, doc, warnings, at)?;
-                out.strip = Some(report);
-                (stage, document)
-            }
-            StageDoc::Tube(doc) => {
-                let (stage, document, report) = super::tube::resolve(context, doc, (&mut *inputs, &mut *warnings), at)?;
-                out.tube = Some(report);
-                (stage, document)
-            }
-            StageDoc::Unroll(doc) => {
-                let (stage, document, pinhole) = super::unroll::resolve(context, doc, at)?;
-                out.pinhole = pinhole;
-                (stage, document)
-            }
-            StageDoc::Relief(doc) => super::relief::resolve(context, doc, at)?,
-            StageDoc::SplineBend(doc) => {
-                let (bend, document) = spline(context, doc, inputs, warnings, at)?;
-                out.pinhole = bend.adapted_pinhole(&out.pinhole);
-                (Stage::SplineBend(bend), document)
-            }
-            StageDoc::CurvedRays(doc) => super::rays::resolve(&out.pinhole, doc, at)?,
-        };
+        if let StageDoc::TerrainDisocclusion(doc) = stage
+            && stage.is_terrain_intent()
+        {
+            let settings = terrain::settings(doc).map_err(|(key, reason)| at.error(&[key], reason))?;
+            out.documents.push(StageDoc::TerrainDisocclusion(terrain::document(&settings, context.scene)));
+            intent = Some((i, settings));
+            continue;
+        }
+        let (stage, document) = one(context, stage, &mut out, (&mut *inputs, &mut *warnings), at)?;
         out.stages.push(stage);
         out.documents.push(document);
     }
@@ -109,6 +82,48 @@ pub(super) fn resolve(
         out.terrain = Some(solved.report);
     }
     Ok(out)
+}
+
+/// A stage that needs no solver, and its document.
+///
+/// * `out`: takes its report, and the camera that it chooses.
+fn one(
+    context: &StageContext<'_>,
+    stage: &StageDoc,
+    out: &mut ResolvedStages,
+    (inputs, warnings): (&mut Vec<InputFile>, &mut Vec<Warning>),
+    at: Table<'_>,
+) -> Result<(Stage, StageDoc), BelvedereError> {
+    Ok(match stage {
+        StageDoc::TerrainDisocclusion(doc) => solved_terrain(context, doc, inputs, at)?,
+        StageDoc::GroundMoves(doc) => {
+            let (stage, document, report) = super::ground_moves::resolve(context, doc, warnings, at)?;
+            out.moved = Some(report);
+            (stage, document)
+        }
+        StageDoc::Strip(doc) => {
+            let (stage, document, report) = super::strip::resolve(context, doc, warnings, at)?;
+            out.strip = Some(report);
+            (stage, document)
+        }
+        StageDoc::Tube(doc) => {
+            let (stage, document, report) = super::tube::resolve(context, doc, (inputs, warnings), at)?;
+            out.tube = Some(report);
+            (stage, document)
+        }
+        StageDoc::Unroll(doc) => {
+            let (stage, document, pinhole) = super::unroll::resolve(context, doc, at)?;
+            out.pinhole = pinhole;
+            (stage, document)
+        }
+        StageDoc::Relief(doc) => super::relief::resolve(context, doc, at)?,
+        StageDoc::SplineBend(doc) => {
+            let (bend, document) = spline(context, doc, inputs, warnings, at)?;
+            out.pinhole = bend.adapted_pinhole(&out.pinhole);
+            (Stage::SplineBend(bend), document)
+        }
+        StageDoc::CurvedRays(doc) => super::rays::resolve(&out.pinhole, doc, at)?,
+    })
 }
 
 /// The stage of a solved grid.

@@ -8,7 +8,7 @@ use super::rigid::RigidMotion;
 use super::spline::SplineBend;
 use super::split_rays::SplitRays;
 use super::stage::bow;
-use super::straighten::{Strip, Tube};
+use super::straighten::{Dimension, Shape, Straightened};
 use super::terrain::TerrainDisocclusion;
 use super::unroll::{Seam, Unroll};
 use super::{Displaced, Miss, SpaceMap, Stage, StageMap};
@@ -102,48 +102,12 @@ impl StageMap for GroundMoves {
     }
 }
 
-impl StageMap for Strip {
+impl<D: Dimension> StageMap for Straightened<D> {
     fn name(&self) -> &'static str {
-        "strip"
+        D::SHAPE.name()
     }
     fn eased(&self, share: f64) -> Option<Stage> {
-        self.eased(share).map(Stage::Strip)
-    }
-    fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
-        self.edge_bound(p0, p1)
-    }
-    // One search for the feet serves both ends and their bound.
-    fn edge(&self, p0: DVec3, p1: DVec3) -> Option<(DVec3, DVec3, f64)> {
-        self.edge(p0, p1)
-    }
-    fn displaced_bounds(&self, bounds: &Aabb) -> Option<Aabb> {
-        self.displaced_bounds(bounds)
-    }
-    fn misses(&self, bounds: &Aabb) -> bool {
-        self.misses(bounds)
-    }
-    fn may_hold(&self, way: [DVec3; 3]) -> Option<bool> {
-        Some(self.may_hold(way))
-    }
-    fn points_within(&self, bounds: &Aabb) -> Vec<DVec3> {
-        self.points_within(bounds)
-    }
-    fn turns_heights(&self) -> bool {
-        false
-    }
-    // The derivative stretches along one horizontal direction.
-    fn rotation_of_body(&self, foot: DVec3) -> Result<DMat3, Miss> {
-        let [x, y] = self.jacobian(foot).map(|j| [j.x_axis, j.y_axis])?;
-        Ok(DMat3::from_rotation_z((x.y - y.x).atan2(x.x + y.y)))
-    }
-}
-
-impl StageMap for Tube {
-    fn name(&self) -> &'static str {
-        "tube"
-    }
-    fn eased(&self, share: f64) -> Option<Stage> {
-        self.eased(share).map(Stage::Tube)
+        self.eased(share).map(D::stage)
     }
     // Without bounds over edges an estimate, as by default.
     fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {
@@ -167,6 +131,13 @@ impl StageMap for Tube {
     }
     fn points_within(&self, bounds: &Aabb) -> Vec<DVec3> {
         self.points_within(bounds)
+    }
+    fn turns_heights(&self) -> bool {
+        D::SHAPE == Shape::Tube
+    }
+    // The derivative stretches along the line and turns.
+    fn rotation_of_body(&self, foot: DVec3) -> Result<DMat3, Miss> {
+        self.rotation_at(foot)
     }
 }
 

@@ -113,6 +113,25 @@ fn a_cross_section_lies_straightened_where_its_arc_length_says() {
     }
 }
 
+/// By Higham's iteration from the derivative.
+#[test]
+fn bodies_turn_as_the_derivative_does() {
+    let mut random = Random::new(4);
+    for map in [shared(&Similarity::IDENTITY, 1.0), shared(&Similarity::IDENTITY, 0.4)] {
+        for _ in 0..300 {
+            let p =
+                map.line().at(random.range(0.0, map.line().length())).beside(DVec2::new(random.range(-2.0, 2.0), 1.0));
+            let mut expected = map.jacobian(p).expect("inside");
+            for _ in 0..40 {
+                expected = 0.5 * (expected + expected.inverse().transpose());
+            }
+            let found = Stage::Tube(map.clone()).rotation_of_body(p).expect("inside");
+            let off = (found - expected).to_cols_array().into_iter().fold(0.0f64, |most, v| most.max(v.abs()));
+            assert!(off < 1e-9, "{off} at {p}");
+        }
+    }
+}
+
 #[test]
 fn nothing_moves_at_the_anchor() {
     for map in

@@ -158,8 +158,8 @@ pub enum StraightenError {
     },
 }
 
-/// Most pairs of nodes within reach of each other of a line whose surroundings are parted: about ten seconds of a core.
-const MOST_PAIRS: f64 = 3e8;
+/// Most pairs of nodes within reach of each other of a line whose surroundings are parted: nine seconds of a core.
+const MOST_PAIRS: f64 = 1e8;
 
 /// A position as a point of the scene, at height 0 in plan.
 fn place<D: Dimension>(at: D::Vector) -> DVec3 {
@@ -351,6 +351,15 @@ impl<D: Dimension> Straightened<D> {
     /// Image of a point with these coordinates.
     fn image(&self, p: DVec3, at: Foot<D>) -> DVec3 {
         D::with(carried(&self.line, &self.unrolled, at.g, D::of(p)), p)
+    }
+
+    /// How what stands at a point turns.
+    pub(crate) fn rotation_at(&self, p: DVec3) -> Result<DMat3, Miss> {
+        let at = self.coordinates(p).ok_or(Miss::OutsideDomain)?;
+        let [from, to] = [&self.line, &self.unrolled].map(|curve| curve.relative(at.g).turn);
+        let turn = D::then(to, D::back(from));
+        let turned = |axis: DVec3| D::with(D::turned(turn, D::of(axis)), axis);
+        Ok(DMat3::from_cols(turned(DVec3::X), turned(DVec3::Y), turned(DVec3::Z)))
     }
 
     /// Lower bound on the distance, scene units, of a displaced point from the image of the domain; 0 or less inside and near it.
