@@ -8,7 +8,7 @@ use super::rigid::RigidMotion;
 use super::spline::SplineBend;
 use super::split_rays::SplitRays;
 use super::stage::bow;
-use super::straighten::{Dimension, Shape, Straightened};
+use super::straighten::{Dimension, Shape, Straightened, Strip, Tube};
 use super::terrain::TerrainDisocclusion;
 use super::unroll::{Seam, Unroll};
 use super::{Displaced, Miss, SpaceMap, Stage, StageMap};
@@ -102,12 +102,27 @@ impl StageMap for GroundMoves {
     }
 }
 
-impl<D: Dimension> StageMap for Straightened<D> {
+impl From<Strip> for Stage {
+    fn from(map: Strip) -> Self {
+        Self::Strip(map)
+    }
+}
+
+impl From<Tube> for Stage {
+    fn from(map: Tube) -> Self {
+        Self::Tube(map)
+    }
+}
+
+impl<D: Dimension> StageMap for Straightened<D>
+where
+    Stage: From<Self>,
+{
     fn name(&self) -> &'static str {
         D::SHAPE.name()
     }
     fn eased(&self, share: f64) -> Option<Stage> {
-        self.eased(share).map(D::stage)
+        self.eased(share).map(Stage::from)
     }
     // Without bounds over edges an estimate, as by default.
     fn edge_bound(&self, p0: DVec3, p1: DVec3) -> f64 {

@@ -1,7 +1,5 @@
 //! What differs between a curve in plan and a curve in space: vectors, offsets across the curve, and turns along it.
 
-use super::Straightened;
-use crate::Stage;
 use glam::{DQuat, DVec2, DVec3};
 use std::f64::consts::PI;
 use std::fmt::{Debug, Display};
@@ -167,8 +165,6 @@ pub trait Dimension: Copy + Debug + PartialEq + Send + Sync + Sized + 'static {
     fn advance(curvature: [Self::Across; 2], spacing: f64, s: f64) -> (Self::Vector, Self::Turn);
     /// Those of the bounds `normal . offset <= distance` that shorter offsets than `most` may pass without passing another one.
     fn needed(bounds: Vec<(Self::Across, f64)>, most: f64) -> Vec<(Self::Across, f64)>;
-    /// The map as a stage.
-    fn stage(map: Straightened<Self>) -> Stage;
     /// Offsets of this length to several sides of the curve; of the negative length those to the other sides.
     fn spread(length: f64) -> Vec<Self::Across>;
 }
@@ -284,10 +280,6 @@ impl Dimension for Plan {
         [-1.0, 1.0].into_iter().filter_map(least).collect()
     }
 
-    fn stage(map: Straightened<Self>) -> Stage {
-        Stage::Strip(map)
-    }
-
     fn spread(length: f64) -> Vec<f64> {
         vec![length]
     }
@@ -389,10 +381,6 @@ impl Dimension for Space {
         kept.sort_unstable();
         kept.dedup();
         kept.into_iter().map(|k| bounds[k]).collect()
-    }
-
-    fn stage(map: Straightened<Self>) -> Stage {
-        Stage::Tube(map)
     }
 
     fn spread(length: f64) -> Vec<DVec2> {
